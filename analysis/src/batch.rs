@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 
-use firmware::number::Format;
+use haptic_servo::number::Format;
 use rayon::prelude::*;
 use serde::Serialize;
 use thiserror::Error;

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use firmware::current::CurrentLoop;
-use firmware::dac::DacCode;
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
-use firmware::wire::message::ToBoard;
+use haptic_servo::current::CurrentLoop;
+use haptic_servo::dac::DacCode;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
+use haptic_servo::wire::message::ToBoard;
 
 use crate::hand::HandTrajectory;
 use crate::shaft::{HandHeldShaft, LedShaft, Shaft};

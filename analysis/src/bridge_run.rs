@@ -1,6 +1,6 @@
 //! A scene run over counts with the board's own bridge: on a virtual board, and on the host beside it.
 
-use firmware::scene::Scene;
+use haptic_servo::scene::Scene;
 
 use crate::bridge_board::{BridgeBoard, BridgeError};
 use crate::compare_run::{BoardMeasurement, RunOutcome};

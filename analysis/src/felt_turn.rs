@@ -3,11 +3,11 @@
 
 use std::f64::consts::TAU;
 
-use firmware::certificate::Rejection;
-use firmware::dac::DacCode;
-use firmware::environment::{AnyProfile, Ends};
-use firmware::scene::Scene;
-use firmware::servo::{BuildError, Transducers};
+use haptic_servo::certificate::Rejection;
+use haptic_servo::dac::DacCode;
+use haptic_servo::environment::{AnyProfile, Ends};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::{BuildError, Transducers};
 use thiserror::Error;
 
 use crate::controller::controller;

@@ -3,9 +3,9 @@
 
 use std::fmt;
 
-use firmware::dac::DacCode;
-use firmware::scene::{Latency, Scene, Timing};
-use firmware::servo::Transducers;
+use haptic_servo::dac::DacCode;
+use haptic_servo::scene::{Latency, Scene, Timing};
+use haptic_servo::servo::Transducers;
 
 use crate::controller::{Controller, Tick};
 use crate::device::{Energy, Hand, Motion, SimulatedEncoder};
@@ -236,9 +236,9 @@ impl RemoteServo for NoRemote {
 
 #[cfg(test)]
 mod tests {
-    use firmware::encoder::CounterWidth;
-    use firmware::environment::{Environment, Wall};
-    use firmware::scene::{Coupling, Device};
+    use haptic_servo::encoder::CounterWidth;
+    use haptic_servo::environment::{Environment, Wall};
+    use haptic_servo::scene::{Coupling, Device};
 
     use super::*;
 

@@ -26,11 +26,11 @@ pub mod undelayed_wall;
 use std::io;
 use std::sync::OnceLock;
 
-use firmware::current::CurrentLoop;
-use firmware::environment::Discretize;
-use firmware::number::Number;
-use firmware::scene::Scene;
-use firmware::servo::{BuildError, Servo, Transducers};
+use haptic_servo::current::CurrentLoop;
+use haptic_servo::environment::Discretize;
+use haptic_servo::number::Number;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::{BuildError, Servo, Transducers};
 use serde::Serialize;
 
 use crate::board_sim::{Pacing, SimulatedBoard};
@@ -141,7 +141,7 @@ pub fn add(program: Program) {
 #[macro_export]
 macro_rules! program {
     ($module:ident) => {
-        $crate::program!($module, ::firmware::servo::Latched)
+        $crate::program!($module, ::haptic_servo::servo::Latched)
     };
     ($module:ident, $mode:ty) => {
         $crate::program::Program {

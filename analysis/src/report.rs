@@ -1,8 +1,8 @@
 //! One page about a scene, with nothing outside of it: verdict, numbers, assumptions, pictures.
 
-use firmware::environment::AnyProfile;
-use firmware::parameter::Parameter;
-use firmware::scene::{Coupling, Latency, Scene, TimeRange};
+use haptic_servo::environment::AnyProfile;
+use haptic_servo::parameter::Parameter;
+use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::chart::Picture;

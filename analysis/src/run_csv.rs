@@ -94,7 +94,7 @@ fn status(row: &Row<'_>, limit: FoundColumn) -> Result<TickStatus, TableError> {
 
 #[cfg(test)]
 mod tests {
-    use firmware::torque::LimitReason;
+    use haptic_servo::torque::LimitReason;
 
     use super::*;
 

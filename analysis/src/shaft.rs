@@ -7,10 +7,10 @@
 
 use std::f64::consts::TAU;
 
-use firmware::current::CurrentLoop;
-use firmware::encoder::CounterWidth;
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
+use haptic_servo::current::CurrentLoop;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 
 use crate::device::Energy;
 use crate::hand::HandTrajectory;
@@ -189,9 +189,9 @@ impl Shaft for HandHeldShaft {
 
 #[cfg(test)]
 mod tests {
-    use firmware::current::{B_G431B_ESC1, Drive, Motor, Supply, Winding};
-    use firmware::environment::{Environment, Wall};
-    use firmware::scene::{Coupling, Device, Latency, Timing};
+    use haptic_servo::current::{B_G431B_ESC1, Drive, Motor, Supply, Winding};
+    use haptic_servo::environment::{Environment, Wall};
+    use haptic_servo::scene::{Coupling, Device, Latency, Timing};
 
     use super::*;
 

@@ -8,11 +8,11 @@ use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-use firmware::current::{Drive, Motor, Winding};
-use firmware::dac::DacCode;
-use firmware::servo::RenderingOptions;
-use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
-use firmware::wire::{encode, largest_frame};
+use haptic_servo::current::{Drive, Motor, Winding};
+use haptic_servo::dac::DacCode;
+use haptic_servo::servo::RenderingOptions;
+use haptic_servo::wire::message::{LONGEST_TO_BOARD, ToBoard};
+use haptic_servo::wire::{encode, largest_frame};
 
 use crate::emulator::InstructionStats;
 use crate::emulator::log::LogDecoder;

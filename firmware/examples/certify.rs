@@ -1,8 +1,8 @@
 //! A certificate as a constant, and the refusal of a scene that has none.
 
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// A spring of 22 N m/rad, one sample late at 1 kHz, on a device with 0.022 N m s/rad of damping.
 const SCENE: Scene<DelayedSpring<1>> = Scene {

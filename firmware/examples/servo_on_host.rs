@@ -2,12 +2,12 @@
 
 use core::f64::consts::TAU;
 
-use firmware::certificate::Certified;
-use firmware::dac::DacCode;
-use firmware::encoder::{CounterWidth, RawCount};
-use firmware::environment::{DamperWall, OneSided};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{BuildError, Output, Servo, Transducers};
+use haptic_servo::certificate::Certified;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::{CounterWidth, RawCount};
+use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{BuildError, Output, Servo, Transducers};
 
 const SCENE: Scene<OneSided<DamperWall<1>>> = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },

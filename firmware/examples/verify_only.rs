@@ -4,10 +4,10 @@
 //! The certificate is about a law and not about code. What the loop computes must be that law: here a spring
 //! that is one sample late, behind a virtual coupling, with a limited torque, in `f32`.
 
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// The loop's law, as the certificate has it.
 pub const SPRING: Scene<DelayedSpring<1>> = Scene {

@@ -12,7 +12,7 @@ pub trait Dac {
 /// motor torque.
 ///
 /// ```
-/// use firmware::dac::DacCode;
+/// use haptic_servo::dac::DacCode;
 /// assert_eq!(DacCode::new(4095).map(DacCode::get), Ok(4095));
 /// assert_eq!(
 ///     DacCode::new(4096).unwrap_err().to_string(),
@@ -71,7 +71,7 @@ impl OutputRange {
     /// Codes that are linear on both sides of mid-scale.
     ///
     /// ```
-    /// use firmware::dac::OutputRange;
+    /// use haptic_servo::dac::OutputRange;
     /// assert_eq!(OutputRange { supply: 3.3, headroom: 0.2 }.codes_each_way(), 1798);
     /// assert_eq!(OutputRange { supply: 3.3, headroom: 0.0 }.codes_each_way(), 2047);
     /// ```

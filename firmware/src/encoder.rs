@@ -22,7 +22,7 @@ pub enum CounterWidth {
 /// A counter's content, in its low bits; bits above the counter's width are ignored.
 ///
 /// ```
-/// use firmware::encoder::RawCount;
+/// use haptic_servo::encoder::RawCount;
 /// assert_eq!(RawCount::from(-1_i16), RawCount::from(0xffff_u16));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl From<i32> for RawCount {
 /// reading is taken as the nearest position to zero.
 ///
 /// ```
-/// use firmware::encoder::{CounterWidth, Position, RawCount};
+/// use haptic_servo::encoder::{CounterWidth, Position, RawCount};
 /// let mut position = Position::new(CounterWidth::Bits16);
 /// for raw in [0x7000_u16, 0xc000, 0x1000] {
 ///     position.update(RawCount::from(raw));

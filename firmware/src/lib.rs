@@ -5,9 +5,9 @@
 //! scene without a certificate does not compile:
 //!
 //! ```
-//! use firmware::certificate::Certified;
-//! use firmware::environment::DelayedSpring;
-//! use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+//! use haptic_servo::certificate::Certified;
+//! use haptic_servo::environment::DelayedSpring;
+//! use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 //!
 //! const SPRING: Certified<Scene<DelayedSpring<1>>> = Scene {
 //!     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },

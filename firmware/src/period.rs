@@ -20,7 +20,7 @@ pub const LONGEST: f64 = (WATCHDOG_LONGEST - 1.0) / WATCHDOG_CLOCK / PATIENCE;
 /// many seconds without a tick.
 ///
 /// ```
-/// assert_eq!(firmware::period::watchdog_counts(0.001), 65);
+/// assert_eq!(haptic_servo::period::watchdog_counts(0.001), 65);
 /// ```
 pub const fn watchdog_counts(seconds: f64) -> u16 {
     // A count more covers the cast's rounding.

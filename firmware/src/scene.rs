@@ -122,9 +122,9 @@ impl Scene {
     /// known to lie in a range it is the longest.
     ///
     /// ```
-    /// use firmware::certificate::Parameter;
-    /// # use firmware::environment::{Environment, Wall};
-    /// # use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+    /// use haptic_servo::certificate::Parameter;
+    /// # use haptic_servo::environment::{Environment, Wall};
+    /// # use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
     /// # let scene = Scene {
     /// #     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     /// #     timing: Timing { period: 1e-3, worst_period: None },

@@ -3,8 +3,8 @@
 use crate::exact::of_f64;
 use crate::index::Index;
 use crate::rules::{Exact, NoIndex};
-use firmware::certificate::{Answer, Assessment};
-use firmware::passivity::interval::Interval;
+use haptic_servo::certificate::{Answer, Assessment};
+use haptic_servo::passivity::interval::Interval;
 use std::cmp::Ordering;
 
 /// What the firmware left open.

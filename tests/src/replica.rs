@@ -1,15 +1,15 @@
 //! The board's cycle on this machine, which has to do in every tick what the emulated board does.
 
-use firmware::board::sim_hardware::{SimHardware, SimIo};
-use firmware::boot::{Booted, Program, boot};
-use firmware::certificate::Parameter;
-use firmware::dac::DacCode;
-use firmware::encoder::RawCount;
-use firmware::servo::{OutputMode, PreparedServo, SupportsTiming};
-use firmware::servo_loop::{
+use haptic_servo::board::sim_hardware::{SimHardware, SimIo};
+use haptic_servo::boot::{Booted, Program, boot};
+use haptic_servo::certificate::Parameter;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::RawCount;
+use haptic_servo::servo::{OutputMode, PreparedServo, SupportsTiming};
+use haptic_servo::servo_loop::{
     FrameQueue, Frames, Inbox, Mailbox, Notice, Requests, ServoLoop, State,
 };
-use firmware::tuning::{self, Tunable};
+use haptic_servo::tuning::{self, Tunable};
 
 /// Timer counts in a period.
 const PERIOD: u32 = 1000;

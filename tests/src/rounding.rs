@@ -4,9 +4,9 @@
 use crate::exact::{Q, of_f64};
 use crate::poly::Poly;
 use crate::rules::Exact;
-use firmware::environment::{Environment, Wall};
-use firmware::number::Format;
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Scene};
 use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 

@@ -6,8 +6,8 @@
 use crate::exact::{Q, of_f64};
 use crate::poly::Poly;
 use crate::rules::Exact;
-use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use num_traits::{One, Zero};
 use rand::Rng;
 use std::f64::consts::PI;

@@ -3,8 +3,8 @@
 use crate::exact::{Q, of_decimal};
 use crate::poly::Poly;
 use crate::rules::Exact;
-use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde_json::Value;
 
 /// A case: decimal text as it stands in the file.

@@ -4,18 +4,18 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use firmware::tuning::RenderError;
-use firmware::wire::description::Description;
-use firmware::wire::message::{
-    ActiveParameters, Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
-    PreviousFault, Refusal, Status, ToBoard, ToHost,
-};
-use firmware::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
 use haptic_model::board::OtherProtocol;
 use haptic_model::board::history::History;
 use haptic_model::board::request::{Reply, Request, RequestResult, names, refusal_in_words};
 use haptic_model::board::sample::{Sample, Scale};
 use haptic_model::board::timing::{QUERY, REQUEST, SILENCE, STATUS_INTERVAL, stream_every};
+use haptic_servo::tuning::RenderError;
+use haptic_servo::wire::description::Description;
+use haptic_servo::wire::message::{
+    ActiveParameters, Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
+    PreviousFault, Refusal, Status, ToBoard, ToHost,
+};
+use haptic_servo::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
 
 /// Seconds of curves that are kept.
 pub const WINDOW: f64 = 5.0;

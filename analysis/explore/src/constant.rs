@@ -4,10 +4,10 @@ mod expression;
 
 use std::collections::BTreeSet;
 
-use firmware::environment::{Coefficients, Composed, Ends, Environment, Rational, Shape, Wall};
-use firmware::scene::{Coupling, Latency, Scene, TimeRange};
 use haptic_model::file::SceneFile;
 use haptic_model::file::profile::Shapes;
+use haptic_servo::environment::{Coefficients, Composed, Ends, Environment, Rational, Shape, Wall};
+use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange};
 
 use crate::Answer;
 use crate::judge::read;
@@ -80,9 +80,9 @@ fn of(file: &SceneFile) -> Answer {
         ],
     );
     Ok(format!(
-        "use firmware::certificate::Certified;\n\
-         use firmware::environment::{uses};\n\
-         use firmware::scene::{{Coupling, Device, Latency, Scene{time_range}, Timing}};\n\n\
+        "use haptic_servo::certificate::Certified;\n\
+         use haptic_servo::environment::{uses};\n\
+         use haptic_servo::scene::{{Coupling, Device, Latency, Scene{time_range}, Timing}};\n\n\
          /// What the hand feels.\n\
          pub type Environment = {name};\n\n\
          {knots}\

@@ -1,10 +1,10 @@
 //! The certificate, as `haptic certify` has it.
 
-use firmware::number::Format;
 use haptic_model::file::{self, FileError, SceneFile};
 use haptic_model::remedy_change::{RemedyChange, remedy_changes};
 use haptic_model::verdict::{self, VerdictReport, judge_in};
 use haptic_model::verdict_text::rows;
+use haptic_servo::number::Format;
 use serde::Serialize;
 
 use crate::Answer;

@@ -1,9 +1,9 @@
 //! The keys of a scene, so that the page's fields are made of the one table that reading is made of.
 
-use firmware::parameter::Range;
 use haptic_model::file::key::{self, Bound, Form, Key, Presence};
 use haptic_model::file::kind::{self, Kind};
 use haptic_model::file::{self, Format, shape};
+use haptic_servo::parameter::Range;
 use serde_json::{Map, Value, json};
 
 use crate::Answer;

@@ -6,11 +6,11 @@
 use std::cell::RefCell;
 use std::ops::Range;
 
-use firmware::environment::Environment;
-use firmware::parameter::Parameter;
-use firmware::scene::Scene;
 use haptic_model::stability_map::plane::{Plane, parameter_of};
 use haptic_model::stability_map::{Region, middle};
+use haptic_servo::environment::Environment;
+use haptic_servo::parameter::Parameter;
+use haptic_servo::scene::Scene;
 use serde::Deserialize;
 use serde_json::{Value, json};
 

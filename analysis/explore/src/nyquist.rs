@@ -48,8 +48,8 @@ fn of(scene: &NyquistScene, curve: &Curve) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use firmware::certificate::{LoopTransfers, assess};
     use haptic_model::response::Response;
+    use haptic_servo::certificate::{LoopTransfers, assess};
 
     use super::*;
     use crate::test_scenes::{PROFILE, WALL};

@@ -103,7 +103,7 @@ mod tests {
             let file = file.unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(file.name, preset.name);
             assert_eq!(file.encoder_step, Some(TAU / 61_440.0));
-            let format = firmware::number::Format::F64;
+            let format = haptic_servo::number::Format::F64;
             let report = judge_in(&file.name, &file.scene, format, &file.steps());
             let is_last = index + 1 == ALL.len();
             let expected = if is_last { Verdict::Rejected } else { Verdict::Certified };

@@ -1,9 +1,9 @@
 //! The torque of a scene over the angle, at rest: of a torque profile as `haptic chart profile` draws it, of
 //! a wall its line.
 
-use firmware::environment::Wall;
 use haptic_model::profile_curve::{Piece, ProfileCurve};
 use haptic_model::quantity::significant;
+use haptic_servo::environment::Wall;
 use serde_json::{Value, json};
 
 use crate::Answer;

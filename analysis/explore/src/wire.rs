@@ -6,14 +6,14 @@
 use std::cell::RefCell;
 use std::time::Duration;
 
-use firmware::board::BAUD;
-use firmware::certificate::Parameter;
-use firmware::parameter::Range;
-use firmware::wire::PROTOCOL;
 use haptic_model::board::request::{Reply, Request};
 use haptic_model::board::sample::{COLUMNS, Row};
 use haptic_model::board::timing::RETRY;
 use haptic_model::board::{Power, change, formatting};
+use haptic_servo::board::BAUD;
+use haptic_servo::certificate::Parameter;
+use haptic_servo::parameter::Range;
+use haptic_servo::wire::PROTOCOL;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 

@@ -7,9 +7,9 @@
 
 use std::path::Path;
 
-use firmware::scene::Scene;
 use haptic_explore::{constant, presets};
 use haptic_model::file::{Format, parse};
+use haptic_servo::scene::Scene;
 
 #[path = "constants/bridge.rs"]
 mod bridge;

@@ -2,18 +2,18 @@
 
 use std::f64::consts::TAU;
 
-use firmware::board::sim_hardware::{SimHardware, SimIo};
-use firmware::boot::{self, Program};
-use firmware::dac::DacCode;
-use firmware::encoder::{CounterWidth, RawCount};
-use firmware::environment::{DamperWall, OneSided};
-use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{Latched, PreparedServo, RenderingOptions, Transducers};
-use firmware::servo_loop::{self, FrameQueue, Frames, Inbox, Mailbox, ServoLoop};
-use firmware::wire::message::ToHost;
-use firmware::wire::{BoardInfo, PROTOCOL, Session, encode};
 use haptic_explore::wire;
+use haptic_servo::board::sim_hardware::{SimHardware, SimIo};
+use haptic_servo::boot::{self, Program};
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::{CounterWidth, RawCount};
+use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, Transducers};
+use haptic_servo::servo_loop::{self, FrameQueue, Frames, Inbox, Mailbox, ServoLoop};
+use haptic_servo::wire::message::ToHost;
+use haptic_servo::wire::{BoardInfo, PROTOCOL, Session, encode};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 

@@ -4,7 +4,7 @@
 //! are what that test is checked against. Arguments: stiffness `k` in N m/rad, damping `b` in
 //! N m s/rad, period `t` in s, delay `n` in samples.
 
-use firmware::passivity::interval::Interval;
+use haptic_servo::passivity::interval::Interval;
 
 const TWO: Interval = Interval::exact(2.0);
 const EIGHT: Interval = Interval::exact(8.0);
@@ -95,9 +95,9 @@ pub const fn free_mode_delayed_wall(
 
 #[cfg(test)]
 mod tests {
-    use firmware::passivity::discrete::index;
-    use firmware::passivity::polynomial::Polynomial;
-    use firmware::passivity::transfer::Transfer;
+    use haptic_servo::passivity::discrete::index;
+    use haptic_servo::passivity::polynomial::Polynomial;
+    use haptic_servo::passivity::transfer::Transfer;
     use proptest::prelude::*;
 
     use super::*;

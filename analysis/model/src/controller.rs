@@ -1,13 +1,13 @@
 //! A servo with its types forgotten, so that programs can hold one of any scene and format.
 
-use firmware::certificate::Certified;
-use firmware::encoder::RawCount;
-use firmware::environment::Discretize;
-use firmware::number::{Number, OutOfRange};
-use firmware::scene::Scene;
-use firmware::servo::{BuildError, Servo, Transducers};
-use firmware::torque::LimitReason;
-use firmware::tuning::Tunable;
+use haptic_servo::certificate::Certified;
+use haptic_servo::encoder::RawCount;
+use haptic_servo::environment::Discretize;
+use haptic_servo::number::{Number, OutOfRange};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::{BuildError, Servo, Transducers};
+use haptic_servo::torque::LimitReason;
+use haptic_servo::tuning::Tunable;
 
 /// What a tick gave.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! The trajectory of a hand: its set-point over time, and when it lets go.
 
-use firmware::environment::Environment;
+use haptic_servo::environment::Environment;
 
 use crate::device::{Hand, HandSetpoint};
 

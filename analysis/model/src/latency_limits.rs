@@ -4,10 +4,10 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use firmware::certificate::PassivityProblem;
-use firmware::environment::{Environment, Wall};
-use firmware::parameter::MAX_DELAY;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::PassivityProblem;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::parameter::MAX_DELAY;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// By how much a spring may exceed the certified one before some hand is known to destabilise it: hands
 /// that do not vary in time allow 1.3 % more at the most (theory, section 13.1).

@@ -1,12 +1,12 @@
 //! The stiffest wall that is certified, and what an encoder's step does to its torque.
 
-use firmware::certificate::PassivityProblem;
-use firmware::environment::Wall;
-use firmware::matched::MatchedCoupling;
-use firmware::number::Format;
-use firmware::passivity::polynomial::{Polynomial, UnitRoot};
-use firmware::passivity::transfer::Unbuildable;
-use firmware::scene::{Coupling, Scene, Timing};
+use haptic_servo::certificate::PassivityProblem;
+use haptic_servo::environment::Wall;
+use haptic_servo::matched::MatchedCoupling;
+use haptic_servo::number::Format;
+use haptic_servo::passivity::polynomial::{Polynomial, UnitRoot};
+use haptic_servo::passivity::transfer::Unbuildable;
+use haptic_servo::scene::{Coupling, Scene, Timing};
 
 use crate::response::Response;
 use crate::simulation::closed_loop::transfers;
@@ -190,10 +190,10 @@ impl Curves {
 
 #[cfg(test)]
 mod tests {
-    use firmware::environment::Environment;
+    use haptic_servo::environment::Environment;
 
     use super::*;
-    use firmware::scene::{Device, Latency};
+    use haptic_servo::scene::{Device, Latency};
 
     fn wall(damping: f64, delay: usize, coupling: Coupling) -> Scene {
         Scene {

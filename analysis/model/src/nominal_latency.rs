@@ -1,7 +1,7 @@
 //! What simulations, responses and curves take for a latency that is known in part: each time by the middle
 //! of its range, and no jitter. The certificate covers all of it.
 
-use firmware::scene::Latency;
+use haptic_servo::scene::Latency;
 
 /// What is left out of a latency, in a few words; `None` where nothing is.
 pub fn left_out(latency: &Latency) -> Option<&'static str> {
@@ -32,7 +32,7 @@ pub fn titled<'l>(title: &str, latencies: impl IntoIterator<Item = &'l Latency>)
 
 #[cfg(test)]
 mod tests {
-    use firmware::latency::TimeRange;
+    use haptic_servo::latency::TimeRange;
 
     use super::*;
 

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use firmware::number::{Format, OutOfRange};
-use firmware::parameter::Parameter;
-use firmware::scene::Scene;
+use haptic_servo::number::{Format, OutOfRange};
+use haptic_servo::parameter::Parameter;
+use haptic_servo::scene::Scene;
 
 /// The format of a name such as `f32`, `f64`, `i8f24`, `i8f24-truncated` or `q8.24`.
 ///

@@ -6,8 +6,8 @@
 
 use std::f64::consts::PI;
 
-use firmware::passivity::transfer::Unbuildable;
-use firmware::scene::Scene;
+use haptic_servo::passivity::transfer::Unbuildable;
+use haptic_servo::scene::Scene;
 use nalgebra::Complex;
 
 use crate::response::Response;

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use firmware::environment::{AnyProfile, Ends, FULL_SCALE};
-use firmware::scene::Scene;
+use haptic_servo::environment::{AnyProfile, Ends, FULL_SCALE};
+use haptic_servo::scene::Scene;
 
 use crate::design::{Answer, Choice, Quantity, Terms, largest};
 use crate::snap_branches::{self, Branch, held, slope};

@@ -1,8 +1,8 @@
 //! What passes instead of a rejected scene, as changes of its file.
 
-use firmware::certificate::Remedy;
-use firmware::environment::Environment;
-use firmware::parameter::Parameter;
+use haptic_servo::certificate::Remedy;
+use haptic_servo::environment::Environment;
+use haptic_servo::parameter::Parameter;
 use serde::Serialize;
 use serde_json::{Value, json};
 

@@ -2,8 +2,8 @@
 //!
 //! The coefficients come from the certificate's [`Transfer`], so that a formula has one home.
 
-use firmware::passivity::polynomial::{Polynomial, UnitRoot};
-use firmware::passivity::transfer::Transfer;
+use haptic_servo::passivity::polynomial::{Polynomial, UnitRoot};
+use haptic_servo::passivity::transfer::Transfer;
 use nalgebra::Complex;
 
 /// `numerator(z) / denominator(z)` with ascending coefficients; causal.
@@ -20,7 +20,7 @@ impl Response {
 
     /// `(T z / (z - 1)) G`, from backward-difference velocity (theory, section 2).
     pub fn from_velocity(&self, period: f64) -> Self {
-        let period = firmware::passivity::interval::Interval::exact(period);
+        let period = haptic_servo::passivity::interval::Interval::exact(period);
         Self::new(self.transfer.from_velocity(period))
     }
 
@@ -107,9 +107,9 @@ impl Filter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use firmware::certificate::LoopTransfers;
-    use firmware::environment::{Environment, Wall};
-    use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+    use haptic_servo::certificate::LoopTransfers;
+    use haptic_servo::environment::{Environment, Wall};
+    use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
     fn wall(delay: usize) -> Scene {
         Scene {

@@ -1,7 +1,7 @@
 //! An amplifier whose current loop is updated a whole number of times in a period (theory, section 13.8): from
 //! one update to the next its torque goes in a straight line, and what it lacks shrinks by the same factor.
 
-use firmware::scene::Latency;
+use haptic_servo::scene::Latency;
 use nalgebra::Complex;
 
 /// The amplifier, without the updates before its torque begins, which are a delay.

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use firmware::coupling::Response;
-use firmware::environment::{AnyProfile, Discretize, Law, SnapPoint};
-use firmware::scene::Scene;
+use haptic_servo::coupling::Response;
+use haptic_servo::environment::{AnyProfile, Discretize, Law, SnapPoint};
+use haptic_servo::scene::Scene;
 
 /// Points of a branch.
 const POINTS: usize = 200;

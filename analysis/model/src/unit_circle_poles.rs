@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use firmware::passivity::transfer::Transfer;
+use haptic_servo::passivity::transfer::Transfer;
 use nalgebra::{Complex, DMatrix};
 
 use crate::response::Response;
@@ -121,7 +121,7 @@ fn roots(g: &Transfer) -> Vec<Complex<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use firmware::passivity::polynomial::Polynomial;
+    use haptic_servo::passivity::polynomial::Polynomial;
 
     fn ratio(numerator: &[f64], denominator: &[f64]) -> Transfer {
         let p = |c: &[f64]| Polynomial::descending(c, false);

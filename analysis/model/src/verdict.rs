@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-use firmware::certificate::{
+use haptic_servo::certificate::{
     Answer, Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Rejection,
     Remedies, Resolution, Rule, assess_in, certify_in,
 };
-use firmware::number::Format;
-use firmware::passivity::interval::Interval;
-use firmware::scene::{Coupling, Scene};
-use firmware::servo::OutputTiming;
+use haptic_servo::number::Format;
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::scene::{Coupling, Scene};
+use haptic_servo::servo::OutputTiming;
 use serde::Serialize;
 
 use crate::line_search::minimizing_angle;

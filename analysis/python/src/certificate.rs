@@ -1,11 +1,11 @@
 //! Verdicts, as `haptic certify` has them, and the index alone.
 
-use firmware::certificate::assess_in;
-use firmware::number::Format;
-use firmware::passivity::interval::Interval;
 use haptic_model::file::Purpose;
 use haptic_model::number;
 use haptic_model::verdict::judge_in;
+use haptic_servo::certificate::assess_in;
+use haptic_servo::number::Format;
+use haptic_servo::passivity::interval::Interval;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use serde_json::json;

@@ -1,9 +1,9 @@
 //! The transfer functions of a scene around the unit circle.
 
-use firmware::certificate::LoopTransfers;
 use haptic_model::file::Purpose;
 use haptic_model::response::Response;
 use haptic_model::simulation::SimulationError;
+use haptic_servo::certificate::LoopTransfers;
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
 

@@ -10,10 +10,10 @@ use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use firmware::number::Number;
-use firmware::servo::{OutputMode, SupportsTiming};
-use firmware::tuning::Tunable;
-use firmware::wire::Session;
+use haptic_servo::number::Number;
+use haptic_servo::servo::{OutputMode, SupportsTiming};
+use haptic_servo::tuning::Tunable;
+use haptic_servo::wire::Session;
 
 use crate::link::Address;
 

@@ -14,13 +14,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use firmware::board::sim_hardware::SimHardware;
-use firmware::boot::{self, Program};
-use firmware::number::Number;
-use firmware::servo::{OutputMode, Step, SupportsTiming};
-use firmware::servo_loop::{FrameQueue, Mailbox};
-use firmware::tuning::{self, RenderError, Tunable};
-use firmware::wire::{BoardInfo, Session};
+use haptic_servo::board::sim_hardware::SimHardware;
+use haptic_servo::boot::{self, Program};
+use haptic_servo::number::Number;
+use haptic_servo::servo::{OutputMode, Step, SupportsTiming};
+use haptic_servo::servo_loop::{FrameQueue, Mailbox};
+use haptic_servo::tuning::{self, RenderError, Tunable};
+use haptic_servo::wire::{BoardInfo, Session};
 
 use self::listener::Listener;
 use self::plant_hardware::PlantHardware;

@@ -1,9 +1,9 @@
 //! The simulated hardware of a board: encoder, DAC and timer around a plant.
 
-use firmware::board::sim_hardware::SimIo;
-use firmware::dac::DacCode;
-use firmware::encoder::RawCount;
-use firmware::servo::OutputTiming;
+use haptic_servo::board::sim_hardware::SimIo;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::RawCount;
+use haptic_servo::servo::OutputTiming;
 
 use crate::lockstep::PlantIo;
 

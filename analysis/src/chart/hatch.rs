@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use firmware::torque::LimitReason;
+use haptic_servo::torque::LimitReason;
 use plotters::prelude::*;
 
 use super::{Area, Drawn, FORBIDDEN, UNITS, pen, units};

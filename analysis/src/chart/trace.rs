@@ -267,7 +267,7 @@ fn write_fill_legend(area: &Area<'_>, reasons: &[(TickStatus, Fill)]) -> Drawn<(
 
 /// The meaning of a fill.
 fn name(status: TickStatus) -> &'static str {
-    use firmware::torque::LimitReason::{Angle, DacRange, None, NotANumber, Ramp, Torque};
+    use haptic_servo::torque::LimitReason::{Angle, DacRange, None, NotANumber, Ramp, Torque};
     match status {
         TickStatus::Ran(None) => "not limited",
         TickStatus::Ran(Torque) => "torque limit",

@@ -6,9 +6,9 @@ use std::process::Command;
 
 use clap::Args;
 use comfy_table::Table;
-use firmware::certificate::Parameter;
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::certificate::Parameter;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Scene};
 
 use super::shared_arguments::JsonOption;
 use super::status::{CommandError, CommandStatus};
@@ -297,7 +297,7 @@ fn compile_time(latency: &str) -> io::Result<f64> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(&cargo)
         .current_dir(&workspace)
-        .args(["build", "--profile", "host", "--package", "firmware", "--lib"])
+        .args(["build", "--profile", "host", "--package", "haptic-servo", "--lib"])
         .arg("--message-format=json")
         .output()?;
     let library = library(&output.stdout)
@@ -312,7 +312,7 @@ fn library(messages: &[u8]) -> Option<PathBuf> {
     let messages = String::from_utf8_lossy(messages);
     let mut artifacts = messages.lines().filter_map(|line| {
         let message: serde_json::Value = serde_json::from_str(line).ok()?;
-        (message["target"]["name"] == "firmware").then_some(())?;
+        (message["target"]["name"] == "haptic_servo").then_some(())?;
         let files = message["filenames"].as_array()?;
         files.iter().find_map(|file| {
             file.as_str().filter(|file| file.ends_with(".rlib")).map(PathBuf::from)

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
-use firmware::certificate::certify;
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::certify;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use super::outcome::section;
 use super::shared_arguments::{DEFAULT_TICKS, MAX_TICKS};

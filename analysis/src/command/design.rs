@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use firmware::scene::Coupling;
+use haptic_servo::scene::Coupling;
 use serde::Serialize;
 
 use super::shared_arguments::{JsonOption, folder, json};

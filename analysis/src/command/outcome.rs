@@ -1,7 +1,7 @@
 //! What a run gave, for a person.
 
-use firmware::dac::DacCode;
-use firmware::text::RoundUp3;
+use haptic_servo::dac::DacCode;
+use haptic_servo::text::RoundUp3;
 
 use crate::compare_run::RunOutcome;
 use crate::program::Program;

@@ -7,8 +7,8 @@ use std::str::FromStr;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 use serde::Serialize;
 
 use super::file_scene::{hand_trajectory, scene_file};

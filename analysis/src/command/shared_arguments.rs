@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use clap::Args;
-use firmware::number::Format;
+use haptic_servo::number::Format;
 use serde::Serialize;
 
 use super::status::CommandError;

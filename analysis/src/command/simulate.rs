@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use clap::Args;
-use firmware::scene::Scene;
+use haptic_servo::scene::Scene;
 use serde::Serialize;
 
 use super::shared_arguments::{IntegrationArguments, JsonOption, SceneArgument, json};

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use firmware::certificate::Rejection;
+use haptic_servo::certificate::Rejection;
 use thiserror::Error;
 
 use crate::batch::BatchError;
@@ -99,7 +99,7 @@ pub enum CommandError {
     Refused(Box<Rejection>),
     /// The servo cannot be built of the certified scene.
     #[error(transparent)]
-    Servo(#[from] firmware::servo::BuildError),
+    Servo(#[from] haptic_servo::servo::BuildError),
     /// A number of the scene does not fit the number format.
     #[error(transparent)]
     Number(#[from] crate::number::DoesNotFit),

@@ -5,9 +5,9 @@ use std::thread;
 use std::time::Duration;
 
 use clap::Args;
-use firmware::certificate::Parameter;
-use firmware::servo_loop::State;
-use firmware::wire::message::{ActiveParameters, Changes, FaultCode, Status};
+use haptic_servo::certificate::Parameter;
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::{ActiveParameters, Changes, FaultCode, Status};
 use serde::Serialize;
 
 use super::shared_arguments::{JsonOption, json};

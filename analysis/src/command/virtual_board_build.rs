@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use firmware::current::CurrentLoop;
+use haptic_servo::current::CurrentLoop;
 
 use super::status::CommandError;
 use crate::bridge_board::BridgeBoard;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use firmware::scene::Scene;
 use firmware_harness::scene_codec::{CertifyReply, ReplyWords, SceneWords, decode_reply, encode};
+use haptic_servo::scene::Scene;
 
 use super::{EmulatorError, Guest, Transport};
 

@@ -20,10 +20,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use firmware::board::lockstep_protocol::{TickInput, TickOutput};
-use firmware::servo_loop::State;
-use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
-use firmware::wire::{encode, largest_frame};
+use haptic_servo::board::lockstep_protocol::{TickInput, TickOutput};
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::{LONGEST_TO_BOARD, ToBoard};
+use haptic_servo::wire::{encode, largest_frame};
 use tempfile::TempDir;
 
 pub use bench_client::BenchClient;

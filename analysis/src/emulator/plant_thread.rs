@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
-use firmware::board::lockstep_protocol::{TickInput, TickOutput};
+use haptic_servo::board::lockstep_protocol::{TickInput, TickOutput};
 
 use super::{Emulator, EmulatorError};
 

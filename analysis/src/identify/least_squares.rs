@@ -1,6 +1,6 @@
 //! Damping, inertia and delay of the device that is nearest to some responses, for a lag that is given.
 
-use firmware::current::TorqueSource;
+use haptic_servo::current::TorqueSource;
 use nalgebra::{Complex, Matrix3, Vector3};
 
 use super::model::Model;

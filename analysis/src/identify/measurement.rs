@@ -3,8 +3,8 @@
 use std::io;
 use std::path::Path;
 
-use firmware::dac::DacCode;
-use firmware::excitation::{Exciter, Sweep};
+use haptic_servo::dac::DacCode;
+use haptic_servo::excitation::{Exciter, Sweep};
 
 use super::record::Record;
 use super::rig::MeasuredDevice;

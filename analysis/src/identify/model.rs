@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use firmware::current::TorqueSource;
+use haptic_servo::current::TorqueSource;
 use nalgebra::Complex;
 
 use super::torque_source;

@@ -3,8 +3,8 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use firmware::current::TorqueSource;
-use firmware::excitation::{SILENCE, SWEEP_PROTOCOL, SweepEnd, byte};
+use haptic_servo::current::TorqueSource;
+use haptic_servo::excitation::{SILENCE, SWEEP_PROTOCOL, SweepEnd, byte};
 use thiserror::Error;
 
 use super::torque_source;

@@ -1,6 +1,6 @@
 //! The response of the device at one frequency, by least squares over one stretch of sine.
 
-use firmware::current::TorqueSource;
+use haptic_servo::current::TorqueSource;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::record::Record;

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use firmware::scene::Device;
+use haptic_servo::scene::Device;
 use nalgebra::DVector;
 
 use super::record::Record;

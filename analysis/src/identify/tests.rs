@@ -1,6 +1,6 @@
 //! Simulated devices measured by a simulated rig, and records that are none.
 
-use firmware::scene::Device;
+use haptic_servo::scene::Device;
 
 use super::record::parse;
 use super::rig::{Excitation, Rig, Sensing};

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
-use firmware::current::TorqueSource;
+use haptic_servo::current::TorqueSource;
 use nalgebra::Complex;
 
 /// Torque against the motion over its velocity, in N m s/rad, at an angular frequency in rad/s that is not 0.

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use firmware::board::BAUD;
+use haptic_servo::board::BAUD;
 use thiserror::Error;
 
 /// Where a board is.

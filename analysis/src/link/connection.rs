@@ -3,12 +3,12 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use firmware::wire::description::Description;
-use firmware::wire::message::{
+use haptic_servo::wire::description::Description;
+use haptic_servo::wire::message::{
     ActiveParameters, Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
     PreviousFault, Refusal, Status, ToBoard, ToHost,
 };
-use firmware::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
+use haptic_servo::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
 
 use haptic_model::board::OtherProtocol;
 use haptic_model::board::request::{RequestResult, refusal_in_words};

@@ -78,8 +78,8 @@ impl Control {
 
 #[cfg(test)]
 mod tests {
-    use firmware::certificate::Parameter;
-    use firmware::wire::message::Changes;
+    use haptic_servo::certificate::Parameter;
+    use haptic_servo::wire::message::Changes;
 
     use super::*;
 

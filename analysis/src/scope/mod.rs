@@ -8,8 +8,8 @@ pub mod record;
 mod tests;
 pub mod tui;
 
-use firmware::wire::Discarded;
-use firmware::wire::message::{ActiveParameters, Board, PreviousFault, Status};
+use haptic_servo::wire::Discarded;
+use haptic_servo::wire::message::{ActiveParameters, Board, PreviousFault, Status};
 
 pub use haptic_model::board::{Power, formatting, history, sample};
 

@@ -1,8 +1,8 @@
 //! The modes of a knob's program.
 
-use firmware::certificate::Parameter;
-use firmware::environment::ProfileMode;
-use firmware::wire::message::ActiveParameters;
+use haptic_servo::certificate::Parameter;
+use haptic_servo::environment::ProfileMode;
+use haptic_servo::wire::message::ActiveParameters;
 
 use crate::program::Program;
 

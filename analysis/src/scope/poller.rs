@@ -8,12 +8,12 @@ use std::sync::mpsc::{self, Receiver, SendError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use firmware::servo_loop::Frame;
-use firmware::wire::Discarded;
-use firmware::wire::message::{
+use haptic_model::board::timing::{REQUEST, RETRY, SILENCE, STATUS_INTERVAL};
+use haptic_servo::servo_loop::Frame;
+use haptic_servo::wire::Discarded;
+use haptic_servo::wire::message::{
     ActiveParameters, Board, Id, PreviousFault, Status, ToBoard, ToHost,
 };
-use haptic_model::board::timing::{REQUEST, RETRY, SILENCE, STATUS_INTERVAL};
 
 use super::control::{Reply, Request};
 use crate::link::{Link, LinkError};

@@ -45,10 +45,10 @@ impl Recorder {
 
 #[cfg(test)]
 mod tests {
-    use firmware::dac::DacCode;
-    use firmware::servo_loop::{Frame, State};
-    use firmware::torque::LimitReason;
-    use firmware::wire::message::Board;
+    use haptic_servo::dac::DacCode;
+    use haptic_servo::servo_loop::{Frame, State};
+    use haptic_servo::torque::LimitReason;
+    use haptic_servo::wire::message::Board;
 
     use super::super::sample::Scale;
     use super::*;

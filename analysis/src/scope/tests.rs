@@ -1,12 +1,12 @@
-use firmware::certificate::Parameter;
-use firmware::dac::DacCode;
-use firmware::fault::Fault;
-use firmware::power_reading::PowerReading;
-use firmware::reset::ResetCause;
-use firmware::servo_loop::{Frame, State};
-use firmware::torque::LimitReason;
-use firmware::wire::Discarded;
-use firmware::wire::message::{ActiveParameters, Board, Changes, PreviousFault, Status};
+use haptic_servo::certificate::Parameter;
+use haptic_servo::dac::DacCode;
+use haptic_servo::fault::Fault;
+use haptic_servo::power_reading::PowerReading;
+use haptic_servo::reset::ResetCause;
+use haptic_servo::servo_loop::{Frame, State};
+use haptic_servo::torque::LimitReason;
+use haptic_servo::wire::Discarded;
+use haptic_servo::wire::message::{ActiveParameters, Board, Changes, PreviousFault, Status};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 

@@ -239,7 +239,7 @@ impl Toolchain {
             TorqueOutput::Bridge => "bridge_load",
         };
         let features = format!("{board},on-target{}", output.features());
-        let build = ["--release", "--package", "firmware", "--target", TARGET];
+        let build = ["--release", "--package", "haptic-servo", "--target", TARGET];
         let tests = ["--features", &features, "--test", name];
         let _lock = self.workspace.lock("build")?;
         let mut cargo = self.cargo();

@@ -104,12 +104,12 @@ const TAKEN: &[&str] = &[
     "extern",
     "false",
     "final",
-    "firmware",
     "fixed",
     "fn",
     "for",
     "gen",
     "haptic",
+    "haptic_servo",
     "harness",
     "if",
     "impl",
@@ -305,7 +305,7 @@ mod tests {
         fs::create_dir_all(&sources.folder).unwrap();
         let other = "//! A wall\n//! of the paper.\n#![no_std]\n\nfirmware::scene_program! {}\n";
         fs::write(sources.file("wall"), other).unwrap();
-        fs::write(sources.file("identify"), "firmware::sweep_program!(SWEEP);\n").unwrap();
+        fs::write(sources.file("identify"), "haptic_servo::sweep_program!(SWEEP);\n").unwrap();
 
         let path = sources.begin("soft", "wall").unwrap();
         let text = fs::read_to_string(&path).unwrap();

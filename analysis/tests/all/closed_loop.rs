@@ -3,7 +3,7 @@
 use analysis::compare_run::{Input, RunOutcome, run_with_backend};
 use analysis::program::{ALL, Program};
 use analysis::toolchain::NumberFormat;
-use firmware::torque::LimitReason;
+use haptic_servo::torque::LimitReason;
 
 fn outcome(program: &Program, format: NumberFormat) -> RunOutcome {
     let mut controller = program.controller(format, &program.transducers).unwrap();

@@ -3,8 +3,8 @@
 
 use crate::common::{answer, haptic_reading, program};
 use analysis::file::{self, FileError, Format, Purpose, SceneFile, parse_for, write};
-use firmware::environment::{Composed, Environment, Wall};
-use firmware::parameter::Parameter;
+use haptic_servo::environment::{Composed, Environment, Wall};
+use haptic_servo::parameter::Parameter;
 
 const HEAD: &str = "name = \"knob\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n[servo]\n\
                     period = 0.001\n[coupling]\nstiffness = 44.0\n[environment]\ntype = \"profile\"\n";

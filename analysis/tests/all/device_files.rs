@@ -192,7 +192,7 @@ fn errors_name_file_line_key_value_and_bound() {
 #[test]
 fn a_measured_device_is_identified_and_its_table_is_a_device_file() {
     use analysis::identify::rig::{Excitation, Rig, Sensing};
-    use firmware::scene::Device;
+    use haptic_servo::scene::Device;
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     let rig = Rig {
         device,

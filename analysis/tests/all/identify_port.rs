@@ -11,8 +11,8 @@ use analysis::identify::rig::{MeasuredDevice, Sensing};
 use analysis::program::damper_wall;
 use analysis::program::identify::{GUARD, LIMITS, PERIOD, SWEEP, TRANSDUCERS};
 use analysis::simulation::plant::Plant;
-use firmware::dac::DacCode;
-use firmware::excitation::{Exciter, SWEEP_PROTOCOL, SweepEnd, byte};
+use haptic_servo::dac::DacCode;
+use haptic_servo::excitation::{Exciter, SWEEP_PROTOCOL, SweepEnd, byte};
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -8,11 +8,11 @@ use analysis::board_sim::{Pacing, SimulatedBoard};
 use analysis::link::{Address, Link, RequestResult};
 use analysis::lockstep::PlantIo;
 use analysis::program::{Program, knob_modes};
-use firmware::certificate::{Parameter, certify_in};
-use firmware::environment::{KNOB_MODES, MODES, ProfileModes, Shape};
-use firmware::number::Format;
-use firmware::scene::{Coupling, Scene};
-use firmware::servo::Latched;
+use haptic_servo::certificate::{Parameter, certify_in};
+use haptic_servo::environment::{KNOB_MODES, MODES, ProfileModes, Shape};
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Scene};
+use haptic_servo::servo::Latched;
 use tempfile::TempDir;
 
 /// A knob that a hand holds at 50 degrees.

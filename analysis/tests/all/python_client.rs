@@ -5,24 +5,24 @@ use std::io::{BufRead, BufReader};
 use std::process::{Command, Output, Stdio};
 
 use crate::common::{answer, program, root, tool};
-use firmware::certificate::Parameter;
-use firmware::current::IndexOffset;
-use firmware::dac::DacCode;
-use firmware::encoder::CounterWidth;
-use firmware::environment::{Environment, Wall};
-use firmware::fault::Fault;
-use firmware::number::Format;
-use firmware::power_reading::PowerReading;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{OutputTiming, RenderingOptions, Step, Transducers};
-use firmware::servo_loop::{Frame, State};
-use firmware::torque::LimitReason;
-use firmware::wire::description::Description;
-use firmware::wire::message::{
+use haptic_servo::certificate::Parameter;
+use haptic_servo::current::IndexOffset;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::fault::Fault;
+use haptic_servo::number::Format;
+use haptic_servo::power_reading::PowerReading;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{OutputTiming, RenderingOptions, Step, Transducers};
+use haptic_servo::servo_loop::{Frame, State};
+use haptic_servo::torque::LimitReason;
+use haptic_servo::wire::description::Description;
+use haptic_servo::wire::message::{
     ActiveParameters, Board, Changes, Outcome, PreviousFault, Refusal, Status, ToBoard, ToHost,
 };
-use firmware::wire::telemetry::Batch;
-use firmware::wire::{Decoder, Discarded, PROTOCOL, encode};
+use haptic_servo::wire::telemetry::Batch;
+use haptic_servo::wire::{Decoder, Discarded, PROTOCOL, encode};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -78,7 +78,7 @@ fn status() -> Status {
         thinned: 6,
         discarded: Discarded { broken: 7, too_long: 8, checksum: 9, unknown: 10 },
         stack_left: Some(2048),
-        reset: firmware::reset::ResetCause::Pin,
+        reset: haptic_servo::reset::ResetCause::Pin,
         power: Some(PowerReading {
             current: -412,
             reference: i32::MIN,

@@ -6,9 +6,9 @@ use crate::common::WALL;
 use analysis::file::{self, FileError, Format, Purpose, SceneFile, parse_for};
 use analysis::simulation::{Experiment, Integration, simulate};
 use analysis::stability::judge;
-use firmware::certificate::certify;
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Latency, TimeRange};
+use haptic_servo::certificate::certify;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Latency, TimeRange};
 use proptest::prelude::*;
 
 const FULL: &str = r#"{

@@ -11,8 +11,8 @@ use analysis::simulation::plant::Plant;
 use analysis::simulation::torque_signal::TorqueSignal;
 use analysis::simulation::{Experiment, Integration, Trajectory, simulate};
 use analysis::stability::{closed_loop, eigenvalues};
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 const SAMPLES: usize = 1000;
 const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::common::{answer, haptic_reading, program};
 use analysis::file::{self, FileError, Format, Purpose, SceneFile, parse_for, write};
 use analysis::profile_curve::ProfileCurve;
-use firmware::parameter::Parameter;
+use haptic_servo::parameter::Parameter;
 
 const HEAD: &str = "name = \"knob\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n[servo]\n\
                     period = 0.001\n[coupling]\nstiffness = 44.0\n[limits]\ntorque = 1.0\n\

@@ -15,13 +15,13 @@ use analysis::emulator::{Emulator, EmulatorReport};
 use analysis::link::{Address, Link};
 use analysis::program::damper_wall;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
-use firmware::board::lockstep_protocol::TickInput;
-use firmware::environment::{DamperWall, OneSided};
-use firmware::number::Format;
-use firmware::scene::Scene;
-use firmware::servo_loop::State;
-use firmware::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, Status, ToBoard, ToHost};
-use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
+use haptic_servo::board::lockstep_protocol::TickInput;
+use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::number::Format;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, Status, ToBoard, ToHost};
+use haptic_servo::wire::{CHECKSUM, Decoder, encode, largest_frame};
 
 /// Counts inside the wall at which the device is held.
 const DEPTH: u32 = 300;

@@ -11,7 +11,7 @@ use analysis::link::Address;
 use analysis::lockstep::PlantIo;
 use analysis::program::{Program, damper_wall};
 use analysis::serve::{Port, Server};
-use firmware::number::Format;
+use haptic_servo::number::Format;
 use serde_json::Value;
 
 use crate::common::{WALL, program, read};

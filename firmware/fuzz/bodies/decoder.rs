@@ -1,8 +1,8 @@
 //! Any bytes into the decoders of both ends.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
-use firmware::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, ToBoard, ToHost};
-use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
+use haptic_servo::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, ToBoard, ToHost};
+use haptic_servo::wire::{CHECKSUM, Decoder, encode, largest_frame};
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
@@ -62,7 +62,7 @@ fn to_host(bytes: &[u8]) {
         let Some(message) = decoder.push::<ToHost<&str>>(byte) else { continue };
         heard += 1;
         if let ToHost::Telemetry(batch) = &message {
-            assert!(batch.ticks().count() <= firmware::wire::telemetry::BATCH);
+            assert!(batch.ticks().count() <= haptic_servo::wire::telemetry::BATCH);
         }
         if let ToHost::Status(status) = &message {
             let _ = status.fault.map(|fault| fault.to_string());

@@ -2,21 +2,23 @@
 
 use std::sync::OnceLock;
 
-use firmware::board::sim_hardware::{SimHardware, SimIo};
-use firmware::boot::Program;
-use firmware::certificate::Parameter;
-use firmware::dac::DacCode;
-use firmware::encoder::{CounterWidth, RawCount};
-use firmware::environment::{DamperWall, DelayedSpring, FilteredWall, FreeMode, OneSided, Placed};
-use firmware::reset::ResetCause;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{Latched, PreparedServo, RenderingOptions, SupportsTiming, Transducers};
-use firmware::servo_loop::{FrameQueue, Frames, Inbox, Mailbox, Options, ServoLoop};
-use firmware::tuning::{self, Tunable};
-use firmware::wire::message::{
+use haptic_servo::board::sim_hardware::{SimHardware, SimIo};
+use haptic_servo::boot::Program;
+use haptic_servo::certificate::Parameter;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::{CounterWidth, RawCount};
+use haptic_servo::environment::{
+    DamperWall, DelayedSpring, FilteredWall, FreeMode, OneSided, Placed,
+};
+use haptic_servo::reset::ResetCause;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, SupportsTiming, Transducers};
+use haptic_servo::servo_loop::{FrameQueue, Frames, Inbox, Mailbox, Options, ServoLoop};
+use haptic_servo::tuning::{self, Tunable};
+use haptic_servo::wire::message::{
     Changes, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, ToBoard, ToHost,
 };
-use firmware::wire::{BoardInfo, CHECKSUM, Decoder, Session, encode, largest_frame};
+use haptic_servo::wire::{BoardInfo, CHECKSUM, Decoder, Session, encode, largest_frame};
 
 /// Sets of one input.
 const SETS: usize = 2;

@@ -2,15 +2,15 @@
 //!
 //! Without the certificate, which takes a hundred times as long as all of this; see `judgement`.
 
-use firmware::certificate::Parameter;
-use firmware::environment::{
+use haptic_servo::certificate::Parameter;
+use haptic_servo::environment::{
     DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, OneSided, Placed,
     Wall,
 };
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::tuning::{self, NamedParameters, TUNABLE, TuningError};
-use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
-use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::tuning::{self, NamedParameters, TUNABLE, TuningError};
+use haptic_servo::wire::message::{LONGEST_TO_BOARD, ToBoard};
+use haptic_servo::wire::{CHECKSUM, Decoder, encode, largest_frame};
 
 /// The first byte says which scene, the rest is a message.
 pub fn run(data: &[u8]) {

@@ -4,9 +4,9 @@
 //! A [`BenchRequest`] goes to the board as [`BenchRequestWords`], which are answered by one byte: whether it can be
 //! done. Then come [`Inputs`], any number of times, and each is answered by [`Outputs`].
 
-use firmware::number::Arithmetic;
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
+use haptic_servo::number::Arithmetic;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 
 use crate::currents::CurrentBench;
 use crate::rotations::Rotation;

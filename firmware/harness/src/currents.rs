@@ -1,11 +1,11 @@
 //! Current loops whose instants are measured.
 
-use firmware::current::{
+use haptic_servo::current::{
     CurrentController, CurrentLoop, Drive, Motor, PhaseAlignment, PowerStage, Sample, Supply,
     Thermistor, Winding,
 };
-use firmware::encoder::{CounterWidth, RawCount};
-use firmware::servo::Transducers;
+use haptic_servo::encoder::{CounterWidth, RawCount};
+use haptic_servo::servo::Transducers;
 
 /// A motor with a current loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Requests of tests and measurements to the [`firmware`] on the emulated board, and the servers there.
+//! Requests of tests and measurements to the [`haptic_servo`] on the emulated board, and the servers there.
 //!
 //! A host sends a scene to the board as words: to certify it ([`scene_codec`]), to run its servo
 //! ([`loop_request`]), or to measure the instructions of its torques ([`bench_request`]) and of sines

@@ -4,9 +4,9 @@
 //! The programs for the board have one scene each, with a delay that is a type; with these requests a test
 //! has a board run many scenes, whatever their delays.
 
-use firmware::number::Arithmetic;
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
+use haptic_servo::number::Arithmetic;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 
 use crate::scene_codec::{SceneWords, decode, encode};
 use crate::transducer_codec::{self, TransducerWords};
@@ -77,9 +77,9 @@ impl LoopRequest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use firmware::encoder::CounterWidth;
-    use firmware::environment::{Environment, Wall};
-    use firmware::scene::{Coupling, Device, Latency, Timing};
+    use haptic_servo::encoder::CounterWidth;
+    use haptic_servo::environment::{Environment, Wall};
+    use haptic_servo::scene::{Coupling, Device, Latency, Timing};
 
     #[test]
     fn requests_survive_their_words() {

@@ -2,8 +2,8 @@
 
 use core::f32::consts::TAU;
 
-use firmware::current::sine_and_cosine;
-use firmware::excitation::sine::{QUINTIC, sine};
+use haptic_servo::current::sine_and_cosine;
+use haptic_servo::excitation::sine::{QUINTIC, sine};
 
 use crate::sines::{CUBIC, SEPTIC};
 

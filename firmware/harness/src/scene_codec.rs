@@ -3,10 +3,10 @@
 //! The compiler, the host and the board compute the same certificate; with this codec a test asks a
 //! board, so that the three can be compared bit for bit. Scenes do not get to a servo this way.
 
-use firmware::certificate::{Answer, Assessment, Parameter, PassivityProblem, assess};
-use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
-use firmware::passivity::interval::Interval;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::{Answer, Assessment, Parameter, PassivityProblem, assess};
+use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use crate::tables;
 
@@ -251,7 +251,7 @@ impl<const N: usize> Cursor<N> {
 
 #[cfg(test)]
 mod tests {
-    use firmware::environment::{Ends, Profile};
+    use haptic_servo::environment::{Ends, Profile};
 
     use super::*;
 

@@ -2,7 +2,7 @@
 
 use core::f32::consts::TAU;
 
-use firmware::excitation::sine::{QUINTIC, sine};
+use haptic_servo::excitation::sine::{QUINTIC, sine};
 
 /// A means of computing the sine of a part of a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

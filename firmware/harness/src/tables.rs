@@ -1,7 +1,7 @@
 //! Tables of torque profiles that board and host both have: a table of knots does not go with the words of a
 //! scene, but its place among these does.
 
-use firmware::environment::{AnyProfile, Ends, Knots, Profile, Shape};
+use haptic_servo::environment::{AnyProfile, Ends, Knots, Profile, Shape};
 
 /// Detents without ends, of any torque and number.
 pub static DETENTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.05)]);

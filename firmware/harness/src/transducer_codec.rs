@@ -1,8 +1,8 @@
 //! Codec of the transducers and the number format: words of 64 bits, little-endian.
 
-use firmware::encoder::CounterWidth;
-use firmware::number::Arithmetic;
-use firmware::servo::Transducers;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::number::Arithmetic;
+use haptic_servo::servo::Transducers;
 
 /// Words of a sensor and a motor with the format to compute in.
 pub type TransducerWords = [u64; 5];

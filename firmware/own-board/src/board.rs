@@ -5,11 +5,13 @@
 use core::panic::PanicInfo;
 
 use cortex_m_rt::{ExceptionFrame, exception};
-use firmware::board::fault_memory;
-use firmware::fault::{Fault, FaultRecord};
-use firmware::servo::{Latched, PreparedServo};
-use firmware::servo_loop::{self as servo, Hardware, PeriodClock, READ_WITHIN};
-use firmware::{boot::Startup, dac::DacCode, encoder::RawCount, period, reset::ResetCause, wire};
+use haptic_servo::board::fault_memory;
+use haptic_servo::fault::{Fault, FaultRecord};
+use haptic_servo::servo::{Latched, PreparedServo};
+use haptic_servo::servo_loop::{self as servo, Hardware, PeriodClock, READ_WITHIN};
+use haptic_servo::{
+    boot::Startup, dac::DacCode, encoder::RawCount, period, reset::ResetCause, wire,
+};
 use heapless::spsc::{Producer, Queue};
 use stm32_metapac::{DAC1, DBGMCU, GPIOB, IWDG, RCC, TIM3, TIM5, TIM6, iwdg::vals::Key};
 

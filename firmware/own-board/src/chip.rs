@@ -9,9 +9,9 @@
 
 use core::num::NonZeroU32;
 
-use firmware::board::BAUD;
-use firmware::board::input_filter::InputFilter;
-use firmware::dac::DacCode;
+use haptic_servo::board::BAUD;
+use haptic_servo::board::input_filter::InputFilter;
+use haptic_servo::dac::DacCode;
 use stm32_metapac::flash::vals::Latency;
 use stm32_metapac::gpio::vals::Moder;
 use stm32_metapac::rcc::vals::{Pllm, Plln, Pllp, Pllsrc, Ppre, Sw};

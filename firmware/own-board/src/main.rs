@@ -15,8 +15,8 @@ mod serial;
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    use firmware::board::report::Report;
-    use firmware::certificate::Resolution;
+    use haptic_servo::board::report::Report;
+    use haptic_servo::certificate::Resolution;
 
     let resolution = Resolution::of(&scene::PROGRAM.transducers, None);
     print!("{}", Report::new(&scene::CERTIFIED, &resolution, scene::PROGRAM.rendering.injection));

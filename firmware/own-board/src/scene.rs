@@ -1,13 +1,13 @@
 //! What the hand feels, and on which device: a wall of spring and damper at 1 kHz.
 
-use firmware::boot::Program;
-use firmware::certificate::{Certified, TimingChecked};
-use firmware::encoder::CounterWidth;
-use firmware::environment::{DamperWall, OneSided};
-use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{Latched, RenderingOptions, Transducers};
-use firmware::servo_loop::Options;
+use haptic_servo::boot::Program;
+use haptic_servo::certificate::{Certified, TimingChecked};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
+use haptic_servo::servo_loop::Options;
 
 /// What the hand feels.
 pub type Environment = OneSided<DamperWall<1>>;

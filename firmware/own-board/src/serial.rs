@@ -1,7 +1,7 @@
 //! The serial port to the host, by which the servo is armed, tuned and watched. Nothing here waits, and what
 //! comes while there is no room is lost with its frame, which the host sends again.
 
-use firmware::wire::Port;
+use haptic_servo::wire::Port;
 use heapless::spsc::{Consumer, Producer};
 use stm32_metapac::USART3;
 

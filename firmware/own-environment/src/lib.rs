@@ -1,4 +1,4 @@
-//! An environment that is not in the [`firmware`]: a spring that gets stiffer beyond a knee, as a pedal
+//! An environment that is not in the [`haptic_servo`]: a spring that gets stiffer beyond a knee, as a pedal
 //! does. It shows what such a type consists of; to make one of your own, copy this package.
 //!
 //! 1. The type, with the numbers that a person gives.
@@ -10,14 +10,14 @@
 //! A program of it is `src/bin/pedal.rs`.
 #![cfg_attr(not(test), no_std)]
 
-use firmware::coupling::{Response, Slopes};
-use firmware::environment::{
+use haptic_servo::coupling::{Response, Slopes};
+use haptic_servo::environment::{
     DelayLine, Delayed, Discretize, FixedDelay, Law, LawContext, StatedBound, StatedEnvironment,
     StatedModel,
 };
-use firmware::number::Number;
-use firmware::parameter::{NamedParameters, Parameter};
-use firmware::servo::BuildError;
+use haptic_servo::number::Number;
+use haptic_servo::parameter::{NamedParameters, Parameter};
+use haptic_servo::servo::BuildError;
 
 /// A spring of stiffness `soft` up to `knee` on both sides of zero and of stiffness `stiff` beyond, late
 /// by `DELAY` samples: `F = soft x + (stiff - soft) (x - x clamped to the knee)`.

@@ -1,10 +1,10 @@
-use firmware::certificate::{Certified, Rejection, certify_scene, timing_checked};
-use firmware::encoder::{CounterWidth, RawCount};
-use firmware::environment::DelayedSpring;
-use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{Latched, PreparedServo, RenderingOptions, Servo, Step, Transducers};
-use firmware::tuning;
+use haptic_servo::certificate::{Certified, Rejection, certify_scene, timing_checked};
+use haptic_servo::encoder::{CounterWidth, RawCount};
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, Servo, Step, Transducers};
+use haptic_servo::tuning;
 use proptest::prelude::*;
 
 use super::*;

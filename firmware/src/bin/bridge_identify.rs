@@ -8,7 +8,7 @@
 mod bridge_paddle;
 
 pub use bridge_paddle::{CURRENT_LOOP, PERIOD, TRANSDUCERS};
-use firmware::excitation::{MotionLimits, Sweep, Tone};
+use haptic_servo::excitation::{MotionLimits, Sweep, Tone};
 
 /// How far and how fast the device may move, beyond which the sweep ends and the amplifier goes off:
 /// half as far again as the tones below move the device that they are made for, and faster by a fifth.
@@ -42,4 +42,4 @@ pub static SWEEP: Sweep<10> = Sweep::planned(
     ],
 );
 
-firmware::sweep_program!(SWEEP, TRANSDUCERS, LIMITS, bridge: CURRENT_LOOP);
+haptic_servo::sweep_program!(SWEEP, TRANSDUCERS, LIMITS, bridge: CURRENT_LOOP);

@@ -5,10 +5,10 @@
 mod bridge_paddle;
 
 pub use bridge_paddle::{CURRENT_LOOP, DRIVE, TRANSDUCERS};
-use firmware::certificate::Certified;
-use firmware::environment::{DamperWall, Matched, OneSided};
-use firmware::output_timing::OutputTiming;
-use firmware::scene::{Coupling, Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{DamperWall, Matched, OneSided};
+use haptic_servo::output_timing::OutputTiming;
+use haptic_servo::scene::{Coupling, Scene, Timing};
 
 /// What the hand feels, behind a coupling that remembers the current loop's lag.
 pub type Environment = Matched<OneSided<DamperWall<1>>, 0, 1, true>;
@@ -31,7 +31,7 @@ pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

@@ -5,9 +5,9 @@
 mod brushless_shaft;
 
 pub use brushless_shaft::{DRIVE, Environment, Fixed, SCENE, TRANSDUCERS};
-use firmware::certificate::Certified;
-use firmware::current::{CurrentLoop, EncoderIndex, IndexOffset};
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::current::{CurrentLoop, EncoderIndex, IndexOffset};
+use haptic_servo::scene::Scene;
 
 /// Of one motor, its wires in this order, and the encoder as it sits on its shaft: with another offset than its
 /// own, the torque of a motor is less, or has the wrong sign. `haptic tune --align` finds yours.
@@ -20,7 +20,7 @@ pub const CURRENT_LOOP: CurrentLoop =
 /// Its certificate: a scene that could oscillate in a hand stops the compiler here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

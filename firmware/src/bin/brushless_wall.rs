@@ -5,13 +5,13 @@
 mod brushless_shaft;
 
 pub use brushless_shaft::{CURRENT_LOOP, DRIVE, Environment, Fixed, SCENE, TRANSDUCERS};
-use firmware::certificate::Certified;
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::scene::Scene;
 
 /// Its certificate: a scene that could oscillate in a hand stops the compiler here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

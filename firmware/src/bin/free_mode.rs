@@ -4,10 +4,10 @@
 
 mod paddle;
 
-use firmware::certificate::Certified;
-use firmware::environment::FreeMode;
-use firmware::scene::{Coupling, Latency, Scene, Timing};
-use firmware::servo::Transducers;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::FreeMode;
+use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
+use haptic_servo::servo::Transducers;
 
 /// What the hand feels: the paper's canceller, as late as a board's torque. It needs as much of the
 /// device's damping with and without a sample of delay.
@@ -36,7 +36,7 @@ pub const TRANSDUCERS: Transducers = Transducers { full_scale_torque: 0.25, ..pa
 /// Angles to 2048 rad, since what moves freely may turn on and on; in steps of 1e-6.
 pub type Fixed = fixed::types::I12F20;
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

@@ -8,7 +8,7 @@
 mod device;
 
 pub use device::TRANSDUCERS;
-use firmware::excitation::{MotionLimits, Sweep, Tone};
+use haptic_servo::excitation::{MotionLimits, Sweep, Tone};
 
 /// Sampling period in s: that of the scenes which the device is to be certified for.
 pub const PERIOD: f64 = 0.001;
@@ -48,4 +48,4 @@ pub static SWEEP: Sweep<10> = Sweep::planned(
     ],
 );
 
-firmware::sweep_program!(SWEEP, TRANSDUCERS, LIMITS);
+haptic_servo::sweep_program!(SWEEP, TRANSDUCERS, LIMITS);

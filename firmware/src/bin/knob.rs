@@ -3,9 +3,9 @@
 
 mod paddle;
 
-use firmware::certificate::Certified;
-use firmware::environment::{Knots, Profile, Shape};
-use firmware::scene::{Coupling, Latency, Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{Knots, Profile, Shape};
+use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 pub use paddle::TRANSDUCERS;
 
 /// What the hand feels.
@@ -31,7 +31,7 @@ pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

@@ -4,11 +4,11 @@
 
 mod paddle;
 
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Latency, Scene, Timing};
-use firmware::servo::RenderingOptions;
-use firmware::servo_loop::{LinkPolicy, Options};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
+use haptic_servo::servo::RenderingOptions;
+use haptic_servo::servo_loop::{LinkPolicy, Options};
 pub use paddle::TRANSDUCERS;
 
 /// What the hand feels.
@@ -30,7 +30,7 @@ pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

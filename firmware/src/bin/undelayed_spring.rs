@@ -8,11 +8,11 @@
 
 mod paddle;
 
-use firmware::certificate::Certified;
-use firmware::environment::{DelayedSpring, Matched};
-use firmware::scene::{Coupling, Latency, Scene, Timing};
-use firmware::servo::AtPhase;
-use firmware::servo_loop::READ_WITHIN;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{DelayedSpring, Matched};
+use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
+use haptic_servo::servo::AtPhase;
+use haptic_servo::servo_loop::READ_WITHIN;
 pub use paddle::TRANSDUCERS;
 
 /// What the hand feels, behind a coupling that remembers the amplifier's lag.
@@ -43,7 +43,7 @@ pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

@@ -5,11 +5,11 @@
 
 mod paddle;
 
-use firmware::certificate::Certified;
-use firmware::environment::{DamperWall, FreeModeWall, Matched, OneSided};
-use firmware::scene::{Coupling, Latency, Scene, Timing};
-use firmware::servo::AtPhase;
-use firmware::servo_loop::READ_WITHIN;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{DamperWall, FreeModeWall, Matched, OneSided};
+use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
+use haptic_servo::servo::AtPhase;
+use haptic_servo::servo_loop::READ_WITHIN;
 pub use paddle::TRANSDUCERS;
 
 /// What the hand feels, behind a coupling that remembers the amplifier's lag.
@@ -45,7 +45,7 @@ pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

@@ -9,9 +9,9 @@ use crate::text::Text;
 /// takes out what is shorter.
 ///
 /// ```
-/// use firmware::board::input_filter::InputFilter;
-/// use firmware::encoder::CounterWidth;
-/// use firmware::servo::Transducers;
+/// use haptic_servo::board::input_filter::InputFilter;
+/// use haptic_servo::encoder::CounterWidth;
+/// use haptic_servo::servo::Transducers;
 ///
 /// const ENCODER: Transducers = Transducers {
 ///     counts_per_turn: 61_440.0,

@@ -5,9 +5,9 @@
 //! wire, for the part that decides then ([`timing_checked`]), by the same functions.
 //!
 //! ```
-//! use firmware::certificate::Certified;
-//! use firmware::environment::DamperWall;
-//! use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+//! use haptic_servo::certificate::Certified;
+//! use haptic_servo::environment::DamperWall;
+//! use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 //!
 //! type WallScene = Scene<DamperWall<1>>;
 //! const WALL: WallScene = Scene {

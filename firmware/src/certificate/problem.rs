@@ -28,9 +28,9 @@ const ROUGHLY: f64 = 1e-4;
 /// thousands of scenes.
 ///
 /// ```
-/// use firmware::certificate::PassivityProblem;
-/// use firmware::environment::{Environment, Wall};
-/// use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+/// use haptic_servo::certificate::PassivityProblem;
+/// use haptic_servo::environment::{Environment, Wall};
+/// use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 ///
 /// let wall = |stiffness| Wall {
 ///     stiffness,

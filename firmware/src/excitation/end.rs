@@ -60,7 +60,7 @@ impl SweepEnd {
     /// The word on the wire.
     ///
     /// ```
-    /// use firmware::excitation::SweepEnd;
+    /// use haptic_servo::excitation::SweepEnd;
     /// for end in SweepEnd::ALL {
     ///     assert_eq!(SweepEnd::find(end.as_str()), Some(end));
     /// }

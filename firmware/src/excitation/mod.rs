@@ -7,9 +7,9 @@
 //! the device settles, so that one bin of a Fourier sum is the response, and nothing leaks into it.
 //!
 //! ```
-//! use firmware::encoder::CounterWidth;
-//! use firmware::excitation::{Exciter, Sweep, Tone};
-//! use firmware::servo::Transducers;
+//! use haptic_servo::encoder::CounterWidth;
+//! use haptic_servo::excitation::{Exciter, Sweep, Tone};
+//! use haptic_servo::servo::Transducers;
 //!
 //! const MOTOR: Transducers = Transducers {
 //!     counts_per_turn: 61_440.0,

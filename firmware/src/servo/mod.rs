@@ -35,10 +35,10 @@ pub struct Output {
 /// The servo of a certified scene, computing in the number format `N`.
 ///
 /// ```
-/// use firmware::encoder::{CounterWidth, RawCount};
-/// use firmware::environment::DelayedSpring;
-/// use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-/// use firmware::servo::{Servo, Transducers};
+/// use haptic_servo::encoder::{CounterWidth, RawCount};
+/// use haptic_servo::environment::DelayedSpring;
+/// use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+/// use haptic_servo::servo::{Servo, Transducers};
 ///
 /// let scene = Scene {
 ///     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
@@ -56,7 +56,7 @@ pub struct Output {
 /// let mut servo: Servo<_, f32> = Servo::new(&scene.certified(), &transducers)?;
 /// assert_eq!(servo.tick(RawCount::from(100_u32)).code.get(), 2048); // one sample late
 /// assert!(servo.tick(RawCount::from(100_u32)).code.get() < 2048); // pushes back
-/// # Ok::<(), firmware::servo::BuildError>(())
+/// # Ok::<(), haptic_servo::servo::BuildError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Servo<E: Discretize<N>, N: Number> {

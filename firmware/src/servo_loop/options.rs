@@ -66,7 +66,7 @@ impl Options {
     /// The same, but armed without a host when the supply is switched on, for this reason.
     ///
     /// ```
-    /// use firmware::servo_loop::{Arming, Options};
+    /// use haptic_servo::servo_loop::{Arming, Options};
     ///
     /// const OPTIONS: Options = Options::DEFAULT.armed_at_power_on("a knob without a motor's reach");
     /// assert!(matches!(OPTIONS.arming, Arming::AtPowerOn(_)));

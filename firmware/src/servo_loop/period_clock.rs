@@ -10,7 +10,7 @@ use super::BEGAN_LATE;
 ///
 /// ```
 /// use core::num::NonZeroU32;
-/// use firmware::servo_loop::{BEGAN_LATE, PeriodClock};
+/// use haptic_servo::servo_loop::{BEGAN_LATE, PeriodClock};
 ///
 /// let mut periods = PeriodClock::new(NonZeroU32::new(1000).unwrap(), 10);
 /// assert_eq!(periods.begun_by(1009), 1); // in time: 9 counts after its beginning

@@ -12,7 +12,7 @@ use super::frame::{CHECKSUM, CRC};
 /// in and takes no space.
 ///
 /// ```
-/// use firmware::wire::{Decoder, encode};
+/// use haptic_servo::wire::{Decoder, encode};
 ///
 /// let mut buffer = [0; 32];
 /// let frame = encode(&(7_u8, true), &mut buffer)?;
@@ -23,7 +23,7 @@ use super::frame::{CHECKSUM, CRC};
 /// });
 /// assert_eq!(messages.collect::<Vec<_>>(), [(7, true)]);
 /// assert_eq!(decoder.discarded().total(), 2);
-/// # Ok::<(), firmware::wire::TooLong>(())
+/// # Ok::<(), haptic_servo::wire::TooLong>(())
 /// ```
 #[derive(Debug)]
 pub struct Decoder<const SIZE: usize> {

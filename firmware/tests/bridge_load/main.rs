@@ -5,14 +5,14 @@
 #![no_std]
 #![no_main]
 
-use firmware::board::input_filter::InputFilter;
-use firmware::board::stm32::output::bridge::load::Load;
-use firmware::board::stm32::wiring::{CHIP, ENCODER, ENCODER_CLOCK};
-use firmware::board::stm32::{init_chip, width};
-use firmware::current::{
+use haptic_servo::board::input_filter::InputFilter;
+use haptic_servo::board::stm32::output::bridge::load::Load;
+use haptic_servo::board::stm32::wiring::{CHIP, ENCODER, ENCODER_CLOCK};
+use haptic_servo::board::stm32::{init_chip, width};
+use haptic_servo::current::{
     B_G431B_ESC1, CurrentLoop, Drive, DutyCurrent, Motor, Sample, Supply, Winding,
 };
-use firmware::servo::Transducers;
+use haptic_servo::servo::Transducers;
 
 /// The load, as the winding of a motor that makes no torque to speak of, and its supply in V. Resistor, coil and
 /// wires in series: 1 ohm and 0.1 mH.

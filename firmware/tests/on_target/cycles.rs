@@ -3,19 +3,19 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::{DWT, NVIC};
-use firmware::board::isr_cell::IsrCell;
-use firmware::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
-use firmware::board::stm32::output::Setup;
-use firmware::board::stm32::registers::Registers;
-use firmware::board::stm32::wiring::AMPLIFIER;
-use firmware::board::stm32::{Mode, init_chip, registers};
-use firmware::boot::Startup;
-use firmware::certificate::TimingChecked;
-use firmware::dac::DacCode;
-use firmware::encoder::RawCount;
-use firmware::scene::Scene;
-use firmware::servo::{OutputMode, PreparedServo, RenderingOptions};
-use firmware::servo_loop::{Hardware, Options, ServoLoop};
+use haptic_servo::board::isr_cell::IsrCell;
+use haptic_servo::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
+use haptic_servo::board::stm32::output::Setup;
+use haptic_servo::board::stm32::registers::Registers;
+use haptic_servo::board::stm32::wiring::AMPLIFIER;
+use haptic_servo::board::stm32::{Mode, init_chip, registers};
+use haptic_servo::boot::Startup;
+use haptic_servo::certificate::TimingChecked;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::RawCount;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::{OutputMode, PreparedServo, RenderingOptions};
+use haptic_servo::servo_loop::{Hardware, Options, ServoLoop};
 
 use super::{Environment, FILTER, Failure, SCENE, TRANSDUCERS};
 

@@ -6,19 +6,19 @@
 
 mod cycles;
 
-use firmware::board::input_filter::InputFilter;
-use firmware::board::stm32::output::Setup;
-use firmware::board::stm32::quadrature::Counter;
-use firmware::board::stm32::registers::Registers;
-use firmware::board::stm32::wiring::{CHIP, DAC, ENCODER, ENCODER_CLOCK};
-use firmware::board::stm32::{Mode, init_chip, registers, width};
-use firmware::boot::Startup;
-use firmware::dac::DacCode;
-use firmware::encoder::Position;
-use firmware::environment::{DamperWall, OneSided};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{OutputMode, Transducers};
-use firmware::servo_loop::Hardware;
+use haptic_servo::board::input_filter::InputFilter;
+use haptic_servo::board::stm32::output::Setup;
+use haptic_servo::board::stm32::quadrature::Counter;
+use haptic_servo::board::stm32::registers::Registers;
+use haptic_servo::board::stm32::wiring::{CHIP, DAC, ENCODER, ENCODER_CLOCK};
+use haptic_servo::board::stm32::{Mode, init_chip, registers, width};
+use haptic_servo::boot::Startup;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::Position;
+use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{OutputMode, Transducers};
+use haptic_servo::servo_loop::Hardware;
 
 /// The builder's encoder and motor.
 const TRANSDUCERS: Transducers = Transducers {

@@ -1,11 +1,11 @@
 //! A simulated board: encoder, DAC, amplifier and timer of the servo's interrupt.
 
-use firmware::boot::Startup;
-use firmware::dac::DacCode;
-use firmware::encoder::RawCount;
-use firmware::fault::FaultRecord;
-use firmware::reset::ResetCause;
-use firmware::servo_loop::{BEGAN_LATE, Frame, FrameSink, Hardware, State};
+use haptic_servo::boot::Startup;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::RawCount;
+use haptic_servo::fault::FaultRecord;
+use haptic_servo::reset::ResetCause;
+use haptic_servo::servo_loop::{BEGAN_LATE, Frame, FrameSink, Hardware, State};
 
 /// Timer counts in a period.
 pub const PERIOD: u32 = 1000;
@@ -108,7 +108,7 @@ pub struct Last {
     pub state: State,
     /// Ticks by their reason, in the order of [`LimitReason::ALL`].
     ///
-    /// [`LimitReason::ALL`]: firmware::torque::LimitReason::ALL
+    /// [`LimitReason::ALL`]: haptic_servo::torque::LimitReason::ALL
     pub limits: [u32; 6],
 }
 

@@ -1,10 +1,10 @@
 //! How much an error can become: norms of impulse responses.
 
-use firmware::certificate::LoopTransfers;
-use firmware::environment::{Environment, Rational, Wall};
-use firmware::number::Format;
-use firmware::passivity::polynomial::Polynomial;
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::certificate::LoopTransfers;
+use haptic_servo::environment::{Environment, Rational, Wall};
+use haptic_servo::number::Format;
+use haptic_servo::passivity::polynomial::Polynomial;
+use haptic_servo::scene::{Coupling, Scene};
 
 /// Samples after which a response is said not to end.
 const LONGEST: usize = 1 << 16;

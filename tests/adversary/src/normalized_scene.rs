@@ -3,13 +3,13 @@
 
 use std::f64::consts::{PI, TAU};
 
-use firmware::certificate::{Answer, Assessment, QuantizationBound, Resolution};
-use firmware::dac::DacCode;
-use firmware::encoder::CounterWidth;
-use firmware::number::Format;
-use firmware::scene::{Coupling, Scene};
-use firmware::servo::Simultaneous;
-use firmware::servo_loop::READ_WITHIN;
+use haptic_servo::certificate::{Answer, Assessment, QuantizationBound, Resolution};
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Scene};
+use haptic_servo::servo::Simultaneous;
+use haptic_servo::servo_loop::READ_WITHIN;
 use rand::Rng;
 
 use crate::norm::Errors;

@@ -1,8 +1,8 @@
 //! Scenes that oscillated although they had been certified once: each was accepted by a rule that was
 //! wrong, and shows the rule's error.
 
-use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// One of them.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use firmware::torque::LimitReason;
+use haptic_servo::torque::LimitReason;
 
 use crate::normalized_scene::NormalizedScene;
 use crate::plan::Plan;

@@ -13,11 +13,11 @@
 
 use std::marker::PhantomData;
 
-use firmware::environment::{Discretize, Environment};
-use firmware::number::Number;
-use firmware::servo::{OutputMode, OutputTiming, PreparedServo, SupportsTiming};
-use firmware::servo_loop::{Mailbox, ServoLoop, State as ServoState};
-use firmware::tuning::Tunable;
+use haptic_servo::environment::{Discretize, Environment};
+use haptic_servo::number::Number;
+use haptic_servo::servo::{OutputMode, OutputTiming, PreparedServo, SupportsTiming};
+use haptic_servo::servo_loop::{Mailbox, ServoLoop, State as ServoState};
+use haptic_servo::tuning::Tunable;
 
 use crate::device::{HeldDevice, State, Step, TORQUE};
 use crate::hardware::{Board, Last, PERIOD};
@@ -246,7 +246,7 @@ where
         let mut board = Board::new(normalized.counts_per_radian, !plan.armed_by_boot);
         // As booting does it, with the device at the board's zero.
         board.angle = plan.zero;
-        firmware::boot::Startup::zero_encoder(&mut board);
+        haptic_servo::boot::Startup::zero_encoder(&mut board);
         if plan.armed_by_boot {
             requests.arm();
         }

@@ -2,12 +2,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use firmware::certificate::{PassivityProblem, TimingError, assess_in};
-use firmware::encoder::CounterWidth;
-use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{Latched, RenderingOptions, Transducers};
+use haptic_servo::certificate::{PassivityProblem, TimingError, assess_in};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
 use rand::Rng;
 use tests::scenes::log_uniform;
 

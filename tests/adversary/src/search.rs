@@ -4,15 +4,15 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use firmware::boot::{Booted, Program, boot};
-use firmware::certificate::{Assessment, certify_in};
-use firmware::environment::Environment;
-use firmware::number::Number;
-use firmware::scene::Scene;
-use firmware::servo::{Latched, OutputMode, PreparedServo, Simultaneous, SupportsTiming};
-use firmware::servo_loop::{Mailbox, Options};
-use firmware::tuning::Tunable;
 use fixed::types::{I8F24, I12F20};
+use haptic_servo::boot::{Booted, Program, boot};
+use haptic_servo::certificate::{Assessment, certify_in};
+use haptic_servo::environment::Environment;
+use haptic_servo::number::Number;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::{Latched, OutputMode, PreparedServo, Simultaneous, SupportsTiming};
+use haptic_servo::servo_loop::{Mailbox, Options};
+use haptic_servo::tuning::Tunable;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -203,7 +203,8 @@ where
 }
 
 fn certify_quickly(scene: &Scene, format: Numbers) -> Option<()> {
-    let posed = firmware::certificate::PassivityProblem::in_format(scene, format.format()).ok()?;
+    let posed =
+        haptic_servo::certificate::PassivityProblem::in_format(scene, format.format()).ok()?;
     posed.is_certified().then_some(())
 }
 

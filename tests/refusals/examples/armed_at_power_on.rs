@@ -1,9 +1,9 @@
 //! The same with a reason.
-use firmware::environment::DelayedSpring;
-use firmware::servo_loop::Options;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::servo_loop::Options;
 use refusals::*;
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: DelayedSpring<1>,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

@@ -1,8 +1,8 @@
 //! The same wall one sample late: that is the sample which the latch takes.
-use firmware::certificate::{Certified, TimingChecked};
-use firmware::environment::DamperWall;
-use firmware::scene::Scene;
-use firmware::servo::Latched;
+use haptic_servo::certificate::{Certified, TimingChecked};
+use haptic_servo::environment::DamperWall;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Latched;
 use refusals::scene;
 
 const CERTIFIED: Certified<Scene<DamperWall<1>>> =

@@ -1,7 +1,7 @@
 //! The paper's wall, felt on one side.
-use firmware::certificate::Certified;
-use firmware::environment::{DamperWall, OneSided};
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 const CERTIFIED: Certified<Scene<OneSided<DamperWall<1>>>> =

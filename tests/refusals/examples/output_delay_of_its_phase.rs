@@ -1,7 +1,7 @@
 //! The same scene on a board that puts its torques out when it says.
-use firmware::certificate::{Certified, TimingChecked};
-use firmware::scene::Scene;
-use firmware::servo::AtPhase;
+use haptic_servo::certificate::{Certified, TimingChecked};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::AtPhase;
 use refusals::{UndelayedWall, at_phase};
 
 const CERTIFIED: Certified<Scene<UndelayedWall>> = at_phase(1e-5).certified();

@@ -1,9 +1,9 @@
 //! Damping within what the scene leaves.
-use firmware::environment::DelayedSpring;
-use firmware::servo::RenderingOptions;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::servo::RenderingOptions;
 use refusals::*;
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: DelayedSpring<1>,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

@@ -1,7 +1,7 @@
 //! The wall that is refused behind a stiffer coupling: at 2 delta / T it passes.
-use firmware::certificate::Certified;
-use firmware::environment::DamperWall;
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DamperWall;
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 const CERTIFIED: Certified<Scene<DamperWall<1>>> =

@@ -1,9 +1,9 @@
 //! A device that would arm itself at power-on, without a reason.
-use firmware::servo_loop::Options;
-use firmware::environment::DelayedSpring;
+use haptic_servo::servo_loop::Options;
+use haptic_servo::environment::DelayedSpring;
 use refusals::*;
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: DelayedSpring<1>,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

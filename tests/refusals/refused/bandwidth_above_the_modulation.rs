@@ -1,6 +1,6 @@
 //! A current that is to follow faster than its loop is updated.
 
-use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive};
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive};
 use refusals::{DRIVE, MOTORISED};
 
 const CHANGED: Drive = Drive { bandwidth: 4000.0, ..DRIVE };

@@ -1,7 +1,7 @@
 //! Cancels all of the device's damping.
-use firmware::certificate::Certified;
-use firmware::environment::FreeMode;
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::FreeMode;
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 const CERTIFIED: Certified<Scene<FreeMode<0>>> = scene(FreeMode { residual: 0.0 }).certified();

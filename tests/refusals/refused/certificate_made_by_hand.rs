@@ -1,7 +1,7 @@
 //! A certificate built by hand: its fields are private.
-use firmware::certificate::{Certified, assess};
-use firmware::environment::DelayedSpring;
-use firmware::scene::Scene;
+use haptic_servo::certificate::{Certified, assess};
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 const SCENE: Scene<DelayedSpring<1>> = scene(DelayedSpring { stiffness: 88.0 });

@@ -1,8 +1,8 @@
 //! A spring just below the line, whose stiffness is rounded onto it.
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::number::Format;
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::number::Format;
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 const AS_WRITTEN: Certified<Scene<DelayedSpring<1>>> =

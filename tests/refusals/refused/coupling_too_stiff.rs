@@ -1,7 +1,7 @@
 //! The paper's wall behind ten times the standard coupling.
-use firmware::certificate::Certified;
-use firmware::environment::DamperWall;
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DamperWall;
+use haptic_servo::scene::{Coupling, Scene};
 use refusals::scene;
 
 const SCENE: Scene<DamperWall<1>> = Scene {

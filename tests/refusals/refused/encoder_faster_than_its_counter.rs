@@ -1,11 +1,11 @@
 //! A counter of 16 bits wraps unseen between two ticks.
-use firmware::environment::DelayedSpring;
-use firmware::servo::Transducers;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::servo::Transducers;
 use refusals::*;
 
 const TRANSDUCERS: Transducers = Transducers { largest_speed: 1e4, ..refusals::TRANSDUCERS };
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: DelayedSpring<1>,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

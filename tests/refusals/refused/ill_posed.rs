@@ -1,7 +1,7 @@
 //! An undelayed spring as negative as the coupling is stiff: their loop has no solution.
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 const CERTIFIED: Certified<Scene<DelayedSpring<0>>> =

@@ -1,10 +1,10 @@
 //! A scene that is certified for a faster current loop than the one that makes its torque.
 
-use firmware::certificate::Certified;
-use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive};
-use firmware::environment::{DelayedSpring, Matched};
-use firmware::output_timing::OutputTiming;
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::certificate::Certified;
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive};
+use haptic_servo::environment::{DelayedSpring, Matched};
+use haptic_servo::output_timing::OutputTiming;
+use haptic_servo::scene::{Coupling, Scene};
 use refusals::{CURRENT_LOOP, DRIVE, MOTORISED, scene};
 
 const SLOWER: CurrentLoop = CurrentLoop::checked(
@@ -25,7 +25,7 @@ const SCENE: Scene<Environment> = Scene {
 
 const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: MOTORISED,

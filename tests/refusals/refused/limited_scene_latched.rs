@@ -1,8 +1,8 @@
 //! Certified as long as its torque is never limited, which a board does when it fades in.
-use firmware::certificate::{Certified, TimingChecked};
-use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Scene};
-use firmware::servo::Latched;
+use haptic_servo::certificate::{Certified, TimingChecked};
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::{Coupling, Scene};
+use haptic_servo::servo::Latched;
 use refusals::scene;
 
 const SCENE: Scene<DelayedSpring<2>> = Scene {

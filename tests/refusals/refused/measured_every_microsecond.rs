@@ -1,6 +1,6 @@
 //! A measurement at a period that no board keeps.
 
-use firmware::excitation::{MotionLimits, Sweep, Tone};
+use haptic_servo::excitation::{MotionLimits, Sweep, Tone};
 use refusals::TRANSDUCERS;
 
 const LIMITS: MotionLimits = MotionLimits { travel: 0.7, speed: 50.0 };
@@ -11,4 +11,4 @@ static SWEEP: Sweep<1> = Sweep::planned(
     [Tone { frequency: 10.0, amplitude: 0.1, settle: 1, measured: 8 }],
 );
 
-firmware::sweep_program!(SWEEP, TRANSDUCERS, LIMITS);
+haptic_servo::sweep_program!(SWEEP, TRANSDUCERS, LIMITS);

@@ -1,6 +1,6 @@
 //! An inductance below zero.
 
-use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor};
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor};
 use refusals::{DRIVE, MOTORISED};
 
 const CHANGED: Drive = Drive { motor: Motor { inductance: -0.12e-3, ..DRIVE.motor }, ..DRIVE };

@@ -1,6 +1,6 @@
 //! A brushless motor without magnets.
 
-use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Winding};
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Winding};
 use refusals::{DRIVE, MOTORISED};
 
 const CHANGED: Drive = Drive { motor: Motor { winding: Winding::Brushless { pole_pairs: 0 }, ..DRIVE.motor }, ..DRIVE };

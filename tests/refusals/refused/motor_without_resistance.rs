@@ -1,6 +1,6 @@
 //! A motor without resistance.
 
-use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor};
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor};
 use refusals::{DRIVE, MOTORISED};
 
 const CHANGED: Drive = Drive { motor: Motor { resistance: 0.0, ..DRIVE.motor }, ..DRIVE };

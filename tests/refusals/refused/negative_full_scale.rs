@@ -1,11 +1,11 @@
 //! A sign that belongs into the wiring.
-use firmware::environment::DelayedSpring;
-use firmware::servo::Transducers;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::servo::Transducers;
 use refusals::*;
 
 const TRANSDUCERS: Transducers = Transducers { full_scale_torque: -2.0, ..refusals::TRANSDUCERS };
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: DelayedSpring<1>,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

@@ -1,7 +1,7 @@
 //! A spring that pulls away from its rest position.
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 const CERTIFIED: Certified<Scene<DelayedSpring<0>>> =

@@ -1,7 +1,7 @@
 //! A stiffness that is no number.
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 const CERTIFIED: Certified<Scene<DelayedSpring<1>>> =

@@ -1,7 +1,7 @@
 //! A knob of three modes, of which one that is not selected has detents of more than the paddle allows.
-use firmware::certificate::Certified;
-use firmware::environment::{ModeTable, ProfileMode, ProfileModes, Shape};
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{ModeTable, ProfileMode, ProfileModes, Shape};
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 static LIGHT: ModeTable<16> = ModeTable::of(&[Shape::detents(24, 0.01)]);

@@ -1,7 +1,7 @@
 //! A scene whose torques come 10 microseconds after their counts, on a board that puts them out after 20.
-use firmware::certificate::{Certified, TimingChecked};
-use firmware::scene::Scene;
-use firmware::servo::AtPhase;
+use haptic_servo::certificate::{Certified, TimingChecked};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::AtPhase;
 use refusals::{UndelayedWall, at_phase};
 
 const CERTIFIED: Certified<Scene<UndelayedWall>> = at_phase(1e-5).certified();

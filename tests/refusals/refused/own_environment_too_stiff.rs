@@ -1,6 +1,6 @@
 //! An environment of another crate whose own statement does not pass.
-use firmware::certificate::Certified;
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::scene::Scene;
 use own_environment::ProgressiveSpring;
 use refusals::scene;
 

@@ -1,10 +1,10 @@
 //! A device whose whole damping is declared as its passivity, of which motion takes a part through the current
 //! loop.
 
-use firmware::certificate::Certified;
-use firmware::environment::{DelayedSpring, Matched};
-use firmware::output_timing::OutputTiming;
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{DelayedSpring, Matched};
+use haptic_servo::output_timing::OutputTiming;
+use haptic_servo::scene::{Coupling, Scene};
 use refusals::{CURRENT_LOOP, MOTORISED, scene};
 
 type Environment = Matched<DelayedSpring<1>, 0, 1, true>;
@@ -18,7 +18,7 @@ const SCENE: Scene<Environment> = Scene {
 
 const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: MOTORISED,

@@ -1,14 +1,14 @@
 //! A period that no board finishes a tick in.
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::scene::{Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::{Scene, Timing};
 use refusals::TRANSDUCERS;
 
 const SCENE: Scene<DelayedSpring<1>> =
     Scene { timing: Timing { period: 1e-6, worst_period: None }, ..refusals::SCENE };
 const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: DelayedSpring<1>,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

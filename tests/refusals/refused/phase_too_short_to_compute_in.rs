@@ -1,7 +1,7 @@
 //! A torque that would be put out before any board had computed it.
-use firmware::certificate::{Certified, TimingChecked};
-use firmware::scene::Scene;
-use firmware::servo::AtPhase;
+use haptic_servo::certificate::{Certified, TimingChecked};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::AtPhase;
 use refusals::{UndelayedWall, at_phase};
 
 const CERTIFIED: Certified<Scene<UndelayedWall>> = at_phase(2e-6).certified();

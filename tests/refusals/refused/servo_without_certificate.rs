@@ -1,6 +1,6 @@
 //! A servo from an uncertified scene: there is no such constructor.
-use firmware::environment::DelayedSpring;
-use firmware::servo::Servo;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::servo::Servo;
 use refusals::{SCENE, TRANSDUCERS};
 
 fn main() {

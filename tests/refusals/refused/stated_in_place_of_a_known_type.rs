@@ -1,7 +1,7 @@
 //! A statement about a type that the certificate knows by itself.
-use firmware::certificate::Certified;
-use firmware::environment::{DelayedSpring, StatedBound, StatedModel};
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{DelayedSpring, StatedBound, StatedModel};
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 const NOTHING: StatedModel =

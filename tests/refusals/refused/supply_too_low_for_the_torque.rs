@@ -1,6 +1,6 @@
 //! A supply that has not the voltage for full torque at the largest speed.
 
-use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Supply};
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Supply};
 use refusals::{DRIVE, MOTORISED};
 
 const CHANGED: Drive = Drive { supply: Supply { lowest: 12.0, highest: 25.2 }, ..DRIVE };

@@ -1,13 +1,13 @@
 //! More torque than the motor has.
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::Scene;
 use refusals::TRANSDUCERS;
 
 const SCENE: Scene<DelayedSpring<1>> = Scene { torque_limit: Some(3.0), ..refusals::SCENE };
 const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: DelayedSpring<1>,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

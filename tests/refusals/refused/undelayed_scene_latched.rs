@@ -1,8 +1,8 @@
 //! A wall without delay on a board whose timer latches each torque until the next tick.
-use firmware::certificate::{Certified, TimingChecked};
-use firmware::environment::DamperWall;
-use firmware::scene::Scene;
-use firmware::servo::Latched;
+use haptic_servo::certificate::{Certified, TimingChecked};
+use haptic_servo::environment::DamperWall;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Latched;
 use refusals::scene;
 
 const CERTIFIED: Certified<Scene<DamperWall<0>>> =

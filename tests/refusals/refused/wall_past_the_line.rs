@@ -1,7 +1,7 @@
 //! The paper's wall with a little too much damping: alpha = 0.0225.
-use firmware::certificate::Certified;
-use firmware::environment::DamperWall;
-use firmware::scene::Scene;
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DamperWall;
+use haptic_servo::scene::Scene;
 use refusals::scene;
 
 const CERTIFIED: Certified<Scene<DamperWall<1>>> =

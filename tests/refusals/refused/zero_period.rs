@@ -1,7 +1,7 @@
 //! A servo that never comes to the next sample.
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::scene::{Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::{Scene, Timing};
 
 const SCENE: Scene<DelayedSpring<1>> =
     Scene { timing: Timing { period: 0.0, worst_period: None }, ..refusals::SCENE };

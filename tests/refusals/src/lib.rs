@@ -2,13 +2,13 @@
 //! `refused` changes what it must not compile for, its neighbour in `examples` what compiles; the test is
 //! in `tests`.
 
-use firmware::certificate::Certified;
-use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
-use firmware::encoder::CounterWidth;
-use firmware::environment::{DamperWall, DelayedSpring, Matched};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::Transducers;
-use firmware::servo_loop::READ_WITHIN;
+use haptic_servo::certificate::Certified;
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::{DamperWall, DelayedSpring, Matched};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::Transducers;
+use haptic_servo::servo_loop::READ_WITHIN;
 
 /// An environment behind the paper's device and the standard coupling, and no torque limit.
 pub const fn scene<E: Copy>(environment: E) -> Scene<E> {

@@ -3,10 +3,10 @@
 
 use std::f64::consts::PI;
 
-use firmware::certificate::{Rejection, assess, certify};
-use firmware::environment::{Environment, Wall};
-use firmware::parameter::Parameter;
-use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::certificate::{Rejection, assess, certify};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::parameter::Parameter;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

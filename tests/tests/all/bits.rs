@@ -9,10 +9,10 @@
 // Their decimals have more digits than a double, as a person may well write them.
 #![allow(clippy::excessive_precision)]
 
-use firmware::certificate::{Assessment, assess};
-use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::passivity::interval::Interval;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::{Assessment, assess};
+use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use std::hint::black_box;
 
 include!(concat!(env!("OUT_DIR"), "/vectors.rs"));

@@ -4,10 +4,10 @@
 //! A slip in how an environment is turned into a transfer function (a delay counted twice, the
 //! filter on the spring too, the sign of the canceller) moves the index away from its formula.
 
-use firmware::certificate::assess;
-use firmware::environment::Environment;
-use firmware::passivity::interval::Interval;
-use firmware::scene::Coupling;
+use haptic_servo::certificate::assess;
+use haptic_servo::environment::Environment;
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::scene::Coupling;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::cmp::Ordering;
@@ -178,7 +178,7 @@ fn negative_dampers() {
 /// `2 B (z - 1) / (T (z + 1))`: a pole at -1 that is allowed, and no longer is when it is delayed.
 #[test]
 fn tustin_dampers() {
-    use firmware::environment::{Coefficients, Rational};
+    use haptic_servo::environment::{Coefficients, Rational};
     use tests::poly::Poly;
     for seed in 0..ROUNDS {
         let draw = Draw::new(seed);

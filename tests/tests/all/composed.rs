@@ -4,9 +4,9 @@
 //!
 //! `COMPOSED_RUNS=20000 cargo test -p tests --test all composed` searches longer.
 
-use firmware::certificate::PassivityProblem;
-use firmware::environment::{AnyProfile, Composed, Ends, Environment, Shape, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::PassivityProblem;
+use haptic_servo::environment::{AnyProfile, Composed, Ends, Environment, Shape, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use rand::Rng;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -90,7 +90,7 @@ impl Sum {
     /// Its knots are whole numbers of units.
     fn with_knots_of_the_table(mut self) -> Self {
         let profile = self.profile();
-        let full = f64::from(firmware::environment::FULL_SCALE);
+        let full = f64::from(haptic_servo::environment::FULL_SCALE);
         let units = profile.units().iter();
         self.torques = units.map(|&unit| f64::from(unit) * profile.torque / full).collect();
         self

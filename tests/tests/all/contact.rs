@@ -5,9 +5,9 @@
 //! `(K_vc T / 2 - alpha) * sum v_E^2 <= beta / T`. An oscillation that lasts breaks the second, one
 //! that grows breaks both.
 
-use firmware::certificate::{Answer, assess};
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::{Answer, assess};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

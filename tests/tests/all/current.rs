@@ -1,9 +1,9 @@
 //! What an instant of the current loop takes on the emulated board, and that it computes as the host does.
 
 use analysis::emulator::BenchClient;
-use firmware::current::{Duties, Winding};
 use firmware_harness::bench_request::BenchRequest;
 use firmware_harness::currents::{CurrentBench, Input};
+use haptic_servo::current::{Duties, Winding};
 
 use crate::emulated::TOOLCHAIN;
 

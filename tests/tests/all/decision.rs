@@ -1,14 +1,14 @@
 //! Yes and no without the numbers against the assessment with them: the same answers, far from the
 //! line, next to it, and where rounding decides.
 
-use firmware::certificate::{
+use fixed::types::{I8F24, I12F20};
+use haptic_servo::certificate::{
     Answer, PassivityProblem, Rejection, assess, assess_in, timing_checked,
 };
-use firmware::environment::{Environment, Wall};
-use firmware::number::{Format, Number};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{Latched, OutputMode, Simultaneous, Step, SupportsTiming};
-use fixed::types::{I8F24, I12F20};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::number::{Format, Number};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{Latched, OutputMode, Simultaneous, Step, SupportsTiming};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::scenes::{self, Poles};

@@ -1,11 +1,13 @@
 //! `certify` over all of `f64`: no input makes it panic, none that is not finite passes, and what
 //! it says is consistent.
 
-use firmware::certificate::{Answer, Assumptions, Rejection, Resolution, Rule, assess_in, certify};
-use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::number::Format;
-use firmware::passivity::interval::Interval;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::{
+    Answer, Assumptions, Rejection, Resolution, Rule, assess_in, certify,
+};
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::number::Format;
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use proptest::prelude::*;
 
 /// Any bits, the edges of the format, and numbers such as people write.

@@ -2,8 +2,8 @@
 
 use std::process::Command;
 
-use firmware::encoder::CounterWidth;
-use firmware::servo::{Servo, Transducers};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::servo::{Servo, Transducers};
 
 // Its own simulation is its own.
 #[allow(dead_code)]
@@ -20,7 +20,7 @@ fn shown(name: &str) -> &'static str {
 
 fn check(name: &str) {
     let output = Command::new(env!("CARGO"))
-        .args(["run", "--quiet", "--package", "firmware", "--example", name])
+        .args(["run", "--quiet", "--package", "haptic-servo", "--example", name])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .expect("cargo starts");

@@ -72,7 +72,11 @@ fn no_executor_no_logger_and_no_hardware_come_with_it() {
     for target in ["all", "thumbv7em-none-eabihf"] {
         let output = cargo(&folder, &["tree", "--target", target, "--edges", "normal,build"]);
         let tree = text(&output.stdout);
-        assert!(output.status.success() && tree.contains("firmware"), "{}", text(&output.stderr));
+        assert!(
+            output.status.success() && tree.contains("haptic-servo"),
+            "{}",
+            text(&output.stderr)
+        );
         for unwanted in ["embassy", "cortex-m", "defmt", "stm32", "semihosting"] {
             assert!(!tree.contains(unwanted), "{unwanted} in\n{tree}");
         }

@@ -1,7 +1,7 @@
 //! Interval arithmetic encloses the exact result, over random bits: subnormals, numbers next to
 //! overflow, infinities. One rounding in the wrong direction anywhere and these fail.
 
-use firmware::passivity::interval::Interval;
+use haptic_servo::passivity::interval::Interval;
 use num_traits::{Signed, Zero};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

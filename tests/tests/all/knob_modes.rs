@@ -9,11 +9,11 @@ use analysis::emulator::plant_thread::{PlantModel, PlantThread};
 use analysis::link::{Address, Link, RequestResult};
 use analysis::program::knob_modes;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
-use firmware::board::lockstep_protocol::{TickInput, TickOutput};
-use firmware::certificate::Parameter;
-use firmware::environment::KNOB_MODES;
-use firmware::servo::Simultaneous;
-use firmware::servo_loop::State;
+use haptic_servo::board::lockstep_protocol::{TickInput, TickOutput};
+use haptic_servo::certificate::Parameter;
+use haptic_servo::environment::KNOB_MODES;
+use haptic_servo::servo::Simultaneous;
+use haptic_servo::servo_loop::State;
 use tests::replica::Replica;
 
 /// A hand that turns the knob to and fro through a third of a turn, and all that was put out so far.

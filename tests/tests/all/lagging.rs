@@ -3,9 +3,9 @@
 
 use std::f64::consts::PI;
 
-use firmware::certificate::{PassivityProblem, assess};
-use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::certificate::{PassivityProblem, assess};
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use nalgebra::DMatrix;
 use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};

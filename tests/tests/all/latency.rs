@@ -2,9 +2,9 @@
 
 use analysis::file::{self, Format};
 use analysis::verdict::{Verdict, VerdictReport, judge};
-use firmware::certificate::Certified;
-use firmware::environment::DamperWall;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DamperWall;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde_json::{Value, json};
 use std::hint::black_box;
 use tests::exact::{Q, of_decimal, of_f64};

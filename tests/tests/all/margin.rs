@@ -1,9 +1,9 @@
 //! The margin is what the device may lose while everything else stays as it is: with a little less
 //! taken away the scene passes the exact rule in exact numbers, with a little more it does not.
 
-use firmware::certificate::{Rule, assess};
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::{Rule, assess};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tests::exact::of_f64;

@@ -1,12 +1,12 @@
 //! Nonlinear scenes behind the matched coupling, in closed loop with passive hands: the servo as it runs in
 //! `f32`, an exactly integrated device, hands without damping, and torques that come when the scene says.
 
-use firmware::certificate::Certified;
-use firmware::encoder::CounterWidth;
-use firmware::environment::{Environment, Wall};
-use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
-use firmware::servo::{Servo, Transducers};
+use haptic_servo::certificate::Certified;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::servo::{Servo, Transducers};
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -6,7 +6,7 @@
 //! coupling of the declared `delta` has to be below `delta / k`, and behind a spring of
 //! `c = K_vc T / 2` below `1 / ((k - 1) / delta + 1 / c)`. A scene has to pass both.
 
-use firmware::certificate::{Answer, assess};
+use haptic_servo::certificate::{Answer, assess};
 use num_traits::One;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

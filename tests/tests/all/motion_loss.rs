@@ -5,9 +5,9 @@
 
 use std::f64::consts::TAU;
 
-use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
-use firmware::encoder::CounterWidth;
-use firmware::servo::Transducers;
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::servo::Transducers;
 use nalgebra::{Complex, DMatrix};
 
 const INSTANT: f64 = 25e-6;

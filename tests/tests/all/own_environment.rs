@@ -4,13 +4,13 @@
 use analysis::emulator::Emulator;
 use analysis::studies::bench::live::live_set;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
-use firmware::certificate::{Certified, Parameter};
-use firmware::dac::DacCode;
-use firmware::encoder::{CounterWidth, RawCount};
-use firmware::number::Number;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{Servo, Transducers};
 use fixed::types::I8F24;
+use haptic_servo::certificate::{Certified, Parameter};
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::{CounterWidth, RawCount};
+use haptic_servo::number::Number;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{Servo, Transducers};
 use own_environment::ProgressiveSpring;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -50,7 +50,7 @@ fn counts() -> impl Iterator<Item = i32> {
 
 fn plays<N: Number>(format: NumberFormat)
 where
-    ProgressiveSpring<1>: firmware::environment::Discretize<N>,
+    ProgressiveSpring<1>: haptic_servo::environment::Discretize<N>,
 {
     let toolchain = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
         .unwrap_or_else(|error| panic!("{error}"));

@@ -8,7 +8,7 @@ use analysis::studies::failures::method_result::Verdict;
 use analysis::studies::failures::profiles::{CERTIFIED, DETENTS, HUMMING, MEAN, SWING, TEETH};
 use analysis::studies::failures::setting::{KNOB, PADDLE, PERIOD};
 use analysis::studies::failures::{Case, CaseResult};
-use firmware::scene::Device;
+use haptic_servo::scene::Device;
 
 fn case(name: &str) -> CaseResult {
     Case::find(name).unwrap().evaluate().unwrap()

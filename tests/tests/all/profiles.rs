@@ -3,9 +3,9 @@
 //!
 //! `PROFILE_RUNS=100000 cargo test -p tests --test all profiles` searches longer.
 
-use firmware::certificate::{PassivityProblem, certify};
-use firmware::environment::{AnyProfile, Environment, Shape};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::{PassivityProblem, certify};
+use haptic_servo::environment::{AnyProfile, Environment, Shape};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use rand::Rng;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

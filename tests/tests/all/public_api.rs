@@ -17,7 +17,7 @@ const SIGNATURE: &str = " : ";
 fn rustdoc() -> Option<Value> {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("public-api");
     let output = Command::new(env!("CARGO"))
-        .args(["rustdoc", "--package", "firmware", "--lib", "--features", "wire", "--offline"])
+        .args(["rustdoc", "--package", "haptic-servo", "--lib", "--features", "wire", "--offline"])
         .args(["--", "-Z", "unstable-options", "--output-format", "json"])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         // A folder of its own: build scripts look at that permission, and all else would be built anew.
@@ -30,7 +30,7 @@ fn rustdoc() -> Option<Value> {
         eprintln!("skipped: no JSON: {}", String::from_utf8_lossy(&output.stderr));
         return None;
     }
-    let text = fs::read_to_string(target.join("doc/firmware.json")).expect("what was written");
+    let text = fs::read_to_string(target.join("doc/haptic_servo.json")).expect("what was written");
     Some(serde_json::from_str(&text).expect("JSON"))
 }
 
@@ -129,7 +129,7 @@ impl<'a> Listing<'a> {
         let mut listing =
             Self { index: &library["index"], reached: HashSet::new(), lines: BTreeSet::new() };
         listing.reach(&root);
-        listing.children(&root, "firmware");
+        listing.children(&root, "haptic_servo");
         listing.lines
     }
 

@@ -4,10 +4,10 @@
 //! A rounding in the wrong direction, a lost box of the subdivision, a sign in the cross terms of
 //! the real part: each puts the index outside its enclosure for some of these scenes.
 
-use firmware::certificate::{Answer, assess, assess_in};
-use firmware::environment::{Coefficients, Environment};
-use firmware::number::Format;
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::certificate::{Answer, assess, assess_in};
+use haptic_servo::environment::{Coefficients, Environment};
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Scene};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::agreement::{check, check_exact};

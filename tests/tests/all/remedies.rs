@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use firmware::certificate::{
+use haptic_servo::certificate::{
     Parameter, PassivityProblem, Rejection, Rule, assess, assess_in, certify_in,
 };
-use firmware::environment::Environment;
-use firmware::number::Format;
-use firmware::passivity::poles::UndecidedReason;
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::environment::Environment;
+use haptic_servo::number::Format;
+use haptic_servo::passivity::poles::UndecidedReason;
+use haptic_servo::scene::{Coupling, Scene};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::scenes::{self, Poles};

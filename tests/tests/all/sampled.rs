@@ -1,14 +1,14 @@
 //! Current loops that are updated a whole number of times in a period: the certificate's response and ripple
 //! against the torque over time, drawn from update to update.
 
-use firmware::certificate::{Certified, Rejection, assess, certify};
-use firmware::encoder::CounterWidth;
-use firmware::environment::{DelayedSpring, Environment, Matched, Wall};
-use firmware::parameter::Parameter;
-use firmware::passivity::interval::Interval;
-use firmware::passivity::lagged::{LagIntervals, SampledResponse, delay_of_updates};
-use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
-use firmware::servo::{Servo, Transducers};
+use haptic_servo::certificate::{Certified, Rejection, assess, certify};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::{DelayedSpring, Environment, Matched, Wall};
+use haptic_servo::parameter::Parameter;
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::passivity::lagged::{LagIntervals, SampledResponse, delay_of_updates};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::servo::{Servo, Transducers};
 use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

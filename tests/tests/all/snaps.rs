@@ -3,10 +3,10 @@
 //!
 //! `SNAP_RUNS=100000 cargo test -p tests --test all snaps` searches longer.
 
-use firmware::certificate::PassivityProblem;
-use firmware::coupling::Response;
-use firmware::environment::{AnyProfile, Discretize, Environment, Law, Shape};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::PassivityProblem;
+use haptic_servo::coupling::Response;
+use haptic_servo::environment::{AnyProfile, Discretize, Environment, Law, Shape};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use rand::Rng;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

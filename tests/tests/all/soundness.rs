@@ -5,7 +5,7 @@
 //! the shortage makes the loop grow. A rule that rejected without need would be caught by the
 //! second: no such hand would be found.
 
-use firmware::certificate::{Answer, assess};
+use haptic_servo::certificate::{Answer, assess};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::hands::Hand;

@@ -1,7 +1,7 @@
 //! The published cases: verdicts under both rules, indices to 34 digits, reason codes.
 
-use firmware::certificate::{Answer, Assessment, assess};
-use firmware::passivity::interval::Interval;
+use haptic_servo::certificate::{Answer, Assessment, assess};
+use haptic_servo::passivity::interval::Interval;
 use tests::agreement::relative_width;
 use tests::exact::{Q, of_f64};
 use tests::vectors::{self, Case};

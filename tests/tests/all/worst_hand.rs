@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use analysis::chain::Chain;
 use analysis::worst_hand::{HandImpedance, search};
-use firmware::scene::{Device, Scene};
+use haptic_servo::scene::{Device, Scene};
 use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

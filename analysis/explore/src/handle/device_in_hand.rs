@@ -1,11 +1,11 @@
 //! The simulated device between the converter's codes and the encoder's counts, held or let go.
 
-use firmware::dac::DacCode;
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
 use haptic_model::device::{Energy, Hand, HandSetpoint, SimulatedEncoder};
 use haptic_model::simulation::SimulationError;
 use haptic_model::simulation::held_device::{DeviceState, HeldDevice};
+use haptic_servo::dac::DacCode;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 
 /// A device that a hand holds or not.
 pub struct DeviceInHand {

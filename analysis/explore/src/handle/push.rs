@@ -1,8 +1,8 @@
 //! A push that is played in place of what a person does.
 
-use firmware::environment::Environment;
 use haptic_model::device::HandSetpoint;
 use haptic_model::hand::HandTrajectory;
+use haptic_servo::environment::Environment;
 
 /// Time in s in which the set-point comes to where the trajectory begins.
 const APPROACH: f64 = 0.5;

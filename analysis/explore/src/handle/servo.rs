@@ -1,14 +1,14 @@
 //! The servo that renders a scene: the certified one; or one that nothing proves, in simulation only; or
 //! none.
 
-use firmware::certificate::assess;
-use firmware::dac::DacCode;
-use firmware::encoder::{CounterWidth, Position, RawCount};
-use firmware::number::OutOfRange;
-use firmware::servo::Transducers;
-use firmware::torque::LimitReason;
 use haptic_model::controller::{Controller, Tick, controller};
 use haptic_model::file::SceneFile;
+use haptic_servo::certificate::assess;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::{CounterWidth, Position, RawCount};
+use haptic_servo::number::OutOfRange;
+use haptic_servo::servo::Transducers;
+use haptic_servo::torque::LimitReason;
 use serde::Serialize;
 
 use super::unchecked::Unchecked;

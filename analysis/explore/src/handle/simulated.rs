@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use firmware::dac::DacCode;
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
 use haptic_model::device::{Energy, HandSetpoint};
+use haptic_servo::dac::DacCode;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 use serde::{Deserialize, Serialize};
 
 use super::device_in_hand::DeviceInHand;

@@ -1,11 +1,11 @@
 //! The handle against servos and devices that are built without it.
 
-use firmware::encoder::{CounterWidth, RawCount};
-use firmware::environment::DamperWall;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::{Servo, Transducers};
 use haptic_model::device::{Hand, HandSetpoint, Motion};
 use haptic_model::simulation::held_device::HeldDevice;
+use haptic_servo::encoder::{CounterWidth, RawCount};
+use haptic_servo::environment::DamperWall;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::{Servo, Transducers};
 use serde_json::{Value, json};
 
 use super::{hold, motion, push, recorded, replay};

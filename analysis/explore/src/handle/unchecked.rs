@@ -3,14 +3,14 @@
 
 use std::f64::consts::TAU;
 
-use firmware::dac::DacCode;
-use firmware::encoder::{Position, RawCount};
-use firmware::number::{Number, OutOfRange};
-use firmware::scene::Scene;
-use firmware::servo::{BuildError, Transducers};
-use firmware::torque::LimitReason;
 use haptic_model::controller::{Controller, Tick};
 use haptic_model::simulation::unquantized_servo::UnquantizedServo;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::{Position, RawCount};
+use haptic_servo::number::{Number, OutOfRange};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::{BuildError, Transducers};
+use haptic_servo::torque::LimitReason;
 
 /// An uncertified servo, initially at rest at zero.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
-use firmware::certificate::Certified;
-use firmware::environment::{DelayedSpring, Matched};
-use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{DelayedSpring, Matched};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 
 /// What the hand feels.
 pub type Environment = Matched<DelayedSpring<1>, 0, 1, true>;

@@ -1,6 +1,8 @@
-use firmware::certificate::Certified;
-use firmware::environment::{DamperWall, FreeModeWallAndProfile, Knots, OneSided, Profile, Shape};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{
+    DamperWall, FreeModeWallAndProfile, Knots, OneSided, Profile, Shape,
+};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// What the hand feels.
 pub type Environment = FreeModeWallAndProfile<OneSided<DamperWall<1>>, Profile<16, 1>>;

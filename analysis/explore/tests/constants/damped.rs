@@ -1,6 +1,6 @@
-use firmware::certificate::Certified;
-use firmware::environment::{DampedProfile, Knots, Profile, Shape};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{DampedProfile, Knots, Profile, Shape};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// What the hand feels.
 pub type Environment = DampedProfile<16, 1>;

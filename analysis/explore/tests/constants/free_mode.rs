@@ -1,6 +1,6 @@
-use firmware::certificate::Certified;
-use firmware::environment::FreeMode;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::FreeMode;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// What the hand feels.
 pub type Environment = FreeMode<1>;

@@ -1,6 +1,6 @@
-use firmware::certificate::Certified;
-use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DelayedSpring;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// What the hand feels.
 pub type Environment = DelayedSpring<1>;

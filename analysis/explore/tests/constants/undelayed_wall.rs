@@ -1,6 +1,6 @@
-use firmware::certificate::Certified;
-use firmware::environment::{DamperWall, FreeModeWall, Matched, OneSided};
-use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::{DamperWall, FreeModeWall, Matched, OneSided};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 
 /// What the hand feels.
 pub type Environment = Matched<FreeModeWall<OneSided<DamperWall<0>>>, 0, 1>;

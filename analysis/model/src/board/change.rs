@@ -1,8 +1,8 @@
 //! Changes of a board's parameters as they are typed.
 
-use firmware::certificate::Parameter;
-use firmware::tuning::{self, TUNABLE};
-use firmware::wire::message::Changes;
+use haptic_servo::certificate::Parameter;
+use haptic_servo::tuning::{self, TUNABLE};
+use haptic_servo::wire::message::Changes;
 use thiserror::Error;
 
 /// A parameter was given two values.

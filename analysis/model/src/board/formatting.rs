@@ -1,9 +1,9 @@
 //! The state of a board as text.
 
-use firmware::certificate::Parameter;
-use firmware::tuning;
-use firmware::wire::Discarded;
-use firmware::wire::message::{ActiveParameters, Board, Changes, PreviousFault, Status};
+use haptic_servo::certificate::Parameter;
+use haptic_servo::tuning;
+use haptic_servo::wire::Discarded;
+use haptic_servo::wire::message::{ActiveParameters, Board, Changes, PreviousFault, Status};
 
 use super::history::History;
 use crate::quantity::significant;

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use firmware::torque::LimitReason;
+use haptic_servo::torque::LimitReason;
 
 use super::sample::Sample;
 

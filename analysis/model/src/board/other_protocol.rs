@@ -1,6 +1,6 @@
 //! A board whose protocol is not this one.
 
-use firmware::wire::PROTOCOL;
+use haptic_servo::wire::PROTOCOL;
 use thiserror::Error;
 
 /// A board of another version.

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use firmware::current::IndexOffset;
-use firmware::power_reading::PowerReading;
+use haptic_servo::current::IndexOffset;
+use haptic_servo::power_reading::PowerReading;
 use serde::Serialize;
 
 /// A reading of a power stage.

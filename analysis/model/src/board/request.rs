@@ -1,9 +1,9 @@
 //! Requests to a board, and what became of them, in words.
 
-use firmware::servo::Step;
-use firmware::tuning::{Parameters, RenderError};
-use firmware::wire::description::Description;
-use firmware::wire::message::{ActiveParameters, Changes, Id, Outcome, Refusal, ToBoard};
+use haptic_servo::servo::Step;
+use haptic_servo::tuning::{Parameters, RenderError};
+use haptic_servo::wire::description::Description;
+use haptic_servo::wire::message::{ActiveParameters, Changes, Id, Outcome, Refusal, ToBoard};
 
 use super::formatting;
 

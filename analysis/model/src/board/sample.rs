@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use firmware::dac::DacCode;
-use firmware::servo_loop::{Frame, State};
-use firmware::torque::LimitReason;
-use firmware::wire::message::Board;
+use haptic_servo::dac::DacCode;
+use haptic_servo::servo_loop::{Frame, State};
+use haptic_servo::torque::LimitReason;
+use haptic_servo::wire::message::Board;
 use serde::Serialize;
 
 use crate::quantity::rounded;

@@ -16,7 +16,7 @@ mod lump;
 mod passivity;
 pub mod two_port;
 
-use firmware::scene::Device;
+use haptic_servo::scene::Device;
 use thiserror::Error;
 
 pub use passivity::{ExcessPassivity, NoPassivity, Reached};

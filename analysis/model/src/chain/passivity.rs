@@ -1,6 +1,6 @@
 //! The output strict passivity of a chain, located exactly (theory, section 3.2).
 
-use firmware::passivity::interval::Interval;
+use haptic_servo::passivity::interval::Interval;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Pow, ToPrimitive, Zero};

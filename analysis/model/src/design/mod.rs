@@ -8,9 +8,9 @@
 mod edge;
 mod quantity;
 
-use firmware::certificate::PassivityProblem;
-use firmware::environment::MAX_DELAY;
-use firmware::scene::{Coupling, Scene, TimeRange};
+use haptic_servo::certificate::PassivityProblem;
+use haptic_servo::environment::MAX_DELAY;
+use haptic_servo::scene::{Coupling, Scene, TimeRange};
 
 use crate::chain::Chain;
 use crate::file::SceneFile;

@@ -1,8 +1,8 @@
 //! The numbers of a scene that a design takes as far as they go.
 
-use firmware::latency::{LONGEST_DELAY, LONGEST_LAG};
-use firmware::parameter::Parameter;
-use firmware::scene::Scene;
+use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
+use haptic_servo::parameter::Parameter;
+use haptic_servo::scene::Scene;
 
 /// Unit of a delay.
 pub const SAMPLES: &str = "samples";

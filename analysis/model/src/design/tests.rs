@@ -1,8 +1,8 @@
 use super::*;
 use crate::chain::{Link, Mass};
 use crate::file::{Format, parse, write};
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Device, Latency, TimeRange, Timing};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Device, Latency, TimeRange, Timing};
 
 fn scene(environment: Environment) -> Scene {
     Scene {

@@ -1,6 +1,6 @@
 //! The table of a device: a rigid body, or a chain of masses, and the lags at its two ends.
 
-use firmware::scene::{Device, TimeRange};
+use haptic_servo::scene::{Device, TimeRange};
 
 use super::faults::{Read, Reported, all};
 use super::key::{self, Key};

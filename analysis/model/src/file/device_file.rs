@@ -1,6 +1,6 @@
 //! A file of a device, or the device of a scene's file.
 
-use firmware::scene::TimeRange;
+use haptic_servo::scene::TimeRange;
 
 use super::device::{DeviceTable, Purpose, device};
 use super::faults::{Faults, Read};

@@ -7,7 +7,7 @@
 //! Bounds here are about what a number can mean at all. Whether a scene with these numbers is
 //! safe is the certificate's question: a negative stiffness is a bad spring, not a bad file.
 
-use firmware::parameter::{Parameter, Range};
+use haptic_servo::parameter::{Parameter, Range};
 
 use Presence::{Default, Needed, Optional};
 

@@ -1,6 +1,6 @@
 //! The types of environment, and which keys each takes.
 
-use firmware::environment::{Coefficients, Environment, Knots, Profile, Rational, Shape, Wall};
+use haptic_servo::environment::{Coefficients, Environment, Knots, Profile, Rational, Shape, Wall};
 
 use super::key::{self, Key};
 

@@ -1,7 +1,7 @@
 //! The torque profile of a file: knots and named shapes, which add up to one table.
 
-use firmware::environment::{AnyProfile, Composed, Ends, Environment, Shape, ShapeError, Wall};
-use firmware::parameter::Parameter;
+use haptic_servo::environment::{AnyProfile, Composed, Ends, Environment, Shape, ShapeError, Wall};
+use haptic_servo::parameter::Parameter;
 
 use super::faults::{Read, Reported, all};
 use super::key::{self, Key, Presence};

@@ -1,9 +1,9 @@
 //! A scene file's tables turned into a [`Scene`].
 
-use firmware::certificate::Resolution;
-use firmware::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
-use firmware::latency::{LONGEST_DELAY, LONGEST_LAG};
-use firmware::scene::{Coupling, Latency, Scene, TimeRange, Timing};
+use haptic_servo::certificate::Resolution;
+use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
+use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
+use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange, Timing};
 
 use super::device::{self, DeviceTable, Purpose};
 use super::faults::{Faults, Read, all};

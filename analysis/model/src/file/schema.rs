@@ -1,7 +1,7 @@
 //! The JSON schema of a scene file, for editors: they complete keys, show their meaning, and
 //! underline values out of bounds. Rules on several keys are left to the reader of the file.
 
-use firmware::parameter::Range;
+use haptic_servo::parameter::Range;
 use serde_json::{Map, Value, json};
 
 use super::key::{self, Bound, Form, Key, Presence};

@@ -1,8 +1,8 @@
 //! Reads a table key by key; a key that is never read is unknown. Reading continues after an error, so
 //! that a user who corrects a file sees all errors at once.
 
-use firmware::parameter::Range;
-use firmware::scene::TimeRange;
+use haptic_servo::parameter::Range;
+use haptic_servo::scene::TimeRange;
 
 use super::faults::{Faults, Read, Reported, all};
 use super::key::{Key, Presence};

@@ -1,6 +1,6 @@
 //! The named shapes of a torque profile, and which keys each takes.
 
-use firmware::environment::Shape;
+use haptic_servo::environment::Shape;
 
 use super::key::{self, Key};
 

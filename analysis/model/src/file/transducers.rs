@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use firmware::encoder::CounterWidth;
-use firmware::servo::Transducers;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::servo::Transducers;
 
 use super::SceneFile;
 

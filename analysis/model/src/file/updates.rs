@@ -1,6 +1,6 @@
 //! What the other keys have to be where the amplifier is updated some times in a period.
 
-use firmware::scene::{Latency, TimeRange, Timing};
+use haptic_servo::scene::{Latency, TimeRange, Timing};
 
 use super::faults::Read;
 use super::key::{self, Key};

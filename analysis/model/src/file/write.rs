@@ -5,9 +5,9 @@ mod shaped;
 
 use std::fmt::Write;
 
-use firmware::environment::{Coefficients, Composed, Environment};
-use firmware::parameter::{Parameter, Range};
-use firmware::scene::{Coupling, Scene, TimeRange};
+use haptic_servo::environment::{Coefficients, Composed, Environment};
+use haptic_servo::parameter::{Parameter, Range};
+use haptic_servo::scene::{Coupling, Scene, TimeRange};
 
 use super::key::{self, Bound, Key, Presence};
 use super::kind::Kind;

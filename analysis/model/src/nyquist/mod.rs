@@ -16,11 +16,11 @@ pub mod words;
 
 use std::f64::consts::PI;
 
-use firmware::certificate::{Assessment, LoopTransfers, PassivityProblem, Rule, assess};
-use firmware::passivity::interval::Interval;
-use firmware::passivity::lagged::{LagIntervals, SampledResponse};
-use firmware::passivity::transfer::{Transfer, Unbuildable};
-use firmware::scene::{Coupling, Latency, Scene};
+use haptic_servo::certificate::{Assessment, LoopTransfers, PassivityProblem, Rule, assess};
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::passivity::lagged::{LagIntervals, SampledResponse};
+use haptic_servo::passivity::transfer::{Transfer, Unbuildable};
+use haptic_servo::scene::{Coupling, Latency, Scene};
 use nalgebra::Complex;
 use thiserror::Error;
 

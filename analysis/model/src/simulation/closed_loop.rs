@@ -1,9 +1,9 @@
 //! Plant and controller as one matrix: the whole loop where it is linear, without limit, face,
 //! quantisation.
 
-use firmware::certificate::LoopTransfers;
-use firmware::passivity::transfer::Unbuildable;
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::certificate::LoopTransfers;
+use haptic_servo::passivity::transfer::Unbuildable;
+use haptic_servo::scene::{Coupling, Scene};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::discrete_plant::DiscretePlant;

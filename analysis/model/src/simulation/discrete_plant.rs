@@ -200,7 +200,7 @@ impl DiscretePlant {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use firmware::scene::Device;
+    use haptic_servo::scene::Device;
 
     #[test]
     fn latency_splits_the_tick_and_nothing_else() {

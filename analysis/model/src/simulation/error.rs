@@ -1,7 +1,7 @@
 //! Why there is no motion.
 
-use firmware::passivity::transfer::Unbuildable;
-use firmware::servo::BuildError;
+use haptic_servo::passivity::transfer::Unbuildable;
+use haptic_servo::servo::BuildError;
 use thiserror::Error;
 
 use crate::file::FileError;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use firmware::scene::Scene;
+use haptic_servo::scene::Scene;
 
 use super::discrete_plant::{DiscretePlant, Discretization};
 use super::error::SimulationError;

@@ -180,7 +180,7 @@ impl FrictionPlant {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use firmware::scene::Device;
+    use haptic_servo::scene::Device;
 
     fn friction_plant(friction: f64, velocity: f64) -> FrictionPlant {
         let plant = Plant::rigid(Device { inertia: 0.5, damping: 0.0, passivity: None });

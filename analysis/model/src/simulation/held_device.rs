@@ -11,7 +11,7 @@
 
 use std::collections::VecDeque;
 
-use firmware::scene::{Device, Latency, Scene};
+use haptic_servo::scene::{Device, Latency, Scene};
 use nalgebra::{DMatrix, DVector};
 
 use super::discrete_plant::{DiscretePlant, Discretization, Pieces};
@@ -329,7 +329,7 @@ mod tests {
         let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 5.0 };
         let (period, lag) = (1e-3, 3e-4);
         let sampled = Latency::sampled(5, lag, period);
-        let output_delay = firmware::latency::TimeRange::exactly(6e-4);
+        let output_delay = haptic_servo::latency::TimeRange::exactly(6e-4);
         let latency = Latency { output_delay, ..sampled };
         let late = HeldDevice::lagging(DEVICE, &latency, hand, period).unwrap();
         let short = HeldDevice::new(DEVICE, hand, period / (5 * FINE) as f64).unwrap();
@@ -384,7 +384,7 @@ mod tests {
     #[test]
     fn the_filter_of_a_sensor_shows_where_a_device_was() {
         let lag = 2e-4;
-        let sensor_lag = firmware::latency::TimeRange::exactly(lag);
+        let sensor_lag = haptic_servo::latency::TimeRange::exactly(lag);
         let latency = Latency { sensor_lag, ..Latency::NONE };
         let device = Device { damping: 1e-9, inertia: 1.0, passivity: None };
         let held = HeldDevice::lagging(device, &latency, Hand::default(), 1e-3).unwrap();

@@ -221,7 +221,7 @@ mod tests {
     use super::*;
     use crate::chain::{Link, Mass};
     use crate::device::Hand;
-    use firmware::scene::Device;
+    use haptic_servo::scene::Device;
 
     fn machine() -> Plant {
         let masses = [Mass { inertia: 1e-3, damping: 0.02 }, Mass { inertia: 2e-3, damping: 0.01 }];

@@ -10,7 +10,7 @@
 //! encoder's filter, where these lag. The mass with the encoder comes first: that is the motor's, or
 //! has changed places with it. All torques are positive in the direction of the angle.
 
-use firmware::scene::{Device, Latency};
+use haptic_servo::scene::{Device, Latency};
 use nalgebra::{DMatrix, DVector};
 
 use crate::chain::{Chain, EncoderPlace, Link, Mass};

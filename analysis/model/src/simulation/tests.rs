@@ -1,8 +1,8 @@
-use firmware::certificate::{Assumption, Assumptions, QuantizationBound, Resolution, assess};
-use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
-use firmware::torque::LimitReason;
+use haptic_servo::certificate::{Assumption, Assumptions, QuantizationBound, Resolution, assess};
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::torque::LimitReason;
 
 use super::method::Method;
 use super::*;

@@ -1,7 +1,7 @@
 //! Status of the servo at a sample: the reason for a limited torque, or that the tick was
 //! missed.
 
-use firmware::torque::LimitReason;
+use haptic_servo::torque::LimitReason;
 use serde::{Serialize, Serializer};
 
 /// Status of the servo at a sample.

@@ -2,11 +2,11 @@
 //!
 //! Nothing here is certified: what a scene would do is asked before it is safe.
 
-use firmware::coupling::Solver;
-use firmware::environment::{DataLaw, Discretize, Law};
-use firmware::scene::Scene;
-use firmware::servo::BuildError;
-use firmware::torque::{LimitReason, Limiter};
+use haptic_servo::coupling::Solver;
+use haptic_servo::environment::{DataLaw, Discretize, Law};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::BuildError;
+use haptic_servo::torque::{LimitReason, Limiter};
 
 /// Environment and coupling of a scene, initially at rest at zero.
 #[derive(Clone, Debug)]

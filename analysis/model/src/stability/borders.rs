@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use firmware::matched::MatchedCoupling;
-use firmware::number::Format;
-use firmware::parameter::Parameter;
-use firmware::passivity::interval::Interval;
-use firmware::passivity::polynomial::Polynomial;
-use firmware::passivity::transfer::{Transfer, Unbuildable};
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::matched::MatchedCoupling;
+use haptic_servo::number::Format;
+use haptic_servo::parameter::Parameter;
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::passivity::polynomial::Polynomial;
+use haptic_servo::passivity::transfer::{Transfer, Unbuildable};
+use haptic_servo::scene::{Coupling, Scene};
 use nalgebra::Complex;
 
 use super::eigenvalues::eigenvalues;

@@ -8,7 +8,7 @@
 mod borders;
 mod eigenvalues;
 
-use firmware::parameter::Parameter;
+use haptic_servo::parameter::Parameter;
 use std::fmt;
 
 use nalgebra::{Complex, DMatrix};

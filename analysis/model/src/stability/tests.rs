@@ -1,5 +1,5 @@
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use super::*;
 use crate::device::{Hand, Motion};

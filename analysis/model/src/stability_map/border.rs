@@ -1,9 +1,9 @@
 //! The certified border by the formulas of theory, section 5.
 
-use firmware::certificate::PassivityProblem;
-use firmware::environment::{Environment, Wall};
-use firmware::passivity::interval::Interval;
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::certificate::PassivityProblem;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::scene::{Coupling, Scene};
 
 use super::{Family, Map};
 use crate::closed_form;

@@ -8,9 +8,9 @@ pub mod schur_cohn;
 
 use std::ops::Range;
 
-use firmware::certificate::{Answer, PassivityProblem, assess};
-use firmware::environment::{Environment, Wall};
-use firmware::scene::Scene;
+use haptic_servo::certificate::{Answer, PassivityProblem, assess};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::Scene;
 use rayon::prelude::*;
 use thiserror::Error;
 

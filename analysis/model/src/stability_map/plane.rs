@@ -3,10 +3,10 @@
 
 use std::ops::Range;
 
-use firmware::certificate::assess;
-use firmware::environment::Environment;
-use firmware::parameter::Parameter;
-use firmware::scene::Scene;
+use haptic_servo::certificate::assess;
+use haptic_servo::environment::Environment;
+use haptic_servo::parameter::Parameter;
+use haptic_servo::scene::Scene;
 use thiserror::Error;
 
 use super::plant::SampledPlant;
@@ -224,7 +224,7 @@ impl Plane {
 fn by_certificate(scene: &Scene) -> Region {
     let assessment = assess(scene);
     match assessment.outcome {
-        Ok(()) if assessment.paper == firmware::certificate::Answer::Pass => Region::Paper,
+        Ok(()) if assessment.paper == haptic_servo::certificate::Answer::Pass => Region::Paper,
         Ok(()) => Region::Exact,
         Err(rejection) if rejection.is_undecided() => Region::Undecided,
         Err(_) => Region::Rejected,

@@ -1,8 +1,8 @@
 //! The device over a tick as a ratio of polynomials, which a controller closes at the cost of two
 //! products.
 
-use firmware::passivity::transfer::Unbuildable;
-use firmware::scene::Scene;
+use haptic_servo::passivity::transfer::Unbuildable;
+use haptic_servo::scene::Scene;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::schur_cohn::all_inside;

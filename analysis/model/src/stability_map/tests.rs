@@ -1,5 +1,5 @@
-use firmware::certificate::Answer;
-use firmware::scene::Latency;
+use haptic_servo::certificate::Answer;
+use haptic_servo::scene::Latency;
 
 use super::border::closed_form_border;
 use super::*;

@@ -9,7 +9,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use firmware::scene::Scene;
+use haptic_servo::scene::Scene;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::HEAVIEST;

@@ -16,8 +16,8 @@ mod nnls;
 
 use std::f64::consts::PI;
 
-use firmware::certificate::{LoopTransfers, assess};
-use firmware::scene::{Coupling, Scene};
+use haptic_servo::certificate::{LoopTransfers, assess};
+use haptic_servo::scene::{Coupling, Scene};
 use nalgebra::Complex;
 use serde::Serialize;
 

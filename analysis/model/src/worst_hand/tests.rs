@@ -1,8 +1,8 @@
 use super::*;
 use crate::chain::{EncoderPlace, Link, Mass};
-use firmware::certificate::certify;
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Latency, TimeRange, Timing};
+use haptic_servo::certificate::certify;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, TimeRange, Timing};
 
 fn device() -> Chain {
     Chain::rigid(2.2e-5, 0.022).unwrap()

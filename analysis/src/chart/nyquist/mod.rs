@@ -4,7 +4,7 @@ mod infinity;
 mod legend;
 mod marks;
 
-use firmware::scene::Scene;
+use haptic_servo::scene::Scene;
 use plotters::prelude::*;
 
 use super::axes::Axes;

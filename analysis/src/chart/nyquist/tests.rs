@@ -1,6 +1,6 @@
-use firmware::certificate::assess;
-use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::certificate::assess;
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 
 use super::*;
 

@@ -4,10 +4,10 @@
 use std::f64::consts::TAU;
 
 use clap::Args;
-use firmware::certificate::Resolution;
-use firmware::encoder::CounterWidth;
-use firmware::scene::{Coupling, Scene};
-use firmware::servo::Transducers;
+use haptic_servo::certificate::Resolution;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::scene::{Coupling, Scene};
+use haptic_servo::servo::Transducers;
 
 use super::report::{FormatReport, SimulationMethod, message, text};
 use crate::command::file_scene::{hand_trajectory, scene_file};

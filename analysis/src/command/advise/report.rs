@@ -2,9 +2,9 @@
 
 use std::cmp::Ordering;
 
-use firmware::certificate::QuantizationBound;
-use firmware::number::Arithmetic;
-use firmware::text::RoundUp3;
+use haptic_servo::certificate::QuantizationBound;
+use haptic_servo::number::Arithmetic;
+use haptic_servo::text::RoundUp3;
 use serde::Serialize;
 
 use crate::quantity::significant;

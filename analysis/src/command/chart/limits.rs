@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use clap::Args;
-use firmware::scene::Coupling;
+use haptic_servo::scene::Coupling;
 
 use super::output::OutputArguments;
 use crate::chart::limits::{DelayCurve, Own};

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use clap::Args;
-use firmware::parameter::Parameter;
+use haptic_servo::parameter::Parameter;
 
 use super::output::OutputArguments;
 use crate::chart::detents::DetentMap;

@@ -1,8 +1,8 @@
 //! `haptic chart turn`: what a hand feels that turns a torque profile.
 
 use clap::Args;
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 
 use super::output::OutputArguments;
 use crate::chart::{self, Chart, Data};

@@ -8,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use firmware::current::TorqueSource;
+use haptic_servo::current::TorqueSource;
 use serde::Serialize;
 
 use super::shared_arguments::JsonOption;

@@ -131,7 +131,7 @@ fn build() -> Result<PathBuf, CommandError> {
 }
 
 fn output_delay(text: &str) -> Result<f64, String> {
-    let longest = firmware::latency::LONGEST_DELAY * SWEEP.period();
+    let longest = haptic_servo::latency::LONGEST_DELAY * SWEEP.period();
     let value = not_negative(text)?;
     if value <= longest { Ok(value) } else { Err(format!("it must be at most {longest} s")) }
 }

@@ -7,9 +7,9 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use firmware::certificate::{QuantizationBound, Resolution};
-use firmware::dac::DacCode;
-use firmware::number::Format;
+use haptic_servo::certificate::{QuantizationBound, Resolution};
+use haptic_servo::dac::DacCode;
+use haptic_servo::number::Format;
 
 use crate::lockstep::PlantIo;
 use crate::program::Program;

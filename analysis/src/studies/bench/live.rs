@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use firmware::certificate::Parameter;
+use haptic_servo::certificate::Parameter;
 use thiserror::Error;
 
 use crate::emulator::plant_thread::{FixedCount, PlantThread};

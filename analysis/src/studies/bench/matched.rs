@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use firmware::dac::DacCode;
-use firmware::environment::{Environment, Wall};
-use firmware::number::Arithmetic;
-use firmware::scene::{Coupling, Latency, Scene};
 use firmware_harness::bench_request::BenchRequest;
+use haptic_servo::dac::DacCode;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::number::Arithmetic;
+use haptic_servo::scene::{Coupling, Latency, Scene};
 
 use crate::emulator::{BenchClient, EmulatorError};
 use crate::latency_limits::lag_of;

@@ -15,9 +15,9 @@ use std::time::Instant;
 
 use crate::latency_limits::{lag_of, largest_spring};
 use crate::stability_map::{Family, Map, MapError};
-use firmware::certificate::assess;
-use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::assess;
+use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde::Serialize;
 
 /// Instructions a second of a board's core: 170 MHz, if an instruction took a cycle.
@@ -188,7 +188,7 @@ pub fn compile_time(
         let output = Command::new(rustc)
             .args(["--edition=2024", "--crate-type=lib", "--emit=metadata", "-o"])
             .arg(folder.path().join("scene.rmeta"))
-            .arg(format!("--extern=firmware={}", library.display()))
+            .arg(format!("--extern=haptic_servo={}", library.display()))
             .arg("-L")
             .arg(format!("dependency={}", dependencies.display()))
             .arg(&source)
@@ -224,7 +224,7 @@ const COMPILATIONS: usize = 15;
 
 fn program(copies: usize, latency: &str) -> String {
     let mut text = String::from(
-        "use firmware::{certificate::Certified, environment::*, scene::*};
+        "use haptic_servo::{certificate::Certified, environment::*, scene::*};
 pub const fn scene(stiffness: f64) -> Scene<Wall> {
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use firmware::environment::{AnyProfile, Ends, Environment, Profile};
-use firmware::scene::Scene;
 use firmware_harness::tables::MAGNET;
+use haptic_servo::environment::{AnyProfile, Ends, Environment, Profile};
+use haptic_servo::scene::Scene;
 
 use crate::emulator::{CertifyClient, EmulatorError};
 use crate::program::knob;

@@ -3,8 +3,8 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use super::{ROUNDS, median};
 use crate::device::Motion;

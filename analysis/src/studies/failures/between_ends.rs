@@ -4,9 +4,9 @@
 //! next count. The torque of its count is late behind its coupling, but not at the motor: neither the wall that is
 //! one sample late nor the one that is not, both behind the coupling, is that loop.
 
-use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::scene::{Coupling, Latency, Scene};
-use firmware::servo::Transducers;
+use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::scene::{Coupling, Latency, Scene};
+use haptic_servo::servo::Transducers;
 
 use super::case::{CaseResult, FailureError};
 use super::method_result::MethodResult;

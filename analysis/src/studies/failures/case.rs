@@ -1,6 +1,6 @@
 //! A question about one loop, and the results of the methods that were asked.
 
-use firmware::environment::ShapeError;
+use haptic_servo::environment::ShapeError;
 use thiserror::Error;
 
 use super::loop_run::{LoopRun, LoopRunError};

@@ -1,9 +1,9 @@
 //! What a linear analysis in real numbers does not see: steps of the arithmetic and of the encoder.
 
-use firmware::certificate::Resolution;
-use firmware::number::{Arithmetic, Format};
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
+use haptic_servo::certificate::Resolution;
+use haptic_servo::number::{Arithmetic, Format};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 
 use super::case::{CaseResult, FailureError};
 use super::loop_run::LoopRun;

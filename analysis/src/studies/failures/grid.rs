@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use firmware::certificate::LoopTransfers;
-use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::scene::Scene;
+use haptic_servo::certificate::LoopTransfers;
+use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::scene::Scene;
 
 use super::case::{CaseResult, FailureError};
 use super::method_result::{MethodResult, Verdict};

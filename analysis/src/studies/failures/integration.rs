@@ -1,6 +1,6 @@
 //! Methods of integration that show a loop as it is not (theory, section 9).
 
-use firmware::servo::Transducers;
+use haptic_servo::servo::Transducers;
 
 use super::case::{CaseResult, FailureError};
 use super::method_result::{MethodResult, Verdict};

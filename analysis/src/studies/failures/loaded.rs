@@ -1,8 +1,8 @@
 //! The device around a servo with all features of a simulation: masses in a hand, Coulomb friction,
 //! missed ticks, encoder counts and DAC codes.
 
-use firmware::dac::DacCode;
-use firmware::servo::Transducers;
+use haptic_servo::dac::DacCode;
+use haptic_servo::servo::Transducers;
 
 use crate::device::SimulatedEncoder;
 use crate::lockstep::PlantIo;

@@ -1,12 +1,12 @@
 //! A run of a loop: simulated without quantisation, and on the emulated board with it.
 
-use firmware::certificate::{Certified, Rejection};
-use firmware::environment::Environment;
-use firmware::number::{Arithmetic, InEach, Number, OutOfRange};
-use firmware::scene::{Device, Scene};
-use firmware::servo::{BuildError, Transducers};
 use firmware_harness::loop_request::{LoopRequest, StartReply};
 use firmware_harness::tables::index_of;
+use haptic_servo::certificate::{Certified, Rejection};
+use haptic_servo::environment::Environment;
+use haptic_servo::number::{Arithmetic, InEach, Number, OutOfRange};
+use haptic_servo::scene::{Device, Scene};
+use haptic_servo::servo::{BuildError, Transducers};
 use serde::Serialize;
 use thiserror::Error;
 

@@ -1,6 +1,6 @@
 //! The sum of all delays in place of what a delay of a part of a period does between the samples.
 
-use firmware::scene::{Latency, Scene};
+use haptic_servo::scene::{Latency, Scene};
 
 use super::case::{CaseResult, FailureError};
 use super::method_result::{MethodResult, Verdict};

@@ -1,9 +1,9 @@
 //! The verdict of a method about a loop, and whether it is right.
 
-use firmware::certificate::{QuantizationBound, Rejection, Resolution, assess, certify};
-use firmware::number::Format;
-use firmware::passivity::interval::Interval;
-use firmware::scene::Scene;
+use haptic_servo::certificate::{QuantizationBound, Rejection, Resolution, assess, certify};
+use haptic_servo::number::Format;
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::scene::Scene;
 use serde::Serialize;
 
 use crate::quantity::significant;

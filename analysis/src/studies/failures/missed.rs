@@ -1,6 +1,6 @@
 //! Missed ticks: a limit that was computed for the period that was meant.
 
-use firmware::scene::{Scene, Timing};
+use haptic_servo::scene::{Scene, Timing};
 
 use super::case::{CaseResult, FailureError};
 use super::method_result::{MethodResult, Verdict};

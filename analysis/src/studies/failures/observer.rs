@@ -7,8 +7,8 @@
 
 use std::f64::consts::TAU;
 
-use firmware::scene::Scene;
-use firmware::torque::LimitReason;
+use haptic_servo::scene::Scene;
+use haptic_servo::torque::LimitReason;
 
 use super::case::{CaseResult, FailureError};
 use super::loaded::LoadedDevice;

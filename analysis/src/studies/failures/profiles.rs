@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use firmware::environment::{AnyProfile, Environment, Shape, ShapeError};
-use firmware::scene::{Scene, Timing};
+use haptic_servo::environment::{AnyProfile, Environment, Shape, ShapeError};
+use haptic_servo::scene::{Scene, Timing};
 
 use super::case::{CaseResult, FailureError};
 use super::loop_run::LoopRun;

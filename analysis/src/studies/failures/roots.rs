@@ -1,7 +1,7 @@
 //! Roots in floating point: a pole a millionth beside the circle, with others near it.
 
-use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::scene::Scene;
+use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::scene::Scene;
 use nalgebra::{Complex, DMatrix};
 
 use super::case::{CaseResult, FailureError};

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::scene::{Device, Scene};
+use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::scene::{Device, Scene};
 use nalgebra::Complex;
 
 use super::case::{CaseResult, FailureError};

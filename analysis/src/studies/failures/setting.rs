@@ -2,12 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use firmware::dac::DacCode;
-use firmware::encoder::CounterWidth;
-use firmware::environment::{Environment, FULL_SCALE, Wall};
-use firmware::number::Arithmetic;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::Transducers;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::{Environment, FULL_SCALE, Wall};
+use haptic_servo::number::Arithmetic;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::Transducers;
 
 use super::loop_run::LoopRun;
 use super::motion::Outcome;

@@ -10,11 +10,11 @@
 
 use std::f64::consts::PI;
 
-use firmware::certificate::assess;
-use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::passivity::interval::Interval;
-use firmware::passivity::lagged::LagIntervals;
-use firmware::scene::{Device, Latency, Scene};
+use haptic_servo::certificate::assess;
+use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::passivity::lagged::LagIntervals;
+use haptic_servo::scene::{Device, Latency, Scene};
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::case::{CaseResult, FailureError};

@@ -3,7 +3,7 @@
 //!
 //! For a rigid device and a linear wall the certified limit is the true one (theory, section 4.1).
 
-use firmware::scene::Scene;
+use haptic_servo::scene::Scene;
 
 use super::case::FailureError;
 use super::loop_run::LoopRun;

@@ -3,10 +3,10 @@
 
 use std::f64::consts::TAU;
 
-use firmware::certificate::Resolution;
-use firmware::number::Format;
-use firmware::scene::Scene;
-use firmware::torque::LimitReason;
+use haptic_servo::certificate::Resolution;
+use haptic_servo::number::Format;
+use haptic_servo::scene::Scene;
+use haptic_servo::torque::LimitReason;
 
 use super::case::{CaseResult, FailureError};
 use super::method_result::{MethodResult, Verdict};

@@ -14,7 +14,7 @@ pub use model_result::ModelResult;
 
 use std::fmt;
 
-use firmware::scene::{Scene, TimeRange};
+use haptic_servo::scene::{Scene, TimeRange};
 
 use crate::chain::Chain;
 use crate::device::Hand;

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use firmware::scene::Scene;
+use haptic_servo::scene::Scene;
 use serde::Serialize;
 
 use super::Model;

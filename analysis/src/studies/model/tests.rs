@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use firmware::scene::{Device, Latency, Scene};
+use haptic_servo::scene::{Device, Latency, Scene};
 
 use super::*;
 use crate::chain::{Link, Mass};

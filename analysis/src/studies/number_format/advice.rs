@@ -1,7 +1,7 @@
 //! Which number format is enough for a scene, and the cheapest that is.
 
-use firmware::certificate::QuantizationBound;
-use firmware::number::Arithmetic;
+use haptic_servo::certificate::QuantizationBound;
+use haptic_servo::number::Arithmetic;
 use serde::{Serialize, Serializer};
 
 use super::{FormatError, Losses, Motion};

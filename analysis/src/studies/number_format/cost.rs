@@ -1,7 +1,7 @@
 //! What a tick takes on the emulated board in a format.
 
-use firmware::number::Arithmetic;
 use firmware_harness::bench_request::BenchRequest;
+use haptic_servo::number::Arithmetic;
 
 use super::{FormatError, Motion};
 use crate::emulator::BenchClient;

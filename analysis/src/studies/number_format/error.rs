@@ -1,8 +1,8 @@
 //! Why a scene has no figures in a number format.
 
-use firmware::certificate::Rejection;
-use firmware::number::OutOfRange;
-use firmware::servo::BuildError;
+use haptic_servo::certificate::Rejection;
+use haptic_servo::number::OutOfRange;
+use haptic_servo::servo::BuildError;
 use thiserror::Error;
 
 use crate::emulator::EmulatorError;

@@ -1,7 +1,7 @@
 //! The certificate's word on whether a device comes to rest, in any format.
 
-use firmware::certificate::{QuantizationBound, Resolution};
-use firmware::number::Arithmetic;
+use haptic_servo::certificate::{QuantizationBound, Resolution};
+use haptic_servo::number::Arithmetic;
 
 use super::FormatProblem;
 

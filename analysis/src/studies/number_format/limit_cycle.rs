@@ -1,8 +1,8 @@
 //! What does not come to rest where everything should: a device without friction under a constant
 //! push, which only rounding keeps in motion.
 
-use firmware::environment::Environment;
-use firmware::number::Arithmetic;
+use haptic_servo::environment::Environment;
+use haptic_servo::number::Arithmetic;
 use serde::Serialize;
 
 use super::{FormatError, FormatProblem, FormatServo};
@@ -161,11 +161,11 @@ impl Span {
 
 #[cfg(test)]
 mod tests {
-    use firmware::certificate::Resolution;
-    use firmware::encoder::CounterWidth;
-    use firmware::environment::Wall;
-    use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-    use firmware::transducers::Transducers;
+    use haptic_servo::certificate::Resolution;
+    use haptic_servo::encoder::CounterWidth;
+    use haptic_servo::environment::Wall;
+    use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+    use haptic_servo::transducers::Transducers;
 
     use super::*;
 

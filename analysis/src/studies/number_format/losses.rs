@@ -1,6 +1,6 @@
 //! All that a format loses of a scene's torque.
 
-use firmware::number::Arithmetic;
+use haptic_servo::number::Arithmetic;
 use serde::Serialize;
 
 use super::{FormatError, LimitCycle, Motion, at_rest};

@@ -18,10 +18,10 @@ pub use losses::Losses;
 pub use motion::Motion;
 pub use units::Units;
 
-use firmware::certificate::Resolution;
-use firmware::number::{Arithmetic, InEach, Number};
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
+use haptic_servo::certificate::Resolution;
+use haptic_servo::number::{Arithmetic, InEach, Number};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 
 use crate::controller::{Controller, controller};
 
@@ -109,9 +109,9 @@ impl InEach for Build {
 
 #[cfg(test)]
 mod tests {
-    use firmware::encoder::CounterWidth;
-    use firmware::environment::{Coefficients, Environment, Rational, Wall};
-    use firmware::scene::{Coupling, Device, Latency, Timing};
+    use haptic_servo::encoder::CounterWidth;
+    use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+    use haptic_servo::scene::{Coupling, Device, Latency, Timing};
 
     use super::*;
 

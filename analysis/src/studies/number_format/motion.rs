@@ -1,7 +1,7 @@
 //! A motion of contact and free, and how far a format's torques are from those of `f64` in it.
 
-use firmware::environment::Environment;
-use firmware::number::Arithmetic;
+use haptic_servo::environment::Environment;
+use haptic_servo::number::Arithmetic;
 
 use super::{FormatError, FormatProblem};
 use crate::controller::controller;

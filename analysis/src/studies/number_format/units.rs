@@ -1,9 +1,9 @@
 //! Units of angle and torque: how a scene fits a format that holds nothing above 1.
 
-use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::parameter::Parameter;
-use firmware::scene::{Coupling, Device, Scene};
-use firmware::servo::Transducers;
+use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::parameter::Parameter;
+use haptic_servo::scene::{Coupling, Device, Scene};
+use haptic_servo::servo::Transducers;
 
 /// What a servo's numbers count. Powers of two, so that a change of units rounds nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]

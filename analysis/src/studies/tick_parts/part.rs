@@ -33,28 +33,28 @@ pub enum Part {
 }
 
 /// How the function is called that does a tick: how its name begins and ends.
-const TICK: (&str, &str) = ("<firmware::servo::prepared_servo::PreparedServo<", "::tick");
+const TICK: (&str, &str) = ("<haptic_servo::servo::prepared_servo::PreparedServo<", "::tick");
 
 /// How the functions of a part are called: how the name begins, and what else is in it.
 const NAMES: [(&str, &str, Part); 18] = [
-    ("<firmware::energy::Injector<", "", Part::Injection),
-    ("<firmware::environment::velocity::Difference<", "", Part::Damper),
-    ("<firmware::environment::free_mode::", "", Part::Canceller),
-    ("<firmware::environment::velocity::Washout<", "", Part::Filter),
-    ("<firmware::environment::wall_law::Face<", "", Part::Face),
-    ("<firmware::environment::wall_law::Displaced<", "", Part::Face),
+    ("<haptic_servo::energy::Injector<", "", Part::Injection),
+    ("<haptic_servo::environment::velocity::Difference<", "", Part::Damper),
+    ("<haptic_servo::environment::free_mode::", "", Part::Canceller),
+    ("<haptic_servo::environment::velocity::Washout<", "", Part::Filter),
+    ("<haptic_servo::environment::wall_law::Face<", "", Part::Face),
+    ("<haptic_servo::environment::wall_law::Displaced<", "", Part::Face),
     ("<", "::positive_part", Part::Face),
-    ("<firmware::coupling::Solver<", "::pushing", Part::Face),
-    ("<firmware::coupling::Solver<", "::wall_or_face", Part::Face),
-    ("<firmware::environment::delay_line::", "", Part::Delay),
-    ("<firmware::environment::wall_law::WallLaw<", "", Part::Spring),
-    ("<firmware::coupling::", "", Part::Coupling),
-    ("<firmware::environment::matched::CouplingMemory<", "", Part::Coupling),
-    ("<firmware::torque::", "", Part::Limit),
-    ("<firmware::encoder::", "", Part::Encoder),
-    ("<firmware::servo::Servo<", "::angle", Part::Encoder),
+    ("<haptic_servo::coupling::Solver<", "::pushing", Part::Face),
+    ("<haptic_servo::coupling::Solver<", "::wall_or_face", Part::Face),
+    ("<haptic_servo::environment::delay_line::", "", Part::Delay),
+    ("<haptic_servo::environment::wall_law::WallLaw<", "", Part::Spring),
+    ("<haptic_servo::coupling::", "", Part::Coupling),
+    ("<haptic_servo::environment::matched::CouplingMemory<", "", Part::Coupling),
+    ("<haptic_servo::torque::", "", Part::Limit),
+    ("<haptic_servo::encoder::", "", Part::Encoder),
+    ("<haptic_servo::servo::Servo<", "::angle", Part::Encoder),
     ("<", "::codes_below", Part::Converter),
-    ("<firmware::dac::", "", Part::Converter),
+    ("<haptic_servo::dac::", "", Part::Converter),
 ];
 
 impl Part {
@@ -118,7 +118,8 @@ impl fmt::Display for Part {
 mod tests {
     use super::*;
 
-    const TICK: &str = "<firmware::servo::prepared_servo::PreparedServo<Wall, f32, Latched>>::tick";
+    const TICK: &str =
+        "<haptic_servo::servo::prepared_servo::PreparedServo<Wall, f32, Latched>>::tick";
 
     fn of(inner: &[&str]) -> Option<Part> {
         let functions = inner.iter().chain(&[TICK, "interrupt"]);
@@ -127,18 +128,19 @@ mod tests {
 
     #[test]
     fn the_innermost_part_counts() {
-        let number = "<f32 as firmware::number::Number>::times";
-        let damper = "<firmware::environment::velocity::Difference<f32> as \
-                      firmware::environment::velocity::Velocity<f32>>::add_to";
-        let filter = "<firmware::environment::velocity::Washout<f32>>::torque";
-        let wall = "<firmware::environment::wall_law::WallLaw<f32, V, S, D>>::line";
-        let canceller = "<firmware::environment::free_mode::FreeModeLaw<f32, D> as Law>::evaluate";
+        let number = "<f32 as haptic_servo::number::Number>::times";
+        let damper = "<haptic_servo::environment::velocity::Difference<f32> as \
+                      haptic_servo::environment::velocity::Velocity<f32>>::add_to";
+        let filter = "<haptic_servo::environment::velocity::Washout<f32>>::torque";
+        let wall = "<haptic_servo::environment::wall_law::WallLaw<f32, V, S, D>>::line";
+        let canceller =
+            "<haptic_servo::environment::free_mode::FreeModeLaw<f32, D> as Law>::evaluate";
         for (inner, part) in [
             (&[number, damper, wall][..], Part::Damper),
             (&[number, wall], Part::Spring),
             (&[number, filter, wall], Part::Filter),
             (&[number, filter, canceller], Part::Canceller),
-            (&["<f32 as firmware::number::Number>::positive_part", wall], Part::Face),
+            (&["<f32 as haptic_servo::number::Number>::positive_part", wall], Part::Face),
             (&[], Part::Rest),
         ] {
             assert_eq!(of(inner), Some(part), "{inner:?}");

@@ -1,11 +1,11 @@
 //! Number formats of the servo: instructions of a tick on the emulated board, and errors of the
 //! torque (theory, section 9).
 
-use firmware::certificate::Resolution;
-use firmware::encoder::CounterWidth;
-use firmware::environment::{Environment, Wall};
-use firmware::number::Arithmetic;
-use firmware::servo::Transducers;
+use haptic_servo::certificate::Resolution;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::number::Arithmetic;
+use haptic_servo::servo::Transducers;
 
 use super::{Axis, Comparison, Method, NUMBER, Tradeoff, TradeoffError};
 use crate::emulator::BenchClient;

@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn the_sweep_has_the_cheapest_sine_that_no_code_shows() {
         let kept = kept();
-        let code = 0.5 / f64::from(firmware::dac::DacCode::CODES_TO_FULL_SCALE);
+        let code = 0.5 / f64::from(haptic_servo::dac::DacCode::CODES_TO_FULL_SCALE);
         let front = kept.front("sine", 0);
         let enough = front.iter().find(|method| method.error(0).unwrap() < code).unwrap();
         assert_eq!(enough.name, Sine::Quintic.name());
@@ -258,7 +258,7 @@ mod tests {
     #[test]
     fn a_phase_has_the_cheapest_sine_that_no_code_shows() {
         let kept = kept();
-        let code = 0.5 / f64::from(firmware::dac::DacCode::CODES_TO_FULL_SCALE);
+        let code = 0.5 / f64::from(haptic_servo::dac::DacCode::CODES_TO_FULL_SCALE);
         let front = kept.front(PHASE, 0);
         let enough = front.iter().find(|method| method.error(0).unwrap() < code).unwrap();
         assert_eq!(enough.name, Rotation::Table.name());

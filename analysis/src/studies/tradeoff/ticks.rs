@@ -7,10 +7,10 @@
 
 use std::io::Write;
 
-use firmware::environment::{
+use haptic_servo::environment::{
     AnyProfile, Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational, Wall,
 };
-use firmware::number::Arithmetic;
+use haptic_servo::number::Arithmetic;
 
 use super::NUMBER;
 use super::servo::Case;

@@ -3,7 +3,7 @@
 
 use analysis::program::{STIFFEST, undelayed_spring};
 use analysis::studies::bench::at_rest::{self, AtRest, FREE, LEANING, TICKS, TORQUE};
-use firmware::servo::Transducers;
+use haptic_servo::servo::Transducers;
 
 use crate::bench::{Bench, on_both};
 use crate::device::HandHeldDevice;

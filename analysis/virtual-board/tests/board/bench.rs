@@ -9,11 +9,11 @@ use analysis::emulator::log::LogDecoder;
 use analysis::link::Message;
 use analysis::program::Program;
 use analysis::toolchain::{Board as BoardName, NumberFormat, Tools, TorqueOutput, prepare};
-use firmware::dac::DacCode;
-use firmware::wire::message::{
+use haptic_servo::dac::DacCode;
+use haptic_servo::wire::message::{
     LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, PreviousFault, Status, ToBoard,
 };
-use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
+use haptic_servo::wire::{CHECKSUM, Decoder, encode, largest_frame};
 use virtual_board::board::{Board, Event};
 use virtual_board::chip::Chip;
 use virtual_board::device::{Device, FixedDevice};

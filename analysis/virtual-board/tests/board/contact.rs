@@ -7,9 +7,9 @@ use analysis::hand::HandTrajectory;
 use analysis::link::Message;
 use analysis::lockstep::SimulatedDevice;
 use analysis::program::Program;
-use firmware::certificate::Parameter;
-use firmware::servo_loop::State;
-use firmware::wire::message::{Outcome, Status, ToBoard};
+use haptic_servo::certificate::Parameter;
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::{Outcome, Status, ToBoard};
 use virtual_board::chip::Chip;
 use virtual_board::device::Device;
 

@@ -1,9 +1,9 @@
 //! Every fault, provoked from outside, and how soon the motor is without torque.
 
-use firmware::fault::Fault;
-use firmware::reset::ResetCause;
-use firmware::servo_loop::State;
-use firmware::wire::message::{FaultCode, Outcome, Refusal};
+use haptic_servo::fault::Fault;
+use haptic_servo::reset::ResetCause;
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::{FaultCode, Outcome, Refusal};
 use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;
 use virtual_board::chip::{Chip, TICK_INTERRUPT};

@@ -1,9 +1,9 @@
 //! What is no fault, or cannot be known to be one: nothing unsafe comes of it.
 
 use analysis::program::Program;
-use firmware::fault::{Fault, FaultRecord};
-use firmware::servo_loop::State;
-use firmware::wire::message::FaultCode;
+use haptic_servo::fault::{Fault, FaultRecord};
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::FaultCode;
 use unicorn_engine::RegisterARM;
 use virtual_board::chip::Chip;
 use virtual_board::device::FixedDevice;

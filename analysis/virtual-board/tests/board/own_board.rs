@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use analysis::toolchain::{Tools, prepare};
-use firmware::fault::Fault;
-use firmware::servo_loop::State;
-use firmware::wire::message::{FaultCode, Outcome};
+use haptic_servo::fault::Fault;
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::{FaultCode, Outcome};
 use virtual_board::board::Event;
 use virtual_board::chip::{STM32F405, TICK_INTERRUPT};
 use virtual_board::core::exceptions::FIRST_INTERRUPT;

@@ -1,9 +1,9 @@
 //! Torques at a phase of their own period: when they come, to the instruction, and what a late tick leaves.
 
 use analysis::program::undelayed_wall;
-use firmware::fault::Fault;
-use firmware::servo_loop::State;
-use firmware::wire::message::{FaultCode, Outcome};
+use haptic_servo::fault::Fault;
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::{FaultCode, Outcome};
 use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;
 use virtual_board::chip::Chip;

@@ -1,9 +1,9 @@
 //! What a reset was for, what comes of it, and what a board sets up before its servo runs.
 
-use firmware::fault::Fault;
-use firmware::reset::ResetCause;
-use firmware::servo_loop::State;
-use firmware::wire::message::FaultCode;
+use haptic_servo::fault::Fault;
+use haptic_servo::reset::ResetCause;
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::FaultCode;
 use virtual_board::chip::{Chip, FREEZE, STM32F405, WATCHDOG_FREEZES};
 use virtual_board::core::exceptions::NON_MASKABLE;
 use virtual_board::device::FixedDevice;

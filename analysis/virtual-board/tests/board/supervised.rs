@@ -1,11 +1,11 @@
 //! A program's options, on the board: a host that has to be heard, and damping that is injected.
 
 use analysis::program::{SUPERVISED, supervised_spring};
-use firmware::boot::Program;
-use firmware::fault::Fault;
-use firmware::servo::{Latched, RenderingOptions, Transducers};
-use firmware::servo_loop::{Options, State};
-use firmware::wire::message::{FaultCode, Outcome};
+use haptic_servo::boot::Program;
+use haptic_servo::fault::Fault;
+use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
+use haptic_servo::servo_loop::{Options, State};
+use haptic_servo::wire::message::{FaultCode, Outcome};
 use tests::replica::Replica;
 use virtual_board::board::Event;
 use virtual_board::chip::Chip;

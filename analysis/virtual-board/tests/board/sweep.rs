@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use firmware::excitation::{SILENCE, SweepEnd, byte};
+use haptic_servo::excitation::{SILENCE, SweepEnd, byte};
 use virtual_board::chip::{Chip, STM32F405};
 use virtual_board::device::FixedDevice;
 use virtual_board::peripheral::pins::Level;

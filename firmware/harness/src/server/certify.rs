@@ -1,6 +1,6 @@
 //! Certifies scenes that come by their bits: requests in by the pipe `counts`, replies out by `codes`.
 
-use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, tick_timer};
+use haptic_servo::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, tick_timer};
 use semihosting::fs::File;
 use semihosting::io::Write;
 

@@ -1,11 +1,11 @@
 //! Runs the servo of scenes that the host sends: a request and counts in by the pipe `counts`, codes
 //! out by `codes`.
 
-use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep};
-use firmware::encoder::RawCount;
-use firmware::number::{Arithmetic, Number};
-use firmware::servo::Servo;
 use fixed::types::I16F16;
+use haptic_servo::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep};
+use haptic_servo::encoder::RawCount;
+use haptic_servo::number::{Arithmetic, Number};
+use haptic_servo::servo::Servo;
 use semihosting::fs::File;
 use semihosting::io::{Error, Read, Write};
 

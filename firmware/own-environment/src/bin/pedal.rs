@@ -1,10 +1,10 @@
 //! A pedal that gets stiffer: the program of an environment that is not in the firmware.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-use firmware::certificate::Certified;
-use firmware::encoder::CounterWidth;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::Transducers;
+use haptic_servo::certificate::Certified;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::Transducers;
 use own_environment::ProgressiveSpring;
 
 /// What the foot feels.
@@ -35,7 +35,7 @@ pub const TRANSDUCERS: Transducers = Transducers {
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Environment,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

@@ -4,10 +4,10 @@
 // A crate that includes several programs has this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]
 
-use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
-use firmware::encoder::CounterWidth;
-use firmware::scene::Device;
-use firmware::servo::Transducers;
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::scene::Device;
+use haptic_servo::servo::Transducers;
 
 /// Period of the servo in s, 40 of the current loop.
 pub const PERIOD: f64 = 0.001;

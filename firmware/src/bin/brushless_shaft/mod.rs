@@ -4,12 +4,14 @@
 // A crate that includes several programs has this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]
 
-use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, EncoderIndex, Motor, Supply, Winding};
-use firmware::encoder::CounterWidth;
-use firmware::environment::{DamperWall, Matched, OneSided};
-use firmware::output_timing::OutputTiming;
-use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::Transducers;
+use haptic_servo::current::{
+    B_G431B_ESC1, CurrentLoop, Drive, EncoderIndex, Motor, Supply, Winding,
+};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::{DamperWall, Matched, OneSided};
+use haptic_servo::output_timing::OutputTiming;
+use haptic_servo::scene::{Coupling, Device, Scene, Timing};
+use haptic_servo::servo::Transducers;
 
 /// Period of the servo in s: four of the current loop.
 pub const PERIOD: f64 = 0.0001;

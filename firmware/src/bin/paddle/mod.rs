@@ -4,9 +4,9 @@
 // A crate that includes several scenes has this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]
 
-use firmware::encoder::CounterWidth;
-use firmware::scene::Device;
-use firmware::servo::Transducers;
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::scene::Device;
+use haptic_servo::servo::Transducers;
 
 /// What the hand holds: inertia in kg m^2, damping in N m s/rad.
 pub const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };

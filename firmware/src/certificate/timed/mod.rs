@@ -28,10 +28,10 @@ use crate::text::Sentence;
 /// nothing else.
 ///
 /// ```
-/// use firmware::certificate::{Certified, TimingChecked};
-/// use firmware::environment::DelayedSpring;
-/// use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-/// use firmware::servo::Latched;
+/// use haptic_servo::certificate::{Certified, TimingChecked};
+/// use haptic_servo::environment::DelayedSpring;
+/// use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+/// use haptic_servo::servo::Latched;
 ///
 /// type SpringScene = Scene<DelayedSpring<1>>;
 /// const SPRING: SpringScene = Scene {

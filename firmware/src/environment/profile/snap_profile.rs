@@ -17,8 +17,8 @@ use crate::parameter::{NamedParameters, Parameter};
 /// Certified where it is late by at most one sample, behind a coupling.
 ///
 /// ```
-/// use firmware::environment::{Knots, Shape, SnapProfile};
-/// use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+/// use haptic_servo::environment::{Knots, Shape, SnapProfile};
+/// use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 ///
 /// static KNOTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.05).snap(1.1)]);
 /// const SCENE: Scene<SnapProfile<16, 1>> = Scene {
@@ -35,7 +35,7 @@ use crate::parameter::{NamedParameters, Parameter};
 /// A [`Profile`] has no snap point:
 ///
 /// ```compile_fail
-/// use firmware::environment::{Knots, Profile, Shape};
+/// use haptic_servo::environment::{Knots, Profile, Shape};
 ///
 /// static KNOTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.05).snap(1.1)]);
 /// const PROFILE: Profile<16, 1> = Profile::of(&KNOTS);

@@ -3,8 +3,8 @@
 use adversary::normalized_scene::{declared, margin};
 use adversary::scenes::{self, Choice};
 use adversary::search::{Effort, Search};
-use firmware::certificate::assess_in;
-use firmware::scene::Scene;
+use haptic_servo::certificate::assess_in;
+use haptic_servo::scene::Scene;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

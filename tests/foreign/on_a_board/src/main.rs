@@ -2,13 +2,13 @@
 #![no_std]
 #![no_main]
 
-use firmware::certificate::Certified;
-use firmware::servo_loop::{LinkPolicy, Options};
-use firmware::encoder::CounterWidth;
-use firmware::environment::DamperWall;
-use firmware::number::fixed::types::I8F24;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::Transducers;
+use haptic_servo::certificate::Certified;
+use haptic_servo::servo_loop::{LinkPolicy, Options};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::DamperWall;
+use haptic_servo::number::fixed::types::I8F24;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::Transducers;
 
 /// A detent, as late as the board's torque.
 pub type Detent = DamperWall<1>;
@@ -34,7 +34,7 @@ pub const TRANSDUCERS: Transducers = Transducers {
     largest_speed: Transducers::NO_HAND_IS_FASTER,
 };
 
-firmware::scene_program! {
+haptic_servo::scene_program! {
     scene: SCENE: Detent,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,

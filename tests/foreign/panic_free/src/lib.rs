@@ -2,16 +2,16 @@
 
 use std::hint::black_box;
 
-use firmware::certificate::TimingChecked;
-use firmware::servo_loop::{Frame, FrameQueue, FrameSink, Frames, State};
-use firmware::encoder::{CounterWidth, RawCount};
-use firmware::environment::{
+use haptic_servo::certificate::TimingChecked;
+use haptic_servo::servo_loop::{Frame, FrameQueue, FrameSink, Frames, State};
+use haptic_servo::encoder::{CounterWidth, RawCount};
+use haptic_servo::environment::{
     Coefficients, DamperWall, DelayedSpring, FilteredWall, FreeMode, FreeModeWall, OneSided,
     Rational,
 };
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::energy::EnergyMonitor;
-use firmware::servo::{Latched, Output, PreparedServo, RenderingOptions, Servo, Transducers};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::energy::EnergyMonitor;
+use haptic_servo::servo::{Latched, Output, PreparedServo, RenderingOptions, Servo, Transducers};
 use fixed::types::{I8F24, I16F16};
 use no_panic::no_panic;
 

@@ -1,9 +1,9 @@
 //! The same knob with too much damping in the detent.
 #![no_std]
 
-use firmware::certificate::Certified;
-use firmware::environment::DamperWall;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::certificate::Certified;
+use haptic_servo::environment::DamperWall;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// A detent that is computed one sample late.
 pub const DETENT: Certified<Scene<DamperWall<1>>> = Scene {

@@ -6,7 +6,7 @@
 
 use std::f64::consts::TAU;
 
-use firmware::current::Motor;
+use haptic_servo::current::Motor;
 use nalgebra::Complex;
 
 use super::rig::{Machine, Rig};

@@ -11,14 +11,14 @@ mod servos;
 use analysis::chain::Chain;
 use analysis::design::{Answer, Choice, Quantity, Terms, largest};
 use analysis::worst_hand::{Compliance, HandImpedance, search};
-use firmware::certificate::{Certified, QuantizationBound, Resolution};
-use firmware::current::{CurrentLoop, Drive, Motor, Supply, Winding};
-use firmware::encoder::CounterWidth;
-use firmware::environment::{DelayedSpring, Environment, Matched, Wall};
-use firmware::number::Format;
-use firmware::output_timing::OutputTiming;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::Transducers;
+use haptic_servo::certificate::{Certified, QuantizationBound, Resolution};
+use haptic_servo::current::{CurrentLoop, Drive, Motor, Supply, Winding};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::{DelayedSpring, Environment, Matched, Wall};
+use haptic_servo::number::Format;
+use haptic_servo::output_timing::OutputTiming;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::servo::Transducers;
 
 use rig::{Instant, Machine, Rig};
 

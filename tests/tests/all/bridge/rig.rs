@@ -8,12 +8,12 @@
 use std::f64::consts::TAU;
 
 use analysis::worst_hand::HandImpedance;
-use firmware::current::{
+use haptic_servo::current::{
     B_G431B_ESC1, CurrentController, CurrentLoop, Drive, Duties, PowerFault, PowerStage, Sample,
 };
-use firmware::encoder::RawCount;
-use firmware::scene::Device;
-use firmware::servo::Transducers;
+use haptic_servo::encoder::RawCount;
+use haptic_servo::scene::Device;
+use haptic_servo::servo::Transducers;
 use nalgebra::{DMatrix, DVector};
 
 /// The power stage of all of these boards.

@@ -1,12 +1,12 @@
 //! Servos for a [`Rig`](super::rig::Rig): as a board runs them, as data, and without steps.
 
-use firmware::certificate::Certified;
-use firmware::dac::DacCode;
-use firmware::encoder::RawCount;
-use firmware::environment::{Delayed, Discretize, EnvironmentModel};
-use firmware::scene::Scene;
-use firmware::servo::{Latched, PreparedServo, RenderingOptions, Servo};
-use firmware::servo_loop::{Frame, FrameSink, Hardware, Mailbox, Options, ServoLoop, State};
+use haptic_servo::certificate::Certified;
+use haptic_servo::dac::DacCode;
+use haptic_servo::encoder::RawCount;
+use haptic_servo::environment::{Delayed, Discretize, EnvironmentModel};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, Servo};
+use haptic_servo::servo_loop::{Frame, FrameSink, Hardware, Mailbox, Options, ServoLoop, State};
 
 use super::rig::{Codes, Machine, Torques};
 

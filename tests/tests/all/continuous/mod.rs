@@ -4,8 +4,8 @@
 //! A wrong image of the axis, a pole at infinity taken for a zero, a residue that is not carried
 //! over: each turns a mass into a non-passive element or a negative spring into a passive one.
 
-use firmware::passivity::interval::Interval;
-use firmware::passivity::poles::IndexError;
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::passivity::poles::IndexError;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::cmp::Ordering;

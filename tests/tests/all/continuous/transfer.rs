@@ -5,11 +5,11 @@
 //! positive real in `s` exactly if its image is in `z`, with the conditions on boundary poles
 //! carried over; so the discrete test answers the continuous question, with the same enclosure.
 
-use firmware::passivity::discrete::{RealPart, input_passivity};
-use firmware::passivity::interval::Interval;
-use firmware::passivity::poles::{IndexError, UndecidedReason};
-use firmware::passivity::polynomial::{MAX_DEGREE, Polynomial, UnitRoot};
-use firmware::passivity::transfer::Transfer;
+use haptic_servo::passivity::discrete::{RealPart, input_passivity};
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::passivity::poles::{IndexError, UndecidedReason};
+use haptic_servo::passivity::polynomial::{MAX_DEGREE, Polynomial, UnitRoot};
+use haptic_servo::passivity::transfer::Transfer;
 
 /// `G(s) = s^zeros numerator(s) / denominator(s)`; coefficients in descending powers of `s`.
 ///

@@ -1,14 +1,14 @@
 //! `firmware/PROTOCOL.md` is the protocol: its tables are the types of the messages, its numbers the
 //! constants, and the client in Python has both.
 
-use firmware::board::BAUD;
-use firmware::fault::Fault;
-use firmware::parameter::{Parameter, TUNABLE};
-use firmware::servo_loop::State;
-use firmware::torque::LimitReason;
-use firmware::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, MAX_CHANGES, ToBoard};
-use firmware::wire::telemetry::BATCH;
-use firmware::wire::{PROTOCOL, encode, largest_frame};
+use haptic_servo::board::BAUD;
+use haptic_servo::fault::Fault;
+use haptic_servo::parameter::{Parameter, TUNABLE};
+use haptic_servo::servo_loop::State;
+use haptic_servo::torque::LimitReason;
+use haptic_servo::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, MAX_CHANGES, ToBoard};
+use haptic_servo::wire::telemetry::BATCH;
+use haptic_servo::wire::{PROTOCOL, encode, largest_frame};
 
 use super::{column, read, regex, table};
 

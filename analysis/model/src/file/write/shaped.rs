@@ -1,6 +1,6 @@
 //! `[environment]` of a torque profile: its shapes as they were read, and what is no longer theirs.
 
-use firmware::environment::{AnyProfile, Ends, Shape, Wall};
+use haptic_servo::environment::{AnyProfile, Ends, Shape, Wall};
 
 use super::{number, quoted};
 use crate::file::key::{self, Bound, Key};
@@ -73,7 +73,7 @@ fn named(lines: &mut Vec<String>, shape: &Shape) {
     }
     for (key, value) in numbers {
         match key.bound {
-            Bound::Number(firmware::parameter::Range::Whole(..)) => {
+            Bound::Number(haptic_servo::parameter::Range::Whole(..)) => {
                 lines.push(format!("{} = {value}", key.name()));
             }
             _ => number(lines, key.name(), Some(value)),

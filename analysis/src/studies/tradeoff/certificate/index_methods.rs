@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use firmware::passivity::discrete::{RealPart, index_near, index_within};
-use firmware::passivity::interval::Interval;
-use firmware::passivity::poles::IndexError;
-use firmware::passivity::polynomial::Polynomial;
-use firmware::passivity::transfer::Transfer;
+use haptic_servo::passivity::discrete::{RealPart, index_near, index_within};
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::passivity::poles::IndexError;
+use haptic_servo::passivity::polynomial::Polynomial;
+use haptic_servo::passivity::transfer::Transfer;
 use nalgebra::Complex;
 
 use super::environments::{Environment, PERIOD};

@@ -1,7 +1,7 @@
 //! The motions that the methods are measured on.
 
-use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use crate::chain::{Link, Mass};
 use crate::device::{Hand, Motion};

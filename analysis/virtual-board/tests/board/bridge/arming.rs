@@ -1,6 +1,6 @@
 //! What keeps the gates from being switched on, and what does not keep the motor from its torque.
 
-use firmware::wire::message::{FaultCode, Outcome};
+use haptic_servo::wire::message::{FaultCode, Outcome};
 use virtual_board::power_stage::gate_log::{any_high, off_since};
 use virtual_board::power_stage::{Circuit, Supply};
 
@@ -110,7 +110,7 @@ fn a_hand_that_holds_the_paddle_feels_the_torque_of_the_code() {
     bench.run(200);
     let code = super::bench::code(&mut bench);
     let step =
-        TRANSDUCERS.full_scale_torque / f64::from(firmware::dac::DacCode::CODES_TO_FULL_SCALE);
+        TRANSDUCERS.full_scale_torque / f64::from(haptic_servo::dac::DacCode::CODES_TO_FULL_SCALE);
     let wanted = (f64::from(code) - 2048.0) * step;
     let made = circuit(&mut bench).mean_torque();
     println!("{made:.5} N m of {wanted:.5}");

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use analysis::toolchain::TorqueOutput;
-use firmware::current::{Drive, Winding};
+use haptic_servo::current::{Drive, Winding};
 use virtual_board::board::{Board, BusAccess};
 use virtual_board::bridge_memory::BridgeMemory;
 use virtual_board::chip::B_G431B_ESC1;
@@ -32,7 +32,8 @@ fn program(name: &str) -> &'static PathBuf {
 
 /// The motor that a program is for.
 pub fn motor(drive: &Drive) -> Motor {
-    let firmware::current::Motor { winding, resistance, inductance, torque_constant } = drive.motor;
+    let haptic_servo::current::Motor { winding, resistance, inductance, torque_constant } =
+        drive.motor;
     let winding = match winding {
         Winding::Brushed => motor::Winding::Brushed,
         Winding::Brushless { pole_pairs } => {

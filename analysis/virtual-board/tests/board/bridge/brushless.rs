@@ -3,10 +3,10 @@
 
 use std::sync::{Arc, Mutex};
 
-use firmware::dac::DacCode;
-use firmware::fault::Fault;
-use firmware::servo_loop::State;
-use firmware::wire::message::{FaultCode, Outcome, ToBoard};
+use haptic_servo::dac::DacCode;
+use haptic_servo::fault::Fault;
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::{FaultCode, Outcome, ToBoard};
 use virtual_board::motor::{Motor, Winding};
 use virtual_board::power_stage::Circuit;
 use virtual_board::power_stage::gate_log::any_high;

@@ -1,7 +1,7 @@
 //! Every fault of the bridge and of what surrounds it, provoked from outside, and how soon no gate is high.
 
-use firmware::servo_loop::State;
-use firmware::wire::message::FaultCode;
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::FaultCode;
 use unicorn_engine::RegisterARM;
 use virtual_board::chip::{CONVERSION_INTERRUPT, TICK_INTERRUPT};
 use virtual_board::core::exceptions::{FIRST_INTERRUPT, NON_MASKABLE};

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use analysis::identify::fit::Estimate;
 use analysis::identify::{self, Correction, record, torque_source};
 use analysis::sampled_actuator::SampledActuator;
-use firmware::excitation::{SWEEP_PROTOCOL, byte};
-use firmware::output_timing::OutputTiming;
-use firmware::scene::{Device as Mechanics, Latency};
+use haptic_servo::excitation::{SWEEP_PROTOCOL, byte};
+use haptic_servo::output_timing::OutputTiming;
+use haptic_servo::scene::{Device as Mechanics, Latency};
 use virtual_board::device::{Device, Motion};
 use virtual_board::motor::Motor;
 

@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use firmware::current::{IndexOffset, Winding};
-use firmware::fault::Fault;
-use firmware::servo_loop::State;
-use firmware::wire::message::FaultCode;
+use haptic_servo::current::{IndexOffset, Winding};
+use haptic_servo::fault::Fault;
+use haptic_servo::servo_loop::State;
+use haptic_servo::wire::message::FaultCode;
 use virtual_board::encoder_index::EncoderIndex;
 use virtual_board::power_stage::gate_log::any_high;
 

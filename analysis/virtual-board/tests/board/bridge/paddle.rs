@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use virtual_board::device::{Device, Motion};
 
-use firmware::scene::Device as Mechanics;
+use haptic_servo::scene::Device as Mechanics;
 
 use super::{bridge_wall, brushless_wall};
 

@@ -1,12 +1,12 @@
 //! What runs on the board against the same on the host, bit for bit: the current controller with the samples
 //! that the board's interrupt has read, and the servo with its counts.
 
-use firmware::boot;
-use firmware::current::{CurrentController, Sample};
-use firmware::encoder::RawCount;
-use firmware::output_timing::Latched;
-use firmware::servo::RenderingOptions;
-use firmware::servo_loop::Options;
+use haptic_servo::boot;
+use haptic_servo::current::{CurrentController, Sample};
+use haptic_servo::encoder::RawCount;
+use haptic_servo::output_timing::Latched;
+use haptic_servo::servo::RenderingOptions;
+use haptic_servo::servo_loop::Options;
 use tests::replica::Replica;
 use virtual_board::board::BusAccess;
 use virtual_board::chip::TICK_INTERRUPT;

@@ -2,10 +2,10 @@
 //! are none.
 
 use analysis::emulator::CertifyClient;
-use firmware::certificate::assess;
-use firmware::passivity::interval::Interval;
-use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware_harness::scene_codec::{CertifyReply, IntervalBits};
+use haptic_servo::certificate::assess;
+use haptic_servo::passivity::interval::Interval;
+use haptic_servo::scene::{Coupling, Device, Scene, Timing};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::{floats, scenes, vectors};

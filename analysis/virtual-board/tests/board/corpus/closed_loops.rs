@@ -3,10 +3,10 @@
 use analysis::controller::{Controller, controller};
 use analysis::emulator::ServoClient;
 use analysis::lockstep::RemoteServo;
-use firmware::encoder::CounterWidth;
-use firmware::number::{Arithmetic, InEach, Number};
-use firmware::servo::Transducers;
 use firmware_harness::loop_request::{LoopRequest, StartReply};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::number::{Arithmetic, InEach, Number};
+use haptic_servo::servo::Transducers;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::scenes;

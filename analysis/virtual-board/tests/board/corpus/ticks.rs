@@ -3,8 +3,8 @@
 use analysis::emulator::BenchClient;
 use analysis::studies::number_format::{FormatProblem, Motion, Units};
 use analysis::studies::tradeoff::servo;
-use firmware::number::Arithmetic;
 use firmware_harness::bench_request::BenchRequest;
+use haptic_servo::number::Arithmetic;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

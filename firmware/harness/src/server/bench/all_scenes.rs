@@ -1,10 +1,10 @@
 //! The types of all scenes that a file can name.
 
-use firmware::environment::{
+use haptic_servo::environment::{
     AnyProfile, DamperWall, DelayedSpring, Discretize, Environment, FilteredWall, FreeMode,
     FreeModeWall, MAX_DELAY, OneSided, Placed, Profile, Spring, Wall,
 };
-use firmware::number::Number;
+use haptic_servo::number::Number;
 
 use crate::tables::{DETENTS, STOPPED};
 

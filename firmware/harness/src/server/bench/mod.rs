@@ -10,13 +10,13 @@ pub use program_scenes::ProgramScenes;
 use core::hint::black_box;
 use core::marker::PhantomData;
 
-use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, tick_timer};
-use firmware::current::{CurrentController, Duties};
-use firmware::encoder::RawCount;
-use firmware::environment::Discretize;
-use firmware::number::{InEach, Number};
-use firmware::scene::Scene;
-use firmware::servo::Transducers;
+use haptic_servo::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, tick_timer};
+use haptic_servo::current::{CurrentController, Duties};
+use haptic_servo::encoder::RawCount;
+use haptic_servo::environment::Discretize;
+use haptic_servo::number::{InEach, Number};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 

@@ -1,10 +1,10 @@
 //! The types of the scenes that have a program.
 
-use firmware::environment::{
+use haptic_servo::environment::{
     DamperWall, DelayedSpring, Environment, FreeMode, Matched, OneSided, Wall,
 };
-use firmware::number::Number;
-use firmware::scene::Coupling;
+use haptic_servo::number::Number;
+use haptic_servo::scene::Coupling;
 
 use super::{BenchJob, HostClosed, SceneSet};
 
