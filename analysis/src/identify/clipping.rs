@@ -8,6 +8,7 @@ use super::fit::Identification;
 use super::record::Record;
 use super::response::Correction;
 use super::step::Step;
+use super::torque_source;
 
 /// Largest part of a sine's torque that may be in its second or third harmonic. A sine that is cut
 /// off at nine tenths of its peak has 3 % in its third; whole codes have less than 1 %.
@@ -23,7 +24,8 @@ const OUT_OF_NOISE: f64 = 4.0;
 struct Distortion {
     frequency: f64,
     amplitude: f64,
-    /// The larger of the second and the third harmonic that the device felt and was not commanded.
+    /// The larger of the second and the third harmonic that the device felt and was neither commanded nor made by the
+    /// zero crossings of a bridge's current.
     harmonic: f64,
 }
 
@@ -70,10 +72,15 @@ fn distortion(
         let omega = order as f64 * step.omega;
         counts * correction.count_angle * omega * found.model.device(omega).norm()
     };
+    let known = |order: usize| {
+        correction.source.map_or(0.0, |source| torque_source::crossing(&source, step.omega, order))
+    };
     let harmonic = (2..=ORDERS)
         .filter(|order| *order as f64 * angle < 0.95 * std::f64::consts::PI)
         .filter(|order| counts[order - 1].norm() > OUT_OF_NOISE * deviation)
-        .map(|order| felt(order, counts[order - 1].norm()) - torque[order - 1].norm())
+        .map(|order| {
+            felt(order, counts[order - 1].norm()) - torque[order - 1].norm() - known(order)
+        })
         .fold(0.0, f64::max);
     let frequency = step.omega / std::f64::consts::TAU;
     Some(Distortion { frequency, amplitude, harmonic })
@@ -113,4 +120,72 @@ fn harmonics(samples: &[f64], angle: f64) -> Option<([Complex<f64>; ORDERS], f64
     let distinct = (n as f64).min(std::f64::consts::TAU / angle);
     let noise = (2.0 * residual.norm_squared() / (n * n) as f64).sqrt();
     Some((phasors, noise.max((1.0 / (6.0 * distinct)).sqrt())))
+}
+
+#[cfg(test)]
+mod tests {
+    use haptic_servo::current::TorqueSource;
+    use haptic_servo::scene::Device;
+
+    use super::super::identify;
+    use super::super::rig::{Excitation, MeasuredDevice, Sensing};
+    use super::*;
+    use crate::simulation::plant::Plant;
+
+    const SENSING: Sensing = Sensing {
+        period: 0.001,
+        counts_per_turn: 61_440.0,
+        torque_noise: 0.0,
+        skew: 0.0,
+        output_delay: 0.0,
+        seed: 1,
+    };
+
+    /// A current loop of 1 kHz, of whose motor nothing else is to be seen.
+    const CROSSING: TorqueSource = TorqueSource {
+        gain: 1e-6,
+        resistance: 0.6,
+        inductance: 0.12e-3,
+        feedback: 0.14,
+        instant: 25e-6,
+        loss: 0.0,
+        step: 0.004,
+        zero_crossing: 0.115,
+    };
+
+    /// A record in which the third harmonic of each sine is a part of it that was not commanded.
+    fn distorted(part: impl Fn(f64) -> f64) -> Record {
+        let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+        let mut device = MeasuredDevice::new(&Plant::rigid(device), &SENSING).unwrap();
+        let mut record =
+            Record { period: SENSING.period, torque: vec![], counts: vec![], frequency: None };
+        let sine = |frequency, amplitude| Excitation { frequency, amplitude, duration: 2.0 };
+        for Excitation { frequency, amplitude, duration } in
+            [sine(8.0, 0.15), sine(32.0, 0.4), sine(64.0, 0.45)]
+        {
+            for tick in 0..(duration / SENSING.period) as usize {
+                let phase = std::f64::consts::TAU * frequency * tick as f64 * SENSING.period;
+                let torque = amplitude * phase.sin();
+                record.torque.push(torque);
+                record.counts.push(f64::from(device.count()));
+                record.frequency.get_or_insert_default().push(frequency);
+                device.hold(torque + amplitude * part(frequency) * (3.0 * phase).sin());
+            }
+        }
+        record
+    }
+
+    #[test]
+    fn what_a_bridge_adds_at_zero_crossings_is_not_clipped() {
+        let plain = Correction::of_encoder(SENSING.counts_per_turn);
+        let bridge = Correction { source: Some(CROSSING), ..plain };
+        // As a simulation of the paddle's bridge edge by edge has it: the more, the faster the sine.
+        let record = distorted(|frequency| 0.045 * frequency / 64.0);
+        let clipped = |found| matches!(found, Err(IdentifyError::Clipped { frequency: 64.0, .. }));
+        assert!(clipped(identify(&record, &plain)));
+        assert!(identify(&record, &bridge).is_ok());
+        // More than that has another cause.
+        let record = distorted(|frequency| 0.12 * frequency / 64.0);
+        assert!(clipped(identify(&record, &bridge)));
+    }
 }

@@ -30,20 +30,26 @@ const WRONG_SIGN: f64 = 1.0 / 30.0;
 /// Counts that both phases of a brushed motor are rounded alike by, in steps of half their difference.
 const STEPS: f64 = 2.0;
 
+/// Amplitude in N m of what the zero crossings of a sine of torque add at a multiple of its angular frequency in
+/// rad/s, 1 for the sine itself.
+///
+/// At each of them the voltage of the dead time is wrong for a while, which the feedback takes out as its derivative
+/// (theory, section 15.3).
+pub fn crossing(source: &TorqueSource, omega: f64, multiple: usize) -> f64 {
+    let &TorqueSource { resistance, inductance, feedback, instant, zero_crossing, .. } = source;
+    let decay = (-resistance * instant / inductance).exp();
+    let multiple = multiple as f64;
+    let voltage = 2.0 * FRAC_2_PI * (multiple * PI * WRONG_SIGN).sin() / multiple;
+    voltage * zero_crossing * multiple * omega * instant / (feedback * (1.0 - decay))
+}
+
 /// Standard deviation in N m of a sine of torque of this amplitude, at an angular frequency in rad/s.
 ///
-/// At each zero crossing the voltage of the dead time is wrong for a while, which the feedback takes out as its
-/// derivative (theory, section 15.3); and a current of whole counts is a staircase, of which each step has an error
-/// of its own.
+/// Besides its zero crossings, a current of whole counts is a staircase, of which each step has an error of its own.
 pub fn deviation(source: &TorqueSource, omega: f64, amplitude: f64) -> f64 {
-    let &TorqueSource { resistance, inductance, feedback, instant, step, zero_crossing, .. } =
-        source;
-    let decay = (-resistance * instant / inductance).exp();
-    let fundamental = 2.0 * FRAC_2_PI * (PI * WRONG_SIGN).sin();
-    let crossing = fundamental * zero_crossing * omega * instant / (feedback * (1.0 - decay));
-    let step = STEPS * step;
+    let step = STEPS * source.step;
     let steps = 4.0 * amplitude / step;
-    crossing.hypot(step / (6.0 * steps.max(1.0)).sqrt())
+    crossing(source, omega, 1).hypot(step / (6.0 * steps.max(1.0)).sqrt())
 }
 
 /// The numbers of a source, as [`parse`] reads them.
