@@ -83,7 +83,7 @@ pub struct AtRest {
     /// What is to be added where the torque changes its sign; absent: nothing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing: Option<f64>,
-    /// The sum: bound on the limit cycle, and the friction that prevents it.
+    /// The sum: bound on the torque's error, and the friction that prevents a limit cycle.
     pub hum: f64,
     /// Declared friction of the device; `None`: not stated.
     pub friction: Option<f64>,

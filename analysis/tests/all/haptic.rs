@@ -122,8 +122,8 @@ fn steps_are_held_against_friction() {
     let hum = 0.5e-4 * 924.0 + 0.5e-3;
     assert!((said["rest"]["hum"].as_f64().unwrap() / hum - 1.0).abs() < 1e-9);
     let message = said["message"].as_str().unwrap();
-    let unless = "at rest a limit cycle of up to 0.0468 N m is possible unless the device has 0.0468 N m of \
-         Coulomb friction";
+    let unless = "at rest errors of torque of up to 0.0468 N m make a limit cycle possible unless the device has \
+         0.0468 N m of Coulomb friction";
     assert!(message.ends_with(unless), "{message}");
     assert!(said["rest"]["comes_to_rest"].is_null() && said.get("warnings").is_none());
     assert_eq!(judge("friction = 0.0468", steps)["rest"]["comes_to_rest"], true);

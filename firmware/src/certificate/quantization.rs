@@ -121,7 +121,7 @@ impl QuantizationBound {
     }
 
     /// Bound on the torque error of all stated steps together, in N m: the friction with which the
-    /// device comes to rest, else the bound on the limit cycle.
+    /// device comes to rest. With less, a limit cycle may move the torque by more than that.
     pub fn hum(&self) -> f64 {
         self.parts().iter().filter_map(|(_, part)| *part).sum()
     }
@@ -152,8 +152,8 @@ impl fmt::Display for QuantizationBound {
             (None, _) => {
                 write!(
                     f,
-                    "a limit cycle of up to {hum} N m is possible unless the device has {hum} N m \
-                     of Coulomb friction"
+                    "errors of torque of up to {hum} N m make a limit cycle possible unless the device \
+                     has {hum} N m of Coulomb friction"
                 )?;
             }
             (Some(friction), None) => write!(
@@ -166,8 +166,8 @@ impl fmt::Display for QuantizationBound {
             }
             (Some(friction), Some(false)) => write!(
                 f,
-                "a limit cycle of up to {hum} N m is possible: the device's friction of {friction} \
-                 N m is lower"
+                "errors of torque of up to {hum} N m make a limit cycle possible: the device's friction of \
+                 {friction} N m is lower"
             )?,
         }
         if let Some(crossing) = self.crossing.map(RoundUp3) {

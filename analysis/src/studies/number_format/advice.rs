@@ -35,7 +35,7 @@ pub struct Candidate {
     pub share: f64,
     /// Its losses; `None` if the format cannot hold the scene.
     pub losses: Option<Losses>,
-    /// Certified bound on the limit cycle, with encoder and DAC, and the device's friction
+    /// Certified bound on the torque's error, with encoder and DAC, and the device's friction
     /// against it; `None` without a bound.
     #[serde(serialize_with = "at_rest")]
     pub rest: Option<QuantizationBound>,
