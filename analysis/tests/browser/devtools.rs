@@ -85,10 +85,16 @@ impl Page {
     }
 
     /// Waits until an expression is true.
+    ///
+    /// # Panics
+    /// With what the page shows where it never is.
     pub fn wait_for(&mut self, expression: &str) {
         let start = Instant::now();
         while self.value(&format!("Boolean({expression})")) != true {
-            assert!(start.elapsed() < TIMEOUT, "never: {expression}; {:?}", self.complaints);
+            if start.elapsed() > TIMEOUT {
+                let shown = self.value("document.body.innerText");
+                panic!("never: {expression}; {:?}; {shown}", self.complaints);
+            }
             std::thread::sleep(Duration::from_millis(20));
         }
     }
@@ -107,21 +113,41 @@ impl Page {
         }
     }
 
-    /// The middle of an element, in pixels of the window.
+    /// The middle of an element, in pixels of the window, once the page moves it no more.
     pub fn middle(&mut self, selector: &str) -> [f64; 2] {
         let place = self.value(&format!(
-            "(() => {{ const e = document.querySelector({selector:?}); \
-             e.scrollIntoView({{ block: 'center' }}); const r = e.getBoundingClientRect(); \
-             return [r.x + r.width / 2, r.y + r.height / 2]; }})()"
+            "(async () => {{ const e = document.querySelector({selector:?}); \
+             const frame = () => new Promise(requestAnimationFrame); \
+             for (let x, y; ;) {{ \
+             e.scrollIntoView({{ block: 'center', behavior: 'instant' }}); await frame(); \
+             const r = e.getBoundingClientRect(); \
+             const at = [r.x + r.width / 2, r.y + r.height / 2]; \
+             const isStill = at[0] === x && at[1] === y && r.width > 0; [x, y] = at; \
+             if (isStill) return at; }} }})()"
         ));
         [0, 1].map(|axis| place[axis].as_f64().unwrap())
     }
 
-    /// Clicks on an element.
+    /// Clicks on an element, again where it has moved away from under the mouse.
     pub fn click(&mut self, selector: &str) {
-        let place = self.middle(selector);
-        self.mouse("mousePressed", place);
-        self.mouse("mouseReleased", place);
+        let start = Instant::now();
+        self.value(&format!(
+            "document.querySelector({selector:?}).addEventListener('click', \
+             (event) => {{ event.currentTarget.isClicked = true; }}, {{ capture: true, once: true }})"
+        ));
+        loop {
+            let place = self.middle(selector);
+            self.mouse("mousePressed", place);
+            self.mouse("mouseReleased", place);
+            let is_clicked = format!(
+                "(() => {{ const e = document.querySelector({selector:?}); \
+                 const is = !e || e.isClicked === true; if (e) delete e.isClicked; return is; }})()"
+            );
+            if self.value(&is_clicked) == true {
+                return;
+            }
+            assert!(start.elapsed() < TIMEOUT, "{selector} was not clicked in {TIMEOUT:?}");
+        }
     }
 
     /// Calls a method of the protocol, and gives its result.
