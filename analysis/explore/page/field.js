@@ -194,14 +194,20 @@ class RateField extends NumberField {
 /** One of some words. */
 class ChoiceField extends Field {
   #select;
+  #now;
 
-  /** `words`: pairs of a value and what it is called; `change` takes what is chosen. */
-  constructor(store, key, path, isOptional, words, change = (word) => store.set(path, word)) {
+  /** `words`: pairs of a value and what it is called; `change` takes what is chosen, `now` says what is. */
+  constructor(store, key, path, isOptional, words, change = (word) => store.set(path, word), now = undefined) {
     super(store, key, path, isOptional);
+    this.#now = now;
     this.#select = make("select", {}, ...words.map(([value, text]) => new Option(text, value)));
     this.#select.addEventListener("change", () => change(this.#select.value));
     this.take(this.#select);
     this.show();
+  }
+
+  value() {
+    return this.#now ? this.#now() : super.value();
   }
 
   draw(value) {

@@ -97,8 +97,8 @@ class Fields {
   }
 
   /** A choice between words, for a key that decides which other keys there are. */
-  #choice(path, words, change, key = this.#keys.get(path)) {
-    const field = new ChoiceField(this.#store, { ...key, path }, path, false, words, change);
+  #choice(path, words, change, now = undefined) {
+    const field = new ChoiceField(this.#store, this.#keys.get(path), path, false, words, change, now);
     this.#fields.set(path, field);
     return field;
   }
@@ -141,9 +141,7 @@ class Fields {
     const body = this.#choice("device", words, (word) => {
       const usual = examples(word === "chain" ? chain : rigid);
       this.#exchange("device", word, isChain ? "chain" : "rigid", [...rigid, ...chain], usual);
-    });
-    body.draw(isChain ? "chain" : "rigid");
-    body.show = () => {};
+    }, () => (isChain ? "chain" : "rigid"));
     const others = [...this.#keys.keys()].filter((path) =>
       /^device\.\w+$/.test(path) && ![...rigid, ...chain].includes(path));
     const paths = [...(isChain ? chain : rigid), ...others];
@@ -175,9 +173,7 @@ class Fields {
       this.#kept.set(`coupling ${now}`, this.#store.get("coupling"));
       const next = this.#kept.get(`coupling ${word}`) ?? this.#usualCoupling(word);
       this.#store.set("coupling", structuredClone(next));
-    });
-    type.value = () => this.#coupling();
-    type.show();
+    }, () => this.#coupling());
     const stiffness = this.#keys.get("coupling.stiffness");
     const rows = now === "spring" ? [this.#add(stiffness, stiffness.path, false)] : [];
     return this.#group("Coupling", type.row, ...rows);

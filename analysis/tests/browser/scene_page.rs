@@ -78,6 +78,8 @@ pub fn a_narrow_page_is_not_cut_off_and_every_field_has_a_label() {
     page.open_file(&explore(folder.path(), WALL));
     let width = page.value("document.documentElement.scrollWidth");
     assert!(width.as_f64().unwrap() <= 360.0, "{width}");
+    let words = page.value("document.body.textContent");
+    assert!(!words.as_str().unwrap().contains("[object"), "{words}");
     let unnamed = page.value(
         "[...document.querySelectorAll('input, select, textarea, button')].filter((one) => \
          one.offsetParent && \
