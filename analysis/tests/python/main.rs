@@ -11,7 +11,7 @@ use std::process::{Command, ExitCode, Stdio};
 
 use libtest_mimic::{Arguments, Trial};
 
-use self::common::{root, set_up_tool};
+use self::common::{root, set_up_package, set_up_tool};
 
 /// The tests of `agree.py`, each a process.
 const AGREE: [&str; 5] = ["certify", "simulate", "index", "stability_map", "refusals"];
@@ -94,6 +94,8 @@ impl Environment {
     /// Where there is no Python, or no PyPI.
     fn set_up(&self) -> Result<(), String> {
         set_up_tool("python3")?;
+        // Debian has the part that puts pip into an environment in a package of its own.
+        set_up_package("python3-venv", &["python3", "-c", "import ensurepip"])?;
         if !self.0.join("pyvenv.cfg").exists() {
             let made = finished(Command::new("python3").args(["-m", "venv"]).arg(&self.0));
             made.map_err(|why| {

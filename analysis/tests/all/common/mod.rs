@@ -65,18 +65,27 @@ pub fn haptic_reading(arguments: &[&str], input: &[u8]) -> Output {
 }
 
 /// Makes sure that there is a program that a test needs beside the project, which is the name of its
-/// package, too. Where it is missing it is installed, as the project's other tools are, by root on Debian.
+/// package, too.
+///
+/// # Errors
+/// As for [`set_up_package`].
+pub fn set_up_tool(name: &str) -> Result<(), String> {
+    set_up_package(name, &[name, "--version"])
+}
+
+/// Makes sure that there is what a test needs beside the project: a command that succeeds with it. Where it is
+/// missing its package is installed, as the project's other tools are, by root on Debian.
 ///
 /// # Errors
 /// Elsewhere, with what to install.
-pub fn set_up_tool(name: &str) -> Result<(), String> {
-    let is_there =
-        || Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
+pub fn set_up_package(package: &str, command: &[&str]) -> Result<(), String> {
+    let run = || Command::new(command[0]).args(&command[1..]).output();
+    let is_there = || run().is_ok_and(|output| output.status.success());
     if is_there() {
         return Ok(());
     }
-    let by_hand = format!("install it (Debian: apt install {name})");
-    match analysis::toolchain::install(&[name], |step| eprintln!("{step}")) {
+    let by_hand = format!("install it (Debian: apt install {package})");
+    match analysis::toolchain::install(&[package], |step| eprintln!("{step}")) {
         Ok(()) if is_there() => Ok(()),
         Ok(()) => Err(by_hand),
         Err(error) => Err(format!("{error}; {by_hand}")),
