@@ -4,7 +4,7 @@
 /// plain digits would be long.
 ///
 /// ```
-/// use analysis::quantity::significant;
+/// use haptic_model::quantity::significant;
 /// assert_eq!(significant(0.021_000_000_000_06, 6), "0.021");
 /// assert_eq!(significant(-1234.567, 3), "-1230");
 /// assert_eq!(significant(1.234e-9, 2), "1.2e-9");
@@ -29,7 +29,7 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// The number nearest to `value` of those with so many significant digits.
 ///
 /// ```
-/// use analysis::quantity::rounded;
+/// use haptic_model::quantity::rounded;
 /// assert_eq!(rounded(1144.0 * 0.001, 15), 1.144);
 /// assert_eq!(rounded(f64::INFINITY, 3), f64::INFINITY);
 /// ```
@@ -41,7 +41,7 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
 /// A name of at most so many letters, with dots for what is left out.
 ///
 /// ```
-/// use analysis::quantity::shortened;
+/// use haptic_model::quantity::shortened;
 /// assert_eq!(shortened("wall", 8), "wall");
 /// assert_eq!(shortened("a wall of great height", 8), "a wal...");
 /// ```

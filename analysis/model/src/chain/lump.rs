@@ -8,13 +8,13 @@ impl Chain {
     /// the encoder's end and the amplifier stay what they are.
     ///
     /// ```
-    /// use analysis::chain::{Chain, Link, Mass};
+    /// use haptic_model::chain::{Chain, Link, Mass};
     /// let mass = Mass { inertia: 1e-5, damping: 0.01 };
     /// let [shaft, belt] = [9000.0, 40.0].map(|stiffness| Link { stiffness, damping: 0.0 });
     /// let device = Chain::new(vec![mass; 3], vec![shaft, belt])?.lumped(2);
     /// assert_eq!(device.masses()[0], Mass { inertia: 2e-5, damping: 0.02 });
     /// assert_eq!((device.masses()[1], device.links()[0]), (mass, belt));
-    /// # Ok::<(), analysis::chain::ChainError>(())
+    /// # Ok::<(), haptic_model::chain::ChainError>(())
     /// ```
     pub fn lumped(&self, masses: usize) -> Self {
         let mut lumped = self.clone();

@@ -102,7 +102,7 @@ impl Chain {
     /// enclosed by arithmetic that does not round; no grid of frequencies is involved.
     ///
     /// ```
-    /// use analysis::chain::{Chain, Link, Mass};
+    /// use haptic_model::chain::{Chain, Link, Mass};
     /// let motor = Mass { inertia: 2e-5, damping: 0.02 };
     /// let handle = Mass { inertia: 3e-5, damping: 0.005 };
     /// let belt = Link { stiffness: 40.0, damping: 0.015 };
@@ -110,7 +110,7 @@ impl Chain {
     /// let delta = device.excess_passivity().unwrap().delta;
     /// // b1 + b2 c / (b2 + c), whatever the masses and the stiffness
     /// assert!(delta.contains(0.02 + 0.005 * 0.015 / 0.02));
-    /// # Ok::<(), analysis::chain::ChainError>(())
+    /// # Ok::<(), haptic_model::chain::ChainError>(())
     /// ```
     pub fn excess_passivity(&self) -> Result<ExcessPassivity, NoPassivity> {
         if !self.is_collocated() {

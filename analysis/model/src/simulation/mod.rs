@@ -7,8 +7,8 @@
 //! need not be certified to be simulated; that it need not is the use of a simulation.
 //!
 //! ```
-//! use analysis::file::{Format, parse};
-//! use analysis::simulation::{Experiment, Integration, simulate};
+//! use haptic_model::file::{Format, parse};
+//! use haptic_model::simulation::{Experiment, Integration, simulate};
 //!
 //! let file = parse("bounce.toml", Format::Toml, r#"
 //!     name = "bounce"
