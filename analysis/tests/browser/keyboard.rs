@@ -1,5 +1,6 @@
 //! The page by its keyboard alone: all that can be operated is reached and seen to be, and what is dragged with a
-//! mouse goes by arrow keys. In light and in dark.
+//! mouse goes by arrow keys. In light and in dark, and
+//! on a narrow page.
 
 use serde_json::{Value, json};
 
@@ -129,8 +130,8 @@ pub fn the_page_is_operated_by_its_keyboard_in_light_and_dark() {
     let folder = tempfile::tempdir().unwrap();
     let file = explore(folder.path(), WALL);
     let mut grounds = Vec::new();
-    for scheme in ["light", "dark"] {
-        let mut page = Page::start(1280);
+    for (scheme, width) in [("light", 1280), ("dark", 1280), ("light", 360)] {
+        let mut page = Page::start(width);
         let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
         page.call("Emulation.setEmulatedMedia", json!({ "features": [feature] }));
         page.open_file(&file);

@@ -1,4 +1,5 @@
-//! The picture of the page with which the README opens, which is kept. With `PICTURES=overwrite` it is taken anew.
+//! The picture with which the README opens: the page with the preset of a knob. With `PICTURES=overwrite` it is
+//! taken anew.
 //!
 //! Browsers and fonts differ, and with them every line of text. So the kept file has the words of the page, too,
 //! which have to be those of today to the letter; of its pixels only the large is compared.
@@ -16,7 +17,7 @@ use crate::explore::explore;
 use crate::verdict_page::{assert_silent, choose};
 
 /// Pixels of the picture.
-const SIZE: [u32; 2] = [1280, 1060];
+const SIZE: [u32; 2] = [1280, 1120];
 
 /// The entry of the file with the words of the page.
 const WORDS: &str = "Description";
@@ -127,6 +128,7 @@ fn taken() -> Picture {
     let screen =
         json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
     page.call("Emulation.setDeviceMetricsOverride", screen);
+    page.call("Emulation.setScrollbarsHidden", json!({ "hidden": true }));
     let light = json!([{ "name": "prefers-color-scheme", "value": "light" }]);
     page.call("Emulation.setEmulatedMedia", json!({ "features": light }));
     page.open_file(&explore(folder.path(), WALL));

@@ -172,6 +172,9 @@ pub fn each_preset_is_certified_where_it_should_be() {
         choose(&mut page, &name);
         let expected = if name == REFUSED { "rejected" } else { "certified" };
         assert_eq!(page.value("document.documentElement.dataset.verdict"), expected, "{name}");
+        // What is no word and no number is shown as neither.
+        let strange = "/\\[object|undefined|NaN/.exec(document.querySelector('main').textContent)";
+        assert_eq!(page.value(strange), Value::Null, "{name}");
         let printed = certified(&write_scene(&mut page, folder.path()));
         assert_eq!(certified_by_page(&mut page), printed, "{name}");
         let printed: Value = serde_json::from_str(&printed).unwrap();
