@@ -132,7 +132,7 @@ pub fn each_picture_is_saved_as_a_png_of_its_size() {
     assert_silent(&page);
 }
 
-/// Has the page copy its link, with a clipboard of the test's own: the machine's belongs to whoever works there.
+/// Has the page copy its link, with a clipboard of the test's own: the machine's is that of who works there.
 fn copied_link(page: &mut Page) -> String {
     page.value(
         "Object.defineProperty(navigator, 'clipboard', { configurable: true, value: \

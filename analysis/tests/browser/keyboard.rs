@@ -1,6 +1,5 @@
-//! The page by its keyboard alone: all that can be operated is reached and seen to be, and what is dragged with a
-//! mouse goes by arrow keys. In light and in dark, and
-//! on a narrow page.
+//! The page by its keyboard alone: all that can be operated is reached and seen to be, and what is dragged
+//! with a mouse goes by arrow keys. In light and in dark, and on a narrow page.
 
 use serde_json::{Value, json};
 

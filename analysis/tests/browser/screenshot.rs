@@ -1,8 +1,8 @@
-//! The picture with which the README opens: the page with the preset of a knob. With `PICTURES=overwrite` it is
-//! taken anew.
+//! The picture with which the README opens: the page with the preset of a knob. With `PICTURES=overwrite` it
+//! is taken anew.
 //!
-//! Browsers and fonts differ, and with them every line of text. So the kept file has the words of the page, too,
-//! which have to be those of today to the letter; of its pixels only the large is compared.
+//! Browsers and fonts differ, and with them every line of text. So the kept file has the words of the page,
+//! too, which have to be those of today to the letter; of its pixels only the large is compared.
 
 use std::fs::File;
 use std::io::BufWriter;
@@ -25,7 +25,7 @@ const WORDS: &str = "Description";
 /// Sides of the squares in pixels of which the mean colours are compared.
 const SQUARE: usize = 20;
 
-/// A mean colour is another one where red, green or blue is so far off, of 255. A line of text on its ground is not.
+/// A mean colour is another one where red, green or blue is so far off, of 255. Text on its ground is not.
 const FAR: f64 = 60.0;
 
 /// Largest part of squares of another colour: with another font, sliders and lines are elsewhere.
@@ -107,7 +107,7 @@ fn turn_the_knob(page: &mut Page) {
     );
 }
 
-/// The words of the page but those that move with the handle: titles, fields with their values, and the verdict.
+/// The words of the page but those that move with the handle: titles, fields with their values, the verdict.
 fn words(page: &mut Page) -> String {
     let words = page.value(
         "[...document.querySelectorAll('h1, header button, #preset option, #verdict-word, #margin-words, h2, \

@@ -1,5 +1,5 @@
-//! What the page says of a scene is what `haptic certify` prints of it, letter for letter: of its presets, and of
-//! scenes of which there is more or less to say.
+//! What the page says of a scene is what `haptic certify` prints of it, letter for letter: of its presets, and
+//! of scenes of which there is more or less to say.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -67,7 +67,7 @@ pub fn write_scene(page: &mut Page, folder: &Path) -> String {
     file.to_str().unwrap().to_owned()
 }
 
-/// What `haptic certify --json` prints of a scene file, in the page's words where `page` has one.
+/// What `haptic certify --json` prints of a scene file.
 pub fn certified(file: &str) -> String {
     let run = haptic(&["certify", file, "--json"]);
     assert!(run.stderr.is_empty(), "{run:?}");
