@@ -1,4 +1,4 @@
-//! Haptic servo firmware for one axis whose scenes are certified passive.
+//! Haptic servo for one axis whose scenes are certified passive.
 //!
 //! A scene is a constant of numbers in SI units: the device, the timing, the virtual coupling, the environment.
 //! Its certificate is a proof, computed in `const fn`, that no passive hand can make the rendering oscillate. A
@@ -31,7 +31,7 @@
 //! | the interrupt, on a board of your own | [`servo_loop::Hardware`], [`boot::Startup`] |
 //! | the same with the host's link | `wire`, with the feature of that name |
 //! | an environment of your own | [`environment::StatedEnvironment`] |
-//! | a board that is there | [`scene_program!`], with the board's feature |
+//! | a board that is there | [`scene_program!`], with the board's feature; `memory.x` for the linker |
 //!
 //! The modules are in the order of the data's path: counts come in at [`encoder`], leave at [`dac`];
 //! [`passivity`] and [`certificate`] judge what runs; [`scene`] and [`servo`] carry it.
@@ -66,8 +66,9 @@
 //!
 //! # Where to read on
 //!
-//! `THEORY.md` beside this folder has definitions and proofs: "theory, section 4" and "equation 17" are its own,
-//! "the paper" the one that it names. `PROTOCOL.md` has the wire, `boards.md` the boards. In the repository,
+//! `THEORY.md` in the package has definitions and proofs: "theory, section 4" and "equation 17" are its own,
+//! "the paper" the one that it names. `PROTOCOL.md` has the wire, `boards.md` the boards,
+//! `TROUBLESHOOTING.md` the faults. In the repository,
 //! `firmware/own-board` is a board of another crate, `firmware/own-environment` an environment.
 #![cfg_attr(not(test), no_std)]
 #![deny(unsafe_code)]

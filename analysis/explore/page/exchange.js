@@ -122,9 +122,12 @@ function showExport(title, file, text) {
   dialog.showModal();
 }
 
-/** The page's address with the present scene. */
+/** The page's address with the present scene, and without the token of a board's server. */
 async function linkOf(store) {
-  return location.href.replace(/#.*/s, "") + SCENE_IN_ADDRESS + await packedScene(store.text());
+  const link = new URL(location);
+  link.searchParams.delete("token");
+  link.hash = SCENE_IN_ADDRESS + await packedScene(store.text());
+  return link.href;
 }
 
 /** The whole scene as a text that can be changed: keys that have no field are here. */

@@ -211,7 +211,8 @@ class ChoiceField extends Field {
   }
 
   draw(value) {
-    if (value === undefined) {
+    // A table is no word.
+    if (value === undefined || typeof value === "object") {
       this.#select.selectedIndex = -1;
       return;
     }

@@ -2,8 +2,47 @@
 //! without an operating system, so that a browser and a notebook have the same.
 //!
 //! A [`mod@file`] holds a scene, [`verdict`] the certificate's answer; [`simulation`] computes a scene's
-//! motion, certified or not. The modules below are in layers: each uses those of its own layer and of the
-//! layers under it, and none above it. "Theory" and "equation" are those of `firmware/THEORY.md`.
+//! motion, certified or not:
+//!
+//! ```
+//! use haptic_model::file::{self, Format};
+//! use haptic_model::verdict::{self, Verdict};
+//!
+//! let file = file::parse("wall.toml", Format::Toml, r#"
+//!     name = "wall"
+//!     device = { inertia = 2.2e-5, damping = 0.022 }
+//!     servo = { period = 0.001 }
+//!     coupling = { stiffness = 44.0 }
+//!     environment = { type = "damper-wall", stiffness = 22.0, damping = 0.023, delay = 1 }
+//! "#)?;
+//! let report = verdict::judge(&file.name, &file.scene);
+//! assert_eq!(report.verdict, Verdict::Rejected);
+//! println!("{}", report.message);
+//! # Ok::<(), haptic_model::file::FileError>(())
+//! ```
+//!
+//! | what | begin with |
+//! |---|---|
+//! | a scene in TOML or JSON | [`file::parse`], [`file::load`] |
+//! | is it certified, and by how much | [`verdict::judge`], [`verdict_text`] |
+//! | how it moves | [`simulation::simulate`] |
+//! | how far one may go | [`design`], [`limits`], [`stability_map`] |
+//! | its curves | [`response`], [`nyquist`], [`stability`] |
+//! | the hand that takes most energy out | [`worst_hand`] |
+//!
+//! The modules below are in layers: each uses those of its own layer and of the layers under it, and none
+//! above it. "Theory" and "equation" are those of `THEORY.md` in the package [`haptic_servo`].
+//!
+//! # Features
+//!
+//! None is on by default. `clap` gives quantities and methods names on a command line.
+//!
+//! # What is stable
+//!
+//! Versions follow semantic versioning; before 1.0 a minor version may break the interface. The keys of scene
+//! files and of reports in JSON keep their meaning: new ones may come. What a certificate may do from version
+//! to version is said by [`haptic_servo`], whose version is that of this package. Exempt are the texts of
+//! errors and reports. The minimum supported Rust version is 1.95; a minor version may raise it.
 
 // A board that runs, in words and units.
 pub mod board;
@@ -43,3 +82,8 @@ pub mod line_search;
 pub mod number;
 pub mod quantity;
 pub mod text_width;
+
+/// The page of the package, so that its example is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

@@ -303,14 +303,15 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let sources = Sources::of(root.path());
         fs::create_dir_all(&sources.folder).unwrap();
-        let other = "//! A wall\n//! of the paper.\n#![no_std]\n\nfirmware::scene_program! {}\n";
+        let other =
+            "//! A wall\n//! of the paper.\n#![no_std]\n\nhaptic_servo::scene_program! {}\n";
         fs::write(sources.file("wall"), other).unwrap();
         fs::write(sources.file("identify"), "haptic_servo::sweep_program!(SWEEP);\n").unwrap();
 
         let path = sources.begin("soft", "wall").unwrap();
         let text = fs::read_to_string(&path).unwrap();
         let head = "//! The scene soft, begun as a copy of wall.\n";
-        assert_eq!(text, format!("{head}#![no_std]\n\nfirmware::scene_program! {{}}\n"));
+        assert_eq!(text, format!("{head}#![no_std]\n\nhaptic_servo::scene_program! {{}}\n"));
         assert_eq!(sources.scenes().unwrap(), ["soft", "wall"]);
         assert_eq!(sources.programs().unwrap(), ["identify", "soft", "wall"]);
 

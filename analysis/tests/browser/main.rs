@@ -7,9 +7,13 @@ mod chromium;
 mod common;
 mod devtools;
 mod explore;
+mod exports;
 mod handle;
+mod keyboard;
 mod scene_page;
+mod screenshot;
 mod serve;
+mod verdict_page;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -23,7 +27,7 @@ use self::common::{MOTION, WALL, report};
 const MEASURE: &str = include_str!("measure.js");
 
 /// Each test with its name.
-const TESTS: [(&str, fn()); 15] = [
+const TESTS: [(&str, fn()); 22] = [
     ("nothing_is_missing_cut_off_or_in_the_way", nothing_is_missing_cut_off_or_in_the_way),
     ("the_measurement_finds_what_it_looks_for", the_measurement_finds_what_it_looks_for),
     (
@@ -62,6 +66,34 @@ const TESTS: [(&str, fn()); 15] = [
         scene_page::a_narrow_page_is_not_cut_off_and_every_field_has_a_label,
     ),
     ("the_map_is_drawn_and_moves_the_scene", scene_page::the_map_is_drawn_and_moves_the_scene),
+    (
+        "the_rows_of_the_page_are_those_of_the_program",
+        verdict_page::the_rows_of_the_page_are_those_of_the_program,
+    ),
+    (
+        "each_preset_is_certified_where_it_should_be",
+        verdict_page::each_preset_is_certified_where_it_should_be,
+    ),
+    (
+        "what_the_page_exports_is_the_scene_to_the_bit",
+        exports::what_the_page_exports_is_the_scene_to_the_bit,
+    ),
+    (
+        "each_picture_is_saved_as_a_png_of_its_size",
+        exports::each_picture_is_saved_as_a_png_of_its_size,
+    ),
+    (
+        "a_copied_link_is_the_scene_and_has_no_token",
+        exports::a_copied_link_is_the_scene_and_has_no_token,
+    ),
+    (
+        "the_page_is_operated_by_its_keyboard_in_light_and_dark",
+        keyboard::the_page_is_operated_by_its_keyboard_in_light_and_dark,
+    ),
+    (
+        "the_readme_opens_with_the_page_of_today",
+        screenshot::the_readme_opens_with_the_page_of_today,
+    ),
     ("without_a_browser_these_tests_are_ignored", without_a_browser_these_tests_are_ignored),
 ];
 

@@ -33,7 +33,7 @@ impl PlantIo for Held {
 }
 
 /// The damper wall on a simulated board.
-fn board(folder: &Path) -> SimulatedBoard {
+pub fn board(folder: &Path) -> SimulatedBoard {
     let address = Address::Unix(folder.join("board"));
     let wall = Program::find("damper_wall").unwrap();
     let device = Box::new(Held(folder.join("torn away")));
@@ -41,7 +41,7 @@ fn board(folder: &Path) -> SimulatedBoard {
 }
 
 /// A process that ends with the test.
-struct Ends(Child);
+pub struct Ends(Child);
 
 impl Drop for Ends {
     fn drop(&mut self) {
@@ -52,7 +52,7 @@ impl Drop for Ends {
 }
 
 /// Starts the program, and gives the first line that it prints.
-fn started(arguments: &[&str]) -> (Ends, String) {
+pub fn started(arguments: &[&str]) -> (Ends, String) {
     let mut child = program(arguments).stdout(Stdio::piped()).spawn().unwrap();
     let mut line = String::new();
     BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();

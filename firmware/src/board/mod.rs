@@ -4,7 +4,7 @@
 //! A scene's program is its numbers and one call of [`scene_program!`](crate::scene_program); what
 //! that call becomes is chosen here, by the target that the program is built for.
 //!
-//! All of the firmware's `unsafe` is in the modules of the boards.
+//! All `unsafe` of the library is in the modules of the boards.
 
 pub mod input_filter;
 pub mod lockstep_protocol;
@@ -75,6 +75,16 @@ pub const BAUD: u32 = 460_800;
 ///
 /// All of it together is the program's constant `PROGRAM`. Numbers that no board could run with do not
 /// compile either.
+///
+/// A board's program is linked with the map `memory.x` of this package, which fits every board. In a crate of
+/// your own copy it beside `Cargo.toml`, and let a build script name the folder and the linker's scripts:
+///
+/// ```no_run
+/// let here = std::env::var("CARGO_MANIFEST_DIR").expect("cargo names the package's folder");
+/// for argument in [format!("-L{here}"), "--nmagic".into(), "-Tlink.x".into(), "-Tdefmt.x".into()] {
+///     println!("cargo:rustc-link-arg-bins={argument}");
+/// }
+/// ```
 #[macro_export]
 macro_rules! scene_program {
     (

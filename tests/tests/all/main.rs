@@ -29,6 +29,7 @@ mod misses;
 mod motion_loss;
 mod own_board;
 mod own_environment;
+mod packages;
 mod profile_failures;
 mod profiles;
 mod public_api;
