@@ -13,24 +13,24 @@ fn main() {
         return;
     }
     let manifest = env::var("CARGO_MANIFEST_DIR").expect("cargo names the package's folder");
-    // All boards share the library's memory map, which is beside this file; the packages that share this
-    // file are below it.
-    let mut folders = Path::new(&manifest).ancestors().take(2);
-    let Some(library) = folders.find(|folder| folder.join("memory.x").exists()) else { return };
-    println!("cargo:rerun-if-changed={}", library.join("memory.x").display());
+    // All boards share the memory map in the workspace's root; without it (the library as a
+    // dependency) nothing is linked here.
+    let mut roots = Path::new(&manifest).ancestors().skip(1).take(2);
+    let Some(root) = roots.find(|root| root.join("memory.x").exists()) else { return };
+    println!("cargo:rerun-if-changed={}", root.join("memory.x").display());
     // Arguments of this package's own programs, so that a program that depends on the library
     // finds its own map and not this one.
     let any = |features: &[&str]| {
         features.iter().any(|name| env::var_os(format!("CARGO_FEATURE_{name}")).is_some())
     };
-    let mut arguments = vec![format!("-L{}", library.display()), "--nmagic".into()];
+    let mut arguments = vec![format!("-L{}", root.display()), "--nmagic".into()];
     // Before the script that would take its sections.
-    let measured = library.join("src/board/qemu/measured.x");
+    let measured = root.join("firmware/src/board/qemu/measured.x");
     println!("cargo:rerun-if-changed={}", measured.display());
     if any(&["LOG", "EMULATED"]) {
         arguments.push(format!("-T{}", measured.display()));
     }
-    let harness = library.join("src/board/qemu/harness.x");
+    let harness = root.join("firmware/src/board/qemu/harness.x");
     println!("cargo:rerun-if-changed={}", harness.display());
     if any(&["EMULATED"]) {
         arguments.push(format!("-T{}", harness.display()));

@@ -275,7 +275,7 @@ impl Toolchain {
     /// # Errors
     /// Where the linker's map cannot be read.
     pub fn memory(&self) -> Result<Memory, BuildError> {
-        let path = self.workspace.root.join("firmware/memory.x");
+        let path = self.workspace.root.join("memory.x");
         match fs::read_to_string(&path) {
             Ok(map) => Memory::of_map(&map).map_err(|source| BuildError::Map { path, source }),
             Err(source) => Err(BuildError::File { path, source }),

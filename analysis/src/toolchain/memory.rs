@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn reads_the_map_of_the_boards() {
-        let memory = Memory::of_map(include_str!("../../../firmware/memory.x")).unwrap();
+        let memory = Memory::of_map(include_str!("../../../memory.x")).unwrap();
         assert_eq!((memory.flash, memory.ram + memory.stack), (128 << 10, 22 << 10));
     }
 

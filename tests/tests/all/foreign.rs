@@ -87,7 +87,7 @@ fn no_executor_no_logger_and_no_hardware_come_with_it() {
 #[test]
 fn a_scene_of_another_crate_runs_on_a_board() {
     let folder = copy("on_a_board");
-    let map = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware/memory.x");
+    let map = Path::new(env!("CARGO_MANIFEST_DIR")).join("../memory.x");
     std::fs::copy(map, folder.path().join("memory.x")).expect("the linker's map");
     let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
     let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
