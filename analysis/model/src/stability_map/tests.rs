@@ -223,17 +223,18 @@ fn what_walls_have_in_common_changes_no_verdict() {
 /// Of a row the device is computed once, of a member of the turned map each time.
 #[test]
 fn a_map_that_is_turned_shows_the_same() {
-    let mut kinds = std::collections::BTreeSet::new();
     for (own, other) in [
         (Parameter::Stiffness, Parameter::Period),
         (Parameter::Damping, Parameter::OutputDelay),
         (Parameter::Stiffness, Parameter::CouplingStiffness),
     ] {
-        let mut file = wall(1, SOFT);
+        let stiff = "type = \"damper-wall\"\nstiffness = 22\ndamping = 0.005\ndelay = 1";
+        let mut file = self::file(stiff, SOFT);
         file.scene.latency = Latency::delayed(2e-4).with_actuator_lag(1e-4);
         let [plane, turned] =
             [[own, other], [other, own]].map(|axes| Plane::of(&file, axes).unwrap());
         let [across, up] = plane.usual_ranges();
+        let mut kinds = std::collections::BTreeSet::new();
         for row in 0..12 {
             let y = middle(&up, row, 12);
             let members = plane.row(y);
@@ -244,6 +245,7 @@ fn a_map_that_is_turned_shows_the_same() {
                 kinds.insert(region);
             }
         }
+        let differ = kinds.contains(&Region::Unstable) && kinds.contains(&Region::Exact);
+        assert!(differ, "{own:?} {other:?} {kinds:?}");
     }
-    assert!(kinds.len() >= 3, "{kinds:?}");
 }
