@@ -62,7 +62,7 @@ pub fn page(module: &[u8], scene: &Value) -> io::Result<String> {
         ("/*STYLE*/", STYLE.to_owned()),
         ("/*BEGIN*/", source!("start.js").to_owned()),
         ("<!--PROGRAM-->", packed(PROGRAM.concat().as_bytes())?),
-        ("<!--WORKER-->", WORKER.concat()),
+        ("<!--WORKER-->", packed(WORKER.concat().as_bytes())?),
         ("<!--START-->", start.to_string().replace('<', "\\u003c")),
         ("<!--MODULE-->", packed(module)?),
     ];
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn letters_are_those_of_a_script_and_hold_the_bytes() {
         let mut random = fastrand::Rng::with_seed(93);
-        for length in 0..200 {
+        for length in 0..200_usize {
             let mut bytes: Vec<u8> = (0..length).map(|_| random.u8(..)).collect();
             if length % 3 == 0 {
                 bytes.fill(0xff);

@@ -7,8 +7,9 @@ function namesOf(path) {
 
 /** Time in ms beyond which a judgement with remedies is too long for each frame. */
 const LONGEST_JUDGEMENT = 1;
-/** Judgements in a row that took longer, which a busy machine alone rarely makes. */
-const SLOW_IN_A_ROW = 3;
+/** Judgements in a row that took longer, which a busy machine alone rarely makes, nor a browser that has not yet
+ * compiled the program for speed. */
+const SLOW_IN_A_ROW = 8;
 /** Time in ms without a change after which remedies are searched for. */
 const PAUSE_BEFORE_REMEDIES = 150;
 

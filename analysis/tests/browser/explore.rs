@@ -20,6 +20,14 @@ pub fn explore(folder: &Path, scene: &str) -> PathBuf {
     page
 }
 
+/// The page that starts with the program's own scene.
+pub fn explore_without_file(folder: &Path) -> String {
+    let page = folder.join("explore.html");
+    let run = haptic(&["explore", "-o", page.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
+    read(page)
+}
+
 /// A number between two, evenly.
 fn between(random: &mut fastrand::Rng, least: f64, most: f64) -> f64 {
     least + (most - least) * random.f64()

@@ -1,6 +1,7 @@
 //! The report as its reader sees it: in a browser, which is not everywhere. Where there is none, and none
 //! may be installed, these tests say so and count as ignored.
 
+mod bench;
 mod chromium;
 #[allow(dead_code)]
 #[path = "../all/common/mod.rs"]
@@ -23,7 +24,7 @@ use self::common::{MOTION, WALL, report};
 const MEASURE: &str = include_str!("measure.js");
 
 /// Each test with its name.
-const TESTS: [(&str, fn()); 15] = [
+const TESTS: [(&str, fn()); 18] = [
     ("nothing_is_missing_cut_off_or_in_the_way", nothing_is_missing_cut_off_or_in_the_way),
     ("the_measurement_finds_what_it_looks_for", the_measurement_finds_what_it_looks_for),
     (
@@ -62,6 +63,9 @@ const TESTS: [(&str, fn()); 15] = [
         scene_page::a_narrow_page_is_not_cut_off_and_every_field_has_a_label,
     ),
     ("the_map_is_drawn_and_moves_the_scene", scene_page::the_map_is_drawn_and_moves_the_scene),
+    ("each_figure_of_the_page_has_its_reference", bench::each_figure_of_the_page_has_its_reference),
+    ("without_a_browser_no_page_is_measured", bench::without_a_browser_no_page_is_measured),
+    ("what_goes_wrong_on_a_page_is_an_error", bench::what_goes_wrong_on_a_page_is_an_error),
     ("without_a_browser_these_tests_are_ignored", without_a_browser_these_tests_are_ignored),
 ];
 

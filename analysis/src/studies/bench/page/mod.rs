@@ -37,7 +37,7 @@ const PAGE_BUDGET: f64 = 2.0;
 /// Width of the window in pixels.
 const WIDTH: u32 = 1280;
 /// Openings of each page.
-const OPENINGS: usize = 7;
+const OPENINGS: usize = 5;
 /// Movements of the mouse in a drag: at least one a frame, for about four seconds.
 const MOVEMENTS: usize = 240;
 /// Times that a drag goes there and back.
