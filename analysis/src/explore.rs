@@ -2,8 +2,6 @@
 
 use std::io::{self, Write};
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use serde_json::{Value, json};
@@ -64,7 +62,7 @@ pub fn page(module: &[u8], scene: &Value) -> io::Result<String> {
         ("/*STYLE*/", STYLE.to_owned()),
         ("/*BEGIN*/", source!("start.js").to_owned()),
         ("<!--PROGRAM-->", packed(PROGRAM.concat().as_bytes())?),
-        ("<!--WORKER-->", WORKER.concat()),
+        ("<!--WORKER-->", packed(WORKER.concat().as_bytes())?),
         ("<!--START-->", start.to_string().replace('<', "\\u003c")),
         ("<!--MODULE-->", packed(module)?),
     ];
@@ -79,5 +77,71 @@ pub fn page(module: &[u8], scene: &Value) -> io::Result<String> {
 fn packed(bytes: &[u8]) -> io::Result<String> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(bytes)?;
-    Ok(STANDARD.encode(encoder.finish()?))
+    Ok(letters(&encoder.finish()?))
+}
+
+/// Letters of a page's script: all that are printed, but for `<`, by which a script would end.
+const LETTERS: u32 = 93;
+
+/// Bytes as letters, two for 13 bits, the lowest first: 8 % less than in base 64. Up to six bits that are left
+/// at the end are one letter. `start.js` reads it.
+fn letters(bytes: &[u8]) -> String {
+    let letter = |digit: u32| {
+        let beyond = u32::from(digit >= u32::from(b'<' - b'!'));
+        char::from_u32(u32::from(b'!') + digit + beyond).unwrap_or('!')
+    };
+    let mut text = String::with_capacity(bytes.len() * 16 / 13 + 2);
+    let (mut held, mut bits) = (0, 0);
+    for byte in bytes {
+        held |= u32::from(*byte) << bits;
+        bits += 8;
+        if bits >= 13 {
+            let pair = held & 0x1fff;
+            text.extend([letter(pair % LETTERS), letter(pair / LETTERS)]);
+            (held, bits) = (held >> 13, bits - 13);
+        }
+    }
+    match bits {
+        0 => {}
+        1..=6 => text.push(letter(held)),
+        _ => text.extend([letter(held % LETTERS), letter(held / LETTERS)]),
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By what the letters are said to be alone: a row of bits.
+    fn bytes_of(text: &str) -> Vec<u8> {
+        let digit = |letter: u8| u32::from(letter) - if letter < b'<' { 33 } else { 34 };
+        let mut row = Vec::new();
+        for pair in text.as_bytes().chunks(2) {
+            let (number, bits) = match *pair {
+                [low, high] => (digit(low) + 93 * digit(high), 13),
+                _ => (digit(pair[0]), 6),
+            };
+            row.extend((0..bits).map(|bit| (number >> bit & 1) as u8));
+        }
+        row.chunks_exact(8).map(|byte| (0..8).map(|bit| byte[bit] << bit).sum()).collect()
+    }
+
+    #[test]
+    fn letters_are_those_of_a_script_and_hold_the_bytes() {
+        let mut random = fastrand::Rng::with_seed(93);
+        for length in 0..200_usize {
+            let mut bytes: Vec<u8> = (0..length).map(|_| random.u8(..)).collect();
+            if length % 3 == 0 {
+                bytes.fill(0xff);
+            }
+            let text = letters(&bytes);
+            assert_eq!(bytes_of(&text), bytes);
+            assert!(text.len() <= (16 * length).div_ceil(13), "{length}: {}", text.len());
+            assert!(
+                text.bytes().all(|letter| letter.is_ascii_graphic() && letter != b'<'),
+                "{text}"
+            );
+        }
+    }
 }

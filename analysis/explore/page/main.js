@@ -1,7 +1,8 @@
 // Starts the page.
 
 async function main() {
-  const bytes = await unpacked(document.getElementById("module"));
+  const parts = ["module", "worker"].map((id) => unpacked(document.getElementById(id)));
+  const [bytes, worker] = await Promise.all(parts);
   const module = await WebAssembly.compile(bytes);
   const engine = await Engine.start(module);
   const start = JSON.parse(document.getElementById("start").textContent);
@@ -10,7 +11,7 @@ async function main() {
   window.haptic = forPrograms(engine, store);
   showVerdict(store);
   showHandle(engine, store);
-  showPictures(engine, store, module);
+  showPictures(engine, store, module, worker);
   showBoard(engine);
   store.judge();
   new Fields(store, table).show();

@@ -243,7 +243,7 @@ class MapPicture {
       // For programs: what is there, and when it was, in ms after the worker began.
       const { dataset } = this.#picture.figure;
       if (done) dataset.progress = done;
-      const mark = { "1/64": "firstMs", "1/1": "drawnMs", all: "allMs" }[done];
+      const mark = { "1/256": "firstMs", "1/1": "drawnMs", all: "allMs" }[done];
       if (mark) dataset[mark] = time.toFixed(1);
       this.#draw();
     }

@@ -1,7 +1,8 @@
 // The worker of the pictures: what takes longer than a frame is computed here, the newest question first.
 
-/** Sides of the blocks of cells that a map is drawn in, from coarse to fine. */
-const MAP_BLOCKS = [8, 4, 2, 1];
+/** Sides of the blocks of cells that a map is drawn in, from coarse to fine: the first picture has to be there
+ * in a tenth of a second where a verdict takes long, and before the browser has compiled it for speed. */
+const MAP_BLOCKS = [16, 8, 4, 2, 1];
 /** Longest time in ms without a look for a newer question, and without a picture. */
 const WORKER_PAUSE = { look: 12, picture: 90 };
 

@@ -4,14 +4,14 @@
  * for in which it oscillates most, and that takes longer than a frame. */
 const SHAKING_PAUSE = 350;
 
-/** Shows all pictures. */
-function showPictures(engine, store, module) {
+/** Shows all pictures. `source` is the worker's. */
+function showPictures(engine, store, module, source) {
   const section = document.getElementById("pictures");
   const grid = document.createElement("div");
   grid.className = "pictures";
   section.append(grid);
   Picture.scene = () => store.scene.name ?? "scene";
-  const worker = new PictureWorker(module);
+  const worker = new PictureWorker(module, source);
   const map = new MapPicture(store, grid, (question) => worker.ask(question));
   const nyquist = new NyquistPicture(engine, grid);
   const profile = new ProfilePicture(engine, grid);
@@ -41,9 +41,8 @@ class PictureWorker {
   #listeners = new Map();
   #asked = 0;
 
-  constructor(module) {
-    const source = new Blob([document.getElementById("worker").textContent], { type: "text/javascript" });
-    const address = URL.createObjectURL(source);
+  constructor(module, source) {
+    const address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
     this.#worker = new Worker(address);
     this.#worker.onmessage = ({ data }) => this.#listeners.get(data.kind)?.(data);
     this.#worker.postMessage({ module });

@@ -96,9 +96,9 @@ pub fn row(text: &str, numbers: &mut Vec<f64>) -> Answer {
             return Err("no map has been begun".to_owned());
         };
         let row = words.next().unwrap_or(Ok(0))?;
-        let y = middle(up, row, *rows);
+        let row = plane.row(middle(up, row, *rows));
         for column in words {
-            let region = plane.region(middle(along, column?, *columns), y);
+            let region = row.region(middle(along, column?, *columns));
             numbers.push(f64::from(region as u8));
         }
         Ok(String::new())

@@ -1,4 +1,4 @@
-//! `haptic bench`: what a certificate and a tick cost.
+//! `haptic bench`: what a certificate, a tick and a page cost.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -10,16 +10,20 @@ use haptic_servo::certificate::Parameter;
 use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::scene::{Coupling, Scene};
 
+use super::explore;
 use super::shared_arguments::JsonOption;
 use super::status::{CommandError, CommandStatus};
 use crate::compare_run::{Backend, Input, run_with_backend};
 use crate::emulator::EmulatorReport;
+use crate::file;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
 use crate::studies::bench::current;
 use crate::studies::bench::live::live_set;
 use crate::studies::bench::matched;
+use crate::studies::bench::page::scenes::{PageScene, SHOWN};
+use crate::studies::bench::page::{self, ScenePage};
 use crate::studies::bench::parts::{self, Inventory};
 use crate::studies::bench::profile;
 use crate::studies::bench::{self, CORE_CLOCK, Figure};
@@ -32,6 +36,10 @@ pub struct Arguments {
     /// Print only the parts of a tick in the scenes' programs: instructions, state, flash, RAM
     #[arg(long)]
     pub parts: bool,
+    /// Print only what the page of `haptic explore` costs in a browser, which is chromium: size, opening,
+    /// frames, maps, and verdicts against those of this program
+    #[arg(long, conflicts_with = "parts")]
+    pub page: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: JsonOption,
@@ -93,9 +101,18 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         arguments.answer.print(&scenes, |scenes| format!("{}\n", parts::table(scenes)))?;
         return Ok(CommandStatus::Success);
     }
+    if arguments.page {
+        let figures = about_pages()?;
+        arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
+        return Ok(CommandStatus::Success);
+    }
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let mut figures = on_host();
+    match about_pages() {
+        Ok(pages) => figures.extend(pages),
+        Err(error) => eprintln!("page of haptic explore: not measured: {error}"),
+    }
     let spinner = progress::spinner("building programs");
     let f32 = toolchain.build_scenes(program::NAMES, NumberFormat::F32)?;
     let fixed = toolchain.build_scenes(program::NAMES, NumberFormat::Fixed)?;
@@ -111,6 +128,22 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     about_bridges(&toolchain, &mut figures)?;
     arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
     Ok(CommandStatus::Success)
+}
+
+/// What the page of `haptic explore` costs in a browser.
+fn about_pages() -> Result<Vec<Figure>, CommandError> {
+    // A browser that is missing is known before anything is built for it.
+    let browser = page::watching_browser()?;
+    let module = explore::module()?;
+    let page = |scene: PageScene| -> Result<ScenePage, CommandError> {
+        let file = file::as_json("scene", file::Format::Toml, scene.toml)?;
+        Ok(ScenePage { scene, text: crate::explore::page(&module, &file)? })
+    };
+    let pages: Vec<_> = SHOWN.into_iter().map(page).collect::<Result<_, _>>()?;
+    let spinner = progress::spinner("measuring the page in a browser");
+    let figures = page::figures(browser, &pages, |what| spinner.set_message(what.to_owned()))?;
+    spinner.finish_and_clear();
+    Ok(figures)
 }
 
 /// Ticks behind the matched coupling, of which no program is of a wall alone.

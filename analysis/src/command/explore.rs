@@ -53,6 +53,11 @@ pub(super) fn page(scene: Option<&str>) -> Result<String, CommandError> {
         Some(name) => file::load_json(name)?,
         None => file::as_json("wall.toml", Format::Toml, START)?,
     };
+    Ok(explore::page(&module()?, &scene)?)
+}
+
+/// The program of every page.
+pub(super) fn module() -> Result<Vec<u8>, CommandError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerForBrowser, |step| eprintln!("set-up: {step}"))?;
     let spinner = progress::spinner("building the certificate and the servo for a browser");
@@ -60,7 +65,7 @@ pub(super) fn page(scene: Option<&str>) -> Result<String, CommandError> {
     let module =
         std::fs::read(&path).map_err(|source| CommandError::Unwritable { path, source })?;
     spinner.finish_and_clear();
-    Ok(explore::page(&module, &scene)?)
+    Ok(module)
 }
 
 /// Opens the page with what the system opens pages with.

@@ -136,6 +136,9 @@ pub enum CommandError {
     /// A set could not be measured on the emulated board.
     #[error(transparent)]
     Live(#[from] crate::studies::bench::live::LiveError),
+    /// The page of `haptic explore` could not be measured.
+    #[error(transparent)]
+    Page(#[from] crate::studies::bench::page::PageError),
     /// A picture could not be drawn.
     #[error(transparent)]
     Chart(#[from] ChartError),

@@ -2,29 +2,12 @@
 
 use std::io::Read;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
+use analysis::browser::{NAME, TIMEOUT, command};
+
 use crate::common::set_up_tool;
-
-/// Longest that a page may take, browser's start included, on a slow machine.
-const TIMEOUT: Duration = Duration::from_secs(120);
-
-/// The browser.
-pub const NAME: &str = "chromium";
-
-/// No window, no sandbox, which root has none of, and nothing of its own on the network.
-pub const ARGUMENTS: [&str; 9] = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-dev-shm-usage",
-];
 
 /// Makes sure that there is one.
 ///
@@ -37,15 +20,10 @@ pub fn set_up() -> Result<(), String> {
 /// The page as it is after its scripts have run, in a window so many pixels wide.
 pub fn dom(page: &Path, width: u32) -> String {
     let profile = tempfile::tempdir().unwrap();
-    let mut child = Command::new(NAME)
-        .args(ARGUMENTS)
-        .arg(format!("--user-data-dir={}", profile.path().display()))
-        .arg(format!("--window-size={width},1200"))
+    let mut child = command(profile.path(), [width, 1200])
         .args(["--virtual-time-budget=2000", "--dump-dom"])
         .arg(format!("file://{}", page.display()))
-        .stdin(Stdio::null())
         .stdout(Stdio::piped())
-        .stderr(Stdio::null())
         .spawn()
         .unwrap();
     let mut stdout = child.stdout.take().unwrap();

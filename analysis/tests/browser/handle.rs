@@ -60,7 +60,7 @@ pub fn the_handle_of_the_page_runs_the_servo_of_the_program() {
         counts.len()
     ));
     assert_eq!(numbers(&again), codes);
-    assert_eq!(page.complaints, Vec::<String>::new());
+    assert_eq!(page.complaints(), [""; 0]);
 }
 
 pub fn a_refused_handle_has_no_torque_until_the_check_is_off() {
@@ -92,5 +92,5 @@ pub fn a_refused_handle_has_no_torque_until_the_check_is_off() {
     page.wait_for("document.getElementById('handle').dataset.oscillates === 'true'");
     let words = page.value("document.getElementById('handle-oscillation').textContent");
     assert!(words.as_str().unwrap().starts_with("Oscillates: "), "{words}");
-    assert_eq!(page.complaints, Vec::<String>::new());
+    assert_eq!(page.complaints(), [""; 0]);
 }

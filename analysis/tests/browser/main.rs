@@ -1,6 +1,7 @@
 //! The report as its reader sees it: in a browser, which is not everywhere. Where there is none, and none
 //! may be installed, these tests say so and count as ignored.
 
+mod bench;
 mod chromium;
 #[allow(dead_code)]
 #[path = "../all/common/mod.rs"]
@@ -27,7 +28,7 @@ use self::common::{MOTION, WALL, report};
 const MEASURE: &str = include_str!("measure.js");
 
 /// Each test with its name.
-const TESTS: [(&str, fn()); 22] = [
+const TESTS: [(&str, fn()); 25] = [
     ("nothing_is_missing_cut_off_or_in_the_way", nothing_is_missing_cut_off_or_in_the_way),
     ("the_measurement_finds_what_it_looks_for", the_measurement_finds_what_it_looks_for),
     (
@@ -94,6 +95,9 @@ const TESTS: [(&str, fn()); 22] = [
         "the_readme_opens_with_the_page_of_today",
         screenshot::the_readme_opens_with_the_page_of_today,
     ),
+    ("each_figure_of_the_page_has_its_reference", bench::each_figure_of_the_page_has_its_reference),
+    ("without_a_browser_no_page_is_measured", bench::without_a_browser_no_page_is_measured),
+    ("what_goes_wrong_on_a_page_is_an_error", bench::what_goes_wrong_on_a_page_is_an_error),
     ("without_a_browser_these_tests_are_ignored", without_a_browser_these_tests_are_ignored),
 ];
 

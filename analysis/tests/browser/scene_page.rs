@@ -46,7 +46,7 @@ pub fn a_field_changes_the_verdict_and_a_remedy_certifies() {
     assert_eq!(page.value(&format!("{field}.getAttribute('aria-invalid')")), "true");
     enter(&mut page, "#field-device-inertia", "2.2e-5");
     page.wait_for(&format!("{VERDICT} === 'certified'"));
-    assert_eq!(page.complaints, Vec::<String>::new());
+    assert_eq!(page.complaints(), [""; 0]);
 }
 
 pub fn a_link_is_the_scene_and_a_bad_one_is_named() {
@@ -68,7 +68,7 @@ pub fn a_link_is_the_scene_and_a_bad_one_is_named() {
     bad.wait_for("!document.querySelector('#notice').hidden");
     assert_eq!(scene(&mut bad)["environment"]["stiffness"], 22);
     for page in [page, other, bad] {
-        assert_eq!(page.complaints, Vec::<String>::new());
+        assert_eq!(page.complaints(), [""; 0]);
     }
 }
 
@@ -115,5 +115,5 @@ pub fn the_map_is_drawn_and_moves_the_scene() {
         );
         page.wait_for(&label);
     }
-    assert_eq!(page.complaints, Vec::<String>::new());
+    assert_eq!(page.complaints(), [""; 0]);
 }

@@ -166,7 +166,7 @@ pub fn a_board_is_watched_tuned_armed_and_recorded() {
         "{}",
         text(&mut page, "fault")
     );
-    assert_eq!(page.complaints, Vec::<String>::new());
+    assert_eq!(page.complaints(), [""; 0]);
 }
 
 pub fn a_link_is_lost_and_back_and_a_second_page_is_refused() {
@@ -211,7 +211,7 @@ pub fn a_link_is_lost_and_back_and_a_second_page_is_refused() {
     page.click("#board-disconnect");
     connect(&mut second, &server.url());
     second.wait_for(&format!("{BOARD}.dataset.link === 'on'"));
-    assert_eq!(page.complaints, Vec::<String>::new());
+    assert_eq!(page.complaints(), [""; 0]);
     drop(again);
 }
 
@@ -258,5 +258,5 @@ pub fn a_virtual_board_is_watched_and_armed() {
     wait_for_text(&mut page, "reply", "stiffness=12.5: done");
     page.key("Escape");
     wait_for_state(&mut page, "off");
-    assert_eq!(page.complaints, Vec::<String>::new());
+    assert_eq!(page.complaints(), [""; 0]);
 }

@@ -21,7 +21,7 @@ pub const REFUSED: &str = "beyond the limit";
 
 /// The page has complained of nothing.
 pub fn assert_silent(page: &Page) {
-    assert_eq!(page.complaints, Vec::<String>::new());
+    assert_eq!(page.complaints(), Vec::<String>::new());
 }
 
 /// Names of the presets.

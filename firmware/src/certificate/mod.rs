@@ -53,6 +53,7 @@ pub use assessment::{Assessment, assess, assess_in};
 pub use assumption::{Assumption, AssumptionStatus, Assumptions};
 pub use model::LoopTransfers;
 pub use modes::{RefusedMode, first_refused_mode};
+pub use port::KeptResponses;
 pub use problem::PassivityProblem;
 pub use quantization::{QuantizationBound, Resolution};
 pub use rejection::Rejection;

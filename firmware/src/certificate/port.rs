@@ -2,6 +2,7 @@
 
 use super::model::{Lagging, LoopIntervals};
 use super::problem::PassivityProblem;
+use super::rules::Answer;
 use crate::latency::{Latency, TimeRange};
 use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::RealPart;
@@ -183,6 +184,17 @@ const fn larger(a: (RealPart, Interval), b: (RealPart, Interval)) -> (RealPart, 
     (index, a.1.max(b.1))
 }
 
+/// The sampled responses of a scene's delays and lags over all of their ranges, kept in a `V` such as a vector.
+///
+/// Scenes that differ in their environment have them in common, and they take longer to compute than the rest
+/// of an answer: see [`PassivityProblem::answer_with`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeptResponses<V> {
+    latency: Latency,
+    period: Interval,
+    responses: V,
+}
+
 const UNKNOWN: IndexError = IndexError::Undecided(UndecidedReason::OutOfRange);
 
 impl PassivityProblem {
@@ -248,6 +260,55 @@ impl PassivityProblem {
             Some(all) => Ok(all),
             None => Err(UNKNOWN),
         }
+    }
+
+    /// The sampled responses of this scene's times, to be kept; `None` where it has no latency, or one whose
+    /// responses are not all known.
+    pub fn kept_responses<V: FromIterator<SampledResponse>>(&self) -> Option<KeptResponses<V>> {
+        let (lagging, period) = (self.numbers.latency?, self.numbers.period);
+        let cells = Cells::of(&lagging, period)?;
+        let corners = Corners::of(&lagging, period);
+        let count = corners.map_or(cells.count(), |corners| corners.count());
+        let cell = |index| match corners {
+            Some(corners) => corners.corner(index),
+            None => cells.cell(index, period),
+        };
+        let response = |cell: LagIntervals, piece| {
+            let response = cell.response(piece)?;
+            Some(corners.map_or(response, |corners| response.with_ripple(corners.ripple)))
+        };
+        let all = (0..count).map(cell).flat_map(|cell| {
+            let pieces = 0..cell.pieces();
+            pieces.map(move |piece| response(cell, piece))
+        });
+        let responses = all.collect::<Option<V>>()?;
+        Some(KeptResponses { latency: lagging.latency, period, responses })
+    }
+
+    /// [`PassivityProblem::answer`] with responses that were kept. Those of other times are not used.
+    pub fn answer_with<V: AsRef<[SampledResponse]>>(&self, kept: &KeptResponses<V>) -> Answer {
+        let is_same = |lagging: &Lagging| {
+            lagging.latency == kept.latency && self.numbers.period == kept.period
+        };
+        if !self.numbers.latency.as_ref().is_some_and(is_same) {
+            return self.answer();
+        }
+        self.answer_by(|closeness| self.over_kept(kept.responses.as_ref(), closeness))
+    }
+
+    /// [`Self::port_index`] over these responses.
+    fn over_kept(
+        &self,
+        responses: &[SampledResponse],
+        closeness: &Precision,
+    ) -> Result<RealPart, IndexError> {
+        let (h, _, deviation) = self.at_the_port()?;
+        let mut all = None;
+        for response in responses {
+            let one = self.piece(&h, response, &deviation, closeness, false)?;
+            all = Some(all.map_or(one, |before| larger(one, before)));
+        }
+        all.map(|(found, _)| found).ok_or(UNKNOWN)
     }
 
     // In a frame of its own, which the caller would otherwise have beside its cells.

@@ -175,6 +175,20 @@ impl PassivityProblem {
         }
     }
 
+    /// [`Self::answer`] of a scene with latency, by another way to its index at the port.
+    pub(super) fn answer_by(
+        &self,
+        index: impl Fn(&Precision) -> Result<RealPart, IndexError>,
+    ) -> Answer {
+        if matches!(self.rule, Rule::Nonlinear) || self.no_transfer.is_some() {
+            return self.answer();
+        }
+        match self.exact(&index(&near(exact_limit(&self.numbers)))) {
+            Answer::Undecided => self.exact(&index(&Precision::TIGHT)),
+            clear => clear,
+        }
+    }
+
     /// Bound on the index of a one-sided or limited scene, in N m s/rad; `None` where
     /// none is known, and for linear scenes.
     pub const fn bound(&self) -> Option<Interval> {

@@ -8,9 +8,10 @@ pub mod schur_cohn;
 
 use std::ops::Range;
 
-use haptic_servo::certificate::{Answer, PassivityProblem, assess};
+use haptic_servo::certificate::{Answer, KeptResponses, PassivityProblem, assess};
 use haptic_servo::environment::{Environment, Wall};
-use haptic_servo::scene::Scene;
+use haptic_servo::passivity::lagged::SampledResponse;
+use haptic_servo::scene::{Coupling, Latency, Scene};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -104,6 +105,15 @@ pub struct Family {
     /// Whether the verdict rests on what does not hold: the torque is later than the certificate
     /// takes it to be.
     may_be_wrong: bool,
+    kept: Option<Kept>,
+}
+
+/// What the verdicts on scenes of the same delays and lags have in common.
+type Kept = KeptResponses<Vec<SampledResponse>>;
+
+/// That of a scene; none where nothing lags.
+fn kept(scene: &Scene) -> Option<Kept> {
+    PassivityProblem::of(scene).ok()?.kept_responses()
 }
 
 impl Family {
@@ -129,8 +139,11 @@ impl Family {
             return Err(MapError::NoWall { scene: name.to_owned() });
         }
         let tick = alone.tick(Integration::default())?;
-        let may_be_wrong = alone.latency > 0.0;
-        Ok(Self { scene: alone.scene, plant: SampledPlant::new(&tick), may_be_wrong })
+        let (scene, plant) = (alone.scene, SampledPlant::new(&tick));
+        let family = Self { scene, plant, may_be_wrong: alone.latency > 0.0, kept: None };
+        // No wall is too stiff for its coupling where there is none.
+        let kept = kept(&family.member(0.0, 0.0));
+        Ok(Self { kept, ..family })
     }
 
     /// The scene that the others differ from.
@@ -160,8 +173,17 @@ impl Family {
     /// same, and may be wrong.
     pub fn region(&self, stiffness: f64, damping: f64) -> Region {
         let scene = self.member(stiffness, damping);
-        let is_stable = self.plant.is_stable_under(&scene).unwrap_or(false);
-        judged(&scene, is_stable, self.may_be_wrong)
+        let is_stable = self.plant.is_stable_under(&self.prompt(scene)).unwrap_or(false);
+        judged(&scene, self.kept.as_ref(), is_stable, self.may_be_wrong)
+    }
+
+    /// A scene with the same controller that is found sooner: only a matched coupling looks at latencies, which
+    /// the plant has in it.
+    fn prompt(&self, scene: Scene) -> Scene {
+        match (&self.kept, scene.coupling) {
+            (None, _) | (_, Coupling::Matched) => scene,
+            _ => Scene { latency: Latency::NONE, ..scene },
+        }
     }
 
     /// Ranges of stiffness and damping that show the borders: nearly twice the stiffest certified spring,
@@ -177,11 +199,11 @@ impl Family {
 }
 
 /// What becomes of a scene that is stable without a hand or not.
-fn judged(scene: &Scene, is_stable: bool, may_be_wrong: bool) -> Region {
+fn judged(scene: &Scene, kept: Option<&Kept>, is_stable: bool, may_be_wrong: bool) -> Region {
     if !is_stable && !may_be_wrong {
         return Region::Unstable;
     }
-    match (is_stable, verdict(scene)) {
+    match (is_stable, verdict(scene, kept)) {
         (false, Region::Exact | Region::Paper) => Region::Wrong,
         (false, _) => Region::Unstable,
         (true, verdict) => verdict,
@@ -194,7 +216,7 @@ pub fn middle(range: &Range<f64>, index: usize, parts: usize) -> f64 {
 }
 
 /// The certificate's verdict on a scene.
-fn verdict(scene: &Scene) -> Region {
+fn verdict(scene: &Scene, kept: Option<&Kept>) -> Region {
     let posed = match PassivityProblem::of(scene) {
         Ok(posed) => posed,
         Err(rejection) if rejection.is_undecided() => return Region::Undecided,
@@ -204,7 +226,7 @@ fn verdict(scene: &Scene) -> Region {
     if posed.passes_paper() {
         return Region::Paper;
     }
-    match posed.answer() {
+    match kept.map_or_else(|| posed.answer(), |kept| posed.answer_with(kept)) {
         Answer::Pass => Region::Exact,
         Answer::Fail => Region::Rejected,
         Answer::Undecided => Region::Undecided,

@@ -1,6 +1,7 @@
 //! What becomes of scenes that differ in two of their numbers: of a wall its stiffness and damping, of a
 //! torque profile its torque and number of repetitions, of any scene two that a person chooses.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use haptic_servo::certificate::assess;
@@ -10,7 +11,7 @@ use haptic_servo::scene::Scene;
 use thiserror::Error;
 
 use super::plant::SampledPlant;
-use super::{Family, MapError, Region, judged};
+use super::{Family, Kept, MapError, Region, judged, kept};
 use crate::design::{Answer, Choice, Quantity, Terms, largest};
 use crate::file::SceneFile;
 use crate::simulation::plant::Plant;
@@ -84,8 +85,10 @@ enum Judge {
     Walls(Box<Family>),
     /// A scene on a device that no axis changes.
     OnePlant(SampledPlant),
-    /// One whose axes are times of the loop.
-    ManyPlants,
+    /// One whose vertical axis is a time of the loop: all of a row are on the same device.
+    PlantOfRow,
+    /// One whose horizontal axis is.
+    PlantOfMember,
     /// One that has no transfer function: by its certificate alone.
     Certificate,
 }
@@ -153,8 +156,10 @@ impl Plane {
             Judge::Walls(Box::new(Family::of(file)?))
         } else if !has_transfer(&file.scene) {
             Judge::Certificate
-        } else if axes.iter().any(of_loop) {
-            Judge::ManyPlants
+        } else if of_loop(&axes[0]) {
+            Judge::PlantOfMember
+        } else if of_loop(&axes[1]) {
+            Judge::PlantOfRow
         } else {
             Judge::OnePlant(SampledPlant::new(&alone.tick(Integration::default())?))
         };
@@ -189,24 +194,28 @@ impl Plane {
         self.alone.scene.with(along, x)?.with(up, y)
     }
 
-    /// The verdict on a member; what cannot be is rejected.
-    pub fn region(&self, x: f64, y: f64) -> Region {
-        if let Judge::Walls(family) = &self.judge {
-            return family.region(x, y);
-        }
-        let Some(scene) = self.member(x, y) else { return Region::Rejected };
-        let is_stable = match &self.judge {
-            Judge::OnePlant(plant) => plant.comes_to_rest_under(&scene),
-            Judge::ManyPlants => {
-                let experiment = Experiment { scene, ..self.alone.clone() };
-                let Ok(tick) = experiment.tick(Integration::default()) else {
-                    return Region::Rejected;
-                };
-                SampledPlant::new(&tick).comes_to_rest_under(&scene)
+    /// The members with one number on the vertical axis.
+    pub fn row(&self, y: f64) -> Row<'_> {
+        let mut row = Row { plane: self, y, plant: None, kept: None };
+        let scene = || self.alone.scene.with(self.axes[1], nearest(self.axes[1], y));
+        match &self.judge {
+            Judge::OnePlant(plant) => {
+                row.plant = Some(Cow::Borrowed(plant));
+                row.kept = scene().and_then(|scene| kept(&scene));
             }
-            _ => return by_certificate(&scene),
-        };
-        judged(&scene, is_stable.unwrap_or(false), self.alone.latency > 0.0)
+            Judge::PlantOfRow => {
+                row.plant = scene().and_then(|scene| self.plant_of(scene)).map(Cow::Owned);
+                row.kept = scene().and_then(|scene| kept(&scene));
+            }
+            Judge::Walls(_) | Judge::PlantOfMember | Judge::Certificate => {}
+        }
+        row
+    }
+
+    /// The device over a tick of a scene; `None` where its motion is beyond the range of numbers.
+    fn plant_of(&self, scene: Scene) -> Option<SampledPlant> {
+        let experiment = Experiment { scene, ..self.alone.clone() };
+        Some(SampledPlant::new(&experiment.tick(Integration::default()).ok()?))
     }
 
     /// Ranges of the two axes that show the borders around the scene.
@@ -217,6 +226,37 @@ impl Plane {
         };
         let mut own = self.own().into_iter();
         usual.map(|range| with_room(range, own.next().unwrap_or(0.0)))
+    }
+}
+
+/// The members with one number on the vertical axis, and what they have in common.
+#[derive(Clone, Debug)]
+pub struct Row<'a> {
+    plane: &'a Plane,
+    y: f64,
+    plant: Option<Cow<'a, SampledPlant>>,
+    kept: Option<Kept>,
+}
+
+impl Row<'_> {
+    /// The verdict on a member; what cannot be is rejected.
+    pub fn region(&self, x: f64) -> Region {
+        let plane = self.plane;
+        if let Judge::Walls(family) = &plane.judge {
+            return family.region(x, self.y);
+        }
+        let Some(scene) = plane.member(x, self.y) else { return Region::Rejected };
+        let is_stable = match (&plane.judge, &self.plant) {
+            (Judge::Certificate, _) => return by_certificate(&scene),
+            (_, Some(plant)) => plant.comes_to_rest_under(&scene),
+            (Judge::PlantOfMember, None) => match plane.plant_of(scene) {
+                Some(plant) => plant.comes_to_rest_under(&scene),
+                None => return Region::Rejected,
+            },
+            (_, None) => return Region::Rejected,
+        };
+        let (is_stable, may_be_wrong) = (is_stable.unwrap_or(false), plane.alone.latency > 0.0);
+        judged(&scene, self.kept.as_ref(), is_stable, may_be_wrong)
     }
 }
 

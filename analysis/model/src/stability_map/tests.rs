@@ -1,7 +1,9 @@
 use haptic_servo::certificate::Answer;
-use haptic_servo::scene::Latency;
+use haptic_servo::parameter::Parameter;
+use haptic_servo::scene::TimeRange;
 
 use super::border::closed_form_border;
+use super::plane::Plane;
 use super::*;
 use crate::file::{Format, parse};
 use crate::stability;
@@ -170,5 +172,80 @@ fn a_wrong_verdict_and_none_at_all_are_told_from_no() {
         let outcome = assess(&family.member(stiffness, 0.0)).outcome;
         assert_eq!(outcome.is_err_and(|why| why.is_undecided()), undecided, "{stiffness}");
         assert_eq!(family.region(stiffness, 0.0) == Region::Undecided, undecided, "{stiffness}");
+    }
+}
+
+/// Delays and lags of every kind: known, in ranges, by their ends, and of updates.
+fn latencies() -> [Latency; 5] {
+    let ranges = Latency {
+        output_delay: TimeRange::between(1e-5, 6e-5),
+        sensor_lag: TimeRange::exactly(2e-5),
+        ..Latency::NONE.with_actuator_lag(5e-5)
+    };
+    [
+        Latency::delayed(3e-4).with_actuator_lag(2e-4),
+        ranges,
+        Latency { output_delay: TimeRange::between(8e-4, 1.2e-3), ..ranges },
+        Latency::delayed(1e-4).with_actuator_response(1e-4, 9e-4),
+        Latency::sampled(4, 1e-4, 1e-3),
+    ]
+}
+
+#[test]
+fn what_walls_have_in_common_changes_no_verdict() {
+    let mut kinds = std::collections::BTreeSet::new();
+    let mut before = None;
+    for latency in latencies() {
+        let mut file = wall(1, SOFT);
+        file.scene.latency = latency;
+        let family = Family::of(&file).unwrap();
+        assert!(family.kept.is_some(), "{latency:?}");
+        let alone = Family { kept: None, ..family.clone() };
+        // What others have in common counts for nothing.
+        let foreign = Family { kept: before, ..family.clone() };
+        for (k, b) in (1..9).flat_map(|k| (-2..6).map(move |b| (k, b))) {
+            let (k, b) = (5.0 * f64::from(k), 0.004 * f64::from(b));
+            let region = alone.region(k, b);
+            assert_eq!(family.region(k, b), region, "{latency:?} {k} {b}");
+            assert_eq!(foreign.region(k, b), region, "{latency:?} {k} {b}");
+            let scene = family.member(k, b);
+            let is_stable = |scene: &Scene| family.plant.is_stable_under(scene).unwrap();
+            assert_eq!(is_stable(&family.prompt(scene)), is_stable(&scene), "{latency:?} {k} {b}");
+            let certified = assess(&family.member(k, b)).outcome.is_ok();
+            assert_eq!(region >= Region::Exact, certified, "{latency:?} {k} {b}");
+            kinds.insert(region);
+        }
+        before = family.kept;
+    }
+    assert!(kinds.len() >= 3, "{kinds:?}");
+}
+
+/// Of a row the device is computed once, of a member of the turned map each time.
+#[test]
+fn a_map_that_is_turned_shows_the_same() {
+    for (own, other) in [
+        (Parameter::Stiffness, Parameter::Period),
+        (Parameter::Damping, Parameter::OutputDelay),
+        (Parameter::Stiffness, Parameter::CouplingStiffness),
+    ] {
+        let stiff = "type = \"damper-wall\"\nstiffness = 22\ndamping = 0.005\ndelay = 1";
+        let mut file = self::file(stiff, SOFT);
+        file.scene.latency = Latency::delayed(2e-4).with_actuator_lag(1e-4);
+        let [plane, turned] =
+            [[own, other], [other, own]].map(|axes| Plane::of(&file, axes).unwrap());
+        let [across, up] = plane.usual_ranges();
+        let mut kinds = std::collections::BTreeSet::new();
+        for row in 0..12 {
+            let y = middle(&up, row, 12);
+            let members = plane.row(y);
+            for column in 0..12 {
+                let x = middle(&across, column, 12);
+                let region = members.region(x);
+                assert_eq!(turned.row(x).region(y), region, "{own:?} {other:?} {x} {y}");
+                kinds.insert(region);
+            }
+        }
+        let differ = kinds.contains(&Region::Unstable) && kinds.contains(&Region::Exact);
+        assert!(differ, "{own:?} {other:?} {kinds:?}");
     }
 }

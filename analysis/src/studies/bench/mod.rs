@@ -1,9 +1,10 @@
-//! Measured cost of a certificate, a step and a tick, each with its reference.
+//! Measured cost of a certificate, a step, a tick and a page, each with its reference.
 
 pub mod at_rest;
 pub mod current;
 pub mod live;
 pub mod matched;
+pub mod page;
 pub mod parts;
 pub mod profile;
 pub mod steps;

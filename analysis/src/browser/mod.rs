@@ -1,0 +1,132 @@
+//! A browser without a window, which shows pages as their readers' browsers do: started, and driven by the
+//! protocol of its developer tools.
+
+mod devtools;
+mod site;
+
+pub use devtools::Page;
+pub use site::Site;
+
+use std::io;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use serde_json::Value;
+use thiserror::Error;
+
+/// The browser, and the package that has it.
+pub const NAME: &str = "chromium";
+
+/// Longest that anything may take in it, its start included, on a slow machine.
+pub const TIMEOUT: Duration = Duration::from_secs(120);
+
+/// No window, no sandbox, which root has none of, and nothing of its own on the network.
+const ARGUMENTS: [&str; 9] = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-dev-shm-usage",
+];
+
+/// Why a page could not be looked at.
+#[derive(Debug, Error)]
+pub enum BrowserError {
+    /// There is none.
+    #[error("there is no {NAME}; install it (Debian: apt install {NAME})")]
+    Missing,
+    /// It could not be started, or the folder of its profile not be made.
+    #[error("{NAME} could not be started: {0}")]
+    Unstartable(#[source] io::Error),
+    /// It does not say where its tools listen.
+    #[error("{NAME} did not start within {} s", TIMEOUT.as_secs())]
+    NotStarted,
+    /// Its tools cannot be talked to.
+    #[error("the developer tools of {NAME} have broken off: {0}")]
+    Socket(#[source] Box<tungstenite::Error>),
+    /// What they say is no message of their protocol.
+    #[error("the developer tools of {NAME} have said `{said}`, which is no message: {source}")]
+    NoMessage {
+        /// What they have said.
+        said: String,
+        /// Why it is none.
+        source: serde_json::Error,
+    },
+    /// They refuse a call, or answer without what was asked for.
+    #[error("{method}: {answer}")]
+    Refused {
+        /// The method of their protocol.
+        method: String,
+        /// What they have answered.
+        answer: Value,
+    },
+    /// A page cannot be opened.
+    #[error("{address} could not be opened: {why}")]
+    Unopened {
+        /// Its address.
+        address: String,
+        /// Why.
+        why: Value,
+    },
+    /// An expression has thrown.
+    #[error("`{expression}` has thrown: {error}")]
+    Thrown {
+        /// The expression.
+        expression: String,
+        /// What it has thrown.
+        error: Value,
+    },
+    /// An expression that was waited for has not become true.
+    #[error(
+        "`{expression}` was not true within {} s; the page complains of {complaints:?}", TIMEOUT.as_secs()
+    )]
+    NeverTrue {
+        /// The expression.
+        expression: String,
+        /// What the page's console has said.
+        complaints: Vec<String>,
+    },
+    /// Clicks on an element have hit others.
+    #[error("`{selector}` was not clicked within {} s: another element is before it", TIMEOUT.as_secs())]
+    NotClicked {
+        /// What finds the element.
+        selector: String,
+    },
+    /// An expression has a value of another kind.
+    #[error("`{expression}` is {value}; it must be {kind}")]
+    OtherKind {
+        /// The expression.
+        expression: String,
+        /// Its value.
+        value: Value,
+        /// What it must be.
+        kind: &'static str,
+    },
+    /// A page cannot be given out.
+    #[error("a page could not be given out on this machine: {0}")]
+    Site(#[source] io::Error),
+}
+
+impl From<tungstenite::Error> for BrowserError {
+    fn from(error: tungstenite::Error) -> Self {
+        Self::Socket(Box::new(error))
+    }
+}
+
+/// The browser with a folder for its profile, to be started, in a window so many pixels wide and high.
+pub fn command(profile: &Path, [width, height]: [u32; 2]) -> Command {
+    let mut command = Command::new(NAME);
+    command
+        .args(ARGUMENTS)
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .arg(format!("--window-size={width},{height}"))
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    command
+}

@@ -1,0 +1,91 @@
+//! One page on an address of this machine, given out so that its clocks are fine.
+
+use std::io::{self, Read, Write};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use super::BrowserError;
+
+/// Longest that a browser may take to ask for the page.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// Longest head of a question.
+const LONGEST_HEAD: usize = 1 << 14;
+
+/// Without these a page's clock goes in steps of 100 us, with them in steps of 5 us: no other site is then in
+/// the page's process, from which it could learn something by time.
+const ALONE: &str =
+    "Cross-Origin-Opener-Policy: same-origin\r\nCross-Origin-Embedder-Policy: require-corp\r\n";
+
+/// A page that is given out; ends when dropped.
+pub struct Site {
+    address: SocketAddr,
+    over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Site {
+    /// Gives a page out, to whoever asks.
+    ///
+    /// # Errors
+    /// Where no address of this machine can be listened on.
+    pub fn of(page: String) -> Result<Self, BrowserError> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).map_err(BrowserError::Site)?;
+        let address = listener.local_addr().map_err(BrowserError::Site)?;
+        let over = Arc::new(AtomicBool::new(false));
+        let is_over = Arc::clone(&over);
+        let page: Arc<str> = page.into();
+        let thread = thread::spawn(move || {
+            for connection in listener.incoming() {
+                if is_over.load(Ordering::Acquire) {
+                    return;
+                }
+                let Ok(connection) = connection else { continue };
+                let page = Arc::clone(&page);
+                // Browsers open connections in advance that they never ask anything on.
+                thread::spawn(move || answer(connection, &page));
+            }
+        });
+        Ok(Self { address, over, thread: Some(thread) })
+    }
+
+    /// Where it is.
+    pub fn url(&self) -> String {
+        format!("http://{}/", self.address)
+    }
+}
+
+impl Drop for Site {
+    fn drop(&mut self) {
+        self.over.store(true, Ordering::Release);
+        // The last connection ends the wait for the next one. Where there is none, the thread ends with the
+        // program.
+        if TcpStream::connect(self.address).is_ok()
+            && let Some(thread) = self.thread.take()
+        {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Gives the page, whatever was asked for.
+fn answer(mut connection: TcpStream, page: &str) -> io::Result<()> {
+    connection.set_read_timeout(Some(PATIENCE))?;
+    let mut head = Vec::new();
+    let mut part = [0; 1024];
+    while !head.windows(4).any(|end| end == b"\r\n\r\n") && head.len() < LONGEST_HEAD {
+        match connection.read(&mut part)? {
+            0 => return Ok(()),
+            read => head.extend_from_slice(&part[..read]),
+        }
+    }
+    let length = page.len();
+    write!(
+        connection,
+        "HTTP/1.1 200 OK\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: {length}\r\n\
+         Cache-Control: no-store\r\nConnection: close\r\n{ALONE}\r\n"
+    )?;
+    connection.write_all(page.as_bytes())
+}

@@ -1,0 +1,259 @@
+//! What the page of `haptic explore` costs its reader, in a browser of this machine.
+
+pub mod scenes;
+
+use std::f64::consts::TAU;
+use std::hint::black_box;
+use std::time::Instant;
+
+use haptic_servo::number::Format;
+use serde_json::{Value, json};
+use thiserror::Error;
+
+use self::scenes::PageScene;
+use super::{Figure, median};
+use crate::browser::{BrowserError, Page, Site};
+use crate::file::{self, FileError};
+use crate::verdict::judge_in;
+
+/// Runs in the page before its own scripts.
+const WATCH: &str = include_str!("watch.js");
+
+/// Most bytes of a page.
+const SIZE_BUDGET: f64 = 700e3;
+/// Most seconds from opening a page to its first verdict on the screen.
+const OPENING_BUDGET: f64 = 0.5;
+/// Most milliseconds of a frame that a verdict may take.
+const VERDICT_BUDGET: f64 = 1.0;
+/// Milliseconds of a frame.
+const FRAME: f64 = 1e3 / 60.0;
+/// Most seconds for a map of 40 000 points.
+const MAP_BUDGET: f64 = 1.0;
+/// Most milliseconds until the first picture of a map.
+const FIRST_PICTURE_BUDGET: f64 = 100.0;
+/// Most times as long as on this machine that a verdict may take in a page.
+const PAGE_BUDGET: f64 = 2.0;
+
+/// Width of the window in pixels.
+const WIDTH: u32 = 1280;
+/// Openings of each page.
+const OPENINGS: usize = 5;
+/// Movements of the mouse in a drag: at least one a frame, for about four seconds.
+const MOVEMENTS: usize = 240;
+/// Times that a drag goes there and back.
+const STROKES: f64 = 3.0;
+/// How far it goes to either side of the slider's middle, as a part of its length.
+const REACH: f64 = 0.3;
+
+/// Rounds of verdicts, of which the median counts.
+const ROUNDS: usize = 31;
+/// Rounds before that, in which the browser compiles what is called often once more.
+const ROUNDS_BEFORE: usize = 8;
+
+/// Why a page could not be measured.
+#[derive(Debug, Error)]
+pub enum PageError {
+    /// The browser fails.
+    #[error(transparent)]
+    Browser(#[from] BrowserError),
+    /// The page complains.
+    #[error("the page complains of {0:?}")]
+    Complaints(Vec<String>),
+    /// Nothing has been judged while a slider was dragged.
+    #[error("the page with the scene {scene} has judged nothing while {key} was dragged")]
+    NothingJudged {
+        /// The scene.
+        scene: &'static str,
+        /// The key.
+        key: &'static str,
+    },
+    /// A scene of the measurement cannot be judged here.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The answer has no form as JSON.
+    #[error("an answer cannot be written: {0}")]
+    Json(#[from] serde_json::Error),
+    /// The page's answer is another one than this program's.
+    #[error("to {question} the page answers {of_page}, and this program {here}")]
+    OtherAnswer {
+        /// The scene.
+        question: String,
+        /// The page's answer.
+        of_page: Value,
+        /// This program's.
+        here: String,
+    },
+}
+
+/// A page with its scene.
+pub struct ScenePage {
+    /// The scene.
+    pub scene: PageScene,
+    /// The page's text.
+    pub text: String,
+}
+
+/// A browser that watches the pages that are opened in it.
+///
+/// # Errors
+/// Where there is none.
+pub fn watching_browser() -> Result<Page, PageError> {
+    let mut browser = Page::start(WIDTH)?;
+    browser.run_first(WATCH)?;
+    Ok(browser)
+}
+
+/// All figures of the pages of scenes, the first of which is what `haptic explore` writes without a file. Calls
+/// `progress` with what is measured.
+///
+/// # Errors
+/// Where a page does not do what it does for a reader.
+pub fn figures(
+    mut browser: Page,
+    pages: &[ScenePage],
+    progress: impl Fn(&str),
+) -> Result<Vec<Figure>, PageError> {
+    let size = pages.first().map(|page| page.text.len() as f64);
+    let mut figures: Vec<_> = size.into_iter().map(size_figure).collect();
+    for ScenePage { scene, text } in pages {
+        let site = Site::of(text.clone())?;
+        progress(&format!("opening the page, {}", scene.name));
+        figures.extend(opened(&mut browser, &site, scene)?);
+        progress(&format!("dragging {} on the page, {}", scene.dragged, scene.name));
+        figures.extend(dragged(&mut browser, scene)?);
+    }
+    progress("judging in the page and here");
+    figures.extend(compared(&mut browser)?);
+    match browser.complaints.is_empty() {
+        true => Ok(figures),
+        false => Err(PageError::Complaints(browser.complaints.clone())),
+    }
+}
+
+fn size_figure(size: f64) -> Figure {
+    Figure::new("page of haptic explore: size", size, "bytes", Some(SIZE_BUDGET), "budget")
+}
+
+/// Median and most of some values, as two figures.
+fn spread(
+    name: &str,
+    values: Vec<f64>,
+    unit: &'static str,
+    budget: f64,
+    source: &'static str,
+) -> [Figure; 2] {
+    let most = values.iter().copied().fold(0.0, f64::max);
+    [("median", median(values)), ("most", most)].map(|(which, value)| {
+        Figure::new(format!("{name}, {which}"), value, unit, Some(budget), source)
+    })
+}
+
+/// Opens the page several times: when its first verdict is on the screen, when the worker has sent the first
+/// picture of its map, and when all of it.
+fn opened(browser: &mut Page, site: &Site, scene: &PageScene) -> Result<Vec<Figure>, PageError> {
+    const MAP: &str = "document.querySelector('#picture-map')?.dataset";
+    let [mut shown, mut first, mut all] = [const { Vec::new() }; 3];
+    for _ in 0..OPENINGS {
+        browser.go_to("about:blank")?;
+        browser.go_to(&site.url())?;
+        browser.wait_for("window.bench?.shown !== undefined")?;
+        browser.wait_for(&format!("{MAP}?.progress === 'all'"))?;
+        shown.push(browser.number("window.bench.shown")? / 1e3);
+        first.push(browser.number(&format!("{MAP}.firstMs"))?);
+        all.push(browser.number(&format!("{MAP}.allMs"))? / 1e3);
+    }
+    let name = |what| format!("page, {}: {what}", scene.name);
+    let mut figures = Vec::new();
+    let opening = name("opening to the first verdict on the screen");
+    figures.extend(spread(&opening, shown, "s", OPENING_BUDGET, "budget"));
+    let picture = name("first picture of the map");
+    figures.extend(spread(&picture, first, "ms", FIRST_PICTURE_BUDGET, "budget"));
+    let whole = name("map of 40 000 points");
+    figures.extend(spread(&whole, all, "s", MAP_BUDGET, "budget"));
+    Ok(figures)
+}
+
+/// Drags a slider of the page that is open, as a hand does: back and forth, by the mouse.
+fn dragged(browser: &mut Page, scene: &PageScene) -> Result<Vec<Figure>, PageError> {
+    let slider = format!("[data-key=\"{}\"] input[type=range]", scene.dragged);
+    let [left, top, width, height] = browser.place(&slider)?;
+    let at = |movement: usize| {
+        let turn = TAU * STROKES * movement as f64 / MOVEMENTS as f64;
+        [left + width * (0.5 + REACH * turn.sin()), top + height / 2.0]
+    };
+    browser.mouse("mousePressed", at(0))?;
+    browser.value("window.bench.watch()")?;
+    for movement in 1..=MOVEMENTS {
+        browser.mouse("mouseMoved", at(movement))?;
+    }
+    let seen = "window.bench.seen";
+    browser.value(&format!("{seen} = window.bench.watched()"))?;
+    browser.mouse("mouseReleased", at(MOVEMENTS))?;
+    let [frames, full, quick] = ["frames", "judge", "judge_without_remedies"]
+        .map(|what| browser.numbers(&format!("{seen}.{what}")));
+    let (frames, full, quick) = (frames?, full?, quick?);
+    if full.is_empty() && quick.is_empty() {
+        return Err(PageError::NothingJudged { scene: scene.name, key: scene.dragged });
+    }
+    let name = |what| format!("page, {}: {what} while a slider is dragged", scene.name);
+    let mut figures = Vec::new();
+    for (what, times) in [("verdict, words and remedies", full), ("verdict and words", quick)] {
+        // Where remedies take longer than a frame has, they wait until the hand does.
+        if !times.is_empty() {
+            figures.extend(spread(&name(what), times, "ms", VERDICT_BUDGET, "budget, of a frame"));
+        }
+    }
+    figures.extend(spread(&name("frame"), frames, "ms", FRAME, "60 frames a second"));
+    Ok(figures)
+}
+
+/// The same verdicts by the program of the page that is open and by this one, in turns, and the same answers:
+/// from a scene as JSON to its verdict as JSON.
+fn compared(browser: &mut Page) -> Result<[Figure; 2], PageError> {
+    let questions: Vec<String> = scenes::judged().iter().map(Value::to_string).collect();
+    browser.value(&format!("window.bench.start({})", json!(questions)))?;
+    let answers = browser.value("window.bench.answers()")?;
+    for (index, question) in questions.iter().enumerate() {
+        let here = certify(question)?;
+        let of_page = &answers[index];
+        if *of_page != here.as_str() {
+            let (question, of_page) = (question.clone(), of_page.clone());
+            return Err(PageError::OtherAnswer { question, of_page, here });
+        }
+    }
+    browser.value(&format!("window.bench.round({ROUNDS_BEFORE})"))?;
+    let (mut in_page, mut here) = (Vec::new(), Vec::new());
+    let microseconds = 1e3 / questions.len() as f64;
+    for _ in 0..ROUNDS {
+        in_page.push(browser.number("window.bench.round(1)")? * microseconds);
+        here.push(round(&questions)? * microseconds);
+    }
+    let (in_page, here) = (median(in_page), median(here));
+    let name = format!("page: verdict, {} scenes, median", questions.len());
+    Ok([
+        Figure::new(name, in_page, "us", Some(here), "natively on one core, same run"),
+        Figure::new(
+            "page: verdict, WebAssembly over native",
+            in_page / here,
+            "times",
+            Some(PAGE_BUDGET),
+            "budget",
+        ),
+    ])
+}
+
+/// Milliseconds of all answers here.
+fn round(questions: &[String]) -> Result<f64, PageError> {
+    let start = Instant::now();
+    for question in questions {
+        black_box(certify(black_box(question))?);
+    }
+    Ok(start.elapsed().as_secs_f64() * 1e3)
+}
+
+/// What the page's program does for `certify`, by the same functions.
+fn certify(question: &str) -> Result<String, PageError> {
+    let file = file::parse("scene", file::Format::Json, question)?;
+    let report = judge_in(&file.name, &file.scene, Format::F64, &file.steps());
+    Ok(serde_json::to_string(&report)?)
+}
