@@ -16,7 +16,7 @@ fn main() {
     // All boards share the memory map in the workspace's root; without it (the library as a
     // dependency) nothing is linked here.
     let mut roots = Path::new(&manifest).ancestors().skip(1).take(2);
-    let Some(root) = roots.find(|root| root.join("memory.x").exists()) else { return };
+    let Some(root) = roots.find(|root| root.join("firmware/memory.x").exists()) else { return };
     println!("cargo:rerun-if-changed={}", root.join("memory.x").display());
     // Arguments of this package's own programs, so that a program that depends on the library
     // finds its own map and not this one.

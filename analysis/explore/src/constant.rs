@@ -64,9 +64,7 @@ fn of(file: &SceneFile) -> Answer {
     };
     let is_late = scene.latency != Latency::NONE;
     let time_range = if is_late { ", TimeRange" } else { "" };
-    let uses: Vec<_> = uses.into_iter().collect();
-    let uses =
-        if let [one] = uses[..] { one.to_owned() } else { format!("{{{}}}", uses.join(", ")) };
+    let uses = imports("haptic_servo::environment", &uses.into_iter().collect::<Vec<_>>());
     let knots = knots.map_or_else(String::new, |knots| format!("{knots}\n"));
     let constant = structure(
         "Scene",
@@ -81,7 +79,7 @@ fn of(file: &SceneFile) -> Answer {
     );
     Ok(format!(
         "use haptic_servo::certificate::Certified;\n\
-         use haptic_servo::environment::{uses};\n\
+         {uses}\n\
          use haptic_servo::scene::{{Coupling, Device, Latency, Scene{time_range}, Timing}};\n\n\
          /// What the hand feels.\n\
          pub type Environment = {name};\n\n\
@@ -92,6 +90,28 @@ fn of(file: &SceneFile) -> Answer {
          pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();\n",
         constant.broken(0)
     ))
+}
+
+/// An item that imports names of a module, in lines as wide as rustfmt makes them.
+fn imports(module: &str, names: &[&str]) -> String {
+    const WIDTH: usize = 100;
+    if let [name] = names {
+        return format!("use {module}::{name};");
+    }
+    let line = format!("use {module}::{{{}}};", names.join(", "));
+    if line.len() <= WIDTH {
+        return line;
+    }
+    let (mut lines, mut last) = (String::new(), String::new());
+    for name in names {
+        if !last.is_empty() && last.len() + name.len() + ", ,".len() > WIDTH {
+            lines += &format!("{last},\n");
+            last.clear();
+        }
+        last += if last.is_empty() { "    " } else { ", " };
+        last += name;
+    }
+    format!("use {module}::{{\n{lines}{last},\n}};")
 }
 
 fn device(scene: &Scene) -> Expression {

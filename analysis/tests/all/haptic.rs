@@ -136,6 +136,8 @@ fn steps_are_held_against_friction() {
     assert!(some["rest"]["comes_to_rest"].is_null());
     let assumptions = some["assumptions"].to_string();
     assert!(assumptions.contains("the step of the DAC is not stated"), "{assumptions}");
+    // There is none, so that nothing is missing.
+    assert!(!assumptions.contains("current loop"), "{assumptions}");
     let strong = judge("", "torque = 3.0\nfull_scale = 2.0");
     assert!(strong["warnings"][0].as_str().unwrap().contains("full scale of 2 N m"));
 }

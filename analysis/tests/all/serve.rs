@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::protocol::CloseFrame;
 use tungstenite::stream::MaybeTlsStream;
-use tungstenite::{Message, WebSocket};
+use tungstenite::{Error, Message, WebSocket};
 
 use crate::common::haptic;
 use crate::wire::Rig;
@@ -350,7 +350,11 @@ fn a_page_that_says_text_or_too_much_at_once_is_sent_away() {
     drop(socket);
     let mut socket = connect(&board.server);
     text(&mut socket);
-    socket.send(Message::binary(vec![0; 1 << 20])).unwrap();
+    // It may be sent away before all of that is sent.
+    let sent = socket.send(Message::binary(vec![0; 1 << 20]));
+    let hung_up = [ErrorKind::BrokenPipe, ErrorKind::ConnectionReset];
+    let is_sent_away = matches!(&sent, Err(Error::Io(error)) if hung_up.contains(&error.kind()));
+    assert!(sent.is_ok() || is_sent_away, "{sent:?}");
     while socket.read().is_ok() {}
     drop(socket);
     connect(&board.server);

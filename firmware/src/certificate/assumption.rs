@@ -249,15 +249,14 @@ fn write_limit(f: &mut fmt::Formatter<'_>, torque: f64, full_scale: Option<f64>)
 /// Torque errors at rest, resolutions not stated, and whether friction is enough.
 fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Result {
     f.write_str("at rest the error of the torque is at most")?;
-    let parts = rest.parts();
     let mut between = " ";
-    for (name, part) in parts {
+    for (name, part) in rest.parts() {
         if let Some(part) = part {
             write!(f, "{between}{} N m ({name})", RoundUp3(part))?;
             between = ", ";
         }
     }
-    for (name, _) in parts.iter().filter(|(_, part)| part.is_none()) {
+    for name in rest.not_stated() {
         write!(f, "; the step of the {name} is not stated and not included")?;
     }
     write!(f, ": {rest}")

@@ -137,6 +137,12 @@ impl QuantizationBound {
         ]
     }
 
+    /// The parts that every scene has and that were not stated. A current loop is stated where there is one.
+    pub fn not_stated(&self) -> impl Iterator<Item = &'static str> {
+        let parts = [("encoder", self.encoder), ("DAC", self.converter)];
+        parts.into_iter().filter(|(_, part)| part.is_none()).map(|(name, _)| name)
+    }
+
     /// Whether the declared friction is enough; `None` where that cannot be said.
     pub fn comes_to_rest(&self) -> Option<bool> {
         let enough = self.friction? >= self.hum();
