@@ -5,13 +5,11 @@
 use core::panic::PanicInfo;
 
 use cortex_m_rt::{ExceptionFrame, exception};
-use haptic_servo::board::fault_memory;
 use haptic_servo::fault::{Fault, FaultRecord};
 use haptic_servo::servo::{Latched, PreparedServo};
 use haptic_servo::servo_loop::{self as servo, Hardware, PeriodClock, READ_WITHIN};
-use haptic_servo::{
-    boot::Startup, dac::DacCode, encoder::RawCount, period, reset::ResetCause, wire,
-};
+use haptic_servo::{board::fault_memory, boot::Startup, reset::ResetCause};
+use haptic_servo::{dac::DacCode, encoder::RawCount, period, wire};
 use heapless::spsc::{Producer, Queue};
 use stm32_metapac::{DAC1, DBGMCU, GPIOB, IWDG, RCC, TIM3, TIM5, TIM6, iwdg::vals::Key};
 
