@@ -76,9 +76,12 @@ fn they_pass_with_the_load_that_they_are_for() {
     }
 }
 
+/// A test, and what is made wrong for it.
+type Cause = (&'static str, fn(&mut Circuit));
+
 #[test]
 fn each_finds_what_is_wrong_with_load_and_supply() {
-    let causes: [(&str, fn(&mut Circuit)); 7] = [
+    let causes: [Cause; 7] = [
         (TENTH, |circuit| circuit.motor = None),
         (TENTH, |circuit| circuit.motor = Some(load(2.5))),
         (TENTH, |circuit| circuit.motor = Some(load(0.4))),
