@@ -138,7 +138,7 @@ impl QuantizationBound {
     }
 
     /// The parts that every scene has and that were not stated. A current loop is stated where there is one.
-    pub fn not_stated(&self) -> impl Iterator<Item = &'static str> {
+    pub(crate) fn not_stated(&self) -> impl Iterator<Item = &'static str> {
         let parts = [("encoder", self.encoder), ("DAC", self.converter)];
         parts.into_iter().filter(|(_, part)| part.is_none()).map(|(name, _)| name)
     }
