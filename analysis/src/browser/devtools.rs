@@ -234,7 +234,6 @@ impl Page {
     /// # Errors
     /// Where there is no such element, or it takes no click.
     pub fn click(&mut self, selector: &str) -> Result<(), BrowserError> {
-        self.middle(selector)?;
         self.value(&format!(
             "document.querySelector({selector:?}).addEventListener('click', \
              (event) => {{ event.currentTarget.isClicked = true; }}, {{ capture: true, once: true }})"

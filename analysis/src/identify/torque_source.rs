@@ -34,13 +34,12 @@ const STEPS: f64 = 2.0;
 /// rad/s, 1 for the sine itself.
 ///
 /// At each of them the voltage of the dead time is wrong for a while, which the feedback takes out as its derivative
-/// (theory, section 15.3).
+/// (theory, section 15.3): the voltage falls with the multiple, and its derivative rises as much.
 pub fn crossing(source: &TorqueSource, omega: f64, multiple: usize) -> f64 {
     let &TorqueSource { resistance, inductance, feedback, instant, zero_crossing, .. } = source;
     let decay = (-resistance * instant / inductance).exp();
-    let multiple = multiple as f64;
-    let voltage = 2.0 * FRAC_2_PI * (multiple * PI * WRONG_SIGN).sin() / multiple;
-    voltage * zero_crossing * multiple * omega * instant / (feedback * (1.0 - decay))
+    let voltage = 2.0 * FRAC_2_PI * (multiple as f64 * PI * WRONG_SIGN).sin();
+    voltage * zero_crossing * omega * instant / (feedback * (1.0 - decay))
 }
 
 /// Standard deviation in N m of a sine of torque of this amplitude, at an angular frequency in rad/s.
