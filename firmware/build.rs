@@ -1,4 +1,4 @@
-//! Linker scripts of the programs that run on a board: the firmware's own and those of its harness. The
+//! Linker scripts of the programs that run on a board: the firmware's own, those of its harness, and tests. The
 //! libraries and host builds need none.
 
 use std::env;
@@ -47,13 +47,12 @@ fn main() {
     if any(&["LOG", "STM32", "EMULATED"]) {
         arguments.push("-Tdefmt.x".into());
     }
-    for argument in &arguments {
-        println!("cargo:rustc-link-arg-bins={argument}");
+    // A package of tests has no other programs.
+    let tests = any(&["EMBEDDED_TEST"]);
+    if tests {
+        arguments.push("-Tembedded-test.x".into());
     }
-    if any(&["ON_TARGET"]) {
-        for argument in &arguments {
-            println!("cargo:rustc-link-arg-tests={argument}");
-        }
-        println!("cargo:rustc-link-arg-tests=-Tembedded-test.x");
+    for argument in &arguments {
+        println!("cargo:rustc-link-arg-{}={argument}", if tests { "tests" } else { "bins" });
     }
 }

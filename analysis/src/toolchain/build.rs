@@ -238,8 +238,8 @@ impl Toolchain {
             TorqueOutput::Dac => "on_target",
             TorqueOutput::Bridge => "bridge_load",
         };
-        let features = format!("{board},on-target{}", output.features());
-        let build = ["--release", "--package", "haptic-servo", "--target", TARGET];
+        let features = format!("{board}{}", output.features());
+        let build = ["--release", "--package", "board-tests", "--target", TARGET];
         let tests = ["--features", &features, "--test", name];
         let _lock = self.workspace.lock("build")?;
         let mut cargo = self.cargo();
