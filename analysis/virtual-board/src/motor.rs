@@ -158,6 +158,16 @@ impl Motor {
         0.5 * self.phase().1 * squares
     }
 
+    /// How far a current can change within a time, in A and s, whatever the legs do: at most all of the supply and
+    /// two back-EMFs, and as much again over the resistance, are at an inductance.
+    pub fn largest_change(&self, supply: f64, seconds: f64) -> f64 {
+        let (resistance, inductance) = self.phase();
+        let back_emf = (0..3).map(|terminal| self.back_emf(terminal).abs()).fold(0.0, f64::max);
+        let driving = supply + 2.0 * back_emf;
+        let current = self.currents.iter().map(|current| current.abs()).fold(0.0, f64::max);
+        (driving + driving.max(resistance * current)) / inductance * seconds
+    }
+
     /// Time passes, in s, while the legs are so and the supply has this voltage.
     pub fn advance(&mut self, legs: [Leg; 3], supply: f64, seconds: f64) -> Totals {
         let mut totals = Totals::default();
@@ -423,6 +433,35 @@ mod tests {
             motor.turn(angle, 0.0);
             assert_near(motor.torque(), torque, 1e-12);
         }
+    }
+
+    #[test]
+    fn no_current_changes_faster_than_is_said() {
+        let states = [[High, Low, Low], [Off, High, Low], [Low, Off, High], [Off, Off, Off]];
+        let mut closest: f64 = 0.0;
+        for motor in [brushed(), brushless()] {
+            for (round, legs) in (0..4000).zip(states.into_iter().cycle()) {
+                let mut motor = motor;
+                let phase = 0.37 * f64::from(round);
+                motor.turn(phase, 700.0 * phase.sin());
+                motor.currents = [0.0, 1.0, 2.0].map(|k| 30.0 * (phase + k * TAU / 3.0).cos());
+                for seconds in [1e-7, 6e-6, 1e-3] {
+                    let (mut after, bound) = (motor, motor.largest_change(SUPPLY, seconds));
+                    after.advance(legs, SUPPLY, seconds);
+                    for (before, after) in motor.currents.into_iter().zip(after.currents) {
+                        // A terminal without a winding has no current to lose.
+                        let change = if motor.is_connected(2) || after != 0.0 {
+                            after - before
+                        } else {
+                            0.0
+                        };
+                        assert!(change.abs() <= bound, "{change} A of {bound} A");
+                        closest = closest.max(change.abs() / bound);
+                    }
+                }
+            }
+        }
+        assert!(closest > 0.5, "the bound is of some use: {closest}");
     }
 
     #[test]

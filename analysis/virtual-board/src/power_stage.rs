@@ -376,9 +376,27 @@ impl PowerStage {
         self.due = trips.or(next);
     }
 
+    /// Whether a comparator's output may change before the next event, by how fast currents can change at most.
+    fn can_trip(&self, next: u64, around: &Surroundings<'_>) -> bool {
+        let change = self.circuit.largest_shunt_change(seconds(next - self.now, around));
+        let inputs = self.inputs(&self.circuit, around);
+        let outputs = |change: f64| {
+            let mut comparators = self.comparators;
+            comparators
+                .compare(inputs.map(|input| input.map(|volts| volts + change)), self.references());
+            comparators.outputs()
+        };
+        // Each output is one as long as its input is above a level.
+        let (low, high) = (outputs(-change), outputs(change));
+        low != high || self.timer.is_broken_by(low)
+    }
+
     /// The clock before the next event at which a comparator begins to break the outputs.
     fn trips(&self, next: u64, around: &Surroundings<'_>) -> Option<u64> {
         if self.broken.is_some() || !self.timer.is_on() || !self.comparators.any_is_on() {
+            return None;
+        }
+        if !self.can_trip(next, around) {
             return None;
         }
         let breaks = |at: u64| {

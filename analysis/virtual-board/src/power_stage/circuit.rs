@@ -117,6 +117,12 @@ impl Circuit {
         if self.encoder_is_reversed { -counts } else { counts }
     }
 
+    /// How far the voltage at a shunt's pin can change within a time, in V and s, while no leg is switched.
+    pub(super) fn largest_shunt_change(&self, seconds: f64) -> f64 {
+        let change = |motor: &Motor| motor.largest_change(self.supply.volts, seconds);
+        DIVIDED * SHUNT * self.motor.as_ref().map_or(0.0, change)
+    }
+
     /// Voltage at a shunt's pin of the chip: a current into the motor pulls it down.
     pub(super) fn shunt(&self, phase: usize, leg: Leg) -> f64 {
         let current = self.motor.map_or(0.0, |motor| motor.low_side_current(phase, leg));
