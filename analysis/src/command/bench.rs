@@ -23,7 +23,7 @@ use crate::studies::bench::current;
 use crate::studies::bench::live::live_set;
 use crate::studies::bench::matched;
 use crate::studies::bench::page::scenes::{PageScene, SHOWN};
-use crate::studies::bench::page::{self, ScenePage};
+use crate::studies::bench::page::{self, Repetitions, ScenePage};
 use crate::studies::bench::parts::{self, Inventory};
 use crate::studies::bench::profile;
 use crate::studies::bench::{self, CORE_CLOCK, Figure};
@@ -40,9 +40,18 @@ pub struct Arguments {
     /// frames, maps, and verdicts against those of this program
     #[arg(long, conflicts_with = "parts")]
     pub page: bool,
+    /// With --page: measure each figure a few times only, for its order of magnitude
+    #[arg(long, requires = "page")]
+    pub quick: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: JsonOption,
+}
+
+impl Arguments {
+    fn repetitions(&self) -> Repetitions {
+        if self.quick { Repetitions::QUICK } else { Repetitions::THOROUGH }
+    }
 }
 
 /// Most time in microseconds that a verdict may take on one core.
@@ -102,14 +111,14 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         return Ok(CommandStatus::Success);
     }
     if arguments.page {
-        let figures = about_pages()?;
+        let figures = about_pages(arguments.repetitions())?;
         arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
         return Ok(CommandStatus::Success);
     }
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let mut figures = on_host();
-    match about_pages() {
+    match about_pages(Repetitions::THOROUGH) {
         Ok(pages) => figures.extend(pages),
         Err(error) => eprintln!("page of haptic explore: not measured: {error}"),
     }
@@ -131,7 +140,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 }
 
 /// What the page of `haptic explore` costs in a browser.
-fn about_pages() -> Result<Vec<Figure>, CommandError> {
+fn about_pages(repetitions: Repetitions) -> Result<Vec<Figure>, CommandError> {
     // A browser that is missing is known before anything is built for it.
     let browser = page::watching_browser()?;
     let module = explore::module()?;
@@ -141,7 +150,8 @@ fn about_pages() -> Result<Vec<Figure>, CommandError> {
     };
     let pages: Vec<_> = SHOWN.into_iter().map(page).collect::<Result<_, _>>()?;
     let spinner = progress::spinner("measuring the page in a browser");
-    let figures = page::figures(browser, &pages, |what| spinner.set_message(what.to_owned()))?;
+    let progress = |what: &str| spinner.set_message(what.to_owned());
+    let figures = page::figures(browser, &pages, repetitions, progress)?;
     spinner.finish_and_clear();
     Ok(figures)
 }

@@ -124,6 +124,9 @@ pub(super) struct Workspace {
     output: PathBuf,
 }
 
+/// The package of the scenes' programs.
+const SCENES: &str = "haptic-servo";
+
 /// Which build of a program: with which features, and what is added to its name for the file.
 struct Variant {
     features: String,
@@ -220,9 +223,10 @@ impl Toolchain {
     /// # Errors
     /// Where it does not.
     pub fn try_release(&self, board: Board, name: &str) -> Result<(), BuildError> {
-        let build = ["--release", "--features", board.name(), "--bin", name, "--target", TARGET];
+        let build = ["--release", "--package", SCENES, "--features", board.name()];
+        let program = ["--bin", name, "--target", TARGET];
         let _lock = self.workspace.lock("build")?;
-        self.compile(name, &build)
+        self.compile(name, &[&build[..], &program].concat())
     }
 
     /// Builds the tests that run on a board as a user does, and gives their file: those of a board's own bridge
@@ -321,7 +325,7 @@ impl Toolchain {
     /// Where it does not compile.
     pub fn build_own_environment(&self, format: NumberFormat) -> Result<PathBuf, BuildError> {
         let variant = Variant::scene("board-qemu,log", format, "");
-        Ok(self.build(&["pedal"], &variant)?.swap_remove(0))
+        Ok(self.build("own-environment", &["pedal"], &variant)?.swap_remove(0))
     }
 
     /// Builds the program of a board that is not in the firmware, for that board.
@@ -371,7 +375,7 @@ impl Toolchain {
     /// Builds a program without a scene for the emulated board.
     fn build_harness(&self, name: &str) -> Result<PathBuf, BuildError> {
         let variant = Variant { features: "emulated".into(), suffix: String::new() };
-        Ok(self.build(&[name], &variant)?.swap_remove(0))
+        Ok(self.build("firmware-harness", &[name], &variant)?.swap_remove(0))
     }
 
     fn scenes_programs(
@@ -382,16 +386,23 @@ impl Toolchain {
         let scenes = self.scenes()?;
         match names.iter().find(|name| !scenes.iter().any(|scene| scene == *name)) {
             Some(name) => Err(SourcesError::NoScene { name: (*name).into(), scenes }.into()),
-            None => self.build(names, variant),
+            None => self.build(SCENES, names, variant),
         }
     }
 
-    /// One call of cargo for all programs: it links on all cores.
-    fn build(&self, names: &[&str], variant: &Variant) -> Result<Vec<PathBuf>, BuildError> {
+    /// One call of cargo for all programs of a package: it links on all cores. Without the package, what the
+    /// programs depend on would have features that others of the workspace ask for, and be built once more for
+    /// them.
+    fn build(
+        &self,
+        package: &str,
+        names: &[&str],
+        variant: &Variant,
+    ) -> Result<Vec<PathBuf>, BuildError> {
         // Cargo puts each build of a program, however it is built, in the same place; the lock keeps
         // it there until it is copied.
         let _lock = self.workspace.lock("build")?;
-        let release = ["--release", "--target", TARGET];
+        let release = ["--release", "--package", package, "--target", TARGET];
         let programs = names.iter().flat_map(|name| ["--bin", name]);
         let features = ["--features", &*variant.features];
         self.compile(

@@ -6,7 +6,7 @@ use crate::common::{answer, complaint, haptic, program};
 use crate::explore::explore_without_file;
 
 pub fn each_figure_of_the_page_has_its_reference() {
-    let figures = answer(&haptic(&["bench", "--page", "--json"]));
+    let figures = answer(&haptic(&["bench", "--page", "--quick", "--json"]));
     let figures = figures.as_array().unwrap();
     let names: Vec<_> = figures.iter().map(|figure| figure["name"].as_str().unwrap()).collect();
     for part in [

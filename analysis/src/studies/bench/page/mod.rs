@@ -36,19 +36,30 @@ const PAGE_BUDGET: f64 = 2.0;
 
 /// Width of the window in pixels.
 const WIDTH: u32 = 1280;
-/// Openings of each page.
-const OPENINGS: usize = 5;
-/// Movements of the mouse in a drag: at least one a frame, for about four seconds.
-const MOVEMENTS: usize = 240;
 /// Times that a drag goes there and back.
 const STROKES: f64 = 3.0;
 /// How far it goes to either side of the slider's middle, as a part of its length.
 const REACH: f64 = 0.3;
 
-/// Rounds of verdicts, of which the median counts.
-const ROUNDS: usize = 31;
-/// Rounds before that, in which the browser compiles what is called often once more.
-const ROUNDS_BEFORE: usize = 8;
+/// How often a page is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Repetitions {
+    /// Openings of each page.
+    openings: usize,
+    /// Movements of the mouse in a drag: at least one a frame.
+    movements: usize,
+    /// Rounds of verdicts, of which the median counts.
+    rounds: usize,
+    /// Rounds before that, in which the browser compiles what is called often once more.
+    rounds_before: usize,
+}
+
+impl Repetitions {
+    /// For figures that come out alike: four seconds of dragging.
+    pub const THOROUGH: Self = Self { openings: 5, movements: 240, rounds: 31, rounds_before: 8 };
+    /// For their order of magnitude.
+    pub const QUICK: Self = Self { openings: 1, movements: 60, rounds: 3, rounds_before: 1 };
+}
 
 /// Why a page could not be measured.
 #[derive(Debug, Error)]
@@ -111,6 +122,7 @@ pub fn watching_browser() -> Result<Page, PageError> {
 pub fn figures(
     mut browser: Page,
     pages: &[ScenePage],
+    repetitions: Repetitions,
     progress: impl Fn(&str),
 ) -> Result<Vec<Figure>, PageError> {
     let size = pages.first().map(|page| page.text.len() as f64);
@@ -118,12 +130,12 @@ pub fn figures(
     for ScenePage { scene, text } in pages {
         let site = Site::of(text.clone())?;
         progress(&format!("opening the page, {}", scene.name));
-        figures.extend(opened(&mut browser, &site, scene)?);
+        figures.extend(opened(&mut browser, &site, scene, repetitions)?);
         progress(&format!("dragging {} on the page, {}", scene.dragged, scene.name));
-        figures.extend(dragged(&mut browser, scene)?);
+        figures.extend(dragged(&mut browser, scene, repetitions)?);
     }
     progress("judging in the page and here");
-    figures.extend(compared(&mut browser)?);
+    figures.extend(compared(&mut browser, repetitions)?);
     match browser.complaints.is_empty() {
         true => Ok(figures),
         false => Err(PageError::Complaints(browser.complaints.clone())),
@@ -150,10 +162,15 @@ fn spread(
 
 /// Opens the page several times: when its first verdict is on the screen, when the worker has sent the first
 /// picture of its map, and when all of it.
-fn opened(browser: &mut Page, site: &Site, scene: &PageScene) -> Result<Vec<Figure>, PageError> {
+fn opened(
+    browser: &mut Page,
+    site: &Site,
+    scene: &PageScene,
+    repetitions: Repetitions,
+) -> Result<Vec<Figure>, PageError> {
     const MAP: &str = "document.querySelector('#picture-map')?.dataset";
     let [mut shown, mut first, mut all] = [const { Vec::new() }; 3];
-    for _ in 0..OPENINGS {
+    for _ in 0..repetitions.openings {
         browser.go_to("about:blank")?;
         browser.go_to(&site.url())?;
         browser.wait_for("window.bench?.shown !== undefined")?;
@@ -174,21 +191,26 @@ fn opened(browser: &mut Page, site: &Site, scene: &PageScene) -> Result<Vec<Figu
 }
 
 /// Drags a slider of the page that is open, as a hand does: back and forth, by the mouse.
-fn dragged(browser: &mut Page, scene: &PageScene) -> Result<Vec<Figure>, PageError> {
+fn dragged(
+    browser: &mut Page,
+    scene: &PageScene,
+    repetitions: Repetitions,
+) -> Result<Vec<Figure>, PageError> {
+    let movements = repetitions.movements;
     let slider = format!("[data-key=\"{}\"] input[type=range]", scene.dragged);
     let [left, top, width, height] = browser.place(&slider)?;
     let at = |movement: usize| {
-        let turn = TAU * STROKES * movement as f64 / MOVEMENTS as f64;
+        let turn = TAU * STROKES * movement as f64 / movements as f64;
         [left + width * (0.5 + REACH * turn.sin()), top + height / 2.0]
     };
     browser.mouse("mousePressed", at(0))?;
     browser.value("window.bench.watch()")?;
-    for movement in 1..=MOVEMENTS {
+    for movement in 1..=movements {
         browser.mouse("mouseMoved", at(movement))?;
     }
     let seen = "window.bench.seen";
     browser.value(&format!("{seen} = window.bench.watched()"))?;
-    browser.mouse("mouseReleased", at(MOVEMENTS))?;
+    browser.mouse("mouseReleased", at(movements))?;
     let [frames, full, quick] = ["frames", "judge", "judge_without_remedies"]
         .map(|what| browser.numbers(&format!("{seen}.{what}")));
     let (frames, full, quick) = (frames?, full?, quick?);
@@ -209,7 +231,7 @@ fn dragged(browser: &mut Page, scene: &PageScene) -> Result<Vec<Figure>, PageErr
 
 /// The same verdicts by the program of the page that is open and by this one, in turns, and the same answers:
 /// from a scene as JSON to its verdict as JSON.
-fn compared(browser: &mut Page) -> Result<[Figure; 2], PageError> {
+fn compared(browser: &mut Page, repetitions: Repetitions) -> Result<[Figure; 2], PageError> {
     let questions: Vec<String> = scenes::judged().iter().map(Value::to_string).collect();
     browser.value(&format!("window.bench.start({})", json!(questions)))?;
     let answers = browser.value("window.bench.answers()")?;
@@ -221,10 +243,10 @@ fn compared(browser: &mut Page) -> Result<[Figure; 2], PageError> {
             return Err(PageError::OtherAnswer { question, of_page, here });
         }
     }
-    browser.value(&format!("window.bench.round({ROUNDS_BEFORE})"))?;
+    browser.value(&format!("window.bench.round({})", repetitions.rounds_before))?;
     let (mut in_page, mut here) = (Vec::new(), Vec::new());
     let microseconds = 1e3 / questions.len() as f64;
-    for _ in 0..ROUNDS {
+    for _ in 0..repetitions.rounds {
         in_page.push(browser.number("window.bench.round(1)")? * microseconds);
         here.push(round(&questions)? * microseconds);
     }
