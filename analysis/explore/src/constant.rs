@@ -10,7 +10,7 @@ use haptic_servo::environment::{Coefficients, Composed, Ends, Environment, Ratio
 use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange};
 
 use crate::Answer;
-use crate::judge::read;
+use crate::scene_text::read;
 use expression::{Expression, number, optional, structure, word};
 
 /// Which walls there are a type of.

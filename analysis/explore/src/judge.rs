@@ -1,6 +1,6 @@
 //! The certificate, as `haptic certify` has it.
 
-use haptic_model::file::{self, FileError, SceneFile};
+use haptic_model::file::SceneFile;
 use haptic_model::remedy_change::{RemedyChange, remedy_changes};
 use haptic_model::verdict::{self, VerdictReport, judge_in};
 use haptic_model::verdict_text::rows;
@@ -8,10 +8,7 @@ use haptic_servo::number::Format;
 use serde::Serialize;
 
 use crate::Answer;
-use crate::scene_text::{Wrong, format};
-
-/// What the page calls the text in its fields.
-pub const NAME: &str = "scene";
+use crate::scene_text::{Wrong, read};
 
 /// A file that cannot be judged.
 #[derive(Serialize)]
@@ -53,11 +50,6 @@ fn judged(text: &str, report: impl FnOnce(&SceneFile) -> VerdictReport) -> Answe
         }
         Err(error) => json(&Wrong::of(&error)),
     }
-}
-
-/// The scene of a text.
-pub fn read(text: &str) -> Result<SceneFile, FileError> {
-    file::parse(NAME, format(text)?, text)
 }
 
 fn report(file: &SceneFile) -> VerdictReport {

@@ -125,7 +125,7 @@ mod tests {
         for kind in of("kinds") {
             let mut environment = kind["values"].clone();
             environment["type"] = kind["name"].clone();
-            let file = crate::judge::read(&scene(&environment));
+            let file = crate::scene_text::read(&scene(&environment));
             let file = file.unwrap_or_else(|error| panic!("{error}"));
             assert!(file.scene.certify().is_ok(), "{environment}");
         }
@@ -134,7 +134,7 @@ mod tests {
             values["type"] = shape["name"].clone();
             let environment = json!({ "type": "profile", "delay": 1, "from": -9, "to": 9,
                 "stiffness": 9, "shape": [values] });
-            let read = crate::judge::read(&scene(&environment));
+            let read = crate::scene_text::read(&scene(&environment));
             assert!(read.is_ok(), "{environment}: {}", read.unwrap_err());
         }
     }

@@ -15,7 +15,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::Answer;
-use crate::judge::read;
+use crate::scene_text::read;
 
 /// Most cells along an axis.
 const MOST: usize = 2000;

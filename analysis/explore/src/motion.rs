@@ -13,7 +13,7 @@ use haptic_model::worst_hand;
 use serde_json::json;
 
 use crate::Answer;
-use crate::judge::read;
+use crate::scene_text::read;
 
 /// Most samples of a push that no scene file asks for.
 const MOST: f64 = 40_000.0;

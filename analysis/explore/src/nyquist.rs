@@ -4,7 +4,7 @@ use haptic_model::nyquist::{Curve, NyquistScene, usual_window, words};
 use serde_json::{Value, json};
 
 use crate::Answer;
-use crate::judge::read;
+use crate::scene_text::read;
 
 /// The curves of a scene, what they must keep clear of, and the part of the plane that shows both. The
 /// numbers are the angle in rad, the real and the imaginary part in N m s/rad of each point, branch after

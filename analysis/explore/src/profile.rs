@@ -7,7 +7,7 @@ use haptic_servo::environment::Wall;
 use serde_json::{Value, json};
 
 use crate::Answer;
-use crate::judge::read;
+use crate::scene_text::read;
 
 /// Points of the line of a wall.
 const POINTS: usize = 201;

@@ -1,11 +1,13 @@
 //! Scenes as texts: read without a judgement, and written as a scene file.
 
-use haptic_model::file::{self, FileError, Format, Problem, write};
+use haptic_model::file::{self, FileError, Format, Problem, SceneFile, write};
 use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::Answer;
-use crate::judge::{NAME, read};
+
+/// What the page calls the text in its fields.
+const NAME: &str = "scene";
 
 /// What is wrong with a scene, each with its key and its place in the text.
 #[derive(Debug, Serialize)]
@@ -38,11 +40,16 @@ impl Wrong {
 }
 
 /// A text as the format that it is in: as JSON where it begins with a brace.
-pub fn format(text: &str) -> Result<Format, FileError> {
+fn format(text: &str) -> Result<Format, FileError> {
     if text.len() as u64 > file::MAX_BYTES {
         return Err(FileError::whole(NAME, 1, 1, Problem::TooLong { bound: file::MAX_BYTES }));
     }
     Ok(Format::of(NAME, text))
+}
+
+/// The scene of a text.
+pub fn read(text: &str) -> Result<SceneFile, FileError> {
+    file::parse(NAME, format(text)?, text)
 }
 
 /// TOML or JSON: `{"scene": ..}` with all its keys, whatever they are, or what is wrong with its grammar.

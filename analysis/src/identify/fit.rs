@@ -2,6 +2,7 @@
 //! would be of.
 
 use super::error::IdentifyError;
+use super::estimate::Estimate;
 use super::latency::{Latency, NoLatency};
 use super::least_squares::{Delay, Measured};
 use super::model::Model;
@@ -10,9 +11,6 @@ use super::response::{Correction, Response};
 use super::step::LeftOut;
 use crate::quantity::significant;
 
-/// Confidence of all intervals.
-pub const CONFIDENCE: f64 = 0.95;
-
 /// Least motion in counts: below that the encoder's steps are no noise any more.
 const LEAST_COUNTS: f64 = 1.5;
 
@@ -20,24 +18,6 @@ const LEAST_COUNTS: f64 = 1.5;
 /// rigid: residuals up to three times of what the noise explains, which allows for noise that is
 /// not white.
 const RIGID: f64 = 9.0;
-
-/// A number with its confidence interval.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Estimate {
-    /// Best value.
-    pub value: f64,
-    /// Lower end.
-    pub lo: f64,
-    /// Upper end.
-    pub hi: f64,
-}
-
-impl Estimate {
-    /// Whether the interval leaves out 0.
-    pub fn is_significant(&self) -> bool {
-        self.lo > 0.0 || self.hi < 0.0
-    }
-}
 
 /// The disk around all responses as they were measured: centre and radius `1/(2 delta)`.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]

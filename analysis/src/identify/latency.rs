@@ -3,7 +3,7 @@
 use serde::Serialize;
 use thiserror::Error;
 
-use super::fit::Estimate;
+use super::estimate::Estimate;
 use super::profile::{Open, Profile};
 use crate::quantity::significant;
 

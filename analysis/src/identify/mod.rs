@@ -17,6 +17,7 @@
 
 pub mod clipping;
 mod error;
+mod estimate;
 pub mod fit;
 pub mod latency;
 pub mod least_squares;
@@ -31,7 +32,8 @@ pub mod step;
 pub mod torque_source;
 
 pub use error::IdentifyError;
-pub use fit::{Disk, Estimate, Identification};
+pub use estimate::{CONFIDENCE, Estimate};
+pub use fit::{Disk, Identification};
 pub use latency::{Latency, NoLatency};
 pub use model::Model;
 pub use record::Record;

@@ -8,7 +8,7 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::fit::{CONFIDENCE, Estimate};
+use super::estimate::{CONFIDENCE, Estimate};
 use super::least_squares::{Delay, Fit, Measured};
 use super::model::Model;
 

@@ -4,8 +4,8 @@ use std::fmt;
 use std::hint::black_box;
 use std::net::SocketAddr;
 
-use super::PageRefusal;
 use super::http::{Answer, Head};
+use super::refusal::PageRefusal;
 
 /// Bytes of a token: nobody guesses 128 bit.
 const BYTES: usize = 16;

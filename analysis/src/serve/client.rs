@@ -15,7 +15,8 @@ use tungstenite::{Message, WebSocket};
 
 use super::http::{Answer, Head};
 use super::port::{News, Seat};
-use super::{PageRefusal, Shared};
+use super::refusal::PageRefusal;
+use super::shared::Shared;
 use crate::link::is_timeout;
 
 /// Longest time that bytes to a page wait.

@@ -10,6 +10,8 @@ mod client;
 mod http;
 mod port;
 mod refusal;
+mod report;
+mod shared;
 
 use std::io;
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -23,8 +25,9 @@ use thiserror::Error;
 use self::access::{Access, Token};
 use self::http::{Answer, Head};
 pub use self::port::Port;
-use self::port::Seats;
 pub use self::refusal::PageRefusal;
+pub use self::report::Report;
+use self::shared::Shared;
 
 /// Connections at a time: a page takes two, and a browser opens some in advance.
 const CONNECTIONS: usize = 16;
@@ -57,25 +60,12 @@ pub enum ServeError {
     Random(#[from] getrandom::Error),
 }
 
-/// What happens, in a sentence, for the one who started the server.
-pub type Report = Box<dyn Fn(&str) + Send + Sync>;
-
 /// A running server; ends when dropped.
 pub struct Server {
     address: SocketAddr,
     token: Token,
     over: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
-}
-
-/// What every connection needs.
-struct Shared {
-    access: Access,
-    page: String,
-    seats: Seats,
-    over: Arc<AtomicBool>,
-    connections: AtomicUsize,
-    report: Report,
 }
 
 impl Server {

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use haptic_model::board::timing::RETRY;
 
-use super::Report;
+use super::report::Report;
 use crate::link::{Address, LinkError, Transport, is_timeout, open};
 
 /// Longest time that bytes to the board wait.

@@ -1,6 +1,6 @@
 //! What both rules say of a scene, with the numbers behind the answers.
 
-use super::model::LoopIntervals;
+use super::loop_intervals::LoopIntervals;
 use super::problem::PassivityProblem;
 use super::rejection::Rejection;
 use super::remedy::Remedies;

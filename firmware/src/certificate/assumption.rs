@@ -5,8 +5,9 @@ use core::f64::consts::PI;
 use core::fmt;
 
 use super::assessment::Assessment;
+use super::loop_intervals::LoopIntervals;
 use super::margin::Limited;
-use super::model::{LoopIntervals, LoopTransfers};
+use super::model::LoopTransfers;
 use super::quantization::{QuantizationBound, Resolution};
 use super::rules::is_nonlinear;
 use super::timed::limited_bound;

@@ -36,7 +36,7 @@
 //! there as well. That is so of a wall that is late, where the gain that solves a tick does not
 //! change with it. Anywhere else coefficients that are rounded each by itself can leave a hole.
 
-use super::model::LoopIntervals;
+use super::loop_intervals::LoopIntervals;
 use super::rules::is_nonlinear;
 use crate::environment::{AnyProfile, Composed, Environment};
 use crate::number::Format;

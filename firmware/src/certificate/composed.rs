@@ -1,7 +1,8 @@
 //! The index of a sum of a torque profile, a wall and a canceller: the sum of their bounds, which hold with
 //! the torque of the sum limited at any level (theory, section 14.3).
 
-use super::model::{LoopIntervals, Washout, canceller, damper, feedthrough_of_canceller};
+use super::loop_intervals::LoopIntervals;
+use super::model::{Washout, canceller, damper, feedthrough_of_canceller};
 use super::profile::{ExtremeSlopes, delay_at_port, part_of_sample, profile_bound_at_port};
 use crate::environment::{Composed, Environment, Wall};
 use crate::passivity::interval::Interval;

@@ -4,7 +4,8 @@
 //! index and `delta` does not apply. So the margin is not `delta` less the index.
 
 use super::assessment::Assessment;
-use super::model::{LoopIntervals, Missed, largest_gain, largest_solved};
+use super::loop_intervals::{LoopIntervals, Missed};
+use super::model::{largest_gain, largest_solved};
 use super::problem::PassivityProblem;
 use super::rules::{Answer, Rule, paper_limit};
 use crate::environment::{Environment, EnvironmentModel};

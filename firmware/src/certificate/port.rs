@@ -1,6 +1,7 @@
 //! The rule for linear scenes whose torque lags: equation 38 at the device's port.
 
-use super::model::{Lagging, LoopIntervals};
+use super::deviation::Deviation;
+use super::loop_intervals::Lagging;
 use super::problem::PassivityProblem;
 use super::rules::Answer;
 use crate::latency::{Latency, TimeRange};
@@ -132,50 +133,6 @@ const fn part(range: TimeRange, index: usize) -> Interval {
     let from = least.add(step.mul(Interval::exact(index as f64)));
     let to = least.add(step.mul(Interval::exact(index as f64 + 1.0)));
     Interval::new(from.lo().max(0.0), to.hi())
-}
-
-/// What a delay that deviates from tick to tick takes: passivity, and ripple over `T^2`
-/// (theory, section 13.5).
-#[derive(Clone, Copy)]
-struct Deviation {
-    /// What `D / 4` is divided by.
-    divisor: Interval,
-    /// What the index has to stay below.
-    limit: Interval,
-    ripple: Interval,
-}
-
-impl Deviation {
-    const fn of(lagging: &Lagging, n: &LoopIntervals) -> Option<Self> {
-        let latency = &lagging.latency;
-        let none = Self { divisor: n.delta, limit: n.delta, ripple: Interval::ZERO };
-        if latency.output_jitter == 0.0 {
-            return Some(none);
-        }
-        if !latency.sensor_lag.is_zero() {
-            return None;
-        }
-        let h = Interval::decimal(latency.output_jitter).div(n.period);
-        if latency.actuator_lag.is_zero() && latency.actuator_response.is_zero() {
-            let limit = n.delta.mul(Interval::ONE.sub(h.half()));
-            return Some(Self { limit, ripple: h.double().add(h), ..none });
-        }
-        let share = h.sqrt().half().midpoint();
-        if !(share > 0.0 && share < 1.0) {
-            return None;
-        }
-        let share = Interval::exact(share);
-        let left = n.delta.mul(Interval::ONE.sub(share));
-        Some(Self { divisor: left, limit: left, ripple: h.div(share) })
-    }
-}
-
-/// What [`PassivityProblem::port_index`] has to stay below.
-pub(super) const fn port_limit(lagging: &Lagging, n: &LoopIntervals) -> Interval {
-    match Deviation::of(lagging, n) {
-        Some(deviation) => deviation.limit,
-        None => n.delta,
-    }
 }
 
 const fn larger(a: (RealPart, Interval), b: (RealPart, Interval)) -> (RealPart, Interval) {

@@ -1,7 +1,8 @@
 //! A scene that can be judged, and the answers of the two rules without the numbers behind them.
 
 use super::composed::composed_bound_at_port;
-use super::model::{LoopIntervals, largest_solved, nonlinear_bound, transfer};
+use super::loop_intervals::LoopIntervals;
+use super::model::{largest_solved, nonlinear_bound, transfer};
 use super::profile::{ExtremeSlopes, is_motor, is_motor_where_limited, profile_bound_at_port};
 use super::rejection::Rejection;
 use super::remedy::Remedies;
@@ -360,7 +361,7 @@ impl PassivityProblem {
     /// The larger of the index where each torque belongs to the instant of its count, and of that
     /// where torques are latched, if updates may be missed there: then the coupling's excess is over
     /// the standard one of the declared passivity, and the limit is the same (see
-    /// [`super::model::Missed::limit`] with `nu = 1`).
+    /// [`super::loop_intervals::Missed::limit`] with `nu = 1`).
     pub(super) const fn coupled(
         &self,
         alone: Option<Result<RealPart, IndexError>>,

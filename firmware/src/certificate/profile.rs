@@ -1,6 +1,6 @@
 //! The index of a torque profile: by its extreme slopes alone (theory, section 14).
 
-use super::model::LoopIntervals;
+use super::loop_intervals::LoopIntervals;
 use crate::environment::{AnyProfile, Ends, Environment, EnvironmentModel, SnapPoint};
 use crate::latency::{Latency, TimeRange};
 use crate::passivity::interval::Interval;

@@ -2,7 +2,7 @@
 
 use super::between::passes_upwards;
 use super::digits::{Digits, Side};
-use super::model::LoopIntervals;
+use super::loop_intervals::LoopIntervals;
 use super::problem::PassivityProblem;
 use super::rejection::Rejection;
 use super::remedy::{CANDIDATES, ORDER, Remedies, Remedy};

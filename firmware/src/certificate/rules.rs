@@ -1,9 +1,9 @@
 //! The two rules: the paper's (equations 17 to 19) and the exact one (theory, section 4.1).
 
-use super::model::LoopIntervals;
+use super::deviation::port_limit;
+use super::loop_intervals::LoopIntervals;
 #[cfg(doc)]
-use super::model::Missed;
-use super::port::port_limit;
+use super::loop_intervals::Missed;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 

@@ -24,6 +24,7 @@ mod error;
 mod fault;
 mod follower;
 mod index_check;
+mod indexed_loop;
 mod motion;
 mod motor;
 mod offset;

@@ -1,7 +1,7 @@
 //! The power stage of a board: what its data sheets and its schematic say.
 
 use super::motor::Supply;
-use super::thermistor::Thermistor;
+use super::thermistor::{LARGEST_COUNT, Thermistor};
 
 /// The numbers of a board's power stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub struct PowerStage {
 
 impl PowerStage {
     /// The largest count of a board's converters.
-    pub const LARGEST_COUNT: u16 = 4095;
+    pub const LARGEST_COUNT: u16 = LARGEST_COUNT;
 }
 
 /// The power stage of the B-G431B-ESC1, by its user manual (UM2516), the schematic of MB1419, and the data sheet

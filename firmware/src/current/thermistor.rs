@@ -3,7 +3,8 @@
 
 use crate::passivity::interval::Interval;
 
-use super::power_stage::PowerStage;
+/// The converter's count at its supply: 12 bits.
+pub(super) const LARGEST_COUNT: u16 = 4095;
 
 /// 0 degrees Celsius in K.
 const ZERO_CELSIUS: f64 = 273.15;
@@ -35,8 +36,7 @@ impl Thermistor {
         let thermistor =
             if exponent < 0.0 { self.resistance * factor } else { self.resistance / factor };
         // The cast rounds a positive number down.
-        (PowerStage::LARGEST_COUNT as f64 * self.to_ground / (self.to_ground + thermistor) + 0.5)
-            as u16
+        (LARGEST_COUNT as f64 * self.to_ground / (self.to_ground + thermistor) + 0.5) as u16
     }
 
     /// Counts for a board, which does not compute exponential functions.

@@ -9,13 +9,12 @@
 //! `count`, `centre`, `from`, `to` and `delay` the profile's; `residual` the canceller's. Without a wall,
 //! `stiffness` is that beyond the end stops.
 
-use super::any::{AnyProfileLaw, AnyWallLaw, Environment, Wall};
+use super::any_wall::{AnyWallLaw, Wall};
 use super::free_mode::{FreeModeWallLaw, beside, canceller};
 use super::law::{Discretize, Law, LawContext};
-use super::profile::{AnyProfile, Profile};
+use super::profile::{AnyProfile, AnyProfileLaw};
 use super::turn::Turn;
 use super::velocity::{Velocity, Washout};
-use super::walls::{DamperWall, DelayedSpring, OneSided};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
 use crate::number::Number;
@@ -261,40 +260,6 @@ impl<N: Number> Discretize<N> for Composed {
         Ok(ComposedLaw { canceller, wall, profile: self.profile.law(context)? })
     }
 }
-
-impl<const KNOTS: usize, const N: usize> FreeModeProfile<Profile<KNOTS, N>> {
-    /// As data.
-    pub const fn as_data(&self) -> Environment {
-        let (residual, profile) = (Some(self.residual), self.profile.as_any());
-        Environment::Composed(Composed { residual, wall: None, profile })
-    }
-}
-
-macro_rules! beside_walls {
-    ($($wall:ty),*) => {$(
-        impl<const KNOTS: usize, const D: usize, const N: usize>
-            WallAndProfile<$wall, Profile<KNOTS, N>>
-        {
-            /// As data.
-            pub const fn as_data(&self) -> Environment {
-                let (wall, profile) = (Some(self.wall.as_wall()), self.profile.as_any());
-                Environment::Composed(Composed { residual: None, wall, profile })
-            }
-        }
-
-        impl<const KNOTS: usize, const D: usize, const N: usize>
-            FreeModeWallAndProfile<$wall, Profile<KNOTS, N>>
-        {
-            /// As data.
-            pub const fn as_data(&self) -> Environment {
-                let (wall, profile) = (Some(self.wall.as_wall()), self.profile.as_any());
-                Environment::Composed(Composed { residual: Some(self.residual), wall, profile })
-            }
-        }
-    )*};
-}
-
-beside_walls!(DelayedSpring<D>, DamperWall<D>, OneSided<DelayedSpring<D>>, OneSided<DamperWall<D>>);
 
 #[cfg(test)]
 mod tests;

@@ -71,7 +71,9 @@ mod sealed {
 }
 
 mod any;
+mod any_wall;
 mod composed;
+mod composed_data;
 mod data;
 mod delay_line;
 mod free_mode;
@@ -88,7 +90,8 @@ mod velocity;
 mod wall_law;
 mod walls;
 
-pub use any::{DataLaw, Environment, EnvironmentLaw, Wall};
+pub use any::{DataLaw, Environment, EnvironmentLaw};
+pub use any_wall::Wall;
 pub use composed::{
     Composed, ComposedLaw, FreeModeProfile, FreeModeWallAndProfile, WallAndProfile,
     WallAndProfileLaw,

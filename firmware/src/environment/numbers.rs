@@ -1,6 +1,7 @@
 //! The numbers of any environment by name.
 
-use super::any::{Environment, Wall};
+use super::any::Environment;
+use super::any_wall::Wall;
 use super::composed::Composed;
 use super::profile::{AnyProfile, Ends, ModeSelection};
 use super::stated::{StatedBound, StatedModel};

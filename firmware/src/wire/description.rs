@@ -3,7 +3,7 @@
 use fixed::types::{I1F31, I4F28, I8F24, I12F20, I16F16};
 use serde::{Deserialize, Serialize};
 
-use super::message::Changes;
+use super::changes::Changes;
 use crate::build_error::BuildError;
 use crate::certificate::{Parameter, Rejection};
 use crate::environment::{Environment, Wall};

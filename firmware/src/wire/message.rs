@@ -7,29 +7,22 @@
 use core::fmt;
 use core::num::NonZeroU32;
 
-use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
+pub use super::changes::{Changes, MAX_CHANGES};
 use super::decoder::Discarded;
 use super::description::Description;
 use super::telemetry::Batch;
-use crate::certificate::Parameter;
 use crate::fault::{Fault, FaultRecord};
 use crate::power_reading::PowerReading;
 use crate::reset::ResetCause;
 use crate::servo::Step;
 use crate::servo_loop::State;
 
-/// Numbers that one set may change: more than any scene has.
-pub const MAX_CHANGES: usize = 8;
 /// Longest message to a board, in bytes: the longest set, nine bytes a number.
 pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;
 /// Longest message to the host, in bytes: a full batch of ticks, and a program described.
 pub const LONGEST_TO_HOST: usize = 352;
-
-/// Numbers of a scene and what they are, or shall be together or not at all, in the units of a
-/// scene file.
-pub type Changes = Vec<(Parameter, f64), MAX_CHANGES>;
 
 /// The host's number for a request, which comes back with the answer.
 pub type Id = u16;

@@ -5,6 +5,7 @@
 //! with a [`description`] of what runs there the host has the words for a refusal. The host asks and
 //! the board answers; of itself the board sends telemetry only, once it was asked to.
 
+mod changes;
 pub mod decoder;
 pub mod description;
 pub mod frame;

@@ -25,7 +25,8 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use crate::Answer;
-use crate::judge::{json, read};
+use crate::judge::json;
+use crate::scene_text::read;
 use settings::Settings;
 use simulated::{Motion, Simulated};
 

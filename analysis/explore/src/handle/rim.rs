@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::parsed;
 use crate::Answer;
-use crate::judge::{json, read};
+use crate::judge::json;
+use crate::scene_text::read;
 
 /// Points of a turn.
 const POINTS: u32 = 721;

@@ -14,7 +14,7 @@ use super::push::Push;
 use super::record::Record;
 use super::servo::{Rendered, Rendering};
 use super::settings::Settings;
-use crate::judge::read;
+use crate::scene_text::read;
 
 /// The most ticks in which a servo settles at the angle at which it takes over.
 const MOST_SETTLING: u32 = 1000;

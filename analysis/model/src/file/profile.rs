@@ -80,14 +80,6 @@ fn narrowest_piece(shape: &Shape) -> f64 {
     }
 }
 
-/// From the first knot to the last one in rad.
-pub fn span(knots: &[(f64, f64)]) -> f64 {
-    match knots {
-        [(first, _), .., (last, _)] => last - first,
-        _ => 0.0,
-    }
-}
-
 /// A torque profile, and where its numbers stood.
 pub struct ProfileTable {
     /// The environment.

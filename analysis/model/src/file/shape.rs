@@ -160,7 +160,15 @@ pub fn written(shape: &Shape) -> (&'static str, Vec<(&'static Key, f64)>) {
             ],
         ),
         Shape::Table(_) => (TABLE, vec![]),
-        Shape::Periodic(knots) => (TABLE, vec![(&key::SHAPE_PERIOD, super::profile::span(knots))]),
+        Shape::Periodic(knots) => (TABLE, vec![(&key::SHAPE_PERIOD, span(knots))]),
+    }
+}
+
+/// From the first knot to the last one in rad.
+pub fn span(knots: &[(f64, f64)]) -> f64 {
+    match knots {
+        [(first, _), .., (last, _)] => last - first,
+        _ => 0.0,
     }
 }
 

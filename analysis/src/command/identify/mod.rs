@@ -276,7 +276,7 @@ fn report<'a>(
         misfit: found.misfit,
         rigid: found.is_rigid(),
         passivity: found.passivity(),
-        confidence: identify::fit::CONFIDENCE,
+        confidence: identify::CONFIDENCE,
         measured,
         responses: found.responses.iter().map(point).collect(),
         notes,

@@ -7,8 +7,9 @@ use core::marker::PhantomData;
 #[cfg(doc)]
 use super::Certified;
 use super::assessment::Assessment;
+use super::loop_intervals::{LoopIntervals, Missed, has_latency};
 use super::margin::Limited;
-use super::model::{LoopIntervals, Missed, has_latency, largest_solved, nonlinear_bound};
+use super::model::{largest_solved, nonlinear_bound};
 use super::profile::is_motor_where_limited;
 use super::rules::{Rule, paper_limit};
 use super::validity::first_invalid_number;

@@ -8,7 +8,10 @@ use crate::certificate::{
 };
 use crate::encoder::{CounterWidth, RawCount};
 use crate::energy::NoAction;
-use crate::environment::{Ends, EnvironmentModel, Knots, Matched, Shape};
+use crate::environment::{
+    DamperWall, DelayedSpring, Ends, Environment, EnvironmentModel, Knots, Matched, OneSided,
+    Profile, Shape,
+};
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::scene::{Coupling, Device, Latency, Scene, Timing};

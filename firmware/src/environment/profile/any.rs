@@ -2,12 +2,14 @@
 
 use super::knots::{Knots, Outline};
 use super::law::ProfileLaw;
+use super::layout::{Ends, Layout, SnapPoint};
+use super::mode_table::ProfileMode;
 use super::scale::Scale;
 use super::selection::ModeSelection;
 use super::shape::Shape;
 use super::shape_error::ShapeError;
-use super::snap::{AnySnap, NoSnap, Snap, SnapPoint};
-use super::sum::{Ends, Layout, sampled};
+use super::snap::{AnySnap, NoSnap, Snap};
+use super::sum::sampled;
 use super::{DampedProfile, Profile, SnapProfile};
 use crate::build_error::BuildError;
 use crate::environment::delay_line::VariableDelay;
@@ -69,16 +71,26 @@ impl AnyProfile {
         Self { units, outline, torque, count, centre, ends, damping, delay, snap, modes: None }
     }
 
-    /// The same as one of several modes, late by so many samples.
-    pub(super) const fn as_one_of(self, modes: ModeSelection, delay: usize) -> Self {
-        Self { delay, modes: Some(modes), ..self }
+    /// A mode that is one of several, late by so many samples.
+    pub(super) const fn of_mode(mode: &ProfileMode, modes: ModeSelection, delay: usize) -> Self {
+        let profile = Self::of(mode.units, mode.outline, mode.layout, 0.0, delay);
+        Self { modes: Some(modes), ..profile }
+    }
+
+    /// The selected one of several modes, late by so many samples; `None` where there is no such mode, or where
+    /// it came over the wire.
+    pub(super) const fn selected(modes: ModeSelection, delay: usize) -> Option<Self> {
+        match modes.selected() {
+            Some(mode) => Some(Self::of_mode(mode, modes, delay)),
+            None => None,
+        }
     }
 
     /// The same with another one of its modes selected; `None` where there is no such mode, or where it came
     /// over the wire, without the tables of the others.
     pub const fn selecting(&self, mode: f64) -> Option<Self> {
         match &self.modes {
-            Some(modes) => modes.selecting(mode).profile(self.delay),
+            Some(modes) => Self::selected(modes.selecting(mode), self.delay),
             None => None,
         }
     }
@@ -159,3 +171,6 @@ impl<N: Number> Discretize<N> for AnyProfile {
         ProfileLaw::new(self.units, &self.outline, &self.layout(), velocity, delay, snap)
     }
 }
+
+/// The law of any torque profile.
+pub(in crate::environment) type AnyProfileLaw<N> = <AnyProfile as Discretize<N>>::Law;

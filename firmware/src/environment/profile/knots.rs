@@ -1,14 +1,11 @@
 //! A torque profile's knots: a table of equal cells that stays in flash, and all that the certificate
 //! asks of it.
 
-use super::sum::Layout;
+use super::layout::{Layout, PART_BITS};
 
 /// The largest unit of a knot: it stands for the profile's torque. The step from one knot to the next
 /// fits 16 bits, too.
 pub const FULL_SCALE: i16 = (1 << 14) - 1;
-
-/// Parts of a cell, as a power of two, in which places in a table are counted.
-pub(super) const PART_BITS: u32 = 14;
 
 /// Knots of a torque profile in parts of its torque, [`FULL_SCALE`] for all of it, over cells of equal
 /// width. After the last knot comes the first one again.

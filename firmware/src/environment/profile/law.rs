@@ -1,9 +1,9 @@
 //! The law of a torque profile: one look into its table a tick.
 
 use super::knots::{KnotTable, Outline};
+use super::layout::{Ends, Layout};
 use super::scale::Scale;
 use super::snap::Holding;
-use super::sum::{Ends, Layout};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
 use crate::environment::delay_line::DelayLine;

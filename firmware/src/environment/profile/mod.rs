@@ -12,6 +12,7 @@
 mod any;
 mod knots;
 mod law;
+mod layout;
 mod mode_table;
 mod modes;
 mod profile_modes;
@@ -24,17 +25,18 @@ mod snap_profile;
 mod sum;
 
 pub use any::AnyProfile;
+pub(super) use any::AnyProfileLaw;
 pub use knots::{Cell, FULL_SCALE, KnotTable, Knots, Outline};
 pub use law::ProfileLaw;
+pub use layout::{Ends, Layout, SnapPoint};
 pub use mode_table::{ModeTable, ProfileMode};
 pub use modes::{KNOB_MODES, MODES, Mode};
 pub use profile_modes::ProfileModes;
 pub use selection::ModeSelection;
 pub use shape::Shape;
 pub use shape_error::ShapeError;
-pub use snap::{AnySnap, Holding, NoSnap, Snap, SnapPoint};
+pub use snap::{AnySnap, Holding, NoSnap, Snap};
 pub use snap_profile::SnapProfile;
-pub use sum::{Ends, Layout};
 
 use super::delay_line::FixedDelay;
 use super::law::{Discretize, LawContext};

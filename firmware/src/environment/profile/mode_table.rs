@@ -1,10 +1,10 @@
 //! A mode's table: a torque profile's knots alone.
 
-use super::any::AnyProfile;
 use super::knots::Outline;
+use super::layout::Layout;
 use super::shape::Shape;
 use super::shape_error::ShapeError;
-use super::sum::{Layout, sampled};
+use super::sum::sampled;
 
 /// The table of a torque profile that is one of several: its knots alone, two bytes each, which stay in
 /// flash. [`Knots`](super::Knots) have the cells between them as well, ten bytes a knot, for a tick that is a
@@ -21,8 +21,10 @@ pub struct ModeTable<const KNOTS: usize> {
 pub struct ProfileMode {
     /// What it is called.
     pub name: &'static str,
-    /// The profile, not delayed.
-    pub(super) profile: AnyProfile,
+    /// Its table, not delayed.
+    pub(super) units: &'static [i16],
+    pub(super) outline: Outline,
+    pub(super) layout: Layout,
 }
 
 impl<const KNOTS: usize> ModeTable<KNOTS> {
@@ -60,7 +62,6 @@ impl<const KNOTS: usize> ModeTable<KNOTS> {
 
     /// The table as a mode of this name.
     pub const fn named(&'static self, name: &'static str) -> ProfileMode {
-        let profile = AnyProfile::of(&self.units, self.outline, self.layout, 0.0, 0);
-        ProfileMode { name, profile }
+        ProfileMode { name, units: &self.units, outline: self.outline, layout: self.layout }
     }
 }

@@ -51,9 +51,9 @@ impl<const DELAY: usize> ProfileModes<DELAY> {
     /// number, which the certificate refuses.
     pub const fn as_any(&self) -> AnyProfile {
         let selection = ModeSelection::of(self.modes, self.mode);
-        match selection.profile(DELAY) {
+        match AnyProfile::selected(selection, DELAY) {
             Some(profile) => profile,
-            None => self.modes[0].profile.as_one_of(selection, DELAY),
+            None => AnyProfile::of_mode(&self.modes[0], selection, DELAY),
         }
     }
 }
@@ -72,8 +72,9 @@ impl<N: Number, const DELAY: usize> Discretize<N> for ProfileModes<DELAY> {
     fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
         // A number format that has no room for one of them has none for the program, so that none is refused
         // later.
+        let selection = ModeSelection::of(self.modes, self.mode);
         for mode in self.modes {
-            law::<N, DELAY>(&mode.profile)?;
+            law::<N, DELAY>(&AnyProfile::of_mode(mode, selection, DELAY))?;
         }
         law(&self.as_any())
     }

@@ -1,8 +1,8 @@
 //! The numbers by which a law multiplies, before a number format rounds them: the certificate judges what
 //! the format makes of these.
 
-use super::knots::{FULL_SCALE, Outline, PART_BITS};
-use super::sum::Layout;
+use super::knots::{FULL_SCALE, Outline};
+use super::layout::{Layout, PART_BITS};
 
 /// Scales of a profile.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,5 @@
 //! Which one of several torque profiles is rendered.
 
-use super::any::AnyProfile;
 use super::mode_table::ProfileMode;
 
 /// One of several torque profiles, by its number.
@@ -41,13 +40,10 @@ impl ModeSelection {
         self.modes
     }
 
-    /// The selected profile, late by so many samples; `None` where there is none, or where it came over the
-    /// wire.
-    pub(super) const fn profile(&self, delay: usize) -> Option<AnyProfile> {
+    /// The selected one; `None` where there is none, or where it came over the wire.
+    pub(super) const fn selected(&self) -> Option<&'static ProfileMode> {
         match self.index() {
-            Some(index) if index < self.modes.len() => {
-                Some(self.modes[index].profile.as_one_of(*self, delay))
-            }
+            Some(index) if index < self.modes.len() => Some(&self.modes[index]),
             _ => None,
         }
     }

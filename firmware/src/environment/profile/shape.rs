@@ -3,7 +3,10 @@
 use core::f64::consts::TAU;
 
 use super::shape_error::ShapeError;
-use super::snap::SNAP;
+
+/// Bounds on the number of pitches from a centre to its snap point: above the lower one, where the branches
+/// on either side of a snap meet half-way.
+const SNAP: [f64; 2] = [0.5, 10.0];
 
 /// Torque over angle. A positive torque pushes back from a positive angle, as for all environments.
 #[derive(Clone, Copy, Debug, PartialEq)]

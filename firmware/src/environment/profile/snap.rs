@@ -6,101 +6,11 @@
 //! `c_b`. The branch changes after a tick, by the position `x_E` of that tick: with `snap` above one half
 //! that takes energy away and adds none (theory, section 14.5, equation 49).
 
-use core::f64::consts::TAU;
 use core::hint::cold_path;
 
-use super::knots::PART_BITS;
-use super::sum::{Ends, Layout};
+use super::layout::{Layout, SnapPoint};
 use crate::build_error::BuildError;
 use crate::number::Number;
-
-/// Detents with a snap point, in proportion to the table that they are added to, so that they change with
-/// its torque, its number of repetitions, and its centre. Only [shapes](super::Shape::snap) give one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub struct SnapPoint {
-    /// Detents in a repetition of the table.
-    pitches: f64,
-    /// Centre of the first one in pitches from the first knot, of a magnitude up to one half.
-    offset: f64,
-    /// Torque at the snap point in torques of the table.
-    share: f64,
-    /// Pitches from the centre to the snap point.
-    snap: f64,
-}
-
-/// Bounds on the number of pitches from a centre to its snap point: above the lower one, where the branches
-/// on either side of a snap meet half-way.
-pub(super) const SNAP: [f64; 2] = [0.5, 10.0];
-
-/// How far a detent's centre may be beyond an end, in pitches: ends are written with a few digits.
-const AT_THE_END: f64 = 0.01;
-
-impl SnapPoint {
-    /// Of detents `count` times a turn, the first at the angle `centre` in rad, of `torque` N m, beside a
-    /// table with this layout.
-    pub(super) const fn new(
-        layout: &Layout,
-        count: u32,
-        torque: f64,
-        centre: f64,
-        snap: f64,
-    ) -> Self {
-        let offset = (centre - layout.centre) * count as f64 / TAU;
-        let offset = offset - super::shape::nearest(offset);
-        Self { pitches: count as f64 / layout.count, offset, share: torque / layout.torque, snap }
-    }
-
-    /// Distance in rad of two detents.
-    pub const fn pitch(&self, layout: &Layout) -> f64 {
-        TAU / (layout.count * self.pitches)
-    }
-
-    /// Centre in rad of a detent.
-    pub const fn centre(&self, layout: &Layout, branch: i32) -> f64 {
-        layout.centre + (self.offset + branch as f64) * self.pitch(layout)
-    }
-
-    /// Pitches from a centre to the snap point.
-    pub const fn snap(&self) -> f64 {
-        self.snap
-    }
-
-    /// Torque in N m at the snap point.
-    pub const fn torque(&self, layout: &Layout) -> f64 {
-        layout.torque * self.share
-    }
-
-    /// Angle in rad by which the knob goes back from a snap point to where it would snap back.
-    pub const fn hysteresis(&self, layout: &Layout) -> f64 {
-        (2.0 * self.snap - 1.0) * self.pitch(layout)
-    }
-
-    /// The detents that can hold the knob: those with their centre between the ends; all where there are
-    /// none. The first is above the last where none of them can.
-    pub const fn branches(&self, layout: &Layout) -> (i32, i32) {
-        let Some(Ends { from, to, .. }) = layout.ends else { return (i32::MIN, i32::MAX) };
-        let (pitch, first) = (self.pitch(layout), self.centre(layout, 0));
-        let lowest = -super::shape::down(AT_THE_END - (from - first) / pitch);
-        let highest = super::shape::down(AT_THE_END + (to - first) / pitch);
-        (lowest as i32, highest as i32)
-    }
-
-    /// Whether the detents are the same seen from the first knot of the table to either side.
-    pub(crate) const fn is_centred(&self) -> bool {
-        self.offset == 0.0 || self.offset.abs() == 0.5
-    }
-
-    /// Parts of a cell from one detent to the next, of a table of so many knots.
-    const fn parts(&self, knots: u32) -> f64 {
-        knots as f64 * (1_u32 << PART_BITS) as f64 / self.pitches
-    }
-
-    /// Torque in N m for a part of a cell: the slope of all branches.
-    pub(crate) const fn torque_of_part(&self, torque: f64, knots: u32) -> f64 {
-        torque * self.share / (self.snap * self.parts(knots))
-    }
-}
 
 /// What the law of a profile does about snap points, all in whole parts of a cell, so that no turn changes
 /// anything.

@@ -3,8 +3,8 @@
 use super::Profile;
 use super::knots::{Cell, Knots};
 use super::law::ProfileLaw;
-use super::snap::{Snap, SnapPoint};
-use super::sum::Layout;
+use super::layout::{Layout, SnapPoint};
+use super::snap::Snap;
 use crate::build_error::BuildError;
 use crate::environment::delay_line::FixedDelay;
 use crate::environment::law::{Discretize, LawContext};

@@ -3,43 +3,9 @@
 use core::f64::consts::TAU;
 
 use super::knots::{FULL_SCALE, Knots, Outline};
+use super::layout::{Ends, Layout, SnapPoint};
 use super::shape::{Shape, nearest};
 use super::shape_error::ShapeError;
-use super::snap::SnapPoint;
-
-/// The ends of a range, and the springs beyond them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub struct Ends {
-    /// Lower end in rad.
-    pub from: f64,
-    /// Upper end in rad.
-    pub to: f64,
-    /// Stiffness in N m/rad beyond them.
-    pub stiffness: f64,
-}
-
-/// Where a table of knots is, and how strong.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Layout {
-    /// Torque in N m of a knot at full scale.
-    pub torque: f64,
-    /// How often the table repeats in a turn.
-    pub count: f64,
-    /// Angle in rad of the first knot.
-    pub centre: f64,
-    /// The ends of its range; `None`: it repeats for ever.
-    pub ends: Option<Ends>,
-    /// Detents with a snap point that are added to it.
-    pub snap: Option<SnapPoint>,
-}
-
-impl Layout {
-    /// Knots in a rad, of a table of so many, as a law has them.
-    pub const fn knots_per_rad(&self, knots: u32) -> f64 {
-        self.count * knots as f64 / TAU
-    }
-}
 
 impl<const KNOTS: usize> Knots<KNOTS> {
     /// The sum of shapes.

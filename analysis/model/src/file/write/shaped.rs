@@ -5,8 +5,9 @@ use haptic_servo::environment::{AnyProfile, Ends, Shape, Wall};
 use super::{number, quoted};
 use crate::file::key::{self, Bound, Key};
 use crate::file::kind::PROFILE;
-use crate::file::profile::{Shapes, span};
+use crate::file::profile::Shapes;
 use crate::file::shape;
+use crate::file::shape::span;
 
 /// A torque profile, with what a canceller beside it leaves of the damping.
 pub fn profile(

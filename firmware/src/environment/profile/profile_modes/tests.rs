@@ -43,7 +43,7 @@ fn each_mode_is_certified_and_rendered_in_the_boards_number_formats() {
     for mode in numbers() {
         let name = KNOB_MODES[mode].name;
         let data = selected(mode).as_data();
-        assert_eq!(data.environment.profile().unwrap().units(), KNOB_MODES[mode].profile.units());
+        assert_eq!(data.environment.profile().unwrap().units(), KNOB_MODES[mode].units);
         for format in [Format::F64, Format::F32, I8F24::FORMAT] {
             let assessment =
                 certify_in(&data, format).unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -1,0 +1,18 @@
+//! What all threads of a server share.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize};
+
+use super::access::Access;
+use super::port::Seats;
+use super::report::Report;
+
+/// What every connection needs.
+pub(super) struct Shared {
+    pub access: Access,
+    pub page: String,
+    pub seats: Seats,
+    pub over: Arc<AtomicBool>,
+    pub connections: AtomicUsize,
+    pub report: Report,
+}

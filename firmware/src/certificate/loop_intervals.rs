@@ -1,0 +1,297 @@
+//! The numbers of a scene as the certificate computes with them: enclosed, and rounded as a number format does.
+
+use crate::environment::{Environment, EnvironmentModel, Memory};
+use crate::latency::Latency;
+use crate::matched::{MatchedCoupling, limit_behind_spring};
+use crate::number::{Format, Rounding};
+use crate::passivity::interval::Interval;
+use crate::passivity::transfer::{Transfer, Unbuildable};
+use crate::scene::{Coupling, Scene};
+
+/// The numbers of a scene as the intervals that the certificate computes with.
+#[derive(Clone, Copy)]
+pub(super) struct LoopIntervals {
+    /// Nominal period `T`.
+    pub period: Interval,
+    /// Device passivity, scaled to the worst period: all indices are per tick, so a longest
+    /// period of `k T` leaves `delta / k` (theory, section 8).
+    pub delta: Interval,
+    /// Missed updates, where a torque may be latched a period after its count.
+    pub missed: Option<Missed>,
+    /// Damping that a canceller takes away, `be = b - epsilon`; zero without a canceller.
+    pub cancelled: Interval,
+    /// Coupling stiffness as it was written; `None`: rigid.
+    pub coupling: Option<Interval>,
+    /// Compliance `V` of the coupling in rad/(N m).
+    pub compliance: Interval,
+    /// Whether the coupling is the standard one, `V = T / (2 delta)`, to the digits that were
+    /// written. The compliance as rounded is then that or a little more.
+    pub is_standard: bool,
+    /// The number format of the servo's coefficients.
+    pub format: Format,
+    /// Whether the worst period is another one than the period.
+    pub misses_updates: bool,
+    /// Whether the index is that at the device's port: of a torque profile without a coupling.
+    pub is_at_port: bool,
+    /// Whether the coupling is the matched one.
+    pub is_matched: bool,
+    /// Delays and lags; `None`: none at all, and a coupling without memory.
+    pub latency: Option<Lagging>,
+}
+
+/// Whether torques lag, or the coupling has memory.
+pub(super) const fn has_latency(scene: &Scene) -> bool {
+    !scene.latency.is_none() || matches!(scene.coupling, Coupling::Matched)
+}
+
+/// What a scene with latency needs besides.
+#[derive(Clone, Copy)]
+pub(super) struct Lagging {
+    /// The times.
+    pub latency: Latency,
+    /// The coupling where it is matched.
+    pub matched: Option<MatchedCoupling>,
+    /// Upper bound on the index by the paper's rule; `None` where none is known.
+    pub limit: Option<Interval>,
+}
+
+/// Updates that may be missed by a scene whose torques may be latched one period after their counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Missed {
+    /// Longest time between two counts over the period, `T_max / T`.
+    pub stretch: Interval,
+    /// Device passivity as declared.
+    pub declared: Interval,
+}
+
+impl Missed {
+    /// The same, with counts that are read up to a part `late` of a period after its beginning: then
+    /// the time between two counts may be longer, and that to the latch shorter, by as much.
+    pub const fn read_late(n: &LoopIntervals, late: Interval) -> Self {
+        let slowest = Interval::ONE.add(late).div(Interval::ONE.sub(late));
+        match n.missed {
+            Some(missed) => Self { stretch: missed.stretch.mul(slowest), ..missed },
+            None => Self { stretch: slowest, declared: n.delta },
+        }
+    }
+
+    /// What an index has to stay below behind a coupling spring of damping `k = K_vc T / 2`, where
+    /// torques are latched: `1 / ((T_max / T - 1) / delta + 1 / k)`, for `k <= delta` (equation 36).
+    ///
+    /// Let the counts be `x_j`, `T_j <= T_max` apart, with the torque `u_j` at `x_j` and
+    /// `u_{j+1}` from one period later on, `x_E,j = x_j - V u_j`, `d = x_{j+1} - x_j`,
+    /// `w = u_{j+1} - u_j`, `e = d - V w`, and `s = T / T_j`. Summed by equation 34, device
+    /// and controller keep over each interval at least the quadratic form
+    ///
+    /// ```text
+    /// s delta d^2 / T - s w d + (V / 2 - (1 - s) T / (4 delta)) w^2 - alpha e^2 / T,
+    /// ```
+    ///
+    /// from which only differences of the coupling's and the environment's energy were taken. For
+    /// `nu = 2 delta V / T` and `a = alpha / delta` its determinant has the sign of
+    /// `(nu - 1) (s - a - s a (nu - 1))`: it is not negative for `nu >= 1` and
+    /// `1 / a >= 1 / s + nu - 1`, whatever the pattern of misses, and `s = T / T_max` is the worst.
+    pub const fn limit(&self, k: Interval) -> Interval {
+        let delta = self.declared;
+        let product = delta.mul(k);
+        product.div(self.stretch.sub(Interval::ONE).mul(k).add(delta))
+    }
+}
+
+impl LoopIntervals {
+    pub const fn of(scene: &Scene, format: Format) -> Self {
+        let is_late = scene.environment.is_late();
+        let (mut out, written) = Self::with_compliance::<Environment>(scene, is_late, format);
+        if let (Some(_), None) = (out.coupling, &out.latency) {
+            out.is_standard = written.sub(standard(out.period, out.delta)).contains(0.0);
+        }
+        out
+    }
+
+    /// The same where it is known whether the environment [is late](Environment::is_late), for the paper's
+    /// rule, which does not ask whether the coupling is the standard one.
+    ///
+    /// Only a type that [remembers](EnvironmentModel::MEMORY) torques for its coupling has latency on a
+    /// board: the program of any other omits the code.
+    pub const fn of_late<E: EnvironmentModel>(
+        scene: &Scene,
+        is_late: bool,
+        format: Format,
+    ) -> Self {
+        Self::with_compliance::<E>(scene, is_late, format).0
+    }
+
+    /// The same, with the coupling's compliance before it is rounded.
+    // A part of either caller: a result as large as this would be copied.
+    #[inline(always)]
+    const fn with_compliance<E: EnvironmentModel>(
+        scene: &Scene,
+        is_late: bool,
+        format: Format,
+    ) -> (Self, Interval) {
+        let period = Interval::decimal(scene.timing.period);
+        let delta = Interval::decimal(match scene.device.passivity {
+            Some(passivity) => passivity,
+            None => scene.device.damping,
+        });
+        let (delta, missed) = match scene.timing.worst_period {
+            Some(worst) if worst != scene.timing.period => {
+                let worst = Interval::decimal(worst);
+                let missed = Missed { stretch: worst.div(period), declared: delta };
+                (delta.mul(period).div(worst), if is_late { Some(missed) } else { None })
+            }
+            _ => (delta, None),
+        };
+        let cancelled = match scene.environment.residual() {
+            Some(residual) => {
+                Interval::decimal(scene.device.damping).sub(Interval::decimal(residual))
+            }
+            None => Interval::ZERO,
+        };
+        let (coupling, written) = match scene.coupling {
+            Coupling::Rigid => (None, Interval::ZERO),
+            Coupling::Spring { stiffness } => {
+                let stiffness = Interval::decimal(stiffness);
+                (Some(stiffness), Interval::ONE.div(stiffness))
+            }
+            // The part of it that answers in the same tick.
+            Coupling::Matched => {
+                let standard = standard(period, delta);
+                (Some(Interval::ONE.div(standard)), standard)
+            }
+        };
+        let compliance = rounded(written, format, Rounding::Outward);
+        let mut out = Self {
+            period,
+            delta,
+            missed,
+            cancelled,
+            coupling,
+            compliance,
+            is_standard: false,
+            format,
+            misses_updates: matches!(
+                scene.timing.worst_period,
+                Some(worst) if worst != scene.timing.period
+            ),
+            is_at_port: E::PROFILE.exists
+                && matches!(scene.coupling, Coupling::Rigid)
+                && scene.environment.profile().is_some(),
+            is_matched: matches!(scene.coupling, Coupling::Matched),
+            latency: None,
+        };
+        if !matches!(E::MEMORY, Memory::None) && has_latency(scene) {
+            if E::MEMORY.has_updates() {
+                out.add_latency::<true>(scene);
+            } else {
+                out.add_latency::<false>(scene);
+            }
+        }
+        (out, written)
+    }
+
+    // In a frame of its own, which no scene without latency needs.
+    #[inline(never)]
+    const fn add_latency<const UPDATES: bool>(&mut self, scene: &Scene) {
+        let latency = scene.latency;
+        let mut lagging = Lagging { latency, matched: None, limit: None };
+        if self.misses_updates {
+            // No proof covers both.
+        } else if self.is_matched {
+            let passivity = scene.device.passivity();
+            let period = scene.timing.period;
+            lagging.matched =
+                MatchedCoupling::of_kind::<UPDATES>(period, passivity, &latency, self.format);
+            if let Some(matched) = &lagging.matched {
+                lagging.limit = Some(matched.limit);
+                self.compliance = Interval::exact(matched.compliance);
+            }
+        } else if self.coupling.is_some() {
+            let (period, delta) = (self.period, self.delta);
+            lagging.limit =
+                limit_behind_spring::<UPDATES>(period, delta, self.compliance, &latency);
+        }
+        self.latency = Some(lagging);
+    }
+
+    /// The coefficient that a servo makes of a value.
+    pub(super) const fn coefficient(&self, value: Interval) -> Interval {
+        rounded(value, self.format, Rounding::Nearest)
+    }
+
+    /// The whole controller of an environment behind the coupling.
+    #[inline(never)]
+    pub const fn behind_coupling(&self, environment: &Transfer) -> Result<Transfer, Unbuildable> {
+        let Some(lagging) = &self.latency else { return environment.behind(self.compliance) };
+        match &lagging.matched {
+            Some(matched) => match matched.transfer() {
+                Some((numerator, denominator)) => {
+                    environment.behind_rational(&numerator, &denominator)
+                }
+                None => Err(Unbuildable::OutOfRange),
+            },
+            None if self.is_matched => Err(Unbuildable::OutOfRange),
+            None => environment.behind(self.compliance),
+        }
+    }
+
+    /// `K_vc T / 2`, the damping that the coupling stands for; `None`: rigid.
+    pub const fn coupling_damping(&self) -> Option<Interval> {
+        match (self.coupling, self.format) {
+            (None, _) => None,
+            (Some(stiffness), Format::F64) => Some(stiffness.mul(self.period).half()),
+            (Some(_), _) => Some(self.period.div(self.compliance).half()),
+        }
+    }
+
+    /// `2 delta / T`, the stiffness of the standard coupling in N m/rad.
+    pub const fn standard_stiffness(&self) -> Interval {
+        self.delta.double().div(self.period)
+    }
+
+    /// `V - T / (2 delta)`: what the coupling has over the standard one.
+    pub const fn excess_compliance(&self) -> Interval {
+        self.compliance.sub(standard(self.period, self.delta))
+    }
+
+    /// The same for the declared passivity, which is what counts where torques are latched and
+    /// updates are missed.
+    pub const fn excess_where_latched(&self) -> Option<Interval> {
+        match &self.missed {
+            Some(missed) => Some(self.compliance.sub(standard(self.period, missed.declared))),
+            None => None,
+        }
+    }
+
+    /// What the servo's gains make of an environment with this feedthrough.
+    ///
+    /// It solves the loop of coupling and environment by a gain `g`, which is `1 / (1 + f V)`
+    /// rounded. The torque `g v`, with `v` the one for the device's own position, is that of the
+    /// environment times `k = g / (1 - f V g)` behind the same coupling: exactly 1 for the exact
+    /// gain, and where nothing is fed through.
+    pub const fn solved(&self, feedthrough: Interval) -> Interval {
+        if feedthrough.is_zero() || matches!(self.format, Format::F64) {
+            return Interval::ONE;
+        }
+        let fed_back = feedthrough.mul(self.compliance);
+        let gain = self.coefficient(Interval::ONE.div(Interval::ONE.add(fed_back)));
+        gain.div(Interval::ONE.sub(fed_back.mul(gain)))
+    }
+}
+
+/// `T / (2 delta)`: compliance of the standard coupling.
+const fn standard(period: Interval, delta: Interval) -> Interval {
+    period.div(delta.double())
+}
+
+/// All coefficients that a format makes of the values of an interval.
+#[cfg_attr(target_os = "none", inline(never))]
+pub(super) const fn rounded(value: Interval, format: Format, rounding: Rounding) -> Interval {
+    match format {
+        Format::F64 => value,
+        _ => Interval::new(
+            format.coefficient(value.lo(), rounding),
+            format.coefficient(value.hi(), rounding),
+        ),
+    }
+}

@@ -1,0 +1,12 @@
+//! Numbers of a scene that are told or asked for together.
+
+use heapless::Vec;
+
+use crate::certificate::Parameter;
+
+/// Numbers that one set may change: more than any scene has.
+pub const MAX_CHANGES: usize = 8;
+
+/// Numbers of a scene and what they are, or shall be together or not at all, in the units of a
+/// scene file.
+pub type Changes = Vec<(Parameter, f64), MAX_CHANGES>;
