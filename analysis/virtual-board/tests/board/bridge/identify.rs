@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use analysis::identify::fit::Estimate;
+use analysis::identify::Estimate;
 use analysis::identify::{self, Correction, record, torque_source};
 use analysis::sampled_actuator::SampledActuator;
 use haptic_servo::excitation::{SWEEP_PROTOCOL, byte};
