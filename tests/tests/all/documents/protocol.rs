@@ -66,7 +66,7 @@ fn every_field_of_every_message_is_there_in_order() {
         ("firmware/src/wire/decoder.rs", "Discarded"),
         ("firmware/src/wire/description.rs", "Description"),
         ("firmware/src/scene.rs", "Scene"),
-        ("firmware/src/environment/any.rs", "Wall"),
+        ("firmware/src/environment/any_wall.rs", "Wall"),
         ("firmware/src/environment/composed.rs", "Composed"),
         ("firmware/src/environment/profile/any.rs", "AnyProfile"),
         ("firmware/src/environment/profile/knots.rs", "Outline"),
@@ -82,8 +82,8 @@ fn every_field_of_every_message_is_there_in_order() {
     let batch = fields("firmware/src/wire/telemetry.rs", "Batch");
     let [(name, kind)] = &batch[..] else { panic!("{batch:?}") };
     assert!(document.contains(&format!("One field, `{name}: {kind}`")));
-    let changes =
-        regex(r"pub type Changes = (.+);").captures(&read(MESSAGES)).unwrap()[1].to_owned();
+    let source = read("firmware/src/wire/changes.rs");
+    let changes = regex(r"pub type Changes = (.+);").captures(&source).unwrap()[1].to_owned();
     assert!(document.contains(&format!("`Changes` is `{changes}`")));
 }
 
