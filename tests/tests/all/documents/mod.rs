@@ -1,5 +1,6 @@
 //! The documents and the code: what one says of the other is so.
 
+mod architecture;
 mod links;
 mod protocol;
 mod theory;
