@@ -11,7 +11,7 @@ use haptic_servo::wire::message::ToBoard;
 use crate::hand::HandTrajectory;
 use crate::shaft::{HandHeldShaft, LedShaft, Shaft};
 use crate::simulation::SimulationError;
-use crate::toolchain::Board;
+use crate::toolchain::BoardModel;
 use crate::virtual_board::{
     LONGEST_ARMING, Sample, VirtualBoard, VirtualBoardError, VirtualBoardReport, fading_samples,
     request,
@@ -50,7 +50,7 @@ impl BridgeBoard {
     /// Where it cannot be started.
     pub fn boot(
         program: &Path,
-        board: Board,
+        board: BoardModel,
         elf: &Path,
         current_loop: &'static CurrentLoop,
         transducers: Transducers,

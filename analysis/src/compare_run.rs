@@ -33,7 +33,7 @@ pub enum Backend<'a> {
         /// The program that is a virtual board.
         program: &'a Path,
         /// Which board it is.
-        board: toolchain::Board,
+        board: toolchain::BoardModel,
         /// What is in its flash.
         elf: &'a Path,
         /// The period of its servo in s.

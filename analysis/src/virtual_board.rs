@@ -18,7 +18,7 @@ use crate::emulator::InstructionStats;
 use crate::emulator::log::LogDecoder;
 use crate::lockstep::RemoteServo;
 use crate::shaft::{Shaft, ShaftMotion};
-use crate::toolchain::Board;
+use crate::toolchain::BoardModel;
 
 /// What a board says at the end of a sample, and when it is asked to end.
 const SAMPLE: u8 = 1;
@@ -145,7 +145,7 @@ impl VirtualBoard {
     /// Where it cannot be started.
     pub fn boot(
         program: &Path,
-        board: Board,
+        board: BoardModel,
         elf: &Path,
         drive: Option<&Drive>,
     ) -> Result<Self, VirtualBoardError> {

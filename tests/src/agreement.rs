@@ -3,7 +3,7 @@
 use crate::exact::of_f64;
 use crate::index::Index;
 use crate::rules::{Exact, NoIndex};
-use haptic_servo::certificate::{Answer, Assessment};
+use haptic_servo::certificate::{Assessment, RuleAnswer};
 use haptic_servo::passivity::interval::Interval;
 use std::cmp::Ordering;
 
@@ -38,19 +38,19 @@ pub fn check_exact(assessment: &Assessment, exact: &Exact) -> Result<Open, Strin
         return Err(format!("delta {delta:?} does not contain {}", exact.delta));
     }
     answers("exact", assessment.exact, exact.passes_exact())?;
-    if assessment.outcome.is_ok() && assessment.exact != Answer::Pass {
+    if assessment.outcome.is_ok() && assessment.exact != RuleAnswer::Pass {
         return Err("certified without a pass of the exact rule".to_owned());
     }
     Ok(Open {
-        paper: assessment.paper == Answer::Undecided,
-        exact: assessment.exact == Answer::Undecided,
+        paper: assessment.paper == RuleAnswer::Undecided,
+        exact: assessment.exact == RuleAnswer::Undecided,
     })
 }
 
-fn answers(rule: &str, answer: Answer, truth: bool) -> Result<(), String> {
+fn answers(rule: &str, answer: RuleAnswer, truth: bool) -> Result<(), String> {
     match (answer, truth) {
-        (Answer::Pass, false) => Err(format!("false pass of the {rule} rule")),
-        (Answer::Fail, true) => Err(format!("false fail of the {rule} rule")),
+        (RuleAnswer::Pass, false) => Err(format!("false pass of the {rule} rule")),
+        (RuleAnswer::Fail, true) => Err(format!("false fail of the {rule} rule")),
         _ => Ok(()),
     }
 }

@@ -3,7 +3,7 @@
 
 use std::cell::RefCell;
 
-use crate::Answer;
+use crate::PageResult;
 
 thread_local! {
     static INPUT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
@@ -55,7 +55,7 @@ pub fn read<T>(of: impl FnOnce(&Answers) -> T) -> T {
 }
 
 /// Answers the question: 0, or 1 where the text is a refusal.
-pub fn answer(function: impl FnOnce(&str, &mut Vec<f64>) -> Answer) -> u32 {
+pub fn answer(function: impl FnOnce(&str, &mut Vec<f64>) -> PageResult) -> u32 {
     let mut numbers = ANSWERS.with_borrow_mut(|answers| std::mem::take(&mut answers.numbers));
     numbers.clear();
     let question = INPUT.take();

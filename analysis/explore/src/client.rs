@@ -12,7 +12,7 @@ use haptic_model::board::timing::{QUERY, REQUEST, SILENCE, STATUS_INTERVAL, stre
 use haptic_servo::tuning::RenderError;
 use haptic_servo::wire::description::Description;
 use haptic_servo::wire::message::{
-    ActiveParameters, Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
+    ActiveParameters, BoardUnits, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
     PreviousFault, Refusal, Status, ToBoard, ToHost,
 };
 use haptic_servo::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
@@ -60,7 +60,7 @@ pub struct Connected {
     /// Name of its program.
     pub program: String,
     /// What its numbers mean.
-    pub board: Board,
+    pub board: BoardUnits,
     /// What stopped it before it was last started.
     pub previous_fault: Option<PreviousFault>,
     /// How it was going when it was last asked.
@@ -351,7 +351,7 @@ impl Client {
 impl Connected {
     fn new(
         program: String,
-        board: Board,
+        board: BoardUnits,
         previous_fault: Option<PreviousFault>,
         now: Duration,
     ) -> Self {

@@ -9,7 +9,7 @@ use haptic_model::file::profile::Shapes;
 use haptic_servo::environment::{Coefficients, Composed, Ends, Environment, Rational, Shape, Wall};
 use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange};
 
-use crate::Answer;
+use crate::PageResult;
 use crate::scene_text::read;
 use expression::{Expression, number, optional, structure, word};
 
@@ -17,7 +17,7 @@ use expression::{Expression, number, optional, structure, word};
 const FREE_MODE_WALLS: &str = "beside free motion a wall is at rest at angle 0, or has one side";
 
 /// The constants of a scene: the environment's type, the scene, and its certificate.
-pub fn constant(text: &str, _: &mut Vec<f64>) -> Answer {
+pub fn constant(text: &str, _: &mut Vec<f64>) -> PageResult {
     let file = read(text).map_err(|error| error.to_string())?;
     of(&file)
 }
@@ -55,7 +55,7 @@ impl Typed {
 }
 
 /// The text of the program's constants.
-fn of(file: &SceneFile) -> Answer {
+fn of(file: &SceneFile) -> PageResult {
     let SceneFile { scene, shapes, .. } = file;
     let own = environment(&scene.environment, shapes.as_ref())?;
     let Typed { name, value, uses, knots } = match scene.coupling {

@@ -7,7 +7,7 @@ use haptic_model::verdict_text::rows;
 use haptic_servo::number::Format;
 use serde::Serialize;
 
-use crate::Answer;
+use crate::PageResult;
 use crate::scene_text::{Wrong, read};
 
 /// A file that cannot be judged.
@@ -25,7 +25,7 @@ struct Judged {
 }
 
 /// What `haptic certify --json` prints for a scene as JSON; `{"error": ..}` where there is nothing to judge.
-pub fn certify(text: &str, _: &mut Vec<f64>) -> Answer {
+pub fn certify(text: &str, _: &mut Vec<f64>) -> PageResult {
     match read(text) {
         Ok(file) => json(&report(&file)),
         Err(error) => json(&Unreadable { error: error.to_string() }),
@@ -33,16 +33,16 @@ pub fn certify(text: &str, _: &mut Vec<f64>) -> Answer {
 }
 
 /// Verdict, numbers, rows of words and remedies of a scene, or what is wrong with it.
-pub fn judge(text: &str, _: &mut Vec<f64>) -> Answer {
+pub fn judge(text: &str, _: &mut Vec<f64>) -> PageResult {
     judged(text, report)
 }
 
 /// The same without remedies, which take long where times are known to lie in ranges.
-pub fn judge_without_remedies(text: &str, _: &mut Vec<f64>) -> Answer {
+pub fn judge_without_remedies(text: &str, _: &mut Vec<f64>) -> PageResult {
     judged(text, |file| verdict::judge_without_remedies(&file.name, &file.scene, &file.steps()))
 }
 
-fn judged(text: &str, report: impl FnOnce(&SceneFile) -> VerdictReport) -> Answer {
+fn judged(text: &str, report: impl FnOnce(&SceneFile) -> VerdictReport) -> PageResult {
     match read(text) {
         Ok(file) => {
             let report = report(&file);
@@ -57,7 +57,7 @@ fn report(file: &SceneFile) -> VerdictReport {
 }
 
 /// As JSON.
-pub fn json(answer: &impl Serialize) -> Answer {
+pub fn json(answer: &impl Serialize) -> PageResult {
     serde_json::to_string(answer).map_err(|error| error.to_string())
 }
 

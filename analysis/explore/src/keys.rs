@@ -6,12 +6,12 @@ use haptic_model::file::{self, Format, shape};
 use haptic_servo::parameter::Range;
 use serde_json::{Map, Value, json};
 
-use crate::Answer;
+use crate::PageResult;
 use crate::presets::{self, Preset};
 
 /// All keys with unit, bound, default and words; which of them each type of environment and each shape
 /// takes, and those that it needs with a value of each; and scenes to begin with.
-pub fn keys(_: &str, _: &mut Vec<f64>) -> Answer {
+pub fn keys(_: &str, _: &mut Vec<f64>) -> PageResult {
     let kinds = kind::ALL.iter().map(|kind| {
         let needed: Vec<_> = kind.needed.iter().map(|key| key.path).collect();
         let keys: Vec<_> = kind.keys().map(|key| key.path).collect();

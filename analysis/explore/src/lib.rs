@@ -27,7 +27,7 @@ use buffer::Answers;
 
 /// What a function answers: a text or a refusal in a sentence. Numbers, if there are any, go to the buffer
 /// beside it.
-pub type Answer = Result<String, String>;
+pub type PageResult = Result<String, String>;
 
 /// The functions of the page, by the names that it calls them.
 ///

@@ -14,7 +14,7 @@ use haptic_servo::scene::Scene;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::Answer;
+use crate::PageResult;
 use crate::scene_text::read;
 
 /// Most cells along an axis.
@@ -45,7 +45,7 @@ struct Question {
 }
 
 /// Begins a map: what its axes are, and which there could be.
-pub fn begin(text: &str, _: &mut Vec<f64>) -> Answer {
+pub fn begin(text: &str, _: &mut Vec<f64>) -> PageResult {
     let question: Question = serde_json::from_str(text).map_err(|error| error.to_string())?;
     let file = read(&question.scene).map_err(|error| error.to_string())?;
     let scene = &file.scene;
@@ -87,7 +87,7 @@ pub fn begin(text: &str, _: &mut Vec<f64>) -> Answer {
 
 /// Computes cells of a row: the row's number and those of the columns, counted from the lowest and leftmost
 /// cell. The numbers are the regions by their places in the list that the beginning has given.
-pub fn row(text: &str, numbers: &mut Vec<f64>) -> Answer {
+pub fn row(text: &str, numbers: &mut Vec<f64>) -> PageResult {
     let mut words = text.split(' ').map(|word| {
         word.parse::<usize>().map_err(|_| format!("`{word}` is no number of a row or column"))
     });

@@ -12,7 +12,7 @@ use haptic_model::trace::Trace;
 use haptic_model::worst_hand;
 use serde_json::json;
 
-use crate::Answer;
+use crate::PageResult;
 use crate::scene_text::read;
 
 /// Most samples of a push that no scene file asks for.
@@ -37,7 +37,7 @@ const LONGEST: usize = 2_000_000;
 /// `typical` and a line feed before it: then no such hand is looked for, which takes longer than a frame.
 ///
 /// Numbers: time in s, angle in rad and coupling torque in N m, column by column.
-pub fn motion(text: &str, numbers: &mut Vec<f64>) -> Answer {
+pub fn motion(text: &str, numbers: &mut Vec<f64>) -> PageResult {
     let (is_typical, text) = match text.strip_prefix("typical\n") {
         Some(text) => (true, text),
         None => (false, text),

@@ -3,13 +3,13 @@
 use haptic_model::nyquist::{Curve, NyquistScene, usual_window, words};
 use serde_json::{Value, json};
 
-use crate::Answer;
+use crate::PageResult;
 use crate::scene_text::read;
 
 /// The curves of a scene, what they must keep clear of, and the part of the plane that shows both. The
 /// numbers are the angle in rad, the real and the imaginary part in N m s/rad of each point, branch after
 /// branch; of each branch the answer has how many there are.
-pub fn nyquist(text: &str, numbers: &mut Vec<f64>) -> Answer {
+pub fn nyquist(text: &str, numbers: &mut Vec<f64>) -> PageResult {
     let file = read(text).map_err(|error| error.to_string())?;
     let scene = NyquistScene::of(&file.name, &file.scene).map_err(|error| error.to_string())?;
     let scenes = [scene];

@@ -6,7 +6,7 @@ use haptic_model::quantity::significant;
 use haptic_servo::environment::Wall;
 use serde_json::{Value, json};
 
-use crate::Answer;
+use crate::PageResult;
 use crate::scene_text::read;
 
 /// Points of the line of a wall.
@@ -15,7 +15,7 @@ const POINTS: usize = 201;
 const REACH: f64 = 0.1;
 
 /// Angle in rad and torque in N m of each point as numbers; the steepest pieces, and what is to be said.
-pub fn profile(text: &str, numbers: &mut Vec<f64>) -> Answer {
+pub fn profile(text: &str, numbers: &mut Vec<f64>) -> PageResult {
     let file = read(text).map_err(|error| error.to_string())?;
     let scene = &file.scene;
     let limit = scene.torque_limit;

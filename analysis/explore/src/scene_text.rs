@@ -4,7 +4,7 @@ use haptic_model::file::{self, FileError, Format, Problem, SceneFile, write};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::Answer;
+use crate::PageResult;
 
 /// What the page calls the text in its fields.
 const NAME: &str = "scene";
@@ -53,7 +53,7 @@ pub fn read(text: &str) -> Result<SceneFile, FileError> {
 }
 
 /// TOML or JSON: `{"scene": ..}` with all its keys, whatever they are, or what is wrong with its grammar.
-pub fn parse(text: &str, _: &mut Vec<f64>) -> Answer {
+pub fn parse(text: &str, _: &mut Vec<f64>) -> PageResult {
     let scene = format(text).and_then(|format| file::as_json(NAME, format, text));
     Ok(match scene {
         Ok(Value::Object(scene)) => json!({ "scene": scene }),
@@ -64,7 +64,7 @@ pub fn parse(text: &str, _: &mut Vec<f64>) -> Answer {
 }
 
 /// A scene as a scene file in TOML, which reads back as the same to the last bit.
-pub fn toml(text: &str, _: &mut Vec<f64>) -> Answer {
+pub fn toml(text: &str, _: &mut Vec<f64>) -> PageResult {
     read(text).map(|file| write::toml(&file)).map_err(|error| error.to_string())
 }
 

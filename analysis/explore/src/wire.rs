@@ -17,7 +17,7 @@ use haptic_servo::wire::PROTOCOL;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use crate::Answer;
+use crate::PageResult;
 use crate::client::{Client, Connected, Slow, WINDOW};
 
 thread_local! {
@@ -68,14 +68,14 @@ struct Turn {
 
 /// Nothing: the speed of a serial line in bit/s, the version of the protocol, the head of a record, the time
 /// between two tries to connect in ms, and the width of the curves in s.
-pub fn facts(_: &str, _: &mut Vec<f64>) -> Answer {
+pub fn facts(_: &str, _: &mut Vec<f64>) -> PageResult {
     let retry = RETRY.as_millis() as u64;
     Ok(json!({ "baud": BAUD, "protocol": PROTOCOL, "columns": COLUMNS, "retry": retry, "window": WINDOW })
         .to_string())
 }
 
 /// Begins a conversation: `{"address": .., "now": .., "id": ..}`.
-pub fn start(question: &str, _: &mut Vec<f64>) -> Answer {
+pub fn start(question: &str, _: &mut Vec<f64>) -> PageResult {
     let Start { address, now, id } = serde_json::from_str(question).map_err(|e| e.to_string())?;
     let now = time(now)?;
     WIRE.with_borrow_mut(|wire| {
@@ -85,7 +85,7 @@ pub fn start(question: &str, _: &mut Vec<f64>) -> Answer {
 }
 
 /// Takes bytes, and does what is due: the time, a line feed, and the bytes.
-pub fn turn(question: &str, _: &mut Vec<f64>) -> Answer {
+pub fn turn(question: &str, _: &mut Vec<f64>) -> PageResult {
     let (now, letters) = question.split_once('\n').unwrap_or((question, ""));
     let number: f64 = now.parse().map_err(|_| format!("`{now}` is not a time in ms"))?;
     let now = time(number)?;
@@ -107,13 +107,13 @@ pub fn turn(question: &str, _: &mut Vec<f64>) -> Answer {
 }
 
 /// The link is lost: what was asked for is not answered any more.
-pub fn lost(_: &str, _: &mut Vec<f64>) -> Answer {
+pub fn lost(_: &str, _: &mut Vec<f64>) -> PageResult {
     WIRE.with_borrow_mut(|wire| wire.turn(Some(String::new())))
 }
 
 /// Asks the board for something: `{"now": .., "request": "set", "changes": "stiffness=20"}`. A set that the
 /// board would refuse is refused here, in the same words.
-pub fn request(question: &str, _: &mut Vec<f64>) -> Answer {
+pub fn request(question: &str, _: &mut Vec<f64>) -> PageResult {
     let Asked { now, request, changes } =
         serde_json::from_str(question).map_err(|error| error.to_string())?;
     let now = time(now)?;
@@ -138,7 +138,7 @@ pub fn request(question: &str, _: &mut Vec<f64>) -> Answer {
 }
 
 /// Judges changes as they are typed, by the scene that runs on the board. A refusal is the reason.
-pub fn judge(changes: &str, _: &mut Vec<f64>) -> Answer {
+pub fn judge(changes: &str, _: &mut Vec<f64>) -> PageResult {
     let changes = change::line(changes)?;
     WIRE.with_borrow(|wire| match &wire.client {
         Some(client) => client.judge(&changes).map(|()| String::new()),
@@ -147,7 +147,7 @@ pub fn judge(changes: &str, _: &mut Vec<f64>) -> Answer {
 }
 
 /// Has ticks given as rows of a table from now on, `on`, or no more, `off`.
-pub fn record(question: &str, _: &mut Vec<f64>) -> Answer {
+pub fn record(question: &str, _: &mut Vec<f64>) -> PageResult {
     WIRE.with_borrow_mut(|wire| wire.is_recording = question == "on");
     Ok(String::new())
 }
@@ -155,7 +155,7 @@ pub fn record(question: &str, _: &mut Vec<f64>) -> Answer {
 /// The curves of the last seconds, with so many columns: position in rad, torque in N m, margin in N m s/rad
 /// and energy in J, each as the number of its points and the points, a time in s that is not positive and a
 /// value.
-pub fn curves(columns: &str, numbers: &mut Vec<f64>) -> Answer {
+pub fn curves(columns: &str, numbers: &mut Vec<f64>) -> PageResult {
     let columns: usize =
         columns.parse().map_err(|_| format!("`{columns}` is not a number of columns"))?;
     WIRE.with_borrow(|wire| {
@@ -187,7 +187,7 @@ fn of(connected: &Connected, columns: usize) -> [Vec<(f64, f64)>; 4] {
 
 impl Wire {
     /// What is new, as an answer.
-    fn turn(&mut self, lost: Option<String>) -> Answer {
+    fn turn(&mut self, lost: Option<String>) -> PageResult {
         let turn = self.news(None, lost);
         crate::judge::json(&turn)
     }

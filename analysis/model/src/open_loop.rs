@@ -188,7 +188,7 @@ mod tests {
         for delay in 1..=8 {
             let experiment = Experiment::at_rest(&file(6.0, 0.0, delay));
             let stability = stability::judge(&experiment, Integration::default()).unwrap();
-            let stable = stability.verdict == stability::Verdict::Stable;
+            let stable = stability.verdict == stability::StabilityVerdict::Stable;
             assert_eq!(stable, lag(delay) < margin.value, "{delay} {margin:?}");
         }
         assert!(lag(8) > margin.value && lag(1) < margin.value, "{margin:?}");

@@ -6,7 +6,7 @@ use std::ops::Range;
 use haptic_servo::environment::{AnyProfile, Ends, FULL_SCALE};
 use haptic_servo::scene::Scene;
 
-use crate::design::{Answer, Choice, Quantity, Terms, largest};
+use crate::design::{Choice, DesignLimit, Quantity, Terms, largest};
 use crate::snap_branches::{self, Branch, held, slope};
 
 /// Points of a curve.
@@ -175,12 +175,12 @@ fn certified_rise(scene: &Scene, profile: &AnyProfile, rise: f64, line: f64) -> 
     // A wall beside the profile has the name of that stiffness.
     if is_of_stops && scene.environment.wall().is_none() {
         return match largest(scene, Quantity::Stiffness, &AS_IT_IS) {
-            Answer::Limit(stiffness, _) => Some(stiffness),
+            DesignLimit::Limit(stiffness, _) => Some(stiffness),
             _ => None,
         };
     }
     match largest(scene, Quantity::Torque, &AS_IT_IS) {
-        Answer::Limit(torque, _) => Some((rise + line) * torque / profile.torque - line),
+        DesignLimit::Limit(torque, _) => Some((rise + line) * torque / profile.torque - line),
         _ => None,
     }
 }
@@ -201,7 +201,7 @@ impl DetentLimits {
         let point = |count: u32| {
             let scene = Quantity::Count.set(&late, f64::from(count))?;
             match largest(&scene, Quantity::Torque, &AS_IT_IS) {
-                Answer::Limit(torque, _) => Some((f64::from(count), torque)),
+                DesignLimit::Limit(torque, _) => Some((f64::from(count), torque)),
                 _ => None,
             }
         };

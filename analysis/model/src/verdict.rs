@@ -3,7 +3,7 @@
 use std::fmt;
 
 use haptic_servo::certificate::{
-    Answer, Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Rejection,
+    self, Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Rejection,
     Remedies, Resolution, Rule, assess_in, certify_in,
 };
 use haptic_servo::number::Format;
@@ -313,11 +313,11 @@ fn passed(margin: Option<f64>, rest: Option<&QuantizationBound>) -> String {
     format!("certified: no passive hand can make it oscillate{to_spare}{rest}")
 }
 
-fn answer(answer: Answer) -> RuleAnswer {
+fn answer(answer: certificate::RuleAnswer) -> RuleAnswer {
     match answer {
-        Answer::Pass => RuleAnswer::Pass,
-        Answer::Fail => RuleAnswer::Fail,
-        Answer::Undecided => RuleAnswer::Undecided,
+        certificate::RuleAnswer::Pass => RuleAnswer::Pass,
+        certificate::RuleAnswer::Fail => RuleAnswer::Fail,
+        certificate::RuleAnswer::Undecided => RuleAnswer::Undecided,
     }
 }
 

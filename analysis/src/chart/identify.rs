@@ -10,7 +10,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axes::Axes;
 use super::*;
-use crate::identify::{Identification, Response};
+use crate::identify::{FrequencyPoint, Identification};
 use crate::quantity::significant;
 
 /// Width and height of the picture in pixels.
@@ -150,7 +150,7 @@ fn model(found: &Identification) -> String {
 /// The real parts of `1/J` over frequency: all of them are the damping, but for lag and delay.
 fn damping(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     let estimate = &found.damping;
-    let real = |r: &Response| r.impedance().re;
+    let real = |r: &FrequencyPoint| r.impedance().re;
     let mut chart = spectrum(area, found, real, (None, "Re 1/J (N m s/rad)"))?;
     let shown = shown(found);
     let band = [(shown.start, estimate.lo), (shown.end, estimate.hi)];
@@ -171,7 +171,7 @@ fn damping(area: &Area<'_>, found: &Identification) -> Drawn<()> {
 /// The imaginary parts of `1/J` over frequency: inertia times angular frequency.
 fn inertia(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     let estimate = &found.inertia;
-    let imaginary = |r: &Response| r.impedance().im;
+    let imaginary = |r: &FrequencyPoint| r.impedance().im;
     let names = (Some("frequency (Hz)"), "Im 1/J (N m s/rad)");
     let mut chart = spectrum(area, found, imaginary, names)?;
     chart.draw_series(LineSeries::new(over(found, |omega| fitted(found, omega).im), pen(1)))?;
@@ -192,10 +192,10 @@ fn over(found: &Identification, value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
 fn spectrum<'a, 'b>(
     area: &'a Area<'b>,
     found: &Identification,
-    part: impl Fn(&Response) -> f64,
+    part: impl Fn(&FrequencyPoint) -> f64,
     (x, y): (Option<&str>, &str),
 ) -> Drawn<Spectrum<'a, 'b>> {
-    let ends = |r: &Response| [-BAR, BAR].map(|reach| part(r) + reach * r.deviation);
+    let ends = |r: &FrequencyPoint| [-BAR, BAR].map(|reach| part(r) + reach * r.deviation);
     let range = padded(span(found.responses.iter().flat_map(ends)), 0.1);
     let mut chart = axes::chart(area)
         .margin_top(2 * MARGIN)
@@ -209,7 +209,7 @@ fn spectrum<'a, 'b>(
 fn bars(
     chart: &mut Spectrum<'_, '_>,
     found: &Identification,
-    part: impl Fn(&Response) -> f64,
+    part: impl Fn(&FrequencyPoint) -> f64,
 ) -> Drawn<()> {
     for response in &found.responses {
         let (hertz, value) = (response.omega / TAU, part(response));

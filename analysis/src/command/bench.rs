@@ -28,7 +28,7 @@ use crate::studies::bench::parts::{self, Inventory};
 use crate::studies::bench::profile;
 use crate::studies::bench::{self, CORE_CLOCK, Figure};
 use crate::text_table::markdown_table;
-use crate::toolchain::{self, Board, NumberFormat, Toolchain, Tools, TorqueOutput};
+use crate::toolchain::{self, BoardModel, NumberFormat, Toolchain, Tools, TorqueOutput};
 
 /// Arguments of `haptic bench`.
 #[derive(Debug, Args)]
@@ -202,7 +202,7 @@ fn about_bridges(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(),
             "the same of both budgets",
         ));
     }
-    let (board, name) = (Board::BG431bEsc1, "bridge_wall");
+    let (board, name) = (BoardModel::BG431bEsc1, "bridge_wall");
     let spinner = progress::spinner("building programs");
     let built = toolchain.build_for(board, TorqueOutput::Bridge, &[name], NumberFormat::F32)?;
     spinner.finish_and_clear();

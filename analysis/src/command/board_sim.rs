@@ -20,7 +20,7 @@ use crate::link::Address;
 use crate::lockstep::SimulatedDevice;
 use crate::program::Program;
 use crate::shaft::HandHeldShaft;
-use crate::toolchain::{Board, NumberFormat};
+use crate::toolchain::{BoardModel, NumberFormat};
 
 /// Arguments of `haptic board-sim`.
 #[derive(Debug, Args)]
@@ -33,8 +33,8 @@ pub struct Arguments {
     pub port: Address,
     /// Run the program as flashed, on a virtual board (nucleo-g474re, b-g431b-esc1, stm32f405);
     /// default: a thread with the same servo
-    #[arg(long, value_name = "BOARD", value_parser = Board::find)]
-    pub board: Option<Board>,
+    #[arg(long, value_name = "BOARD", value_parser = BoardModel::find)]
+    pub board: Option<BoardModel>,
     /// End after this number of seconds
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds,
           allow_negative_numbers = true)]

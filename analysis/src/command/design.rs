@@ -144,10 +144,14 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
             let sought = SoughtQuantity { which: "largest", name, unit, note: None };
             let whole = |scene| vec![SceneFile { scene, ..file.clone() }];
             let found = match design::largest(&file.scene, *quantity, &terms) {
-                design::Answer::Limit(value, scene) => design::Answer::Limit(value, whole(scene)),
-                design::Answer::Unlimited(scene) => design::Answer::Unlimited(whole(scene)),
-                design::Answer::Nothing => design::Answer::Nothing,
-                design::Answer::NoSuchNumber => {
+                design::DesignLimit::Limit(value, scene) => {
+                    design::DesignLimit::Limit(value, whole(scene))
+                }
+                design::DesignLimit::Unlimited(scene) => {
+                    design::DesignLimit::Unlimited(whole(scene))
+                }
+                design::DesignLimit::Nothing => design::DesignLimit::Nothing,
+                design::DesignLimit::NoSuchNumber => {
                     return Err(CommandError::NoSuchQuantity { scene: file.name, quantity: name });
                 }
             };
@@ -217,16 +221,16 @@ fn border(
 
 impl SoughtQuantity {
     /// The answer as a comment of TOML.
-    fn comment(&self, found: &design::Answer<Vec<SceneFile>>) -> String {
+    fn comment(&self, found: &design::DesignLimit<Vec<SceneFile>>) -> String {
         let Self { which, name, unit, note } = self;
         let answer = match found {
-            design::Answer::Limit(value, _) => match (*unit, *value) {
+            design::DesignLimit::Limit(value, _) => match (*unit, *value) {
                 (SAMPLES, 1.0) => "1 sample".to_owned(),
                 (SAMPLES, samples) => format!("{samples} {SAMPLES}"),
                 ("", value) => value.to_string(),
                 (unit, value) => last_that_certifies(value, unit),
             },
-            design::Answer::Unlimited(_) => "any value certifies".to_owned(),
+            design::DesignLimit::Unlimited(_) => "any value certifies".to_owned(),
             _ => "no value certifies".to_owned(),
         };
         let note = note.map_or_else(String::new, |note| format!("# {note}\n"));
@@ -280,13 +284,13 @@ fn changed(file: &SceneFile, designed: &SceneFile) -> Vec<String> {
 fn answer(
     arguments: &Arguments,
     sought: &SoughtQuantity,
-    found: &design::Answer<Vec<SceneFile>>,
+    found: &design::DesignLimit<Vec<SceneFile>>,
     asked: &[SceneFile],
 ) -> Result<CommandStatus, CommandError> {
     let (value, files) = match found {
-        design::Answer::Limit(value, files) => (Some(*value), files.as_slice()),
-        design::Answer::Unlimited(files) => (None, files.as_slice()),
-        design::Answer::Nothing | design::Answer::NoSuchNumber => (None, [].as_slice()),
+        design::DesignLimit::Limit(value, files) => (Some(*value), files.as_slice()),
+        design::DesignLimit::Unlimited(files) => (None, files.as_slice()),
+        design::DesignLimit::Nothing | design::DesignLimit::NoSuchNumber => (None, [].as_slice()),
     };
     let comment = sought.comment(found);
     let notes: Vec<Vec<String>> =

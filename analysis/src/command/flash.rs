@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::status::{CommandError, CommandStatus};
 use crate::progress;
-use crate::toolchain::{self, Board, Memory, NumberFormat, Tools, TorqueOutput, probe};
+use crate::toolchain::{self, BoardModel, Memory, NumberFormat, Tools, TorqueOutput, probe};
 
 /// Arguments of `haptic flash`.
 #[derive(Debug, Args)]
@@ -16,8 +16,8 @@ pub struct Arguments {
     #[arg(value_name = "PROGRAM")]
     pub program: String,
     /// Board to build for: nucleo-g474re, b-g431b-esc1 or stm32f405
-    #[arg(long, value_parser = Board::find)]
-    pub board: Board,
+    #[arg(long, value_parser = BoardModel::find)]
+    pub board: BoardModel,
     /// What makes the torque: the board's DAC, for an amplifier outside, or its own bridge; by default what
     /// the program's scene is certified with
     #[arg(long, value_enum)]
@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 }
 
 /// What the linker's map leaves of a board's flash, since one map fits every board.
-fn spared(board: Board, memory: Memory) -> String {
+fn spared(board: BoardModel, memory: Memory) -> String {
     match memory.flash < board.flash() {
         true => format!("; the linker's map, which fits every board, allows {}", memory.flash),
         false => String::new(),

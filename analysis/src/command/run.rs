@@ -27,7 +27,7 @@ use crate::lockstep::{Difference, SimulatedDevice};
 use crate::program::Program;
 use crate::progress;
 use crate::shaft::{HandHeldShaft, RecordedShaft};
-use crate::toolchain::{self, Board, NumberFormat, Tools, UnknownBoard};
+use crate::toolchain::{self, BoardModel, NumberFormat, Tools, UnknownBoard};
 use crate::{counts_csv, lockstep, verdict};
 
 /// Where a scene runs.
@@ -38,7 +38,7 @@ pub enum Target {
     /// On the emulated board, and on this machine beside it: every code is compared.
     Qemu,
     /// What is flashed to a board, on a virtual one, and on this machine beside it.
-    Board(Board),
+    Board(BoardModel),
 }
 
 /// How a virtual board is named: this and the board's name.
@@ -63,7 +63,7 @@ impl FromStr for Target {
             "host" => Ok(Self::Host),
             "qemu" => Ok(Self::Qemu),
             _ => match text.strip_prefix(BOARD) {
-                Some(name) => Ok(Self::Board(Board::find(name)?)),
+                Some(name) => Ok(Self::Board(BoardModel::find(name)?)),
                 None => Err(UnknownTarget::Word(text.into())),
             },
         }

@@ -7,7 +7,7 @@ use super::status::{CommandError, CommandStatus};
 use crate::nominal_latency::titled;
 use crate::quantity::significant;
 use crate::simulation::Experiment;
-use crate::stability::{Stability, Verdict, judge};
+use crate::stability::{Stability, StabilityVerdict, judge};
 
 /// Arguments of `haptic stability`. The scene's table `human`, if it has one, holds the device; the
 /// loop is judged as a simulation by this method would show it.
@@ -30,7 +30,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let stability = judge(&Experiment::at_rest(&file), arguments.steps.integration())?;
     let name = titled(&file.name, [&file.scene.latency]);
     arguments.answer.print(&stability, |stability| text(&name, stability))?;
-    Ok(if stability.verdict == Verdict::Unstable {
+    Ok(if stability.verdict == StabilityVerdict::Unstable {
         CommandStatus::NegativeVerdict
     } else {
         CommandStatus::Success
@@ -39,9 +39,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 
 fn text(name: &str, stability: &Stability) -> String {
     let meaning = match stability.verdict {
-        Verdict::Stable => "STABLE: a small motion decays",
-        Verdict::Unstable => "UNSTABLE: a small motion grows",
-        Verdict::Marginal => "MARGINAL: a small motion neither grows nor decays",
+        StabilityVerdict::Stable => "STABLE: a small motion decays",
+        StabilityVerdict::Unstable => "UNSTABLE: a small motion grows",
+        StabilityVerdict::Marginal => "MARGINAL: a small motion neither grows nor decays",
     };
     let critical = match stability.critical_stiffness {
         Some(stiffness) => format!("{} N m/rad", significant(stiffness, 12)),

@@ -9,13 +9,13 @@ use crate::bridge_board::BridgeBoard;
 use crate::compare_run::Backend;
 use crate::program::Program;
 use crate::progress;
-use crate::toolchain::{self, Board, NumberFormat, Tools, TorqueOutput};
+use crate::toolchain::{self, BoardModel, NumberFormat, Tools, TorqueOutput};
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
 /// A virtual board, and the program for its flash.
 pub struct VirtualBoardBuild {
     executable: PathBuf,
-    board: Board,
+    board: BoardModel,
     elf: PathBuf,
     program: &'static Program,
 }
@@ -23,7 +23,7 @@ pub struct VirtualBoardBuild {
 impl VirtualBoardBuild {
     /// Builds both, after setting up what is missing for that.
     pub fn build(
-        board: Board,
+        board: BoardModel,
         program: &'static Program,
         format: NumberFormat,
     ) -> Result<Self, CommandError> {

@@ -7,7 +7,7 @@ use super::latency::{Latency, NoLatency};
 use super::least_squares::{Delay, Measured};
 use super::model::Model;
 use super::profile::{Profile, student};
-use super::response::{Correction, Response};
+use super::response::{Correction, FrequencyPoint};
 use super::step::LeftOut;
 use crate::quantity::significant;
 
@@ -53,7 +53,7 @@ pub struct Identification {
     /// Mean squared residual of the fit in squared deviations.
     pub misfit: f64,
     /// The responses, in the order of the record.
-    pub responses: Vec<Response>,
+    pub responses: Vec<FrequencyPoint>,
     /// Tones of the record that none of this is of, and why.
     pub left_out: Vec<LeftOut>,
 }
@@ -87,11 +87,11 @@ pub fn identify(
     period: f64,
     correction: &Correction,
     found: usize,
-    responses: Vec<Response>,
+    responses: Vec<FrequencyPoint>,
     mut left_out: Vec<LeftOut>,
 ) -> Result<Identification, IdentifyError> {
     let stands_out =
-        |r: &Response| r.counts >= LEAST_COUNTS && r.deviation < 0.5 * r.impedance().norm();
+        |r: &FrequencyPoint| r.counts >= LEAST_COUNTS && r.deviation < 0.5 * r.impedance().norm();
     let (responses, lost): (Vec<_>, Vec<_>) = responses.into_iter().partition(stands_out);
     left_out.extend(lost.iter().map(lost_in_noise));
     let usable = responses.len();
@@ -125,7 +125,7 @@ pub fn identify(
     })
 }
 
-fn lost_in_noise(response: &Response) -> LeftOut {
+fn lost_in_noise(response: &FrequencyPoint) -> LeftOut {
     let counts = significant(response.counts, 2);
     let reason = format!(
         "its motion of {counts} counts is below quantisation and noise: use a larger torque, or a \
@@ -135,19 +135,19 @@ fn lost_in_noise(response: &Response) -> LeftOut {
 }
 
 /// The responses without the images of the held torque, which are known once the device is.
-fn without_images(measured: &Measured<'_>, model: &Model) -> Vec<Response> {
-    let corrected = |r: &Response| {
+fn without_images(measured: &Measured<'_>, model: &Model) -> Vec<FrequencyPoint> {
+    let corrected = |r: &FrequencyPoint| {
         let admittance = r.admittance / measured.images(model, r.omega);
-        Response { admittance, ..*r }
+        FrequencyPoint { admittance, ..*r }
     };
     measured.responses.iter().map(corrected).collect()
 }
 
 /// The response that is nearest to the rim is the one with the smallest lower end.
-fn disk(responses: &[Response]) -> Disk {
+fn disk(responses: &[FrequencyPoint]) -> Disk {
     // Normal distribution: the deviation of each response rests on many samples.
     let quantile = student(1e6);
-    let rim = |r: &Response| {
+    let rim = |r: &FrequencyPoint| {
         let delta = r.impedance().re;
         Disk { delta, lo: delta - quantile * r.deviation, omega: r.omega }
     };

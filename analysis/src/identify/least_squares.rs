@@ -4,7 +4,7 @@ use haptic_servo::current::TorqueSource;
 use nalgebra::{Complex, Matrix3, Vector3};
 
 use super::model::Model;
-use super::response::Response;
+use super::response::FrequencyPoint;
 
 /// Most Gauss-Newton steps. Near the solution each gains several digits, the images of the torque
 /// included, which are of the model before the step.
@@ -34,7 +34,7 @@ const DELAY: usize = 2;
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<'a> {
     /// The responses.
-    pub responses: &'a [Response],
+    pub responses: &'a [FrequencyPoint],
     /// Sampling period in s.
     pub period: f64,
     /// Delays in s that were taken out of the responses, which have theirs of the images still.
@@ -182,7 +182,13 @@ impl System {
         system
     }
 
-    fn add(&mut self, response: &Response, images: Complex<f64>, model: &Model, with_delay: bool) {
+    fn add(
+        &mut self,
+        response: &FrequencyPoint,
+        images: Complex<f64>,
+        model: &Model,
+        with_delay: bool,
+    ) {
         let (omega, measured) = (response.omega, response.impedance() * images);
         let (fitted, output) = (model.impedance(omega), model.output(omega));
         let j_omega = Complex::new(0.0, omega);

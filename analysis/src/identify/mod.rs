@@ -37,7 +37,7 @@ pub use fit::{Disk, Identification};
 pub use latency::{Latency, NoLatency};
 pub use model::Model;
 pub use record::Record;
-pub use response::{Correction, Response};
+pub use response::{Correction, FrequencyPoint};
 pub use step::LeftOut;
 
 /// Identifies a rigid device, or at least its passivity, from a record.

@@ -46,7 +46,7 @@ impl Correction {
 
 /// Torque to velocity at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Response {
+pub struct FrequencyPoint {
     /// Angular frequency in rad/s.
     pub omega: f64,
     /// `J(j omega)` in rad/(N m s).
@@ -57,7 +57,7 @@ pub struct Response {
     pub counts: f64,
 }
 
-impl Response {
+impl FrequencyPoint {
     /// `1/J` in N m s/rad: damping its real part, `omega` times inertia its imaginary part.
     pub fn impedance(&self) -> Complex<f64> {
         1.0 / self.admittance
@@ -71,7 +71,7 @@ impl Response {
 /// the held sine, which sampling folds back, stay in: see [`Model::images`].
 ///
 /// [`Model::images`]: super::model::Model::images
-pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Option<Response> {
+pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Option<FrequencyPoint> {
     let skipped = (correction.settle * step.rows.len() as f64) as usize;
     let rows = step.rows.start + skipped..step.rows.end;
     let angle = step.omega * record.period;
@@ -90,7 +90,12 @@ pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Opti
         .map_or(0.0, |source| torque_source::deviation(&source, step.omega, amplitude) / amplitude);
     let deviation = impedance.norm() * (deviation / counts.norm()).hypot(of_torque);
     let usable = impedance.is_finite() && deviation.is_finite() && admittance.is_finite();
-    usable.then(|| Response { omega: step.omega, admittance, deviation, counts: counts.norm() })
+    usable.then(|| FrequencyPoint {
+        omega: step.omega,
+        admittance,
+        deviation,
+        counts: counts.norm(),
+    })
 }
 
 /// `Re(p e^(j angle k))` fitted to the samples together with a parabola, which a free device drifts

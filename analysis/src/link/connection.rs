@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use haptic_servo::wire::description::Description;
 use haptic_servo::wire::message::{
-    ActiveParameters, Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
+    ActiveParameters, BoardUnits, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
     PreviousFault, Refusal, Status, ToBoard, ToHost,
 };
 use haptic_servo::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
@@ -25,7 +25,7 @@ pub struct Link {
     address: Address,
     wire: Wire,
     program: String,
-    board: Board,
+    board: BoardUnits,
     previous_fault: Option<PreviousFault>,
     /// Starts at random, so that a reply to an earlier client is not taken for ours.
     last_id: Id,
@@ -160,7 +160,7 @@ impl Link {
     }
 
     /// What the board's numbers mean.
-    pub fn board(&self) -> &Board {
+    pub fn board(&self) -> &BoardUnits {
         &self.board
     }
 

@@ -9,7 +9,7 @@ mod tests;
 pub mod tui;
 
 use haptic_servo::wire::Discarded;
-use haptic_servo::wire::message::{ActiveParameters, Board, PreviousFault, Status};
+use haptic_servo::wire::message::{ActiveParameters, BoardUnits, PreviousFault, Status};
 
 pub use haptic_model::board::{Power, formatting, history, sample};
 
@@ -43,7 +43,7 @@ pub struct ConnectedBoard {
     /// Name of its program.
     pub program: String,
     /// What its numbers mean.
-    pub board: Board,
+    pub board: BoardUnits,
     /// What stopped it before it was last started.
     pub previous_fault: Option<PreviousFault>,
     scale: Scale,

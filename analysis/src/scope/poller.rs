@@ -12,7 +12,7 @@ use haptic_model::board::timing::{REQUEST, RETRY, SILENCE, STATUS_INTERVAL};
 use haptic_servo::servo_loop::Frame;
 use haptic_servo::wire::Discarded;
 use haptic_servo::wire::message::{
-    ActiveParameters, Board, Id, PreviousFault, Status, ToBoard, ToHost,
+    ActiveParameters, BoardUnits, Id, PreviousFault, Status, ToBoard, ToHost,
 };
 
 use super::control::{Reply, Request};
@@ -28,7 +28,7 @@ pub enum Event {
         /// Name of its program.
         program: String,
         /// What its numbers mean.
-        board: Board,
+        board: BoardUnits,
         /// What stopped it before it was last started.
         previous_fault: Option<PreviousFault>,
     },

@@ -48,7 +48,7 @@ mod tests {
     use haptic_servo::dac::DacCode;
     use haptic_servo::servo_loop::{Frame, State};
     use haptic_servo::torque::LimitReason;
-    use haptic_servo::wire::message::Board;
+    use haptic_servo::wire::message::BoardUnits;
 
     use super::super::sample::Scale;
     use super::*;
@@ -56,7 +56,7 @@ mod tests {
     /// The rows of a library for such tables, to the letter.
     #[test]
     fn rows_are_those_of_the_library_for_csv() {
-        let board = Board {
+        let board = BoardUnits {
             period: 0.001,
             timer_counts: 170_000,
             counts_per_turn: 4000.0,

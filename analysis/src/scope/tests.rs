@@ -6,7 +6,7 @@ use haptic_servo::reset::ResetCause;
 use haptic_servo::servo_loop::{Frame, State};
 use haptic_servo::torque::LimitReason;
 use haptic_servo::wire::Discarded;
-use haptic_servo::wire::message::{ActiveParameters, Board, Changes, PreviousFault, Status};
+use haptic_servo::wire::message::{ActiveParameters, BoardUnits, Changes, PreviousFault, Status};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
@@ -15,7 +15,7 @@ use super::poller::Event;
 use super::sample::Sample;
 use super::{Scope, tui};
 
-const BOARD: Board = Board {
+const BOARD: BoardUnits = BoardUnits {
     period: 0.001,
     timer_counts: 1000,
     counts_per_turn: 1000.0,

@@ -4,7 +4,7 @@ use std::fmt;
 use std::hint::black_box;
 use std::net::SocketAddr;
 
-use super::http::{Answer, Head};
+use super::http::{Head, HttpResponse};
 use super::refusal::PageRefusal;
 
 /// Bytes of a token: nobody guesses 128 bit.
@@ -57,7 +57,7 @@ impl Access {
     ///
     /// # Errors
     /// The answer.
-    pub fn check_host(&self, head: &Head) -> Result<(), Answer> {
+    pub fn check_host(&self, head: &Head) -> Result<(), HttpResponse> {
         let host = head.header("host")?.unwrap_or_default();
         if self.hosts.iter().any(|own| own.eq_ignore_ascii_case(host)) {
             return Ok(());
@@ -70,7 +70,7 @@ impl Access {
     ///
     /// # Errors
     /// The answer.
-    pub fn check_origin(&self, head: &Head) -> Result<(), Answer> {
+    pub fn check_origin(&self, head: &Head) -> Result<(), HttpResponse> {
         let is_own = |origin: &str| {
             origin
                 .strip_prefix("http://")
@@ -93,7 +93,7 @@ impl Access {
     ///
     /// # Errors
     /// The answer.
-    pub fn check_token(&self, head: &Head) -> Result<(), Answer> {
+    pub fn check_token(&self, head: &Head) -> Result<(), HttpResponse> {
         if head.query("token").is_some_and(|given| self.token.is(given)) {
             return Ok(());
         }
@@ -101,7 +101,7 @@ impl Access {
     }
 }
 
-impl From<PageRefusal> for Answer {
+impl From<PageRefusal> for HttpResponse {
     fn from(refusal: PageRefusal) -> Self {
         Self::refusal(refusal.code(), refusal.to_string())
     }

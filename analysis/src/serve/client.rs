@@ -13,7 +13,7 @@ use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
 
-use super::http::{Answer, Head};
+use super::http::{Head, HttpResponse};
 use super::port::{News, Seat};
 use super::refusal::PageRefusal;
 use super::shared::Shared;
@@ -32,26 +32,26 @@ const QUEUE_TIMEOUT: Duration = Duration::from_millis(500);
 const GOODBYE: Duration = Duration::from_secs(1);
 
 /// That a socket is asked for, as browsers do; the key that they are answered with.
-pub fn check_upgrade(head: &Head) -> Result<String, Answer> {
+pub fn check_upgrade(head: &Head) -> Result<String, HttpResponse> {
     let has = |name, word: &str| {
         let value = head.header(name)?.unwrap_or_default();
-        Ok::<_, Answer>(value.split(',').any(|part| part.trim().eq_ignore_ascii_case(word)))
+        Ok::<_, HttpResponse>(value.split(',').any(|part| part.trim().eq_ignore_ascii_case(word)))
     };
     if !has("upgrade", "websocket")? || !has("connection", "upgrade")? {
         let why = "/wire is a WebSocket: ask for an upgrade".to_owned();
-        return Err(Answer::refusal(426, why).with("Upgrade: websocket"));
+        return Err(HttpResponse::refusal(426, why).with("Upgrade: websocket"));
     }
     match head.header("sec-websocket-version")? {
         Some("13") => {}
         version => {
             let version = version.unwrap_or_default();
             let why = format!("version `{version}` of WebSocket is not served here: 13 is");
-            return Err(Answer::refusal(426, why).with("Sec-WebSocket-Version: 13"));
+            return Err(HttpResponse::refusal(426, why).with("Sec-WebSocket-Version: 13"));
         }
     }
     match head.header("sec-websocket-key")? {
         Some(key) if !key.is_empty() => Ok(derive_accept_key(key.as_bytes())),
-        _ => Err(Answer::refusal(400, "the header sec-websocket-key is missing".to_owned())),
+        _ => Err(HttpResponse::refusal(400, "the header sec-websocket-key is missing".to_owned())),
     }
 }
 

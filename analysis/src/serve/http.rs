@@ -32,10 +32,10 @@ impl Head {
     ///
     /// # Errors
     /// The answer to what is none.
-    pub fn read(mut stream: &TcpStream, over: &AtomicBool) -> Result<Self, Answer> {
+    pub fn read(mut stream: &TcpStream, over: &AtomicBool) -> Result<Self, HttpResponse> {
         let (mut bytes, mut chunk) = (Vec::new(), [0; 4096]);
         let end = Instant::now() + TIMEOUT;
-        let cut_off = || Answer::refusal(400, "the request ends in its head".to_owned());
+        let cut_off = || HttpResponse::refusal(400, "the request ends in its head".to_owned());
         stream.set_read_timeout(Some(POLL_INTERVAL)).map_err(|_| cut_off())?;
         loop {
             if let Some(head) = Self::parse(&bytes)? {
@@ -43,11 +43,11 @@ impl Head {
             }
             if bytes.len() > LONGEST {
                 let why = format!("the head of the request is longer than {LONGEST} bytes");
-                return Err(Answer::refusal(431, why));
+                return Err(HttpResponse::refusal(431, why));
             }
             if Instant::now() > end || over.load(Ordering::Relaxed) {
                 let why = format!("the request has not ended within {} s", TIMEOUT.as_secs());
-                return Err(Answer::refusal(408, why));
+                return Err(HttpResponse::refusal(408, why));
             }
             match stream.read(&mut chunk) {
                 Ok(0) => return Err(cut_off()),
@@ -59,7 +59,7 @@ impl Head {
     }
 
     /// The head that these bytes begin with; `None` where it goes on.
-    fn parse(bytes: &[u8]) -> Result<Option<Self>, Answer> {
+    fn parse(bytes: &[u8]) -> Result<Option<Self>, HttpResponse> {
         let mut headers = [httparse::EMPTY_HEADER; HEADERS];
         let mut request = httparse::Request::new(&mut headers);
         let length = match request.parse(bytes) {
@@ -67,7 +67,7 @@ impl Head {
             Ok(httparse::Status::Partial) => return Ok(None),
             Err(error) => {
                 let status = if error == httparse::Error::TooManyHeaders { 431 } else { 400 };
-                return Err(Answer::refusal(status, format!("this is no request: {error}")));
+                return Err(HttpResponse::refusal(status, format!("this is no request: {error}")));
             }
         };
         let header = |header: &httparse::Header<'_>| {
@@ -97,10 +97,12 @@ impl Head {
     ///
     /// # Errors
     /// The answer where it is there twice: one reader may take the first, and another one the last.
-    pub fn header(&self, name: &str) -> Result<Option<&str>, Answer> {
+    pub fn header(&self, name: &str) -> Result<Option<&str>, HttpResponse> {
         let mut all = self.headers.iter().filter(|(given, _)| given == name);
         match (all.next(), all.next()) {
-            (_, Some(_)) => Err(Answer::refusal(400, format!("the header {name} is there twice"))),
+            (_, Some(_)) => {
+                Err(HttpResponse::refusal(400, format!("the header {name} is there twice")))
+            }
             (one, None) => Ok(one.map(|(_, value)| value.trim())),
         }
     }
@@ -108,14 +110,14 @@ impl Head {
 
 /// An answer, after which the connection is closed.
 #[derive(Debug)]
-pub struct Answer {
+pub struct HttpResponse {
     status: u16,
     headers: Vec<String>,
     kind: &'static str,
     body: String,
 }
 
-impl Answer {
+impl HttpResponse {
     /// A sentence.
     pub fn refusal(status: u16, sentence: String) -> Self {
         let (headers, kind) = (Vec::new(), "text/plain; charset=utf-8");

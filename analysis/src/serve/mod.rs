@@ -23,7 +23,7 @@ use std::time::Duration;
 use thiserror::Error;
 
 use self::access::{Access, Token};
-use self::http::{Answer, Head};
+use self::http::{Head, HttpResponse};
 pub use self::port::Port;
 pub use self::refusal::PageRefusal;
 pub use self::report::Report;
@@ -170,7 +170,7 @@ fn connection(stream: TcpStream, shared: &Arc<Shared>) -> Option<JoinHandle<()>>
         let busy = format!(
             "there are {CONNECTIONS} connections already: close other pages of this server"
         );
-        Answer::refusal(503, busy).send(&stream);
+        HttpResponse::refusal(503, busy).send(&stream);
         return None;
     }
     let shared = shared.clone();
@@ -188,8 +188,8 @@ fn serve(stream: &TcpStream, shared: &Shared) {
         Err(answer) => return answer.send(stream),
     };
     match route(&head, shared) {
-        Ok(Route::Page) => Answer::page(&shared.page).send(stream),
-        Ok(Route::Nothing) => Answer::nothing().send(stream),
+        Ok(Route::Page) => HttpResponse::page(&shared.page).send(stream),
+        Ok(Route::Nothing) => HttpResponse::nothing().send(stream),
         Ok(Route::Wire { key }) => client::carry(stream, head.rest, &key, shared),
         Err(answer) => answer.send(stream),
     }
@@ -208,10 +208,10 @@ enum Route {
     },
 }
 
-fn route(head: &Head, shared: &Shared) -> Result<Route, Answer> {
+fn route(head: &Head, shared: &Shared) -> Result<Route, HttpResponse> {
     if head.method != "GET" {
         let why = format!("{} is not served here: GET is", head.method);
-        return Err(Answer::refusal(405, why).with("Allow: GET"));
+        return Err(HttpResponse::refusal(405, why).with("Allow: GET"));
     }
     shared.access.check_host(head)?;
     shared.access.check_origin(head)?;
@@ -222,6 +222,6 @@ fn route(head: &Head, shared: &Shared) -> Result<Route, Answer> {
             client::check_upgrade(head).map(|key| Route::Wire { key })
         }
         "/favicon.ico" => Ok(Route::Nothing),
-        path => Err(Answer::refusal(404, format!("there is no {path} here: / is the page"))),
+        path => Err(HttpResponse::refusal(404, format!("there is no {path} here: / is the page"))),
     }
 }

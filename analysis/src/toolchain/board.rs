@@ -4,7 +4,7 @@ use std::fmt;
 
 /// A board; each is a feature of the firmware's package, a file in its `board` folder, and a virtual board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Board {
+pub enum BoardModel {
     /// NUCLEO-G474RE.
     NucleoG474re,
     /// B-G431B-ESC1 and boards like it.
@@ -51,13 +51,13 @@ impl fmt::Display for TorqueOutput {
 
 /// There is no such board.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no board {name}; there are {}", Board::ALL.map(Board::name).join(", "))]
+#[error("there is no board {name}; there are {}", BoardModel::ALL.map(BoardModel::name).join(", "))]
 pub struct UnknownBoard {
     /// The given name.
     pub name: String,
 }
 
-impl Board {
+impl BoardModel {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::NucleoG474re, Self::BG431bEsc1, Self::Stm32f405];
 
@@ -95,7 +95,7 @@ impl Board {
     }
 }
 
-impl fmt::Display for Board {
+impl fmt::Display for BoardModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
     }
@@ -107,11 +107,11 @@ mod tests {
 
     #[test]
     fn finds_boards_and_names_them_where_it_does_not() {
-        for board in Board::ALL {
-            assert_eq!(Board::find(board.name()), Ok(board));
+        for board in BoardModel::ALL {
+            assert_eq!(BoardModel::find(board.name()), Ok(board));
         }
         assert_eq!(
-            Board::find("arduino").unwrap_err().to_string(),
+            BoardModel::find("arduino").unwrap_err().to_string(),
             "there is no board arduino; there are nucleo-g474re, b-g431b-esc1, stm32f405"
         );
     }

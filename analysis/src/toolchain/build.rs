@@ -11,7 +11,7 @@ use super::memory::{Memory, NoLength};
 use super::output::last_lines;
 use super::size::{SizeError, Sizes};
 use super::sources::{Sources, SourcesError, workspace_root};
-use super::{Board, TARGET, Target, TorqueOutput};
+use super::{BoardModel, TARGET, Target, TorqueOutput};
 
 /// The format that a scene's program computes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
@@ -56,10 +56,13 @@ pub enum BuildError {
         source: io::Error,
     },
     /// The board cannot make torque like that.
-    #[error("the board {board} has no bridge that this firmware drives; {} has", Board::BG431bEsc1)]
+    #[error(
+        "the board {board} has no bridge that this firmware drives; {} has",
+        BoardModel::BG431bEsc1
+    )]
     NoBridge {
         /// The board.
-        board: Board,
+        board: BoardModel,
     },
     /// Cargo could not be started.
     #[error("cargo could not be started: {0}")]
@@ -204,7 +207,7 @@ impl Toolchain {
     /// output.
     pub fn build_for(
         &self,
-        board: Board,
+        board: BoardModel,
         output: TorqueOutput,
         names: &[&str],
         format: NumberFormat,
@@ -222,7 +225,7 @@ impl Toolchain {
     ///
     /// # Errors
     /// Where it does not.
-    pub fn try_release(&self, board: Board, name: &str) -> Result<(), BuildError> {
+    pub fn try_release(&self, board: BoardModel, name: &str) -> Result<(), BuildError> {
         let build = ["--release", "--package", SCENES, "--features", board.name()];
         let program = ["--bin", name, "--target", TARGET];
         let _lock = self.workspace.lock("build")?;
@@ -234,7 +237,11 @@ impl Toolchain {
     ///
     /// # Errors
     /// Where they do not compile or do not fit, and where the board has no such output.
-    pub fn build_tests(&self, board: Board, output: TorqueOutput) -> Result<PathBuf, BuildError> {
+    pub fn build_tests(
+        &self,
+        board: BoardModel,
+        output: TorqueOutput,
+    ) -> Result<PathBuf, BuildError> {
         if output == TorqueOutput::Bridge && !board.has_bridge() {
             return Err(BuildError::NoBridge { board });
         }

@@ -19,7 +19,7 @@ mod target;
 mod version;
 
 pub use apt::AptError;
-pub use board::{Board, TorqueOutput, UnknownBoard};
+pub use board::{BoardModel, TorqueOutput, UnknownBoard};
 pub use build::{BuildError, NumberFormat, Program, Toolchain, build_haptic_with};
 pub use memory::Memory;
 pub use plan::Tools;

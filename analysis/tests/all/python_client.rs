@@ -19,7 +19,7 @@ use haptic_servo::servo_loop::{Frame, State};
 use haptic_servo::torque::LimitReason;
 use haptic_servo::wire::description::Description;
 use haptic_servo::wire::message::{
-    ActiveParameters, Board, Changes, Outcome, PreviousFault, Refusal, Status, ToBoard, ToHost,
+    ActiveParameters, BoardUnits, Changes, Outcome, PreviousFault, Refusal, Status, ToBoard, ToHost,
 };
 use haptic_servo::wire::telemetry::Batch;
 use haptic_servo::wire::{Decoder, Discarded, PROTOCOL, encode};
@@ -131,7 +131,7 @@ fn reads_every_message_to_the_host() {
     batch.push(frame(1, i32::MAX, 0)).unwrap();
     let mut values = Changes::new();
     values.push((Parameter::TorqueLimit, 0.1)).unwrap();
-    let numbers = Board {
+    let numbers = BoardUnits {
         period: 0.001,
         timer_counts: 170_000,
         counts_per_turn: 61_440.0,

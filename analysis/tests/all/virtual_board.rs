@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Stdio};
 
-use analysis::toolchain::Board;
+use analysis::toolchain::BoardModel;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -11,7 +11,7 @@ use crate::common::{answer, haptic, program};
 
 #[test]
 fn what_is_flashed_gives_the_codes_of_the_host() {
-    for board in Board::ALL {
+    for board in BoardModel::ALL {
         for scene in ["delayed_spring", "damper_wall", "free_mode"] {
             let target = format!("board:{board}");
             let run = haptic(&["run", "--target", &target, scene, "--json", "--ticks", "3000"]);
@@ -132,7 +132,7 @@ struct SimulatedBoard {
 }
 
 impl SimulatedBoard {
-    fn of(board: Board, scene: &str) -> Self {
+    fn of(board: BoardModel, scene: &str) -> Self {
         let folder = TempDir::new().unwrap();
         let port = format!("unix:{}", folder.path().join("board").display());
         let mut process = program(&["twin", scene, "--board", board.name(), "--port", &port])
@@ -161,7 +161,7 @@ impl Drop for SimulatedBoard {
 /// Over the serial port that the drivers have set up, judged by the certificate in the flash.
 #[test]
 fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
-    for board in Board::ALL {
+    for board in BoardModel::ALL {
         let board = SimulatedBoard::of(board, "damper_wall");
         let (status, running) = board.tune(&[]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
@@ -186,7 +186,7 @@ fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
 /// With what its power stage measures.
 #[test]
 fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
-    let board = SimulatedBoard::of(Board::BG431bEsc1, "bridge_wall");
+    let board = SimulatedBoard::of(BoardModel::BG431bEsc1, "bridge_wall");
     let (status, running) = board.tune(&["--arm"]);
     assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
     let (_, running) = board.tune(&["stiffness=15"]);

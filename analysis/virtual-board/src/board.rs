@@ -47,7 +47,7 @@ pub struct BusAccess {
 }
 
 /// The board.
-pub struct Board {
+pub struct VirtualBoard {
     /// Instructions since power was switched on, waiting included.
     pub now: u64,
     /// The core's registers in memory.
@@ -99,7 +99,7 @@ pub struct Board {
     seen: (Option<u16>, Level),
 }
 
-impl Board {
+impl VirtualBoard {
     /// A board whose power has just been switched on.
     pub fn new(chip: &'static Chip, device: Box<dyn Device + Send>) -> Self {
         Self {

@@ -145,13 +145,13 @@ impl fmt::Display for NotModelled {
 
 #[cfg(test)]
 mod tests {
-    use crate::board::Board;
+    use crate::board::VirtualBoard;
     use crate::chip::{Chip, NUCLEO_G474RE};
     use crate::device::FixedDevice;
 
     /// What a program is told that reads there, or writes this.
     fn said(address: u32, written: Option<u32>) -> String {
-        let mut board = Board::new(&NUCLEO_G474RE, Box::new(FixedDevice));
+        let mut board = VirtualBoard::new(&NUCLEO_G474RE, Box::new(FixedDevice));
         // TIM6 and USART2 are clocked, and nothing else of their bus.
         board.write(0x4002_1058, 4, (1 << 4) | (1 << 17));
         match written {

@@ -3,7 +3,7 @@
 
 use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn};
 
-use crate::board::Board;
+use crate::board::VirtualBoard;
 use crate::core::exceptions::Masks;
 use crate::halt::Halt;
 use crate::it_block::PcHistory;
@@ -20,7 +20,7 @@ pub type Engine<'a> = Unicorn<'a, Context>;
 /// What the answers depend on.
 pub struct Context {
     /// The board.
-    pub board: Board,
+    pub board: VirtualBoard,
     /// A stop before the next instruction from this time on: when something is due, or at once.
     deadline: u64,
     /// An exception waits for its mask to fall.
@@ -33,7 +33,7 @@ pub struct Context {
 
 impl Context {
     /// Around a board.
-    pub fn new(board: Board) -> Self {
+    pub fn new(board: VirtualBoard) -> Self {
         Self { board, deadline: 0, masked: false, history: PcHistory::default(), halt: None }
     }
 

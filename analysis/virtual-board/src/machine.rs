@@ -6,7 +6,7 @@ use std::path::Path;
 
 use unicorn_engine::RegisterARM;
 
-use crate::board::Board;
+use crate::board::VirtualBoard;
 use crate::chip::Chip;
 use crate::core::exceptions::{NON_MASKABLE, Number};
 use crate::core::system::FaultStatus;
@@ -60,7 +60,7 @@ impl Machine {
         chip: &'static Chip,
         device: Box<dyn Device + Send>,
     ) -> Result<Self, BootError> {
-        let mut core = Processor::new(Board::new(chip, device));
+        let mut core = Processor::new(VirtualBoard::new(chip, device));
         for (address, bytes) in &image.pieces {
             if !core.set_memory(*address, bytes) {
                 return Err(BootError::NoFlash { address: *address, size: bytes.len() });
@@ -81,12 +81,12 @@ impl Machine {
     }
 
     /// The board.
-    pub fn board(&self) -> &Board {
+    pub fn board(&self) -> &VirtualBoard {
         self.core.board()
     }
 
     /// The board, to do something to it from outside.
-    pub fn board_mut(&mut self) -> &mut Board {
+    pub fn board_mut(&mut self) -> &mut VirtualBoard {
         self.core.board_mut()
     }
 
@@ -137,7 +137,7 @@ impl Machine {
         &mut self,
         what: &'static str,
         instructions: u64,
-        mut is_so: impl FnMut(&Board) -> bool,
+        mut is_so: impl FnMut(&VirtualBoard) -> bool,
     ) -> Result<(), BoardError> {
         let end = self.board().now + instructions;
         while !is_so(self.board()) {

@@ -8,7 +8,7 @@
 
 use unicorn_engine::{Arch, ArmCpuModel, Mode, Prot, RegisterARM, Unicorn, uc_error};
 
-use crate::board::Board;
+use crate::board::VirtualBoard;
 use crate::chip::{COUPLED, FLASH, RAM};
 use crate::core::exceptions::Masks;
 use crate::halt::Halt;
@@ -34,7 +34,7 @@ const WAIT_FOR_EVENT: u16 = 0xBF20;
 
 impl Processor {
     /// A core with a chip's memory, which holds noise, and its board.
-    pub fn new(board: Board) -> Self {
+    pub fn new(board: VirtualBoard) -> Self {
         let chip = board.chip();
         let mode = Mode::THUMB | Mode::MCLASS;
         let mut engine = Unicorn::new_with_data(Arch::ARM, mode, Context::new(board))
@@ -65,12 +65,12 @@ impl Processor {
     }
 
     /// The board.
-    pub fn board(&self) -> &Board {
+    pub fn board(&self) -> &VirtualBoard {
         &self.engine.get_data().board
     }
 
     /// The board.
-    pub fn board_mut(&mut self) -> &mut Board {
+    pub fn board_mut(&mut self) -> &mut VirtualBoard {
         &mut self.engine.get_data_mut().board
     }
 
@@ -198,7 +198,7 @@ mod tests {
         code: &[u16],
         registers: [u32; 4],
     ) -> (Halt, Processor) {
-        let mut core = Processor::new(Board::new(chip, Box::new(FixedDevice)));
+        let mut core = Processor::new(VirtualBoard::new(chip, Box::new(FixedDevice)));
         let bytes: Vec<_> = code.iter().flat_map(|half| half.to_le_bytes()).collect();
         core.set_memory(at, &bytes);
         let names = [RegisterARM::R0, RegisterARM::R1, RegisterARM::R2, RegisterARM::R3];

@@ -3,7 +3,7 @@
 //! The compiler, the host and the board compute the same certificate; with this codec a test asks a
 //! board, so that the three can be compared bit for bit. Scenes do not get to a servo this way.
 
-use haptic_servo::certificate::{Answer, Assessment, Parameter, PassivityProblem, assess};
+use haptic_servo::certificate::{Assessment, Parameter, PassivityProblem, RuleAnswer, assess};
 use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
@@ -33,9 +33,9 @@ pub struct CertifyReply {
     /// Index at the port of a scene with latency.
     pub alpha_port: IntervalBits,
     /// Equations 17 to 19.
-    pub paper: Answer,
+    pub paper: RuleAnswer,
     /// Theory, section 4.1.
-    pub exact: Answer,
+    pub exact: RuleAnswer,
     /// Instructions that certifying took; 0 where nothing counts them.
     pub instructions: u64,
     /// Whether the scene is certified, without the numbers behind the verdict.
@@ -173,17 +173,19 @@ pub fn decode_reply(words: &ReplyWords) -> Option<CertifyReply> {
 }
 
 /// An answer as a word.
-fn answer_code(answer: Answer) -> u64 {
+fn answer_code(answer: RuleAnswer) -> u64 {
     match answer {
-        Answer::Pass => 0,
-        Answer::Fail => 1,
-        Answer::Undecided => 2,
+        RuleAnswer::Pass => 0,
+        RuleAnswer::Fail => 1,
+        RuleAnswer::Undecided => 2,
     }
 }
 
 /// The answer of a word.
-fn answer_from_code(word: u64) -> Option<Answer> {
-    [Answer::Pass, Answer::Fail, Answer::Undecided].into_iter().find(|a| answer_code(*a) == word)
+fn answer_from_code(word: u64) -> Option<RuleAnswer> {
+    [RuleAnswer::Pass, RuleAnswer::Fail, RuleAnswer::Undecided]
+        .into_iter()
+        .find(|a| answer_code(*a) == word)
 }
 
 /// Words, and the place of the next one.

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::certificate::{
-    Answer, Assessment, AssumptionStatus, Assumptions, Certified, Resolution, Rule,
+    Assessment, AssumptionStatus, Assumptions, Certified, Resolution, Rule, RuleAnswer,
 };
 use crate::coupling::Coupling;
 use crate::passivity::interval::Interval;
@@ -81,11 +81,11 @@ impl fmt::Display for Enclosure {
     }
 }
 
-fn word(answer: Answer) -> &'static str {
+fn word(answer: RuleAnswer) -> &'static str {
     match answer {
-        Answer::Pass => "pass",
-        Answer::Fail => "fail",
-        Answer::Undecided => "undecided",
+        RuleAnswer::Pass => "pass",
+        RuleAnswer::Fail => "fail",
+        RuleAnswer::Undecided => "undecided",
     }
 }
 

@@ -4,7 +4,7 @@ use super::loop_intervals::LoopIntervals;
 use super::problem::PassivityProblem;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
-use super::rules::{Answer, Rule, exact_limit, is_nonlinear, paper_limit};
+use super::rules::{Rule, RuleAnswer, exact_limit, is_nonlinear, paper_limit};
 use super::validity::first_invalid;
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
@@ -32,9 +32,9 @@ pub struct Assessment {
     /// everywhere.
     pub cos_theta: Option<Interval>,
     /// Answer of equations 17 to 19.
-    pub paper: Answer,
+    pub paper: RuleAnswer,
     /// Answer of theory, section 4.1.
-    pub exact: Answer,
+    pub exact: RuleAnswer,
     /// Which of the two the verdict follows.
     pub rule: Rule,
     /// The number format whose coefficients were judged.
@@ -87,8 +87,8 @@ pub(super) const fn assessed(scene: &Scene, format: Format, extent: Extent) -> A
         bound: None,
         delta: Interval::ENTIRE,
         cos_theta: None,
-        paper: Answer::Fail,
-        exact: Answer::Fail,
+        paper: RuleAnswer::Fail,
+        exact: RuleAnswer::Fail,
         rule,
         format,
         outcome: Ok(()),
@@ -120,13 +120,13 @@ const fn judge(
     }
     out.bound = posed.bound;
     out.paper = posed.paper(&alone);
-    let is_refused = matches!(out.rule, Rule::Nonlinear) && !matches!(out.paper, Answer::Pass);
+    let is_refused = matches!(out.rule, Rule::Nonlinear) && !matches!(out.paper, RuleAnswer::Pass);
     if is_refused && matches!(extent, Extent::OwnRule) {
         return nonlinear_outcome(n, &alone, out);
     }
     // What lags and is limited is certified by then, and the other rule takes the stack of a small board.
     if is_lagging_and_limited(out, n) && matches!(extent, Extent::OwnRule) {
-        out.exact = Answer::Undecided;
+        out.exact = RuleAnswer::Undecided;
         return nonlinear_outcome(n, &alone, out);
     }
     let coupled = if n.latency.is_some() && matches!(extent, Extent::BothRules) {
@@ -178,18 +178,18 @@ const fn exact_outcome(
     };
     match (coupled, alone) {
         (Ok(found), _) => match out.exact {
-            Answer::Pass => Ok(()),
-            Answer::Undecided => Err(Rejection::Undecided {
+            RuleAnswer::Pass => Ok(()),
+            RuleAnswer::Undecided => Err(Rejection::Undecided {
                 doubt: UndecidedReason::TooClose,
                 index: Some(found.minimum),
                 limit: Some(limit),
                 remedies: Remedies::NONE,
             }),
-            Answer::Fail if blames_coupling && n.missed.is_some() => {
+            RuleAnswer::Fail if blames_coupling && n.missed.is_some() => {
                 Err(missed_rejection(found.minimum, limit))
             }
-            Answer::Fail if blames_coupling => Err(coupling_rejection(n, out)),
-            Answer::Fail => Err(Rejection::Shortage {
+            RuleAnswer::Fail if blames_coupling => Err(coupling_rejection(n, out)),
+            RuleAnswer::Fail => Err(Rejection::Shortage {
                 // What the device lacks where torques lag, rather than what fails for this one.
                 alpha: match out.alpha_port {
                     Some(needed) => needed,
@@ -248,18 +248,18 @@ const fn nonlinear_outcome(
         });
     };
     match out.paper {
-        Answer::Pass => Ok(()),
-        Answer::Undecided => Err(Rejection::Undecided {
+        RuleAnswer::Pass => Ok(()),
+        RuleAnswer::Undecided => Err(Rejection::Undecided {
             doubt: UndecidedReason::TooClose,
             index: Some(bound),
             limit: Some(n.delta),
             remedies: Remedies::NONE,
         }),
-        Answer::Fail if bound.is_below(n.delta) => match (paper_limit(n), &n.missed) {
+        RuleAnswer::Fail if bound.is_below(n.delta) => match (paper_limit(n), &n.missed) {
             (Some(limit), Some(_)) => Err(missed_rejection(bound, limit)),
             _ => Err(coupling_rejection(n, out)),
         },
-        Answer::Fail => Err(Rejection::Shortage {
+        RuleAnswer::Fail => Err(Rejection::Shortage {
             alpha: bound,
             delta: n.delta,
             cos_theta: found.cos_theta,

@@ -7,7 +7,7 @@ use super::assessment::Assessment;
 use super::loop_intervals::{LoopIntervals, Missed};
 use super::model::{largest_gain, largest_solved};
 use super::problem::PassivityProblem;
-use super::rules::{Answer, Rule, paper_limit};
+use super::rules::{Rule, RuleAnswer, paper_limit};
 use crate::environment::{Environment, EnvironmentModel};
 use crate::passivity::bernstein::Precision;
 use crate::passivity::interval::Interval;
@@ -37,7 +37,7 @@ impl Assessment {
                 Some(margin) => margin.max(0.0).min(self.delta.lo()),
                 None => 0.0,
             }),
-            (Rule::Exact, Err(_), Answer::Fail) => match self.linear(scene) {
+            (Rule::Exact, Err(_), RuleAnswer::Fail) => match self.linear(scene) {
                 Some(margin) if margin < 0.0 => Some(margin),
                 _ => None,
             },

@@ -60,7 +60,7 @@ pub use problem::PassivityProblem;
 pub use quantization::{QuantizationBound, Resolution};
 pub use rejection::Rejection;
 pub use remedy::{Remedies, Remedy};
-pub use rules::{Answer, Rule, gamma};
+pub use rules::{Rule, RuleAnswer, gamma};
 pub use timed::{TimingChecked, TimingError};
 pub use validity::InvalidParameter;
 

@@ -3,7 +3,7 @@
 use super::deviation::Deviation;
 use super::loop_intervals::Lagging;
 use super::problem::PassivityProblem;
-use super::rules::Answer;
+use super::rules::RuleAnswer;
 use crate::latency::{Latency, TimeRange};
 use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::RealPart;
@@ -243,7 +243,7 @@ impl PassivityProblem {
     }
 
     /// [`PassivityProblem::answer`] with responses that were kept. Those of other times are not used.
-    pub fn answer_with<V: AsRef<[SampledResponse]>>(&self, kept: &KeptResponses<V>) -> Answer {
+    pub fn answer_with<V: AsRef<[SampledResponse]>>(&self, kept: &KeptResponses<V>) -> RuleAnswer {
         let is_same = |lagging: &Lagging| {
             lagging.latency == kept.latency && self.numbers.period == kept.period
         };

@@ -6,7 +6,7 @@ use super::model::{largest_solved, nonlinear_bound, transfer};
 use super::profile::{ExtremeSlopes, is_motor, is_motor_where_limited, profile_bound_at_port};
 use super::rejection::Rejection;
 use super::remedy::Remedies;
-use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit};
+use super::rules::{Rule, RuleAnswer, compare, exact_limit, is_nonlinear, paper_limit};
 use super::validity::first_invalid;
 use crate::environment::{AnyProfile, Composed, Environment, FULL_SCALE, Wall};
 use crate::number::Format;
@@ -156,12 +156,12 @@ impl PassivityProblem {
 
     /// The answer of the rule that the verdict follows, as in [`super::assess`]: a scene that is
     /// not certified is either rejected or undecided.
-    pub const fn answer(&self) -> Answer {
+    pub const fn answer(&self) -> RuleAnswer {
         match self.rule {
             // "Rejected" may need more precision than "not certified".
             Rule::Exact => {
                 match self.exact(&self.coupled(None, &near(exact_limit(&self.numbers)))) {
-                    Answer::Undecided => self.exact(&self.coupled(None, &Precision::TIGHT)),
+                    RuleAnswer::Undecided => self.exact(&self.coupled(None, &Precision::TIGHT)),
                     clear => clear,
                 }
             }
@@ -169,7 +169,7 @@ impl PassivityProblem {
                 // The index only has to exist, however large.
                 let alone = self.alone(&near(Interval::exact(f64::MAX)));
                 match (&alone, self.bound) {
-                    (Ok(_), None) => Answer::Undecided,
+                    (Ok(_), None) => RuleAnswer::Undecided,
                     _ => self.paper(&alone),
                 }
             }
@@ -180,12 +180,12 @@ impl PassivityProblem {
     pub(super) fn answer_by(
         &self,
         index: impl Fn(&Precision) -> Result<RealPart, IndexError>,
-    ) -> Answer {
+    ) -> RuleAnswer {
         if matches!(self.rule, Rule::Nonlinear) || self.no_transfer.is_some() {
             return self.answer();
         }
         match self.exact(&index(&near(exact_limit(&self.numbers)))) {
-            Answer::Undecided => self.exact(&index(&Precision::TIGHT)),
+            RuleAnswer::Undecided => self.exact(&index(&Precision::TIGHT)),
             clear => clear,
         }
     }
@@ -216,39 +216,39 @@ impl PassivityProblem {
         let index = match (self.rule, self.bound) {
             (Rule::Exact, _) => self.alone(&near(limit)),
             // The bound decides; the index only has to exist, however large.
-            (Rule::Nonlinear, Some(bound)) if matches!(compare(bound, limit), Answer::Pass) => {
+            (Rule::Nonlinear, Some(bound)) if matches!(compare(bound, limit), RuleAnswer::Pass) => {
                 self.alone(&near(Interval::exact(f64::MAX)))
             }
             (Rule::Nonlinear, _) => return false,
         };
-        matches!(self.paper(&index), Answer::Pass)
+        matches!(self.paper(&index), RuleAnswer::Pass)
     }
 
     /// Whether the rule of theory, section 4.1, proves the scene, one-sidedness and torque limit
     /// left out.
     pub const fn passes_exact(&self) -> bool {
         let index = self.coupled(None, &near(exact_limit(&self.numbers)));
-        matches!(self.exact(&index), Answer::Pass)
+        matches!(self.exact(&index), RuleAnswer::Pass)
     }
 
     /// Answer of equations 17 to 19, given the index of the environment alone.
-    pub(super) const fn paper(&self, alone: &Result<RealPart, IndexError>) -> Answer {
-        let Some(limit) = paper_limit(&self.numbers) else { return Answer::Fail };
+    pub(super) const fn paper(&self, alone: &Result<RealPart, IndexError>) -> RuleAnswer {
+        let Some(limit) = paper_limit(&self.numbers) else { return RuleAnswer::Fail };
         match (alone, self.rule, self.bound) {
-            (Err(IndexError::Undecided(_)), ..) => Answer::Undecided,
-            (Err(_), ..) => Answer::Fail,
+            (Err(IndexError::Undecided(_)), ..) => RuleAnswer::Undecided,
+            (Err(_), ..) => RuleAnswer::Fail,
             (Ok(found), Rule::Exact, _) => compare(found.minimum, limit),
             (Ok(_), Rule::Nonlinear, Some(bound)) => compare(bound, limit),
-            (Ok(_), Rule::Nonlinear, None) => Answer::Undecided,
+            (Ok(_), Rule::Nonlinear, None) => RuleAnswer::Undecided,
         }
     }
 
     /// Answer of theory, section 4.1, given the index of `E'`.
-    pub(super) const fn exact(&self, coupled: &Result<RealPart, IndexError>) -> Answer {
+    pub(super) const fn exact(&self, coupled: &Result<RealPart, IndexError>) -> RuleAnswer {
         match coupled {
             Ok(found) => compare(found.minimum, exact_limit(&self.numbers)),
-            Err(IndexError::Undecided(_)) => Answer::Undecided,
-            Err(_) => Answer::Fail,
+            Err(IndexError::Undecided(_)) => RuleAnswer::Undecided,
+            Err(_) => RuleAnswer::Fail,
         }
     }
 
@@ -393,8 +393,8 @@ impl PassivityProblem {
     pub(super) const fn coupled_unless_clear(&self) -> Result<RealPart, IndexError> {
         let roughly = self.coupled(None, &near(exact_limit(&self.numbers)));
         match self.exact(&roughly) {
-            Answer::Pass => roughly,
-            Answer::Fail | Answer::Undecided => self.coupled(None, &Precision::TIGHT),
+            RuleAnswer::Pass => roughly,
+            RuleAnswer::Fail | RuleAnswer::Undecided => self.coupled(None, &Precision::TIGHT),
         }
     }
 

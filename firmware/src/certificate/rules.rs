@@ -9,7 +9,7 @@ use crate::scene::Scene;
 
 /// Answer of one rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum RuleAnswer {
     /// Proved.
     Pass,
     /// Disproved, or not covered by the rule.
@@ -71,13 +71,13 @@ pub(super) const fn paper_limit(n: &LoopIntervals) -> Option<Interval> {
     }
 }
 
-pub(super) const fn compare(index: Interval, limit: Interval) -> Answer {
+pub(super) const fn compare(index: Interval, limit: Interval) -> RuleAnswer {
     if index.is_below(limit) {
-        Answer::Pass
+        RuleAnswer::Pass
     } else if index.lo() >= limit.hi() {
-        Answer::Fail
+        RuleAnswer::Fail
     } else {
-        Answer::Undecided
+        RuleAnswer::Undecided
     }
 }
 

@@ -43,7 +43,7 @@ const ROOT_3: f64 = 1.732_050_807_568_877_2;
 
 /// When a code's torque comes: what a certificate has to know of a current loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Response {
+pub struct TorqueResponse {
     /// Time in s from the code to the begin of its torque: `Latency::output_delay`.
     pub delay: f64,
     /// Time constant in s of the lag behind it: `Latency::actuator_lag`.
@@ -69,7 +69,7 @@ pub struct CurrentLoop {
     pub(super) instant: f64,
     amps_per_code: f64,
     torque_constant: f64,
-    response: Response,
+    response: TorqueResponse,
     resolution: CurrentResolution,
     torque_source: TorqueSource,
     /// A board has no use for it, and each of its controllers a copy of all of this.
@@ -203,7 +203,7 @@ impl CurrentLoop {
     }
 
     /// When a code's torque comes.
-    pub const fn response(&self) -> Response {
+    pub const fn response(&self) -> TorqueResponse {
         self.response
     }
 
@@ -439,7 +439,11 @@ impl<'a> Design<'a> {
             instant: self.instant,
             amps_per_code: self.amps_per_code(),
             torque_constant: drive.motor.torque_constant,
-            response: Response { delay: self.instant, lag: self.lag, updates: timing.updates },
+            response: TorqueResponse {
+                delay: self.instant,
+                lag: self.lag,
+                updates: timing.updates,
+            },
             resolution,
             torque_source: TorqueSource::of(&drive.motor, &self.plant, self.instant, &resolution),
             #[cfg(not(target_os = "none"))]

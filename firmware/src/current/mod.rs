@@ -13,7 +13,7 @@
 //! ```
 //!
 //! The current follows a reference model, which is the amplifier that the certificate knows: a lag with a gain
-//! of 1 behind a delay of one instant ([`Response`]).
+//! of 1 behind a delay of one instant ([`TorqueResponse`]).
 
 mod alignment;
 mod controller;
@@ -45,7 +45,7 @@ mod vector;
 
 pub use alignment::{Alignment, AlignmentError, AlignmentStep};
 pub use controller::CurrentController;
-pub use current_loop::{CurrentLoop, OVER_CURRENT, Response};
+pub use current_loop::{CurrentLoop, OVER_CURRENT, TorqueResponse};
 pub use duty_current::{DutyCurrent, DutyError};
 pub use encoder_index::{EncoderIndex, IndexOffset};
 pub use error::DriveError;

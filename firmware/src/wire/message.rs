@@ -79,7 +79,7 @@ pub enum ToHost<S> {
         program: S,
     },
     /// Units of the other messages on this board.
-    Board(Board),
+    Board(BoardUnits),
     /// The active parameters.
     ActiveParameters(ActiveParameters),
     /// How it is going.
@@ -101,7 +101,7 @@ pub enum ToHost<S> {
 
 /// Units of the other messages on this board.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Board {
+pub struct BoardUnits {
     /// Period of the servo in s.
     pub period: f64,
     /// Counts of the servo's timer in a period: the unit of a slack.

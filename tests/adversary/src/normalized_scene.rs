@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use haptic_servo::certificate::{Answer, Assessment, QuantizationBound, Resolution};
+use haptic_servo::certificate::{Assessment, QuantizationBound, Resolution, RuleAnswer};
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::CounterWidth;
 use haptic_servo::number::Format;
@@ -102,7 +102,7 @@ impl NormalizedScene {
             let through = Errors::through(judged, format, largest).map(|e| e.over(0.5 * step));
             // Where the rule allows any coupling that is as soft, no error has to come out through
             // the coupling to be accounted for.
-            let alone = (assessment.paper == Answer::Pass)
+            let alone = (assessment.paper == RuleAnswer::Pass)
                 .then(|| Errors::alone(judged, format, largest))
                 .flatten()
                 .map(|errors| errors.over(0.5 * step));

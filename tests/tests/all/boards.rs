@@ -5,19 +5,19 @@ use std::io::{self, Write};
 
 use analysis::studies::tick_parts::{Part, Share, TickParts};
 use analysis::toolchain::{
-    Board, BuildError, NumberFormat, Program, Toolchain, Tools, TorqueOutput, prepare, probe,
+    BoardModel, BuildError, NumberFormat, Program, Toolchain, Tools, TorqueOutput, prepare, probe,
 };
 
 /// What a debug probe calls a board's chip (the names are those of the chips' data sheets).
-fn chip(board: Board) -> &'static str {
+fn chip(board: BoardModel) -> &'static str {
     match board {
-        Board::NucleoG474re => "STM32G474RETx",
-        Board::BG431bEsc1 => "STM32G431CBUx",
-        Board::Stm32f405 => "STM32F405RGTx",
+        BoardModel::NucleoG474re => "STM32G474RETx",
+        BoardModel::BG431bEsc1 => "STM32G431CBUx",
+        BoardModel::Stm32f405 => "STM32F405RGTx",
     }
 }
 
-fn check(toolchain: &Toolchain, board: Board, name: &str, program: &Program) {
+fn check(toolchain: &Toolchain, board: BoardModel, name: &str, program: &Program) {
     let (sizes, memory) = (program.sizes, toolchain.memory().unwrap());
     // Not `println!`: sizes are to be seen of a test that passes, too.
     let mut output = io::stdout();
@@ -58,7 +58,7 @@ fn has(name: &str) -> &'static [Part] {
 }
 
 /// The instructions of a scene's tick are of what the scene uses, and of nothing else.
-fn check_parts(board: Board, name: &str, program: &Program) {
+fn check_parts(board: BoardModel, name: &str, program: &Program) {
     let tick = TickParts::of_file(&program.path).unwrap_or_else(|error| panic!("{error}"));
     let parts =
         [Part::Spring, Part::Damper, Part::Filter, Part::Canceller, Part::Face, Part::Delay];
@@ -81,7 +81,7 @@ fn check_parts(board: Board, name: &str, program: &Program) {
 #[test]
 fn the_plain_command_builds_a_program_that_fits() {
     let toolchain = toolchain();
-    let built = toolchain.try_release(Board::NucleoG474re, "damper_wall");
+    let built = toolchain.try_release(BoardModel::NucleoG474re, "damper_wall");
     built.unwrap_or_else(|error| panic!("{error}"));
 }
 
@@ -89,13 +89,14 @@ fn the_plain_command_builds_a_program_that_fits() {
 #[test]
 fn the_tests_on_a_board_build() {
     let toolchain = toolchain();
-    for (board, output) in
-        [(Board::NucleoG474re, TorqueOutput::Dac), (Board::BG431bEsc1, TorqueOutput::Bridge)]
-    {
+    for (board, output) in [
+        (BoardModel::NucleoG474re, TorqueOutput::Dac),
+        (BoardModel::BG431bEsc1, TorqueOutput::Bridge),
+    ] {
         let built = toolchain.build_tests(board, output).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(probe::chip(&std::fs::read(built).unwrap()).unwrap(), chip(board));
     }
-    let none = toolchain.build_tests(Board::NucleoG474re, TorqueOutput::Bridge);
+    let none = toolchain.build_tests(BoardModel::NucleoG474re, TorqueOutput::Bridge);
     assert!(matches!(none, Err(BuildError::NoBridge { .. })), "{none:?}");
 }
 
@@ -111,7 +112,7 @@ fn where_no_board_is_named_the_compiler_names_all_of_them() {
     assert_eq!(messages.len(), 2);
     for message in messages {
         let message = message.split(");").next().unwrap();
-        for board in Board::ALL {
+        for board in BoardModel::ALL {
             assert!(message.contains(&board.to_string()), "{board} is not in {message}");
         }
         assert!(message.contains("board-qemu,log"), "{message}");
@@ -127,7 +128,7 @@ fn every_program_builds_for_every_board_and_fits() {
         programs.iter().map(String::as_str).partition(|name| is_for(name, TorqueOutput::Bridge));
     let ours = ["damper_wall", "delayed_spring", "free_mode", "identify", "supervised_spring"];
     assert!(ours.iter().all(|name| programs.contains(name)), "{programs:?}");
-    for board in Board::ALL {
+    for board in BoardModel::ALL {
         let built = toolchain.build_for(board, TorqueOutput::Dac, &programs, NumberFormat::F32);
         let built = built.unwrap_or_else(|error| panic!("{board}: {error}"));
         for (name, program) in programs.iter().zip(&built) {
@@ -138,7 +139,7 @@ fn every_program_builds_for_every_board_and_fits() {
             }
         }
     }
-    let (board, output) = (Board::BG431bEsc1, TorqueOutput::Bridge);
+    let (board, output) = (BoardModel::BG431bEsc1, TorqueOutput::Bridge);
     let built = toolchain.build_for(board, output, &bridged, NumberFormat::F32);
     let built = built.unwrap_or_else(|error| panic!("{board}: {error}"));
     for (name, program) in bridged.iter().zip(&built) {

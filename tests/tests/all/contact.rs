@@ -5,7 +5,7 @@
 //! `(K_vc T / 2 - alpha) * sum v_E^2 <= beta / T`. An oscillation that lasts breaks the second, one
 //! that grows breaks both.
 
-use haptic_servo::certificate::{Answer, assess};
+use haptic_servo::certificate::{RuleAnswer, assess};
 use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use nalgebra::DVector;
@@ -110,7 +110,7 @@ fn contacts_past_the_bound_break_it_and_are_refused() {
         }
         let assessment = assess(&scene(&contact));
         assert!(assessment.outcome.is_err(), "{contact:?} was accepted");
-        assert_ne!(assessment.paper, Answer::Pass);
+        assert_ne!(assessment.paper, RuleAnswer::Pass);
         let outcome = worst(&mut rng, &contact);
         broken += u32::from(outcome > 1.0 || outcome.is_nan());
     }

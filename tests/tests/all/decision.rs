@@ -3,7 +3,7 @@
 
 use fixed::types::{I8F24, I12F20};
 use haptic_servo::certificate::{
-    Answer, PassivityProblem, Rejection, assess, assess_in, timing_checked,
+    PassivityProblem, Rejection, RuleAnswer, assess, assess_in, timing_checked,
 };
 use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::number::{Format, Number};
@@ -20,8 +20,8 @@ fn compare(scene: &Scene) -> bool {
         Ok(posed) => {
             let found = [posed.passes_paper(), posed.passes_exact(), posed.is_certified()];
             let wanted = [
-                assessment.paper == Answer::Pass,
-                assessment.exact == Answer::Pass,
+                assessment.paper == RuleAnswer::Pass,
+                assessment.exact == RuleAnswer::Pass,
                 assessment.outcome.is_ok(),
             ];
             assert_eq!(found, wanted, "{scene:?}\n{assessment:?}");

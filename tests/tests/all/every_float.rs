@@ -2,7 +2,7 @@
 //! it says is consistent.
 
 use haptic_servo::certificate::{
-    Answer, Assumptions, Rejection, Resolution, Rule, assess_in, certify,
+    Assumptions, Rejection, Resolution, Rule, RuleAnswer, assess_in, certify,
 };
 use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
 use haptic_servo::number::Format;
@@ -138,10 +138,10 @@ fn consistent(scene: &Scene, format: Format) -> Result<(), TestCaseError> {
     }
     let below =
         |index: Option<Interval>| index.is_some_and(|index| index.hi() < assessment.delta.lo());
-    if assessment.exact == Answer::Pass {
+    if assessment.exact == RuleAnswer::Pass {
         prop_assert!(is_finite(scene) && below(assessment.alpha_coupled), "{assessment:?}");
     }
-    if assessment.paper == Answer::Pass {
+    if assessment.paper == RuleAnswer::Pass {
         let index =
             if assessment.rule == Rule::Exact { assessment.alpha } else { assessment.bound };
         prop_assert!(is_finite(scene) && below(index), "{assessment:?}");
@@ -151,7 +151,7 @@ fn consistent(scene: &Scene, format: Format) -> Result<(), TestCaseError> {
         Rule::Exact => assessment.exact,
         Rule::Nonlinear => assessment.paper,
     };
-    prop_assert_eq!(assessment.outcome.is_ok(), deciding == Answer::Pass);
+    prop_assert_eq!(assessment.outcome.is_ok(), deciding == RuleAnswer::Pass);
     if assessment.outcome.is_ok() {
         prop_assert!(below(assessment.deciding_index()), "{assessment:?}");
         let margin = assessment.margin(scene);

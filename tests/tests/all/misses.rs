@@ -6,7 +6,7 @@
 //! coupling of the declared `delta` has to be below `delta / k`, and behind a spring of
 //! `c = K_vc T / 2` below `1 / ((k - 1) / delta + 1 / c)`. A scene has to pass both.
 
-use haptic_servo::certificate::{Answer, assess};
+use haptic_servo::certificate::{RuleAnswer, assess};
 use num_traits::One;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -36,8 +36,8 @@ fn latched(exact: &Exact, factor: &Q) -> Judged {
     }
 }
 
-fn agrees(rule: &str, seed: u64, answer: Answer, truth: bool) {
-    let wrong = if truth { Answer::Fail } else { Answer::Pass };
+fn agrees(rule: &str, seed: u64, answer: RuleAnswer, truth: bool) {
+    let wrong = if truth { RuleAnswer::Fail } else { RuleAnswer::Pass };
     assert_ne!(answer, wrong, "{seed}: {rule}");
 }
 

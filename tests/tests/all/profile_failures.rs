@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_2_PI, TAU};
 
 use analysis::simulation::plant::Plant;
 use analysis::simulation::{Integration, simulate};
-use analysis::studies::failures::method_result::Verdict;
+use analysis::studies::failures::method_result::MethodVerdict;
 use analysis::studies::failures::profiles::{CERTIFIED, DETENTS, HUMMING, MEAN, SWING, TEETH};
 use analysis::studies::failures::setting::{KNOB, PADDLE, PERIOD};
 use analysis::studies::failures::{Case, CaseResult};
@@ -69,7 +69,7 @@ fn detents_that_rest_in_a_simulation_hum_where_the_torque_is_held_and_late() {
 #[test]
 fn a_profile_whose_mean_is_not_zero_turns_on_at_any_damping() {
     let result = case("ratchet");
-    assert_eq!(result.certificate.verdict, Verdict::Unsafe);
+    assert_eq!(result.certificate.verdict, MethodVerdict::Unsafe);
     assert!((result.certificate.figure.unwrap() / MEAN - 1.0).abs() < 1e-12);
     assert!(result.certificate.reason.contains("the mean of the torque over a period is 3 N m"));
     for times in [1.0, 10.0, 100.0] {

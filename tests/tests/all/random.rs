@@ -4,7 +4,7 @@
 //! A rounding in the wrong direction, a lost box of the subdivision, a sign in the cross terms of
 //! the real part: each puts the index outside its enclosure for some of these scenes.
 
-use haptic_servo::certificate::{Answer, assess, assess_in};
+use haptic_servo::certificate::{RuleAnswer, assess, assess_in};
 use haptic_servo::environment::{Coefficients, Environment};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Scene};
@@ -87,7 +87,7 @@ fn a_hair_from_the_line() {
         }
         let assessment = assess(&drawn.scene);
         judged += 1;
-        passed += u32::from(assessment.exact == Answer::Pass);
+        passed += u32::from(assessment.exact == RuleAnswer::Pass);
         // The paper's `K_vc T / 2 <= delta` is read to the digits that are written, so a coupling
         // some last places above the standard one still counts as it; the exact rule may not.
         let judge = if off > 0 { check_exact } else { check };

@@ -9,7 +9,7 @@ use analysis::file::simulation::{HandTorque, Simulation};
 use analysis::file::{Format, Purpose, SceneFile, parse, parse_for, write};
 use analysis::missed::Missed;
 use analysis::simulation::{Experiment, Integration, Trajectory, simulate};
-use analysis::stability::{Verdict, judge};
+use analysis::stability::{StabilityVerdict, judge};
 use analysis::verdict;
 use haptic_servo::certificate::LoopTransfers;
 use haptic_servo::environment::Environment;
@@ -143,8 +143,8 @@ fn a_certified_scene_is_stable_and_its_motion_ends() {
         let stability =
             judge(&experiment, integration).unwrap_or_else(|why| panic!("{seed}: {why}"));
         match stability.verdict {
-            Verdict::Stable => {}
-            Verdict::Marginal if stays_anywhere(scene) => marginal += 1,
+            StabilityVerdict::Stable => {}
+            StabilityVerdict::Marginal if stays_anywhere(scene) => marginal += 1,
             _ => panic!("seed {seed}: certified, and {stability:?}\n{text}"),
         }
         let motion =

@@ -5,7 +5,7 @@
 //! the shortage makes the loop grow. A rule that rejected without need would be caught by the
 //! second: no such hand would be found.
 
-use haptic_servo::certificate::{Answer, assess};
+use haptic_servo::certificate::{RuleAnswer, assess};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::hands::Hand;
@@ -24,7 +24,7 @@ fn radius(controller: &Controller, hand: &Hand) -> f64 {
 }
 
 /// A scene by number, with the answer of the exact rule, and a generator for its hands.
-fn scene(number: u64) -> (Answer, Option<Controller>, ChaCha8Rng) {
+fn scene(number: u64) -> (RuleAnswer, Option<Controller>, ChaCha8Rng) {
     let mut rng = ChaCha8Rng::seed_from_u64(number);
     let drawn = scenes::any(&mut rng);
     (assess(&drawn.scene).exact, Controller::new(&drawn.exact), rng)
@@ -59,7 +59,7 @@ fn destabilising(rng: &mut ChaCha8Rng, controller: &Controller) -> Option<Hand> 
 fn no_passive_hand_destabilises_an_accepted_scene() {
     let (mut accepted, mut hands) = (0, 0);
     for number in 0..SCENES {
-        let (Answer::Pass, controller, mut rng) = scene(number) else { continue };
+        let (RuleAnswer::Pass, controller, mut rng) = scene(number) else { continue };
         let controller = controller.unwrap_or_else(|| panic!("scene {number} is ill posed"));
         let theta = controller.worst_angle();
         accepted += 1;
@@ -79,7 +79,7 @@ fn no_passive_hand_destabilises_an_accepted_scene() {
 fn a_hand_destabilises_nearly_every_rejected_scene() {
     let (mut rejected, mut found) = (0_u32, 0_u32);
     for number in 0..SCENES {
-        let (Answer::Fail, controller, mut rng) = scene(number) else { continue };
+        let (RuleAnswer::Fail, controller, mut rng) = scene(number) else { continue };
         rejected += 1;
         // Without a solution of the algebraic loop there is nothing to run: rightly rejected.
         let unstable = controller.is_none_or(|c| destabilising(&mut rng, &c).is_some());

@@ -1,6 +1,6 @@
 //! The published cases: verdicts under both rules, indices to 34 digits, reason codes.
 
-use haptic_servo::certificate::{Answer, Assessment, assess};
+use haptic_servo::certificate::{Assessment, RuleAnswer, assess};
 use haptic_servo::passivity::interval::Interval;
 use tests::agreement::relative_width;
 use tests::exact::{Q, of_f64};
@@ -27,11 +27,11 @@ fn check_index(case: &Case, what: &str, found: Option<Interval>, wanted: &Option
     }
 }
 
-fn check_answer(case: &Case, rule: &str, found: Answer, passes: bool) {
+fn check_answer(case: &Case, rule: &str, found: RuleAnswer, passes: bool) {
     if case.is_on_the_line() {
-        assert_ne!(found, Answer::Pass, "{}: {rule}, alpha equals delta", case.name);
+        assert_ne!(found, RuleAnswer::Pass, "{}: {rule}, alpha equals delta", case.name);
     } else {
-        let wanted = if passes { Answer::Pass } else { Answer::Fail };
+        let wanted = if passes { RuleAnswer::Pass } else { RuleAnswer::Fail };
         assert_eq!(found, wanted, "{}: {rule}", case.name);
     }
 }
@@ -80,7 +80,12 @@ fn every_answer_is_right() {
         let assessment = assess(&case.scene());
         check_answer(&case, "paper", assessment.paper, case.paper);
         check_answer(&case, "exact", assessment.exact, case.exact);
-        assert_eq!(assessment.outcome.is_ok(), assessment.exact == Answer::Pass, "{}", case.name);
+        assert_eq!(
+            assessment.outcome.is_ok(),
+            assessment.exact == RuleAnswer::Pass,
+            "{}",
+            case.name
+        );
     }
 }
 

@@ -24,7 +24,7 @@ use std::cell::RefCell;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use crate::Answer;
+use crate::PageResult;
 use crate::judge::json;
 use crate::scene_text::read;
 use settings::Settings;
@@ -42,7 +42,7 @@ thread_local! {
 /// Takes a scene into the hand, by its `Settings`. Another scene goes on with the device as it moves: its
 /// servo settles at the device's angle, while time stands still, and takes over with the next tick. What
 /// cannot be read, or has no motion, changes nothing.
-pub fn hold(question: &str, _: &mut Vec<f64>) -> Answer {
+pub fn hold(question: &str, _: &mut Vec<f64>) -> PageResult {
     let settings: Settings = parsed(question)?;
     HANDLE.with_borrow_mut(|handle| {
         match handle.as_mut().filter(|handle| handle.renders(&settings)) {
@@ -56,7 +56,7 @@ pub fn hold(question: &str, _: &mut Vec<f64>) -> Answer {
 /// The next ticks, with the hand as `Motion` says. Numbers of each: count, angle in rad by the encoder,
 /// coupling torque in N m, code, number of the limit's reason, and set-point and angle of the device in rad
 /// at the tick's end. The motor applies the coupling torque's negative.
-pub fn motion(question: &str, numbers: &mut Vec<f64>) -> Answer {
+pub fn motion(question: &str, numbers: &mut Vec<f64>) -> PageResult {
     let motion: Motion = parsed(question)?;
     if motion.ticks > MOST_TICKS {
         return Err(format!(
@@ -71,7 +71,7 @@ pub fn motion(question: &str, numbers: &mut Vec<f64>) -> Answer {
 }
 
 /// Begins the push that shows an environment, in the hand that there is.
-pub fn push(_: &str, _: &mut Vec<f64>) -> Answer {
+pub fn push(_: &str, _: &mut Vec<f64>) -> PageResult {
     with_handle(|handle| {
         handle.push();
         Ok(String::new())
@@ -80,7 +80,7 @@ pub fn push(_: &str, _: &mut Vec<f64>) -> Answer {
 
 /// What the servo did since it was built: the scene's text, and in the numbers a count and a code for each
 /// tick, from the first one on.
-pub fn recorded(_: &str, numbers: &mut Vec<f64>) -> Answer {
+pub fn recorded(_: &str, numbers: &mut Vec<f64>) -> PageResult {
     with_handle(|handle| {
         handle.recorded(numbers);
         Ok(handle.scene_text().to_owned())
@@ -98,7 +98,7 @@ struct Recording {
 }
 
 /// The codes that a certified scene's servo makes of counts, as `haptic run --replay` prints them.
-pub fn replay(question: &str, numbers: &mut Vec<f64>) -> Answer {
+pub fn replay(question: &str, numbers: &mut Vec<f64>) -> PageResult {
     let recording: Recording = parsed(question)?;
     let file = read(&recording.scene).map_err(|error| error.to_string())?;
     let mut servo = servo::certified(&file, &file.transducers(recording.counts_per_turn, None))?;
@@ -110,10 +110,10 @@ fn parsed<T: DeserializeOwned>(question: &str) -> Result<T, String> {
     serde_json::from_str(question).map_err(|error| error.to_string())
 }
 
-fn with_handle(answer: impl FnOnce(&mut Simulated) -> Answer) -> Answer {
+fn with_handle(answer: impl FnOnce(&mut Simulated) -> PageResult) -> PageResult {
     HANDLE.with_borrow_mut(|handle| handle.as_mut().map_or_else(nothing_held, answer))
 }
 
-fn nothing_held() -> Answer {
+fn nothing_held() -> PageResult {
     Err("no scene is in the hand".to_owned())
 }

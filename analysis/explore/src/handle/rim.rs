@@ -4,7 +4,7 @@ use haptic_model::snap_branches::held;
 use serde::{Deserialize, Serialize};
 
 use super::parsed;
-use crate::Answer;
+use crate::PageResult;
 use crate::judge::json;
 use crate::scene_text::read;
 
@@ -30,7 +30,7 @@ struct Rim {
 }
 
 /// The torque in N m at rest at angles from one to another, evenly; none of a scene without a torque profile.
-pub fn rim(question: &str, numbers: &mut Vec<f64>) -> Answer {
+pub fn rim(question: &str, numbers: &mut Vec<f64>) -> PageResult {
     let Turn { scene, from, to } = parsed(question)?;
     let scene = read(&scene).map_err(|error| error.to_string())?.scene;
     let profile = scene.environment.profile();

@@ -3,7 +3,7 @@
 use haptic_servo::certificate::Parameter;
 use haptic_servo::tuning;
 use haptic_servo::wire::Discarded;
-use haptic_servo::wire::message::{ActiveParameters, Board, Changes, PreviousFault, Status};
+use haptic_servo::wire::message::{ActiveParameters, BoardUnits, Changes, PreviousFault, Status};
 
 use super::history::History;
 use crate::quantity::significant;
@@ -39,7 +39,7 @@ pub fn reset(status: &Status) -> String {
 pub fn reserves(
     parameters: &ActiveParameters,
     status: &Status,
-    board: &Board,
+    board: &BoardUnits,
     slack: Option<f64>,
 ) -> String {
     let margin = parameters.margin;
@@ -51,19 +51,19 @@ pub fn reserves(
 }
 
 /// The worst slack as a share of the period; `None` before the first tick.
-pub fn worst_slack(status: &Status, board: &Board) -> Option<f64> {
+pub fn worst_slack(status: &Status, board: &BoardUnits) -> Option<f64> {
     let counts = status.worst_slack;
     (counts <= board.timer_counts).then(|| f64::from(counts) / f64::from(board.timer_counts))
 }
 
 /// What a change of its numbers costs a board that is armed.
-pub fn gap(board: &Board) -> String {
+pub fn gap(board: &BoardUnits) -> String {
     let gap = significant(1e3 * board.longest_gap, 3);
     format!("the torque was released for up to {gap} ms while the set was swapped in")
 }
 
 /// Energy that went into the hand.
-pub fn energy(status: &Status, board: &Board) -> String {
+pub fn energy(status: &Status, board: &BoardUnits) -> String {
     let joule = |steps: i64| significant(steps as f64 * board.energy_step, 3);
     let (net, worst) = (joule(status.energy), joule(status.worst_deficit));
     format!("energy into the hand {net} J, at most {worst} J")

@@ -6,7 +6,7 @@ use std::fmt;
 use haptic_servo::dac::DacCode;
 use haptic_servo::servo_loop::{Frame, State};
 use haptic_servo::torque::LimitReason;
-use haptic_servo::wire::message::Board;
+use haptic_servo::wire::message::BoardUnits;
 use serde::Serialize;
 
 use crate::quantity::rounded;
@@ -40,14 +40,14 @@ pub struct Sample {
 /// From a board's ticks to samples.
 #[derive(Clone, Debug)]
 pub struct Scale {
-    board: Board,
+    board: BoardUnits,
     tick: u64,
     count: i64,
 }
 
 impl Scale {
     /// Of this board.
-    pub fn new(board: Board) -> Self {
+    pub fn new(board: BoardUnits) -> Self {
         Self { board, tick: 0, count: 0 }
     }
 
@@ -116,7 +116,7 @@ fn decimal(number: f64) -> String {
 mod tests {
     use super::*;
 
-    const BOARD: Board = Board {
+    const BOARD: BoardUnits = BoardUnits {
         period: 0.001,
         timer_counts: 8000,
         counts_per_turn: 4000.0,

@@ -46,7 +46,7 @@ pub enum Choice {
 
 /// How far a number goes.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Answer<T> {
+pub enum DesignLimit<T> {
     /// To this value and no further; with it the scene, or the scenes, that certify.
     Limit(f64, T),
     /// As far as one likes; with the scene, or the scenes, as they were where those certify.
@@ -77,25 +77,25 @@ fn passes(scene: &Scene) -> bool {
 }
 
 /// The most of a quantity that may be rendered, everything else as in the scene.
-pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> Answer<Scene> {
+pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> DesignLimit<Scene> {
     let scene = prepared(scene, terms);
     if quantity.set(&scene, 0.0).is_none() {
-        return Answer::NoSuchNumber;
+        return DesignLimit::NoSuchNumber;
     }
     let at = |value: f64| quantity.set(&scene, value).unwrap_or(scene);
     if quantity == Quantity::Delay {
         let longest = (0..=MAX_DELAY).rev().map(|delay| delay as f64).find(|&d| passes(&at(d)));
-        return longest.map_or(Answer::Nothing, |delay| Answer::Limit(delay, at(delay)));
+        return longest.map_or(DesignLimit::Nothing, |delay| DesignLimit::Limit(delay, at(delay)));
     }
     if quantity == Quantity::Count {
         return most_repetitions(|count| passes(&at(f64::from(count))))
-            .map_or(Answer::Nothing, |count| {
-                Answer::Limit(f64::from(count), at(f64::from(count)))
+            .map_or(DesignLimit::Nothing, |count| {
+                DesignLimit::Limit(f64::from(count), at(f64::from(count)))
             });
     }
     let longest = quantity.longest(scene.timing.period);
     if let Some(longest) = longest.filter(|&longest| passes(&at(longest))) {
-        return Answer::Limit(longest, at(longest));
+        return DesignLimit::Limit(longest, at(longest));
     }
     let damping = scene.device.damping.max(f64::MIN_POSITIVE);
     let start = match quantity {
@@ -104,11 +104,11 @@ pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> Answer<Scene
         _ => damping,
     };
     match edge(|value| passes(&at(value)), start, 2.0) {
-        Edge::At(value) => Answer::Limit(quantity.reached(&at(value), value), at(value)),
-        Edge::Always if passes(&scene) => Answer::Unlimited(scene),
-        Edge::Always => Answer::Unlimited(at(start)),
-        Edge::Never if passes(&at(0.0)) => Answer::Limit(0.0, at(0.0)),
-        Edge::Never => Answer::Nothing,
+        Edge::At(value) => DesignLimit::Limit(quantity.reached(&at(value), value), at(value)),
+        Edge::Always if passes(&scene) => DesignLimit::Unlimited(scene),
+        Edge::Always => DesignLimit::Unlimited(at(start)),
+        Edge::Never if passes(&at(0.0)) => DesignLimit::Limit(0.0, at(0.0)),
+        Edge::Never => DesignLimit::Nothing,
     }
 }
 
@@ -140,7 +140,7 @@ pub fn border(
     let prepared = prepared(scene, terms);
     let kept = Terms { safety: 1.0, coupling: Choice::Kept };
     let without = second.set(&prepared, second.least()).unwrap_or(prepared);
-    let Answer::Limit(most, _) = largest(&without, first, &kept) else { return Vec::new() };
+    let DesignLimit::Limit(most, _) = largest(&without, first, &kept) else { return Vec::new() };
     let least = first.least();
     let value = |index: usize| match first {
         Quantity::Delay => index as f64,
@@ -152,7 +152,7 @@ pub fn border(
     let point = |value: f64| {
         let scene = first.set(&prepared, value)?;
         match largest(&scene, second, &kept) {
-            Answer::Limit(limit, _) => Some((value, limit)),
+            DesignLimit::Limit(limit, _) => Some((value, limit)),
             _ => None,
         }
     };
@@ -165,7 +165,7 @@ pub fn border(
 /// environments, with the standard coupling that goes with it. The rest of a chain stays as it is;
 /// a rigid device is nothing but its motor's mass. What a free mode cancels grows with the damping,
 /// and a passivity that was declared is that of another device.
-pub fn device(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
+pub fn device(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>> {
     let terms = Terms { coupling: Choice::Standard, ..*terms };
     let on = |file: &SceneFile, damping: f64| -> Option<(Chain, Scene)> {
         let chain = file.chain.clone().with_motor_damping(damping).ok()?;
@@ -186,25 +186,25 @@ pub fn device(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
     // A device of which nothing is known yet may be any.
     let start = if most > 0.0 { most } else { 1.0 };
     match edge(fits, start, 0.5) {
-        Edge::At(value) => Answer::Limit(value, at(value)),
+        Edge::At(value) => DesignLimit::Limit(value, at(value)),
         // The rest of the chain is enough.
-        Edge::Always if fits(0.0) => Answer::Limit(0.0, at(0.0)),
-        Edge::Always => Answer::Unlimited(at(start)),
-        Edge::Never => Answer::Nothing,
+        Edge::Always if fits(0.0) => DesignLimit::Limit(0.0, at(0.0)),
+        Edge::Always => DesignLimit::Unlimited(at(start)),
+        Edge::Never => DesignLimit::Nothing,
     }
 }
 
 /// The longest period in s with which all of these environments may be rendered on their devices;
 /// a longest period that is tolerated, and a simulation's latency, grow with it. The law of each is as its scene has it, so a
 /// rational one keeps its coefficients whatever the period.
-pub fn period(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
+pub fn period(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>> {
     let start = files.iter().map(|file| file.scene.timing.period).fold(f64::INFINITY, f64::min);
     timed(files, terms, start, 2.0, |period| period)
 }
 
 /// The lowest sample rate in Hz, the inverse of [`period`]: with the number itself, and not only with the
 /// period that it is rounded from, all of these scenes certify.
-pub fn rate(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
+pub fn rate(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>> {
     let rates = files.iter().map(|file| file.scene.timing.period.recip());
     timed(files, terms, rates.fold(0.0, f64::max), 0.5, f64::recip)
 }
@@ -216,7 +216,7 @@ fn timed(
     start: f64,
     outward: f64,
     period_of: fn(f64) -> f64,
-) -> Answer<Vec<SceneFile>> {
+) -> DesignLimit<Vec<SceneFile>> {
     let with = |scene: &Scene, period: f64| {
         let (mut scene, before) = (*scene, scene.timing.period);
         let worst = scene.timing.worst_period.map(|worst| worst / before);
@@ -248,12 +248,12 @@ fn timed(
         files.iter().map(kept).collect()
     };
     match edge(fits, start, outward) {
-        Edge::At(value) => Answer::Limit(value, at(value)),
+        Edge::At(value) => DesignLimit::Limit(value, at(value)),
         Edge::Always if as_they_were().iter().all(|file| passes(&file.scene)) => {
-            Answer::Unlimited(as_they_were())
+            DesignLimit::Unlimited(as_they_were())
         }
-        Edge::Always => Answer::Unlimited(at(start)),
-        Edge::Never => Answer::Nothing,
+        Edge::Always => DesignLimit::Unlimited(at(start)),
+        Edge::Never => DesignLimit::Nothing,
     }
 }
 

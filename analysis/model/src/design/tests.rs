@@ -37,9 +37,9 @@ fn read(file: &SceneFile) -> Scene {
         .scene
 }
 
-fn limit<T>(answer: Answer<T>) -> (f64, T) {
+fn limit<T>(answer: DesignLimit<T>) -> (f64, T) {
     match answer {
-        Answer::Limit(value, scene) => (value, scene),
+        DesignLimit::Limit(value, scene) => (value, scene),
         _ => panic!("no limit"),
     }
 }
@@ -78,7 +78,7 @@ fn a_latency_is_at_most_what_a_scene_may_have_and_a_matched_coupling_stays() {
     assert_eq!(limit(largest(&soft, Quantity::OutputDelay, &kept)).0, 0.008);
     assert_eq!(limit(largest(&soft, Quantity::ActuatorLag, &kept)).0, 0.1);
     let stiff = delayed_spring(23.0);
-    assert!(matches!(largest(&stiff, Quantity::OutputDelay, &kept), Answer::Nothing));
+    assert!(matches!(largest(&stiff, Quantity::OutputDelay, &kept), DesignLimit::Nothing));
     let mut matched = scene(wall(10.0, 0.0, 0));
     matched.coupling = Coupling::Matched;
     let (_, found) = limit(largest(&matched, Quantity::Delay, &Terms::default()));
@@ -99,7 +99,7 @@ fn an_amplifier_in_updates_keeps_a_delay_of_whole_updates() {
     assert_eq!(found.latency.nearest_update(1e-3), 3);
     let later = Latency { output_delay: TimeRange::exactly(4e-3 / 3.0), ..sampled.latency };
     assert!(!passes(&Scene { latency: later, ..sampled }));
-    let Answer::Limit(longest, scenes) = period(&[file(sampled)], &kept) else { panic!() };
+    let DesignLimit::Limit(longest, scenes) = period(&[file(sampled)], &kept) else { panic!() };
     let scene = scenes[0].scene;
     assert!(longest > 1.1e-3 && passes(&scene));
     assert!((scene.latency.output_delay.most * 3.0 / longest - 1.0).abs() < 1e-9);
@@ -132,20 +132,20 @@ fn papers_wall_in_all_directions() {
 fn what_has_no_limit_and_what_has_no_such_number() {
     let terms = Terms::default();
     let undelayed = scene(wall(22.0, 0.01, 0));
-    let Answer::Unlimited(found) = largest(&undelayed, Quantity::Stiffness, &terms) else {
+    let DesignLimit::Unlimited(found) = largest(&undelayed, Quantity::Stiffness, &terms) else {
         panic!("a limit")
     };
     assert!(passes(&read(&file(found))) && found.environment == undelayed.environment);
     // A wall that pulls does not certify as it is, but all that push do.
     let pulling = scene(wall(-5.0, 0.01, 0));
-    let Answer::Unlimited(found) = largest(&pulling, Quantity::Stiffness, &terms) else {
+    let DesignLimit::Unlimited(found) = largest(&pulling, Quantity::Stiffness, &terms) else {
         panic!("a limit")
     };
     assert!(passes(&read(&file(found))));
     let free = scene(Environment::FreeMode { residual: 0.01, delay: 0 });
-    assert_eq!(largest(&free, Quantity::Stiffness, &terms), Answer::NoSuchNumber);
+    assert_eq!(largest(&free, Quantity::Stiffness, &terms), DesignLimit::NoSuchNumber);
     near(limit(largest(&free, Quantity::Cancellation, &terms)).0, 0.022);
-    let Answer::Unlimited(found) = period(&[file(free)], &terms) else { panic!("a limit") };
+    let DesignLimit::Unlimited(found) = period(&[file(free)], &terms) else { panic!("a limit") };
     assert!(passes(&read(&found[0])) && found[0].scene.timing == free.timing);
 }
 

@@ -27,7 +27,7 @@ pub const ON_CIRCLE: f64 = 1e-10;
 /// What becomes of a small motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum StabilityVerdict {
     /// It dies away.
     Stable,
     /// It grows.
@@ -37,7 +37,7 @@ pub enum Verdict {
     Marginal,
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for StabilityVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::Stable => "stable",
@@ -53,7 +53,7 @@ pub struct Stability {
     /// Largest modulus of the closed loop's eigenvalues: the factor by which motion grows a tick.
     pub spectral_radius: f64,
     /// What that means.
-    pub verdict: Verdict,
+    pub verdict: StabilityVerdict,
     /// Stiffness of the environment in N m/rad at which the loop stops being stable, everything
     /// else as it is: the upper end of the lowest range in which it is. `None` where there is no
     /// such range or it has no end, or where the environment has no stiffness.
@@ -88,15 +88,15 @@ pub fn closed_loop(
     Ok(ClosedLoop::new(&experiment.tick(integration)?, &experiment.scene)?)
 }
 
-fn verdict(matrix: &DMatrix<f64>, eigenvalues: &[Complex<f64>]) -> Verdict {
+fn verdict(matrix: &DMatrix<f64>, eigenvalues: &[Complex<f64>]) -> StabilityVerdict {
     let radius = radius(eigenvalues);
     if radius < 1.0 - ON_CIRCLE {
-        return Verdict::Stable;
+        return StabilityVerdict::Stable;
     }
     let on_circle = eigenvalues.iter().filter(|z| z.norm() >= 1.0 - ON_CIRCLE);
     let bounded = radius <= 1.0 + ON_CIRCLE
         && on_circle.clone().all(|&z| is_simple(matrix, z, on_circle.clone()));
-    if bounded { Verdict::Marginal } else { Verdict::Unstable }
+    if bounded { StabilityVerdict::Marginal } else { StabilityVerdict::Unstable }
 }
 
 /// Whether an eigenvalue has as many directions of its own as it has multiplicity; where it has

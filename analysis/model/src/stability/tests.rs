@@ -100,9 +100,9 @@ fn the_radius_is_one_at_the_critical_stiffness_and_the_loop_differs_on_its_sides
             judge(&Experiment { scene, ..experiment.clone() }, Integration::default()).unwrap()
         };
         near(at(limit).spectral_radius, 1.0, 1e-11);
-        assert_eq!(at(limit).verdict, Verdict::Marginal);
-        assert_eq!(at(limit * (1.0 - 1e-5)).verdict, Verdict::Stable);
-        assert_eq!(at(limit * (1.0 + 1e-5)).verdict, Verdict::Unstable);
+        assert_eq!(at(limit).verdict, StabilityVerdict::Marginal);
+        assert_eq!(at(limit * (1.0 - 1e-5)).verdict, StabilityVerdict::Stable);
+        assert_eq!(at(limit * (1.0 + 1e-5)).verdict, StabilityVerdict::Unstable);
     }
 }
 
@@ -114,9 +114,9 @@ fn a_device_that_stays_where_it_is_left_is_marginal_and_one_that_drifts_is_not()
         experiment.plant = Plant::rigid(device);
         judge(&experiment, Integration::default()).unwrap()
     };
-    assert_eq!(free(0.5).verdict, Verdict::Marginal);
+    assert_eq!(free(0.5).verdict, StabilityVerdict::Marginal);
     near(free(0.5).spectral_radius, 1.0, 1e-14);
-    assert_eq!(free(0.0).verdict, Verdict::Unstable);
+    assert_eq!(free(0.0).verdict, StabilityVerdict::Unstable);
 }
 
 /// A device without damping has no passivity to certify with, and moves all the same.
@@ -128,10 +128,13 @@ fn a_scene_without_passivity_has_a_loop() {
         experiment.scene.device.passivity = passivity;
         experiment.plant = Plant::rigid(experiment.scene.device);
         let stability = judge(&experiment, Integration::default()).unwrap();
-        assert_eq!(stability.verdict, Verdict::Unstable);
+        assert_eq!(stability.verdict, StabilityVerdict::Unstable);
         let held = Hand { inertia: 0.0, damping: 0.5, stiffness: 0.0 };
         experiment.plant = experiment.plant.clone().with_hand(held);
-        assert_eq!(judge(&experiment, Integration::default()).unwrap().verdict, Verdict::Stable);
+        assert_eq!(
+            judge(&experiment, Integration::default()).unwrap().verdict,
+            StabilityVerdict::Stable
+        );
     }
 }
 

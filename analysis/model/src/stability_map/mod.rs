@@ -8,7 +8,7 @@ pub mod schur_cohn;
 
 use std::ops::Range;
 
-use haptic_servo::certificate::{Answer, KeptResponses, PassivityProblem, assess};
+use haptic_servo::certificate::{KeptResponses, PassivityProblem, RuleAnswer, assess};
 use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::passivity::lagged::SampledResponse;
 use haptic_servo::scene::{Coupling, Latency, Scene};
@@ -227,9 +227,9 @@ fn verdict(scene: &Scene, kept: Option<&Kept>) -> Region {
         return Region::Paper;
     }
     match kept.map_or_else(|| posed.answer(), |kept| posed.answer_with(kept)) {
-        Answer::Pass => Region::Exact,
-        Answer::Fail => Region::Rejected,
-        Answer::Undecided => Region::Undecided,
+        RuleAnswer::Pass => Region::Exact,
+        RuleAnswer::Fail => Region::Rejected,
+        RuleAnswer::Undecided => Region::Undecided,
     }
 }
 

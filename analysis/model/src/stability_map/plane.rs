@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use super::plant::SampledPlant;
 use super::{Family, Kept, MapError, Region, judged, kept};
-use crate::design::{Answer, Choice, Quantity, Terms, largest};
+use crate::design::{Choice, DesignLimit, Quantity, Terms, largest};
 use crate::file::SceneFile;
 use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Integration, SimulationError};
@@ -264,7 +264,7 @@ impl Row<'_> {
 fn by_certificate(scene: &Scene) -> Region {
     let assessment = assess(scene);
     match assessment.outcome {
-        Ok(()) if assessment.paper == haptic_servo::certificate::Answer::Pass => Region::Paper,
+        Ok(()) if assessment.paper == haptic_servo::certificate::RuleAnswer::Pass => Region::Paper,
         Ok(()) => Region::Exact,
         Err(rejection) if rejection.is_undecided() => Region::Undecided,
         Err(_) => Region::Rejected,
@@ -316,7 +316,7 @@ fn usual_range(scene: &Scene, axis: Parameter) -> Range<f64> {
         Parameter::Count => 0.0..(BEYOND * own).max(8.0).ceil(),
         Parameter::ProfileTorque => match largest(scene, Quantity::Torque, &AS_IT_IS) {
             // About twice what certifies.
-            Answer::Limit(torque, _) => 0.0..2.0 * torque.max(own),
+            DesignLimit::Limit(torque, _) => 0.0..2.0 * torque.max(own),
             _ => 0.0..to(1.0),
         },
         Parameter::StatedIndex | Parameter::StatedGain => 0.0..to(2.0 * delta),

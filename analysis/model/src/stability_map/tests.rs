@@ -1,4 +1,4 @@
-use haptic_servo::certificate::Answer;
+use haptic_servo::certificate::RuleAnswer;
 use haptic_servo::parameter::Parameter;
 use haptic_servo::scene::TimeRange;
 
@@ -77,7 +77,7 @@ fn certified_walls_are_stable_without_a_hand() {
         for (column, row) in (0..40).flat_map(|column| (0..40).map(move |row| (column, row))) {
             let scene = family.member(part(&map.stiffness, column), part(&map.damping, row));
             let assessment = assess(&scene);
-            let certified = [assessment.paper, assessment.exact].contains(&Answer::Pass);
+            let certified = [assessment.paper, assessment.exact].contains(&RuleAnswer::Pass);
             assert_eq!(map.at(column, row) >= Region::Exact, certified, "{scene:?}");
             assert!(!certified || family.plant.is_stable_under(&scene).unwrap(), "{scene:?}");
         }

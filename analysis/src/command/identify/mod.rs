@@ -253,7 +253,7 @@ fn report<'a>(
     notes: &'a [String],
     measured: Option<&'a Origin>,
 ) -> Report<'a> {
-    let point = |r: &identify::Response| Point {
+    let point = |r: &identify::FrequencyPoint| Point {
         frequency: r.omega / std::f64::consts::TAU,
         re: r.admittance.re,
         im: r.admittance.im,

@@ -94,11 +94,11 @@ fn damping_is_unbiased_where_the_real_part_is_not() {
     assert!((damping - KNOB.damping).abs() < 3.0 * deviation + 1e-6, "{damping} {deviation}");
     // A delay alone in the place of lag and delay leaves the inertia wrong.
     let delayed = |found: &Identification| {
-        let again = |r: &Response| {
+        let again = |r: &FrequencyPoint| {
             let admittance = r.admittance * found.model.images(r.omega, SENSING.period);
-            Response { admittance, ..*r }
+            FrequencyPoint { admittance, ..*r }
         };
-        let responses: Vec<Response> = found.responses.iter().map(again).collect();
+        let responses: Vec<FrequencyPoint> = found.responses.iter().map(again).collect();
         let period = SENSING.period;
         let measured = Measured { responses: &responses, period, declared: 0.0, source: None };
         let model = measured.fit(0.0, Delay::From(2e-4)).unwrap().model;

@@ -7,7 +7,7 @@ use haptic_servo::environment::{Coefficients, Environment, Rational};
 use haptic_servo::scene::Scene;
 
 use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::motion::Outcome;
 use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run};
 use crate::device::Hand;
@@ -31,7 +31,12 @@ pub fn grid() -> Result<CaseResult, FailureError> {
         let angles = (1..points).map(|point| PI * f64::from(point) / f64::from(points));
         let alpha = angles.map(|theta| -velocity.at_angle(theta).re).fold(f64::MIN, f64::max);
         let reason = "the least real part on the grid asks for {} N m s/rad";
-        MethodResult::new(format!("grid of {points}"), Verdict::of(alpha < delta), alpha, reason)
+        MethodResult::new(
+            format!("grid of {points}"),
+            MethodVerdict::of(alpha < delta),
+            alpha,
+            reason,
+        )
     });
     let alone = Experiment::still(&scene);
     let truth =

@@ -3,7 +3,7 @@
 use haptic_servo::servo::Transducers;
 
 use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::motion::Outcome;
 use super::setting::{KNOB, KNOBS, coupled, loop_run, rigid, wall_of};
 use crate::simulation::method::Method;
@@ -108,6 +108,6 @@ fn by_limit(
 ) -> Result<MethodResult, FailureError> {
     let integration = Integration { method, substeps };
     let limit = critical_stiffness(experiment, integration)?.unwrap_or(f64::INFINITY);
-    let verdict = Verdict::of(stiffness < limit);
+    let verdict = MethodVerdict::of(stiffness < limit);
     Ok(MethodResult::new(name(method, substeps), verdict, limit, "stable up to {} N m/rad"))
 }

@@ -11,7 +11,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::loaded::LoadedDevice;
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::motion::{Motion, Outcome};
 use crate::controller::{Controller, controller};
 use crate::emulator::{EmulatorError, ServoClient};
@@ -182,7 +182,7 @@ impl MethodResult {
     /// Where it cannot be simulated.
     pub fn simulated(method: &str, loop_run: &LoopRun) -> Result<Self, LoopRunError> {
         let motion = loop_run.simulated()?;
-        let verdict = Verdict::of(motion.outcome() == Outcome::Converges);
+        let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
         Ok(Self::new(method, verdict, motion.last, "at the end it moves to and fro by {} rad"))
     }
 }

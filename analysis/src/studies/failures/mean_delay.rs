@@ -3,7 +3,7 @@
 use haptic_servo::scene::{Latency, Scene};
 
 use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::motion::Outcome;
 use super::setting::{PADDLE, PADDLES, PERIOD, loop_run, rigid, wall_of};
 use crate::chain::Chain;
@@ -31,7 +31,12 @@ pub fn mean_delay() -> Result<CaseResult, FailureError> {
     let without = PADDLE.damping / (0.5 * PERIOD + lag_of(BANDWIDTH));
     let scene = spring(PART * limit);
     let rule = |method, limit: f64| {
-        MethodResult::new(method, Verdict::of(PART * limit < limit), limit, "allows {} N m/rad")
+        MethodResult::new(
+            method,
+            MethodVerdict::of(PART * limit < limit),
+            limit,
+            "allows {} N m/rad",
+        )
     };
     let alone = Experiment::still(&scene);
     let by_itself = MethodResult::eigenvalues("in no hand", &alone, Integration::default())?;

@@ -13,7 +13,7 @@ use crate::stability::{closed_loop, eigenvalues, radius};
 /// Whether a loop comes to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum MethodVerdict {
     /// Yes.
     Safe,
     /// No.
@@ -22,7 +22,7 @@ pub enum Verdict {
     Undecided,
 }
 
-impl Verdict {
+impl MethodVerdict {
     /// In one word.
     pub const fn as_str(self) -> &'static str {
         match self {
@@ -56,7 +56,7 @@ pub struct MethodResult {
     pub method: String,
     /// Its verdict.
     #[serde(rename = "says")]
-    pub verdict: Verdict,
+    pub verdict: MethodVerdict,
     /// The number that the verdict rests on, if there is one: which, and in which unit, is in
     /// [`MethodResult::reason`].
     pub figure: Option<f64>,
@@ -67,7 +67,12 @@ pub struct MethodResult {
 
 impl MethodResult {
     /// A verdict that rests on a number; `reason` has `{}` where that number goes.
-    pub fn new(method: impl Into<String>, verdict: Verdict, figure: f64, reason: &str) -> Self {
+    pub fn new(
+        method: impl Into<String>,
+        verdict: MethodVerdict,
+        figure: f64,
+        reason: &str,
+    ) -> Self {
         let reason = reason.replacen("{}", &significant(figure, 6), 1);
         Self { method: method.into(), verdict, figure: Some(figure), reason }
     }
@@ -91,7 +96,7 @@ impl MethodResult {
         let side = if is_inside { "inside" } else { "outside" };
         Self {
             method: method.into(),
-            verdict: Verdict::of(is_inside),
+            verdict: MethodVerdict::of(is_inside),
             figure: Some(modulus),
             reason: format!("the {of} is {beside} {side} the unit circle"),
         }
@@ -102,11 +107,11 @@ impl MethodResult {
         let assessment = assess(scene);
         let index = assessment.alpha_port.or(assessment.alpha_coupled).or(assessment.alpha);
         let (verdict, reason) = match certify(scene) {
-            Ok(_) => (Verdict::Safe, certified(index, assessment.delta)),
+            Ok(_) => (MethodVerdict::Safe, certified(index, assessment.delta)),
             Err(rejection @ Rejection::Undecided { .. }) => {
-                (Verdict::Undecided, rejection.to_string())
+                (MethodVerdict::Undecided, rejection.to_string())
             }
-            Err(rejection) => (Verdict::Unsafe, rejection.to_string()),
+            Err(rejection) => (MethodVerdict::Unsafe, rejection.to_string()),
         };
         Self {
             method: "certificate".into(),
@@ -121,18 +126,18 @@ impl MethodResult {
     pub fn at_rest(scene: &Scene, format: Format, steps: &Resolution) -> Self {
         let rest = QuantizationBound::of(scene, format, steps);
         let verdict = match rest.and_then(|rest| rest.comes_to_rest()) {
-            Some(comes) => Verdict::of(comes),
-            None => Verdict::Undecided,
+            Some(comes) => MethodVerdict::of(comes),
+            None => MethodVerdict::Undecided,
         };
         let reason = rest.map_or_else(String::new, |rest| format!("certified, but {rest}"));
         Self { method: "certificate".into(), verdict, figure: rest.map(|rest| rest.hum()), reason }
     }
 
     /// How it is wrong, if it is.
-    pub fn failure(&self, truth: Verdict) -> Option<Failure> {
+    pub fn failure(&self, truth: MethodVerdict) -> Option<Failure> {
         match (self.verdict, truth) {
-            (Verdict::Safe, Verdict::Unsafe) => Some(Failure::Dangerous),
-            (Verdict::Unsafe, Verdict::Safe) => Some(Failure::Needless),
+            (MethodVerdict::Safe, MethodVerdict::Unsafe) => Some(Failure::Dangerous),
+            (MethodVerdict::Unsafe, MethodVerdict::Safe) => Some(Failure::Needless),
             _ => None,
         }
     }

@@ -3,7 +3,7 @@
 use haptic_servo::scene::{Scene, Timing};
 
 use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::motion::Outcome;
 use super::setting::{KNOB, KNOBS, PERIOD, loop_run, rigid, wall_of};
 use crate::missed::Missed;
@@ -20,7 +20,7 @@ pub fn missed_ticks() -> Result<CaseResult, FailureError> {
     let punctual =
         loop_run("no tick missed", &nominal, KNOBS, Outcome::Converges).pushed(1.0, 6000);
     let methods = vec![
-        MethodResult::new("K < 2b/T, T as meant", Verdict::Safe, limit, reason),
+        MethodResult::new("K < 2b/T, T as meant", MethodVerdict::Safe, limit, reason),
         MethodResult::simulated("simulation in time", &punctual)?,
     ];
     let certificate = MethodResult::certificate(&twice(nominal));

@@ -13,7 +13,7 @@ use haptic_servo::torque::LimitReason;
 use super::case::{CaseResult, FailureError};
 use super::loaded::LoadedDevice;
 use super::loop_run::LoopRun;
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::motion::{Motion, Outcome};
 use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run, wall_of};
 use crate::simulation::SimulationError;
@@ -40,7 +40,7 @@ pub fn passivity_observer() -> Result<CaseResult, FailureError> {
     ];
     let motion = ours.simulated()?;
     let reason = "left alone, the device ends within {} rad";
-    let verdict = Verdict::of(motion.outcome() == Outcome::Converges);
+    let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
     let truth = MethodResult::new("exact exponential", verdict, motion.last, reason);
     Ok(CaseResult {
         methods,
@@ -82,7 +82,12 @@ fn observed(
         held = torque + damping * velocity;
         if !held.is_finite() {
             let reason = "the torque is not a number from {} s on";
-            return Ok(MethodResult::new(method, Verdict::Unsafe, sample as f64 * PERIOD, reason));
+            return Ok(MethodResult::new(
+                method,
+                MethodVerdict::Unsafe,
+                sample as f64 * PERIOD,
+                reason,
+            ));
         }
         peak = peak.max(held.abs());
         held = held.clamp(-PADDLES.full_scale_torque, PADDLES.full_scale_torque);
@@ -92,7 +97,7 @@ fn observed(
     let reason = format!("{}; it asks the motor for {{}} N m", motion);
     Ok(MethodResult::new(
         method,
-        Verdict::of(motion.outcome() == Outcome::Converges),
+        MethodVerdict::of(motion.outcome() == Outcome::Converges),
         peak,
         &reason,
     ))

@@ -7,7 +7,7 @@ use haptic_servo::scene::{Scene, Timing};
 
 use super::case::{CaseResult, FailureError};
 use super::loop_run::LoopRun;
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::motion::{Motion, Outcome};
 use super::setting::{KNOB, KNOBS, PADDLE, PADDLES, PERIOD, loop_run, rigid};
 use crate::device::Hand;
@@ -72,12 +72,12 @@ pub fn ratchet() -> Result<CaseResult, FailureError> {
         rests_by("simulation in a hand that holds it", &held, Integration::default())?,
     ];
     let motion = turns.simulated()?;
-    let verdict = Verdict::of(motion.outcome() == Outcome::Converges);
+    let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
     let reason = "let go, it turns on by {} rad in the last tenth of the run";
     let truth = MethodResult::new("exact exponential", verdict, motion.last, reason);
     let certificate = match profile(&[Shape::Periodic(&TOOTH)], 1) {
         Err(refused @ ShapeError::Mean { mean }) => {
-            MethodResult::new("certificate", Verdict::Unsafe, mean, &refused.to_string())
+            MethodResult::new("certificate", MethodVerdict::Unsafe, mean, &refused.to_string())
         }
         Err(refused) => return Err(refused.into()),
         Ok(profile) => MethodResult::certificate(&rigid(KNOB, profile)),
@@ -140,7 +140,7 @@ fn rests_by(
 ) -> Result<MethodResult, FailureError> {
     let positions = simulate(experiment, integration)?.position;
     let motion = Motion::of(&positions, experiment.samples);
-    let verdict = Verdict::of(motion.outcome() == Outcome::Converges);
+    let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
     let reason = "at the end it moves to and fro by {} rad";
     Ok(MethodResult::new(method, verdict, motion.last, reason))
 }
@@ -150,6 +150,6 @@ fn by_slopes(scene: &Scene) -> MethodResult {
     let steepest = SWING * 4.0 * f64::from(TEETH) / TAU;
     let needed = 1.5 * PERIOD * steepest;
     let reason = "the slopes ask for {} N m s/rad";
-    let verdict = Verdict::of(needed < scene.device.damping);
+    let verdict = MethodVerdict::of(needed < scene.device.damping);
     MethodResult::new("the steepest slopes", verdict, needed, reason)
 }

@@ -5,7 +5,7 @@ use haptic_servo::scene::Scene;
 use nalgebra::{Complex, DMatrix};
 
 use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::setting::{PADDLE, rigid};
 use crate::stability::{eigenvalues, radius};
 
@@ -64,7 +64,7 @@ fn evaluate(pole: f64) -> Result<CaseResult, FailureError> {
     ];
     let growth = growth(pole);
     let reason = "factor by factor its output is {} of what it was, 2^20 samples later";
-    let truth = MethodResult::new("its response", Verdict::of(growth < 1.0), growth, reason);
+    let truth = MethodResult::new("its response", MethodVerdict::of(growth < 1.0), growth, reason);
     let certificate = MethodResult::certificate(&scene);
     Ok(CaseResult { methods, certificate, truth, runs: Vec::new() })
 }

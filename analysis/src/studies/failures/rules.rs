@@ -8,7 +8,7 @@ use nalgebra::Complex;
 
 use super::case::{CaseResult, FailureError};
 use super::loop_run::LoopRun;
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::motion::Outcome;
 use super::setting::{
     KNOB, KNOBS, PADDLE, PADDLES, PERIOD, coupled, friction_for_rest, loop_run, rigid, wall_of,
@@ -30,8 +30,13 @@ pub fn continuous_time() -> Result<CaseResult, FailureError> {
     // K/(j w): a spring is lossless.
     let lossless = "in continuous time a spring's real part is {} N m s/rad at every frequency";
     let methods = vec![
-        MethodResult::new("continuous time", Verdict::of(slowest < 0.0), slowest, reason),
-        MethodResult::new("continuous-time passivity", Verdict::of(0.0 < damping), 0.0, lossless),
+        MethodResult::new("continuous time", MethodVerdict::of(slowest < 0.0), slowest, reason),
+        MethodResult::new(
+            "continuous-time passivity",
+            MethodVerdict::of(0.0 < damping),
+            0.0,
+            lossless,
+        ),
     ];
     let shakes = loop_run("5000 N m/rad", &scene, KNOBS, Outcome::Diverges)
         .pushed(1.0, 1000)
@@ -58,13 +63,13 @@ pub fn negative_spring() -> Result<CaseResult, FailureError> {
     let methods = vec![
         MethodResult::new(
             "Colgate-Schenkel without the residue",
-            Verdict::of(enough),
+            MethodVerdict::of(enough),
             needed,
             reason,
         ),
         MethodResult::new(
             "the same with it",
-            Verdict::of(enough && residue >= 0.0),
+            MethodVerdict::of(enough && residue >= 0.0),
             residue,
             pulls,
         ),
@@ -104,7 +109,7 @@ pub fn damped_rule() -> Result<CaseResult, FailureError> {
     let scene = rigid(PADDLE, wall_of(stiffness, damping, DELAY));
     let undamped = PADDLE.damping / (PERIOD * (0.5 + DELAY as f64));
     let rule = |method, limit| {
-        MethodResult::new(method, Verdict::of(stiffness < limit), limit, "allows {} N m/rad")
+        MethodResult::new(method, MethodVerdict::of(stiffness < limit), limit, "allows {} N m/rad")
     };
     let methods = vec![rule("K < (b + B)/(T/2 + t_d)", limit), rule("K < b/(T/2 + t_d)", undamped)];
     let shakes =

@@ -18,7 +18,7 @@ use haptic_servo::scene::{Device, Latency, Scene};
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::motion::Outcome;
 use super::setting::{PADDLE, PADDLES, PERIOD, loop_run, rigid};
 use crate::chain::Chain;
@@ -64,13 +64,13 @@ pub fn varying_hand() -> Result<CaseResult, FailureError> {
     let methods = vec![
         MethodResult::new(
             "Nyquist, for all linear hands",
-            Verdict::of(linear < LIGHT.damping),
+            MethodVerdict::of(linear < LIGHT.damping),
             linear,
             reason,
         ),
         MethodResult::new(
             format!("{} hands that do not vary", searched.tried),
-            Verdict::of(!searched.oscillates),
+            MethodVerdict::of(!searched.oscillates),
             searched.worst.spectral_radius,
             "the largest eigenvalue in the worst of them is {}",
         ),

@@ -9,7 +9,7 @@ use haptic_servo::scene::Scene;
 use haptic_servo::torque::LimitReason;
 
 use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, Verdict};
+use super::method_result::{MethodResult, MethodVerdict};
 use super::motion::Outcome;
 use super::setting::{PADDLE, PADDLES, encoder_friction, loop_run, rigid, wall_of};
 use crate::simulation::SimulationError;
@@ -35,7 +35,7 @@ pub fn zigzag() -> Result<CaseResult, FailureError> {
     let methods = vec![MethodResult::simulated("simulation in no hand", &rests)?];
     let gained = gained(&scene, ALMOST * needed)?;
     let reason = "a hand that goes over one edge and back gets {} J out each time";
-    let truth = MethodResult::new("zigzag", Verdict::of(gained <= 0.0), gained, reason);
+    let truth = MethodResult::new("zigzag", MethodVerdict::of(gained <= 0.0), gained, reason);
     Ok(CaseResult { methods, certificate, truth, runs: vec![rests] })
 }
 

@@ -26,7 +26,7 @@ pub struct ModelResult {
     /// The certificate's answer; `None` where there is no `delta`.
     pub certificate: Option<verdict::Verdict>,
     /// Whether the loop is stable in the model's hand.
-    pub stability: stability::Verdict,
+    pub stability: stability::StabilityVerdict,
     /// Stiffness of the environment in N m/rad at which it stops being so.
     pub critical_stiffness: Option<f64>,
     /// What the run of the file gives.

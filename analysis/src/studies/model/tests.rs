@@ -103,8 +103,8 @@ fn the_bound_decides() {
 fn a_second_mass_changes_whether_the_loop_is_stable() {
     let advice = advice(SOFT, 1.0);
     let [rigid, full] = ["rigid", "2 masses"].map(|model| judged(&advice, model));
-    assert_eq!(rigid.result.stability, stability::Verdict::Unstable);
-    assert_eq!(full.result.stability, stability::Verdict::Stable);
+    assert_eq!(rigid.result.stability, stability::StabilityVerdict::Unstable);
+    assert_eq!(full.result.stability, stability::StabilityVerdict::Stable);
     assert_eq!((advice.enough.as_str(), &advice.left_out), ("2 masses", &Vec::new()));
     assert!(rigid.beyond.contains(&"unstable and not stable".to_owned()), "{rigid:?}");
     // The limit of theory, section 4.1 at full damping: b > K T (n + 1/2), nearly stability's.
@@ -138,8 +138,8 @@ fn a_lag_changes_whether_the_loop_is_stable() {
         let found = judged.result.critical_stiffness.unwrap();
         assert!((found - limit).abs() < 0.01 * limit, "{found}");
     }
-    assert_eq!(prompt.result.stability, stability::Verdict::Stable);
-    assert_eq!(late.result.stability, stability::Verdict::Unstable);
+    assert_eq!(prompt.result.stability, stability::StabilityVerdict::Stable);
+    assert_eq!(late.result.stability, stability::StabilityVerdict::Unstable);
     // The lag is the controller's: the same passivity, and another certificate.
     assert_eq!((late.result.delta, prompt.result.delta), (Some(0.5), Some(0.5)));
     assert_eq!(late.result.certificate, Some(verdict::Verdict::Rejected));

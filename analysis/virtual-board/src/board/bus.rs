@@ -1,6 +1,6 @@
 //! The board's bus: what a program reads and writes there, or why there is no answer.
 
-use super::{Board, BusAccess};
+use super::{BusAccess, VirtualBoard};
 use crate::chip::{MapEntry, TICK_INTERRUPT};
 use crate::core::System;
 use crate::core::exceptions::Number;
@@ -40,7 +40,7 @@ impl Target {
 /// Who has no answer, and why.
 type Fault = (Option<&'static str>, AccessError);
 
-impl Board {
+impl VirtualBoard {
     /// Reads for the program.
     pub fn read(&mut self, address: u32, size: usize) -> u32 {
         if self.has_bus_error(address) {

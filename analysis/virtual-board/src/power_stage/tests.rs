@@ -2,7 +2,7 @@
 
 use super::gate_log::{any_high, first_high, off_since, shortest_dead_time};
 use super::*;
-use crate::board::Board;
+use crate::board::VirtualBoard;
 use crate::chip::B_G431B_ESC1;
 use crate::device::{FixedDevice, Motion};
 use crate::motor::{Motor, Winding};
@@ -64,7 +64,7 @@ impl Device for Flywheel {
     }
 }
 
-struct Driver(Board);
+struct Driver(VirtualBoard);
 
 impl Driver {
     /// A board with this motor and device, set up as a program does, with the gates off.
@@ -79,7 +79,7 @@ impl Driver {
     }
 
     fn unprepared(motor: Motor, device: impl Device + Send + 'static) -> Self {
-        let mut board = Board::new(&B_G431B_ESC1, Box::new(device));
+        let mut board = VirtualBoard::new(&B_G431B_ESC1, Box::new(device));
         board.gates = Some(Vec::new());
         board.power_stage.circuit.motor = Some(motor);
         Self(board)

@@ -8,13 +8,13 @@ use std::thread;
 use analysis::emulator::log::LogDecoder;
 use analysis::link::Message;
 use analysis::program::Program;
-use analysis::toolchain::{Board as BoardName, NumberFormat, Tools, TorqueOutput, prepare};
+use analysis::toolchain::{BoardModel, NumberFormat, Tools, TorqueOutput, prepare};
 use haptic_servo::dac::DacCode;
 use haptic_servo::wire::message::{
     LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, PreviousFault, Status, ToBoard,
 };
 use haptic_servo::wire::{CHECKSUM, Decoder, encode, largest_frame};
-use virtual_board::board::{Board, Event};
+use virtual_board::board::{Event, VirtualBoard};
 use virtual_board::chip::Chip;
 use virtual_board::device::{Device, FixedDevice};
 use virtual_board::machine::Machine;
@@ -60,7 +60,7 @@ pub fn build(chip: &'static Chip, names: &[&str]) -> Vec<PathBuf> {
 pub fn build_for(chip: &'static Chip, output: TorqueOutput, names: &[&str]) -> Vec<PathBuf> {
     let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
     let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
-    let board = BoardName::find(chip.name).unwrap();
+    let board = BoardModel::find(chip.name).unwrap();
     let built = toolchain.build_for(board, output, names, NumberFormat::F32);
     built.unwrap_or_else(|error| panic!("{error}")).into_iter().map(|built| built.path).collect()
 }
@@ -140,7 +140,8 @@ impl Bench {
     pub fn run_to_waiting_code(&mut self, turn: i32) {
         self.pins().turns.push_back(turn);
         self.run_to_update();
-        let waits = |board: &Board| board.dac.output().is_some_and(|code| code != board.dac.held());
+        let waits =
+            |board: &VirtualBoard| board.dac.output().is_some_and(|code| code != board.dac.held());
         while !waits(self.machine.board()) {
             self.run_for(1);
         }

@@ -42,7 +42,7 @@ fn a_period_is_filled_by_the_highest_frequency_that_fits() {
 
 #[test]
 fn the_response_is_that_of_the_model() {
-    let Response { delay, lag, updates } = BRUSHED.response();
+    let TorqueResponse { delay, lag, updates } = BRUSHED.response();
     assert_eq!((delay, updates), (25e-6, 40));
     assert!((lag - 159.155e-6).abs() < 1e-9);
     assert!((BRUSHED.full_scale_current() - 4.0).abs() < 1e-12);

@@ -75,7 +75,7 @@ const FULL_SCALE: i16 = 1791;
 /// What the certificate knows: the steps of a lag behind a delay of an instant, as sums of exponential functions
 /// and not by a recursion. The steps are instants and the codes from there on.
 fn certified_current(design: &CurrentLoop, steps: &[(usize, i16)], instant: usize) -> f64 {
-    let Response { delay, lag, .. } = design.response();
+    let TorqueResponse { delay, lag, .. } = design.response();
     let (mut last, mut current) = (0, 0.0);
     for &(at, code) in steps {
         let time = (instant as f64 - at as f64) * INSTANT - delay;

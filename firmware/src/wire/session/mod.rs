@@ -28,8 +28,8 @@ use super::decoder::Decoder;
 use super::description::Description;
 use super::frame::CHECKSUM;
 use super::message::{
-    ActiveParameters, Board, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal, Status,
-    ToBoard, ToHost,
+    ActiveParameters, BoardUnits, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal,
+    Status, ToBoard, ToHost,
 };
 use crate::boot::Program;
 use crate::certificate::scene_data;
@@ -269,10 +269,10 @@ where
         }
     }
 
-    fn board(&self) -> Board {
+    fn board(&self) -> BoardUnits {
         let Program { transducers, rendering, .. } = &self.program;
         let period = self.program.scene.timing.period;
-        Board {
+        BoardUnits {
             period,
             timer_counts: self.info.timer_counts,
             counts_per_turn: transducers.counts_per_turn,

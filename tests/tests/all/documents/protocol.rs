@@ -56,7 +56,7 @@ pub fn variants(path: &str, name: &str) -> Vec<(String, String)> {
 fn every_field_of_every_message_is_there_in_order() {
     let document = read(DOCUMENT);
     for (path, name) in [
-        (MESSAGES, "Board"),
+        (MESSAGES, "BoardUnits"),
         (MESSAGES, "ActiveParameters"),
         (MESSAGES, "Status"),
         ("firmware/src/power_reading.rs", "PowerReading"),

@@ -20,7 +20,7 @@ const REAL: f64 = 1e-6;
 
 /// A verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum IndexVerdict {
     /// Passive.
     Yes,
     /// Not passive.
@@ -36,7 +36,7 @@ pub struct IndexResult {
     /// has no result.
     pub alpha: Option<(f64, f64)>,
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: IndexVerdict,
 }
 
 /// A way to an index and a verdict.
@@ -113,8 +113,8 @@ impl IndexMethod {
             Self::Decision => {
                 let limit = Interval::exact(delta);
                 let found = proved(index_near(transfer(environment), period, false, limit), delta);
-                let is_proved = found.verdict == Verdict::Yes;
-                let verdict = if is_proved { Verdict::Yes } else { Verdict::No };
+                let is_proved = found.verdict == IndexVerdict::Yes;
+                let verdict = if is_proved { IndexVerdict::Yes } else { IndexVerdict::No };
                 Some(IndexResult { alpha: None, verdict })
             }
             Self::Grid(grid) => Some(seen(environment, delta, || Some(grid.least(environment)))),
@@ -133,9 +133,9 @@ fn transfer(environment: &Environment) -> Transfer {
 
 fn enclosed(alpha: Interval, delta: f64) -> IndexResult {
     let verdict = match () {
-        () if alpha.hi() < delta => Verdict::Yes,
-        () if alpha.lo() >= delta => Verdict::No,
-        () => Verdict::Open,
+        () if alpha.hi() < delta => IndexVerdict::Yes,
+        () if alpha.lo() >= delta => IndexVerdict::No,
+        () => IndexVerdict::Open,
     };
     IndexResult { alpha: Some((alpha.lo(), alpha.hi())), verdict }
 }
@@ -143,8 +143,8 @@ fn enclosed(alpha: Interval, delta: f64) -> IndexResult {
 fn proved(found: Result<RealPart, IndexError>, delta: f64) -> IndexResult {
     match found {
         Ok(found) => enclosed(found.minimum, delta),
-        Err(IndexError::Undecided(_)) => IndexResult { alpha: None, verdict: Verdict::Open },
-        Err(_) => IndexResult { alpha: None, verdict: Verdict::No },
+        Err(IndexError::Undecided(_)) => IndexResult { alpha: None, verdict: IndexVerdict::Open },
+        Err(_) => IndexResult { alpha: None, verdict: IndexVerdict::No },
     }
 }
 
@@ -152,18 +152,18 @@ fn proved(found: Result<RealPart, IndexError>, delta: f64) -> IndexResult {
 /// least real part.
 fn seen(environment: &Environment, delta: f64, least: impl Fn() -> Option<f64>) -> IndexResult {
     let nothing = |verdict| IndexResult { alpha: None, verdict };
-    let Some(poles) = roots(&environment.denominator) else { return nothing(Verdict::Open) };
+    let Some(poles) = roots(&environment.denominator) else { return nothing(IndexVerdict::Open) };
     let at_one = |values: &[f64]| values.iter().sum::<f64>();
     let residue = at_one(&environment.numerator) / at_one(&environment.denominator);
     if poles.iter().any(|pole| pole.norm() >= 1.0) || residue < 0.0 {
-        return nothing(Verdict::No);
+        return nothing(IndexVerdict::No);
     }
     match least() {
         Some(least) => {
-            let verdict = if -least < delta { Verdict::Yes } else { Verdict::No };
+            let verdict = if -least < delta { IndexVerdict::Yes } else { IndexVerdict::No };
             IndexResult { alpha: Some((-least, -least)), verdict }
         }
-        None => nothing(Verdict::Open),
+        None => nothing(IndexVerdict::Open),
     }
 }
 

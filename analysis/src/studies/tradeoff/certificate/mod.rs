@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::{Axis, Comparison, Method, NUMBER, Tradeoff, fastest};
 use crate::table::Column;
 use environments::{EACH, Kind, environment, reference_index};
-use index_methods::{Grid, IndexMethod, IndexResult, Verdict};
+use index_methods::{Grid, IndexMethod, IndexResult, IndexVerdict};
 
 /// The comparison.
 pub static COMPARISON: Comparison = Comparison {
@@ -146,9 +146,9 @@ impl MethodErrors {
         for (number, said) in answers {
             let (environment, truth) = (environment(kind, number), reference_index(kind, number));
             match (said.verdict, environment.is_passive(truth)) {
-                (Verdict::Yes, false) => errors.wrong_yes += 1,
-                (Verdict::No, true) => errors.wrong_no += 1,
-                (Verdict::Open, _) => errors.open += 1,
+                (IndexVerdict::Yes, false) => errors.wrong_yes += 1,
+                (IndexVerdict::No, true) => errors.wrong_no += 1,
+                (IndexVerdict::Open, _) => errors.open += 1,
                 _ => {}
             }
             let looks = !matches!(method, IndexMethod::Decision);

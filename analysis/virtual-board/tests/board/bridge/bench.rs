@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use analysis::toolchain::TorqueOutput;
 use haptic_servo::current::{Drive, Winding};
-use virtual_board::board::{Board, BusAccess};
+use virtual_board::board::{BusAccess, VirtualBoard};
 use virtual_board::bridge_memory::BridgeMemory;
 use virtual_board::chip::B_G431B_ESC1;
 use virtual_board::device::Device;
@@ -88,7 +88,7 @@ pub fn gates(bench: &Bench) -> &[(u64, Gates)] {
 }
 
 /// Whether any gate is high now.
-pub fn has_high_gate(board: &Board) -> bool {
+pub fn has_high_gate(board: &VirtualBoard) -> bool {
     board.power_stage.gates().contains(&Level::High)
 }
 

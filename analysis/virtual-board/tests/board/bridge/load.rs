@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use analysis::toolchain::{Board, Tools, TorqueOutput, prepare};
+use analysis::toolchain::{BoardModel, Tools, TorqueOutput, prepare};
 use virtual_board::chip::B_G431B_ESC1;
 use virtual_board::motor::{Motor, Winding};
 use virtual_board::power_stage::gate_log::any_high;
@@ -25,7 +25,7 @@ fn file() -> &'static PathBuf {
     FILE.get_or_init(|| {
         let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
         let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
-        let built = toolchain.build_tests(Board::BG431bEsc1, TorqueOutput::Bridge);
+        let built = toolchain.build_tests(BoardModel::BG431bEsc1, TorqueOutput::Bridge);
         built.unwrap_or_else(|error| panic!("{error}"))
     })
 }
