@@ -29,7 +29,7 @@ fn python() {
         return;
     }
     println!("cargo::rustc-cfg=no_python");
-    // It will come into one of these folders, or into one that is not among them yet.
+    // It will be written to one of these folders, or to a new folder.
     println!("cargo::rerun-if-env-changed=PATH");
     let path = env::var_os("PATH").unwrap_or_default();
     for folder in env::split_paths(&path).filter(|folder| folder.is_dir()) {

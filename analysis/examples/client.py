@@ -231,7 +231,7 @@ class Board:
     def __init__(self, port):
         self.read, self.write = connect(port)
         self.received = b""
-        # An answer to somebody before us is not taken for ours.
+        # An answer to an earlier client's request is not taken for ours.
         self.id = random.randrange(1 << 16)
         self.remembered = None
         welcome = self.ask([HELLO], "welcome")

@@ -28,13 +28,13 @@ pub enum Input<'a> {
 pub enum Backend<'a> {
     /// On the emulated board, which has a program of its own.
     Emulator(&'a Path),
-    /// On a virtual board, which has what is flashed: a program for a DAC.
+    /// On a virtual board, with the flashed program for a DAC.
     VirtualBoard {
         /// The program that is a virtual board.
         program: &'a Path,
         /// Which board it is.
         board: toolchain::BoardModel,
-        /// What is in its flash.
+        /// The program in its flash.
         elf: &'a Path,
         /// The period of its servo in s.
         period: f64,

@@ -121,8 +121,8 @@ impl Program {
         Self::every().chain([&KNOB_MODES]).chain(MORE.get()).find(|program| program.name == name)
     }
 
-    /// All programs of this build but [`KNOB_MODES`], also the one that needs a host, and those whose torques
-    /// are not latched.
+    /// All programs of this build but [`KNOB_MODES`], including the program that needs a host and those whose
+    /// torques are not latched.
     pub fn every() -> impl Iterator<Item = &'static Self> {
         ALL.iter().chain([&SUPERVISED, &UNDELAYED, &STIFFEST])
     }

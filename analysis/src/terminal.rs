@@ -16,12 +16,12 @@ pub fn is_dumb() -> bool {
     std::env::var_os("TERM").is_some_and(|term| term == "dumb")
 }
 
-/// Columns of standard output; `None` where it is no terminal, or one that does not know.
+/// Columns of standard output; `None` if it is not a terminal or does not know its width.
 pub fn output_width() -> Option<usize> {
     columns(terminal_size_of(stdout()))
 }
 
-/// Columns of standard error; `None` where it is no terminal, or one that does not know.
+/// Columns of standard error; `None` if it is not a terminal or does not know its width.
 pub fn error_width() -> Option<usize> {
     columns(terminal_size_of(stderr()))
 }

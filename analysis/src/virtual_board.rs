@@ -66,7 +66,7 @@ pub enum VirtualBoardError {
     },
 }
 
-/// A sample that has ended; where a bridge drives the motor, one that begins.
+/// A sample that has ended; where a bridge drives the motor, a sample that begins.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sample {
     /// The DAC's code in it; none while nothing drives its pin. The code that a bridge's current loop follows
@@ -297,7 +297,7 @@ impl VirtualBoard {
     fn end(&mut self) -> io::Result<VirtualBoardReport> {
         self.input = None;
         loop {
-            // Skips what is unread.
+            // Skips unread bytes.
             let length = match self.bytes()? {
                 [END] => break,
                 [PWM_PERIOD] => PWM_PERIOD_BYTES,

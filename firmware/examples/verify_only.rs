@@ -1,5 +1,5 @@
-//! Only the certificate, in somebody else's control loop: the loop computes by itself, in its own units, and has
-//! its numbers from a constant that was certified.
+//! Only the certificate, in a control loop of your own: the loop computes by itself, in its own units, and
+//! has its numbers from a constant that was certified.
 //!
 //! The certificate is about a law and not about code. What the loop computes must be that law: here a spring
 //! that is one sample late, behind a virtual coupling, with a limited torque, in `f32`.
@@ -34,7 +34,7 @@ const LIMIT: f32 = match CERTIFIED.scene().torque_limit {
     None => f32::INFINITY,
 };
 
-/// Somebody else's control loop: nothing of the library is in it.
+/// A control loop of your own: nothing of the library is in it.
 #[derive(Default)]
 pub struct ControlLoop {
     /// Where the spring's end behind the coupling was in the sample before, in rad.

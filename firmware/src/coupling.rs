@@ -35,7 +35,7 @@ impl Coupling {
     /// [own](crate::environment::Law::matched_compliance); `None`: rigid.
     ///
     /// # Errors
-    /// Where the law remembers torques for a coupling that needs none, or none for one that does.
+    /// If the law stores past torques and the coupling does not use them, or the reverse.
     pub const fn compliance(self, matched: Option<f64>) -> Result<Option<f64>, BuildError> {
         match (self, matched) {
             (Self::Rigid, None) => Ok(None),

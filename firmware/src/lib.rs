@@ -53,12 +53,11 @@
 //! | `log` | measurements and their log, on the emulated board |
 //! | `on-target` | tests that run on a board |
 //! | `stm32`, `fast-memory` | parts of the boards' features; of no use alone |
-//!
-//! # What is stable
+//! # Stability
 //!
 //! Versions follow semantic versioning. Before 1.0 a minor version may break the interface, and a patch does
-//! not. A certificate may become less conservative in any version; where one would turn out to be wrong, a patch
-//! refuses what it had accepted. Exempt are the texts of errors and reports, what is hidden from this
+//! not. A certificate may become less conservative in any version; where one would turn out to be wrong, a
+//! patch refuses what it had accepted. Exempt are the texts of errors and reports, items hidden from this
 //! documentation, and all in [`board`] but [`scene_program!`] and [`sweep_program!`]. The messages of `wire`
 //! have a version of their own, which board and host compare.
 //!
@@ -67,9 +66,9 @@
 //! # Where to read on
 //!
 //! `THEORY.md` in the package has definitions and proofs: "theory, section 4" and "equation 17" are its own,
-//! "the paper" the one that it names. `PROTOCOL.md` has the wire, `boards.md` the boards,
-//! `TROUBLESHOOTING.md` the faults. In the repository,
-//! `firmware/own-board` is a board of another crate, `firmware/own-environment` an environment.
+//! "the paper" is the paper that it names. `PROTOCOL.md` has the wire, `boards.md` the boards,
+//! `TROUBLESHOOTING.md` the faults. In the repository, `firmware/own-board` is a board of another crate,
+//! `firmware/own-environment` an environment.
 #![cfg_attr(not(test), no_std)]
 #![deny(unsafe_code)]
 // A rejection carries all its numbers, and there is no heap to put them on.

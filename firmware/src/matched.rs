@@ -34,7 +34,7 @@ const EXCESS: f64 = 7.0 / 3.0;
 pub struct Trail {
     /// Deflection in rad/(N m).
     pub gain: f64,
-    /// What is left of it a tick later.
+    /// The part of it that remains a tick later.
     pub decay: f64,
 }
 

@@ -97,8 +97,8 @@ impl<N: Number> Limiter<N> {
         }
     }
 
-    /// The same of what only pushes: of its part above zero. One comparison for its sign, the bound and what
-    /// is no number.
+    /// The same of a one-sided torque: of its part above zero. One comparison covers its sign, the bound and
+    /// NaN.
     #[inline(always)]
     pub(crate) fn limit_push(&self, wanted: N, otherwise: LimitReason) -> (N, LimitReason) {
         if wanted.is_from_zero_to(self.level) {
@@ -111,9 +111,9 @@ impl<N: Number> Limiter<N> {
         (torque, *reason)
     }
 
-    /// What is left of a push above the level, or of one that is no number. Out of line, so that a usual
-    /// tick has nothing of it in its registers, and with the reason where it is, so that the tick need not
-    /// take it for a register's lowest byte.
+    /// The limited value of a push above the level, or of NaN. Out of line, so that a usual tick has nothing
+    /// of it in its registers, and with the reason where it is, so that the tick need not take it for a
+    /// register's lowest byte.
     #[cold]
     #[inline(never)]
     fn beyond(&self, wanted: N) -> (N, &LimitReason) {

@@ -2,7 +2,7 @@
 
 use rand::Rng;
 
-/// Edges: zeros, subnormals, the largest, and what is not a number at all.
+/// Edges: zeros, subnormals, the largest, and NaN.
 const EDGES: [f64; 14] = [
     0.0,
     -0.0,

@@ -25,7 +25,7 @@ pub struct Segment {
 /// A device and the hand on it. Every number is at least zero, so it is passive whatever they are.
 #[derive(Clone, Debug)]
 pub struct Hand {
-    /// Mass of the device with what is rigidly attached.
+    /// Mass of the device with the parts rigidly attached.
     pub inertia: f64,
     /// Damping that the hand adds to the device's own.
     pub damping: f64,

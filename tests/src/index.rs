@@ -1,9 +1,9 @@
 //! The passivity index of a rational environment, decided exactly (theory, sections 1 and 7).
 //!
-//! Poles on the unit circle are split off with their residues; what is left has a real part
-//! `p(c) / r(c)` on the circle, `c` the cosine of the angle, `r > 0`. The index `alpha` is minus its
-//! least value, so `alpha < lambda` is `p + lambda r > 0` on `[-1, 1]`, which Sturm's theorem
-//! answers for any rational `lambda` without computing `alpha`.
+//! Poles on the unit circle are split off with their residues; the rest has a real part `p(c) / r(c)` on the
+//! circle, `c` the cosine of the angle, `r > 0`. The index `alpha` is minus its least value, so
+//! `alpha < lambda` is `p + lambda r > 0` on `[-1, 1]`, which Sturm's theorem answers for any rational
+//! `lambda` without computing `alpha`.
 
 use crate::exact::Q;
 use crate::poly::Poly;

@@ -115,7 +115,7 @@ pub fn as_it_runs(scene: &Scene, format: Format) -> Option<Exact> {
         | Environment::Profile(_)
         | Environment::Composed(_) => return None,
     };
-    // What is fed through is solved with the coupling by a gain that is rounded as well.
+    // The direct feedthrough is solved with the coupling by a gain that is rounded as well.
     let through = if numerator.degree() < denominator.degree() || numerator.is_zero() {
         Q::zero()
     } else {

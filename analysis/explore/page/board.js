@@ -1,11 +1,11 @@
 // A running board: its line, kept open; its state, as `haptic scope` says it; and what it is asked for.
 
-/** Time between two looks at what is due, in ms; bytes are taken as they come. */
+/** Time between two polls, in ms; bytes are taken as they come. */
 const BOARD_TURN = 50;
 /** Most rows of a record: half an hour at 1 kHz, some 150 MB. */
 const BOARD_ROWS = 2_000_000;
 
-/** What is explained before a motor moves. */
+/** The explanation before a motor moves. */
 const BOARD_EXPLAINED = {
   arm: ["Switch the motor on", (program) =>
     `This switches the motor on. The torque of ${program} fades in where the handle is. Hold the handle ` +
@@ -102,7 +102,7 @@ class BoardLink {
     this.#take(this.#engine.json("wire_turn", `${performance.now()}\n${lettersOf(bytes)}`));
   }
 
-  /** Passes on what is new. */
+  /** Forwards new messages. */
   #take({ send, replies, rows, board, lost }) {
     if (send !== "") this.#line?.send(Uint8Array.from(send, (letter) => letter.charCodeAt(0)));
     if (rows !== "") this.#on.rows(rows);
@@ -192,7 +192,7 @@ class BoardNumbers {
     form.addEventListener("input", () => this.judge());
   }
 
-  /** Shows the numbers of a board. What is being typed stays until it runs. */
+  /** Shows the numbers of a board. Text being typed stays until it runs. */
   show({ numbers, sets }) {
     const names = numbers.map(({ name }) => name).join(" ");
     if (names !== [...this.#fields.keys()].join(" ")) this.#make(numbers);
@@ -214,7 +214,7 @@ class BoardNumbers {
     return changed.map(([name, { input }]) => `${name}=${input.value.trim()}`).join(", ");
   }
 
-  /** Judges what is typed by the scene of the board, and says why it cannot run. */
+  /** Judges the typed numbers by the scene of the board, and states why they cannot run. */
   judge() {
     const changes = this.changes();
     const says = document.getElementById("board-judged");

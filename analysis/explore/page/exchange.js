@@ -87,7 +87,7 @@ function asConstants(store, engine) {
   }
 }
 
-/** The scene as TOML; one that is no scene yet as the JSON that it is. */
+/** The scene as TOML; an incomplete scene as its JSON. */
 function asToml(store, engine) {
   try {
     return engine.ask("toml", store.text());

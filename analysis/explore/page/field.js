@@ -1,6 +1,6 @@
-// One key of the scene as a field: a label, what takes its value, its unit, and what is wrong with it.
+// One key of the scene as a field: a label, an input, the unit, and the fault of its value.
 
-/** The value that a text stands for: nothing, a number or, where `isList`, a list. What is neither stays a
+/** The value that a text stands for: nothing, a number or, where `isList`, a list. Other input stays a
  * text, which the program refuses with the words of a scene file, so that it is kept in links and files. */
 function valueOf(text, isList = false) {
   const trimmed = text.trim();
@@ -82,7 +82,7 @@ class Field {
     return this.store.get(this.path) ?? this.key.default ?? undefined;
   }
 
-  /** Puts what takes the value into the row. The last one of them is the one that the label names. */
+  /** Puts the inputs of the value into the row. The label names the last of them. */
   take(...inputs) {
     const id = Field.idOf(this.path);
     for (const input of inputs) input.setAttribute("aria-describedby", `${id}-doc ${id}-error`);
@@ -100,7 +100,7 @@ class Field {
     this.draw(this.value());
   }
 
-  /** Shows a sentence about what is wrong with the value; none: nothing is. */
+  /** Shows the fault of the value as a sentence; none: no fault. */
   complain(sentence = "") {
     if (this.#error.textContent !== sentence) this.#error.textContent = sentence;
     for (const input of this.#inputs) input.ariaInvalid = sentence === "" ? null : "true";
@@ -196,7 +196,7 @@ class ChoiceField extends Field {
   #select;
   #now;
 
-  /** `words`: pairs of a value and what it is called; `change` takes what is chosen, `now` says what is. */
+  /** `words`: pairs of a value and its name; `change` takes the choice, `now` returns it. */
   constructor(store, key, path, isOptional, words, change = (word) => store.set(path, word), now = undefined) {
     super(store, key, path, isOptional);
     this.#now = now;
@@ -266,7 +266,7 @@ class TextField extends Field {
 function fieldOf(store, key, path = key.path, isOptional = !key.needed && key.default === null) {
   const isNumber = key.form === "time" || key.form.number || key.form.whole;
   if (isNumber) return new NumberField(store, key, path, isOptional);
-  // What is left out is false.
+  // A missing value is false.
   if (key.form === "boolean") return new TruthField(store, key, path, false);
   if (key.form.one_of) {
     return new ChoiceField(store, key, path, isOptional, key.form.one_of.map((word) => [word, word]));

@@ -11,7 +11,7 @@ const RARE = new Set([
 /** Most tables of a list that have fields: more shapes than that are refused. */
 const MOST_TABLES = 16;
 
-/** Where stands what is wrong with a list as a whole. */
+/** The place for the fault of a list as a whole. */
 class GroupError {
   row = make("p", { className: "error" });
 
@@ -51,7 +51,7 @@ class Fields {
     this.#hint();
   }
 
-  /** Shows the scene, and what is wrong with it. */
+  /** Shows the scene and its faults. */
   show() {
     const shape = this.#shapeOfForm();
     if (shape !== this.#shape) this.#build(shape);
@@ -295,7 +295,7 @@ class Fields {
     return this.#table("human", "Hand");
   }
 
-  /** Says beside each field what is wrong with it, and above all fields what belongs to none. */
+  /** Shows each fault beside its field, and faults of no field above all fields. */
   #complain(errors) {
     const sentences = new Map();
     const others = [];
@@ -306,7 +306,7 @@ class Fields {
     }
     for (const field of this.#fields.values()) {
       field.complain(sentences.get(field)?.join(" "));
-      // What is wrong is not behind a word.
+      // A fault is not hidden in a tooltip.
       if (sentences.has(field)) field.row.closest("details")?.setAttribute("open", "");
     }
     const shown = [...this.#problems.children].map((item) => item.textContent);
@@ -323,7 +323,7 @@ class Fields {
     return undefined;
   }
 
-  /** Below the fields stand the words of the one that has the focus or is pointed at. */
+  /** Below the fields stand the words of the field with the focus or under the pointer. */
   #hint() {
     const hint = document.getElementById("hint");
     const say = ({ target }) => {

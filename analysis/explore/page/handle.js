@@ -170,7 +170,7 @@ class Handle {
     const settings = this.#settings.read();
     if (!settings) return;
     const { counts, ...hand } = settings;
-    const last = this.#held ? " The handle goes on with the last one that could." : "";
+    const last = this.#held ? " The handle keeps the last scene that could." : "";
     if (this.#store.judged?.errors) {
       say(parts.error, `This scene cannot be read.${last}`);
       return;

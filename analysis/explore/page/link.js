@@ -19,7 +19,7 @@ async function packedScene(text) {
   return btoa(letters).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
-/** The text of a scene in such letters. Throws what is wrong with them, in a sentence. */
+/** The text of a scene in such letters. Throws their fault as a sentence. */
 async function unpackedScene(letters) {
   if (letters.length > LONGEST_SCENE) throw new Error(`it is longer than ${LONGEST_SCENE} characters`);
   return /^(%7B|\{)/i.test(letters) ? decodeURIComponent(letters) : inflated(letters);

@@ -24,8 +24,8 @@ function forPrograms(engine, store) {
   return {
     /** The scene that is shown, as text. */
     scene: () => store.text(),
-    /** What `haptic certify --json` prints of a scene, which is a text or an object. The answer is an object
-     * whose text is what is printed, to the last digit. */
+    /** The output of `haptic certify --json` for a scene, which is a text or an object: an object whose
+     * text is the printed text, to the last digit. */
     certify: (scene) => {
       const printed = engine.ask("certify", typeof scene === "string" ? scene : JSON.stringify(scene));
       return Object.defineProperty(JSON.parse(printed), "toString", { value: () => printed });

@@ -240,7 +240,7 @@ class MapPicture {
       this.#version += 1;
       const names = this.#map.regions.map((region) => region.name);
       this.#cells = { regions, cells, names, version: this.#version };
-      // For programs: what is there, and when it was, in ms after the worker began.
+      // For programs: the map's state, and its time in ms after the worker began.
       const { dataset } = this.#picture.figure;
       if (done) dataset.progress = done;
       const mark = { "1/256": "firstMs", "1/1": "drawnMs", all: "allMs" }[done];

@@ -146,7 +146,7 @@ function startWorker() {
     [newest, waiting] = [question.id, question];
     work();
   };
-  // What is asked before the program has started is answered when it has.
+  // Requests before the start of the program are answered after it.
   const early = [];
   self.onmessage = async ({ data }) => {
     if (data.module) {

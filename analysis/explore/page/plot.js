@@ -7,7 +7,7 @@
 //     x: { name: "angle", unit: "rad", range: [0, 1] },
 //     panels: [{ y: { name: "torque", unit: "N m", range: [-1, 1] }, paint: (pen) => { .. } }],
 //     legend: [{ ink: "--plot-1", dash: [], words: "torque" }],
-//     words: () => "what is seen, with numbers, for those who do not see it",
+//     words: () => "the picture in words, with numbers, for people who cannot see it",
 //   });
 //
 // Panels are above each other and share the horizontal axis. `paint` draws in the units of the axes:
@@ -17,16 +17,16 @@
 //   pen.band(from, to, ink)                  between two values of x, filled
 //   pen.ring(x, y, stroke), pen.dot(x, y, stroke), pen.cross(x, y, stroke)
 //   pen.words(x, y, text, { ink, align, below })
-//   pen.x(value), pen.y(value), pen.context, pen.area   for what is drawn in pixels
+//   pen.x(value), pen.y(value), pen.context, pen.area   to draw in pixels
 //
-// Where what is drawn costs something to compute, `picture.update(() => { .. picture.draw(..) })` computes it
-// only when it is seen.
+// If a picture is slow to compute, `picture.update(() => { .. picture.draw(..) })` computes it only when it
+// is visible.
 //
 // An entry of the legend has the stroke of its line, `mark: "cross"`, `fill` with a region of a map, or
 // `blank` where it goes on from the one above it.
 //
 // Inks are names of custom properties of style.css: --plot-ink, --plot-faint, --plot-grid, --plot-1 to
-// --plot-4. What is drawn is kept, and drawn again when the size or the theme changes.
+// --plot-4. A picture is kept, and drawn again when the size or the theme changes.
 //
 // Over time there is a strip, of which lines of one unit share a panel:
 //
@@ -119,7 +119,7 @@ function rangeAround(values, part = 0.08, least = 0) {
 
 /** Draws in the units of a panel's axes. */
 class Pen {
-  /** The context that it draws with, for what is drawn in pixels. */
+  /** The context that it draws with, to draw in pixels. */
   context;
   /** The panel: left, top, right and bottom in pixels. */
   area;
@@ -204,7 +204,7 @@ class Pen {
     this.#stroke(stroke);
   }
 
-  /** What is between two values of the horizontal axis, filled. */
+  /** Fills between two values of the horizontal axis. */
   band(from, to, ink) {
     const { context, area } = this;
     const [a, b] = [from, to].map((x) => Math.max(area.left, Math.min(area.right, this.x(x))));
@@ -285,7 +285,7 @@ class Picture {
   /** The figure, in which more may stand, and its canvas. */
   figure;
   canvas;
-  /** What is at its top besides the title. */
+  /** The elements at its top besides the title. */
   tools;
   #name;
   #title;
@@ -336,7 +336,7 @@ class Picture {
     return this.#title;
   }
 
-  /** What is drawn at present. */
+  /** The present picture. */
   get content() {
     return this.#content;
   }
@@ -360,8 +360,8 @@ class Picture {
     }, PLOT.pause);
   }
 
-  /** Has what is shown computed by a function: now where it is seen, and else when it is or after a pause,
-   * since its words are read also where it is not seen. */
+  /** Computes the picture by a function: at once if it is visible, else when it becomes visible or after a
+   * pause, since its words are read also if it is not visible. */
   update(compute) {
     this.#due = compute;
     clearTimeout(this.#later);
@@ -376,7 +376,7 @@ class Picture {
     compute?.();
   }
 
-  /** Draws what is shown once more. */
+  /** Draws the picture once more. */
   again() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.#content || width === 0 || height === 0) return;
@@ -390,7 +390,7 @@ class Picture {
     this.#areas = this.paint(context, width, height);
   }
 
-  /** Draws what is shown with a context, so many units wide and high; where its panels are. */
+  /** Draws the picture with a context, this many units wide and high; returns the places of its panels. */
   paint(context, width, height) {
     context.fillStyle = Inks.of("--plot-back");
     context.fillRect(0, 0, width, height);
@@ -428,7 +428,7 @@ class Picture {
   }
 }
 
-/** A panel: its grid and numbers, what is drawn in it, and its frame. */
+/** A panel: its grid and numbers, its content, and its frame. */
 function paintPanel(context, area, x, { y, paint }, isLast) {
   const pen = new Pen(context, area, x.range, y.range);
   const across = roundNumbers(x.range, Math.max(2, Math.floor((area.right - area.left) / 52)));

@@ -1,6 +1,6 @@
 // The torque as sound: a loop that shakes is heard before it is seen.
 
-/** What is heard of a torque: no tone below this in Hz, and no louder than this part of full scale. */
+/** The sound of a torque: no tone below this in Hz, and no louder than this part of full scale. */
 const SOUND = { lowest: 25, loudest: 0.5, ahead: 0.08, farthest: 0.25 };
 
 class Sound {
@@ -8,7 +8,7 @@ class Sound {
   #input;
   #volume;
   #until = 0;
-  /** What is left of a tick at the end of the last piece, as a part of it. */
+  /** The rest of a tick at the end of the last piece, as a part of it. */
   #left = 0;
 
   get isOn() {
@@ -49,7 +49,7 @@ class Sound {
     if (!this.isOn || torques.length === 0) return;
     const context = this.#context;
     const now = context.currentTime;
-    // A page that was too slow begins anew; one that is too fast leaves out a piece.
+    // A page that was too slow begins anew; a page that is too fast leaves out a piece.
     if (this.#until < now) this.#until = now + SOUND.ahead;
     if (this.#until > now + SOUND.farthest) return;
     const perSample = rate / context.sampleRate;

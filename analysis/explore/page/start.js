@@ -12,7 +12,7 @@ async function unpacked(element) {
     const high = at + 1 < text.length ? digit(text.charCodeAt(at + 1)) : 0;
     held |= (digit(text.charCodeAt(at)) + 93 * high) << bits;
     for (bits += 13; bits >= 8; bits -= 8) {
-      // What is beyond the last byte is left out.
+      // Bits beyond the last byte are left out.
       packed[count] = held;
       count += 1;
       held >>= 8;

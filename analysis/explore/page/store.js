@@ -47,7 +47,7 @@ class Store {
     let table = this.scene;
     names.forEach((name, index) => {
       const isList = /^\d+$/.test(names[index + 1] ?? last);
-      // What is no table has no keys: one takes its place.
+      // A value that is not a table has no keys: a table replaces it.
       if (typeof table[name] !== "object" || table[name] === null || Array.isArray(table[name]) !== isList) {
         table[name] = isList ? [] : {};
       }

@@ -10,7 +10,7 @@ function showVerdict(store) {
   store.listen(({ judged }) => {
     mark(judged.report);
     showWord(judged);
-    // What is shown while a value is wrong is the last verdict that there was.
+    // While a value is invalid, the last verdict stays.
     if (judged.report) {
       showMargin(judged.report);
       showRows(store, judged);

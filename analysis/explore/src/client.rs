@@ -71,7 +71,7 @@ pub struct Connected {
     pub description: Option<Description>,
     /// The last seconds.
     pub history: History,
-    /// The same of what is told with each status.
+    /// The same of the numbers with each status.
     pub slow: VecDeque<Slow>,
     scale: Scale,
     heard: Duration,
@@ -140,7 +140,7 @@ impl Client {
         Ok(())
     }
 
-    /// Asks what is due by now.
+    /// Sends the requests that are due.
     ///
     /// # Errors
     /// Where the board has been silent for too long.
@@ -154,7 +154,7 @@ impl Client {
             let is_described = connected.description.is_some();
             let has_parameters = connected.parameters.is_some();
             self.send(&ToBoard::Status);
-            // Bytes get lost: what is missing is asked for again.
+            // Bytes get lost: missing replies are requested again.
             if !is_described {
                 self.send(&ToBoard::Describe);
             }

@@ -32,7 +32,7 @@ pub fn certify(text: &str, _: &mut Vec<f64>) -> PageResult {
     }
 }
 
-/// Verdict, numbers, rows of words and remedies of a scene, or what is wrong with it.
+/// Verdict, numbers, rows of words and remedies of a scene, or its faults.
 pub fn judge(text: &str, _: &mut Vec<f64>) -> PageResult {
     judged(text, report)
 }

@@ -48,7 +48,7 @@ macro_rules! functions {
 functions! {
     /// A scene as JSON: what `haptic certify --json` prints, or `{"error": ..}`.
     certify = judge::certify;
-    /// A scene as JSON or TOML: its verdict in rows, or what is wrong with it, key by key.
+    /// A scene as JSON or TOML: its verdict in rows, or its faults, key by key.
     judge = judge::judge;
     /// The same without remedies.
     judge_without_remedies = judge::judge_without_remedies;
@@ -86,7 +86,7 @@ functions! {
     wire_facts = wire::facts;
     /// An address: begins to talk to the board there.
     wire_start = wire::start;
-    /// Time and bytes from the board: what is new.
+    /// Takes time and bytes from the board; returns the news.
     wire_turn = wire::turn;
     /// Nothing: the link to the board is lost.
     wire_lost = wire::lost;

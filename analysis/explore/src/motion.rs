@@ -65,7 +65,7 @@ pub fn motion(text: &str, numbers: &mut Vec<f64>) -> PageResult {
     .to_string())
 }
 
-/// A run, and what is seen in it.
+/// A run and its description.
 struct Run {
     what: String,
     trace: Trace,

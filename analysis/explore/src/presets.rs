@@ -1,4 +1,4 @@
-//! Scenes to begin with: those of the programs in `firmware/src/bin`, and one that is not certified.
+//! Scenes to begin with: those of the programs in `firmware/src/bin`, and a rejected scene.
 
 /// A scene to begin with.
 #[derive(Clone, Copy, Debug)]

@@ -14,7 +14,7 @@ const POINTS: usize = 201;
 /// How far from its face a wall is shown, in rad, where no torque limit says it.
 const REACH: f64 = 0.1;
 
-/// Angle in rad and torque in N m of each point as numbers; the steepest pieces, and what is to be said.
+/// Angle in rad and torque in N m of each point as numbers; the steepest pieces, and the notes.
 pub fn profile(text: &str, numbers: &mut Vec<f64>) -> PageResult {
     let file = read(text).map_err(|error| error.to_string())?;
     let scene = &file.scene;

@@ -9,7 +9,7 @@ use crate::PageResult;
 /// What the page calls the text in its fields.
 const NAME: &str = "scene";
 
-/// What is wrong with a scene, each with its key and its place in the text.
+/// The faults of a scene, each with its key and its place in the text.
 #[derive(Debug, Serialize)]
 pub struct Wrong {
     errors: Vec<WrongValue>,
@@ -52,7 +52,7 @@ pub fn read(text: &str) -> Result<SceneFile, FileError> {
     file::parse(NAME, format(text)?, text)
 }
 
-/// TOML or JSON: `{"scene": ..}` with all its keys, whatever they are, or what is wrong with its grammar.
+/// TOML or JSON: `{"scene": ..}` with all its keys, whatever they are, or the fault of its grammar.
 pub fn parse(text: &str, _: &mut Vec<f64>) -> PageResult {
     let scene = format(text).and_then(|format| file::as_json(NAME, format, text));
     Ok(match scene {

@@ -51,7 +51,7 @@ struct Asked {
     changes: String,
 }
 
-/// What is new.
+/// News of a turn.
 #[derive(Default, Serialize)]
 struct Turn {
     /// Bytes to the board.
@@ -84,7 +84,7 @@ pub fn start(question: &str, _: &mut Vec<f64>) -> PageResult {
     })
 }
 
-/// Takes bytes, and does what is due: the time, a line feed, and the bytes.
+/// Takes bytes, and sends the requests that are due: the time, a line feed, and the bytes.
 pub fn turn(question: &str, _: &mut Vec<f64>) -> PageResult {
     let (now, letters) = question.split_once('\n').unwrap_or((question, ""));
     let number: f64 = now.parse().map_err(|_| format!("`{now}` is not a time in ms"))?;
@@ -186,7 +186,7 @@ fn of(connected: &Connected, columns: usize) -> [Vec<(f64, f64)>; 4] {
 }
 
 impl Wire {
-    /// What is new, as an answer.
+    /// The news, as a result for the page.
     fn turn(&mut self, lost: Option<String>) -> PageResult {
         let turn = self.news(None, lost);
         crate::judge::json(&turn)

@@ -150,7 +150,7 @@ fn preset(name: &str) -> &'static str {
 fn other(name: &str) -> String {
     let (_, [device, servo, environment]) =
         OTHERS.iter().find(|(other, _)| *other == name).unwrap();
-    // No bound is known for a limited rational environment, nor one that does without a coupling.
+    // No bound is known for a limited rational environment, nor a bound without a coupling.
     let limit = if ["rational", "rigid"].contains(&name) { "" } else { "[limits]\ntorque = 1.5\n" };
     format!(
         "name = \"{name}\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n{device}\n[servo]\n{servo}\n\

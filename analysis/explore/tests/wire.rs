@@ -207,7 +207,7 @@ fn a_set_that_the_certificate_refuses_is_not_sent() {
     bench.run(300);
     assert_eq!(bench.replies, ["stiffness=12.5 ...", "stiffness=12.5: done"]);
     assert_eq!(bench.number("stiffness"), 12.5);
-    // What is judged next is judged beside what runs now.
+    // The next numbers are judged beside the running numbers.
     let mut next = scene(12.5);
     next.environment.wall.damping = 1.0;
     let sentence = next.certify_in(Format::F32).unwrap_err().to_string();

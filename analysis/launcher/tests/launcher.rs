@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 
 const LINE: &str = "building haptic, which takes minutes the first time\n";
 
-/// Another process writes the file: one that this process had open could not be run.
+/// Another process writes the file: a file that this process had open could not be run.
 fn install(folder: &Path, name: &str, script: &str) {
     let draft = folder.join("draft");
     fs::write(&draft, format!("#!/bin/sh\n{script}\n")).unwrap();

@@ -1,5 +1,5 @@
-//! How stiff a spring may be where torques come late and through a current loop, over the servo's rate:
-//! what is proved, and what is commonly assumed.
+//! How stiff a spring may be where torques come late and through a current loop, over the servo's rate: the
+//! proved limit, and common assumptions.
 
 use std::f64::consts::TAU;
 use std::ops::Range;

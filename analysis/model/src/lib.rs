@@ -36,8 +36,7 @@
 //! # Features
 //!
 //! None is on by default. `clap` gives quantities and methods names on a command line.
-//!
-//! # What is stable
+//! # Stability
 //!
 //! Versions follow semantic versioning; before 1.0 a minor version may break the interface. The keys of scene
 //! files and of reports in JSON keep their meaning: new ones may come. What a certificate may do from version

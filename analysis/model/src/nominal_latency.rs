@@ -3,7 +3,7 @@
 
 use haptic_servo::scene::Latency;
 
-/// What is left out of a latency, in a few words; `None` where nothing is.
+/// The parts of a latency that a picture leaves out, in a few words; `None` if it is complete.
 pub fn left_out(latency: &Latency) -> Option<&'static str> {
     let Latency {
         output_delay,
@@ -23,7 +23,7 @@ pub fn left_out(latency: &Latency) -> Option<&'static str> {
     }
 }
 
-/// A title that says what is left out of the latency of one of the scenes.
+/// A title that names the parts left out of the latency of one of the scenes.
 pub fn titled<'l>(title: &str, latencies: impl IntoIterator<Item = &'l Latency>) -> String {
     // The longest says the most.
     let words = latencies.into_iter().filter_map(left_out).max_by_key(|words| words.len());

@@ -112,7 +112,7 @@ fn undelayed(scene: &Scene, profile: &AnyProfile) -> Option<impl Fn(f64) -> f64 
     Some(move |angle: f64| torque(angle, angle))
 }
 
-/// The steepest pieces, up and down, next to the middle of what is shown.
+/// The steepest pieces, up and down, next to the middle of the shown range.
 fn steepest(profile: &AnyProfile, shown: &Range<f64>, torque: impl Fn(f64) -> f64) -> [Piece; 2] {
     let (units, per_rad) = (profile.units(), profile.knots_per_rad());
     let width = 1.0 / per_rad;

@@ -38,7 +38,7 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.precision$e}").parse().unwrap_or(value)
 }
 
-/// A name of at most so many letters, with dots for what is left out.
+/// A name of at most this many letters, with dots for the rest.
 ///
 /// ```
 /// use haptic_model::quantity::shortened;

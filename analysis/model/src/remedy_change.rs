@@ -14,8 +14,8 @@ use crate::verdict::VerdictReport;
 pub struct RemedyChange {
     /// The remedy in words, as the report has it.
     pub sentence: String,
-    /// Keys and their values, null for one that is left out: the value that passes and is nearest to the
-    /// present one. Empty where no key of the file is that number.
+    /// Keys and their values, null for a removed key: the value that passes and is nearest to the present
+    /// one. Empty where no key of the file is that number.
     pub changes: Vec<(&'static str, Value)>,
 }
 

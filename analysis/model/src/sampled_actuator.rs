@@ -9,7 +9,7 @@ use nalgebra::Complex;
 pub struct SampledActuator {
     /// Time in s between two updates.
     between: f64,
-    /// What is left of a step after it.
+    /// The rest of a step after it.
     left: f64,
 }
 

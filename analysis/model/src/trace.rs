@@ -143,7 +143,7 @@ impl Trace {
     /// The encoder's step: the least by which changes of the angle from a sample to the next differ,
     /// of some size beside the largest; `None` if it never changes.
     fn step(&self) -> Option<f64> {
-        /// What is smaller, as a part of the largest change, has come of rounded numbers.
+        /// Smaller changes, as a part of the largest change, come from rounding.
         const ROUNDED: f64 = 1e-6;
         let changes = self.position.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         let mut changes: Vec<_> = changes.chain([0.0]).collect();

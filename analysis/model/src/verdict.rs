@@ -80,7 +80,7 @@ pub struct AtRest {
     /// Bound for the steps of a current loop; absent: there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub current: Option<f64>,
-    /// What is to be added where the torque changes its sign; absent: nothing.
+    /// The addition where the torque changes its sign; absent: nothing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing: Option<f64>,
     /// The sum: bound on the torque's error, and the friction that prevents a limit cycle.
@@ -190,8 +190,8 @@ pub fn judge(name: &str, scene: &Scene) -> VerdictReport {
     judge_in(name, scene, Format::F64, &Resolution::default())
 }
 
-/// Judges the coefficients of a scene as a number format rounds them, and its assumptions by what
-/// is known of the machine.
+/// Judges the coefficients of a scene as a number format rounds them, and its assumptions by the known
+/// properties of the machine.
 pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -> VerdictReport {
     let (assessment, rejection) = match certify_in(scene, format) {
         // The verdict leaves the index at the port out.
@@ -330,7 +330,7 @@ fn enclosure(interval: Option<Interval>) -> Enclosure {
 fn minimum_angle(scene: &Scene, assessment: &Assessment) -> Option<f64> {
     let cosine = assessment.cos_theta?;
     if assessment.rule == Rule::Exact && has_port_index(scene) {
-        // What is smallest there depends on delta; the enclosure of its place is narrow.
+        // The minimum depends on delta; the enclosure of its place is narrow.
         let is_known = cosine.lo() > -1.0 || cosine.hi() < 1.0;
         return is_known.then(|| libm::acos(cosine.midpoint().clamp(-1.0, 1.0)));
     }

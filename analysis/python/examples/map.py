@@ -35,8 +35,8 @@ regions = haptic.stability_map(scene, stiffness, damping)
 certified = regions >= haptic.REGIONS.index("certified-exact")
 print(f"certified: {certified.mean():.1%} of {certified.size} walls")
 
-# %% Let go in the hand: the scene's wall, and one that is rejected. Alone it comes to rest; this hand, which
-# is passive, makes it oscillate.
+# %% Let go in the hand: the scene's wall, and a rejected wall. Alone it comes to rest; this hand, which is
+# passive, makes it oscillate.
 stiffer = scene | {"environment": wall | {"stiffness": 35.0}}
 alone = {key: value for key, value in stiffer.items() if key != "human"}
 for name, each in [("alone", alone), ("in the hand", stiffer)]:

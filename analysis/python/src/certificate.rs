@@ -23,7 +23,7 @@ pub fn certify(py: Python<'_>, scene: Source, format: &str) -> Result<String, Re
     py.detach(|| verdict(&scene, format_of(format)?))
 }
 
-/// The same for many scenes, on every core; `{"error": ..}` for one that has no answer.
+/// The same for many scenes, on every core; `{"error": ..}` for a scene that has no answer.
 #[pyfunction]
 pub fn certify_many(
     py: Python<'_>,

@@ -15,7 +15,7 @@ use crate::{arrays, check_signals, integration};
 /// Samples between two looks for a signal.
 const CHUNK: usize = 4096;
 
-/// A motion, and what is to be said about it.
+/// A motion and its notes.
 struct Motion {
     period: f64,
     trajectory: Trajectory,

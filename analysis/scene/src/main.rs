@@ -1,6 +1,6 @@
-//! The program `haptic` with one scene more. `haptic run my_wall` builds this for `my_wall` and hands
-//! over to it, so that a scene needs no more than its own file, and one that does not compile keeps
-//! nothing else from running.
+//! The program `haptic` with one scene more. `haptic run my_wall` builds this for `my_wall` and hands over to
+//! it, so that a scene needs no more than its own file, and a scene that does not compile does not affect
+//! others.
 
 use std::process::ExitCode;
 

@@ -27,7 +27,7 @@ pub struct Site {
 }
 
 impl Site {
-    /// Gives a page out, to whoever asks.
+    /// Serves a page, to any client.
     ///
     /// # Errors
     /// Where no address of this machine can be listened on.

@@ -1,5 +1,5 @@
-//! The stiffest certified spring over the servo's rate, one panel a current loop, beside what is commonly
-//! assumed of it.
+//! The stiffest certified spring over the servo's rate, one panel a current loop, beside the common
+//! assumptions about it.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -19,7 +19,7 @@ const COLUMNS: usize = 2;
 /// A curve: its name, and its stiffness in N m/rad at a rate.
 type Curve = (&'static str, fn(&LatencyPoint) -> Option<f64>);
 
-/// From the one that is highest to the one that nobody has proved.
+/// From the highest limit to the limit without a proof.
 const CURVES: [Curve; 4] = [
     ("torque at a fixed phase: certified", |point| point.at_phase),
     ("torque latched by the next count: certified", |point| Some(point.latched)),

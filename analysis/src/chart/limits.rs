@@ -21,7 +21,7 @@ const APART: f64 = 1.6;
 pub struct DelayCurve {
     /// Delay in samples.
     pub delay: usize,
-    /// Whether any stiffness is certified, so that what is drawn is the coupling.
+    /// Whether any stiffness is certified; the coupling is then drawn instead.
     pub is_coupling: bool,
     /// From the lowest to the highest rate.
     pub points: Vec<Point>,

@@ -24,7 +24,7 @@ pub struct Overlay {
     pub scene: (f64, f64),
 }
 
-/// Grey of a region: the better, the lighter. What is hatched is so on white.
+/// Grey of a region: the better, the lighter. Hatches are on white.
 fn grey(region: Region) -> RGBColor {
     match region {
         Region::Paper | Region::Undecided | Region::Wrong => WHITE,

@@ -107,7 +107,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Whether a place is inside or on the border; never true of what is not a number.
+    /// Whether a place is inside or on the border; never true of NaN.
     pub(super) fn contains(&self, (x, y): DrawingPoint) -> bool {
         self.left <= x && x <= self.right && self.top <= y && y <= self.bottom
     }

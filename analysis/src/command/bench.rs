@@ -311,8 +311,8 @@ fn lagging() -> [Figure; 3] {
     ]
 }
 
-/// Walls a second of a map: behind the standard coupling, and behind one that makes `E'` differ
-/// from `E`, two samples late.
+/// Walls a second of a map: behind the standard coupling, and two samples late behind a coupling that makes
+/// `E'` differ from `E`.
 fn maps() -> Vec<Figure> {
     let name = "a map's walls judged, all cores";
     let scenes = [("standard coupling, delay 1", 44.0, 1), ("softer coupling, delay 2", 30.0, 2)];

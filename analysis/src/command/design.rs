@@ -17,7 +17,7 @@ use crate::quantity::significant;
 /// Arguments of `haptic design`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// What is looked for.
+    /// The quantity to find.
     #[command(subcommand)]
     pub question: DesignGoal,
     /// Fraction of the device's passivity to use, above 0 and up to 1

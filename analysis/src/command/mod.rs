@@ -54,7 +54,7 @@ Exit status: 0 success; 1 negative verdict: rejected, undecided, unstable, diffe
 2 invalid input or failure";
 
 impl Arguments {
-    /// Those that the program was started with; says what is wrong with them, and ends it.
+    /// The arguments of the program; reports a fault in them and ends it.
     pub fn of_program() -> Self {
         // One rule for all output: clap's own one colours a terminal without colours where `CI` is set.
         let colour = match terminal::has_colour(io::stdout().is_terminal()) {

@@ -37,7 +37,7 @@ pub enum Target {
     Host,
     /// On the emulated board, and on this machine beside it: every code is compared.
     Qemu,
-    /// What is flashed to a board, on a virtual one, and on this machine beside it.
+    /// The flashed program on a virtual board, and on this machine beside it.
     Board(BoardModel),
 }
 

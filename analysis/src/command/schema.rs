@@ -19,7 +19,7 @@ pub struct Arguments {
     pub reference: bool,
 }
 
-/// Prints the JSON schema, or what is asked for instead.
+/// Prints the JSON schema, or the requested alternative.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let text = match &arguments.example {
         // The command line takes no other name.

@@ -162,7 +162,7 @@ pub enum CommandError {
         /// Name of the scene.
         scene: String,
     },
-    /// A map of torque profiles needs one that repeats.
+    /// A map of torque profiles needs a repeating profile.
     #[error(
         "{scene}: a map shows torque and repetitions in a turn of a torque profile, but no torque of this \
          one certifies, or it does not repeat"

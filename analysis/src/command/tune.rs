@@ -73,7 +73,7 @@ struct Report<'a> {
     thinned: u32,
     discarded: u32,
     stack_left: Option<u32>,
-    /// What the power stage measures, where the board has one that drives the motor.
+    /// Measurements of the power stage, if the board drives the motor itself.
     power: Option<Power>,
 }
 

@@ -21,7 +21,7 @@ pub struct VirtualBoardBuild {
 }
 
 impl VirtualBoardBuild {
-    /// Builds both, after setting up what is missing for that.
+    /// Builds both, after installing missing tools.
     pub fn build(
         board: BoardModel,
         program: &'static Program,

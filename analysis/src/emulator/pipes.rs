@@ -37,8 +37,8 @@ impl Pipes {
         })
     }
 
-    /// Writes a question and reads an answer of known length. `ended` says whether the guest has
-    /// ended; it is asked now and then, because one that has never opened the pipe cannot close it.
+    /// Writes a question and reads an answer of known length. `ended` returns whether the guest has ended; it
+    /// is polled, because a guest that never opened the pipe cannot close it.
     ///
     /// # Errors
     /// `TimedOut` after the patience, `UnexpectedEof` where the guest has ended.

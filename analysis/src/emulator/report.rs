@@ -17,8 +17,8 @@ pub struct EmulatorReport {
     /// Instructions of a tick from raw count to DAC code, over all ticks; the measurement's own
     /// are subtracted.
     pub compute_instructions: InstructionStats,
-    /// The same over the ticks that gave torque, then or in the next tick (what is found in a
-    /// delayed wall is felt a tick later); `None` where there were none.
+    /// The same over the ticks that gave torque, then or in the next tick (the torque of a delayed wall is
+    /// felt a tick later); `None` where there were none.
     pub contact_instructions: Option<InstructionStats>,
     /// The same over the other ticks.
     pub free_instructions: Option<InstructionStats>,

@@ -56,7 +56,7 @@ pub struct Fit {
     pub is_delay_free: bool,
 }
 
-/// What is known of the delay.
+/// Knowledge of the delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Delay {
     /// Where to begin, in s.

@@ -7,8 +7,8 @@ use nalgebra::Complex;
 
 use super::torque_source;
 
-/// Images of a held sine on each side that are summed: what is left out is below 1e-5 of a response
-/// at a quarter of the sampling rate, and falls with the third power of the frequency.
+/// Images of a held sine on each side that are summed: the omitted part is below 1e-5 of a response at a
+/// quarter of the sampling rate, and falls with the third power of the frequency.
 const IMAGES: i32 = 40;
 
 /// `1/J = (b + j w m + Z) (1 + j w tau) e^(j w d)`.

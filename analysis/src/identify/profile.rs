@@ -145,7 +145,7 @@ impl Profile {
         self.estimate(Model::mean_delay, |fit| fit.deviations[2], |model| model.lag)
     }
 
-    /// Of all devices that are allowed; the number is not below what is `least` behind a lag.
+    /// Of all devices that are allowed; the number is at least the value of `least` behind a lag.
     fn estimate(
         &self,
         number: impl Fn(&Model) -> f64,
@@ -249,7 +249,8 @@ impl Squares<'_> {
         (tried, Some(Open::Longest(longest)))
     }
 
-    /// The longest lag that is told from the inertia, between one that is and one that is not.
+    /// The longest lag that can be distinguished from the inertia, between a lag that can and a lag that
+    /// cannot.
     fn last_told(&self, mut told: f64, mut not: f64) -> Option<Fit> {
         for _ in 0..HALVINGS {
             let middle = 0.5 * (told + not);
@@ -279,7 +280,7 @@ impl Squares<'_> {
         Some(best)
     }
 
-    /// The lag between an allowed one and one that is not at which the squares reach `most`.
+    /// The lag between an allowed lag and one not allowed at which the squares reach `most`.
     fn end(&self, mut inside: f64, mut outside: f64, most: f64) -> f64 {
         for _ in 0..HALVINGS {
             let middle = 0.5 * (inside + outside);

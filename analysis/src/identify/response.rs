@@ -120,8 +120,8 @@ fn phasor(samples: &[f64], angle: f64) -> Option<(Complex<f64>, f64)> {
     Some((phasor, deviation(residual.as_slice(), angle, phasor.norm())))
 }
 
-/// Deviation of a phasor, from what is left at the neighbouring frequencies: the noise of a free
-/// device is a random walk, so that its mean over all frequencies says nothing about one of them.
+/// Deviation of a phasor, from the residuals at the neighbouring frequencies: the noise of a free device is a
+/// random walk, so that its mean over all frequencies says nothing about one of them.
 fn deviation(residual: &[f64], angle: f64, amplitude: f64) -> f64 {
     /// In steps of one period over the whole stretch; nearer than the first is the sine itself.
     const NEIGHBOURS: [f64; 8] = [-4.5, -3.5, -2.5, -1.5, 1.5, 2.5, 3.5, 4.5];
@@ -132,8 +132,8 @@ fn deviation(residual: &[f64], angle: f64, amplitude: f64) -> f64 {
         .filter(|&near| near > step && near < std::f64::consts::PI)
         .map(|near| (2.0 / n * bin(residual, near)).norm_sqr())
         .collect();
-    // Two degrees of freedom a neighbour. What is divided by a variance that was estimated from so few is
-    // larger than by the variance.
+    // Two degrees of freedom a neighbour. A quotient by a variance that was estimated from so few is larger
+    // than by the true variance.
     let freedom = 2.0 * powers.len().max(2) as f64;
     let power = 2.0 * powers.iter().sum::<f64>() / (freedom - 2.0);
     // Whole counts, at the least: 1/12 of a count squared, and no better for being repeated, since the

@@ -125,7 +125,7 @@ impl MeasuredDevice {
 pub struct Rig {
     /// The device.
     pub device: Device,
-    /// Time constant in s of its amplifier; 0 for one that does not lag.
+    /// Time constant in s of its amplifier; 0 for an amplifier without lag.
     pub actuator_lag: f64,
     /// With what.
     pub sensing: Sensing,

@@ -69,7 +69,7 @@ fn connected() -> Scope {
     scope
 }
 
-/// What is on a terminal of that size, line by line.
+/// The content of a terminal of that size, line by line.
 fn screen(scope: &Scope, width: u16, height: u16) -> String {
     let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
     terminal.draw(|frame| tui::draw(frame, scope)).unwrap();
@@ -123,7 +123,7 @@ fn shows_what_a_power_stage_measures() {
 
 #[test]
 fn a_narrow_terminal_cuts_the_port_and_not_the_state() {
-    let port = "unix:/tmp/some/folder/of/somebody/board".to_owned();
+    let port = "unix:/tmp/some/folder/of/another/board".to_owned();
     let scope = Scope { address: port, ..connected() };
     let shown = screen(&scope, 40, 24);
     let first = shown.lines().next().unwrap();

@@ -60,7 +60,7 @@ fn last_line(control: &Control) -> Line<'_> {
     }
 }
 
-/// Takes the colours out of what is drawn; bold and dim stay.
+/// Removes the colours from the picture; bold and dim stay.
 pub fn without_colour(frame: &mut Frame<'_>) {
     for cell in &mut frame.buffer_mut().content {
         (cell.fg, cell.bg) = (Color::Reset, Color::Reset);

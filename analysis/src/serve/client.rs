@@ -145,7 +145,7 @@ impl Page<'_, '_> {
         }
     }
 
-    /// Passes on what is new of the port.
+    /// Forwards new bytes of the port.
     fn pass_news(&mut self) -> Result<(), End> {
         let mut bytes = Vec::new();
         loop {

@@ -31,7 +31,7 @@ impl Head {
     /// Reads one.
     ///
     /// # Errors
-    /// The answer to what is none.
+    /// The response to a malformed request.
     pub fn read(mut stream: &TcpStream, over: &AtomicBool) -> Result<Self, HttpResponse> {
         let (mut bytes, mut chunk) = (Vec::new(), [0; 4096]);
         let end = Instant::now() + TIMEOUT;
@@ -81,7 +81,7 @@ impl Head {
         }))
     }
 
-    /// The path, without what is behind the question mark.
+    /// The path, without the query.
     pub fn path(&self) -> &str {
         self.target.split('?').next().unwrap_or_default()
     }
@@ -143,7 +143,7 @@ impl HttpResponse {
         self
     }
 
-    /// Sends it. Whoever does not take it has gone.
+    /// Sends it. A client that does not take it has gone.
     pub fn send(&self, mut stream: &TcpStream) {
         let Self { status, headers, kind, body } = self;
         let mut text = format!("HTTP/1.1 {status} {}\r\n", reason(*status));

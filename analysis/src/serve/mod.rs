@@ -1,9 +1,9 @@
 //! A board's wire for a page in a browser: a server on this machine alone, which gives out the page and
 //! carries the bytes of the port to it and back, unchanged.
 //!
-//! Any page of any site can ask a server of this machine, and a name can be made to point at it. So whoever
-//! asks must know the token, which only the one who started the server has seen; must have asked for this
-//! machine by its own address; and must be the page of this server, or one from a file.
+//! Any page of any site can ask a server of this machine, and a name can be made to point at it. So a client
+//! must know the token, which only the user who started the server has seen; must address this machine by its
+//! own address; and must be the page of this server, or a page from a file.
 
 mod access;
 mod client;
@@ -158,7 +158,7 @@ fn listen_at(listener: &TcpListener, shared: &Arc<Shared>) {
 
 /// Serves a connection on a thread of its own, where there are not too many.
 fn connection(stream: TcpStream, shared: &Arc<Shared>) -> Option<JoinHandle<()>> {
-    // Whoever does not read is not waited for.
+    // A client that does not read is not waited for.
     let is_ready = stream.set_nonblocking(false).is_ok()
         && stream.set_write_timeout(Some(http::TIMEOUT)).is_ok()
         && stream.set_nodelay(true).is_ok();
@@ -195,7 +195,7 @@ fn serve(stream: &TcpStream, shared: &Shared) {
     }
 }
 
-/// What is asked for.
+/// The requested resource.
 enum Route {
     /// The page.
     Page,

@@ -85,7 +85,7 @@ impl Seats {
         })
     }
 
-    /// Tells the page that has the port. One that is too slow loses it: the port is not.
+    /// Sends to the page that has the port. A page that is too slow loses it; the port does not wait.
     fn tell(&self, news: News) {
         self.with(|state| {
             if let Some((_, client)) = &state.client
@@ -103,7 +103,7 @@ impl Seats {
 }
 
 impl Seat {
-    /// What is new; `Disconnected` where the page has lost the port.
+    /// The next new bytes; `Disconnected` where the page has lost the port.
     ///
     /// # Errors
     /// Where nothing is.

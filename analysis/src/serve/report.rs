@@ -1,4 +1,4 @@
-//! What is said while a server runs.
+//! Messages while a server runs.
 
 /// What happens, in a sentence, for the one who started the server.
 pub type Report = Box<dyn Fn(&str) + Send + Sync>;

@@ -31,7 +31,7 @@ impl TorqueOutput {
         }
     }
 
-    /// What is added to the name of a program's file.
+    /// The addition to the name of a program's file.
     pub(super) const fn suffix(self) -> &'static str {
         match self {
             Self::Dac => "",

@@ -96,7 +96,7 @@ pub enum BuildError {
 /// The compiler that builds for the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compiler {
-    /// The one that builds everything else here.
+    /// The toolchain that builds everything else here.
     Own,
     /// Debian's, which builds `core` from source as well.
     Debian,
@@ -118,7 +118,7 @@ pub struct Program {
     pub sizes: Sizes,
 }
 
-/// Where the source is, and where what is built from it goes.
+/// The folder of the source, and the folder of its builds.
 #[derive(Clone, Debug)]
 pub(super) struct Workspace {
     root: PathBuf,
@@ -130,7 +130,7 @@ pub(super) struct Workspace {
 /// The package of the scenes' programs.
 const SCENES: &str = "haptic-servo";
 
-/// Which build of a program: with which features, and what is added to its name for the file.
+/// Which build of a program: its features, and the addition to its name for the file.
 struct Variant {
     features: String,
     suffix: String,
@@ -452,8 +452,8 @@ impl Toolchain {
         }
         command.env("CARGO_TARGET_DIR", self.target_folder()).arg("build");
         if self.compiler == Compiler::Debian {
-            // Debian has no `core` for these targets; its source is built with the program, which
-            // needs what is not yet stable in cargo.
+            // Debian has no `core` for these targets; its source is built with the program, which needs
+            // unstable features of cargo.
             command.env_remove("RUSTUP_TOOLCHAIN");
             command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1");
             let (variable, linker) = target.linker();

@@ -62,7 +62,7 @@ impl Debian {
     }
 }
 
-/// What is known of a package.
+/// Knowledge about a package.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PackageState {
     /// It is installed.

@@ -101,7 +101,7 @@ fn package(package: Package) -> PackageState {
 fn output_of(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program)
         .args(arguments)
-        // What is read here is not to depend on the person's language.
+        // The output read here must not depend on the user's language.
         .env("LC_ALL", "C")
         .stdin(Stdio::null())
         .output()

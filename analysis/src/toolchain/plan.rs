@@ -13,7 +13,7 @@ use super::host_environment::{HostEnvironment, NativeBuildTools, Package, Packag
 use super::{Target, Version, apt};
 use crate::emulator::QEMU;
 
-/// What is wanted of the machine.
+/// The purpose of the set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tools {
     /// To build programs for a board.
@@ -76,7 +76,7 @@ pub enum ManualStep {
     },
     /// Get the emulator.
     Emulator {
-        /// The one that is there and too old.
+        /// The installed version, which is too old.
         found: Option<Version>,
     },
     /// Get what builds the virtual board's processor.

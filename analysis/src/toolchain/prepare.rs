@@ -1,4 +1,4 @@
-//! From whatever machine this is to one that builds for the board, or to what its owner has to do.
+//! Makes this machine able to build for the board, or states the steps for its owner.
 
 use std::io;
 use std::process::{Command, ExitStatus, Stdio};
@@ -52,9 +52,9 @@ fn bullets(requests: &[ManualStep]) -> String {
 /// Makes sure that programs for the board can be built, and run where that is wanted; gives what
 /// builds them.
 ///
-/// As root on Debian it installs what is missing; with rustup it adds the target, unless the
-/// machine's owner forbids that. `progress` is told each step before it is taken. No package is removed
-/// but after a yes at the terminal.
+/// As root on Debian it installs missing packages; with rustup it adds the target, unless the machine's owner
+/// forbids that. `progress` receives each step before it is taken. A package is removed only after a yes at
+/// the terminal.
 ///
 /// # Errors
 /// Elsewhere, [`SetupError::Missing`] says exactly what to install.

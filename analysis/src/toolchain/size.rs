@@ -13,8 +13,8 @@ pub struct Sizes {
     pub data: u64,
     /// Variables that begin at zero or at nothing, in RAM.
     pub bss: u64,
-    /// What is in the fast memory of the chips that have one: code, which is in flash too, and
-    /// what a debug probe reads.
+    /// Content of the fast memory of the chips that have one: code, which is in flash too, and the values
+    /// that a debug probe reads.
     pub fast: u64,
 }
 

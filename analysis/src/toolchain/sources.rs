@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// The call that makes a scene's file a program; a file without it is another program.
 const SCENE: &str = "scene_program!";
-/// The one that makes a program of a sweep.
+/// The macro that makes a program of a sweep.
 const SWEEP: &str = "sweep_program!";
 
 /// The folder of the programs' files.

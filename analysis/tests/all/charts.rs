@@ -265,8 +265,8 @@ fn a_line_that_a_trace_does_not_show_is_not_in_its_key() {
     assert!(page.contains("torque limit 0.1 N m is outside of the picture"));
 }
 
-/// Numbers that a file may have and no machine has: a picture, or a sentence that names what is out
-/// of range; never a computation without end.
+/// Numbers that a file may have and no machine has: a picture, or a sentence that names the number out of
+/// range; never a computation without end.
 #[test]
 fn extreme_numbers_come_to_an_end() {
     let folder = folder();

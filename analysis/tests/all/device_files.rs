@@ -1,4 +1,4 @@
-//! Devices in files: what is read, what is refused, and what the program says of them.
+//! Devices in files: accepted files, refused files, and the program's messages about them.
 
 use std::process::Output;
 
@@ -107,7 +107,7 @@ fn without_passivity_the_reason_is_given_and_no_encoder_at_the_hand_is_certified
         assert!(found["message"].as_str().unwrap().contains(word), "{found}");
         let toml = with(&scene());
         if key.contains("lag") {
-            // It is the controller's in a certificate: what is left of the device has its passivity.
+            // It is the controller's in a certificate: the rest of the device has its passivity.
             let judged = answer(&haptic(&["certify", "--json", "-"], &toml));
             assert!((judged["delta"].as_f64().unwrap() - DELTA).abs() < 1e-14);
             continue;

@@ -131,7 +131,7 @@ fn steps_are_held_against_friction() {
     assert_eq!(weak["rest"]["comes_to_rest"], false);
     let warning = weak["warnings"][0].as_str().unwrap();
     assert!(warning.contains("0.0467 N m is lower") && warning.contains("(DAC)"), "{warning}");
-    // What is not stated is not judged, and the assumption says so.
+    // A number that is not stated is not judged, and the assumption states that.
     let some = judge("friction = 0.05", "encoder_step = 1e-4");
     assert!(some["rest"]["comes_to_rest"].is_null());
     let assumptions = some["assumptions"].to_string();

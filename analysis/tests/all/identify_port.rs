@@ -18,7 +18,7 @@ use tempfile::TempDir;
 
 use crate::common::{answer, haptic};
 
-/// What is wrong with a board, if anything is.
+/// The fault of a board, if it has one.
 #[derive(Clone, Copy, Default)]
 struct Board {
     /// Torque in N m that its amplifier cannot exceed.
@@ -145,7 +145,7 @@ fn every_end_before_the_last_is_named_and_what_there_is_is_kept() {
         assert!(sentence.contains(&begins), "{sentence}");
         assert_eq!(record.unwrap().lines().count(), 701);
     }
-    // One that has lost rows on the way is not whole either.
+    // A record that lost rows on the way is incomplete, too.
     let lost = Board { ends: Some((700, SweepEnd::Done)), ..Board::default() };
     assert!(lost.complaint().0.contains("ended with `lost-row` after 700"));
 }

@@ -116,6 +116,6 @@ fn the_pictures_of_kept_tables_are_what_is_drawn_of_them() {
     assert_eq!(shown.len(), readme.matches(&format!("({TABLES}/")).count());
     for name in shown {
         let same = read(kept.join(name)) == read(folder.path().join(name));
-        assert!(same, "{name:?} is not what is drawn of its table; see `haptic chart tradeoff`");
+        assert!(same, "{name:?} is not the picture of its table; see `haptic chart tradeoff`");
     }
 }

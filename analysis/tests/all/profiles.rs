@@ -124,7 +124,7 @@ fn what_is_written_reads_back_as_the_same_scene() {
     assert_eq!(file::parse("knob.json", Format::Json, json).unwrap(), read(DETENTS).unwrap());
 }
 
-/// What is said of a bad profile: the line below `[environment]`, and the words.
+/// The message for a bad profile: the line below `[environment]`, and the words.
 fn refused(environment: &str, line: usize, words: &[&str]) {
     let message = read(environment).expect_err(environment).to_string();
     // In line 0 is the table itself.

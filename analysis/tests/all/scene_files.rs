@@ -1,4 +1,4 @@
-//! Scene files: what is read, what is refused and with which words, and that nothing panics.
+//! Scene files: accepted files, refused files and their messages, and that nothing panics.
 
 use std::path::Path;
 
@@ -435,7 +435,7 @@ fn mutated(text: &'static str) -> impl Strategy<Value = String> {
     })
 }
 
-/// Reads a text in both formats and judges what is a scene: none of it may panic.
+/// Reads a text in both formats and judges the scenes among them: nothing may panic.
 fn survive(text: &str) {
     for format in [Format::Toml, Format::Json] {
         match file::parse("scene", format, text) {

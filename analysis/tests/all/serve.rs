@@ -1,4 +1,4 @@
-//! `haptic serve` and whoever may ask it: raw requests, sockets, and a board that comes and goes.
+//! `haptic serve` and its clients: raw requests, sockets, and a board that comes and goes.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
@@ -314,7 +314,7 @@ fn a_page_that_does_not_read_does_not_stop_the_port() {
     for _ in 0..64 {
         board.stream.write_all(&chunk).unwrap();
     }
-    // The port is free for the next page, which gets what comes now; one that comes while the rest of the
+    // The port is free for the next page, which gets the next bytes; a page that comes while the rest of the
     // flood is still read may be too slow for it, too.
     let gets_nine = |socket: &mut Socket| loop {
         match socket.read() {

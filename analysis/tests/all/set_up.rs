@@ -10,9 +10,9 @@ use tempfile::TempDir;
 
 use crate::common::program;
 
-/// What the simulated installation says: of a new package, and of one that has to go.
+/// The messages of the simulated installation: a new package, and a package to remove.
 const INSTALLS: &str = "Inst rustc-web (1.96.0 Debian:12/oldstable [amd64])\n";
-const REMOVES: &str = "Remv rust-of-somebody [1.90.0]\n";
+const REMOVES: &str = "Remv rust-of-another [1.90.0]\n";
 
 /// The machine's programs; nothing else is on its path.
 struct Machine(TempDir);
@@ -33,7 +33,7 @@ impl Machine {
         machine
     }
 
-    /// Another process writes the file: one that this process had open could not be run.
+    /// Another process writes the file: a file that this process had open could not be run.
     fn has(&self, name: &str, script: &str) {
         let (draft, file) = (self.0.path().join("draft"), self.0.path().join(name));
         fs::write(&draft, format!("#!/bin/sh\n{script}\n")).unwrap();
@@ -97,7 +97,7 @@ fn nothing_is_removed_where_nobody_can_be_asked() {
     assert!(!machine.done().contains("install"), "{}", machine.done());
     if is_root() {
         assert!(said.contains("set-up: ") && said.contains("installs 1: rustc-web"), "{said}");
-        assert!(said.contains("REMOVES 1: rust-of-somebody"), "{said}");
+        assert!(said.contains("REMOVES 1: rust-of-another"), "{said}");
     }
 }
 
@@ -110,7 +110,7 @@ fn a_person_at_a_terminal_is_asked_before_anything_is_removed() {
     let machine = Machine::new(&format!("{REMOVES}{INSTALLS}"));
     for no in ["\n", "n\n", "well\n"] {
         let seen = machine.set_up_and_answer(no);
-        assert!(seen.contains("remove rust-of-somebody? [y/N]"), "{seen}");
+        assert!(seen.contains("remove rust-of-another? [y/N]"), "{seen}");
         assert!(!machine.done().contains("install"), "{no}: {}", machine.done());
     }
     machine.set_up_and_answer("y\n");

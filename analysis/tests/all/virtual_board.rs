@@ -1,4 +1,4 @@
-//! What is flashed, on a virtual board, as a person runs it.
+//! Flashed programs on a virtual board, as a user runs them.
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Stdio};
@@ -19,7 +19,7 @@ fn what_is_flashed_gives_the_codes_of_the_host() {
             let run = answer(&run);
             assert_eq!(run["target"], target);
             assert_eq!((&run["codes_equal"], &run["difference"]), (&3000.into(), &Value::Null));
-            // The whole interrupt has what is around the servo, too.
+            // The whole interrupt includes the code around the servo.
             let instructions = |which| run["instructions"][which].as_f64().unwrap();
             assert!(instructions("interrupt_mean") > instructions("compute_max"), "{run}");
         }
@@ -64,8 +64,8 @@ fn with_its_bridge(scene: &str, ticks: &str) -> (Vec<f64>, Vec<f64>) {
     columns(&in_hand.stdout)
 }
 
-/// The hand's spring of 6 N m/rad to where it wants to be, 0.12 rad: the torque that the motor makes is the
-/// one that the servo has written, or the device would rest elsewhere.
+/// The hand's spring of 6 N m/rad to where it wants to be, 0.12 rad: the motor's torque is the servo's, or
+/// the device would rest elsewhere.
 #[test]
 fn a_hand_rests_in_the_wall_of_a_motor_board_by_the_motor_s_torque() {
     let (angles, torques) = with_its_bridge("bridge_wall", "1700");

@@ -342,7 +342,7 @@ fn wait_for(mut is_so: impl FnMut() -> bool) {
     }
 }
 
-/// What the keys of the scope ask for, from the line that is typed to what is shown of the answer.
+/// The requests of the scope's keys, from the typed line to the shown reply.
 #[test]
 fn the_scope_tunes_arms_and_disarms_the_board_that_it_shows() {
     let rig = Rig::new(Pacing::RealTime);

@@ -80,8 +80,8 @@ impl Board {
         }
     }
 
-    /// The code, once it is the same for a while: what a wall does in its coupling after a swap
-    /// takes long to die away where its damping is near to what is certified.
+    /// The code, once it is the same for a while: what a wall does in its coupling after a swap takes long to
+    /// die away where its damping is near the certified limit.
     fn settle(&self) -> u16 {
         for _ in 0..200 {
             self.forget();

@@ -1,4 +1,4 @@
-//! `haptic bench --page`: every figure of a page with its reference, and what is said where there is no browser.
+//! `haptic bench --page`: every figure of a page with its reference, and the message without a browser.
 
 use serde_json::Value;
 

@@ -22,7 +22,7 @@ fn exported(page: &mut Page, button: &str) -> String {
 }
 
 /// Where the constants of a preset are kept, which are compiled and compared with its scene beside the page's
-/// sources; none of the one that compiles nowhere.
+/// sources; none of the preset that compiles nowhere.
 fn constants(preset: &str) -> Option<String> {
     let name = match preset {
         REFUSED => return None,
@@ -156,7 +156,7 @@ pub fn a_copied_link_is_the_scene_and_has_no_token() {
     let [shown, linked] = [&mut page, &mut other].map(|page| page.value("window.haptic.scene()"));
     assert_eq!(shown, linked);
 
-    // Whoever has the token has the board.
+    // A client with the token has the board.
     let board = serve::board(folder.path());
     let (_server, address) = serve::started(&["serve", "--port", &board.address().to_string()]);
     let (server, token) = address.split_once("?token=").expect("an address with a token");

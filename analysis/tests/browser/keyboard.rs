@@ -1,5 +1,5 @@
-//! The page by its keyboard alone: all that can be operated is reached and seen to be, and what is dragged
-//! with a mouse goes by arrow keys. In light and in dark, and on a narrow page.
+//! The page by its keyboard alone: every control is reached and visibly focused, and handles that a mouse
+//! drags move by arrow keys. In light and in dark, and on a narrow page.
 
 use serde_json::{Value, json};
 
@@ -30,7 +30,8 @@ fn arrow_right(page: &mut Page) {
     press(page, "ArrowRight", 39);
 }
 
-/// Defines `reachable()`, what a person can operate, and `focused()`, what is known of what has the focus.
+/// Defines `reachable()`, the controls that a user can operate, and `focused()`, the description of the
+/// focused control.
 const DEFINITIONS: &str = r#"
 window.reachable = () => [...document.querySelectorAll(
     "button, input, select, textarea, summary, [tabindex]")]

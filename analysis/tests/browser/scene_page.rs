@@ -36,7 +36,7 @@ pub fn a_field_changes_the_verdict_and_a_remedy_certifies() {
     page.click("#verdict-rows button");
     page.wait_for(&format!("{VERDICT} === 'certified'"));
 
-    // What is no number is named, and stays.
+    // A text that is not a number is named, and stays.
     enter(&mut page, "#field-device-inertia", "1,5");
     page.wait_for(&format!("{VERDICT} === undefined"));
     let named = page.value("document.querySelector('#field-device-inertia-error').textContent");

@@ -200,7 +200,7 @@ pub fn a_link_is_lost_and_back_and_a_second_page_is_refused() {
     page.value("1");
     assert_eq!(page.value(&format!("{BOARD}.dataset.link")), "on");
 
-    // The board goes, and comes back as one that was switched on.
+    // The board goes, and comes back as after power-on.
     arm(&mut page);
     first.end().unwrap();
     page.wait_for(&format!("{BOARD}.dataset.link === 'lost'"));
@@ -223,7 +223,7 @@ pub fn a_foreign_page_does_not_reach_the_board() {
     let folder = tempfile::tempdir().unwrap();
     let board = board(folder.path());
     let any = "127.0.0.1:0".parse().unwrap();
-    // The board of the other server is one that never answers.
+    // The board of the other server never answers.
     let foreign = TcpListener::bind("127.0.0.1:0").unwrap();
     let served = Port::open(board.address()).unwrap();
     let page =

@@ -172,7 +172,7 @@ pub fn each_preset_is_certified_where_it_should_be() {
         choose(&mut page, &name);
         let expected = if name == REFUSED { "rejected" } else { "certified" };
         assert_eq!(page.value("document.documentElement.dataset.verdict"), expected, "{name}");
-        // What is no word and no number is shown as neither.
+        // Other values are shown neither as a word nor as a number.
         let strange = "/\\[object|undefined|NaN/.exec(document.querySelector('main').textContent)";
         assert_eq!(page.value(strange), Value::Null, "{name}");
         let printed = certified(&write_scene(&mut page, folder.path()));

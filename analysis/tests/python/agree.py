@@ -43,7 +43,7 @@ def equal(one, other):
 
 
 def random_scene(chance):
-    """A scene of any verdict, and now and then one that cannot be read."""
+    """A scene of any verdict, and now and then a scene that cannot be read."""
     kind = chance.choice(["damper-wall", "damper-wall", "delayed-spring", "free-mode", "free-mode-wall"])
     stiffness, damping = chance.uniform(0, 60), chance.uniform(-0.005, 0.02)
     environment = {"type": kind}

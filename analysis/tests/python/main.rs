@@ -19,7 +19,7 @@ const AGREE: [&str; 5] = ["certify", "simulate", "index", "stability_map", "refu
 /// The test of `examples/map.py`.
 const EXAMPLE: &str = "the_example_draws_its_map";
 
-/// The one that needs nothing.
+/// The example without dependencies.
 const IGNORED: &str = "without_python_these_tests_are_ignored";
 
 /// What the package needs to be built, and to run its example.
@@ -61,7 +61,7 @@ fn run(name: &str) {
 struct Environment(PathBuf);
 
 impl Environment {
-    /// Beside what is built, and kept, so that nothing is fetched a second time.
+    /// Beside the builds, and kept, so that nothing is fetched a second time.
     fn kept() -> Self {
         Self(Path::new(env!("CARGO_TARGET_TMPDIR")).join("python"))
     }

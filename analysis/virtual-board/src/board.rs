@@ -60,7 +60,7 @@ pub struct VirtualBoard {
     pub phase_timer: BasicTimer,
     /// The encoder's counter.
     pub encoder: Counter,
-    /// The encoder's index, where it has one that is wired.
+    /// The encoder's index, if it has a wired index.
     pub index: Option<EncoderIndex>,
     /// The DAC.
     pub dac: Dac,
@@ -68,7 +68,7 @@ pub struct VirtualBoard {
     pub serial: Serial,
     /// The power stage, on a board that has one.
     pub power_stage: PowerStage,
-    /// What is wired to the motor and the encoder.
+    /// The device at the motor and the encoder.
     pub device: Box<dyn Device + Send>,
     /// Instructions of the servo's interrupt.
     pub meter: Meter,
@@ -206,7 +206,7 @@ impl VirtualBoard {
             .unwrap_or(u64::MAX)
     }
 
-    /// Does what is due; whether the watchdog resets the board.
+    /// Runs due events; returns whether the watchdog resets the board.
     pub fn advance(&mut self) -> bool {
         let now = self.now;
         self.advance_power_stage();
@@ -226,9 +226,9 @@ impl VirtualBoard {
         self.watchdog.due().is_some_and(|due| due <= now)
     }
 
-    /// The pacing timer's update: the sample that it ends goes into the device, and the DAC
-    /// begins the next one. What is put out then is the code that the sample ends with; a device whose
-    /// codes have a phase knows from when on it is there.
+    /// The pacing timer's update: the sample that it ends goes into the device, and the DAC begins the next
+    /// one. The output is then the code that the sample ends with; a device whose codes have a phase knows
+    /// its time.
     fn sample(&mut self) {
         self.end_sample();
         if self.tick_timer.triggers() {

@@ -8,7 +8,7 @@ use crate::processor::Processor;
 const CODE: [&str; 2] = ["6bridge7WAITING", "6bridge7WAITING.0"];
 const STATE: [&str; 2] = ["6bridge5STATE", "6bridge5STATE.0"];
 
-/// States from this one on are of an alignment: one that is asked for, and one that runs.
+/// States from this one on are of an alignment: requested, and running.
 const FIRST_OF_ALIGNMENT: u8 = 3;
 
 /// Where a program keeps it.

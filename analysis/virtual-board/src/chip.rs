@@ -1,4 +1,4 @@
-//! The chips: where each peripheral is, by whom it is clocked, and what is wired to its pins.
+//! The chips: address and clock of each peripheral, and the connections of its pins.
 
 use crate::names;
 use crate::peripheral::clock::{self, Layout};
@@ -17,8 +17,8 @@ pub struct MapEntry {
     pub name: &'static str,
     /// What it is.
     pub unit: Unit,
-    /// The register of the clock control that clocks it, the one that resets it, and its bit there;
-    /// none where it is always clocked.
+    /// The register of the clock control that clocks it, the register that resets it, and its bit there;
+    /// `None` if it is always clocked.
     pub clocked: Option<(u32, u32, u32)>,
 }
 
@@ -110,8 +110,8 @@ const fn ungated(base: u32, name: &'static str, unit: Unit) -> MapEntry {
     MapEntry { base, name, unit, clocked: None }
 }
 
-/// What a debugger may have stopped while it halts the core: bits of [`FREEZE`]. Nothing here is
-/// halted, so that what is written has no effect.
+/// Peripherals that a debugger may stop while it halts the core: bits of [`FREEZE`]. Nothing halts here, so
+/// writes have no effect.
 pub const WATCHDOG_FREEZES: u32 = 1 << 12;
 /// Place of that register in the unit for debugging.
 pub const FREEZE: u32 = 0x08;
@@ -122,7 +122,7 @@ pub const BREAKS: u32 = 0x1C;
 /// That bit.
 pub const LOCK_UP_BREAKS: u32 = 1;
 
-/// The unit for debugging: which chip it is, and what is clocked while the core sleeps.
+/// The debug unit: the chip's identity, and the clocks while the core sleeps.
 static DEBUG_G4: &[(u32, u32, u32)] =
     &[(0x00, 0x2001_6469, 0), (0x04, 0, 0b111), (FREEZE, 0, WATCHDOG_FREEZES)];
 static DEBUG_F405: &[(u32, u32, u32)] =

@@ -1,4 +1,4 @@
-//! What is wired to the board: something that turns the encoder, and gets the motor's torque.
+//! The device at the board: it turns the encoder and receives the motor's torque.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

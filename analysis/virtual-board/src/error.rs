@@ -7,7 +7,7 @@ use crate::peripheral::Unmodelled;
 /// Why a board cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BoardError {
-    /// The program uses what is not modelled.
+    /// The program uses a feature that is not modelled.
     #[error("{what}; instruction {now} at {address:#010x}")]
     NotModelled {
         /// What.

@@ -55,8 +55,8 @@ const FLOATING: [RegisterARM; 16] = [
     RegisterARM::S15,
 ];
 
-/// Puts a frame on the stack and the word to return by into its register. `nested`: what is
-/// interrupted is an exception itself.
+/// Puts a frame on the stack and the word to return by into its register. `nested`: the interrupted code is
+/// an exception itself.
 pub fn push(core: &mut Processor, nested: bool) {
     let long = core.uses_floating_point();
     let stack = core.register(RegisterARM::MSP);

@@ -42,7 +42,7 @@ impl Context {
         (self.deadline, self.masked, self.halt) = (until, masked, None);
     }
 
-    /// After an access of the program to a peripheral: what is due may have changed.
+    /// After an access of the program to a peripheral: the next event may have changed.
     fn accessed(&mut self) {
         let board = &self.board;
         let at_once = board.wants_attention() || board.system.exceptions.any_pending();

@@ -41,8 +41,8 @@ impl PcHistory {
         self.next = address + size;
     }
 
-    /// How many instructions were skipped before one that does not follow the last one; `read` gives
-    /// the program from an address on. Where none was, that was a jump.
+    /// How many instructions were skipped before an instruction that does not follow the last one; `read`
+    /// returns the program from an address on. 0: a jump.
     pub fn skip(&mut self, address: u32, read: impl FnOnce(u32, &mut [u8])) -> u64 {
         let skipped = self.skipped(address, read);
         if skipped == 0 {
@@ -54,11 +54,11 @@ impl PcHistory {
     /// Instructions from where the next one was expected up to `address`, if a block was there
     /// that goes as far.
     fn skipped(&self, address: u32, read: impl FnOnce(u32, &mut [u8])) -> u64 {
-        // What is skipped is always ahead and near.
+        // Skipped instructions are always ahead and near.
         if address.wrapping_sub(self.next) > SKIPPED {
             return 0;
         }
-        // Of what was executed since the last jump, what is near enough to have begun the block.
+        // Of the instructions since the last jump, those near enough to have begun the block.
         let near = self.next.saturating_sub(TO_LAST);
         let since = (self.jumped..self.count).rev().map(|number| self.place(number));
         let candidates = since.take(LONGEST as usize + 1).take_while(|&at| at >= near);

@@ -10,7 +10,7 @@
 //!   peripheral is for.
 //! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
 //! - [`power_stage`]: TIM1 and the analogue units, with the circuit around them; [`motor`]: its currents.
-//! - [`device`]: what is wired to the board; [`bridge_memory`]: what a program keeps in memory of what it does.
+//! - [`device`]: the device at the board; [`bridge_memory`]: the state of a program in its memory.
 //!   [`encoder_index`]: the encoder's third output.
 //! - [`meter`]: instructions of a tick.
 //! - [`processor`]: the instructions, which a library executes; `hooks`: what it asks meanwhile; [`halt`]:

@@ -190,7 +190,7 @@ impl Machine {
         self.halted(halt)
     }
 
-    /// What is due between two instructions, or has come of the last one.
+    /// The events between two instructions, or from the last instruction.
     fn catch_up(&mut self) -> Result<(), BoardError> {
         if self.core.board_mut().advance() {
             self.reset(Cause::Watchdog);
@@ -206,7 +206,7 @@ impl Machine {
             return Err(BoardError::ShootThrough { now, leg });
         }
         if let Some(address) = self.core.board_mut().bus_error.take() {
-            // The access has failed; the instruction is the one that made it.
+            // The access has failed; the instruction is its own.
             self.core.set_register(RegisterARM::PC, at | 1);
             self.fault(FaultStatus::Data, address)?;
         }

@@ -1,7 +1,7 @@
 //! A virtual board for another program, in lockstep with the process at standard input and output:
-//! `virtual-board BOARD PROGRAM.elf` for a program that drives a DAC, and with a motor behind it, `WINDING
-//! RESISTANCE INDUCTANCE TORQUE_CONSTANT SUPPLY`, for one that drives the board's own bridge: `brushed` or the
-//! number of pole pairs, ohm, H, N m/A, V.
+//! `virtual-board BOARD PROGRAM.elf` for a program that drives a DAC, and with a motor behind it,
+//! `WINDING RESISTANCE INDUCTANCE TORQUE_CONSTANT SUPPLY`, for a program that drives the board's own bridge:
+//! `brushed` or the number of pole pairs, ohm, H, N m/A, V.
 //!
 //! All numbers have their lowest byte first. At the end of each sample the board writes what the
 //! sample was, and waits for what comes of it:
@@ -23,9 +23,9 @@
 //! | mean torque in N m, a double | 8 | | angle in rad, a double | 8 |
 //! | length in s, a double | 8 | | speed in rad/s, a double | 8 |
 //!
-//! The message of a sample then comes at the beginning of the servo's period. Its code is the one that the
-//! servo has written, which the current loop follows from there on; its fourth byte is 1 where the servo
-//! drives the gates, and 2 while an alignment does.
+//! The message of a sample then comes at the beginning of the servo's period. Its code is the servo's, which
+//! the current loop follows from there on; its fourth byte is 1 where the servo drives the gates, and 2 while
+//! an alignment does.
 //!
 //! Once the input ends, the board writes a 0, then how many there were and the least, the most and
 //! the sum of the instructions from count to code and of the servo's whole interrupt (8 bytes each),

@@ -29,7 +29,7 @@ impl InstructionStats {
     }
 }
 
-/// What is measured of each tick.
+/// The measurements of each tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Meter {
     compute: InstructionStats,

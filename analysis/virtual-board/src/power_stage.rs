@@ -67,7 +67,7 @@ pub(crate) struct Outcome {
 
 /// The power stage.
 pub struct PowerStage {
-    /// What is wired to the chip.
+    /// The circuit at the chip.
     pub circuit: Circuit,
     /// TIM1.
     pub timer: PwmTimer,

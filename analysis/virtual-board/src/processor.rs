@@ -254,7 +254,7 @@ mod tests {
         }
     }
 
-    /// In a page that was data until then, and in one that was executed before.
+    /// In a page that was data until then, and in a page that was executed before.
     #[test]
     fn an_instruction_that_a_store_has_changed_is_executed_as_it_is_now() {
         const CODE: &[u16] = &[

@@ -3,7 +3,7 @@
 use crate::image::Image;
 use crate::processor::Processor;
 
-/// Takes out what is there.
+/// Takes the buffered bytes.
 pub fn drain(core: &mut Processor, image: &Image) -> Vec<u8> {
     let Some(block) = image.symbol("_SEGGER_RTT") else { return Vec::new() };
     if core.memory(block, 16).is_none_or(|mark| !mark.starts_with(b"SEGGER RTT")) {

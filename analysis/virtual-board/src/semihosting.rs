@@ -76,7 +76,7 @@ pub enum CallError {
 /// A program with its debugger.
 pub struct Guest {
     machine: Machine,
-    /// Names of the file that it reads and of the one that it writes.
+    /// Names of its input file and of its output file.
     names: [&'static str; 2],
     requests: VecDeque<u8>,
     /// Whether there will be no more of them.

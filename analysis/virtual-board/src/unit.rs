@@ -11,7 +11,7 @@ pub enum Unit {
     Flash,
     /// System configuration.
     Configuration,
-    /// What is there for debuggers.
+    /// The debug registers.
     Debug,
     /// A port of pins: 0 is A.
     Pins(usize),

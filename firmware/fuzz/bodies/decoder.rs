@@ -6,8 +6,8 @@ use haptic_servo::wire::{CHECKSUM, Decoder, encode, largest_frame};
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// The first byte says what the rest is: bytes on the wire, or a message, which is then framed as
-/// it should be, so that what is inside of frames is reached as well.
+/// The first byte selects the rest: bytes on the wire, or a message, which is then framed correctly, so that
+/// the content of frames is reached as well.
 pub fn run(data: &[u8]) {
     let Some((kind, rest)) = data.split_first() else { return };
     let bytes = match kind % 3 {
@@ -39,7 +39,7 @@ fn framed(message: &[u8]) -> Vec<u8> {
     frame
 }
 
-/// Every piece between two zeros is heard or counted, and what is heard is what is said again.
+/// Every piece between two zeros is decoded or counted, and a decoded message encodes to the same bytes.
 fn to_board(bytes: &[u8]) {
     let mut decoder = Decoder::<{ LONGEST_TO_BOARD + CHECKSUM }>::new();
     let mut heard = 0;

@@ -91,7 +91,7 @@ impl Reader<'_> {
         Some(*first)
     }
 
-    /// Any number, or one that may well be certified.
+    /// Any number, or a number that is likely to certify.
     fn value(&mut self) -> Option<f64> {
         let kind = self.byte()?;
         if kind < 16 {

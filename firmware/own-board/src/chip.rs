@@ -47,7 +47,7 @@ pub fn init() {
     serial();
 }
 
-/// 168 MHz. Once the crystal runs, one that stops raises the non-maskable interrupt.
+/// 168 MHz. If the crystal stops later, the non-maskable interrupt is raised.
 fn clocks() {
     RCC.cr().modify(|w| w.set_hseon(true));
     while !RCC.cr().read().hserdy() {}

@@ -237,7 +237,7 @@ proptest! {
     }
 }
 
-/// The search above would find an index that is too small: of half of what is stated a motion takes more.
+/// The search above would find an index that is too small: a motion takes more than half of the stated index.
 #[test]
 fn a_smaller_index_is_disproved() {
     let spring = ProgressiveSpring::<1> { soft: 20.0, stiff: 20.0, knee: 0.1 };

@@ -11,7 +11,7 @@ pub use paddle::TRANSDUCERS;
 /// What the hand feels.
 pub type Environment = Profile<16, 1>;
 
-/// Ten detents either way, and what is beyond them: a table of one detent, which stays in flash.
+/// Ten detents either way, and the end stops: a table of one detent, which stays in flash.
 static KNOTS: Knots<16> =
     Knots::of(&[Shape::detents(24, 0.05), Shape::end_stops(-2.618, 2.618, 15.0)]);
 

@@ -49,9 +49,9 @@ pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
 pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
 /// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
 pub const TIMER_TRIGGER: u8 = 7;
-/// The amplifier: PA15, which is the pad PWM of J3 and the only one that is neither the encoder's nor
-/// the serial port's. In reset it belongs to the debug port, and the chip pulls it up by 25 to 55 kΩ:
-/// the resistor to ground at the amplifier's input has to be 2.2 kΩ, which leaves 0.3 V at most.
+/// The amplifier: PA15, which is the pad PWM of J3, the only pad that neither the encoder nor the serial port
+/// uses. In reset it belongs to the debug port, and the chip pulls it up by 25 to 55 kΩ: the resistor to
+/// ground at the amplifier's input has to be 2.2 kΩ, which leaves 0.3 V at most.
 pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOA, pin: 15 };
 
 /// The power stage.

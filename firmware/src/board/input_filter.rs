@@ -5,8 +5,8 @@ use core::f64::consts::TAU;
 use crate::servo::Transducers;
 use crate::text::Text;
 
-/// A filter of an STM32 timer's input: a level counts once so many samples in a row have it, which
-/// takes out what is shorter.
+/// A filter of an STM32 timer's input: a level counts after this many equal samples in a row, so shorter
+/// pulses are removed.
 ///
 /// ```
 /// use haptic_servo::board::input_filter::InputFilter;
@@ -19,7 +19,7 @@ use crate::text::Text;
 ///     full_scale_torque: 2.0,
 ///     largest_speed: 100.0,
 /// };
-/// // A million counts a second: what is shorter than 0.19 us is a spike.
+/// // A million counts a second: a pulse shorter than 0.19 us is a spike.
 /// const FILTER: InputFilter = InputFilter::of_encoder(&ENCODER, 170e6);
 /// assert_eq!((FILTER.bits(), FILTER.clocks()), (7, 32));
 /// ```
@@ -30,8 +30,8 @@ pub struct InputFilter(u8);
 /// the timer's clock as it is for sampling.
 const CLOCKS: [u16; 16] = [0, 2, 4, 8, 12, 16, 24, 32, 48, 64, 80, 96, 128, 160, 192, 256];
 
-/// The part of a count's time that a filter may take: edges of good encoders are up to half a count
-/// from where they should be, and of what is then left of a count a filter takes half.
+/// The part of a count's time that a filter may take: the edges of good encoders are off by up to half a
+/// count, and a filter takes half of the remaining time.
 const PART: f64 = 0.25;
 
 impl InputFilter {

@@ -1,8 +1,8 @@
 //! Lockstep protocol between an emulated board and the host that simulates its plant: the input and
 //! the output of a tick, as bytes.
 //!
-//! Each tick has a number, which the board repeats: one that faults may show what it does twice
-//! rather than not at all.
+//! Each tick has a number, which the board repeats: a board that faults may report the same tick twice rather
+//! than not at all.
 
 use crate::servo_loop::State;
 

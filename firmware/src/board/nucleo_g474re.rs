@@ -26,8 +26,8 @@ pub const CHIP: &[u8; 13] = b"STM32G474RETx";
 pub const ENCODER: pac::timer::TimGp32 = pac::TIM2;
 /// What TIM2 counts and samples its inputs with, in Hz.
 pub const ENCODER_CLOCK: f64 = 170e6;
-/// PA0 and PA1 bear no more than 3.6 V (DS12288), so that no encoder with 5 V can be there: pulled up,
-/// for open collectors, and so that one that is not plugged in counts no noise.
+/// PA0 and PA1 bear no more than 3.6 V (DS12288), so that no encoder with 5 V can be there: pulled up, for
+/// open collectors, and so that an encoder that is not plugged in counts no noise.
 pub const ENCODER_PULL: Pull = Pull::Up;
 /// The clock that tells how late the servo is: TIM5, the other one with 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;

@@ -10,21 +10,21 @@
 //! - behind a rigid coupling, where `C = E`;
 //! - behind the standard coupling, where the rule is `delta + Re L > 0`, affine in `E`;
 //! - behind a stiffer one. With `k = 2 delta V / T` in `[0, 1]`, `w = k + (1 - k) / z` and
-//!   `e = T z E / (2 delta (z - 1))` the rule is `e = D / (1 - D w)` with `abs(D) < 1`. Since
-//!   `abs(w) <= 1`, the values of `e` that pass at a point of the circle are a disk; and what is in
-//!   these disks all along it has `Re(1 + w e) > 1/2` there and so outside, where `D = e / (1 + w e)`
-//!   then has no pole.
+//!   `e = T z E / (2 delta (z - 1))` the rule is `e = D / (1 - D w)` with `abs(D) < 1`. Since `abs(w) <= 1`,
+//!   the values of `e` that pass at a point of the circle are a disk; and a function that stays in these
+//!   disks on the whole circle has `Re(1 + w e) > 1/2` there and so outside, where `D = e / (1 + w e)` then
+//!   has no pole.
 //!
 //! Behind a softer coupling those that pass are the outside of a disk, which is not convex.
 //!
 //! Where updates may be missed a linear scene has to pass two such rules at once, of which one is of
 //! a softer coupling: nothing is claimed there.
 //!
-//! **Nonlinear rule** (theory, section 5): an index exists, the loop within a tick has a gain
-//! above 0, `bound < K_vc T / 2 <= delta` and `bound < delta`. The first is convex in `E`, the gain is
-//! affine, and the bound is affine in stiffness and damping of the wall and convex in what is
-//! cancelled: `be`, and `K T be / (K T - 2 be)` in its magnitude where damping is added. All of them
-//! are convex in `T`, too, where nothing is added.
+//! **Nonlinear rule** (theory, section 5): an index exists, the loop within a tick has a gain above 0,
+//! `bound < K_vc T / 2 <= delta` and `bound < delta`. The first is convex in `E`, the gain is affine, and the
+//! bound is affine in stiffness and damping of the wall and convex in the cancelled damping: `be`, and
+//! `K T be / (K T - 2 be)` in its magnitude where damping is added. All of them are convex in `T`, too, where
+//! nothing is added.
 //!
 //! **Torque profiles** (equations 46 to 48). The bound grows with each slope and with the damper's
 //! magnitude, and so do slopes with the torque of the table and with the stiffness of its end stops: with

@@ -51,7 +51,7 @@ pub(super) fn peak_gain_beside(composed: &Composed, n: &LoopIntervals) -> f64 {
 }
 
 /// The most by which the gains that solve a tick differ in contact and out of it, as rounded: a face then
-/// moves the torque of what is beside the wall by that part of it.
+/// changes the torque of the other parts by that fraction.
 pub(super) fn jump_at_face(composed: &Composed, n: &LoopIntervals) -> f64 {
     match &composed.wall {
         Some(wall) if wall.one_sided && wall.delay == 0 => {

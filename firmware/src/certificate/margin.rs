@@ -17,11 +17,10 @@ impl Assessment {
     /// Damping in N m s/rad that the device may certainly lose while coupling, environment and timing
     /// stay what they are; at most `delta`.
     ///
-    /// Of a linear scene that is rejected, what the device lacks, as a negative number. `None` where
-    /// there is no such number: for what is undecided, and for a one-sided or limited scene that is
-    /// rejected.
+    /// Of a rejected linear scene, the damping that the device lacks, as a negative number. `None` for an
+    /// undecided scene and for a rejected one-sided or limited scene, which have no such number.
     ///
-    /// `scene` is the one that was assessed.
+    /// `scene` is the assessed scene.
     pub const fn margin(&self, scene: &Scene) -> Option<f64> {
         match (self.rule, &self.outcome, self.exact) {
             (Rule::Nonlinear, Ok(()), _) => match self.bound {
@@ -106,7 +105,8 @@ pub(super) struct Limited {
     lags: bool,
     /// Whether its torque jumps where a knob snaps, so that [`Limited::gain`] is that between two snaps.
     snaps: bool,
-    /// Whether it takes torques beside its own: one that is solved in front of its coupling does not.
+    /// Whether it takes torques beside its own; an environment that is solved in front of its coupling does
+    /// not.
     takes_more: bool,
 }
 
@@ -203,10 +203,10 @@ impl Limited {
     }
 }
 
-/// The same where torques are latched and updates missed. As long as the index is below `s k` the
-/// form of [`Missed::limit`] for `delta = k` leaves `(s k - alpha) e^2 / T`; of that a device with
-/// `delta' >= k / 2` takes `(k - delta') (s d^2 + 2 (1 - s) (V w)^2) / T`. What is left grows with `s`
-/// for such a device, so that a pattern of longer and shorter intervals leaves no less.
+/// The same where torques are latched and updates missed. As long as the index is below `s k` the form of
+/// [`Missed::limit`] for `delta = k` leaves `(s k - alpha) e^2 / T`; of that a device with `delta' >= k / 2`
+/// takes `(k - delta') (s d^2 + 2 (1 - s) (V w)^2) / T`. The rest grows with `s` for such a device, so that a
+/// pattern of longer and shorter intervals leaves no less.
 const fn where_latched(
     missed: &Missed,
     k: Interval,

@@ -24,7 +24,7 @@ pub(super) const fn transfer(
     n: &LoopIntervals,
 ) -> Result<Transfer, Unbuildable> {
     let built = match (environment, environment.wall(), environment.rational()) {
-        // Of a sum with a late torque profile, what is linear.
+        // The linear part of a sum with a late torque profile.
         (Environment::Composed(Composed { residual: Some(_), .. }), None, _) => Some(free_mode(n)),
         (Environment::Composed(Composed { residual: Some(_), .. }), Some(w), _) => {
             free_mode(n).plus(&wall(&w, n))
@@ -186,7 +186,7 @@ const fn divided(p: &Polynomial, leading: Interval, n: &LoopIntervals) -> Polyno
 ///   inequality `alpha <= sum abs(h)`, which for the first-order lag of [`free_mode`] is `be`.
 ///
 /// `solved` bounds the gain from solving a tick: [`largest_solved`]. There is no bound for a rational
-/// environment, nor for one that cancels damping where the type `E` does not
+/// environment, nor for an environment that cancels damping where the type `E` does not
 /// ([`EnvironmentModel::CANCELS_DAMPING`]): its program has no code for that bound.
 pub(super) const fn nonlinear_bound<E: EnvironmentModel>(
     environment: &Environment,

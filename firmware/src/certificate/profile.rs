@@ -65,14 +65,14 @@ const fn line(snap: &SnapPoint, profile: &AnyProfile, n: &LoopIntervals) -> Inte
     around(n.format.torque_of_part(part)).mul(parts_per_rad(profile, n))
 }
 
-/// Whether branches may change between the torques of a profile: the steps of one that is late by at most a
-/// sample telescope from branch to branch, and at the port none do (theory, section 14.5).
+/// Whether branches may change between the torques of a profile: the steps of a profile that is late by at
+/// most a sample telescope from branch to branch; at the port none do (theory, section 14.5).
 const fn snaps_unproved(profile: &AnyProfile, n: &LoopIntervals) -> bool {
     profile.snap.is_some() && (profile.delay > 1 || n.coupling.is_none())
 }
 
 /// Upper bound on the index of a profile: `T L/2` for a torque that is a sample late and rises by up to `L`,
-/// `T M` for each sample more, where `M` is the steepest slope (equation 46). One that is not late has `T/2`
+/// `T M` for each sample more, where `M` is the steepest slope (equation 46). An undelayed profile has `T/2`
 /// times the steepest fall (equation 47).
 ///
 /// A limit on the torque takes from slopes, and adds none.
@@ -105,8 +105,8 @@ pub(super) const fn profile_gain<E: EnvironmentModel>(
     Some(slopes.steepest().mul(n.period).add(damping.double()))
 }
 
-/// The most by which the torque of the whole controller is off, in N m, for positions that are off by up to
-/// 1 rad each: the steepest slope `M`, and twice the damper's `B / T`, and what is `beside` the profile.
+/// The most by which the torque of the whole controller is off, in N m, for positions that are off by up to 1
+/// rad each: the sum of the steepest slope `M`, twice the damper's `B / T`, and `beside` for the other parts.
 /// Torques of ticks before are fed back through a coupling whose compliances add up to `V`, and add up to
 /// `M / (1 - M V)`. `None` where that does not end.
 pub(super) const fn peak_gain(

@@ -85,7 +85,7 @@ pub struct QuantizationBound {
     pub converter: Option<f64>,
     /// Of the current loop: see [`Resolution::with_current_loop`].
     pub current: Option<f64>,
-    /// What is to be added to that where the torque changes its sign: see [`Resolution::crossing`].
+    /// The addition where the torque changes its sign: see [`Resolution::crossing`].
     pub crossing: Option<f64>,
     /// Declared friction of the device.
     pub friction: Option<f64>,
@@ -217,8 +217,8 @@ struct Peak {
 /// times a position and `V e` times the largest torque before, which for `V e < 1` adds up to
 /// `e / (1 - V e)`; where that is not so, the norm is the one in contact.
 ///
-/// A torque profile has no impulse response, and is bounded by its steepest slope alone; what is beside it by
-/// the norm of its own.
+/// A torque profile has no impulse response and is bounded by its steepest slope; the other parts are bounded
+/// by the norm of their impulse response.
 fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     let switched = scene.environment.wall().is_some_and(|w| w.one_sided && w.damping != 0.0);
     if let Some(profile) = scene.environment.profile() {
@@ -299,7 +299,7 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
     };
     let at_torque = match &scene.environment {
         // A product of the table and a sum for each part; the face of a wall that is solved in the tick
-        // moves what is beside it.
+        // changes the other parts.
         Environment::Composed(composed) => {
             let n = LoopIntervals::of(scene, format);
             at_torque + torque * roundings(format, 2.0, 3.0) + limit * jump_at_face(composed, &n)
@@ -440,7 +440,7 @@ mod tests {
         assert_eq!(bound(&scene(2.3 * torque, 1), Format::F64), None);
     }
 
-    /// A servo with a coarse encoder and a DAC against one that has the positions as they are, in `f64`.
+    /// A servo with a coarse encoder and a DAC against a servo with exact positions, in `f64`.
     fn largest_error<N: Number>(scene: &Scene) -> f64 {
         let transducers = |counts_per_turn: f64| Transducers {
             counts_per_turn,
@@ -469,7 +469,7 @@ mod tests {
     fn no_motion_has_a_torque_farther_off_than_the_bound() {
         for delay in [0, 1] {
             let scene = scene(20.0 * TAU / (4.0 * 24.0), delay);
-            // What is finer than the coarse one is not exact, either.
+            // The finer of the two is not exact, either.
             let allowed = |format| {
                 let bound = bound(&scene, format).unwrap();
                 let fine = bound.encoder.unwrap() / 1024.0;

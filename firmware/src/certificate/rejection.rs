@@ -198,7 +198,7 @@ impl Rejection {
                 t.push(" N m instead of 0: it would turn the device as a motor does");
             }
             Self::Uneven => t.push(
-                "a torque limit would clip this torque profile on one side more than on the other, and what is left turns the device as a motor does: make it odd about its centre, or give it end stops",
+                "a torque limit would clip this torque profile on one side more than on the other, and the rest turns the device as a motor does: make it odd about its centre, or give it end stops",
             ),
             Self::Steep { coupling, .. } => {
                 t.push("without delay a torque profile must rise by less than the coupling's ");
@@ -387,7 +387,7 @@ mod tests {
         let mut of_sum = all;
         of_sum[1].parameter = Parameter::Residual;
         let of_sum = Remedies::of(of_sum);
-        // What is no profile has no number of repetitions, and may have a residual.
+        // Only a profile has a number of repetitions; the others may have a residual.
         let mut others = all;
         let (lowest, highest) = RANGE;
         others[2] = Remedy { parameter: Parameter::Residual, lowest, highest };

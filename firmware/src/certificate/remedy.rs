@@ -70,10 +70,10 @@ impl fmt::Display for Remedy {
 
 pub(super) const CANDIDATES: usize = 10;
 
-/// The numbers that are looked at, in the order in which they are printed. What more of a device
-/// would help is the damping where its passivity is not declared. In the place of a residual, which a torque
-/// profile does not have, is its torque; in the place of a damping, where something cancels damping beside a
-/// profile, what is left of it.
+/// The numbers that are looked at, in the order in which they are printed. What more of a device would help
+/// is the damping where its passivity is not declared. In the place of a residual, which a torque profile
+/// does not have, is its torque; in the place of a damping, where an environment cancels damping beside a
+/// profile, the residual damping.
 pub(super) const ORDER: [Parameter; CANDIDATES] = [
     Parameter::Stiffness,
     Parameter::Damping,

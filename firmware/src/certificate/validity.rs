@@ -85,9 +85,9 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
     }
 }
 
-/// The same without polynomials, on which no bound for a board depends. A program omits the code for all that
-/// its environment does not have of torque profiles; one that asks only whether there is such a number has
-/// no sentences.
+/// The same without polynomials, on which no bound for a board depends. A program omits the code for the
+/// parts of torque profiles that its environment does not have, and the sentences if it only asks whether a
+/// problem exists.
 #[inline(always)]
 pub(super) const fn first_invalid_number(
     scene: &Scene,
@@ -129,7 +129,7 @@ const fn out_of_range(parameter: Parameter, value: f64) -> Option<InvalidParamet
     Some(InvalidParameter { parameter, value, bound, limit: None })
 }
 
-/// What is wrong with a number of the scene: it is out of its range or conflicts with another.
+/// The fault of a number of the scene: it is out of its range or conflicts with another.
 #[inline(always)]
 const fn invalid(
     scene: &Scene,
@@ -190,7 +190,7 @@ const fn profile_of(environment: &Environment, parameter: Parameter) -> Option<&
     }
 }
 
-/// A number of a sum that conflicts with what is beside it, or that has no name there.
+/// A number of a sum that conflicts with the other part, or has no name there.
 const fn sum_conflict(composed: &Composed) -> Option<InvalidParameter> {
     let Composed { wall, profile, .. } = composed;
     if profile.delay == 0 {

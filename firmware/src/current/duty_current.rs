@@ -13,7 +13,7 @@ use crate::text::Text;
 /// By how much more or less than its time the dead time may take, relatively: switches take time too.
 const DEAD_TIME_TOLERANCE: f64 = 0.5;
 
-/// Time constants after which a current counts as settled: what is left is below a count.
+/// Time constants after which a current counts as settled: the rest is below a count.
 const SETTLING: f64 = 10.0;
 
 /// The current that settles at a duty.

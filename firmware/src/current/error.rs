@@ -74,12 +74,12 @@ pub enum DriveError {
     Current {
         /// Full-scale torque in N m.
         torque: f64,
-        /// The current in A, with what is between it and over-current.
+        /// The current in A, with its distance from over-current.
         current: f64,
         /// The largest in A.
         largest: f64,
     },
-    /// The supply is not one that the board bears.
+    /// The supply is outside the board's range.
     Supply {
         /// The drive's.
         supply: Supply,
@@ -88,7 +88,7 @@ pub enum DriveError {
     },
     /// The voltage is not enough for the largest step at the largest speed.
     Voltage {
-        /// What is needed in V.
+        /// The voltage needed, in V.
         needed: f64,
         /// What the lowest supply gives in V.
         available: f64,
@@ -108,7 +108,7 @@ pub enum DriveError {
     CurrentRange {
         /// The largest current in A.
         current: f64,
-        /// What is measured in A, at the worst offset.
+        /// The measured current in A, at the worst offset.
         largest: f64,
     },
 }

@@ -1,8 +1,8 @@
 //! The current controller of an on-board power stage: from a code to the compare values of a timer.
 //!
 //! A [`Drive`] and the [`PowerStage`] of a board become a [`CurrentLoop`] at compile time, or do not compile.
-//! A [`CurrentController`] runs it, one call an instant of the pulse-width modulation. All of it is without
-//! hardware, so that what is flashed is what the tests run (theory, section 15).
+//! A [`CurrentController`] runs it, one call an instant of the pulse-width modulation. It does not depend on
+//! hardware: the flashed code is the tested code (theory, section 15).
 //!
 //! ```text
 //! instant    k                        k+1                      k+2

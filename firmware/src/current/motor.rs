@@ -17,8 +17,8 @@ pub enum Winding {
 pub struct Motor {
     /// How many phases it has.
     pub winding: Winding,
-    /// Resistance in ohm: between the terminals of a brushed motor, of one phase of a brushless one, which is
-    /// half of what is measured between two of its terminals.
+    /// Resistance in ohm: between the terminals of a brushed motor, of one phase of a brushless motor, which
+    /// is half of the resistance between two of its terminals.
     pub resistance: f64,
     /// Inductance in H, of the same.
     pub inductance: f64,
@@ -46,7 +46,7 @@ pub struct Supply {
     pub highest: f64,
 }
 
-/// What is connected to a power stage, and how fast the current is to follow.
+/// The motor at a power stage, and the required speed of the current loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
     /// The motor.

@@ -13,7 +13,7 @@ const LARGEST_FEEDBACK: f64 = 0.25;
 /// Coefficients of one instant, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plant {
-    /// `exp(-R h/L)`: what is left of a current.
+    /// `exp(-R h/L)`: the part of a current that remains.
     pub decay: f64,
     /// `(1 - a)/R`: current in A of a volt.
     pub gain: f64,

@@ -10,9 +10,9 @@ pub struct PowerStage {
     pub clock: f64,
     /// Current in A of a count of the converter, without its sign.
     pub amps_per_count: f64,
-    /// Whether a current out of the bridge into the motor lowers the count. The shunts are between low side and
-    /// ground, and such a current flows up through them: it lowers the count of an amplifier that does not
-    /// invert, and raises that of one that does.
+    /// Whether a current out of the bridge into the motor lowers the count. The shunts are between low side
+    /// and ground, and such a current flows up through them: it lowers the count of a non-inverting amplifier
+    /// and raises that of an inverting one.
     pub current_lowers_count: bool,
     /// Supply voltage in V of a count of the converter.
     pub volts_per_count: f64,
@@ -49,7 +49,7 @@ pub const B_G431B_ESC1: PowerStage = PowerStage {
     current_lowers_count: true,
     // 169 kΩ over 18 kΩ.
     volts_per_count: 3.3 / 4096.0 * (169.0 + 18.0) / 18.0,
-    // The shunts bear 40 A; half of the converters' range each way is 60 A, and what is left is for a step.
+    // The shunts bear 40 A; half of the converters' range each way is 60 A; the rest is for a step.
     largest_current: 30.0,
     offset_counts: (1848, 2248),
     // Up to a battery of six cells; below 7 V the gate drivers may have too little.

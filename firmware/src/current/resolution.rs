@@ -1,4 +1,4 @@
-//! What is left between the current and its model when converter and timer are as fine as they are.
+//! The difference between the current and its model that converter and timer leave by their resolution.
 
 use super::motor::Winding;
 use super::plant::Plant;
@@ -39,8 +39,8 @@ pub(super) struct Quanta {
 impl Quanta {
     /// The resolution of a motor with this winding.
     pub(super) const fn resolution(&self, winding: Winding) -> CurrentResolution {
-        // Of the errors of two phases, what is seen in the current; of the errors of the phases' compare values
-        // and dead times, what is seen in its voltage; of the supply, what swings in the middle of its range.
+        // Of the errors of two phases, the part in the current; of the errors of the phases' compare values
+        // and dead times, the part in its voltage; of the supply, the ripple in the middle of its range.
         let (current, voltage, dead, swing) = match winding {
             // Half the difference of two counts; the compare values differ by the rounded number.
             Winding::Brushed => (1.0, 0.5, 2.0, 1.0 / 8.0),

@@ -3,7 +3,7 @@
 use super::timing::PwmTiming;
 use crate::encoder::RawCount;
 
-/// What is sampled at an instant of the modulation, in the middle of the low sides.
+/// The samples of one instant of the modulation, in the middle of the low sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
     /// Counts of the currents of the phases U and V.

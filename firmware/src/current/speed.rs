@@ -34,7 +34,7 @@ impl Speed {
         step
     }
 
-    /// Counts from the last reading to one that is near it.
+    /// Counts from the last reading to a reading near it.
     #[inline(always)]
     pub(super) const fn since_last(&self, position: RawCount) -> i32 {
         let shift = self.width as u32;

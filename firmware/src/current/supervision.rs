@@ -1,4 +1,4 @@
-//! What is checked at each instant.
+//! The checks at each instant.
 
 use core::hint::cold_path;
 

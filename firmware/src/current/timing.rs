@@ -26,7 +26,7 @@ impl PwmTiming {
     /// Where there is none.
     pub const fn of(period: f64, clock: f64) -> Result<Self, DriveError> {
         let wanted = period * clock / 2.0;
-        // All casts round positive numbers down; what is none, or too large, is not whole.
+        // All casts round positive numbers down; NaN, or a number that is too large, is not whole.
         let halves = (wanted + 0.5) as u32;
         let is_whole = (wanted - halves as f64).abs() <= WHOLE * wanted;
         let mut updates = (period * FREQUENCIES.1 * (1.0 + WHOLE)) as u16;

@@ -48,13 +48,13 @@ impl Rotation {
 }
 
 impl Vector {
-    /// Of the currents in U and V; that of W is what is left to a sum of zero.
+    /// Of the currents in U and V; that of W makes the sum zero.
     #[inline(always)]
     pub(super) const fn of_two_phases(u: f32, v: f32) -> Self {
         Self { along: u, across: (u + 2.0 * v) * (1.0 / ROOT_3) }
     }
 
-    /// As it is seen from what is turned by that angle.
+    /// The vector in a frame that is turned by that angle.
     #[inline(always)]
     pub(super) const fn seen_from(self, rotation: Rotation) -> Self {
         let Rotation { cosine, sine } = rotation;

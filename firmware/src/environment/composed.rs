@@ -2,7 +2,7 @@
 //! it, all at the same position `x_E`.
 //!
 //! Their passivity indices add, with a torque limit on the sum as well (theory, section 14.3). The profile of
-//! a sum is late by at least one sample, since one that is not late is solved in front of the coupling. A
+//! a sum is late by at least one sample, since an undelayed profile is solved in front of the coupling. A
 //! wall stands at one angle of many turns, so that the profile beside it has end stops.
 //!
 //! Where parts have a number of the same name, `stiffness`, `damping` and `face` are the wall's; `torque`,

@@ -75,7 +75,7 @@ impl Memory {
 pub struct ProfileUse {
     /// Whether it may be one, alone or in a sum.
     pub exists: bool,
-    /// Whether that may be one that is not late.
+    /// Whether that may be an undelayed profile.
     pub is_prompt: bool,
     /// Whether it may have a damper of its own.
     pub is_damped: bool,

@@ -46,7 +46,7 @@ impl<N: Number> Turn<N> {
         Self { counts: Self::MOST_COUNTS, origin: 0, angle: N::ZERO, extent: Extent::Device }
     }
 
-    /// One that is counted anew with each start, so that the position is then nearest to a range in rad.
+    /// A turn that is counted anew with each start; the position is then the nearest to a range in rad.
     pub(crate) fn nearest_to(range: [f64; 2]) -> Self {
         Self { extent: Extent::Range(range), ..Self::none() }
     }

@@ -8,7 +8,7 @@ const TERMS: u32 = 15;
 const VANISHES: f64 = 746.0;
 
 impl Interval {
-    /// `exp(-self)` of a number that is not negative; what is negative counts as 0.
+    /// `exp(-self)` of a number that is not negative; negative numbers count as 0.
     ///
     /// The argument is halved until it is at most a half; there the alternating series lies between any
     /// two partial sums in a row. The result is squared as often as the argument was halved.

@@ -56,7 +56,7 @@ impl Description {
         }
     }
 
-    /// The number of the mode that changes select, where it is there and is not the one that runs: whatever
+    /// The number of the mode that changes select, if the board has that mode and does not run it: whichever
     /// step refused it, its table is on the board alone.
     pub fn other_mode(&self, changes: &[(Parameter, f64)]) -> Option<f64> {
         let running = self.scene.environment.profile()?.modes?;

@@ -1,9 +1,9 @@
 //! Searches among some scenes only: `hunt name=value ...`.
 //!
-//! Of the search: `seed`, `scenes`, `enough`, or one scene's `number`. Of what is drawn: `kind`,
-//! `worst_period`, `limited`, `latched`, `saturates`,
-//! `injected`, `overrun`. Of the device: `taken`, `bisected`, `weakened`.
-//! Of the effort: `drawn`, `climbed`, `periods`, `long`. `full=false` prints two lines each.
+//! Of the search: `seed`, `scenes`, `enough`, or one scene's `number`. Of the drawn scenes: `kind`,
+//! `worst_period`, `limited`, `latched`, `saturates`, `injected`, `overrun`. Of the device: `taken`,
+//! `bisected`, `weakened`. Of the effort: `drawn`, `climbed`, `periods`, `long`. `full=false` prints two
+//! lines each.
 
 use adversary::scenes::{Choice, Kind};
 use adversary::search::{Effort, Search};

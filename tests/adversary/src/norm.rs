@@ -95,7 +95,7 @@ impl Errors {
             Coupling::Matched => unreachable!("not drawn"),
             Coupling::Spring { stiffness } => 1.0 / stiffness,
         };
-        // A state follows by the share `rate` of what is left, and no closer than rounding allows.
+        // A state follows by the share `rate` of the rest, and no closer than rounding allows.
         let washout = |damping: f64, rate: f64| {
             let gain = 2.0 * damping.abs() / period;
             (gain, gain / rate)

@@ -52,8 +52,8 @@ impl Pattern {
         matches!(self, Self::Periodic(ticks, length) if ticks[..*length].contains(&TickTiming::Delayed))
     }
 
-    /// One that misses at most `most` updates in a row, if that is not zero; with late codes where
-    /// they are latched.
+    /// A plan that misses at most `most` updates in a row, if that is not zero; with late codes where they
+    /// are latched.
     pub fn draw(rng: &mut impl Rng, most: u32, latched: bool) -> Self {
         let only_delays = most == 0 && latched && rng.random_bool(0.3);
         if !only_delays && (most == 0 || rng.random_bool(0.15)) {
@@ -91,7 +91,7 @@ impl Pattern {
     }
 }
 
-/// What is asked of the servo.
+/// A request to the servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
     /// To be armed.
@@ -121,7 +121,7 @@ pub struct Plan {
     pub pattern: Pattern,
     /// The part of a period by which a delayed tick begins late.
     pub delay: f64,
-    /// What is asked for, and in which period.
+    /// The request and its period.
     pub requests: [Option<(u32, Request)>; REQUESTS],
     /// Whether the servo is armed again after each fault.
     pub again: bool,

@@ -35,7 +35,7 @@ impl Numbers {
         }
     }
 
-    /// Largest angle in rad, or one that is far for it.
+    /// Largest angle in rad, or a large angle for the scene.
     const fn reach(self) -> f64 {
         match self {
             Self::F32 | Self::F64 => 1e3,
@@ -45,7 +45,7 @@ impl Numbers {
     }
 }
 
-/// What is drawn.
+/// The drawn kind of scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A spring or a wall.
@@ -517,7 +517,7 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
         Environment::FreeModeWall { residual, .. } | Environment::FreeMode { residual, .. }
             if knob == Knob::Residual =>
         {
-            // What is cancelled is scaled.
+            // The cancelled damping is scaled.
             *residual = damping - (damping - *residual) * by;
         }
         Environment::FreeMode { .. } | Environment::Stated(_) | Environment::Composed(_) => {}
@@ -544,8 +544,8 @@ fn passes(scene: &Scene, format: Format) -> bool {
     PassivityProblem::in_format(scene, format).is_ok_and(|posed| posed.is_certified())
 }
 
-/// Whether a board takes a scene that the certificate has passed: where its torques are latched, it
-/// may ask for a little more. Scenes that no board takes are left to what is said of them later.
+/// Whether a board takes a scene that the certificate has passed: where its torques are latched, it may ask
+/// for a little more. Scenes that no board takes are handled later.
 fn accepted(scene: &Scene, format: Format, latched: bool) -> bool {
     passes(scene, format)
         && !(latched

@@ -32,7 +32,7 @@ pub struct Search {
     pub scenes: u64,
     /// After that no more are drawn.
     pub time: Option<Duration>,
-    /// What is drawn.
+    /// The drawn scenes.
     pub choice: Choice,
     /// When codes reach the motor, where that is not as the mode has it.
     pub output: Option<Output>,

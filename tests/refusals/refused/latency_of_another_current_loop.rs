@@ -1,4 +1,4 @@
-//! A scene that is certified for a faster current loop than the one that makes its torque.
+//! A scene that is certified for a faster current loop than its own.
 
 use haptic_servo::certificate::Certified;
 use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive};

@@ -1,4 +1,4 @@
-//! A knob of three modes, of which one that is not selected has detents of more than the paddle allows.
+//! A knob of three modes; a mode that is not selected has steeper detents than the paddle allows.
 use haptic_servo::certificate::Certified;
 use haptic_servo::environment::{ModeTable, ProfileMode, ProfileModes, Shape};
 use haptic_servo::scene::Scene;

@@ -1,5 +1,5 @@
-//! Amplifiers of which only is known when their step response begins and ends: mixtures of delays, by
-//! their own waveforms, never need more than what is certified, and no hand shakes a certified loop.
+//! Amplifiers of which only the begin and end of the step response are known: mixtures of delays, by their
+//! own waveforms, never need more than the certified passivity, and no hand shakes a certified loop.
 
 use std::f64::consts::PI;
 
@@ -121,7 +121,7 @@ fn no_hand_destabilises_a_certified_loop_whatever_the_shape_of_the_response() {
         let unknown = Unknown::draw(&mut rng);
         let Some(certified) = unknown.certified().filter(|needed| *needed > 1e-3) else { continue };
         loops += 1;
-        // The device of the model has a damping of 1: what is scaled is the controller, with its coupling.
+        // The device of the model has a damping of 1: the controller is scaled, with its coupling.
         let scaled = |times: f64| {
             let mut drawn = unknown.drawn;
             let gain = times / certified;

@@ -1,8 +1,7 @@
 //! The enclosures are the same bits in the compiler and on the host, for every reference case.
 //!
-//! A transcendental function, a fused multiply-add or an extended register anywhere on the way
-//! would make them differ, and a certificate checked at compile time would not be the one that
-//! the board computes.
+//! A transcendental function, a fused multiply-add or an extended register anywhere on the way would make
+//! them differ, and a certificate checked at compile time would differ from the board's.
 
 // One constant more or less: the cases are judged one by one.
 #![allow(long_running_const_eval)]

@@ -236,7 +236,7 @@ fn needed(sum: &Sum, damping: f64, motion: &[f64]) -> f64 {
             sum.remember(damping, &mut history, angle);
         }
     }
-    // What is smaller, rounding moves.
+    // Rounding moves smaller values.
     if squares < (SMALLEST * sum.pitch).powi(2) {
         return f64::MIN;
     }

@@ -1,9 +1,9 @@
 //! One-sided and limited walls, accepted by the nonlinear bound, in closed loop with a hand.
 //!
-//! Equation 28: with `beta` the energy of device and hand at the start, every torque
-//! obeys `F^2 <= 4 delta beta / T`, and the environment's motion is square-summable:
-//! `(K_vc T / 2 - alpha) * sum v_E^2 <= beta / T`. An oscillation that lasts breaks the second, one
-//! that grows breaks both.
+//! Equation 28: with `beta` the energy of device and hand at the start, every torque obeys
+//! `F^2 <= 4 delta beta / T`, and the environment's motion is square-summable:
+//! `(K_vc T / 2 - alpha) * sum v_E^2 <= beta / T`. A lasting oscillation breaks the second, a growing
+//! oscillation breaks both.
 
 use haptic_servo::certificate::{RuleAnswer, assess};
 use haptic_servo::environment::{Environment, Wall};

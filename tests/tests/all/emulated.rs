@@ -294,8 +294,8 @@ fn a_board_that_does_nothing_is_an_error() {
 fn every_set_is_answered_with_stack_to_spare() {
     for name in ["delayed_spring", "damper_wall", "free_mode", "knob"] {
         let elf = &PROGRAMS[&(name, NumberFormat::F32)];
-        // The standard coupling; softer and stiffer ones, for which another function is looked at;
-        // one that ends the solution of the loop.
+        // The standard coupling; softer and stiffer couplings, for which another function is judged; a
+        // coupling with which the loop has no solution.
         let mut taken = 0;
         for stiffness in [44.0, 43.0, 60.0, 88.0, 1e9] {
             let set = live_set(elf, &[(Parameter::CouplingStiffness, stiffness)])

@@ -1,4 +1,4 @@
-//! The parts of the exact reference, on what is known without it. They are not tested beside their code,
+//! The parts of the exact reference, on cases with known results. They are not tested beside their code,
 //! where all of it would be compiled and linked once more.
 
 use std::cmp::Ordering;

@@ -62,7 +62,7 @@ const WRONG: &[(&str, usize, usize)] = &[
     ("ratchet", 2, 0),
 ];
 
-/// Cases of which a board runs nothing, or refuses what is asked whatever it is told of the device.
+/// Cases that a board does not run, or refuses whatever the device.
 const REFUSED: [&str; 2] = ["negative-spring", "grid"];
 
 #[test]

@@ -71,7 +71,7 @@ fn every_mode_is_selected_on_the_emulated_board() {
     let hand = Turning::default();
     let world = PlantThread::start(emulator, hand.clone());
     let mut link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
-    // Through all of them, back, and to one that there is not.
+    // Through all of them, back, and to a mode that does not exist.
     let modes: Vec<usize> = (1..KNOB_MODES.len()).chain((0..KNOB_MODES.len()).rev()).collect();
     for mode in &modes {
         let selecting = [(Parameter::Mode, *mode as f64)];

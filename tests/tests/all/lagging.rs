@@ -235,7 +235,7 @@ impl Loop {
             let mut torque =
                 parts.iter().fold(DMatrix::zeros(1, size), |sum, part| sum + late(part));
             if self.updates > 0 {
-                // What is left shrinks by so much until the next update, in a straight line.
+                // The rest shrinks by this much until the next update, in a straight line.
                 let left = (-1.0 / (updates * self.actuator_lag)).exp();
                 torque = (torque - through.rows(amplifier, 1)) * ((1.0 - left) * updates);
             }

@@ -71,7 +71,7 @@ fn judged(case: &Value) -> VerdictReport {
     judge(&read.name, &read.scene)
 }
 
-/// What is wrong with the answer to a case; empty where nothing is.
+/// The fault in the answer to a case; empty if there is none.
 fn complaints(case: &Value) -> Vec<String> {
     let found = judged(case);
     let mut wrong = Vec::new();

@@ -40,8 +40,7 @@ const LARGEST_STEP: u32 = 978;
 /// What a tick of the board was.
 type Tick = (TickInput, TickOutput);
 
-/// A hand that goes in and out of the wall, with what was done to it so far and what is to be done
-/// next.
+/// A hand that goes in and out of the wall, with its past and its next actions.
 #[derive(Clone, Default)]
 struct Hand {
     count: Arc<Mutex<i32>>,
@@ -75,7 +74,7 @@ impl Hand {
         self.ticks.lock().unwrap().last().map(|(_, output)| *output)
     }
 
-    /// Waits until the board shows what is asked for.
+    /// Waits until the board shows the requested state.
     fn wait(&self, what: &str, is_so: impl Fn(&TickOutput) -> bool) {
         let patience = Instant::now() + Duration::from_secs(60);
         while !self.last().is_some_and(|output| is_so(&output)) {

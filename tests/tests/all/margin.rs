@@ -63,9 +63,9 @@ fn wall(stiffness: f64, damping: f64, delay: usize, limit: Option<f64>) -> Scene
     }
 }
 
-/// A controller `C` is worst near rest here: there it takes `T (C(1) / 2 - C'(1))` (theory,
-/// section 4.1). Behind the coupling of 44 N m/rad `C` is `22 / (z + 1/2)` for a
-/// spring of 22 N m/rad that is one sample late, and constant for one that is not late.
+/// A controller `C` is worst near rest here: there it takes `T (C(1) / 2 - C'(1))` (theory, section 4.1).
+/// Behind the coupling of 44 N m/rad `C` is `22 / (z + 1/2)` for a spring of 22 N m/rad that is one sample
+/// late, and constant for an undelayed spring.
 #[test]
 fn the_margin_of_a_spring_is_what_its_controller_leaves_near_rest() {
     let late: f64 = 0.022 - 0.001 * (0.5 * 22.0 / 1.5 + 22.0 / (1.5 * 1.5));

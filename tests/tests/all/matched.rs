@@ -324,7 +324,7 @@ fn no_certified_scene_of_a_hundred_thousand_keeps_moving() {
     assert_eq!(growing, 0, "of {runs}");
 }
 
-/// The same search finds what is wrong where torques come later than the scene says.
+/// The same search finds the fault where torques come later than the scene states.
 #[test]
 fn a_longer_latency_than_stated_is_found() {
     let (runs, growing) = restless(2, 1000, Truthful::Later, latency);

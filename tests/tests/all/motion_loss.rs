@@ -104,7 +104,7 @@ fn the_loss_is_that_of_the_formula_and_two_thirds_of_it_with_three_phases() {
     assert!((1.0..1.0 + 1e-12).contains(&brushless), "{brushless}");
 }
 
-/// A winding that has settled long before the next instant is not one that the bound is known for.
+/// The bound does not cover a winding that has settled long before the next instant.
 #[test]
 fn no_loss_is_known_of_a_winding_without_inductance() {
     assert_eq!(design(20.0, 0.2, Winding::Brushed).motion_loss(), f64::INFINITY);

@@ -1,5 +1,5 @@
-//! What is published: `haptic-servo` and `haptic-model`. Cargo packages both, the library's package builds by
-//! itself, and what a registry and a reader want of them is there.
+//! The published packages: `haptic-servo` and `haptic-model`. Cargo packages both, the library's package
+//! builds by itself, and both have the files and keys that a registry and a reader need.
 
 use std::collections::BTreeSet;
 use std::fs;

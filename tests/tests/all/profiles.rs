@@ -118,7 +118,7 @@ impl Case {
         scene
     }
 
-    /// From a light device to one that hardly feels a tick; free now and then.
+    /// From a light device to a device that hardly moves in a tick; free now and then.
     fn hand(&self, limit: f64, random: &mut ChaCha8Rng) -> Hand {
         let anywhere = random.random_range(0.0..1.0) * self.wave.pitch;
         let speed = self.wave.pitch / PERIOD * 10_f64.powf(random.random_range(-2.5..-0.4));

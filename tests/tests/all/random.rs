@@ -141,9 +141,8 @@ fn line(scene: &Scene, own: f64) -> Option<f64> {
     Some(inside)
 }
 
-/// Coefficients as rounded to a format, next to the line: what is certified of them holds for them
-/// exactly, and near the line that is another verdict than for the numbers as they were written,
-/// in both directions.
+/// Coefficients as rounded to a format, next to the line: their certificate holds for them exactly, and near
+/// the line differs from the verdict on the numbers as written, in both directions.
 #[test]
 fn coefficients_as_they_run() {
     let formats =

@@ -1,5 +1,5 @@
-//! What a rejection advises is true: the scene passes with the number changed to what is printed,
-//! wherever in a range that is printed, and no much smaller change of that number would have done.
+//! The advice of a rejection is true: the scene passes with the number changed to the printed value, or to
+//! any value of the printed range, and no much smaller change of that number would have done.
 
 use std::collections::BTreeMap;
 

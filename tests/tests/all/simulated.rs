@@ -1,8 +1,8 @@
 //! A certified scene is a stable loop, and a stable loop a motion that ends: scene files with every
 //! environment and coupling through the certificate, the eigenvalues and the simulation.
 //!
-//! A certificate that believed a number of the file that the device does not have would be caught
-//! by the first step, and a simulation of another scene than the one that was judged by the second.
+//! A certificate that believed a number of the file that the device does not have would be caught by the
+//! first step, and a simulation of another scene than the judged scene by the second.
 
 use analysis::chain::{Chain, Link, Mass};
 use analysis::file::simulation::{HandTorque, Simulation};

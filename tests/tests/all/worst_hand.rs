@@ -137,7 +137,7 @@ impl Found {
         let hand = &found.worst.hand;
         let above = radius(drawn, inertia, limit / 1.02, hand);
         assert!(above > 1.0, "{drawn:?} {hand:?} {above}");
-        // The worst that is known does not shake what is certified.
+        // The worst known hand does not shake certified loops.
         let below = radius(drawn, inertia, limit / 0.995, hand);
         assert!(below < 1.0 + 1e-7, "{drawn:?} {hand:?} {below}");
         self.shown += 1;

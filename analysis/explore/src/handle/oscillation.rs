@@ -23,7 +23,7 @@ const LEAST_PERIODS: usize = 4;
 /// A torque that oscillates.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Oscillation {
-    /// Half of what is between its extremes, in N m.
+    /// Half of the distance between its extremes, in N m.
     pub amplitude: f64,
     /// In Hz.
     pub frequency: f64,
@@ -74,7 +74,7 @@ impl Watch {
         }
     }
 
-    /// The oscillation of these torques, if they are one that lasts.
+    /// The oscillation of these torques, if it lasts.
     pub fn oscillation(&self) -> Option<Oscillation> {
         if self.torques.len() < self.ticks {
             return None;

@@ -3,7 +3,7 @@
 /// The most ticks that are kept: a quarter of an hour at 1 kHz.
 const MOST: usize = 1 << 20;
 
-/// What a servo read and wrote. What is beyond the room is not kept, so that the beginning always is.
+/// The counts and codes of a servo. Rows beyond the room are dropped, so that the beginning is kept.
 #[derive(Clone, Debug, Default)]
 pub struct Record {
     ticks: Vec<(i32, u16)>,

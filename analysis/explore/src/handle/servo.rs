@@ -1,4 +1,4 @@
-//! The servo that renders a scene: the certified one; or one that nothing proves, in simulation only; or
+//! The servo that renders a scene: the certified servo; or a servo without proof, in simulation only; or
 //! none.
 
 use haptic_model::controller::{Controller, Tick, controller};

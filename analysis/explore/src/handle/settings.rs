@@ -1,9 +1,9 @@
-//! What is rendered, and the hand that holds it.
+//! The rendered scene, and the hand that holds it.
 
 use haptic_model::device::Hand;
 use serde::Deserialize;
 
-/// What is rendered, and by what hand it is held.
+/// The rendered scene, and the hand that holds it.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {

@@ -95,7 +95,7 @@ impl Path {
     }
 }
 
-/// What is there after some ticks.
+/// The state after some ticks.
 #[derive(Debug, Serialize)]
 pub struct Moved {
     /// Whether a push is played.

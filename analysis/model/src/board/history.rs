@@ -24,8 +24,8 @@ impl History {
         self.window
     }
 
-    /// Adds a sample and forgets those that are too old. One that is earlier than the last is of a
-    /// board that was started again: what was before is forgotten.
+    /// Adds a sample and drops those that are too old. A sample earlier than the last comes from a board that
+    /// was started again: all before it are dropped.
     pub fn push(&mut self, sample: Sample) {
         if self.samples.back().is_some_and(|last| sample.tick < last.tick) {
             self.samples.clear();

@@ -29,7 +29,7 @@ fn file(scene: Scene) -> SceneFile {
     SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction, shapes }
 }
 
-/// The scene, as it is read from what is written.
+/// The scene, as read back from its file.
 fn read(file: &SceneFile) -> Scene {
     let text = write::toml(file);
     parse("designed.toml", Format::Toml, &text)

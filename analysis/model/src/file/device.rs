@@ -14,8 +14,7 @@ use crate::chain::{Chain, EncoderPlace, Link, MAX_MASSES, Mass, NoPassivity};
 pub enum Purpose {
     /// To certify: a device without passivity is an error.
     Certify,
-    /// To look at: a device without passivity is one that no certificate is given for, so the
-    /// scene's `passivity` is not a number.
+    /// For a look only: a device without passivity gets no certificate, so the scene's `passivity` is NaN.
     Simulate,
 }
 

@@ -125,7 +125,7 @@ fn device(lines: &mut Vec<String>, keys: impl Iterator<Item = &'static Key>, is_
     }
 }
 
-/// A key with its words above it; one that is not set is a comment.
+/// A key with its words above it; an unset key is a comment.
 fn line(lines: &mut Vec<String>, key: &Key, value: &str, is_set: bool) {
     let unit = if key.unit.is_empty() { String::new() } else { format!(" In {}.", key.unit) };
     let text = format!("{}{unit}", key.doc);

@@ -30,7 +30,7 @@ impl Faults {
     }
 }
 
-/// All of what was read, unless one was reported. Each is read, also after one that was.
+/// All values read, unless a fault was reported. Each value is read, also after a fault.
 pub fn all<T>(read: impl Iterator<Item = Read<T>>) -> Read<Vec<T>> {
     let read: Vec<Read<T>> = read.collect();
     read.into_iter().collect()

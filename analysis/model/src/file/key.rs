@@ -195,7 +195,7 @@ keys! {
         Needed, "0.022";
     /// Passivity `delta` of the device from torque to velocity, where less of it is to be counted on.
     PASSIVITY = Key { bound: NOT_NEGATIVE, ..of(Parameter::Passivity) },
-        Optional("the device's damping; of a chain, what is computed for it"), "0.0219";
+        Optional("the device's damping; of a chain, its computed damping"), "0.0219";
     /// Dry (Coulomb) friction at the motor.
     DEVICE_FRICTION = other("device.friction", "N m", NOT_NEGATIVE),
         Optional("none that is counted on: the verdict does not say whether the device comes to rest"), "0.003";
@@ -495,9 +495,9 @@ keys! {
     /// Bounds of the hardware.
     LIMITS = other("limits", "", TABLE),
         Optional("no limits"), "";
-    /// Largest torque that the servo gives; it becomes part of what is certified.
+    /// Largest torque that the servo gives; it becomes part of the certified scene.
     TORQUE_LIMIT = of(Parameter::TorqueLimit),
-        Optional("no limit: what is certified is the linear loop, and a board refuses it where only that passes"), "1.0";
+        Optional("no limit: the linear loop is certified; a board refuses scenes that pass only so"), "1.0";
     /// Angle of one encoder count.
     ENCODER_STEP = other("limits.encoder_step", "rad", POSITIVE),
         Optional("not known: nothing is said of rest, and `run` takes 65536 counts a turn"), "1e-4";

@@ -21,8 +21,8 @@ pub struct Kind {
     pub values: &'static [(&'static Key, &'static str)],
 }
 
-/// What a wall may have besides stiffness, damping and delay. It must say its delay, because a delay
-/// that is forgotten is one that is not accounted for.
+/// What a wall may have besides stiffness, damping and delay. Its delay must be stated, because a forgotten
+/// delay is not accounted for.
 const OF_A_WALL: &[&Key] = &[&key::FILTER, &key::FACE, &key::ONE_SIDED];
 
 const ZERO: Coefficients = match Coefficients::new(&[0.0]) {

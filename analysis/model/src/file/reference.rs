@@ -14,7 +14,7 @@ error. `haptic schema --reference` prints this page, of the table that the progr
 
 `haptic schema --example TYPE` prints a scene file to start from, with every key explained; below is that
 of a damper wall. `haptic schema > scene.schema.json` writes a JSON schema, with which an editor completes
-and checks keys: for one that uses Taplo (Even Better TOML), put `#:schema ./scene.schema.json` into the
+and checks keys: for an editor with Taplo (Even Better TOML), put `#:schema ./scene.schema.json` into the
 first line.
 
 Bounds here are about what a number can mean. Whether a scene with these numbers is safe is the

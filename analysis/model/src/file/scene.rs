@@ -290,8 +290,8 @@ fn rational(section: &mut Section<'_>) -> Read<Rational> {
     Ok(Rational { numerator, denominator, delay, unit_zeros: zeros })
 }
 
-/// Descending coefficients without leading zeros; a denominator must have one that is not zero. And how
-/// many of the zeros at its end, up to `most`, were too many for the degree and taken off.
+/// Descending coefficients without leading zeros; a denominator must have a coefficient that is not zero.
+/// Also returns how many zeros at its end, up to `most`, were beyond the degree and removed.
 fn polynomial(section: &mut Section<'_>, key: &Key, most: usize) -> Read<(Coefficients, usize)> {
     let Some(Found { mut value, span }) = section.list(key)? else {
         return Err(section.missing(key));

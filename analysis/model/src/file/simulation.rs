@@ -101,7 +101,7 @@ fn missed_of(mut table: Section<'_>) -> Read<Missed> {
     let fraction = table.optional(&key::MISSED_FRACTION);
     let seed = table.optional(&key::MISSED_SEED);
     let (every, fraction, seed) = match (every, fraction, seed) {
-        // What is not there may be a slip of the other, which is said before it is unknown.
+        // A missing key may be a typo of the unknown key, which is then suggested.
         (Ok(None), Ok(None), Ok(_)) => {
             let reported = table.missing(&key::MISSED_FRACTION);
             table.finish();

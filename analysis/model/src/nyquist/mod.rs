@@ -206,7 +206,7 @@ pub struct NyquistScene {
     pub name: String,
     /// Period in s.
     pub period: f64,
-    /// Its curves, what is judged first.
+    /// Its curves, the judged curve first.
     pub curves: Vec<Curve>,
     /// What the index has to stay below; `None` where the rule passes none.
     pub limit: Option<f64>,
@@ -262,9 +262,9 @@ impl NyquistScene {
         })
     }
 
-    /// How far what is judged keeps to the right of the critical line, in N m s/rad: negative where
-    /// it crosses, minus infinity where poles or the coupling forbid that anything passes; not a
-    /// number where no bound is known.
+    /// How far the judged curve keeps to the right of the critical line, in N m s/rad: negative where it
+    /// crosses, minus infinity where poles or the coupling forbid that anything passes; not a number where no
+    /// bound is known.
     pub fn clearance(&self) -> f64 {
         let Some(limit) = self.limit else { return f64::NEG_INFINITY };
         let real = |curve: &Curve| match curve.role {
@@ -280,8 +280,8 @@ impl NyquistScene {
         )
     }
 
-    /// The factor by which what is judged may grow until it touches the critical line; `None` where
-    /// it passes at no size, or at any.
+    /// The factor by which the judged curve may grow until it touches the critical line; `None` where it
+    /// passes at no size, or at any.
     pub fn gain_margin(&self) -> Option<f64> {
         let index = |curve: &Curve| match curve.role {
             Role::Judged | Role::JudgedLatched => curve.alpha,

@@ -1,4 +1,4 @@
-//! How much of the plane shows what is judged.
+//! How much of the plane shows the judged curve.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ pub fn critical_lines(scenes: &[NyquistScene]) -> Vec<(f64, &'static str)> {
     lines
 }
 
-/// Ranges of the two axes that show what is judged, of an axis that is not asked for.
+/// Ranges of the two axes that show the judged curve, for axes without a given range.
 pub fn usual_window(
     scenes: &[NyquistScene],
     wanted_x: Option<Range<f64>>,

@@ -1,4 +1,4 @@
-//! What is seen of a Nyquist plot, in sentences.
+//! Describes a Nyquist plot in sentences.
 
 use std::f64::consts::PI;
 
@@ -78,7 +78,7 @@ pub fn bound(name: &str, scene: &NyquistScene) -> Option<Vec<String>> {
     Some(words)
 }
 
-/// How much larger what is judged may be.
+/// How much larger the judged curve may be.
 fn margins(scene: &NyquistScene) -> Vec<String> {
     if scene.limit.is_none() {
         let words = "no critical line: the rule for one-sided or limited scenes passes none behind a \

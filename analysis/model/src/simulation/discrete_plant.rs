@@ -29,7 +29,7 @@ impl Discretization {
 
     /// The same with this time in s from the sample to its torque.
     pub fn delayed(self, delay: f64) -> Self {
-        // What is left of a whole tick by rounding alone is no part of a tick.
+        // A rest that comes from rounding alone is not a part of a tick.
         const ROUNDING: f64 = 1e-12;
         let ticks = delay / self.period;
         let whole = (ticks + ROUNDING).floor();

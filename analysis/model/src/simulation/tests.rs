@@ -218,7 +218,7 @@ fn a_device_behind_the_matched_coupling_hums_and_rests_as_the_certificate_says()
         let steps = Resolution { encoder: Some(step), ..Resolution::default() };
         let bound = QuantizationBound::of(&scene, Format::F64, &steps).unwrap();
         let hum = bound.hum();
-        // Compliances of one sample, of one that is on its way, and of 0.4 of another.
+        // Compliances of one sample, of a sample on its way, and of 0.4 of another.
         let fed_back = 2.4 * compliance * stiffness;
         if one_sided {
             let most = 0.5 * step * stiffness / (1.0 - fed_back);
@@ -326,7 +326,7 @@ fn integrated(case: &LateLoop, samples: usize, start: Motion) -> Vec<f64> {
     let updates = case.latency.actuator_updates as usize;
     // What an amplifier that is updated makes up for until the next update.
     let caught_up = 1.0 - (-period / (updates as f64 * lag)).exp();
-    // Position, velocity, torque of the amplifier or what is commanded until it is updated, angle behind the
+    // Position, velocity, torque of the amplifier or the command until it is updated, angle behind the
     // filter.
     let rate = |s: [f64; 4], command: f64| {
         let torque = if lag > 0.0 { s[2] } else { command };

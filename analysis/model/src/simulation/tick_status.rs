@@ -31,7 +31,7 @@ impl TickStatus {
         }
     }
 
-    /// Everything that there is, what is served in full first.
+    /// All states, full service first.
     pub fn all() -> impl Iterator<Item = Self> {
         LimitReason::ALL.into_iter().map(Self::Ran).chain([Self::Missed])
     }

@@ -22,8 +22,8 @@ const BEYOND: f64 = 2.5;
 /// Least period on an axis, as a part of the scene's own: a period of zero is none.
 const SHORTEST: f64 = 0.05;
 
-/// The numbers that may be an axis: those that the verdict rests on, but for those of the device's chain, and
-/// for what is counted in few steps.
+/// The numbers that may be an axis: those that the verdict rests on, except those of the device's chain and
+/// those with few steps.
 const CHOICE: [Parameter; 14] = [
     Parameter::Stiffness,
     Parameter::Damping,
@@ -89,7 +89,7 @@ enum Judge {
     PlantOfRow,
     /// One whose horizontal axis is.
     PlantOfMember,
-    /// One that has no transfer function: by its certificate alone.
+    /// An environment without a transfer function: by its certificate alone.
     Certificate,
 }
 
@@ -298,7 +298,7 @@ fn own_number(scene: &Scene, axis: Parameter) -> f64 {
     }
 }
 
-/// From nothing, or a little, to some times the scene's own number or to what is usual where that is zero.
+/// From nothing, or a little, to a multiple of the scene's own number, or of a usual number if that is zero.
 fn usual_range(scene: &Scene, axis: Parameter) -> Range<f64> {
     /// The design's answer with everything else as it is.
     const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };

@@ -141,7 +141,7 @@ fn nothing_that_the_dashed_border_encloses_is_rejected() {
             drawn.push((coupling, border.name));
         }
     }
-    // The paper's rule passes nothing behind these; what is drawn of the rigid one is the exact rule's.
+    // The paper's rule passes nothing behind these; the region of the rigid device is the exact rule's.
     assert!(drawn.iter().all(|(coupling, _)| *coupling != stiff), "{drawn:?}");
     assert!(drawn.iter().any(|(coupling, _)| coupling.is_empty()) && drawn.len() > 5, "{drawn:?}");
 }

@@ -19,7 +19,7 @@ pub struct HandImpedance {
     pub damping: f64,
     /// Stiffness in N m/rad of the hand, to the ground.
     pub stiffness: f64,
-    /// What is between device and hand; `None`: the hand is on the device.
+    /// The link between device and hand; `None`: the hand is on the device.
     pub link: Option<Compliance>,
     /// Masses on springs beside each other, on what the hand holds.
     #[serde(skip_serializing_if = "Vec::is_empty")]

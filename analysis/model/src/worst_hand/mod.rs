@@ -1,11 +1,11 @@
 //! The hand in which a scene oscillates the most: what a rejection means in practice.
 //!
-//! For a rigid device the rule of theory, section 4.1, is necessary as well as sufficient: below
-//! the device's passivity lies an angle on the unit circle at which some passive hand makes the
-//! sampled loop grow. Where the real part is smallest is where that hand resonates, so the search
-//! starts from masses and springs that resonate near there, then climbs in all their numbers. Where
-//! none of them does, the hand is constructed as in the proof (theory, section 13.6): for a rigid device
-//! it has what is needed at all frequencies that a sample confuses.
+//! For a rigid device the rule of theory, section 4.1, is necessary as well as sufficient: below the device's
+//! passivity lies an angle on the unit circle at which some passive hand makes the sampled loop grow. Where
+//! the real part is smallest is where that hand resonates, so the search starts from masses and springs that
+//! resonate near there, then climbs in all their numbers. Where none of them does, the hand is constructed as
+//! in the proof (theory, section 13.6): for a rigid device it has the needed impedance at all frequencies
+//! that a sample confuses.
 //!
 //! Where torques lag, delay, amplifier and sensor are part of the loop in which hands are tried. On the
 //! other devices not every rejected scene has such a hand.
@@ -176,7 +176,7 @@ struct HandSearch<'d> {
 impl<'d> HandSearch<'d> {
     fn new(scene: &Scene, device: &'d Chain, lighter: f64) -> Result<Self, SimulationError> {
         let experiment = Experiment::still(scene);
-        // Says what is wrong before anything is searched for.
+        // Reports faults before any search.
         eigenvalues(&closed_loop(&experiment, Integration::default())?.matrix)?;
         Ok(Self { device, lighter, experiment, tried: 0 })
     }
@@ -249,10 +249,10 @@ impl<'d> HandSearch<'d> {
         Ok(best)
     }
 
-    /// A hand with one of its numbers larger or smaller by a factor. A number that is zero begins at
-    /// what is small beside the device.
+    /// A hand with one of its numbers larger or smaller by a factor. A number that is zero begins at a value
+    /// that is small beside the device.
     fn neighbours(&self, hand: &HandImpedance, factor: f64) -> Vec<HandImpedance> {
-        /// What is small beside the device.
+        /// A value that is small beside the device.
         const SMALL: f64 = 1e-3;
         let (inertia, period) = (self.inertia(), self.experiment.scene.timing.period);
         let damping = self.device.damping().max(inertia / period) * SMALL;

@@ -30,8 +30,8 @@ pub(super) struct Names<'n> {
     pub(super) ways: &'n [Vec<DrawingPoint>],
 }
 
-/// Marks frequencies inside of a frame on what is judged, and where its phase margin is reached, and
-/// writes all names: on no curve and no line, as long as there is room beside them.
+/// Marks frequencies inside of a frame on the judged curve, and where its phase margin is reached, and writes
+/// all names: on no curve and no line, as long as there is room beside them.
 pub(super) fn draw(
     plot: &PlotArea<'_>,
     scenes: &[NyquistScene],

@@ -1,4 +1,4 @@
-//! The paper's Nyquist plots: what is judged of a scene, and the line that it must not cross.
+//! The paper's Nyquist plots: the judged transfer function of a scene, and the line that it must not cross.
 
 mod infinity;
 mod legend;
@@ -32,7 +32,7 @@ impl Line<'_> {
     }
 }
 
-/// What is judged takes a pattern each, and what is not that of its scene.
+/// Each judged curve takes a pattern; the others take the pattern of their scene.
 fn lines(scenes: &[NyquistScene]) -> Vec<Vec<Line<'_>>> {
     let mut used = 0;
     let mut of = |scene: &'_ NyquistScene| -> Vec<usize> {
@@ -51,10 +51,10 @@ fn lines(scenes: &[NyquistScene]) -> Vec<Vec<Line<'_>>> {
     scenes.iter().zip(numbers).map(|(s, n)| s.curves.iter().zip(n).map(line).collect()).collect()
 }
 
-/// Draws the Nyquist plots of named scenes for velocity, `(T z / (z - 1)) G`: what is judged in
-/// black, with its critical line, its least real part and frequencies marked; beside it, in grey,
-/// the environment alone where that is something else. Where a pole on the unit circle takes a
-/// curve to infinity, a broken line along the frame shows on which side it comes back.
+/// Draws the Nyquist plots of named scenes for velocity, `(T z / (z - 1)) G`: the judged curve in black, with
+/// its critical line, its least real part and frequencies marked; beside it, in grey, the environment alone
+/// where that is something else. Where a pole on the unit circle takes a curve to infinity, a broken line
+/// along the frame shows on which side it comes back.
 ///
 /// # Errors
 /// Where an environment has no transfer function, or there is none.
@@ -169,8 +169,7 @@ fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()>
     marks::draw(&plot, scenes, inner, &names)
 }
 
-/// What is judged in place of a curve: an upright line that all of the scene's motion keeps right
-/// of.
+/// Judged in place of a curve: an upright line that all of the scene's motion keeps right of.
 fn draw_bounds(
     chart: &mut Plane<'_, '_>,
     scenes: &[NyquistScene],
@@ -227,7 +226,7 @@ fn draw_curve(
             }
         }
     }
-    // What is not judged leaves the frame where it leaves it.
+    // Curves that are not judged may leave the frame.
     if curve.role == Role::Alone { Ok(Vec::new()) } else { infinity::draw(plot, curve, frames) }
 }
 

@@ -165,8 +165,8 @@ fn margins_are_what_it_takes_to_touch_the_line() {
     // A circle around the origin of radius B: never as far as the line.
     let damper = judged(&scene(Environment::DamperWall(wall(0.0, 0.01, 1)), STANDARD));
     assert!(damper.phase_margin(&damper.curves[0]).is_none());
-    // One whose delayed value is at -B only where it is far below: turned by what is found, the
-    // least real part is on the line.
+    // A curve whose delayed value is at -B only where it is far below: turned by the angle found, its least
+    // real part is on the line.
     let environment = rational(&[27.0, -27.0], &[1.0, -0.5], 1);
     let found = judged(&scene(Environment::Rational(environment), STANDARD));
     let (turn, _, _) = found.phase_margin(&found.curves[0]).unwrap();

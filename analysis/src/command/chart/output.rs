@@ -37,7 +37,7 @@ impl WindowArguments {
     }
 }
 
-/// Files whose names say what is in them.
+/// Files whose names state their content.
 #[derive(Debug)]
 pub struct Files {
     picture: Option<Output>,

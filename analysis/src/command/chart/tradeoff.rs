@@ -23,7 +23,7 @@ use crate::toolchain::{self, NumberFormat, Tools};
 /// Arguments of `haptic chart tradeoff`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// What is compared
+    /// Comparison to draw
     #[arg(value_enum, default_value_t)]
     pub topic: Topic,
     /// Draw the kept tables instead of measuring
@@ -43,7 +43,7 @@ pub struct Arguments {
     pub error: Vec<String>,
 }
 
-/// What is compared.
+/// Comparison to draw.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Topic {
     /// Each of the following

@@ -24,7 +24,7 @@ pub struct Arguments {
     pub output: OutputArguments,
 }
 
-/// Turns a scene's device and draws what is felt.
+/// Turns a scene's device and draws the torque that the hand feels.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     match Program::find(&arguments.scene) {
         Some(Program { name, scene, transducers, .. }) => {

@@ -199,7 +199,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     })
 }
 
-/// A record, and what is known of it.
+/// A record and its known properties.
 struct Measured {
     record: Record,
     /// Who has measured it, where that was not a board or another instrument.
@@ -209,7 +209,7 @@ struct Measured {
     torque_source: Option<TorqueSource>,
 }
 
-/// The record of a file, or one that is made.
+/// The record of a file, or a new record.
 fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
     let (file, stated) = (arguments.file.as_deref(), arguments.counts_per_rev);
     let counts_per_turn = stated.unwrap_or(target::COUNTS_PER_TURN);

@@ -84,7 +84,7 @@ impl AtRest {
         }
     }
 
-    /// Stiffness in N m/rad of what is leaned against.
+    /// Stiffness in N m/rad of the wall that the hand leans against.
     pub fn stiffness(&self) -> f64 {
         self.torque / self.angle
     }

@@ -1,8 +1,8 @@
 //! Certificates of two ends of a range, where the loop between is neither.
 //!
-//! A servo computes `F(k+1) = E (x(k) - V F(k))` ahead and writes it a few microseconds after the
-//! next count. The torque of its count is late behind its coupling, but not at the motor: neither the wall that is
-//! one sample late nor the one that is not, both behind the coupling, is that loop.
+//! A servo computes `F(k+1) = E (x(k) - V F(k))` ahead and writes it a few microseconds after the next count.
+//! The torque of its count is late behind its coupling, but not at the motor: neither the wall that is one
+//! sample late nor the undelayed wall, both behind the coupling, is that loop.
 
 use haptic_servo::environment::{Coefficients, Environment, Rational};
 use haptic_servo::scene::{Coupling, Latency, Scene};

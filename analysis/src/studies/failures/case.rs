@@ -47,7 +47,7 @@ pub struct CaseResult {
     pub certificate: MethodResult,
     /// What does not err on this loop.
     pub truth: MethodResult,
-    /// Loops that show it: the one in question, then one that the certificate allows.
+    /// Loops that show it: the loop in question, then a loop that the certificate allows.
     pub runs: Vec<LoopRun>,
 }
 

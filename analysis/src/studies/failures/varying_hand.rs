@@ -108,12 +108,11 @@ pub struct VaryingHand {
     lag: f64,
     /// `exp(-1/tau)`
     left: f64,
-    /// Of the constant, and of what is perpendicular to it.
+    /// Of the constant, and of the part perpendicular to it.
     pub ways: [AllPass; 2],
 }
 
-/// The plane of 1 and `exp(-t/tau)` over a period: integral of the second, and norm of what is left of it
-/// without its mean.
+/// The plane of 1 and `exp(-t/tau)` over a period: integral of the second, and its norm without its mean.
 fn plane(lag: f64) -> (f64, f64) {
     let left = (-1.0 / lag).exp();
     let mean = lag * (1.0 - left);
@@ -214,7 +213,7 @@ impl VaryingHand {
         Ok(DMatrix::from_columns(&columns))
     }
 
-    /// Position, velocity, amplifier, the integrals of `e` and of `e exp((1 - t)/tau)`, and what is held:
+    /// Position, velocity, amplifier, the integrals of `e` and of `e exp((1 - t)/tau)`, and the held values:
     /// command and returned torque.
     fn over_a_period(&self, inertia: f64) -> DMatrix<f64> {
         let mut rates = DMatrix::zeros(7, 7);

@@ -1,5 +1,5 @@
-//! How much model of a device a scene needs: the cheapest one whose verdict and motion stay within
-//! a bound of the fullest's, which is the one that the scene's file describes.
+//! How much model of a device a scene needs: the cheapest model whose verdict and motion stay within a bound
+//! of the full model's, which the scene's file describes.
 //!
 //! The servo is the same in all of them. What a model may leave out is the hand that holds the
 //! device, masses of the chain (links are welded: [`Chain::lumped`]) and the amplifier's lag.

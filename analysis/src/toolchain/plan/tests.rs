@@ -68,7 +68,7 @@ fn check(host: &HostEnvironment, expected: Plan) {
 #[test]
 fn a_complete_machine_is_ready() {
     check(&complete(), Plan::Ready(Compiler::Own));
-    // Also where fetching is forbidden, and without rustup: what is there serves.
+    // Also where fetching is forbidden, and without rustup: the installed tools serve.
     check(&HostEnvironment { fetching_forbidden: true, ..complete() }, Plan::Ready(Compiler::Own));
     check(&HostEnvironment { rustup: false, ..complete() }, Plan::Ready(Compiler::Own));
 }

@@ -106,7 +106,7 @@ pub fn answer(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))
 }
 
-/// What is said to a bad question, which has exit status 2 and no answer.
+/// The message for invalid input, which has exit status 2 and no answer.
 pub fn complaint(output: Output) -> String {
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     assert!(output.stdout.is_empty(), "{output:?}");

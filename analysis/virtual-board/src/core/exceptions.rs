@@ -107,7 +107,7 @@ impl Default for Exceptions {
 }
 
 impl Exceptions {
-    /// The one that is being served; none in a program that nothing has interrupted.
+    /// The active exception; `None` in a program that nothing has interrupted.
     pub fn current(&self) -> Option<Number> {
         self.nested.last().copied()
     }
@@ -193,7 +193,7 @@ impl Exceptions {
         self.nested.push(number);
     }
 
-    /// Ends the one that is being served; a line that is still up asks again.
+    /// Ends the active exception; a line that is still up requests it again.
     pub fn leave(&mut self) {
         if let Some(number) = self.nested.pop() {
             self.active.put(number, false);

@@ -11,7 +11,7 @@ pub const SYSTEM: u32 = 0xE000_E000;
 /// Where the unit with the cycle counter begins.
 pub const WATCH: u32 = 0xE000_1000;
 
-/// AIRCR: what must be written with it, and what is read instead.
+/// AIRCR: the key to write with it, and the value read instead.
 const KEY: u32 = 0x05FA;
 const KEY_READ: u32 = 0xFA05 << 16;
 /// AIRCR: a reset is asked for.
@@ -146,8 +146,8 @@ impl System {
         Ok(())
     }
 
-    /// The priority byte of a place behind the first interrupt's or the system handlers', if that is
-    /// what is there: these alone may be accessed by bytes.
+    /// The priority byte at an offset from the first interrupt's or the system handlers', if there is one:
+    /// only these may be accessed by bytes.
     pub fn priority_at(offset: u32) -> Option<Number> {
         match offset {
             0x400..0x5F0 => Some(FIRST_INTERRUPT + (offset - 0x400) as Number),

@@ -29,7 +29,7 @@ impl SysTick {
         self.zero
     }
 
-    /// Does what is due; whether it asks for its exception.
+    /// Runs due events; returns whether it requests its exception.
     pub fn advance(&mut self, now: u64) -> bool {
         let Some(zero) = self.zero.filter(|&zero| zero <= now) else { return false };
         self.reached = true;

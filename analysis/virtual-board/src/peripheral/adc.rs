@@ -146,7 +146,7 @@ impl Adc {
         }
     }
 
-    /// Does what is due at a time, but for the end of a sampling.
+    /// Runs the events due at a time, except the end of a sampling.
     pub fn advance(&mut self, now: u64, clock: AdcClock) {
         if self.calibrated.is_some_and(|at| at <= now) {
             self.calibrated = None;

@@ -217,7 +217,7 @@ impl Clock {
         here.map(|&(_, on, ready)| (on, ready))
     }
 
-    /// A register with its bits that say what is ready.
+    /// A register with its ready bits.
     fn with_ready(&self, offset: u32, value: u32) -> u32 {
         self.switches(offset).fold(value, |value, (on, ready)| {
             let starts = (offset, on, ready) != CRYSTAL || self.crystal_runs;

@@ -49,7 +49,7 @@ impl Comparators {
         }
     }
 
-    /// Their outputs. One that is off is low.
+    /// Their outputs; low if off.
     pub fn outputs(&self) -> [bool; 4] {
         std::array::from_fn(|number| {
             let control = self.controls[number];

@@ -1,4 +1,4 @@
-//! Inert registers: they keep what is written, and it has no effect here.
+//! Inert registers: they store writes, which have no effect here.
 
 use super::{Access, Unmodelled, only};
 
@@ -48,7 +48,7 @@ impl InertRegisters {
     /// Whether a value may be written there, whatever it has of the chip's `own` bits.
     pub(super) fn check(&self, offset: u32, value: u32, own: u32) -> Access<()> {
         let (_, reset, modelled) = self.find(offset)?;
-        // What is not modelled may be left as it was, which is as it came out of reset.
+        // Features that are not modelled keep their reset state.
         only((value ^ reset) & !own, modelled)
     }
 

@@ -1,5 +1,5 @@
-//! Peripherals at register level: of each only what the programs use. What is not here is an error
-//! that names the register, never a silent zero.
+//! Peripherals at register level: of each only the parts that programs use. Any other access is an error that
+//! names the register, never a silent zero.
 
 pub mod adc;
 pub mod basic_timer;

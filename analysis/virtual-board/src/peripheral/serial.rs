@@ -1,4 +1,4 @@
-//! A serial port: a byte takes as long as on a line, and one that is not read in time is lost.
+//! A serial port: a byte takes as long as on a line, and a byte that is not read in time is lost.
 //!
 //! Two variants of it: the G4's with a queue of eight bytes each way (RM0440, 37.8), the F405's with
 //! one (RM0090, 30.6).
@@ -33,7 +33,7 @@ const ON_G4: u32 = 1;
 const QUEUES: u32 = 1 << 29;
 /// CR1 of the F405: the port is on.
 const ON_F405: u32 = 1 << 13;
-/// CR3: errors of the line, of which the overrun is the one that there can be.
+/// CR3: errors of the line, of which only the overrun can occur.
 const ERRORS: u32 = 1;
 /// Bits of a byte on the line, with its start and its stop.
 const FRAME: u64 = 10;
@@ -51,12 +51,12 @@ pub struct Serial {
     sent: bool,
     incoming: VecDeque<u8>,
     outgoing: VecDeque<u8>,
-    /// When the byte on the line has arrived, and when the one that is being sent has left.
+    /// The arrival time of the byte on the line, and the end of the byte being sent.
     arrives: Option<u64>,
     leaves: Option<u64>,
     /// The line was busy and has not been idle since.
     was_busy: bool,
-    /// What is on its way to the program, and what it has sent.
+    /// The bytes on their way to the program, and the bytes it has sent.
     line_in: VecDeque<u8>,
     line_out: Vec<u8>,
     /// Bytes that were lost because they were not read in time.
@@ -104,7 +104,7 @@ impl Serial {
         [self.arrives, self.leaves].into_iter().flatten().min()
     }
 
-    /// Does what is due, and begins what can begin; `divider` is the core's clock by the port's.
+    /// Runs due events, and begins the next transfers; `divider` is the core's clock by the port's.
     pub fn advance(&mut self, now: u64, divider: u64) {
         let on = self.control[0] & self.on() != 0 && self.rate > 0;
         if !on {

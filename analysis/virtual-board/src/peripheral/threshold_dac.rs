@@ -20,7 +20,7 @@ pub struct ThresholdDac {
 }
 
 impl ThresholdDac {
-    /// The channels' voltages, as parts of the reference; zero of one that is off.
+    /// The channels' voltages, as parts of the reference; zero if off.
     pub fn outputs(&self) -> [f64; 2] {
         [0, 1].map(|channel| {
             let is_on = self.control >> (16 * channel) & 1 != 0;

@@ -1,4 +1,4 @@
-//! What is wired to the power stage's chip on a B-G431B-ESC1 (UM2516 and the schematic of MB1419): the motor,
+//! The circuit at the power stage's chip on a B-G431B-ESC1 (UM2516 and the schematic of MB1419): the motor,
 //! the supply, the shunts, and the sensors.
 
 use super::REFERENCE;
@@ -22,8 +22,8 @@ const ZERO_CELSIUS: f64 = 273.15;
 pub struct Supply {
     /// Volts.
     pub volts: f64,
-    /// Capacitance in F of a supply that takes nothing back: what the motor gives it stays there. None
-    /// of one that keeps its voltage.
+    /// Capacitance in F of a supply that takes nothing back: energy from the motor stays there. `None` for a
+    /// supply that keeps its voltage.
     pub capacitance: Option<f64>,
     /// Volts that it does not fall below.
     pub source: f64,
@@ -51,7 +51,7 @@ pub struct Circuit {
     pub supply: Supply,
     /// Temperature in °C at the board's sensor.
     pub temperature: f64,
-    /// What is wrong with each amplifier's output, in V.
+    /// The error of each amplifier's output, in V.
     pub amplifier_errors: [f64; 3],
     /// Whether the encoder's two wires are swapped.
     pub encoder_is_reversed: bool,

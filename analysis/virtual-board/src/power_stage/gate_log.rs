@@ -23,7 +23,7 @@ pub fn off_since(changes: &[(u64, Gates)]) -> Option<u64> {
     changes.iter().rev().take_while(is_off).last().map(|(at, _)| *at)
 }
 
-/// The shortest time between one switch of a leg that goes off and the other one that goes on.
+/// The shortest time from one switch of a leg turning off to the other turning on.
 pub fn shortest_dead_time(changes: &[(u64, Gates)]) -> Option<u64> {
     (0..3).filter_map(|leg| shortest_of(changes, leg)).min()
 }

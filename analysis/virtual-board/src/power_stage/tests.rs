@@ -428,7 +428,7 @@ fn a_motor_turns_and_its_back_emf_limits_the_current() {
     driver.periods(4000);
     let [current, ..] = driver.currents();
     assert!(current.abs() < 0.3, "{current}");
-    // Without load it is as fast as the voltage lets it be; what is lost is the dead time's.
+    // Without load its speed is limited by the voltage; the loss is the dead time's.
     let count = driver.0.encoder.value(0, 1);
     driver.periods(1);
     assert_eq!(count, 0, "the encoder's pins are not the timer's in this test");

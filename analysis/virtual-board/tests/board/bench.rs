@@ -65,7 +65,7 @@ pub fn build_for(chip: &'static Chip, output: TorqueOutput, names: &[&str]) -> V
     built.unwrap_or_else(|error| panic!("{error}")).into_iter().map(|built| built.path).collect()
 }
 
-/// A board with its power on, what is at its pins, and a host at its serial port.
+/// A board with its power on, the device at its pins, and a host at its serial port.
 pub struct Bench {
     /// The board.
     pub machine: Machine,
@@ -106,7 +106,7 @@ impl Bench {
         bench
     }
 
-    /// What is at the pins.
+    /// The device at the pins.
     pub fn pins(&self) -> MutexGuard<'_, Pins> {
         self.pins.lock().unwrap()
     }

@@ -64,7 +64,7 @@ struct Use {
     sets: u32,
     /// Ticks of the streams that were not told.
     gaps: u32,
-    /// The last one that was.
+    /// The last of them.
     last: Option<u32>,
 }
 

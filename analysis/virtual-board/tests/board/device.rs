@@ -1,4 +1,4 @@
-//! What is wired to the virtual board.
+//! The device at the virtual board.
 
 use std::collections::VecDeque;
 
@@ -19,7 +19,7 @@ pub struct Sample {
     pub count: i32,
 }
 
-/// What is at the pins: a device, and a test that looks on and may turn the encoder itself.
+/// The connections of the pins: a device, and a test that observes it and may turn the encoder itself.
 pub struct Pins {
     device: Box<dyn Device + Send>,
     /// Turns of the encoder that are still to come, one a sample, in place of the device's.

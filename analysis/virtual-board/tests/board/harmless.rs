@@ -1,4 +1,4 @@
-//! What is no fault, or cannot be known to be one: nothing unsafe comes of it.
+//! Events that are not faults, or cannot be detected as faults: nothing unsafe follows.
 
 use analysis::program::Program;
 use haptic_servo::fault::{Fault, FaultRecord};
@@ -66,7 +66,7 @@ fn what_masks_all_but_the_servo_makes_no_tick_late() {
     });
 }
 
-/// One that is held up is a fault, although its code would be in time: see the faults.
+/// A delayed tick is a fault, although its code would be in time: see the faults.
 #[test]
 fn what_masks_the_servo_between_two_ticks_makes_no_tick_late() {
     on_both(|chip| {

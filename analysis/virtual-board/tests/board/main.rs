@@ -1,5 +1,5 @@
-//! What is flashed, on both virtual boards: that it starts as it should, renders what the host
-//! renders, and stops when it must.
+//! The flashed programs on both virtual boards: they start as they should, render the host's codes, and stop
+//! when they must.
 
 mod assembly;
 mod at_rest;

@@ -69,7 +69,7 @@ fn a_torque_comes_its_phase_after_the_update_of_its_own_count() {
     });
 }
 
-/// What is left up to the phase, every tick and at worst, in counts of the board's clock.
+/// The time left up to the phase, every tick and at worst, in counts of the board's clock.
 #[test]
 fn the_slack_is_that_up_to_the_phase() {
     on_both(|chip| {
@@ -78,7 +78,7 @@ fn the_slack_is_that_up_to_the_phase() {
         let written = bench.machine.board().meter.compute().most;
         let slack = u64::from(bench.status().worst_slack) * timer;
         let left = phase(chip) - written;
-        // Around what is measured there are an interrupt's entry and the reading of the clock.
+        // Around the measured code there are an interrupt's entry and the reading of the clock.
         assert!(slack < left && slack + 100 > left, "{}: {slack} of {left}", chip.name);
     });
 }

@@ -39,7 +39,7 @@ fn a_host_that_falls_silent_lets_the_device_go() {
         bench.run(SILENCE + FADING);
         check_release(&bench, chip, heard);
         assert_eq!(bench.machine.resets(), [], "{}", chip.name);
-        // The word by which it is asked is the one that was missing, and nothing starts by itself.
+        // The missing word requests it, and nothing starts by itself.
         let status = bench.status();
         let lost = Fault::LinkLost { allowed: SILENCE as u32 };
         assert_eq!(status.fault.and_then(FaultCode::fault), Some(lost), "{}", chip.name);

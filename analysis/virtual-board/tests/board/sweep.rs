@@ -29,7 +29,7 @@ fn playing(samples: u64) -> Bench {
 
 /// What the board has sent, as lines.
 fn lines(bench: &mut Bench) -> Vec<String> {
-    // What is under way comes with the next samples.
+    // Samples under way come with the next ones.
     bench.run(20);
     let sent = bench.machine.board_mut().serial.take_sent();
     String::from_utf8(sent).unwrap().lines().map(str::to_owned).collect()

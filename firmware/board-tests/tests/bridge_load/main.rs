@@ -48,7 +48,7 @@ const PERIOD: f64 = 0.001;
 /// The modulation, the limits and the scales of the current loop with that load. The loop itself does not run.
 static CURRENT_LOOP: CurrentLoop = CurrentLoop::checked(&LOAD, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);
 
-/// What is to be read at that duty.
+/// The expected reading at that duty.
 const EXPECTED: DutyCurrent =
     LOAD.checked_current_at_duty(&B_G431B_ESC1, PERIOD / 40.0, DUTY, TOLERANCE);
 
@@ -71,7 +71,7 @@ const MEASURED: u32 = 256;
 /// instant before.
 const SETTLING: u32 = 40;
 
-/// The current in A that is none: a count of noise, and one that the offset is off by.
+/// The current in A that counts as zero: a count of noise, and a count of offset error.
 const NONE: f32 = 0.06;
 
 /// A board with its gates low, and the means of the phases without a current.
@@ -104,11 +104,11 @@ impl Bench {
         let (lowest, highest) = CURRENT_LOOP.bus_counts();
         if last.bus < lowest {
             return Err(
-                "the supply is below what is stated: is it on, and is its limit of current too low?",
+                "the supply is below the stated voltage: is it on, and is its limit of current too low?",
             );
         }
         if last.bus > highest {
-            return Err("the supply is above what is stated");
+            return Err("the supply is above the stated voltage");
         }
         Ok(Self { load, offsets })
     }

@@ -106,7 +106,7 @@ unsafe extern "C" fn TIM6_DAC() {
 
 /// The servo's cycles over a minute: minimum, mean and worst.
 pub fn measure() -> Result<(), Failure> {
-    /// Ticks until the clamp is open: until then a tick takes longer than one that renders.
+    /// Ticks until the clamp is open: until then a tick takes longer than a rendering tick.
     const OPENING: u32 = 200;
     /// Ticks of a minute. Their sum fits 32 bits up to 70 000 cycles a tick.
     const MINUTE: u32 = 60_000;

@@ -112,7 +112,7 @@ fn turn() -> Result<(), Failure> {
 /// Codes from mid-scale to full torque.
 const MOST: u16 = DacCode::CODES_TO_FULL_SCALE;
 
-/// A code appears at the update after the one that it was written behind, and not before.
+/// A code written after an update appears at the next update, and not before.
 fn latch() -> Result<(), Failure> {
     let mut hardware = paced();
     for code in [2048 - MOST, 1024, 2047, 2048, 3072, 2048 + MOST, 2048] {

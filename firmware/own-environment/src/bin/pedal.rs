@@ -20,7 +20,8 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate, by what the type states of itself: one that could oscillate stops the compiler here.
+/// Its certificate, from the bounds that the type states: an environment that could oscillate stops the
+/// compiler here.
 pub const CERTIFIED: Certified<Scene<Environment>> =
     SCENE.certified_as(SCENE.environment.stated_at(SCENE.timing.period));
 

@@ -6,8 +6,7 @@
 //! belong to the same instant, since the simulation waits for the code; a program whose torques come at
 //! a phase of their own has the time up to there for its tick, of which the simulation takes no notice.
 //!
-//! The clocks are the ones that the emulator gives the chip out of reset; the set-up that a real
-//! F405 needs never returns there.
+//! The clocks keep their reset state in the emulator: the set-up that a real F405 needs never returns there.
 
 mod exit;
 #[cfg(feature = "log")]

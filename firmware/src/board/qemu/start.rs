@@ -101,7 +101,7 @@ where
 ///
 /// In a frame of its own, which is not there any more when the host's sets are judged.
 #[inline(never)]
-#[expect(clippy::mut_from_ref, reason = "what is borrowed from is a place that is filled once")]
+#[expect(clippy::mut_from_ref, reason = "the reference is to a static that is initialised once")]
 fn prepare<E, N, M>(
     name: &'static str,
     program: Program<E>,

@@ -6,9 +6,9 @@ use super::lockstep;
 use super::{lines, log, meter};
 use crate::servo_loop::State;
 
-/// One interrupt. What `tick` does is what other boards have as their timer's interrupt, from its
-/// first instruction to its last, and it is what is measured as such; `state` says what the servo
-/// is doing, and `lose` is told of periods that went by without a tick.
+/// One interrupt. `tick` has the code of other boards' timer interrupt, from its first instruction to its
+/// last, and is measured as such; `state` is the state of the servo, and `lose` receives the number of
+/// periods without a tick.
 ///
 /// # Safety
 /// The pipes must be open.

@@ -77,8 +77,7 @@ where
     })
 }
 
-/// The program with the counter's width of this board in place of the one that it was written for, or a
-/// compile error.
+/// The program with the counter width of this board instead of its own, or a compile error.
 ///
 /// # Panics
 /// Where the counter would wrap unseen; in a constant that is the compile error.
@@ -93,7 +92,7 @@ pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
 /// Not inlined, so that its stack frame is gone when that task certifies a set, which takes most of
 /// the stack.
 #[inline(never)]
-#[expect(clippy::mut_from_ref, reason = "what is borrowed from is a place that is filled once")]
+#[expect(clippy::mut_from_ref, reason = "the reference is to a static that is initialised once")]
 fn bring_up<E, N, M>(
     name: &'static str,
     program: Program<E>,

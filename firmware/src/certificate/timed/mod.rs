@@ -176,7 +176,7 @@ impl TimingError {
                 t.push_number(*least);
                 t.push(" s and ");
                 t.push_number(*most);
-                t.push(" s: give it the one that the board has");
+                t.push(" s: give it the period of the board");
             }
             Self::PhaseRange { phase, shortest, longest } => {
                 t.push("this board would put its torques out ");
@@ -191,7 +191,7 @@ impl TimingError {
                 t.push(" s");
             }
             Self::Unmatched => t.push(
-                "where torques lag, a servo renders only what is behind the matched coupling: give the \
+                "where torques lag, a servo renders only environments behind the matched coupling: give the \
                  scene that, and its environment's type `Matched`",
             ),
             Self::Jitter { jitter } => {
@@ -457,10 +457,10 @@ const fn is_uneven<E: EnvironmentModel>(environment: &Environment) -> bool {
 /// The bound on the index of a certified scene whose torque is limited; `bound` is that which the
 /// verdict compared, for one-sided and limited scenes.
 ///
-/// It holds for a limit that moves, too: the clip of a monotone law at any level is monotone and no
-/// steeper, and that of a damper or a canceller is a part of it that may change from tick to tick
-/// (theory, section 5). A level that falls takes energy away; one that rises puts in what the
-/// environment stores at its depth, once.
+/// It holds for a limit that moves, too: the clip of a monotone law at any level is monotone and no steeper,
+/// and that of a damper or a canceller is a part of it that may change from tick to tick (theory, section 5).
+/// A falling level takes energy away; a rising level adds, once, the energy that the environment stores at
+/// its depth.
 pub(super) const fn limited_bound(
     scene: &Scene,
     rule: Rule,

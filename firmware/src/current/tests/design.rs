@@ -1,4 +1,4 @@
-//! What is refused when it is compiled, and the numbers that come out.
+//! Designs that do not compile, and the resulting numbers.
 
 use super::*;
 

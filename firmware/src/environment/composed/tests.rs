@@ -117,7 +117,7 @@ fn bound(environment: Environment) -> Interval {
     certify(&scene(environment)).unwrap_or_else(|why| panic!("{why}")).bound.unwrap()
 }
 
-/// Computed by hand: `K T (n - 1/2) + B` of a wall, nothing of one without delay, what is cancelled, and
+/// Computed by hand: `K T (n - 1/2) + B` of a wall, nothing of an undelayed wall, the cancelled damping, and
 /// `T (L/2 + (n - 1) M)`, where the end stops are the steepest rise, and the detents are beside them.
 #[test]
 fn indices_add() {
@@ -277,8 +277,8 @@ const KNOB_AND_WALL: KnobAndWall = Scene {
 const CERTIFIED: Certified<KnobAndWall> = KNOB_AND_WALL.certified();
 const TIMED: TimingChecked<KnobAndWall, Latched> = CERTIFIED.timing_checked::<Latched>();
 
-/// What is late throughout, by the latch; what cancels, behind the matched coupling; and a board comes to the
-/// same verdict when it starts.
+/// Late parts run latched, cancellers behind the matched coupling; a board reaches the same verdict when it
+/// starts.
 #[test]
 fn boards_render_them() {
     assert_eq!(TIMED.scene(), &KNOB_AND_WALL);
@@ -324,7 +324,7 @@ fn a_canceller_beside_a_profile_without_ends_feels_no_turn() {
     assert!(largest < 1e-5 && endless.torque_nm() != 0.0, "{largest}");
 }
 
-/// A servo with a coarse encoder and a DAC against one that has the positions as they are.
+/// A servo with a coarse encoder and a DAC against a servo with exact positions.
 fn largest_error<N: Number>(scene: &Scene, counts_per_turn: f64) -> f64 {
     let servo_of =
         |counts_per_turn| Transducers { counts_per_turn, largest_speed: 1e4, ..TRANSDUCERS };

@@ -214,7 +214,7 @@ impl Lattice {
         self.first.wrapping_add((parts >> PITCH_BITS) as i32)
     }
 
-    /// Whole pitches in so many parts, of which the part of one that `half` completes is one more.
+    /// Whole pitches in this many parts; a part that `half` completes to a whole pitch counts as one more.
     fn pitches(&self, parts: i32, half: u64) -> i32 {
         let whole = u64::from(parts.unsigned_abs()).wrapping_mul(self.per_part.into());
         let whole = (whole.wrapping_add(half) >> RECIPROCAL_BITS) as i32;

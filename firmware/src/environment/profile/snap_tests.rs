@@ -172,7 +172,7 @@ fn what_no_proof_covers_is_refused_with_a_sentence() {
     assert!(matched.certify().is_ok(), "{:?}", matched.certify().map(|_| ()));
     let spring = Coupling::Spring { stiffness: 16.0 };
     assert!(Scene { coupling: spring, latency, ..scene(once) }.certify().is_ok());
-    // A board renders what is late by a sample, and gives no damping away.
+    // A board renders profiles that are late by a sample, and gives no damping away.
     let late = scene(SnapProfile::<64, 1>::of(&KNOB)).certified();
     assert_eq!(late.time::<Latched>().unwrap().margin(), 0.0);
     assert!(scene(SnapProfile::<64, 1>::of(&ENDLESS)).certified().time::<Latched>().is_ok());

@@ -230,7 +230,7 @@ impl Frame {
             }
             (None, None) if repeats == 0 => return Err(ShapeError::Flat),
             (None, ends) => {
-                // What is nothing between its ends repeats as often as one likes.
+                // A profile that is zero between its ends repeats any number of times.
                 let count = if repeats == 0 { 1.0 } else { repeats as f64 };
                 let cell = TAU / count / knots as f64;
                 Self { cell, count, centre, ends, outermost, snap, wraps: true }

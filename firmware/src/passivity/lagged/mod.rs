@@ -48,11 +48,11 @@ pub struct SampledResponse {
     ripple: Series,
 }
 
-/// One lag: its time constant, and what is left of it after a tick and after the rest of a tick.
+/// One lag: its time constant, and the part that remains after a tick and after the rest of a tick.
 #[derive(Clone, Copy)]
 struct Decay {
     tau: Interval,
-    /// The integral of what is left of a step: the time constant, unless straight lines join the updates.
+    /// The integral of the rest of a step: the time constant, unless straight lines join the updates.
     held: Interval,
     /// The same less that of its square: half the time constant, unless straight lines do.
     unspread: Interval,
@@ -152,8 +152,8 @@ impl LagIntervals {
     }
 }
 
-/// The largest `e (1 - e)` of delays in a range, in periods, with `e` what is left of a delay by its whole
-/// samples: no response that is a mixture of them has more ripple `D / T^2` (equation 45).
+/// The largest `e (1 - e)` of delays in a range, in periods, with `e` the fraction of a delay beyond its
+/// whole samples: no response that is a mixture of them has more ripple `D / T^2` (equation 45).
 pub const fn ripple_of_mixture(least: Interval, most: Interval) -> Interval {
     let quarter = Interval::ONE.half().half();
     // From one half to the next it falls and rises: its largest is at an end, or in a half.
@@ -206,7 +206,7 @@ impl SampledResponse {
         };
         let Some((lag, lost)) = lost(first, second) else { return None };
         let Some(bracket) = bracket(&held, &lag, &lost) else { return None };
-        // `1 - part + part z`, the conjugate of what is held.
+        // `1 - part + part z`, the conjugate of the held part.
         let Some(early) = Polynomial::ascending(&[rest, part]).times(&lost) else { return None };
         let Some(cross) = Series::real_part(Kernel::AtOne, -1, &early, &lag) else { return None };
         let Some(mut ripple) = lateness.times(&Series::squared_magnitude(&lag)) else {
@@ -380,8 +380,8 @@ impl Port {
     /// Encloses the least passivity with which the port is passive, in N m s/rad (equation 39): the largest
     /// of `needed_at` over the circle. `found` is [`Port::index_for`] of any `delta`.
     ///
-    /// The index falls as `delta` grows, so that the larger of a `delta` and of its index is enough. What
-    /// is needed at the place of that index is a better `delta`, as in Newton's method.
+    /// The index falls as `delta` grows, so that the larger of a `delta` and of its index is enough. The
+    /// damping needed at the place of that index is a better `delta`, as in Newton's method.
     ///
     /// # Errors
     /// Where a pole is too near the circle for a bound.

@@ -1,7 +1,7 @@
 //! Current loops that are updated a whole number of times in a period, with straight lines between the
 //! updates (theory, section 13.8, equation 51).
 //!
-//! What is left of a step shrinks by `p = exp(-h / tau)` from update to update, which are `h` apart. Mean and
+//! The rest of a step shrinks by `p = exp(-h / tau)` from update to update, which are `h` apart. Mean and
 //! mean square of a straight line from 1 to `p` are `(1 + p) / 2` and `(1 + p + p^2) / 3`, so that over all
 //! updates the geometric series leave the sums below where a continuous lag has `tau` and `tau / 2`.
 
@@ -21,7 +21,7 @@ pub const fn delay_of_updates(update: u32, updates: u16) -> Interval {
 #[derive(Clone, Copy)]
 pub struct SampledLag {
     updates: f64,
-    /// `p`, what is left of a step an update later.
+    /// `p`, the rest of a step an update later.
     left: Interval,
 }
 
@@ -33,8 +33,8 @@ impl SampledLag {
         Self { updates, left: left(Interval::ONE.div(Interval::exact(updates)), tau) }
     }
 
-    /// The integral of what is left of a step in periods, `(h / 2) (1 + p) / (1 - p)`. With `p` once, of which
-    /// it is a rising function.
+    /// The integral of the rest of a step in periods, `(h / 2) (1 + p) / (1 - p)`. With `p` once, of which it
+    /// is a rising function.
     #[inline(never)]
     pub const fn held(&self) -> Interval {
         let sum = Interval::ONE.div(Interval::ONE.sub(self.left));
@@ -49,7 +49,7 @@ impl SampledLag {
         near.sub(far).sub(Interval::ONE).div(Interval::exact(6.0 * self.updates))
     }
 
-    /// What is left of a step after a time in periods that is a whole number of updates.
+    /// The rest of a step after a time in periods that is a whole number of updates.
     #[inline(never)]
     pub const fn after(&self, time: Interval) -> Interval {
         let mut updates = (time.midpoint() * self.updates + 0.5) as u32;

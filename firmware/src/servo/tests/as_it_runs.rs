@@ -1,4 +1,4 @@
-//! The controller that the certificate judges is the one that a servo computes: to 1e-11 the same
+//! The controller that the certificate judges is the controller that a servo computes: to 1e-11 the same
 //! torques, where the coefficients' rounding alone makes a difference of 1e-10 to 1e-5.
 
 use super::*;

@@ -43,8 +43,8 @@ fn the_status_has_the_energy_since_the_servo_was_armed() {
     let (mut sum, mut worst, mut last) = (0_i64, 0_i64, 0);
     for (k, count) in hand().enumerate() {
         bench.tick(count);
-        // The code at the motor since the last count was written two ticks ago; the board's first
-        // code is the one that it booted with.
+        // The code at the motor since the last count was written two ticks ago; the board's first code is its
+        // code at boot.
         let held = if k > 1 { bench.board.codes()[k - 1] - 2048 } else { 0 };
         sum += i64::from(held) * i64::from(count - last);
         worst = worst.max(sum);

@@ -42,7 +42,7 @@ fn assert_stopped(bench: &mut Bench<Wall, f32, Half>, fault: Fault) {
     assert_eq!(bench.notices(), [Notice::Armed]);
 }
 
-/// The code of a tick is that of its own count, and its slack what is left up to the phase.
+/// The code of a tick is that of its own count, and its slack the time left up to the phase.
 #[test]
 fn a_code_belongs_to_the_count_of_its_own_tick() {
     let mut bench = running(0);

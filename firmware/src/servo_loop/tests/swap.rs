@@ -119,7 +119,7 @@ fn a_new_set_starts_at_rest_where_the_device_is() {
     let spring = *bench.board.codes().last().unwrap();
     bench.requests.submit(set(&program, &[(Parameter::Damping, 0.014)])).unwrap();
     assert_eq!(swing(&mut bench), spring);
-    // And so does one that is armed: its state from a fault is not that of the motor.
+    // So does an armed servo: its state from a fault is not that of the motor.
     bench.board.elapsed = PERIOD;
     bench.stand(900, 20);
     bench.requests.arm();
@@ -157,7 +157,7 @@ fn a_swap_does_not_hurry_an_arming() {
     assert!(largest_step(&bench.board.codes()) <= 9 + 3);
     bench.stand(500, 20);
     assert_eq!(bench.servo_loop.state(), State::Running);
-    // Nor does one that is about to begin hurry a disarming.
+    // Nor does a swap that is about to begin hurry a disarming.
     bench.requests.submit(set(&SPRING, &[])).unwrap();
     bench.tick(500);
     bench.requests.disarm();

@@ -86,7 +86,7 @@ impl PendingReplies {
         }
     }
 
-    /// Records a request to align the motor; one that was not answered yet is answered with it.
+    /// Records a request to align the motor; a request that was not answered yet is answered with it.
     pub(super) fn align(&mut self, id: Id) {
         self.aligning = Some(id);
     }

@@ -1,4 +1,4 @@
-//! The search finds what is wrong, where something is.
+//! The search finds a fault where there is one.
 
 use std::f64::consts::PI;
 

@@ -120,7 +120,7 @@ const LOOK: f64 = 0.2;
 /// How far the push goes in rad: eight counts.
 const PUSH: f64 = 8e-4;
 
-/// A push from rest: what the first swings show, and what is left of them.
+/// A push from rest: the first swings, and their remainder.
 fn pushed(mut rig: Rig, stiffness: f64, hand: &HandImpedance) -> [Vec<Instant>; 2] {
     rig.run(LOOK).unwrap();
     rig.push(PUSH * (stiffness / held_inertia(hand)).sqrt());

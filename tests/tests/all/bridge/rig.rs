@@ -85,7 +85,7 @@ pub struct Rig {
     left: f64,
     instant: usize,
     loaded: Duties,
-    /// Over an instant: angles and speeds, the current, and what is constant, the output's and the hand's.
+    /// Over an instant: angles and speeds, the current, and the constants of the output and the hand.
     over: DMatrix<f64>,
     state: DVector<f64>,
     next: DVector<f64>,
@@ -229,7 +229,7 @@ fn sample(machine: &Machine, angle: f64, current: f64) -> Sample {
     }
 }
 
-/// Rates of the device, of what of a hand is linked to it, of the current, and of what is constant: the voltage,
+/// Rates of the device, of what of a hand is linked to it, of the current, and of the constants: the voltage,
 /// or the current's slope, and a torque of the hand.
 fn rates(machine: &Machine, hand: &HandImpedance, is_ideal: bool) -> DMatrix<f64> {
     let held = hand.link.is_none();

@@ -1,5 +1,5 @@
-//! Passivity of functions of `s` (theory, section 1): what is positive real by construction, what
-//! is not, and random functions against the exact reference.
+//! Passivity of functions of `s` (theory, section 1): functions that are positive real by construction,
+//! functions that are not, and random functions against the exact reference.
 //!
 //! A wrong image of the axis, a pole at infinity taken for a zero, a residue that is not carried
 //! over: each turns a mass into a non-passive element or a negative spring into a passive one.

@@ -2,36 +2,15 @@
 //! names one. Lines of prose are short enough to be read beside code.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use super::{read, regex, root};
+use super::{documents, regex, root};
 
 /// The longest line of prose.
 const COLUMNS: usize = 110;
 
 /// Printed by `haptic schema --reference`, a paragraph a line.
 const PRINTED: &str = "analysis/SCENE.md";
-
-/// All documents by their paths in the repository, with their text.
-fn documents() -> BTreeMap<PathBuf, String> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![root()];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(&folder).expect("a folder of the repository") {
-            let path = entry.expect("an entry").path();
-            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-            if path.is_dir() && name != "target" && !name.starts_with('.') {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "md") {
-                let path = path.strip_prefix(root()).expect("below the root").to_owned();
-                let text = read(&path.to_string_lossy());
-                found.insert(path, text);
-            }
-        }
-    }
-    found
-}
 
 /// The lines outside of fenced blocks.
 fn prose(text: &str) -> impl Iterator<Item = &str> {
@@ -65,8 +44,8 @@ fn normal(path: &Path) -> PathBuf {
     normal
 }
 
-/// What is wrong with a link in a document; nothing where it leads somewhere.
-fn fault(documents: &BTreeMap<PathBuf, String>, document: &Path, link: &str) -> Option<String> {
+/// The fault of a link in a document; `None` if its target exists.
+fn fault(documents: &BTreeMap<String, String>, document: &Path, link: &str) -> Option<String> {
     let (file, heading) = link.split_once('#').map_or((link, None), |(f, h)| (f, Some(h)));
     let target = match file {
         "" => document.to_owned(),
@@ -76,7 +55,7 @@ fn fault(documents: &BTreeMap<PathBuf, String>, document: &Path, link: &str) -> 
         return Some(format!("there is no {}", target.display()));
     }
     let heading = heading?;
-    let Some(text) = documents.get(&target) else {
+    let Some(text) = documents.get(&*target.to_string_lossy()) else {
         return Some(format!("{} has no headings", target.display()));
     };
     let mut headings = prose(text).filter(|line| line.starts_with('#')).map(anchor);
@@ -95,8 +74,8 @@ fn relative_links_lead_to_files_and_headings() {
                 continue;
             }
             count += 1;
-            let fault = fault(&documents, path, &link[1]);
-            dead.extend(fault.map(|fault| format!("{}: {fault}", path.display())));
+            let fault = fault(&documents, Path::new(path), &link[1]);
+            dead.extend(fault.map(|fault| format!("{path}: {fault}")));
         }
     }
     assert!(dead.is_empty(), "{}", dead.join("\n"));
@@ -116,12 +95,12 @@ fn a_link_that_leads_nowhere_is_found() {
 fn lines_of_prose_are_short() {
     let mut long = Vec::new();
     for (path, text) in documents() {
-        if path == Path::new(PRINTED) {
+        if path == PRINTED {
             continue;
         }
         let lines = prose(&text).filter(|line| !line.starts_with('|') && !line.starts_with("!["));
         let too_long = lines.filter(|line| line.chars().count() > COLUMNS);
-        long.extend(too_long.map(|line| format!("{}: {line}", path.display())));
+        long.extend(too_long.map(|line| format!("{path}: {line}")));
     }
     assert!(long.is_empty(), "longer than {COLUMNS}:\n{}", long.join("\n"));
 }

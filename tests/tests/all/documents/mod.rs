@@ -5,6 +5,7 @@ mod links;
 mod protocol;
 mod theory;
 mod troubleshooting;
+mod wording;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -24,22 +25,36 @@ fn read(path: &str) -> String {
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// All Rust sources below a folder of the repository, by their paths there, with their text.
-fn sources(folder: &str) -> Vec<(String, String)> {
-    let mut found = Vec::new();
+/// All files below a folder of the repository with one of these extensions, by their paths in the repository,
+/// with their text.
+fn files(folder: &str, extensions: &[&str]) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
     let mut folders = vec![root().join(folder)];
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(&folder).expect("a folder of the repository") {
             let path = entry.expect("an entry").path();
-            if path.is_dir() && path.file_name().is_some_and(|name| name != "target") {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            let extension =
+                path.extension().map(|extension| extension.to_string_lossy().into_owned());
+            if path.is_dir() && name != "target" && !name.starts_with('.') {
                 folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
+            } else if extension.is_some_and(|extension| extensions.contains(&&*extension)) {
                 let name = path.strip_prefix(root()).expect("below the root").display();
-                found.push((name.to_string(), fs::read_to_string(&path).expect("text")));
+                found.insert(name.to_string(), fs::read_to_string(&path).expect("text"));
             }
         }
     }
     found
+}
+
+/// All Rust sources below a folder.
+fn sources(folder: &str) -> BTreeMap<String, String> {
+    files(folder, &["rs"])
+}
+
+/// All documents.
+fn documents() -> BTreeMap<String, String> {
+    files("", &["md"])
 }
 
 /// Each is compiled once: that takes longer than to search a file.

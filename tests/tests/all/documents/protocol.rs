@@ -15,7 +15,7 @@ use super::{column, read, regex, table};
 const DOCUMENT: &str = "firmware/PROTOCOL.md";
 const MESSAGES: &str = "firmware/src/wire/message.rs";
 
-/// What is in the braces of a type in a source file.
+/// The text in the braces of a type in a source file.
 fn body(path: &str, kind: &str, name: &str) -> String {
     let source = read(path);
     let of = regex(&format!(

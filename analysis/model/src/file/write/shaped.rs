@@ -1,4 +1,4 @@
-//! `[environment]` of a torque profile: its shapes as they were read, and what is no longer theirs.
+//! `[environment]` of a torque profile: its shapes as they were read, and changes since.
 
 use haptic_servo::environment::{AnyProfile, Ends, Shape, Wall};
 

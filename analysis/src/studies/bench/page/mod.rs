@@ -50,7 +50,7 @@ pub struct Repetitions {
     movements: usize,
     /// Rounds of verdicts, of which the median counts.
     rounds: usize,
-    /// Rounds before that, in which the browser compiles what is called often once more.
+    /// Rounds before that, in which the browser optimises functions that are called often.
     rounds_before: usize,
 }
 
@@ -114,8 +114,8 @@ pub fn watching_browser() -> Result<Page, PageError> {
     Ok(browser)
 }
 
-/// All figures of the pages of scenes, the first of which is what `haptic explore` writes without a file. Calls
-/// `progress` with what is measured.
+/// All figures of the pages of scenes, the first of which is the page that `haptic explore` writes without a
+/// file. Calls `progress` with the name of each measurement.
 ///
 /// # Errors
 /// Where a page does not do what it does for a reader.

@@ -14,7 +14,7 @@ use fastrand::Rng;
 pub const PERIOD: f64 = 1.0 / 1024.0;
 /// Environments of each kind.
 pub const EACH: usize = 2500;
-/// Passivity in N m s/rad of a device whose environment has no index, or one that spares passivity.
+/// Passivity in N m s/rad of a device whose environment has no index, or an index that spares passivity.
 const SPARE: f64 = 16.0;
 /// One of so many environments has no index: its spring pushes, or a pole is outside of the circle.
 const ODD: usize = 32;

@@ -122,8 +122,8 @@ fn strikes(time: f64) -> f64 {
     if time < 0.3 { -0.35 } else { 0.35 }
 }
 
-/// What the wall brakes goes into the supply's capacitor: the gates are off before that is much above what is
-/// allowed, and what is left of the motion does not lift it further.
+/// The energy that the wall brakes goes into the supply's capacitor: the gates are off before its voltage is
+/// much above the limit, and the rest of the motion does not raise it further.
 #[test]
 fn a_supply_that_takes_nothing_back_is_not_lifted_far() {
     let mut bench = boot(Paddle::new(strikes, 0.0));

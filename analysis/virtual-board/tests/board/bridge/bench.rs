@@ -77,7 +77,7 @@ pub fn armed(bench: &mut Bench) -> usize {
     bench.armed()
 }
 
-/// What is wired to the power stage.
+/// The circuit at the power stage.
 pub fn circuit(bench: &mut Bench) -> &mut Circuit {
     &mut bench.machine.board_mut().power_stage.circuit
 }

@@ -76,7 +76,7 @@ fn they_pass_with_the_load_that_they_are_for() {
     }
 }
 
-/// A test, and what is made wrong for it.
+/// A test, and its deliberate fault.
 type Cause = (&'static str, fn(&mut Circuit));
 
 #[test]

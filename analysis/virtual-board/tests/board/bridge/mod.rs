@@ -1,4 +1,4 @@
-//! What is flashed where the board's own bridge drives the motor.
+//! The flashed programs for a motor at the board's own bridge.
 
 mod arming;
 mod bench;

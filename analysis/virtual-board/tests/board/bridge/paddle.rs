@@ -12,7 +12,7 @@ use super::{bridge_wall, brushless_wall};
 /// Torque of the hand in N m, by the seconds since the motor was first switched on.
 pub type HandTorque = Box<dyn Fn(f64) -> f64 + Send>;
 
-/// Damping of a hand in N m s/rad on the shaft, which keeps its speed in what is allowed.
+/// Damping of a hand in N m s/rad on the shaft, which keeps its speed within the limit.
 const HAND_DAMPING: f64 = 0.005;
 
 /// The device of a program, with friction, in a hand that pushes with a torque.
@@ -36,8 +36,8 @@ impl Paddle {
         Self::of(bridge_wall::SCENE.device, counts, Box::new(hand), friction)
     }
 
-    /// The shaft of `brushless_wall` with some friction, in a hand whose torque is what is there, from the first
-    /// moment on.
+    /// The shaft of `brushless_wall` with some friction, in a hand with this torque, from the first moment
+    /// on.
     pub fn shaft(torque: Arc<Mutex<f64>>) -> Self {
         let counts = brushless_wall::TRANSDUCERS.counts_per_turn;
         let mechanics = Mechanics { damping: HAND_DAMPING, ..brushless_wall::SCENE.device };
@@ -50,7 +50,7 @@ impl Paddle {
         Self { hand, mechanics, counts_per_turn, friction, angle, speed: 0.0, count: 0, time: None }
     }
 
-    /// One that nobody touches.
+    /// A shaft that nobody touches.
     pub fn still() -> Self {
         Self::new(|_| 0.0, 0.0)
     }

@@ -34,7 +34,7 @@ fn a_hand_that_leans_against_the_wall_comes_to_rest() {
     let free: Vec<_> = samples[1700..].iter().map(|sample| sample.count).collect();
     assert!(SCENE.torque_limit.is_some_and(|limit| limit > TORQUE));
     assert!(spread <= 1);
-    // What is left is friction's.
+    // The rest is friction.
     assert!((torque + TORQUE).abs() <= FRICTION, "{torque} N m");
     // Let go, the friction holds it where the wall pushes no harder.
     let held = FRICTION / stiffness;

@@ -98,7 +98,7 @@ fn with_face<W: Spring<N> + Discretize<N>, N: Number>(
     }
 }
 
-/// A wall that ends free motion. There is no type of one that has its rest elsewhere than at zero.
+/// A wall that ends free motion. No type has its rest elsewhere than at zero.
 fn with_free_mode<W: Spring<N> + Discretize<N>, N: Number>(
     job: BenchJob<'_>,
     residual: f64,

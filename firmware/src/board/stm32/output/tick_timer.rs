@@ -60,9 +60,8 @@ impl Period {
         period::check(seconds)?;
         let clock = f64::from(rcc::frequency::<peripherals::TIM6>().0);
         let wanted = seconds * clock;
-        // From the smallest prescaler with which the period fits, which has the finest steps, the one
-        // that comes nearest: usual periods are whole numbers of counts with one of the next few, to
-        // the rounding of the product.
+        // Of the prescalers from the smallest that fits the period, which has the finest steps, the nearest:
+        // usual periods are whole numbers of counts with one of the next few, to the rounding of the product.
         // All casts round down positive, small numbers.
         let first = (wanted / MOST) as u32 + 1;
         let with = |prescale: u32| {

@@ -30,7 +30,7 @@ impl Load {
         Self { current_loop }
     }
 
-    /// What is sampled at the next instant; none where there is none.
+    /// The sample of the next instant, if there is one.
     pub fn next(&mut self) -> Option<Sample> {
         let came = (0..PATIENCE).any(|_| sense::is_converted());
         came.then(|| {

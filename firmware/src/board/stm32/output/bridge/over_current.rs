@@ -16,8 +16,8 @@ const AMPLIFIER_GAIN: u16 = 16;
 /// COMP3 have the first, COMP2 and COMP4 the second (RM0440, table of the inverting inputs).
 const COMPARATORS: [pac::comp::Comp; 3] = [pac::COMP1, pac::COMP2, pac::COMP4];
 
-/// How much above the current at which the current interrupt takes the gates away the comparators do: what
-/// is sampled in the middle of the low side has the ripple's mean, and a comparator sees its peak.
+/// Ratio of the comparators' threshold to the current at which the current interrupt turns the gates off: a
+/// sample in the middle of the low side is the mean of the ripple, and a comparator sees its peak.
 const ABOVE: (u16, u16) = (6, 5);
 
 /// The least that they do, in counts of DAC3: noise and switching shall not be a short.

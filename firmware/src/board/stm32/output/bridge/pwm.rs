@@ -91,8 +91,8 @@ fn gates(on: bool) -> BdtrAdv {
     register
 }
 
-/// Lets the timer drive the gates, from the next instant at which it switches one. A break that was before
-/// is forgotten; one that is takes them away again at once.
+/// Lets the timer drive the gates, from the next instant at which it switches one. A past break is cleared;
+/// an active break turns the gates off again at once.
 pub fn on() {
     TIMER.sr().write(|w| {
         w.0 = u32::MAX;

@@ -6,7 +6,7 @@
 //! | ADC1 | phase U, by OPAMP1 | the temperature of the board |
 //! | ADC2 | phase V, by OPAMP2 | the voltage of the supply |
 //!
-//! Phases U and V are sampled at the same instant, and the third current is what is missing to zero.
+//! Phases U and V are sampled at the same instant; the current of W makes the sum zero.
 
 use embassy_stm32::pac;
 use embassy_stm32::pac::adc::Adc;
