@@ -66,7 +66,7 @@ fn the_words_that_are_quoted_are_those_of_the_program() {
     for folder in ["analysis/src/link", "analysis/src/serve", "analysis/model/src/board"] {
         all.extend(sources(folder));
     }
-    let all: Vec<_> = all.iter().map(|(_, text)| continued.replace_all(text, "")).collect();
+    let all: Vec<_> = all.values().map(|text| continued.replace_all(text, "")).collect();
     for (name, words, _) in sections(&read(DOCUMENT)) {
         assert!(all.iter().any(|text| text.contains(&words)), "{name}: nothing says `{words}`");
     }
