@@ -8,7 +8,7 @@ use time::OffsetDateTime;
 /// Environment variable for reproducible pages (reproducible-builds.org).
 const EPOCH: &str = "SOURCE_DATE_EPOCH";
 
-/// The time that was asked for is none.
+/// The requested time is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{EPOCH} = `{0}` is not a valid number of seconds since 1970-01-01, up to the year 9999")]
 pub struct InvalidDate(String);
@@ -16,7 +16,7 @@ pub struct InvalidDate(String);
 /// Today in UTC, as 2026-03-14; the day of `SOURCE_DATE_EPOCH` where that is set.
 ///
 /// # Errors
-/// Where that is no time.
+/// If the text is not a time.
 pub fn today() -> Result<String, InvalidDate> {
     let seconds = match std::env::var_os(EPOCH) {
         Some(text) => text.to_string_lossy().into_owned(),

@@ -33,12 +33,12 @@ pub struct Page<'p> {
     pub motion: Figure,
 }
 
-/// A picture, or why there is none.
+/// A picture, or the reason why it is missing.
 #[derive(Clone, Debug)]
 pub enum Figure {
     /// The picture.
     Drawn(Picture),
-    /// Why there is none.
+    /// The reason.
     Missing(String),
 }
 

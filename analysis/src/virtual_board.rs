@@ -28,7 +28,7 @@ const PWM_PERIOD: u8 = 2;
 const PWM_PERIOD_BYTES: u64 = 16;
 /// What the gates are driven by, if by anything but the servo.
 const ALIGNING: u8 = 2;
-/// A code that is none.
+/// An invalid code.
 const NO_CODE: u16 = u16::MAX;
 /// Samples within which a servo that was asked to arm must have done so: many times what a frame and
 /// what the board may be at take.
@@ -320,7 +320,7 @@ impl VirtualBoard {
     fn stats(&mut self) -> io::Result<InstructionStats> {
         let mut number = || self.bytes().map(u64::from_le_bytes);
         let (count, min, max, sum) = (number()?, number()?, number()?, number()?);
-        // A mean over nothing is none, and its neighbours say so.
+        // A mean over no samples does not exist, and its neighbours show that.
         Ok(InstructionStats { count, min, max, mean: sum as f64 / count as f64 })
     }
 

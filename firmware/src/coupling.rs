@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(solver.environment_position(0.5, 3.0), 0.5);
     }
 
-    /// The servo takes a torque that is no number for a fault.
+    /// The servo treats a NaN torque as a fault.
     #[test]
     fn what_is_no_number_is_not_taken_for_a_place_outside_of_a_wall() {
         const NAN: f32 = f32::NAN;

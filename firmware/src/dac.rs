@@ -102,7 +102,7 @@ impl From<DacCode> for u16 {
     }
 }
 
-/// A number that is no code.
+/// A number that is not a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CodeOutOfRange {
     /// The number.

@@ -76,8 +76,8 @@ struct Taps {
 impl MatchedCoupling {
     /// For a device of this passivity (N m s/rad) at this period (s).
     ///
-    /// `None` where a number is out of range, or where two lags are too much alike for their difference to
-    /// be told from zero.
+    /// `None` where a number is out of range, or where two lags are too much alike for their difference to be
+    /// distinguished from zero.
     pub const fn of(
         period: f64,
         passivity: f64,

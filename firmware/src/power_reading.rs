@@ -1,4 +1,4 @@
-//! What the power stage of a motor board measures, as the host is told.
+//! Measurements of a motor board's power stage, as the host receives them.
 
 use crate::current::IndexOffset;
 

@@ -149,7 +149,7 @@ function editWhole(store, engine) {
     pause = setTimeout(show, PAUSE_BEFORE_TEXT);
   });
   details.addEventListener("toggle", show);
-  // A text that is no scene stays until it is one, or until another scene is chosen.
+  // An invalid text stays until it is valid, or until another scene is chosen.
   area.addEventListener("input", () => {
     const { scene, errors } = engine.json("parse", area.value);
     complain(scene ? "" : errors.map(placed).join("; "));

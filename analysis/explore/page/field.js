@@ -77,7 +77,7 @@ class Field {
     return this.key.example;
   }
 
-  /** The value of the scene, or what counts where there is none. */
+  /** The value of the scene, or its default. */
   value() {
     return this.store.get(this.path) ?? this.key.default ?? undefined;
   }

@@ -1,6 +1,6 @@
 // How a person moves the hand: by mouse, finger or pen, by keys, or by the stick of a game controller.
 
-/** Part of a stick's way that is no motion, and of the shown range that a key moves the hand. */
+/** Dead zone of a stick as a part of its way, and the step of a key as a part of the shown range. */
 const INPUT = { deadZone: 0.1, key: 1 / 60, page: 1 / 6 };
 
 /** Moves a hand, which has these functions: grab(), turn(by), put(angle), release(), toggle(), both in rad;

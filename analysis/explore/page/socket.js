@@ -7,7 +7,7 @@ class SocketLine {
   /** What the line is called in sentences. */
   name;
 
-  /** Takes the address as it was printed; throws a sentence where it is none. */
+  /** Takes the address as it was printed; throws a sentence if it is invalid. */
   constructor(text) {
     let address;
     try {

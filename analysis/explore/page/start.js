@@ -3,7 +3,7 @@
 /** The bytes that a script element of the page holds: compressed, and as letters, two for 13 bits. */
 async function unpacked(element) {
   const text = element.textContent.trim();
-  // `<` is none of the letters.
+  // `<` is not one of the letters.
   const digit = (code) => (code < 60 ? code - 33 : code - 34);
   const isOdd = text.length % 2;
   const packed = new Uint8Array(Math.floor((13 * (text.length - isOdd) / 2 + 6 * isOdd) / 8));

@@ -20,7 +20,7 @@ use haptic_servo::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest
 /// Seconds of curves that are kept.
 pub const WINDOW: f64 = 5.0;
 
-/// Values that are told with a status, at its time in s since the servo started.
+/// Values that come with a status, at its time in s since the servo started.
 #[derive(Clone, Copy, Debug)]
 pub struct Slow {
     /// The time.
@@ -370,7 +370,7 @@ impl Connected {
         }
     }
 
-    /// Keeps a status, and tells whether other numbers run than with the last one.
+    /// Keeps a status; returns whether other numbers run than with the last one.
     fn is_changed_by(&mut self, status: Status) -> Result<bool, String> {
         let last = self.status.replace(status);
         if last.is_some_and(|last| status.tick.wrapping_sub(last.tick) > u32::MAX / 2) {

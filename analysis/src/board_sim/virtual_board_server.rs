@@ -22,7 +22,7 @@ pub enum DrivingBoard {
         board: VirtualBoard,
         /// What it drives.
         plant: Box<dyn PlantIo + Send>,
-        /// The count that the board has not been told yet; none before the first sample.
+        /// The count to send to the board next; `None` before the first sample.
         count: Option<i32>,
     },
     /// By its own bridge.

@@ -59,7 +59,7 @@ impl Page {
     /// Starts a browser in a window so many pixels wide, with an empty page.
     ///
     /// # Errors
-    /// Where there is none, or it does not start.
+    /// If there is no browser, or it does not start.
     pub fn start(width: u32) -> Result<Self, BrowserError> {
         let browser = Browser::start(width)?;
         let (port, path) = address(browser.profile.path())?;

@@ -37,7 +37,7 @@ const ARGUMENTS: [&str; 9] = [
 /// Why a page could not be looked at.
 #[derive(Debug, Error)]
 pub enum BrowserError {
-    /// There is none.
+    /// There is no browser.
     #[error("there is no {NAME}; install it (Debian: apt install {NAME})")]
     Missing,
     /// It could not be started, or the folder of its profile not be made.
@@ -54,7 +54,7 @@ pub enum BrowserError {
     NoMessage {
         /// What they have said.
         said: String,
-        /// Why it is none.
+        /// The reason.
         source: serde_json::Error,
     },
     /// They refuse a call, or answer without what was asked for.

@@ -47,7 +47,7 @@ const HAND_DURATION: f64 = 3600.0;
 /// Longest time between two polls for the end.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Runs a program in a simulated hand until the time is up, Ctrl-C, or it is told to end.
+/// Runs a program in a simulated hand until the time is up, Ctrl-C, or a signal to end.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let name = &arguments.scene;
     let program = Program::find(name).ok_or_else(|| no_program(name))?;

@@ -26,7 +26,7 @@ pub struct Arguments {
 pub struct Report {
     /// What the person calls it.
     pub name: Option<String>,
-    /// Output strict passivity in N m s/rad, to the last digit; `None`: there is none.
+    /// Output strict passivity in N m s/rad, to the last digit; `None` if the device is not passive.
     pub delta: Option<f64>,
     /// Lower end of the enclosure.
     pub delta_lo: Option<f64>,

@@ -57,7 +57,7 @@ pub fn section(program: &Program, report: &VerdictReport, outcome: &RunOutcome) 
     shown + &coasting(program, outcome)
 }
 
-/// Speed in rad/s above which a device counts as turning: half a turn in an hour is none.
+/// Speed in rad/s above which a device counts as turning: above half a turn in an hour.
 const AT_REST: f64 = 1e-3;
 
 /// Why a released device keeps turning: the DAC rounds, or the current's converter does, where it is on a spring its encoder has edges, and

@@ -38,7 +38,7 @@ fn address(text: &str) -> Result<SocketAddr, String> {
         .map_err(|_| format!("`{text}` is not an address with a port: expected 127.0.0.1:8080"))
 }
 
-/// Serves the page and the board's wire until Ctrl-C, or it is told to end.
+/// Serves the page and the board's wire until Ctrl-C, or a signal to end.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let over = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {

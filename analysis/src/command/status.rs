@@ -206,7 +206,7 @@ pub enum CommandError {
         /// The first sample, counted from 0, that is not shown.
         sample: usize,
     },
-    /// The date of a page is none.
+    /// The date of a page is invalid.
     #[error(transparent)]
     Date(#[from] crate::date::InvalidDate),
     /// A page's file must be called one.

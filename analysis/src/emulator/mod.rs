@@ -115,7 +115,7 @@ pub enum EmulatorError {
     /// Its serial port could not be reached.
     #[error("the emulated board's serial port: {0}")]
     Serial(#[source] io::Error),
-    /// The board gave an answer that is none.
+    /// The board gave an invalid answer.
     #[error("malformed reply from the emulated board: its program has another version")]
     NoReply,
     /// A board that is not QEMU's gave no answer.

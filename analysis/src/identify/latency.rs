@@ -1,4 +1,4 @@
-//! What a measurement tells of the latency between a command and its torque.
+//! The latency between a command and its torque, as a measurement shows it.
 
 use serde::Serialize;
 use thiserror::Error;

@@ -2,9 +2,9 @@
 //! for every lag that it may be.
 //!
 //! The squares of the fit are not quadratic in the lag, which a response shows by its square where it is
-//! short, and a lag below zero is none. So no interval is taken from the slopes at the best fit: for each
-//! lag the others are fitted ([`least_squares`](super::least_squares)), and every device whose squares
-//! are above the least by no more than the threshold of the confidence is inside.
+//! short, and a lag is not below zero. So no interval is taken from the slopes at the best fit: for each lag
+//! the others are fitted ([`least_squares`](super::least_squares)), and every device whose squares are above
+//! the least by no more than the threshold of the confidence is inside.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -118,7 +118,7 @@ impl Profile {
         self.estimate(|model| model.damping, |fit| fit.deviations[0], |_| f64::NEG_INFINITY)
     }
 
-    /// Inertia in kg m^2. Where it is not told from the lag, they may have changed places.
+    /// Inertia in kg m^2. If it cannot be distinguished from the lag, the two may be exchanged.
     pub fn inertia(&self) -> Estimate {
         let found =
             self.estimate(|model| model.inertia, |fit| fit.deviations[1], |_| f64::NEG_INFINITY);
@@ -215,8 +215,8 @@ impl Squares<'_> {
         }
     }
 
-    /// Whether the device's inertia is told from the lag: `(b + j w m) (1 + j w tau)` is the same where
-    /// `tau` and `m/b` change places, so the lag is taken for the shorter of them.
+    /// Whether the device's inertia can be distinguished from the lag: `(b + j w m) (1 + j w tau)` is the
+    /// same where `tau` and `m/b` change places, so the lag is taken for the shorter of them.
     fn is_told(fit: &Fit) -> bool {
         fit.model.lag * fit.model.damping < fit.model.inertia
     }

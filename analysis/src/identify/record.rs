@@ -33,7 +33,7 @@ const COUNTS: Column = Column { names: &["counts", "count"], bound: "a whole num
 const FREQUENCY: Column =
     Column { names: &["frequency", "frequency_hz"], bound: "a finite number of Hz, 0 or more" };
 
-/// Largest count whose neighbours a double still tells apart.
+/// Largest count whose neighbours differ as doubles.
 const LARGEST_COUNT: f64 = 9_007_199_254_740_991.0;
 
 /// Reads the columns `time` (s), `torque` (N m), `counts` and, where it is there, `frequency` (Hz)

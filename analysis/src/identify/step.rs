@@ -48,8 +48,8 @@ impl LeftOut {
     }
 }
 
-/// The stretches of a record, as its column `frequency` says, or else where the torque crosses
-/// zero at steady intervals; and those that are none.
+/// The stretches of a record, as its column `frequency` says, or else where the torque crosses zero at steady
+/// intervals; and invalid steps.
 pub fn steps(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
     let (steps, mut left_out) = match &record.frequency {
         Some(frequency) => (labelled(frequency), Vec::new()),

@@ -1,4 +1,4 @@
-//! Simulated devices measured by a simulated rig, and records that are none.
+//! Simulated devices measured by a simulated rig, and invalid records.
 
 use haptic_servo::scene::Device;
 

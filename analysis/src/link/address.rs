@@ -38,7 +38,7 @@ pub enum AddressError {
              65535"
     )]
     NoTcpPort(String),
-    /// A speed that is no number.
+    /// The speed is not a number.
     #[error(
         "`{0}` is not a valid speed: expected a whole number of bit/s, as in /dev/ttyACM0@{BAUD}"
     )]

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-/// The other programs that have this port open, as far as the system tells: a sentence's end, empty
-/// where there is none. Linux shows the open files of one's own programs in `/proc`.
+/// The other programs that have this port open, as far as the system shows them: the end of a sentence, or
+/// empty. Linux shows the open files of one's own programs in `/proc`.
 pub fn holders(port: &str) -> String {
     let Ok(port) = Path::new(port).canonicalize() else { return String::new() };
     let Ok(processes) = std::fs::read_dir("/proc") else { return String::new() };

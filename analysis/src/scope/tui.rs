@@ -38,7 +38,8 @@ pub fn draw(frame: &mut Frame<'_>, scope: &Scope) {
     frame.render_widget(last_line(&scope.control), keys);
 }
 
-/// Lines of facts before a board has told any, so that the curves keep their place; a power stage has one more.
+/// Lines of facts before the first message of a board, so that the curves keep their place; a power stage has
+/// one more.
 const FACTS: usize = 4;
 
 /// Most lines of an answer: a refusal names the remedies.

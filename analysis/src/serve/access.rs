@@ -89,7 +89,7 @@ impl Access {
         }
     }
 
-    /// That the one who asks was told the token.
+    /// Checks that the client knows the token.
     ///
     /// # Errors
     /// The answer.

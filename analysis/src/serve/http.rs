@@ -124,7 +124,7 @@ impl HttpResponse {
         Self { status, headers, kind, body: sentence + "\n" }
     }
 
-    /// A page, which no other page may show inside of itself, and whose address nobody is told.
+    /// A page that no other page may embed, and whose address is not sent as a referrer.
     pub fn page(page: &str) -> Self {
         let headers = ["Content-Security-Policy: frame-ancestors 'none'", "X-Frame-Options: DENY"];
         let (headers, kind) = (headers.map(str::to_owned).into(), "text/html; charset=utf-8");

@@ -46,7 +46,7 @@ pub struct Seats {
 }
 
 struct State {
-    /// The number of a seat, and what the page that has it is told by.
+    /// The number of a seat, and the channel to its page.
     client: Option<(u64, SyncSender<News>)>,
     /// Seats that were taken so far.
     taken: u64,

@@ -21,7 +21,7 @@ pub struct Sizes {
 /// How the names begin of the sections in the fast memory.
 const FAST: &str = ".fast";
 
-/// A file that is no program for the board.
+/// A file that is not a program for the board.
 #[derive(Debug, thiserror::Error)]
 #[error("not an ELF file: {0}")]
 pub struct SizeError(#[from] object::read::Error);

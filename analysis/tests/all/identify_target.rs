@@ -87,7 +87,7 @@ fn ten_microseconds_of_skew_are_reported_as_the_bias_that_they_are() {
     let bias = DAMPING * (omega * 1e-5).cos() - INERTIA * omega * (omega * 1e-5).sin() - DAMPING;
     assert!((number(&found, "/bias") - bias).abs() < 0.1 * bias.abs(), "{}", found["bias"]);
     assert!(found["notes"][0].as_str().unwrap().contains("us late against the torque"));
-    // A delay that is declared is none.
+    // A declared delay is not an error.
     let declared = answer(&[&skewed[..], &["--count-delay", "1e-5"]].concat());
     assert_eq!(declared["skew_significant"], false);
     assert!(declared["notes"].as_array().unwrap().is_empty(), "{declared}");

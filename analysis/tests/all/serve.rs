@@ -287,11 +287,11 @@ fn a_port_that_is_lost_is_said_and_opened_again() {
     assert_eq!(lost["port"], "lost");
     assert!(lost["why"].as_str().unwrap().contains("is lost"), "{lost}");
     board.stream = accept(&board.listener);
-    // The tries before it may have failed, and each is told.
+    // Earlier attempts may have failed, and each is reported.
     while text(&mut socket) != json!({ "port": "open" }) {}
     board.stream.write_all(b"back").unwrap();
     assert_eq!(bytes(&mut socket, 4), b"back");
-    // A page that comes while the port is away is told so at once.
+    // A page that comes while the port is away gets a message at once.
     socket.close(None).unwrap();
     drop((socket, board.stream, board.listener));
     let start = Instant::now();

@@ -494,7 +494,7 @@ fn a_servo_keeps_time_whatever_comes_over_the_wire() {
     let discarded = status.discarded;
     assert!(discarded.broken >= 3000 && discarded.checksum >= 3000, "{discarded:?}");
     assert!(discarded.too_long >= 1, "{discarded:?}");
-    // Nothing that it was told has moved the motor.
+    // No message has moved the motor.
     let seen: Vec<u16> = rig.held.0.lock().unwrap().seen.keys().copied().collect();
     assert_eq!(seen, [wanted]);
 }

@@ -149,7 +149,7 @@ mod tests {
     use crate::chip::{Chip, NUCLEO_G474RE};
     use crate::device::FixedDevice;
 
-    /// What a program is told that reads there, or writes this.
+    /// The error of a program that reads there, or writes this.
     fn said(address: u32, written: Option<u32>) -> String {
         let mut board = VirtualBoard::new(&NUCLEO_G474RE, Box::new(FixedDevice));
         // TIM6 and USART2 are clocked, and nothing else of their bus.

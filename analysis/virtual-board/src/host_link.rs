@@ -1,4 +1,4 @@
-//! The host at the standard input and output: what the board tells it, and what it answers.
+//! The host at the standard input and output: messages of the board, and the replies.
 
 use std::io::{self, BufWriter, Read, Stdin, Stdout, Write};
 
@@ -8,7 +8,7 @@ use virtual_board::device::Motion;
 const SAMPLE: u8 = 1;
 const PWM_PERIOD: u8 = 2;
 
-/// A code that is none.
+/// An invalid code.
 const NO_CODE: u16 = u16::MAX;
 
 /// Whether the amplifier is on, or what the gates of the board's own bridge are driven by.
@@ -64,7 +64,7 @@ impl HostLink {
         self.motion
     }
 
-    /// Why there is no host any more, once there is none.
+    /// The reason, once the host is gone.
     pub fn end(&mut self) -> Option<io::Result<()>> {
         self.end.take()
     }

@@ -151,7 +151,7 @@ impl Processor {
         self.set_register(RegisterARM::CONTROL, if used { IN_USE_TO_THE_ENGINE } else { 0 });
     }
 
-    /// Reads memory; none where there is none.
+    /// Reads memory; `None` outside of it.
     pub fn memory(&self, address: u32, size: usize) -> Option<Vec<u8>> {
         self.engine.mem_read_as_vec(address.into(), size).ok()
     }

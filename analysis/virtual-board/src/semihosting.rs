@@ -46,7 +46,7 @@ pub enum CallError {
     /// The board cannot go on.
     #[error(transparent)]
     BoardError(#[from] BoardError),
-    /// The call is none that is answered here.
+    /// The call is not supported.
     #[error("the program calls operation {operation:#x} at {address:#010x}, which is not modelled")]
     NoOperation {
         /// Which.
@@ -65,7 +65,7 @@ pub enum CallError {
     /// It has ended.
     #[error("the program has ended with status {0}")]
     Ended(u32),
-    /// It has ended for a reason that is none of its own choice.
+    /// It has ended for an error, not by its own choice.
     #[error("the program has aborted for the reason {0:#x}")]
     Aborted(u32),
     /// It waits for another question instead.

@@ -125,7 +125,7 @@ impl Reader<'_> {
 /// Timer counts in a period.
 const PERIOD: u32 = 1000;
 
-/// A device that moves as it is told.
+/// A device with a prescribed motion.
 #[derive(Clone)]
 struct Still {
     count: i16,

@@ -98,7 +98,7 @@ const BLANK: Scene = Scene {
     torque_limit: None,
 };
 
-/// The scene of the words; `None` if they are none. Of what a type of environment only states, no board
+/// The scene of the words; `None` if they are invalid. Of what a type of environment only states, no board
 /// here knows a law, and of tables of knots only [`tables`].
 pub fn decode(words: &SceneWords) -> Option<Scene> {
     let mut words = Cursor { words: *words, next: 0 };

@@ -37,7 +37,7 @@ pub const ENCODER: pac::timer::TimGp16 = pac::TIM4;
 pub const ENCODER_CLOCK: f64 = 170e6;
 /// The pads bear 5 V where the chip does not pull (DS12589), and the board pulls them up by 10 kΩ.
 pub const ENCODER_PULL: Pull = Pull::None;
-/// The clock that tells how late the servo is: TIM2, which has 32 bits.
+/// The clock that measures how late the servo is: TIM2, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM2;
 /// The DAC: DAC1's channel 1 on PA4. The board uses PA4 to sense the back-EMF of its phase 1,
 /// so there is no pad: the wire to the amplifier is soldered to the pin's side of that divider, and

@@ -29,7 +29,7 @@ pub const ENCODER_CLOCK: f64 = 170e6;
 /// PA0 and PA1 bear no more than 3.6 V (DS12288), so that no encoder with 5 V can be there: pulled up, for
 /// open collectors, and so that an encoder that is not plugged in counts no noise.
 pub const ENCODER_PULL: Pull = Pull::Up;
-/// The clock that tells how late the servo is: TIM5, the other one with 32 bits.
+/// The clock that measures how late the servo is: TIM5, the other one with 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
 /// The DAC: DAC1's channel 1, whose pin PA4 is A2 on the Arduino header. Channel 2's pin PA5
 /// drives the board's LED.

@@ -36,7 +36,7 @@ pub const ENCODER: pac::timer::TimGp16 = pac::TIM3;
 pub const ENCODER_CLOCK: f64 = 84e6;
 /// PC6 and PC7 bear 5 V where the chip does not pull (DS8626), and the connector supplies 5 V.
 pub const ENCODER_PULL: Pull = Pull::None;
-/// The clock that tells how late the servo is: TIM5, which has 32 bits.
+/// The clock that measures how late the servo is: TIM5, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
 /// The DAC: channel 1, whose pin PA4 is the chip select of the SPI header (HW_SPI_PIN_NSS).
 /// Channel 2's pin PA5 is an analogue input of the communication header.

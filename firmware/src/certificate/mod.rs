@@ -211,7 +211,7 @@ pub fn timing_checked<E: EnvironmentModel + SupportsTiming<M>, M: OutputMode>(
     format: Format,
 ) -> Result<TimingChecked<Scene<E>, M>, Step> {
     let data = scene_data(&scene);
-    // Asked here, where the type tells.
+    // Checked here, where the type is known.
     let is_late = data.environment.is_late();
     timed::judged::<E, M>(&data, is_late, format)
         .map(|limited| TimingChecked::new(scene, format, limited))

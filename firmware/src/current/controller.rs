@@ -124,7 +124,7 @@ impl CurrentController {
     /// Where the offsets, the supply or the temperature of the last sample are out of range.
     pub fn start_alignment(&mut self) -> Result<Alignment, PowerFault> {
         self.start_at_rest()?;
-        // Counts that were lost before are none that this alignment loses.
+        // Counts that were lost before do not belong to this alignment.
         self.index = IndexCheck::NOT_SEEN;
         Ok(Alignment::new(&self.design, self.turn))
     }

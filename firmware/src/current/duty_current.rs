@@ -62,7 +62,7 @@ impl Drive {
     /// nothing is seen in the middle of the low sides.
     ///
     /// # Errors
-    /// Where a number is none, or out of its bound.
+    /// If a number is NaN, or out of its bound.
     pub const fn current_at_duty(
         &self,
         stage: &PowerStage,

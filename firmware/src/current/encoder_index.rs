@@ -6,7 +6,7 @@ use super::phase::{PhaseAlignment, Turn};
 /// An index that comes once in a turn of the encoder: what a program states of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EncoderIndex {
-    /// Where the motor's phase is at the index, as the board has told it after an alignment. Without it the
+    /// Where the motor's phase is at the index, as the board reports it after an alignment. Without it the
     /// motor is aligned after each reset, and the index shows lost counts only.
     pub offset: Option<IndexOffset>,
 }

@@ -38,7 +38,7 @@ pub enum DriveError {
         /// The fewest that there may be.
         least: f64,
     },
-    /// The phase at the index is none of an electrical turn.
+    /// The phase at the index is not within an electrical turn.
     IndexOffset {
         /// The offset in counts.
         offset: u32,

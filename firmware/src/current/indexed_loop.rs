@@ -14,7 +14,7 @@ impl CurrentLoop {
     /// The same loop with an index at the motor's encoder.
     ///
     /// # Errors
-    /// Where the motor is brushed, or an offset is none of its encoder.
+    /// If the motor is brushed, or the offset is not within a turn of its encoder.
     pub const fn indexed(mut self, index: EncoderIndex) -> Result<Self, DriveError> {
         let Winding::Brushless { .. } = self.winding else {
             return Err(DriveError::IndexNotNeeded);
@@ -36,10 +36,10 @@ impl CurrentLoop {
         Ok(self)
     }
 
-    /// For constants: a compile error where the index is none of this motor's encoder.
+    /// For constants: a compile error if the index does not fit this motor's encoder.
     ///
     /// # Panics
-    /// If it is none; in a constant that is the compile error.
+    /// If it does not fit; in a constant that is the compile error.
     #[must_use]
     #[track_caller]
     pub const fn with_index(self, index: EncoderIndex) -> Self {

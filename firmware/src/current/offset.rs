@@ -1,4 +1,4 @@
-//! The counts of the currents while there is none.
+//! The counts of the currents at zero current.
 
 use super::current_loop::Limits;
 use super::fault::PowerFault;

@@ -88,7 +88,7 @@ pub struct ProfileUse {
 }
 
 impl ProfileUse {
-    /// There is none.
+    /// No profile.
     pub const NONE: Self = Self {
         exists: false,
         is_prompt: false,

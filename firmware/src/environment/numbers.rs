@@ -21,8 +21,8 @@ impl Environment {
         }
     }
 
-    /// The environment with this value; `None` where there is no place for it, and for a delay or a
-    /// number of zeros that is no whole number in its range.
+    /// The environment with this value; `None` where there is no place for it, and for a delay or a number of
+    /// zeros that is not a whole number in its range.
     pub const fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
         let mut changed = *self;
         let is_whole = parameter.range().admits(value);

@@ -9,7 +9,7 @@ use crate::number::Number;
 /// A turn within which counts are counted, or from which, or none.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<N> {
-    /// Counts of it; more than an encoder has where there is none.
+    /// Counts of it; without a turn more than any encoder has.
     counts: i32,
     /// The count from which it counts, a whole number of turns, in its low 32 bits.
     origin: i32,

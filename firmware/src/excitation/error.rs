@@ -15,7 +15,7 @@ pub enum SweepError {
         /// Its value.
         value: f64,
     },
-    /// A frequency that is no sine when it is sampled.
+    /// A frequency that is too high to sample as a sine.
     Frequency {
         /// Which tone.
         tone: usize,

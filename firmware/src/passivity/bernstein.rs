@@ -29,9 +29,9 @@ const CLEARANCE: f64 = 1e-9;
 /// How closely a minimum is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
-    /// The enclosure is as tight as it gets around this border, and no tighter than it takes where
-    /// the minimum is clearly on one side: with [`Interval::ENTIRE`] it is tight everywhere, with a
-    /// limit it is what tells on which side of the limit the minimum is.
+    /// The enclosure is as tight as it gets around this border, and no tighter than it takes where the
+    /// minimum is clearly on one side: with [`Interval::ENTIRE`] it is tight everywhere, with a limit it
+    /// decides on which side of the limit the minimum is.
     pub border: Interval,
     /// Width of the enclosure, relative to its magnitude, at which the search may end.
     pub tolerance: f64,

@@ -88,7 +88,7 @@ pub const fn index_looked_at(
     }
 }
 
-/// `(T z / (z - 1)) E` with its poles told apart: the first half of [`index_looked_at`].
+/// `(T z / (z - 1)) E` with its poles separated: the first half of [`index_looked_at`].
 // In a frame of its own: a small board's stack has no room for the function beside what comes of it.
 #[inline(never)]
 pub(crate) const fn velocity_reduced(

@@ -1,11 +1,10 @@
 //! Outward-rounded interval arithmetic in `f64`, usable in `const fn`.
 //!
-//! Every operation returns an interval that contains the exact result of every choice of numbers
-//! from its operands. An operation whose result is exact in `f64` keeps it exact: sums by their
-//! rounding error (Dekker's two-sum), products and quotients by counting significant bits. That is
-//! what lets a pole at exactly `z = 1` be told from one near it. Only IEEE additions,
-//! multiplications and divisions are used, so the end points are the same bits in the compiler, on
-//! the host and on the target.
+//! Every operation returns an interval that contains the exact result of every choice of numbers from its
+//! operands. An operation whose result is exact in `f64` keeps it exact: sums by their rounding error
+//! (Dekker's two-sum), products and quotients by counting significant bits. That is which distinguishes a
+//! pole at exactly `z = 1` from a pole near it. Only IEEE additions, multiplications and divisions are used,
+//! so the end points are the same bits in the compiler, on the host and on the target.
 //!
 //! On a board every operation stands once and is called: in line, with its emulated doubles, it
 //! would fill a tenth of the smallest flash.

@@ -12,7 +12,7 @@ const EXPONENT: u64 = f64::INFINITY.to_bits();
 /// The first bit of a normal number's mantissa, which is not written.
 const IMPLICIT: u64 = 1 << 52;
 
-/// Lower bound of a sum; minus infinity where that is no number.
+/// Lower bound of a sum; minus infinity for NaN.
 #[cfg_attr(target_os = "none", inline(never))]
 pub(super) const fn add_down(a: f64, b: f64) -> f64 {
     let sum = a + b;
@@ -80,7 +80,7 @@ pub(super) const fn is_not_negative(value: f64) -> bool {
     value.to_bits() <= 1 << 63
 }
 
-/// The next double below; minus infinity where there is none, or where the value is no number.
+/// The next double below; minus infinity where there is none, or where the value is NaN.
 const fn below(value: f64) -> f64 {
     let bits = value.to_bits();
     let magnitude = bits & MAGNITUDE;

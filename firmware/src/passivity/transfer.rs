@@ -33,7 +33,7 @@ pub enum Unbuildable {
     IllPosed,
     /// A number overflowed, or a degree is beyond [`super::polynomial::MAX_DEGREE`].
     OutOfRange,
-    /// There is none: only a bound is stated.
+    /// No transfer function: only a bound is stated.
     Unstated,
 }
 

@@ -180,7 +180,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
 }
 
 impl TimingLimits {
-    /// Ticks up to which a wrapping counter of them tells the future from the past.
+    /// Ticks up to which a wrapping counter of them distinguishes future from past.
     pub(crate) const LONGEST: u32 = i32::MAX.cast_unsigned();
 
     /// Whole periods in `time` s, at least one and at most [`LONGEST`](Self::LONGEST).

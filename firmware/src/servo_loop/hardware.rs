@@ -26,7 +26,7 @@ pub trait Hardware {
     /// Begins to align a brushless motor, which moves the handle.
     ///
     /// # Errors
-    /// Where there is none on a bridge of this board.
+    /// If the board has no brushless motor on its bridge.
     fn align(&mut self) -> Result<(), Fault> {
         Err(Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded)))
     }

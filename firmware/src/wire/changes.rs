@@ -1,4 +1,4 @@
-//! Numbers of a scene that are told or asked for together.
+//! Numbers of a scene that are sent or requested together.
 
 use heapless::Vec;
 

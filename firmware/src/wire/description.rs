@@ -64,8 +64,8 @@ impl Description {
         (running.selecting(*mode).index().is_some() && *mode != running.mode).then_some(*mode)
     }
 
-    /// Why another mode is refused with these changes. Its table is not here: what can be told without it is
-    /// a number that makes no sense with any mode.
+    /// Why another mode is refused with these changes. Its table is not here; without it only a number that
+    /// is invalid with every mode can be refused.
     fn judge_without(&self, mode: f64, changes: &[(Parameter, f64)]) -> Result<(), RenderError> {
         let is_kept = |change: &&(Parameter, f64)| change.0 != Parameter::Mode;
         let others: Changes = changes.iter().filter(is_kept).copied().collect();

@@ -1,4 +1,4 @@
-//! A stiffness that is no number.
+//! A stiffness that is NaN.
 use haptic_servo::certificate::Certified;
 use haptic_servo::environment::DelayedSpring;
 use haptic_servo::scene::Scene;

@@ -13,7 +13,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::scenes::{self, Poles};
 
-/// Compares the answers of both rules and the verdict; tells whether there is a certificate.
+/// Compares the answers of both rules and the verdict; returns whether there is a certificate.
 fn compare(scene: &Scene) -> bool {
     let assessment = assess(scene);
     match PassivityProblem::of(scene) {
@@ -62,8 +62,8 @@ where
     true
 }
 
-/// The same in each number format and each mode that the environment may have; tells whether one of
-/// them renders it.
+/// The same in each number format and each mode that the environment may have; returns whether one of them
+/// renders it.
 fn compare_on_boards(scene: &Scene) -> bool {
     let formats = [Format::F64, Format::F32, <I8F24 as Number>::FORMAT, <I12F20 as Number>::FORMAT];
     let modes = formats.map(|format| {

@@ -83,7 +83,7 @@ fn methods_fail_and_the_certificate_had_said_so() {
         }
         assert!(report.holds(), "{name}");
     }
-    // What no rounding can tell from the circle is not run by a board, whatever it is told.
+    // Poles that rounding cannot separate from the circle are not run by a board, whatever its device.
     let mut player = player.unwrap();
     for pole in [1.0 + roots::BESIDE, 1.0 - roots::BESIDE] {
         let loop_run =

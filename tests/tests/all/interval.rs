@@ -115,7 +115,7 @@ fn square_roots() {
     }
 }
 
-/// A pole at exactly `z = 1` is told from one near it only because these stay single numbers.
+/// A pole at exactly `z = 1` is distinguished from a pole near it only because these stay single numbers.
 #[test]
 fn exact_results_stay_exact() {
     let mut rng = ChaCha8Rng::seed_from_u64(11);

@@ -225,7 +225,7 @@ fn a_jump_of_the_encoder_and_a_missed_tick_stop_the_motor_until_it_is_armed() {
         });
         assert_eq!(link.status().unwrap().fault, None);
     }
-    // The largest step that a hand can do is none of them.
+    // The largest step of a hand is not among them.
     let far = TickInput { count: jumped.count - LARGEST_STEP, missed: 0 };
     assert!(hand.provoke(far).iter().all(|(_, output)| output.state == State::Running));
     assert_eq!(link.disarm().unwrap(), RequestResult::Done);

@@ -105,7 +105,8 @@ fn response_and_ripple_are_those_of_the_torque_over_time() {
     }
 }
 
-/// With many updates a straight line is no longer told from the exponential: it is late by `h^2 / (12 tau)`.
+/// With many updates a straight line is no longer distinguished from the exponential: it is late by
+/// `h^2 / (12 tau)`.
 #[test]
 fn many_updates_are_a_continuous_lag() {
     for (delay, lag) in [(0.25_f64, 0.3_f64), (1.5, 0.06), (0.5, 4.0)] {

@@ -65,7 +65,7 @@ impl Rendered {
 /// The servo of a scene file, as `haptic run` builds it.
 ///
 /// # Errors
-/// Why there is none, in a sentence. What would pass is not searched for: the page's verdict says it.
+/// The reason of a refusal, in a sentence, without remedies: the page's verdict has them.
 pub fn certified(
     file: &SceneFile,
     transducers: &Transducers,

@@ -9,7 +9,7 @@ use serde::Deserialize;
 pub struct Settings {
     /// Text of the scene.
     pub scene: String,
-    /// Encoder counts a turn; those of the scene where there is none.
+    /// Encoder counts a turn; default: those of the scene.
     pub counts_per_turn: Option<f64>,
     /// The hand.
     pub hand: HandSettings,

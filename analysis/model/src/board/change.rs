@@ -49,7 +49,7 @@ pub fn collect(changes: &[(Parameter, f64)]) -> Result<Changes, DuplicateParamet
 /// spaces at the equals sign: `stiffness = 20, damping = 0.01`.
 ///
 /// # Errors
-/// A sentence where there is none, or something else.
+/// A sentence if there is no number, or other text.
 pub fn line(text: &str) -> Result<Changes, String> {
     let sides: Vec<&str> = text.split('=').map(str::trim).collect();
     let together = sides.join("=");

@@ -88,7 +88,7 @@ fn a_latency_is_at_most_what_a_scene_may_have_and_a_matched_coupling_stays() {
     assert_eq!(prepared(&lagging, &Terms::default()).coupling, lagging.coupling);
 }
 
-/// Delays between two updates of an amplifier are none, and there are as many updates in any period.
+/// Delays between two updates of an amplifier are invalid, and every period has as many updates.
 #[test]
 fn an_amplifier_in_updates_keeps_a_delay_of_whole_updates() {
     let kept = Terms { coupling: Choice::Kept, ..Terms::default() };

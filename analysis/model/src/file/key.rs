@@ -130,7 +130,7 @@ const fn of(parameter: Parameter) -> Key {
     }
 }
 
-/// A key that is none.
+/// An unknown key.
 const fn other(path: &'static str, unit: &'static str, bound: Bound) -> Key {
     let presence = Presence::Needed;
     Key { path, unit, bound, presence, example: "", doc: "", parameter: None }

@@ -104,7 +104,7 @@ pub enum Problem {
         key: &'static str,
         /// The value as written.
         value: String,
-        /// Why there is none.
+        /// The reason.
         reason: NoPassivity,
     },
     /// Keys that contradict one another.

@@ -19,7 +19,7 @@ use crate::simulation::{Experiment, Integration, SimulationError};
 
 /// How far an axis goes beyond the scene's own number.
 const BEYOND: f64 = 2.5;
-/// Least period on an axis, as a part of the scene's own: a period of zero is none.
+/// Least period on an axis, as a part of the scene's own: a period of zero is invalid.
 const SHORTEST: f64 = 0.05;
 
 /// The numbers that may be an axis: those that the verdict rests on, except those of the device's chain and

@@ -37,7 +37,7 @@ pub const GROWTH_THRESHOLD: f64 = 1e-9;
 /// Angle in rad a tick below which a motion creeps rather than resonates.
 const SLOWEST_RESONANCE: f64 = 1e-2;
 
-/// Heaviest hand, over the device: far beyond, two eigenvalues near 1 can no longer be told apart.
+/// Heaviest hand, over the device: far beyond, two eigenvalues near 1 cannot be separated.
 const HEAVIEST: f64 = 1e4;
 
 /// A hand, and what the loop does in it.
@@ -143,7 +143,7 @@ fn constructed(
     let mut search = HandSearch::new(scene, device, 1.0)?;
     let mut found = None;
     for hand in lagging.hands() {
-        // A hand that is too fast to be taken through a tick is none.
+        // A hand that is too fast to integrate over a tick is skipped.
         if let Ok(case) = search.of(hand)
             && case.grows()
         {

@@ -53,7 +53,7 @@ impl Motion {
 
     /// How it went on.
     pub fn outcome(&self) -> Outcome {
-        /// Part of the first swing that is no motion any more.
+        /// Part of the first swing below which a motion counts as ended.
         const STILL: f64 = 1e-6;
         if !self.last.is_finite() || self.last > self.first {
             Outcome::Diverges

@@ -31,8 +31,8 @@ pub const KNOBS: Transducers = Transducers {
     largest_speed: Transducers::NO_HAND_IS_FASTER,
 };
 
-/// Encoder and motor of the paddle, its amplifier scaled to these walls: with smaller steps, walls nearer
-/// to the limit can be told apart.
+/// Encoder and motor of the paddle, its amplifier scaled to these walls: with smaller steps, walls nearer to
+/// the limit can be distinguished.
 pub const PADDLES: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits32,

@@ -60,7 +60,7 @@ pub enum FaultStatus {
     Data = (1 << 9) | (1 << 15),
     /// No such instruction.
     Undefined = 1 << 16,
-    /// Not a Thumb instruction, or a return from an exception that is none.
+    /// Not a Thumb instruction, or an invalid return from an exception.
     State = 1 << 17,
 }
 

@@ -22,7 +22,7 @@ impl InertRegisters {
         plain
     }
 
-    /// What a register holds; 0 where there is none.
+    /// The value of a register; 0 if there is no such register.
     pub fn get(&self, offset: u32) -> u32 {
         self.values.get(offset as usize / 4).copied().unwrap_or(0)
     }

@@ -168,7 +168,7 @@ impl Serial {
             (G4, 0x2C) => self.prescaler,
             (F405, 0x00) => self.status(),
             (F405, 0x04) => {
-                // The status was read before, and this clears what it told.
+                // The status was read before, and this clears its flags.
                 self.latched = 0;
                 self.receive()
             }

@@ -250,7 +250,7 @@ impl Bench {
 
     /// What the board says that stopped it before it was last started.
     pub fn previous_fault(&mut self) -> Option<PreviousFault> {
-        // What comes behind it tells that there is none.
+        // The next message shows that there is none.
         let mut previous_fault = None;
         self.say(&ToBoard::Hello);
         for _ in 0..20 {

@@ -62,7 +62,7 @@ struct Use {
     id: u16,
     /// Sets that were answered as done.
     sets: u32,
-    /// Ticks of the streams that were not told.
+    /// Ticks missing from the streams.
     gaps: u32,
     /// The last of them.
     last: Option<u32>,

@@ -82,7 +82,7 @@ fn what_masks_the_servo_between_two_ticks_makes_no_tick_late() {
     });
 }
 
-/// A constant count cannot be told from a device at rest.
+/// A constant count cannot be distinguished from a device at rest.
 #[test]
 fn an_encoder_that_is_unplugged_leaves_a_constant_torque_within_the_limit() {
     on_both(|chip| {
@@ -159,8 +159,8 @@ fn a_record_outlives_a_reset_and_a_flipped_bit_makes_it_none() {
     });
 }
 
-/// A corrupted number in memory cannot be told from a valid one; the torque limit holds for
-/// any value.
+/// A corrupted number in memory cannot be distinguished from a valid one; the torque limit holds for any
+/// value.
 #[test]
 fn a_coefficient_with_a_flipped_bit_pushes_no_harder_than_the_limit() {
     on_both(|chip| {

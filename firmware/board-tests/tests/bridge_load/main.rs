@@ -42,7 +42,7 @@ const TRANSDUCERS: Transducers = Transducers {
     largest_speed: 1.0,
 };
 
-/// Period of the servo in s, of which there is none, as that of the scenes: 40 instants of 25 us.
+/// Period in s of the servo, which does not run here; as that of the scenes, 40 instants of 25 us.
 const PERIOD: f64 = 0.001;
 
 /// The modulation, the limits and the scales of the current loop with that load. The loop itself does not run.

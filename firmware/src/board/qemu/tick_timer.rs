@@ -1,5 +1,4 @@
-//! When a tick is due: SysTick, and beside it a clock that never stops, which tells how late the
-//! servo is.
+//! When a tick is due: SysTick, and beside it a clock that never stops and measures how late the servo is.
 
 use core::hint::cold_path;
 use core::sync::atomic::{AtomicU32, Ordering};

@@ -168,7 +168,7 @@ fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_becaus
     }
 }
 
-/// Clocks, interrupts and pins. The motor is off, and the next torque is none.
+/// Clocks, interrupts and pins. The motor is off, and the next torque is zero.
 pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
     let chip = embassy_stm32::init(wiring::clocks());
     family::cache();

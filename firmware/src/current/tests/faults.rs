@@ -103,7 +103,7 @@ fn a_short_circuit_is_over_current() {
 fn a_broken_wire_is_a_current_that_does_not_follow() {
     let mut rig = Rig::started(&BRUSHED);
     rig.motor.resistance = 1e6;
-    // So much that the voltage is enough, and so little that the current is none.
+    // So much that the voltage is enough, and so little that the current is zero.
     let (instants, fault) = fault(&mut rig, 500, 2000);
     assert!(instants > 30 && instants < 200, "{instants}");
     let (PowerFault::CurrentNotFollowing { largest: 1000, .. } | PowerFault::SaturatedDuty { .. }) =

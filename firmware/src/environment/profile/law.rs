@@ -19,7 +19,7 @@ pub struct ProfileLaw<N: Number, K, V, D, S> {
     parts: N::Coefficient,
     /// The place of the lower end in parts from the angle of zero.
     from: i32,
-    /// Parts between the ends; all that there are where there are none.
+    /// Parts between the ends; all parts if there are no ends.
     span: u32,
     /// The place of the first knot.
     origin: i32,

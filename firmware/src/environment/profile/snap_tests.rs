@@ -228,7 +228,7 @@ fn shapes_with_a_snap_point_that_make_no_sense_are_named() {
     assert!(refused(&[Shape::detents(24, -0.02).snap(1.1)]).contains("`torque` is -0.02"));
 }
 
-/// A hysteresis that is narrower than a count is none.
+/// A hysteresis narrower than a count has no effect.
 #[test]
 fn the_encoder_sees_the_hysteresis() {
     let coarse = |snap: f64, counts_per_turn: f64| {

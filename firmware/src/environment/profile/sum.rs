@@ -73,7 +73,7 @@ pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, boo
     }
     if frame.ends.is_none() {
         let mean = mean(shapes);
-        // Less than that is no unit of a knot.
+        // Less than that is not a unit of a knot.
         if mean.abs() > 0.5 * torque / FULL_SCALE as f64 {
             return Err(ShapeError::Mean { mean });
         }

@@ -432,7 +432,7 @@ const fn stable(controller: &Transfer) -> Result<Transfer, IndexError> {
     }
 }
 
-/// `H g` from velocity, with its poles told apart.
+/// `H g` from velocity, with its poles separated.
 #[inline(never)]
 const fn lagging(
     h: &Transfer,

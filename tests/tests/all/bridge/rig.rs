@@ -2,8 +2,8 @@
 //!
 //! Motor and device are one system of linear differential equations, whose exact response takes them from one
 //! instant of the current loop to the next. The voltage in between is the mean of what the bridge gives: the
-//! ripple of the modulation is not in it, which at the instants of the samples there is none of, and no dead
-//! time, so that there is none in the design either.
+//! ripple of the modulation, which is zero at the instants of the samples, is not in it, nor is dead time, so
+//! that the design has none either.
 
 use std::f64::consts::TAU;
 

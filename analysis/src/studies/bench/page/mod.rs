@@ -107,7 +107,7 @@ pub struct ScenePage {
 /// A browser that watches the pages that are opened in it.
 ///
 /// # Errors
-/// Where there is none.
+/// If there is no browser.
 pub fn watching_browser() -> Result<Page, PageError> {
     let mut browser = Page::start(WIDTH)?;
     browser.run_first(WATCH)?;

@@ -78,7 +78,7 @@ fn a_motor_whose_winding_is_another_makes_the_same_torque() {
     }
 }
 
-/// Nothing tells it from a device that is pushed: the torque has the wrong sign, and its limit holds.
+/// It cannot be distinguished from a pushed device: the torque has the wrong sign, and its limit holds.
 #[test]
 fn swapped_wires_and_a_reversed_encoder_push_no_harder_than_the_limit() {
     for swaps_wires in [false, true] {

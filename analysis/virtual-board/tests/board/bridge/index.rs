@@ -97,7 +97,7 @@ fn the_first_index_after_a_reset_aligns_the_motor_and_no_gate_is_high_before() {
     check_torque(&mut held, "by the index");
 }
 
-/// The board tells what a program may state: the magnets' angle at the index.
+/// The board reports a number that a program may state: the magnets' angle at the index.
 #[test]
 fn an_alignment_and_an_index_give_the_offset() {
     let wanted = 1900.0;

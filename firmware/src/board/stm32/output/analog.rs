@@ -85,7 +85,7 @@ pub fn stop() {
     DAC.stop();
 }
 
-/// An amplifier outside tells nothing of what it measures.
+/// An external amplifier reports no measurements.
 pub fn power_reading() -> Option<PowerReading> {
     None
 }

@@ -1,5 +1,5 @@
-//! When a tick is due: a basic timer whose update starts the servo's interrupt and latches the
-//! DAC, and beside it a clock that never stops, which tells how late the servo is.
+//! When a tick is due: a basic timer whose update starts the servo's interrupt and latches the DAC, and
+//! beside it a clock that never stops and measures how late the servo is.
 //!
 //! Both count the same clock, so that a period is a whole number of the clock's counts and the two
 //! cannot drift apart.

@@ -185,7 +185,7 @@ fn reference() -> i16 {
     DacCode::from_low_bits(WAITING.load(Ordering::Relaxed)).offset()
 }
 
-/// Takes the gates away, and tells the servo why.
+/// Turns the gates off, and passes the fault to the servo.
 #[cold]
 #[inline(never)]
 fn stop(fault: PowerFault) {

@@ -73,7 +73,7 @@ static WAITING: AtomicU16 = AtomicU16::new(DacCode::MID_SCALE.get());
 /// Whether the gates are driven: see [`State`].
 static STATE: AtomicU8 = AtomicU8::new(State::Off as u8);
 
-/// The code and the numbers of a fault that the servo has not seen yet; a code of 0 is none.
+/// The code and the numbers of a fault that the servo has not seen yet; a code of 0: no fault.
 static FAULT: AtomicU32 = AtomicU32::new(0);
 static FAULT_NUMBERS: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
 

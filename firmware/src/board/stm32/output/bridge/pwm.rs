@@ -46,7 +46,7 @@ pub fn prepare(current_loop: &CurrentLoop) {
     off();
     TIMER.cr1().write(|w| {
         w.set_cms(Cms::CENTER_ALIGNED1);
-        // The update that is made below is none of the counter's.
+        // The update that is made below is not the counter's.
         w.set_urs(Urs::COUNTER_ONLY);
     });
     TIMER.cr2().write(|w| w.set_mms(Mms::UPDATE));
