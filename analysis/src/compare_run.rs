@@ -15,7 +15,7 @@ use crate::toolchain;
 use crate::trace::{TimeUnit, Trace};
 use crate::virtual_board::{self, VirtualBoard, VirtualBoardError};
 
-/// What comes into a servo.
+/// The input of a servo.
 pub enum Input<'a> {
     /// A simulated device in a hand.
     Hand(Box<SimulatedDevice>),

@@ -7,8 +7,7 @@ use crate::terminal;
 /// Steps between two updates of the bar; a step is far shorter than a glance.
 const STRIDE: u64 = 64;
 
-/// A bar over so many steps, with a word for what they are. It draws nothing unless standard error
-/// is a terminal.
+/// A bar over this many steps, with a name for them. It draws nothing unless standard error is a terminal.
 pub fn bar(steps: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(steps), target());
     // The template is a constant; were it wrong, the plain bar would do.

@@ -60,7 +60,7 @@ pub enum TableError {
         name: &'static str,
         /// What stands there.
         value: String,
-        /// What must stand there.
+        /// The expected text.
         bound: String,
     },
     /// Too short.

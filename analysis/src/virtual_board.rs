@@ -1,8 +1,8 @@
 //! A program that is flashed, unmodified, on a virtual board: a process of its own, in lockstep with
 //! this one.
 //!
-//! The board is the package `virtual-board`, which says how it is talked to; it is built when it is
-//! first wanted. What it links with is under a licence of its own, so nothing here links with it.
+//! The board is the package `virtual-board`, which says how it is talked to; it is built when it is first
+//! wanted. Its libraries are under a licence of their own, so nothing here links with it.
 
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
@@ -23,7 +23,7 @@ use crate::toolchain::BoardModel;
 /// What a board says at the end of a sample, and when it is asked to end.
 const SAMPLE: u8 = 1;
 const END: u8 = 0;
-/// What it says at the end of each period of its bridge's modulation, and how long that message is.
+/// Its message at the end of each period of its bridge's modulation, and the length of that message.
 const PWM_PERIOD: u8 = 2;
 const PWM_PERIOD_BYTES: u64 = 16;
 /// What the gates are driven by, if by anything but the servo.
@@ -34,7 +34,7 @@ const NO_CODE: u16 = u16::MAX;
 /// what the board may be at take.
 pub const LONGEST_ARMING: usize = 10_000;
 
-/// Why a virtual board does not do what it should.
+/// Errors of a virtual board.
 #[derive(Debug, thiserror::Error)]
 pub enum VirtualBoardError {
     /// It could not be started.
@@ -43,7 +43,7 @@ pub enum VirtualBoardError {
     /// It has ended before it was asked to.
     #[error("the virtual board has stopped: {said}")]
     Stopped {
-        /// What it said.
+        /// Its message.
         said: String,
     },
     /// Its motor was asked to be aligned, and that has not begun or not ended.
@@ -183,8 +183,8 @@ impl VirtualBoard {
         self.read_sample_turning(shaft).map_err(|error| self.stopped(&error))
     }
 
-    /// What comes of a sample: the position that the encoder has turned to in it, and bytes to the
-    /// serial port. The next sample begins.
+    /// The result of a sample: the position that the encoder has turned to in it, and bytes to the serial
+    /// port. The next sample begins.
     ///
     /// # Errors
     /// Where the board has stopped.
@@ -330,7 +330,7 @@ impl VirtualBoard {
         Ok(bytes)
     }
 
-    /// Why it has stopped: what it said, or else what was noticed of it here.
+    /// Why it has stopped: its message, or else the error seen here.
     fn stopped(&mut self, noticed: &io::Error) -> VirtualBoardError {
         self.input = None;
         let mut said = String::new();

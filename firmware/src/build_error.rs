@@ -1,4 +1,4 @@
-//! What can go wrong between a certified scene and a servo.
+//! Errors between a certified scene and a servo.
 
 use core::fmt;
 

@@ -40,8 +40,7 @@
 //!
 //! None is on by default. Those of boards are for the bare-metal target `thumbv7em-none-eabihf`, and a program
 //! has one of them.
-//!
-//! | feature | what it is for |
+//! | feature | purpose |
 //! |---|---|
 //! | `wire` | parameters and telemetry over a serial line: messages, frames, the board's end |
 //! | `fixed-point` | programs compute in their scene's fixed-point format instead of `f32` |
@@ -57,9 +56,9 @@
 //!
 //! Versions follow semantic versioning. Before 1.0 a minor version may break the interface, and a patch does
 //! not. A certificate may become less conservative in any version; where one would turn out to be wrong, a
-//! patch refuses what it had accepted. Exempt are the texts of errors and reports, items hidden from this
-//! documentation, and all in [`board`] but [`scene_program!`] and [`sweep_program!`]. The messages of `wire`
-//! have a version of their own, which board and host compare.
+//! patch refuses scenes that it had accepted. Exempt are the texts of errors and reports, items hidden from
+//! this documentation, and all in [`board`] but [`scene_program!`] and [`sweep_program!`]. The messages of
+//! `wire` have a version of their own, which board and host compare.
 //!
 //! The minimum supported Rust version is 1.95. A minor version may raise it.
 //!

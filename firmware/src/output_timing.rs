@@ -48,7 +48,7 @@ impl OutputTiming {
         if delay == 0.0 {
             return Self::Latched;
         }
-        // The cast rounds down, and gives the nearest of what does not fit.
+        // The cast rounds down, and saturates.
         Self::AtPhase((delay * 1e9 + 0.5) as u32)
     }
 

@@ -9,7 +9,7 @@ use crate::number::Number;
 use crate::scene::Timing;
 use crate::torque::{LimitReason, Limiter};
 
-/// The scales of what surrounds the servo.
+/// The scales of encoder and motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Transducers {

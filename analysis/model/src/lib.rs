@@ -1,5 +1,5 @@
-//! Scene files, what the certificate says about them, and what they would do: the mathematics of the host,
-//! without an operating system, so that a browser and a notebook have the same.
+//! Scene files, their certificates, and their simulation: the mathematics of the host, without an operating
+//! system, so that a browser and a notebook have the same.
 //!
 //! A [`mod@file`] holds a scene, [`verdict`] the certificate's answer; [`simulation`] computes a scene's
 //! motion, certified or not:

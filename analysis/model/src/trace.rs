@@ -27,7 +27,7 @@ pub enum TimeUnit {
 /// A run to draw.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    /// What it is called.
+    /// Its name.
     pub title: String,
     /// What the times are in.
     pub time_unit: TimeUnit,

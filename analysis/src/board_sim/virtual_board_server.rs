@@ -14,13 +14,13 @@ use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 /// Bytes to the board with one sample: more than its port takes in a sample.
 const BYTES_PER_SAMPLE: usize = 1024;
 
-/// A virtual board and what it drives.
+/// A virtual board and its device.
 pub enum DrivingBoard {
     /// By its DAC.
     Dac {
         /// The board.
         board: VirtualBoard,
-        /// What it drives.
+        /// The device.
         plant: Box<dyn PlantIo + Send>,
         /// The count to send to the board next; `None` before the first sample.
         count: Option<i32>,

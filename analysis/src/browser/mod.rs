@@ -49,20 +49,20 @@ pub enum BrowserError {
     /// Its tools cannot be talked to.
     #[error("the developer tools of {NAME} have broken off: {0}")]
     Socket(#[source] Box<tungstenite::Error>),
-    /// What they say is no message of their protocol.
+    /// They sent a message that is not of their protocol.
     #[error("the developer tools of {NAME} have said `{said}`, which is no message: {source}")]
     NoMessage {
-        /// What they have said.
+        /// The message.
         said: String,
         /// The reason.
         source: serde_json::Error,
     },
-    /// They refuse a call, or answer without what was asked for.
+    /// They refuse a call, or answer without the requested value.
     #[error("{method}: {answer}")]
     Refused {
         /// The method of their protocol.
         method: String,
-        /// What they have answered.
+        /// The answer.
         answer: Value,
     },
     /// A page cannot be opened.
@@ -78,7 +78,7 @@ pub enum BrowserError {
     Thrown {
         /// The expression.
         expression: String,
-        /// What it has thrown.
+        /// The exception.
         error: Value,
     },
     /// An expression that was waited for has not become true.
@@ -104,7 +104,7 @@ pub enum BrowserError {
         expression: String,
         /// Its value.
         value: Value,
-        /// What it must be.
+        /// The requirement.
         kind: &'static str,
     },
     /// A page cannot be given out.

@@ -28,7 +28,7 @@ const SMALL: i32 = units(13);
 type Logarithmic<'a, 'b> =
     ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
-/// The most columns of panels beside each other: what can be read at the width of a page.
+/// The most columns of panels beside each other that are readable at the width of a page.
 const COLUMNS: usize = 2;
 
 /// The panels of a picture.

@@ -186,7 +186,7 @@ fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
     Ok(())
 }
 
-/// What a board with a bridge of its own has to do besides, and what it needs for that.
+/// The additional work and memory of a board with a bridge of its own.
 fn about_bridges(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
     let servo = most_of_interrupts(figures);
     let most = current::instant_instructions(&toolchain.build_bench_programs()?)?;

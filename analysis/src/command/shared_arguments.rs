@@ -29,7 +29,7 @@ impl SceneArgument {
         Ok(file::load(&self.file)?)
     }
 
-    /// Reads it, to look at what it does.
+    /// Reads it, to simulate it.
     pub fn load_to_simulate(&self) -> Result<SceneFile, CommandError> {
         Ok(file::load_for(Purpose::Simulate, &self.file)?)
     }

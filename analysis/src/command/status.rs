@@ -232,7 +232,7 @@ pub enum CommandError {
     /// A scene that cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    /// A simulated device that leaves; exit status 1, for what it does is the answer.
+    /// A simulated device that leaves; exit status 1, since that is the answer.
     #[error(
         "the motion diverges: from sample {sample} on, at {} s, the device is more than {} rad \
          from its zero; the loop is probably unstable (`haptic stability`)",

@@ -69,7 +69,7 @@ pub struct Emulator {
     number: u16,
 }
 
-/// What can go wrong with an emulated board.
+/// Errors of an emulated board.
 #[derive(Debug, thiserror::Error)]
 pub enum EmulatorError {
     /// The emulator could not be started.

@@ -1,4 +1,4 @@
-//! What was measured, with its confidence interval.
+//! An estimate, with its confidence interval.
 
 /// Confidence of all intervals.
 pub const CONFIDENCE: f64 = 0.95;

@@ -14,9 +14,8 @@ use crate::quantity::significant;
 /// Least motion in counts: below that the encoder's steps are no noise any more.
 const LEAST_COUNTS: f64 = 1.5;
 
-/// Largest squared residual, in squared deviations a degree of freedom, of a device that passes for
-/// rigid: residuals up to three times of what the noise explains, which allows for noise that is
-/// not white.
+/// Largest squared residual, in squared deviations a degree of freedom, of a device that passes for rigid:
+/// residuals up to three times those that the noise explains, which allows for noise that is not white.
 const RIGID: f64 = 9.0;
 
 /// The disk around all responses as they were measured: centre and radius `1/(2 delta)`.
@@ -37,9 +36,8 @@ pub struct Identification {
     pub inertia: Estimate,
     /// Damping in N m s/rad.
     pub damping: Estimate,
-    /// Mean delay in s of the torque's step response beyond what was declared, which is the sum of
-    /// the amplifier's lag and the output's delay; less than zero where the counts are younger than
-    /// their time.
+    /// Mean delay in s of the torque's step response beyond the declared delay, which is the sum of the
+    /// amplifier's lag and the output's delay; less than zero where the counts are younger than their time.
     pub mean_delay: Estimate,
     /// Lag and delay, each for itself, or why they have no intervals.
     pub latency: Result<Latency, NoLatency>,

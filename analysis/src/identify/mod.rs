@@ -6,14 +6,13 @@
 //!                                      fit 1/J = (b + j w m + Z) (1 + j w tau) e^(j w d)
 //! ```
 //!
-//! [`record`] reads a CSV file, [`step`] finds the stretches of steady sine in it, [`response`]
-//! takes one bin of each, [`fit`] draws the conclusions, and [`clipping`] refuses them where the motor
-//! did not give the torques. A conclusion is a [`model`] of the device and of what makes its torque late;
-//! [`least_squares`] finds the nearest one for a lag, [`profile`] the intervals over all lags, and
-//! [`latency`] says what they tell of lag and delay. [`torque_source`] is `Z`, what the current loop of a board's own
-//! bridge adds to the device. [`port`] records what a board measures; [`rig`] simulates a device that is
-//! measured so, with all that spoils a measurement, and [`measurement`] has the emulated board measure
-//! it.
+//! [`record`] reads a CSV file, [`step`] finds the stretches of steady sine in it, [`response`] takes one bin
+//! of each, [`fit`] draws the conclusions, and [`clipping`] refuses them where the motor did not give the
+//! torques. A conclusion is a [`model`] of the device and of what makes its torque late; [`least_squares`]
+//! finds the nearest one for a lag, [`profile`] the intervals over all lags, and [`latency`] derives lag and
+//! delay from them. [`torque_source`] is `Z`, what the current loop of a board's own bridge adds to the
+//! device. [`port`] records what a board measures; [`rig`] simulates a device that is measured so, with all
+//! that spoils a measurement, and [`measurement`] has the emulated board measure it.
 
 pub mod clipping;
 mod error;

@@ -30,7 +30,7 @@ const WRONG_SIGN: f64 = 1.0 / 30.0;
 /// Counts that both phases of a brushed motor are rounded alike by, in steps of half their difference.
 const STEPS: f64 = 2.0;
 
-/// Amplitude in N m of what the zero crossings of a sine of torque add at a multiple of its angular frequency in
+/// Amplitude in N m that the zero crossings of a sine of torque add at a multiple of its angular frequency in
 /// rad/s, 1 for the sine itself.
 ///
 /// At each of them the voltage of the dead time is wrong for a while, which the feedback takes out as its derivative

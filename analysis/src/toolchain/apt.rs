@@ -127,7 +127,7 @@ impl Apt {
 }
 
 impl Changes {
-    /// Of what `apt-get install --simulate` prints: a line for each package that is unpacked
+    /// Of the output of `apt-get install --simulate`: a line for each package that is unpacked
     /// (`Inst NAME [old version] (new version ...)`, the old one only where there is one), removed
     /// (`Remv NAME ...`) or removed with its settings (`Purg NAME ...`).
     fn of_simulation(text: &str) -> Self {

@@ -114,7 +114,7 @@ pub struct Toolchain {
 pub struct Program {
     /// Its file.
     pub path: PathBuf,
-    /// What it takes of a board's memory.
+    /// Its use of a board's memory.
     pub sizes: Sizes,
 }
 
@@ -464,9 +464,8 @@ impl Toolchain {
     }
 }
 
-/// Builds the program `haptic` with one scene more, and gives its file.
-///
-/// It is built as this program was, for this machine: what they have in common is there.
+/// Builds the program `haptic` with one scene more, and gives its file. It is built as this program was, for
+/// this machine: their common parts are there.
 ///
 /// # Errors
 /// Where the scene does not compile.

@@ -1,5 +1,5 @@
-//! Which compiler builds for the board, and what has to be done first: a pure function of what was
-//! seen on the machine.
+//! Which compiler builds for the board, and the steps before that: a pure function of what was seen on the
+//! machine.
 //!
 //! The toolchain that built this program serves where it has the target, or may have it added.
 //! Where the machine's owner has said that toolchains are not to be fetched
@@ -71,7 +71,7 @@ pub enum ManualStep {
         found: Option<Version>,
         /// Whether it may be had by rustup.
         rustup: bool,
-        /// What it builds for.
+        /// Its target.
         target: Target,
     },
     /// Get the emulator.

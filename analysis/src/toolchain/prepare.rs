@@ -31,7 +31,7 @@ pub enum SetupError {
         step: Step,
         /// Its exit status.
         status: ExitStatus,
-        /// The end of what it said.
+        /// The end of its output.
         output: String,
     },
     /// Packages were not installed.
@@ -87,7 +87,7 @@ pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, Setup
     }
 }
 
-/// Takes a step, and says before what it does.
+/// Announces a step and takes it.
 fn take(step: &Step, progress: &impl Fn(&str)) -> Result<(), SetupError> {
     match step {
         Step::AddTarget(target) => {

@@ -15,7 +15,7 @@ pub struct Sources {
     folder: PathBuf,
 }
 
-/// What can be wrong with the programs' source.
+/// Errors in the programs' source.
 #[derive(Debug, thiserror::Error)]
 pub enum SourcesError {
     /// The source is not where it was when this program was built.

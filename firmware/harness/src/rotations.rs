@@ -1,4 +1,4 @@
-//! Means of computing sine and cosine of a motor's phase, for the table of what each costs.
+//! Means of computing sine and cosine of a motor's phase, for the table of their costs.
 
 use core::f32::consts::TAU;
 

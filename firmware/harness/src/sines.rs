@@ -1,4 +1,4 @@
-//! Other means of computing the sweep's sine, for the table of what each costs.
+//! Other means of computing the sweep's sine, for the table of their costs.
 
 use core::f32::consts::TAU;
 

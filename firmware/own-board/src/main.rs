@@ -2,7 +2,7 @@
 //!
 //! - `board.rs` is the board as the servo sees it, and its interrupts.
 //! - `chip.rs` sets the chip up, and `serial.rs` is its port to the host.
-//! - `scene.rs` is what it renders, which does not know the board.
+//! - `scene.rs` is the scene, which does not know the board.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -37,7 +37,7 @@ const ROUNDING: f64 = 1.0 / 131_072.0;
 const ROUNDING_F32: f64 = f32::EPSILON as f64;
 
 impl<const DELAY: usize> ProgressiveSpring<DELAY> {
-    /// What it is to the certificate at this period in s, for constants.
+    /// Its model for the certificate at this period in s, for constants.
     ///
     /// The torque depends on one position and never falls as that rises, as long as neither stiffness is
     /// negative, and it is zero at zero, as long as the knee is not negative: it is a monotone spring, no

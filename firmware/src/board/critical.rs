@@ -1,10 +1,9 @@
 //! Critical sections that do not hold up the servo.
 //!
-//! The usual critical section switches all interrupts off, and a log line written in one has been
-//! measured at 5 us and more: at 20 kHz a tenth of a period. Here it raises the base priority, which
-//! holds off everything but the servo's interrupt, and where a bridge drives the motor, the current
-//! loop's above it. Neither ever enters a critical section: what they share with the rest goes through
-//! atomics and lock-free queues.
+//! The usual critical section switches all interrupts off, and a log line written in one has been measured at
+//! 5 us and more: at 20 kHz a tenth of a period. Here it raises the base priority, which holds off everything
+//! but the servo's interrupt, and where a bridge drives the motor, the current loop's above it. Neither ever
+//! enters a critical section: their shared data goes through atomics and lock-free queues.
 
 use core::sync::atomic::{Ordering, compiler_fence};
 

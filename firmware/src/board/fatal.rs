@@ -17,7 +17,7 @@ fn panic(info: &PanicInfo<'_>) -> ! {
     end(Fault::of_panic(info))
 }
 
-/// The processor's handler of what cannot be masked, which is a fault of the chip.
+/// The processor's handler of the non-maskable interrupt, which is a fault of the chip.
 #[cfg(feature = "stm32")]
 #[unsafe(export_name = "NonMaskableInt")]
 unsafe extern "C" fn non_maskable() -> ! {

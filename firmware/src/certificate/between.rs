@@ -169,8 +169,8 @@ const fn between_periods(scene: &Scene, n: &LoopIntervals, longest: f64) -> Betw
     }
 }
 
-/// Whether the coupling, rounded, is stiffer than the standard one up to this period. At the
-/// standard one it is judged as if it were exactly that, which costs a little of what it passes.
+/// Whether the coupling, rounded, is stiffer than the standard one up to this period. At the standard one it
+/// is judged as if it were exactly that, which rejects slightly more.
 const fn is_never_standard(n: &LoopIntervals, longest: f64) -> bool {
     match n.coupling {
         None => true,

@@ -106,7 +106,7 @@ mod tests {
         assert_eq!(Digits::so_many(9, 44.0, Side::Below).value(), 44.0);
     }
 
-    /// What has no digits is not searched for them without end.
+    /// The search ends also for a number without such digits.
     #[test]
     fn every_double_has_some() {
         let extremes = [0.0, -1.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, f64::MAX, 5e-324];

@@ -292,7 +292,7 @@ impl PassivityProblem {
             Some(limit) => limit,
             None => delta.min(coupling),
         });
-        // A coupling that is stiffer than the standard one lacks what it stands for over `delta`.
+        // A coupling that is stiffer than the standard one lacks its excess over `delta`.
         Some(if delta.is_below(coupling) {
             over_the_limit.max(coupling.sub(delta))
         } else {

@@ -170,7 +170,7 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
     }
 }
 
-/// In a frame of its own, as what it calls.
+/// In a frame of its own, as the function that it calls.
 #[inline(never)]
 const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
     match PassivityProblem::in_format(scene, format) {

@@ -11,7 +11,7 @@ use crate::scene::Scene;
 
 /// The factor by which a number is moved at most in the search for a value that passes.
 pub(super) const FARTHEST: f64 = 64.0;
-/// How much farther than in proportion to what a scene lacks the first step goes: what it lacks is
+/// How much farther than in proportion to the missing passivity the first step goes: the missing passivity is
 /// about in proportion to its numbers, and a step past zero is worth more than one before it.
 const FIRST_STEP: f64 = 1.25;
 /// The factor of a step where next to nothing is lacking.

@@ -105,10 +105,10 @@ pub(super) struct Output {
     pub counts_per_volt: f32,
     /// Largest difference of two compare values.
     pub span: u16,
-    /// Largest amplitude of a phase in counts, without the dead time: that of the circle in the hexagon of what
-    /// it leaves of that difference.
+    /// Largest amplitude of a phase in counts: the circle in the hexagon of the difference without the dead
+    /// time.
     pub circle: f32,
-    /// What the dead time takes, in counts: from the difference of a brushed motor's two compare values, from
+    /// Loss by the dead time, in counts: of the difference of a brushed motor's two compare values, of
     /// each of a brushless one's three.
     pub dead: f32,
 }
@@ -181,7 +181,7 @@ impl CurrentLoop {
         }
     }
 
-    /// What it was designed for: the motor and the supply that a simulation needs.
+    /// Its design: the motor and the supply that a simulation needs.
     #[cfg(not(target_os = "none"))]
     pub const fn drive(&self) -> &Drive {
         &self.drive
@@ -255,7 +255,7 @@ impl CurrentLoop {
     }
 }
 
-/// What has been checked, in SI units.
+/// The checked numbers, in SI units.
 struct Design<'a> {
     drive: &'a Drive,
     stage: &'a PowerStage,

@@ -40,7 +40,7 @@ pub enum DutyError {
     Duty {
         /// The duty.
         duty: f64,
-        /// What it has to be above.
+        /// Its lower bound.
         least: f64,
         /// The most that it may be.
         most: f64,

@@ -14,14 +14,14 @@ pub enum PowerFault {
         /// The largest in mA.
         largest: u32,
     },
-    /// The supply was above what was stated.
+    /// The supply was above its stated range.
     OverVoltage {
         /// The voltage in mV.
         voltage: u32,
         /// The highest in mV.
         highest: u32,
     },
-    /// The supply was below what was stated.
+    /// The supply was below its stated range.
     UnderVoltage {
         /// The voltage in mV.
         voltage: u32,

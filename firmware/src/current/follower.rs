@@ -25,7 +25,7 @@ impl Follower {
     /// No current and no voltage.
     pub(super) const AT_REST: Self = Self { model: 0.0, next: 0.0, held: 0.0 };
 
-    /// The model goes on by an instant, whatever voltages there are: it is what was certified. The voltage
+    /// The model goes on by an instant, whatever voltages there are: it is the certified model. The voltage
     /// brings it there, and the current to it.
     #[inline(always)]
     pub(super) const fn follow(&mut self, law: &Law, reference: f32, current: f32) -> Wanted {

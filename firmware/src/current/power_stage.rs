@@ -64,7 +64,7 @@ pub const B_G431B_ESC1: PowerStage = PowerStage {
 impl PowerStage {
     /// The dead time in counts of the timer, rounded up.
     pub const fn dead_time_counts(&self) -> u8 {
-        // The cast rounds a positive number down, and gives the nearest of what does not fit.
+        // The cast rounds a positive number down, and saturates.
         (self.dead_time * self.clock + (1.0 - 1e-6)) as u8
     }
 }

@@ -1,4 +1,4 @@
-//! What a board samples at an instant, and what it loads for the next one.
+//! The samples of an instant, and the compare values for the next one.
 
 use super::timing::PwmTiming;
 use crate::encoder::RawCount;

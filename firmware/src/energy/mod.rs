@@ -19,10 +19,8 @@ use crate::output_timing::{OutputMode, OutputTiming};
 /// parts of their unit, so that weighting the two codes rounds nothing.
 const PARTS: u32 = 8;
 
-/// Observes passivity, one tick at a time.
-///
-/// What it observes is the work of the DAC's codes. An amplifier that lags, which a scene may state, does
-/// that work later.
+/// Observes passivity, one tick at a time. It observes the work of the DAC's codes. An amplifier that lags,
+/// which a scene may state, does that work later.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnergyMonitor {
     /// Codes above mid-scale that the DAC holds until the next count is read.
@@ -41,7 +39,7 @@ pub struct EnergyMonitor {
 impl EnergyMonitor {
     /// At zero energy, for codes that change this part of a period after their count.
     pub fn with_phase(part: f64) -> Self {
-        // The cast gives the nearest of what does not fit. Never none: that is for other modes.
+        // The cast saturates. Never zero: that is for other modes.
         let phase = ((part * f64::from(1 << PARTS) + 0.5) as i32).max(1);
         Self { phase, ..Self::default() }
     }

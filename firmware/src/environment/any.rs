@@ -339,7 +339,7 @@ impl Environment {
                 EnvironmentLaw::Wall(Wall { damping: 0.0, filter: None, ..*wall }.law(setting)?)
             }
             Self::DamperWall(wall) => EnvironmentLaw::Wall(wall.law(setting)?),
-            // What it states is not what it does.
+            // Its statement does not match its behaviour.
             Self::Stated(_) => return Err(BuildError::LawElsewhere),
             Self::FreeMode { residual, delay } => EnvironmentLaw::FreeMode(FreeModeLaw {
                 canceller: canceller(*residual, setting)?,

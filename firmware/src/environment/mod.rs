@@ -8,9 +8,9 @@
 //! Each is data first; [`Discretize`] turns it into its [`Law`], which the servo runs. A
 //! [`StatedEnvironment`] of another crate runs beside them.
 
-/// Gives a macro all environments, each with its generic parameters, with whether it may cancel the
-/// device's damping, with what its law remembers for a coupling, and with what it may have of a torque profile:
-/// the one list of them. Each is there as [`Matched`], too.
+/// Gives a macro all environments, each with its generic parameters, with whether it may cancel the device's
+/// damping, with the torques that its law stores for a coupling, and with its possible torque profile: the
+/// one list of them. Each is there as [`Matched`], too.
 macro_rules! for_every_environment {
     ($apply:ident) => {
         $apply! {

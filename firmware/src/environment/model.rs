@@ -19,8 +19,8 @@ use crate::parameter::NamedParameters;
 ///
 /// To run on a board it is [`Delayed`](super::Delayed) as well.
 pub trait StatedEnvironment: NamedParameters + Copy + 'static {
-    /// What it is to the certificate, in a scene with this period, damping and coupling. These may be
-    /// any numbers: they are looked at later.
+    /// Its model for the certificate, in a scene with this period, damping and coupling. These may be any
+    /// numbers: they are looked at later.
     fn stated(&self, context: &LawContext) -> StatedModel;
 }
 
@@ -139,7 +139,7 @@ pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
     /// code that certifies cancelled damping.
     const CANCELS_DAMPING: bool;
 
-    /// What it may have of a torque profile.
+    /// Its possible use of a torque profile.
     const PROFILE: ProfileUse;
 
     /// What its law remembers for a coupling.

@@ -41,7 +41,7 @@ impl<N: Number> Turn<N> {
     /// The most counts of a turn: so that two of them are below half of the counter.
     const MOST_COUNTS: i32 = 1 << 28;
 
-    /// No turn: all positions are what they are.
+    /// No turn: positions are not wrapped.
     pub(crate) const fn none() -> Self {
         Self { counts: Self::MOST_COUNTS, origin: 0, angle: N::ZERO, extent: Extent::Device }
     }
@@ -74,7 +74,7 @@ impl<N: Number> Turn<N> {
             return Err(BuildError::Turn { counts: counts_per_turn, largest });
         }
         if let Extent::Range(range) = self.extent {
-            // The cast gives the nearest of what does not fit.
+            // The cast saturates.
             let [from, to] = range.map(|angle| (angle / TAU * counts_per_turn) as i32);
             self.extent = Extent::Counted { turn: counts, from, to };
         } else {
@@ -146,8 +146,8 @@ fn nearest(count: i64, turn: i32, [from, to]: [i64; 2]) -> i64 {
     if away(next) < away(here) { next } else { here }
 }
 
-/// A count less what it is over whole turns, toward zero. By digits, once in a start: a division of numbers
-/// as wide would take more of a board's flash than all the rest of this.
+/// A count modulo whole turns, toward zero. By digits, once in a start: a division of numbers as wide would
+/// take more of a board's flash than all the rest of this.
 #[cold]
 #[inline(never)]
 fn whole_turns(count: i64, turn: i32) -> i64 {

@@ -63,7 +63,7 @@ named_parameters! {
     [W: NamedParameters] OneSided<W>: Face => face; wall;
 }
 
-/// A wall at rest at zero that pushes and pulls: what may be [`Placed`] or [`OneSided`].
+/// A wall at rest at zero that pushes and pulls; it may be [`Placed`] or [`OneSided`].
 pub trait Spring<N: Number> {
     /// What answers to velocity.
     type Velocity: Velocity<N>;

@@ -89,7 +89,7 @@ pub const fn index_looked_at(
 }
 
 /// `(T z / (z - 1)) E` with its poles separated: the first half of [`index_looked_at`].
-// In a frame of its own: a small board's stack has no room for the function beside what comes of it.
+// In a frame of its own: a small board's stack has no room for the function beside its result.
 #[inline(never)]
 pub(crate) const fn velocity_reduced(
     environment: &Transfer,

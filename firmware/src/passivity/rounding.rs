@@ -1,8 +1,8 @@
 //! Sums, products and quotients of doubles rounded downward and upward, usable in `const fn`.
 //!
-//! The processor rounds to the nearest; the next double outward is taken where that is not exact.
-//! What has to be known of a number for that is read off its bits: emulated doubles are compared by
-//! a call, whole numbers are not, and the evaluation of a constant pays for every call.
+//! The processor rounds to the nearest; the next double outward is taken where that is not exact. The needed
+//! properties of a number are read off its bits: emulated doubles are compared by a call, whole numbers are
+//! not, and the evaluation of a constant pays for every call.
 
 /// All bits of a double but its sign.
 const MAGNITUDE: u64 = u64::MAX >> 1;

@@ -185,7 +185,7 @@ impl TimingLimits {
 
     /// Whole periods in `time` s, at least one and at most [`LONGEST`](Self::LONGEST).
     pub(crate) fn ticks(&self, time: f64) -> u32 {
-        // The cast gives the nearest of what does not fit.
+        // The cast saturates.
         ((time / self.period) as u32).clamp(1, Self::LONGEST)
     }
 

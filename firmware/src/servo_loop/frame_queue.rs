@@ -7,9 +7,9 @@ use super::frame::{Frame, FrameSink, Words};
 
 /// A lock-free queue of `LENGTH` frames, a power of two, with one writer and one reader.
 ///
-/// Made of atomic words rather than taken from a crate: with a length that the compiler knows a
-/// push costs half of what it costs where a length is divided by at run time, it cannot panic, and
-/// without slots that two sides may touch at once there is nothing `unsafe` about it.
+/// Made of atomic words rather than taken from a crate: with a length that the compiler knows a push costs
+/// half of a push with a division by a run-time length, it cannot panic, and without slots that two sides may
+/// touch at once there is nothing `unsafe` about it.
 #[derive(Debug)]
 pub struct FrameQueue<const LENGTH: usize> {
     slots: [[AtomicU32; 4]; LENGTH],

@@ -18,7 +18,7 @@ pub trait Hardware {
     fn write(&mut self, code: DacCode);
     /// Switches the motor's amplifier, or the board's bridge.
     fn amplifier(&mut self, on: bool);
-    /// A fault of what makes the torque, since this was last asked; the torque is already gone. A DAC has
+    /// A fault of the torque's source, since this was last called; the torque is already gone. A DAC has
     /// none.
     fn output_fault(&mut self) -> Option<Fault> {
         None

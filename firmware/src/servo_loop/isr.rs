@@ -1,4 +1,4 @@
-//! The state of the servo's interrupt, and what it shares with the task below it.
+//! The state of the servo's interrupt, and the data shared with the task below it.
 
 use super::{FrameQueue, FrameReader, Frames, Hardware, Inbox, Mailbox, Requests, ServoLoop};
 use crate::environment::Discretize;

@@ -38,8 +38,8 @@ fn with_spring(scene: &Scene) -> Scene {
 }
 
 impl Description {
-    /// Why changes of what runs here are refused: the words that the board has no room for, from the
-    /// same numbers by the same code. `has` are the parameters that can be changed there.
+    /// Why changes of the running scene are refused: the words that the board has no room for, from the same
+    /// numbers by the same code. `has` are the parameters that can be changed there.
     ///
     /// # Errors
     /// The reason. None is found for what can run, and for a servo that cannot be built in one of the

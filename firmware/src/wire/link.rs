@@ -33,7 +33,7 @@ where
     N: Number,
     M: OutputMode,
 {
-    /// Hears what has come, answers one thing, and sends what fits. To be called over and over,
+    /// Reads the received bytes, answers one message, and sends as much as fits. To be called in a loop,
     /// below the servo's priority.
     pub fn poll(&mut self) {
         let mut bytes = [0; PIECE];

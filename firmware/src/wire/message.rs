@@ -1,5 +1,5 @@
-//! What can be said. `PROTOCOL.md` has the same for clients in other languages, and a test holds it
-//! against this file.
+//! The messages. `PROTOCOL.md` has the same for clients in other languages, and a test holds it against this
+//! file.
 //!
 //! Text is `&str` where a message is written and where it is read in place, and `String` on a host
 //! that keeps it: the bytes are the same.

@@ -1,9 +1,7 @@
-//! Protocol of a board and its host, as bytes on a serial line or a socket.
-//!
-//! [`message`] lists what can be said, [`mod@frame`] and [`decoder`] carry it, [`telemetry`] packs
-//! ticks, [`session`] answers on the board, and
-//! with a [`description`] of what runs there the host has the words for a refusal. The host asks and
-//! the board answers; of itself the board sends telemetry only, once it was asked to.
+//! Protocol of a board and its host, as bytes on a serial line or a socket. [`message`] lists the messages,
+//! [`mod@frame`] and [`decoder`] carry it, [`telemetry`] packs ticks, [`session`] answers on the board, and
+//! with a [`description`] of the running scene the host has the words for a refusal. The host asks and the
+//! board answers; of itself the board sends telemetry only, once it was asked to.
 
 mod changes;
 pub mod decoder;

@@ -1,4 +1,4 @@
-//! Ticks, packed: each as what has changed since the one before, which is a byte where it was five.
+//! Ticks, packed: each as its difference from the one before, a byte instead of five.
 
 use heapless::Vec;
 use serde::{Deserialize, Serialize};

@@ -129,7 +129,7 @@ impl Chain {
         Ok(ExcessPassivity { value, delta, reached })
     }
 
-    /// Bounds of what the rest of the chain adds to the damping `motor` of its first mass.
+    /// Bounds of the damping that the rest of the chain adds to the damping `motor` of its first mass.
     fn behind_motor(&self, places: u32, motor: &BigInt) -> (BigRational, BigRational, Reached) {
         let LeastReal { touch, curvature } = LeastReal::behind_motor(self, places);
         if touch.is_zero() || curvature.is_zero() {

@@ -1,5 +1,5 @@
-//! The design procedure of theory, section 6, in its three directions: what may be rendered on a
-//! device, what device a class of environments needs, and how long the period may be.
+//! The design procedure of theory, section 6, in its three directions: the environments that may be rendered
+//! on a device, what device a class of environments needs, and how long the period may be.
 //!
 //! The certificate itself is asked, and the answer is the last value that it passes: the value's
 //! neighbour among the numbers of `f64` is refused. So every answer is exact and comes as scenes
@@ -129,8 +129,8 @@ fn most_repetitions(passes: impl Fn(u32) -> bool) -> Option<u32> {
     Some(inside)
 }
 
-/// The border of what may be rendered of two quantities at once: the most of the second at evenly
-/// spaced values of the first, from none of it to the most. Empty where there is no border.
+/// The border of the region of two quantities that may be rendered: the most of the second at evenly spaced
+/// values of the first, from none of it to the most. Empty where there is no border.
 pub fn border(
     scene: &Scene,
     [first, second]: [Quantity; 2],

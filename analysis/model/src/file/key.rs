@@ -91,7 +91,7 @@ pub struct Key {
     pub presence: Presence,
     /// A value as TOML writes it; empty for a table that is written with its header.
     pub example: &'static str,
-    /// What it is, in words.
+    /// Description.
     pub doc: &'static str,
     /// The number of a scene that it is, if it is one.
     pub parameter: Option<Parameter>,

@@ -1,5 +1,4 @@
-//! What can be wrong with a file, as sentences that name the file, the line, the key, the value
-//! and the bound.
+//! The faults of a file, as sentences that name the file, the line, the key, the value and the bound.
 
 use std::fmt;
 

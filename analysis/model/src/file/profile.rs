@@ -84,7 +84,7 @@ fn narrowest_piece(shape: &Shape) -> f64 {
 pub struct ProfileTable {
     /// The environment.
     pub environment: Environment,
-    /// What it was sampled from.
+    /// The shapes that it was sampled from.
     pub shapes: Shapes,
     places: Vec<Place>,
     torque: Option<Span>,
@@ -234,7 +234,7 @@ fn shape(index: usize, mut section: Section<'_>) -> Read<Placed> {
             of_kind(kind, name, span, &mut section)
         }
         Err(reported) => {
-            // Of what type it was to be is not known: a key of any is a good one.
+            // The intended type is unknown: a key of any type is accepted.
             let keys = key::ALL.iter().filter(|key| key.table() == key::SHAPE.path);
             keys.for_each(|key| section.skip(key));
             Err(reported)

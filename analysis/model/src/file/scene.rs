@@ -241,7 +241,7 @@ fn environment_of(mut section: Section<'_>) -> Read<EnvironmentTable> {
             }
         }
         Err(reported) => {
-            // Of what type it was to be is not known: a key of any is a good one.
+            // The intended type is unknown: a key of any type is accepted.
             let keys = key::ALL.iter().filter(|key| key.table() == key::ENVIRONMENT.path);
             keys.for_each(|key| section.skip(key));
             Err(reported)

@@ -9,7 +9,7 @@ use super::key::{self, Key};
 pub struct ShapeKind {
     /// Its name in the file.
     pub name: &'static str,
-    /// What it is, in words.
+    /// Description.
     pub doc: &'static str,
     /// The keys that it must have besides `type`.
     pub needed: &'static [&'static Key],

@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use super::{Curve, NyquistScene, Role};
 
-/// The lines at minus the largest index that passes, each once and from the left, with what they are
-/// called.
+/// The lines at minus the largest index that passes, each once and from the left, with their names called.
 pub fn critical_lines(scenes: &[NyquistScene]) -> Vec<(f64, &'static str)> {
     let line = |scene: &NyquistScene| Some((-scene.limit?, scene.limit_name));
     let mut lines: Vec<_> = scenes.iter().filter_map(line).collect();

@@ -23,7 +23,7 @@ impl TickStatus {
     /// It ran and nothing was limited.
     pub const UNLIMITED: Self = Self::Ran(LimitReason::None);
 
-    /// In one word, for tables: the servo's own for what it limited.
+    /// In one word, for tables: the servo's own word for its limit.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Ran(reason) => reason.as_str(),

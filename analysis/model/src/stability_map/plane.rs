@@ -229,7 +229,7 @@ impl Plane {
     }
 }
 
-/// The members with one number on the vertical axis, and what they have in common.
+/// The members with one number on the vertical axis, and their common part.
 #[derive(Clone, Debug)]
 pub struct Row<'a> {
     plane: &'a Plane,

@@ -22,7 +22,7 @@ const CLEAR: i32 = units(5);
 
 /// Names besides frequencies.
 pub(super) struct Names<'n> {
-    /// The critical lines, with what they are called.
+    /// The critical lines, with their names.
     pub(super) criticals: &'n [(f64, &'static str)],
     /// The points of least real part, with the numbers of their scenes.
     pub(super) minima: &'n [(DrawingPoint, String)],

@@ -184,9 +184,9 @@ fn draw_bounds(
     Ok(())
 }
 
-/// The curve, and in a thinner line its mirror image for negative angles, with arrows in the
-/// direction of rising angles; what it tends to at rest, where it goes to infinity, in a hairline;
-/// and its ways through infinity, which are given back.
+/// The curve, and in a thinner line its mirror image for negative angles, with arrows in the direction of
+/// rising angles; its asymptote at rest, where it goes to infinity, in a hairline; and its ways through
+/// infinity, which are given back.
 fn draw_curve(
     plot: &PlotArea<'_>,
     line: &Line<'_>,

@@ -114,7 +114,7 @@ struct Point {
     deviation: f64,
 }
 
-/// What was taken out of the responses before the fit, in s.
+/// Delay in s that was removed from the responses before the fit.
 #[derive(Debug, Serialize)]
 struct TakenOut {
     /// Half a period, which a torque that is held is late by.
@@ -286,7 +286,7 @@ fn report<'a>(
 /// Warnings about the identified numbers.
 fn notes(found: &Identification) -> Vec<String> {
     let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
-    // Of what no rigid device explains, the fitted times mean nothing.
+    // If no rigid device explains the responses, the fitted times mean nothing.
     if found.is_rigid() && found.mean_delay.is_significant() {
         notes.push(format!(
             "the counts are {} us late against the torque: uncorrected, the damping would be {} N \

@@ -171,7 +171,7 @@ pub fn median(mut values: Vec<f64>) -> f64 {
 ///
 /// `latency` is the part of the scenes in which they differ: [`AT_ONCE`] or [`LAGGING`].
 ///
-/// `library` is the built firmware library, `dependencies` the folder of what it depends on.
+/// `library` is the built firmware library, `dependencies` the folder of its dependencies.
 ///
 /// # Errors
 /// Where the compiler cannot be run, or refuses the program.

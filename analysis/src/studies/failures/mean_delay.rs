@@ -1,4 +1,4 @@
-//! The sum of all delays in place of what a delay of a part of a period does between the samples.
+//! The sum of all delays, instead of the effect of a fractional delay between the samples.
 
 use haptic_servo::scene::{Latency, Scene};
 

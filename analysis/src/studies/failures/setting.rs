@@ -106,10 +106,10 @@ impl LoopRun {
         self
     }
 
-    /// The same, with a board that is told that the device has so many times the damping and passivity that it has, which
-    /// is how a board can be made to run what it would refuse. The device that moves is the true one,
-    /// and so is the torque: no law here but a canceller's, of which there is none, has the device's
-    /// damping in it.
+    /// The same, with a board that is told that the device has so many times the damping and passivity that
+    /// it has, which makes a board run a scene that it would refuse. The device that moves is the true one,
+    /// and so is the torque: no law here but a canceller's, of which there is none, has the device's damping
+    /// in it.
     pub fn with_claimed_passivity(mut self, times: f64) -> Self {
         let device = self.experiment.scene.device;
         let passivity = device.passivity.map(|passivity| times * passivity);

@@ -1,12 +1,12 @@
 //! A hand that varies with the servo's period destabilises what no hand that stays as it is does
 //! (theory, section 13.6).
 //!
-//! The device is a damper with almost no inertia. The hand reflects what comes to it: of the
-//! incident torque `e = F_hand + delta v` it returns `r = delta v - F_hand`, so that its energy is the
-//! integral of `(e^2 - r^2)/(4 delta)`. It takes the two coefficients of `e` over a period in the
-//! plane of 1 and `exp(-t/tau)`, sends each through an all-pass with a delay of a period, and returns
-//! their weighted sum, constant over a period: never more energy than has come. Weights and all-passes are
-//! such that at one angle the whole of a lagging torque comes back as what a sample sees.
+//! The device is a damper with almost no inertia. The hand reflects the incoming wave: of the incident torque
+//! `e = F_hand + delta v` it returns `r = delta v - F_hand`, so that its energy is the integral of
+//! `(e^2 - r^2)/(4 delta)`. It takes the two coefficients of `e` over a period in the plane of 1 and
+//! `exp(-t/tau)`, sends each through an all-pass with a delay of a period, and returns their weighted sum,
+//! constant over a period: never more energy than has come. Weights and all-passes are such that at one angle
+//! the whole of a lagging torque comes back as what a sample sees.
 
 use std::f64::consts::PI;
 
@@ -142,7 +142,7 @@ impl VaryingHand {
         let theta = minimizing_angle(|theta| -index(theta), 0.0, PI).unwrap_or(0.5 * PI);
         let z = Complex::from_polar(1.0, theta);
         let one = Complex::new(1.0, 0.0);
-        // From the centre of what the samples can see towards -1/H, as a velocity.
+        // From the centre of the visible subspace towards -1/H, as a velocity.
         let aim = (-one / controller.at(z) - g.at(z) / (2.0 * damping)) * (z - one);
         // The torque over a period: 1 + rest exp(-t/tau), for a command that turns by theta a period.
         let left = (-1.0 / lag).exp();

@@ -13,7 +13,7 @@ pub enum ListingError {
     /// It is no ELF file.
     #[error("not an ELF file: {0}")]
     Elf(#[from] object::read::Error),
-    /// Its line tables are not what they should be.
+    /// Its line tables are invalid.
     #[error("bad line tables: {0}")]
     Lines(#[from] DwarfError),
     /// It has no symbols or no line information.

@@ -1,10 +1,9 @@
 //! The world of the emulated board: two pipes to a process on the host, which simulates it.
 //!
-//! Each tick the host writes what has become of the encoder into the pipe `counts`, and the board
-//! writes what became of its lines into the pipe `codes`; both are in the folder where the
-//! emulator was started, and [`output`](crate::board::output) says what the bytes are. The board
-//! waits for its count, so host and board cannot drift apart. The host ends the run by closing
-//! `counts`.
+//! Each tick the host writes the encoder's state into the pipe `counts`, and the board writes what became of
+//! its lines into the pipe `codes`; both are in the folder where the emulator was started, and
+//! [`output`](crate::board::output) says what the bytes are. The board waits for its count, so host and board
+//! cannot drift apart. The host ends the run by closing `counts`.
 
 use core::slice::from_raw_parts_mut;
 use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU16, AtomicU32, Ordering};
@@ -77,8 +76,8 @@ pub(super) fn zero_count() {
     ZEROING.store(true, Ordering::Relaxed);
 }
 
-/// Waits for the host to say what has become of the world; gives the periods that went by without a
-/// tick, or nothing once the host has closed the pipe.
+/// Waits for the host's state of the world; returns the periods that went by without a tick, or nothing once
+/// the host has closed the pipe.
 ///
 /// # Safety
 /// The pipes must be open.

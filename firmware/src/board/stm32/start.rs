@@ -156,7 +156,7 @@ fn log_banner(name: &str) {
     family::check_brown_out();
 }
 
-/// Why the board was reset, and what comes of it.
+/// The reason of the reset, and its consequence.
 fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_because: Option<Reason>) {
     defmt::info!("last reset: {=str}", reset.as_str());
     if let Some(FaultRecord { fault, tick, .. }) = previous_fault {

@@ -1,4 +1,4 @@
-//! Alignment against motors with any wires, and what they are worth afterwards.
+//! Alignment against motors with any wiring, and their torque afterwards.
 
 use super::three_phases::{Handle, ThreePhases};
 use super::*;
@@ -20,7 +20,7 @@ pub fn align(rig: &mut ThreePhases) -> Result<PhaseAlignment, AlignmentError> {
                 return result;
             }
         }
-        // A quarter of full scale, with what it may be off.
+        // A quarter of full scale, with its tolerance.
         assert!(rig.largest() < 1.3, "{}", rig.largest());
     }
     panic!("it has no end")

@@ -150,7 +150,7 @@ fn the_next_index_aligns_again_by_the_stated_offset() {
     }
 }
 
-/// What was found by turning the field is not replaced by what the program states.
+/// A phase found by turning the field is not replaced by the phase that the program states.
 #[test]
 fn an_alignment_on_request_is_above_the_stated_offset() {
     let stated = IndexOffset { counts: 1234, is_reversed: true };

@@ -172,7 +172,7 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>> La
     fn slopes(&self) -> Slopes {
         match self.delay.due() {
             Some(_) => Slopes::default(),
-            // In front of the coupling, so that there `1 + line V` is what has to be positive.
+            // In front of the coupling, so that there `1 + line V` has to be positive.
             None => Slopes { line: -self.steepest, wall: 0.0 },
         }
     }

@@ -19,7 +19,7 @@ pub struct ModeTable<const KNOTS: usize> {
 /// A torque profile with a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileMode {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
     /// Its table, not delayed.
     pub(super) units: &'static [i16],

@@ -124,7 +124,7 @@ impl Startup for Board {
     }
 }
 
-/// A board with its cycle, and both ends of what connects it.
+/// A board with its cycle, and both ends of its connection.
 pub struct Bench<E: Discretize<N> + 'static, N: Number, M: 'static> {
     pub board: Board,
     pub servo_loop: ServoLoop<E, N, M>,

@@ -118,7 +118,7 @@ pub fn watching_browser() -> Result<Page, PageError> {
 /// file. Calls `progress` with the name of each measurement.
 ///
 /// # Errors
-/// Where a page does not do what it does for a reader.
+/// If a page does not behave as for a reader.
 pub fn figures(
     mut browser: Page,
     pages: &[ScenePage],

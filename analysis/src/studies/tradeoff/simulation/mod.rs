@@ -159,7 +159,7 @@ fn short(method: Method) -> &'static str {
     }
 }
 
-/// What gives the angles at so many samples; what can be computed beforehand has been.
+/// Computes the angles at this many samples; all preparation is done before.
 fn runner(case: &Case, integration: Integration) -> Box<dyn Fn(usize) -> Vec<f64> + '_> {
     match case.experiment.plant.order() {
         2 => Stepper::<2>::new(case, integration).into_runner(case),

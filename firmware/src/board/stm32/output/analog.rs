@@ -110,7 +110,7 @@ macro_rules! board_output {
     };
 }
 
-/// A sweep measures what it is given.
+/// A sweep measures the torque that it is given.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! sweep_output {

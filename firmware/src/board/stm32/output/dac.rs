@@ -79,7 +79,7 @@ impl DacChannel {
     }
 
     /// Zero torque at once, without the timer. Mid-scale is written over the code that waits for the trigger
-    /// before the trigger is taken away: without one, what was written last is put out.
+    /// before the trigger is taken away: without a trigger, the last code written is put out.
     pub fn stop(self) {
         self.write(DacCode::MID_SCALE);
         self.registers.cr().modify(|w| w.set_ten(self.channel, false));

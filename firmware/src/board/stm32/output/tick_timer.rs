@@ -92,7 +92,7 @@ impl Period {
     /// Counts of the timer in this many seconds, at least one and less than a period; rounded up, so that
     /// no torque comes before the time of which its tick knows.
     fn counts_in(&self, seconds: f64) -> u32 {
-        // The cast rounds down. A time that was written in decimal digits is what it says.
+        // The cast rounds down. A time in decimal digits is exact to them.
         let counts = (seconds * self.clock / f64::from(self.prescale) + (1.0 - 1e-6)) as u32;
         counts.clamp(1, self.counts - 1)
     }
@@ -134,7 +134,7 @@ impl TickTimer {
             // TIM7_CNT: it overflows that many counts after the start, and then once a period.
             PHASE_TIMER.cnt().write(|w| w.set_cnt(behind as u16));
         }
-        // The cast gives the nearest of what does not fit.
+        // The cast saturates.
         let in_time = (period.clock * READ_WITHIN) as u32;
         let has_phase = timing.phase().is_some();
         let periods = Periods::new(period.clock_counts(), period.seconds(), in_time);
@@ -168,7 +168,7 @@ impl TickTimer {
         self.periods.begun_by(now())
     }
 
-    /// What has begun, and when.
+    /// The period that has begun, and its time.
     #[inline(always)]
     pub const fn periods(&self) -> &Periods {
         &self.periods

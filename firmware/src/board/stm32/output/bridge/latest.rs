@@ -51,7 +51,7 @@ fn index_offset() -> Option<IndexOffset> {
     (word & IS_KNOWN != 0).then_some(IndexOffset { counts, is_reversed: word & IS_REVERSED != 0 })
 }
 
-/// The reading of what was kept last; `None` before the current loop runs.
+/// The last reading; `None` before the current loop runs.
 pub fn power_reading() -> Option<PowerReading> {
     // SAFETY: it is null, or was made of a reference that lives as long as the program.
     let current_loop = unsafe { CURRENT_LOOP.load(Ordering::Relaxed).as_ref() }?;

@@ -78,7 +78,7 @@ impl Pace {
         self.periods.begun_by(TIME.load(Ordering::Relaxed))
     }
 
-    /// What has begun, and when.
+    /// The period that has begun, and its time.
     #[inline(always)]
     pub const fn periods(&self) -> &Periods {
         &self.periods

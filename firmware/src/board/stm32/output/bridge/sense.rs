@@ -67,7 +67,7 @@ impl Converter {
         adc.isr().write(|w| w.set_adrdy(true));
         adc.cr().modify(|w| w.set_aden(true));
         while !adc.isr().read().adrdy() {}
-        // Without its queue the injected sequence is what was written last.
+        // Without its queue the injected sequence is the last one written.
         adc.cfgr().write(|w| w.set_jqdis(true));
         adc.smpr().write(|w| {
             // 0.15 us: the amplifier drives the converter without a resistor between.
