@@ -35,7 +35,7 @@ pub enum BridgeError {
     Device(#[from] SimulationError),
 }
 
-/// A running board, which waits at the begin of a period of the servo.
+/// A running board, which waits at the beginning of a period of the servo.
 pub struct BridgeBoard {
     board: VirtualBoard,
     current_loop: &'static CurrentLoop,
@@ -44,7 +44,7 @@ pub struct BridgeBoard {
 }
 
 impl BridgeBoard {
-    /// Switches one on, as [`VirtualBoard::boot`], with the motor of a current loop.
+    /// Boots a board as [`VirtualBoard::boot`] does, with the motor of a current loop.
     ///
     /// # Errors
     /// Where it cannot be started.
@@ -59,7 +59,7 @@ impl BridgeBoard {
         Ok(Self { board, current_loop, transducers, sample: None })
     }
 
-    /// Runs to the begin of the next period of the servo, with bytes to the serial port.
+    /// Runs to the beginning of the next period of the servo, with bytes to the serial port.
     ///
     /// # Errors
     /// Where the board has stopped.
@@ -75,7 +75,7 @@ impl BridgeBoard {
         Ok(self.sample.insert(sample))
     }
 
-    /// The count at the begin of the period.
+    /// The count at the beginning of the period.
     pub fn count(&self) -> i32 {
         self.board.count()
     }
@@ -85,8 +85,8 @@ impl BridgeBoard {
         self.sample.as_ref().map_or(DacCode::MID_SCALE.get(), Sample::applied_code)
     }
 
-    /// Has a brushless motor aligned, on which a scene's device is that nobody holds, and turned back to zero
-    /// by a hand; then has the servo armed there, and runs until the clamp has opened.
+    /// Aligns the motor if it is brushless, with the scene's device on it that nobody holds, and turns it
+    /// back to zero as a hand would; then arms the servo there, and runs until the clamp has opened.
     ///
     /// # Errors
     /// Where the board stops, or the motor is not aligned or not armed.
@@ -123,7 +123,7 @@ impl BridgeBoard {
         Err(VirtualBoardError::NotAligned { samples, log: self.board.last_log()? }.into())
     }
 
-    /// From an angle in rad, smoothly.
+    /// Turns the shaft smoothly from an angle in rad to zero.
     fn turn_to_zero(&mut self, angle: f64, period: f64) -> Result<(), VirtualBoardError> {
         let from = angle * self.transducers.counts_per_turn / std::f64::consts::TAU;
         let mut shaft = LedShaft::new(from, &self.transducers, self.current_loop);

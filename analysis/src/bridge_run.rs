@@ -9,7 +9,7 @@ use crate::lockstep::Run;
 use crate::shaft::{HandHeldShaft, RecordedShaft, Shaft};
 use crate::virtual_board::VirtualBoardError;
 
-/// What turns the motor's shaft besides the motor.
+/// The source of the shaft's motion besides the motor.
 pub enum ShaftInput<'a> {
     /// A hand that holds the scene's device. It waits until the servo runs.
     Hand(Box<HandHeldShaft>),
@@ -17,8 +17,8 @@ pub enum ShaftInput<'a> {
     Recording(RecordedShaft<'a>),
 }
 
-/// Has the board's motor aligned where that has to be, and armed; then runs at most `ticks` ticks. `progress`
-/// is called after each.
+/// Aligns the board's motor if necessary, and arms it; then runs at most `ticks` ticks. `progress` is called
+/// after each.
 ///
 /// # Errors
 /// Where the board is not made ready, fails, or does not end.
@@ -50,7 +50,7 @@ pub fn run_on_bridge(
     Ok(RunOutcome { run, energy, final_speed, board })
 }
 
-/// From the period on that has begun.
+/// Runs from the current period on.
 fn run(
     shaft: &mut dyn Shaft,
     controller: &mut dyn Controller,

@@ -32,7 +32,7 @@ pub enum Backend<'a> {
     VirtualBoard {
         /// The program that is a virtual board.
         program: &'a Path,
-        /// Which board it is.
+        /// The model of the board.
         board: toolchain::BoardModel,
         /// The program in its flash.
         elf: &'a Path,
@@ -44,9 +44,9 @@ pub enum Backend<'a> {
 /// Instructions that a board measured.
 #[derive(Clone, Debug)]
 pub enum BoardMeasurement {
-    /// The emulated one.
+    /// Of the emulated board.
     Emulated(Box<EmulatorReport>),
-    /// A virtual one.
+    /// Of a virtual board.
     Virtual(virtual_board::VirtualBoardReport),
 }
 
@@ -68,7 +68,7 @@ impl BoardMeasurement {
     }
 }
 
-/// What a run gave, with what the board measured if one took part.
+/// The result of a run, with the board's measurement if a board took part.
 #[derive(Debug)]
 pub struct RunOutcome {
     /// The ticks.
@@ -77,12 +77,12 @@ pub struct RunOutcome {
     pub energy: Option<Energy>,
     /// Speed of the device at the end, in rad/s; none where the counts were recorded.
     pub final_speed: Option<f64>,
-    /// What the board measured.
+    /// The board's measurement.
     pub board: Option<BoardMeasurement>,
 }
 
 impl RunOutcome {
-    /// What the emulated board measured, if that took part.
+    /// The measurement of the emulated board, if it took part.
     pub fn emulated(self) -> Option<EmulatorReport> {
         match self.board {
             Some(BoardMeasurement::Emulated(report)) => Some(*report),
@@ -99,7 +99,7 @@ pub enum RunError {
     EmulatedBoard {
         /// The tick, counted from 0.
         tick: usize,
-        /// How.
+        /// The error.
         source: EmulatorError,
     },
     /// The emulated board could not be started or did not end.
@@ -167,7 +167,7 @@ fn run_lockstep(
     Ok(RunOutcome { run, energy: None, final_speed: None, board })
 }
 
-/// The emulated board, which knows the tick that it is in.
+/// The emulated board and the number of its tick.
 pub struct EmulatedBoard {
     emulator: Emulator,
     tick: usize,
@@ -182,7 +182,7 @@ impl EmulatedBoard {
         Ok(Self { emulator: Emulator::boot(elf)?, tick: 0 })
     }
 
-    /// Ends a program that has no scene to report of, and gives its log.
+    /// Ends a program without a scene, and returns its log.
     ///
     /// # Errors
     /// Where the board does not end, or ends with a failure.
@@ -201,7 +201,7 @@ impl RemoteServo for EmulatedBoard {
     }
 }
 
-/// What a picture shows of a run: its position, its torque, and where the hand wanted to be.
+/// The trace of a run, as a picture shows it: position, torque, and the set-point of the hand.
 pub fn trace(title: String, period: f64, run: &Run, trajectory: &HandTrajectory) -> Trace {
     let time = |tick: usize| tick as f64 * period;
     let held = (0..run.ticks.len()).map(time).take_while(|&time| time < trajectory.release);

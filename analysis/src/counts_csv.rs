@@ -11,8 +11,7 @@ const COUNT: Column =
 /// Reads the column `count` of a CSV file with a header; other columns are passed over.
 ///
 /// # Errors
-/// Where the file cannot be read, has no such column or no row, or has something in it that is no
-/// count.
+/// Where the file cannot be read, has no such column or no row, or has a field that is not a count.
 pub fn load(path: &Path) -> Result<Vec<i32>, TableError> {
     counts(Table::open(path)?)
 }

@@ -1,4 +1,4 @@
-//! The day on which something is made, for a page that says so.
+//! The date of a page.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 

@@ -16,8 +16,8 @@ macro_rules! source {
 const PAGE: &str = source!("index.html");
 const STYLE: &str = source!("style.css");
 
-/// The sources of the page's program, each after those that it uses. They are one program: none has a name
-/// that another one has.
+/// The sources of the page's program, each after those that it uses. They form one program: no name is
+/// defined twice.
 const PROGRAM: &[&str] = &[
     source!("elements.js"),
     source!("engine.js"),
@@ -48,14 +48,14 @@ const PROGRAM: &[&str] = &[
     source!("main.js"),
 ];
 
-/// Those of its worker, which draws what takes longer than a frame.
+/// The sources of its worker, which draws pictures that take longer than a frame.
 const WORKER: &[&str] = &[source!("engine.js"), source!("map_worker.js")];
 
 /// The page that starts with a scene, which is a scene file as JSON, around the program of the package
 /// `haptic-explore`.
 ///
 /// # Errors
-/// Where memory cannot be written to, which is never so.
+/// Where memory cannot be written to, which never occurs.
 pub fn page(module: &[u8], scene: &Value) -> io::Result<String> {
     let start = json!({ "scene": scene, "version": env!("CARGO_PKG_VERSION") });
     let parts = [
@@ -73,18 +73,18 @@ pub fn page(module: &[u8], scene: &Value) -> io::Result<String> {
     Ok(page)
 }
 
-/// Compressed, in the letters of a page.
+/// The bytes, compressed and in the letters of a page.
 fn packed(bytes: &[u8]) -> io::Result<String> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(bytes)?;
     Ok(letters(&encoder.finish()?))
 }
 
-/// Letters of a page's script: all that are printed, but for `<`, by which a script would end.
+/// Number of letters in a page's script: all visible ASCII characters except `<`, which would end the script.
 const LETTERS: u32 = 93;
 
-/// Bytes as letters, two for 13 bits, the lowest first: 8 % less than in base 64. Up to six bits that are left
-/// at the end are one letter. `start.js` reads it.
+/// Bytes as letters, two for 13 bits, the lowest first: 8 % less than in base 64. Up to six bits that are
+/// left at the end are one letter. `start.js` reads it.
 fn letters(bytes: &[u8]) -> String {
     let letter = |digit: u32| {
         let beyond = u32::from(digit >= u32::from(b'<' - b'!'));
@@ -113,7 +113,7 @@ fn letters(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    /// By what the letters are said to be alone: a row of bits.
+    /// By the definition of the letters alone: a row of bits.
     fn bytes_of(text: &str) -> Vec<u8> {
         let digit = |letter: u8| u32::from(letter) - if letter < b'<' { 33 } else { 34 };
         let mut row = Vec::new();

@@ -1,5 +1,5 @@
-//! What a hand feels that turns a torque profile: the codes of the servo that would be flashed, around a
-//! simulated device.
+//! The torque that a hand feels when it turns a torque profile: the codes of the servo as it would be
+//! flashed, around a simulated device.
 
 use std::f64::consts::TAU;
 
@@ -17,16 +17,16 @@ use crate::lockstep::{PlantIo, SimulatedDevice};
 use crate::profile_curve::ProfileCurve;
 use crate::simulation::SimulationError;
 
-/// Why nothing is felt.
+/// Why there is no turn.
 #[derive(Debug, Error)]
 pub enum FeltTurnError {
-    /// The environment is no torque profile.
+    /// The environment is not a torque profile.
     #[error("the scene has no torque profile")]
     NoProfile,
     /// The scene is not certified.
     #[error("{0}")]
     Rejected(Box<Rejection>),
-    /// The servo cannot be had.
+    /// The servo cannot be built.
     #[error(transparent)]
     Servo(#[from] BuildError),
     /// The device cannot be simulated.
@@ -38,9 +38,9 @@ pub enum FeltTurnError {
 pub const FINGERS: Hand = Hand { inertia: 1e-5, damping: 0.002, stiffness: 0.4 };
 /// Repetitions of a profile that are turned through.
 pub const REPETITIONS: f64 = 3.0;
-/// Time in s until the hand begins, until it is there, and until the end.
+/// Times in s at which the hand starts, at which it arrives, and at which the turn ends.
 const TIMES: [f64; 3] = [0.2, 1.6, 2.0];
-/// Part of the way by which a profile that does not repeat is turned beyond its end.
+/// Factor by which a profile that does not repeat is turned beyond its end.
 const BEYOND: f64 = 1.05;
 
 /// A turn, a sample a tick.
@@ -59,8 +59,8 @@ pub struct FeltTurn {
 }
 
 impl FeltTurn {
-    /// Turns a scene's device slowly from 0 rad on, through three repetitions, or to the upper end of a profile
-    /// that does not repeat. The servo computes in `f32`.
+    /// Turns a scene's device slowly from 0 rad on, through three repetitions, or to the upper end of a
+    /// profile that does not repeat. The servo computes in `f32`.
     ///
     /// # Errors
     /// Where the scene is not certified or cannot be simulated.
@@ -115,16 +115,16 @@ mod tests {
     use super::*;
     use crate::program::knob;
 
-    /// The rest is a DAC step, and half an encoder step on the slope.
+    /// The tolerance is for DAC steps, and for half an encoder step on the slope.
     #[test]
     fn what_is_felt_is_the_profile_where_it_was_a_sample_ago() {
         let scene = knob::SCENE.as_data();
         let turn = FeltTurn::of(&scene, &knob::TRANSDUCERS, FINGERS).unwrap();
         assert_eq!(turn.time.len(), 2000);
-        // Torque as a wave of straight lines, by its own formula.
+        // The torque as a triangle wave, by an independent formula.
         let wave = |x: f64| 0.05 * std::f64::consts::FRAC_2_PI * (24.0 * x).sin().asin();
         let step = knob::TRANSDUCERS.full_scale_torque / 1791.0;
-        // Behind the coupling the environment is where the device is less the coupling's deflection.
+        // Behind the coupling the environment's position is the device's less the coupling's deflection.
         for tick in 1..2000 {
             let x = turn.angle[tick - 1] - turn.torque[tick - 1] / 44.0;
             let off = (turn.torque[tick] - wave(x)).abs();

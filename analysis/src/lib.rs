@@ -16,8 +16,8 @@ pub mod report;
 // Measured once and kept: comparisons of methods, formats and models.
 pub mod studies;
 
-// What runs: a program's scene in a servo, with a simulated device, a recording or a board around
-// it; and the device that was measured so.
+// Runs of a program's scene in a servo, with a simulated device, a recording or a board around it; and the
+// device that such a run measures.
 pub mod bridge_run;
 pub mod compare_run;
 pub mod counts_csv;
@@ -25,7 +25,7 @@ pub mod felt_turn;
 pub mod identify;
 pub mod program;
 
-// The board, emulated or virtual, what builds for it, and a board without hardware.
+// The board, emulated or virtual, its toolchain, and a board without hardware.
 pub mod board_sim;
 pub mod bridge_board;
 pub mod emulator;
@@ -34,7 +34,7 @@ pub mod shaft;
 pub mod toolchain;
 pub mod virtual_board;
 
-// A page that is shown, in a browser of this machine.
+// A page in a browser of this machine.
 pub mod browser;
 
 // A board that runs, at the other end of a wire, and the view of it.
@@ -42,8 +42,8 @@ pub mod link;
 pub mod scope;
 pub mod serve;
 
-// What scenes are worth and would do, and how far one may go: all of it that needs no operating system is in
-// the package `haptic-model`.
+// Verdicts, motions and limits of scenes: all code for them that needs no operating system is in the package
+// `haptic-model`.
 pub use haptic_model::{
     chain, closed_form, controller, design, device, file, hand, latency_limits, limits,
     line_search, missed, nominal_latency, number, nyquist, open_loop, profile_curve, quantity,

@@ -1,5 +1,5 @@
-//! The tick-by-tick loop of a servo and what surrounds it: a recording, or a simulated device with
-//! encoder, motor and hand. A remote servo may run in lockstep, and its codes are compared.
+//! The tick-by-tick loop of a servo and its surroundings: a recording, or a simulated device with encoder,
+//! motor and hand. A remote servo may run in lockstep, and its codes are compared.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ use crate::simulation::held_device::{DeviceState, HeldDevice};
 pub trait PlantIo {
     /// The counter's content now; `None` at the end of a recording.
     fn count(&mut self) -> Option<i32>;
-    /// Puts the code of this tick out, which is held until that of the next one.
+    /// Outputs the code of this tick, which is held until that of the next tick.
     fn hold(&mut self, code: u16);
 }
 
@@ -41,8 +41,8 @@ impl PlantIo for Recording<'_> {
     fn hold(&mut self, _: u16) {}
 }
 
-/// A simulated device in a hand that follows a trajectory. A code acts from the output delay of the scene
-/// on, and amplifier and sensor lag as the scene says: times in a range by its middle, without jitter.
+/// A simulated device in a hand that follows a trajectory. A code acts after the output delay of the scene,
+/// and amplifier and sensor have the lags of the scene: the middle of each range, without jitter.
 pub struct SimulatedDevice {
     held: HeldDevice,
     free: HeldDevice,
@@ -115,7 +115,7 @@ impl SimulatedDevice {
         }
     }
 
-    /// How the device moves now.
+    /// The present motion of the device.
     pub fn motion(&self) -> Motion {
         self.state.motion()
     }
@@ -148,7 +148,7 @@ pub trait RemoteServo {
 /// The first tick whose codes were not equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Difference {
-    /// Which tick, counted from 0.
+    /// The tick, counted from 0.
     pub tick: usize,
     /// The counter's content.
     pub count: i32,
@@ -169,14 +169,14 @@ impl fmt::Display for Difference {
     }
 }
 
-/// What a run gave.
+/// The result of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
     /// The ticks in order; the codes are the host's.
     pub ticks: Vec<Tick>,
     /// Ticks whose codes were equal to the remote servo's.
     pub equal: usize,
-    /// The first that was not.
+    /// The first difference, if there is one.
     pub difference: Option<Difference>,
 }
 
@@ -242,7 +242,7 @@ mod tests {
 
     use super::*;
 
-    /// A free device is accelerated by the first code from its phase on, and by the one before until then.
+    /// A free device is accelerated by the first code from its phase on, and by the previous code until then.
     #[test]
     fn a_code_acts_from_its_phase_on() {
         let (inertia, damping, period, phase) = (2.2e-5, 0.022, 1e-3, 2e-4);

@@ -1,16 +1,15 @@
 //! The structured singular value of a device, as the paper builds it (equations 5 to 16; theory,
 //! section 3.1).
 //!
-//! The hand is `H = (1 - D)/(1 + D)` with `|D| <= 1`, the wish for `delta`-output strict passivity
-//! is `|2 delta J - 1| <= 1`; the star product of `M`, which holds the first, with the device,
-//! which is scaled to hold the second, is the generalised plant `G_p`. A second block, `|D'| <= 1`,
-//! closes it, and the device is `delta`-output strictly passive exactly if `mu(G_p) <= 1` at all
-//! frequencies.
+//! The hand is `H = (1 - D)/(1 + D)` with `|D| <= 1`, the requirement of `delta`-output strict passivity is
+//! `|2 delta J - 1| <= 1`; the star product of `M`, which holds the first, with the device, which is scaled
+//! to hold the second, is the generalised plant `G_p`. A second block, `|D'| <= 1`, closes it, and the device
+//! is `delta`-output strictly passive exactly if `mu(G_p) <= 1` at all frequencies.
 //!
-//! **This is a check, not a way to find `delta`.** For a rigid device `mu` is 1 for *every*
-//! `delta <= b`: a search for the largest `delta` with `mu <= 1` walks on its own boundary, where
-//! the square root in `mu` makes 1e-8 out of the last bit. [`GeneralizedPlant::excess`] is the same
-//! question without the root; [`crate::chain::Chain::excess_passivity`] is the answer.
+//! **This is a check, not a way to find `delta`.** For a rigid device `mu` is 1 for *every* `delta <= b`: a
+//! search for the largest `delta` with `mu <= 1` walks on its own boundary, where the square root in `mu`
+//! turns an error of the last bit into 1e-8. [`GeneralizedPlant::excess`] is the same question without the
+//! root; [`crate::chain::Chain::excess_passivity`] is the answer.
 
 use nalgebra::{Complex, Matrix2};
 use serde::Serialize;
@@ -28,8 +27,8 @@ pub struct GeneralizedPlant {
 }
 
 impl GeneralizedPlant {
-    /// Of a device at `omega` rad/s, greater than 0, and the wished `delta` in N m s/rad. The
-    /// encoder counts as being on the motor's mass, and the amplifier as without lag.
+    /// Of a device at `omega` rad/s, greater than 0, and the required `delta` in N m s/rad. The encoder
+    /// counts as being on the motor's mass, and the amplifier as without lag.
     pub fn at(chain: &Chain, delta: f64, omega: f64) -> Self {
         Self { matrix: star(&hand(), &scaled(&device(chain, omega), delta)) }
     }
@@ -76,9 +75,9 @@ impl GeneralizedPlant {
     }
 }
 
-/// `mu` held against a `delta` that was found otherwise: 1 there but for what the square root makes
-/// of the last bit, and greater above. Both are the largest over frequencies from far below the
-/// device's rates to far above, and the one at which `delta` is reached.
+/// `mu` compared with a `delta` from another method: 1 there, except for the rounding error that the square
+/// root enlarges, and greater above. Both are the largest over frequencies from far below the device's rates
+/// to far above, including the frequency at which `delta` is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Check {
     /// Largest `mu` with `delta`.
@@ -87,7 +86,7 @@ pub struct Check {
     pub above: f64,
     /// The part.
     pub by: f64,
-    /// Angular frequency in rad/s of the second.
+    /// Angular frequency in rad/s of `above`.
     pub omega: f64,
 }
 
@@ -166,7 +165,7 @@ mod tests {
     use super::*;
     use crate::chain::{Link, Mass};
 
-    /// What the square root makes of the last bit.
+    /// Rounding error of `mu`, enlarged by the square root.
     const NOISE: f64 = 1e-7;
 
     fn frequencies() -> impl Iterator<Item = f64> {

@@ -5,11 +5,11 @@
 pub mod damper_wall;
 #[path = "../../firmware/src/bin/delayed_spring.rs"]
 pub mod delayed_spring;
-// It asks whether it is built for a real board, which is never so here.
+// It has a `cfg` for a real board, which is never set here.
 #[allow(unexpected_cfgs)]
 #[path = "../../firmware/src/bin/free_mode.rs"]
 pub mod free_mode;
-// No scene, and so not among them: what a device is measured with.
+// Not a scene, and so not among them: the program that measures a device.
 #[path = "../../firmware/src/bin/identify.rs"]
 pub mod identify;
 #[path = "../../firmware/src/bin/knob.rs"]
@@ -51,9 +51,9 @@ pub struct Program {
     pub transducers: Transducers,
     /// The current loop of the board's own bridge that makes its torques; none where a DAC does.
     pub bridge: &'static Option<CurrentLoop>,
-    /// What a hand does to show it.
+    /// The hand's trajectory that demonstrates it.
     pub trajectory: fn() -> HandTrajectory,
-    /// What its servo keeps from tick to tick, in a format.
+    /// The size of its servo's state, in a format.
     pub state: fn(NumberFormat) -> State,
     /// Builds its servo on the host.
     pub build: Build,
@@ -61,18 +61,18 @@ pub struct Program {
     pub listen: Listen,
 }
 
-/// Bytes that a servo keeps from tick to tick, coefficients included. There is nothing in it whose
-/// size depends on the machine.
+/// Bytes that a servo keeps from tick to tick, coefficients included. No part of it has a size that depends
+/// on the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct State {
-    /// All of it.
+    /// The whole servo.
     pub servo: usize,
-    /// What of it is the environment's.
+    /// The environment's part of it.
     pub environment: usize,
 }
 
 impl State {
-    /// What the servo of an environment keeps in the format `N`.
+    /// The state of the servo of an environment in the format `N`.
     pub fn of<E: Discretize<N>, N: Number>() -> Self {
         Self { servo: size_of::<Servo<E, N>>(), environment: size_of::<E::Law>() }
     }
@@ -88,7 +88,7 @@ impl Program {
     /// Its servo on the host, with other transducers where a recording comes from another encoder.
     ///
     /// # Errors
-    /// Where the scene cannot be had with these transducers in this format.
+    /// Where the scene cannot be built with these transducers in this format.
     pub fn controller(
         &self,
         format: NumberFormat,
@@ -131,9 +131,9 @@ impl Program {
 /// The program that this build has besides [`ALL`].
 static MORE: OnceLock<Program> = OnceLock::new();
 
-/// Adds the one program that [`Program::find`] is to know besides [`ALL`].
+/// Adds the program that [`Program::find`] finds besides [`ALL`].
 pub fn add(program: Program) {
-    // `find` does not find a second one.
+    // `find` does not find a second added program.
     let _ = MORE.set(program);
 }
 
@@ -197,16 +197,16 @@ macro_rules! programs {
 
 programs!(delayed_spring, damper_wall, free_mode, knob);
 
-/// The one whose modes are selected while it runs. Not among the others: with the first of its modes it turns
-/// freely.
+/// The program whose modes are selected while it runs. Not among the others: with the first of its modes it
+/// turns freely.
 pub static KNOB_MODES: Program = crate::program!(knob_modes);
 
-/// What the options do. Not among the others: it lets the device go where no host is heard, as in a
-/// simulation there is none.
+/// The program that shows the effect of the options. Not among the others: it releases the device without a
+/// host, and a simulation has no host.
 pub static SUPERVISED: Program = crate::program!(supervised_spring);
 
-/// The one whose torques come at a phase of their own. Not among the others, which are compared with the
-/// paper's: its wall is not late, and there is a coupling with a memory in front of it.
+/// The program whose torques come at a phase of their own. Not among the others, which are compared with the
+/// paper's: its wall is not late, and has a coupling with memory in front of it.
 pub static UNDELAYED: Program = crate::program!(undelayed_wall, undelayed_wall::Output);
 
 /// The stiffest spring of the paddle at its rate, whose torques come at a phase, too.

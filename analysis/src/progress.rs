@@ -27,7 +27,7 @@ fn target() -> ProgressDrawTarget {
     }
 }
 
-/// A moving sign for work that has no steps to count.
+/// A spinner for work that has no steps to count.
 pub fn spinner(what: &str) -> ProgressBar {
     let spinner = ProgressBar::with_draw_target(None, target());
     spinner.set_message(what.to_owned());

@@ -12,7 +12,7 @@ use crate::nominal_latency::titled;
 use crate::quantity::significant;
 use crate::verdict::{Enclosure, RuleAnswer, Verdict, VerdictReport};
 
-/// What a page is made of.
+/// The contents of a page.
 #[derive(Debug)]
 pub struct Page<'p> {
     /// The judged scene.
@@ -23,13 +23,13 @@ pub struct Page<'p> {
     pub path: &'p str,
     /// The day, as 2026-03-14.
     pub date: String,
-    /// Its torque profile; `None` of another environment.
+    /// Its torque profile; `None` for another environment.
     pub profile: Option<Picture>,
     /// The curve of its environment.
     pub nyquist: Figure,
     /// The map of its wall.
     pub map: Figure,
-    /// What its simulation does.
+    /// The motion of its simulation.
     pub motion: Figure,
 }
 
@@ -134,7 +134,7 @@ fn verdict(report: &VerdictReport) -> Markup {
     }
 }
 
-/// Where the page is from.
+/// The origin of the page.
 fn origin(page: &Page<'_>) -> Markup {
     let version = env!("CARGO_PKG_VERSION");
     html! {
@@ -180,7 +180,7 @@ fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// What a torque profile has.
+/// The rows of a torque profile.
 fn profile(profile: &AnyProfile) -> Vec<(&'static str, String)> {
     let number = |name, value: f64, unit| (name, format!("{} {unit}", significant(value, 6)));
     let mut rows = vec![number("Largest torque of the profile", profile.torque, "N m")];

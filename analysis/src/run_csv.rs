@@ -12,7 +12,7 @@ use crate::trace::{TimeUnit, Trace};
 /// Why a recorded run cannot be read.
 #[derive(Debug, Error)]
 pub enum RunCsvError {
-    /// It is not the table that it has to be.
+    /// It is not a valid table.
     #[error(transparent)]
     Table(#[from] TableError),
     /// A period was given for samples that have times of their own.
@@ -38,9 +38,9 @@ pub fn is_run_csv(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
 }
 
-/// Reads a run: `tick` or `time` (s), `angle` or `position` (rad), `torque` (N m) and, where there
-/// are such, `velocity` (rad/s, where the times are in s), `hand` (N m) and `limit`; other columns are
-/// passed over. `period` (s) turns ticks into seconds.
+/// Reads a run: `tick` or `time` (s), `angle` or `position` (rad), `torque` (N m) and, if present, `velocity`
+/// (rad/s, where the times are in s), `hand` (N m) and `limit`; other columns are passed over. `period` (s)
+/// turns ticks into seconds.
 ///
 /// # Errors
 /// Where the file cannot be read, lacks a column, has a bad row, or has times beside a `period`.
@@ -58,7 +58,7 @@ fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, RunC
         return Err(RunCsvError::PeriodKnown { file: table.file().to_owned() });
     }
     let time_unit = if period.is_some() { TimeUnit::Seconds } else { own };
-    // One in rad/s belongs to times in s.
+    // A velocity in rad/s belongs to times in s.
     let velocity = table.find(VELOCITY).filter(|_| time_unit == TimeUnit::Seconds);
     let mut trace = Trace { time_unit, ..Trace::default() };
     let finite = |value: &f64| value.is_finite();

@@ -1,4 +1,4 @@
-//! What a motor at a board's own bridge turns: it gets the motor's torque in each period of the modulation,
+//! The shaft of a motor at a board's own bridge: it gets the motor's torque in each period of the modulation,
 //! and moves in it.
 //!
 //! The mean over a period of the modulation is fine enough: within it the torque goes up and down around a
@@ -17,10 +17,10 @@ use crate::hand::HandTrajectory;
 use crate::lockstep::{PlantIo, SimulatedDevice};
 use crate::simulation::SimulationError;
 
-/// How far a time may be from a whole number of steps, in steps: what rounding leaves.
+/// Largest deviation of a time from a whole number of steps, in steps, that counts as rounding.
 const WHOLE: f64 = 1e-6;
 
-/// Where a shaft is, and how fast it turns.
+/// Position and speed of a shaft.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShaftMotion {
     /// The encoder's count.
@@ -33,16 +33,17 @@ pub struct ShaftMotion {
 
 /// A shaft.
 pub trait Shaft {
-    /// A period of the servo begins; false where there is none any more, as at the end of a recording.
+    /// A period of the servo begins; false if there are no more, as at the end of a recording.
     fn begin(&mut self) -> bool {
         true
     }
 
-    /// A time in s with this mean torque of the motor in N m; the motion at its end.
+    /// Turns for a time in s with this mean torque of the motor in N m; returns the motion at the end.
     fn turn(&mut self, torque: f64, seconds: f64) -> ShaftMotion;
 }
 
-/// A shaft that is led, whatever the motor's torque is: steadily to where it is at the next count.
+/// A shaft that is led, independent of the motor's torque: at constant speed to its position at the next
+/// count.
 #[derive(Clone, Debug)]
 pub struct LedShaft {
     radians_per_count: f64,
@@ -69,7 +70,7 @@ impl LedShaft {
         }
     }
 
-    /// To this position in counts in the period that begins.
+    /// Leads it to this position in counts in the period that begins.
     pub fn lead_to(&mut self, position: f64) {
         (self.from, self.to, self.update) = (self.to, position, 0);
     }
@@ -77,7 +78,7 @@ impl LedShaft {
 
 impl Shaft for LedShaft {
     fn turn(&mut self, _: f64, _: f64) -> ShaftMotion {
-        // A board that starts again has more of them until the next count, at which it stands still.
+        // A board that starts again has more updates until the next count, in which the shaft stands still.
         let is_moving = self.update < self.updates;
         self.update = (self.update + 1).min(self.updates);
         let way = self.to - self.from;
@@ -112,7 +113,7 @@ impl<'a> RecordedShaft<'a> {
 impl Shaft for RecordedShaft<'_> {
     fn begin(&mut self) -> bool {
         let Some(&count) = self.counts.next() else { return false };
-        // A counter wraps: the shorter way.
+        // A counter wraps: the change is the shorter way.
         let shift = self.width as u32;
         let way = (count.wrapping_sub(self.position as i32) << shift) >> shift;
         self.position += i64::from(way);
@@ -129,7 +130,7 @@ impl Shaft for RecordedShaft<'_> {
 pub struct HandHeldShaft {
     device: SimulatedDevice,
     step: f64,
-    /// Time in s that has not made a whole step yet, and the motor's torque in it, in N m s.
+    /// Time in s since the last whole step, and the integral of the motor's torque over it, in N m s.
     time: f64,
     impulse: f64,
 }
@@ -160,17 +161,17 @@ impl HandHeldShaft {
         self.device.energy()
     }
 
-    /// How the device moves now.
+    /// The present motion of the device.
     pub fn motion(&mut self) -> ShaftMotion {
         let motion = self.device.motion();
-        // It never ends.
+        // A device always has a count.
         let count = self.device.count().unwrap_or_default();
         ShaftMotion { count, angle: motion.position, speed: motion.velocity }
     }
 }
 
 impl Shaft for HandHeldShaft {
-    /// A part of a step, which only a board has that starts its timer, waits for the rest of it.
+    /// A part of a step, which occurs only when a board starts its timer, waits for the rest of it.
     fn turn(&mut self, torque: f64, seconds: f64) -> ShaftMotion {
         self.time += seconds;
         self.impulse += torque * seconds;
@@ -204,7 +205,7 @@ mod tests {
         largest_speed: 25.0,
     };
 
-    /// Of 40 periods of the modulation in one of the servo.
+    /// A current loop with 40 periods of the modulation in a period of the servo.
     fn current_loop() -> CurrentLoop {
         let motor = Motor {
             winding: Winding::Brushed,
@@ -217,7 +218,7 @@ mod tests {
         CurrentLoop::design(&drive, &B_G431B_ESC1, &TRANSDUCERS, PERIOD).unwrap()
     }
 
-    /// The motion at the end of a period of the servo, of so many of the modulation.
+    /// The motion after this number of periods of the modulation.
     fn turned(shaft: &mut dyn Shaft, periods: u32) -> ShaftMotion {
         (0..periods).map(|_| shaft.turn(0.0, PERIOD / 40.0)).last().unwrap()
     }
@@ -226,7 +227,7 @@ mod tests {
     fn a_recording_is_at_each_count_when_the_servo_reads_it() {
         let counts = [3, 50, 32_760, -32_760, -32_768, 32_767];
         let mut shaft = RecordedShaft::new(&counts, &TRANSDUCERS, &current_loop());
-        // Over the counter's end it goes on the shorter way.
+        // At the counter's overflow the change is the shorter way.
         for (count, position) in counts.into_iter().zip([3, 50, 32_760, 32_776, 32_768, 32_767]) {
             assert!(shaft.begin());
             let end = turned(&mut shaft, 40);
@@ -235,7 +236,7 @@ mod tests {
             assert!(end.count == position && (end.angle - angle).abs() < 1e-12, "{end:?}");
         }
         assert!(!shaft.begin());
-        // More than a period's are of a board that starts again.
+        // A board that starts again has more updates than a period's.
         let (end, later) = (turned(&mut shaft, 1), turned(&mut shaft, 7));
         assert_eq!((end.speed, end), (0.0, later));
     }
@@ -253,8 +254,8 @@ mod tests {
         assert_eq!(turned(&mut shaft, 1).speed, 0.0);
     }
 
-    /// With a torque that acts at once, whatever the scene's latency is: `m v' = u - b v`. Parts of a period
-    /// of the modulation wait until they make a whole one.
+    /// The torque acts at once, independent of the scene's latency: `m v' = u - b v`. Parts of a period of
+    /// the modulation wait until they make a whole one.
     #[test]
     fn a_device_that_nobody_holds_is_moved_by_the_motor_s_torque() {
         let (inertia, damping, torque) = (2.2e-5, 0.022, 0.1);

@@ -1,8 +1,7 @@
-//! Named columns of a CSV file, row by row: what recordings and measurements are read from.
+//! Named columns of a CSV file, row by row, for recordings and measurements.
 //!
-//! The first line names the columns; they stand in any order, in any case, and others than those
-//! that are looked for are passed over. Every error names the file, and the line and the column
-//! that it is about, both counted from 1.
+//! The first line names the columns, in any order and in any case; columns that are not needed are ignored.
+//! Every error names the file, and the line and the column of the error, both counted from 1.
 
 use std::fs::File;
 use std::io::Read;
@@ -14,7 +13,7 @@ use thiserror::Error;
 
 use crate::file::excerpt;
 
-/// Why a file is not the table that it has to be.
+/// Why a file is not a valid table.
 #[derive(Debug, Error)]
 pub enum TableError {
     /// The file cannot be opened or read.
@@ -45,7 +44,7 @@ pub enum TableError {
         /// The error in it.
         message: String,
     },
-    /// A field is not what its column holds.
+    /// A field is invalid in its column.
     #[error(
         "{file}:{line}: column {column}, `{name}`: `{value}` is out of bounds; it must be {bound}"
     )]
@@ -58,9 +57,9 @@ pub enum TableError {
         column: usize,
         /// The column's name.
         name: &'static str,
-        /// What stands there.
+        /// The text of the field.
         value: String,
-        /// The expected text.
+        /// The valid values.
         bound: String,
     },
     /// Too short.
@@ -68,19 +67,19 @@ pub enum TableError {
     TooShort {
         /// The file.
         file: String,
-        /// How many there are.
+        /// The number of rows.
         rows: usize,
-        /// How many there must be.
+        /// The least number of rows.
         least: usize,
     },
 }
 
-/// A column by its names, and what stands in it.
+/// A column by its names, and its valid values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Its possible names, in small letters; the first one present is taken.
     pub names: &'static [&'static str],
-    /// What a field of it must be.
+    /// The valid values of its fields.
     pub bound: &'static str,
 }
 
@@ -137,7 +136,7 @@ impl<R: Read> Table<R> {
         Ok(Self { file, reader, header, record, rows: 0 })
     }
 
-    /// What messages call it.
+    /// The name of the file in messages.
     pub fn file(&self) -> &str {
         &self.file
     }
@@ -182,7 +181,7 @@ impl<R: Read> Table<R> {
         }
     }
 
-    /// Whether so many rows have been read at least.
+    /// Checks that at least this many rows have been read.
     ///
     /// # Errors
     /// Where they were fewer.
@@ -200,7 +199,7 @@ impl Row<'_> {
     /// The field in a column as a number that its bound admits.
     ///
     /// # Errors
-    /// Where it is none.
+    /// Where the field is not such a number.
     pub fn number<T: FromStr>(
         &self,
         place: FoundColumn,

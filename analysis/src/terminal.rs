@@ -11,7 +11,7 @@ pub fn has_colour(is_terminal: bool) -> bool {
     is_terminal && !unwanted && !is_dumb()
 }
 
-/// Whether the terminal can do nothing but letters: no colours, no moving cursor.
+/// Whether the terminal shows letters only: no colours, no moving cursor.
 pub fn is_dumb() -> bool {
     std::env::var_os("TERM").is_some_and(|term| term == "dumb")
 }
@@ -26,7 +26,7 @@ pub fn error_width() -> Option<usize> {
     columns(terminal_size_of(stderr()))
 }
 
-/// Fewest columns that text is broken to: in fewer, words would be.
+/// Fewest columns to which text is wrapped: with fewer, words would be broken.
 const LEAST: usize = 20;
 
 fn columns(size: Option<(Width, Height)>) -> Option<usize> {

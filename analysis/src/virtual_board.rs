@@ -1,8 +1,8 @@
 //! A program that is flashed, unmodified, on a virtual board: a process of its own, in lockstep with
 //! this one.
 //!
-//! The board is the package `virtual-board`, which says how it is talked to; it is built when it is first
-//! wanted. Its libraries are under a licence of their own, so nothing here links with it.
+//! The board is the package `virtual-board`, which documents its protocol; it is built when it is first
+//! needed. Its libraries are under a licence of their own, so nothing here links with it.
 
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
@@ -20,18 +20,19 @@ use crate::lockstep::RemoteServo;
 use crate::shaft::{Shaft, ShaftMotion};
 use crate::toolchain::BoardModel;
 
-/// What a board says at the end of a sample, and when it is asked to end.
+/// First byte of a board's message at the end of a sample, and at its end on request.
 const SAMPLE: u8 = 1;
 const END: u8 = 0;
-/// Its message at the end of each period of its bridge's modulation, and the length of that message.
+/// First byte of its message at the end of each period of its bridge's modulation, and the length of the
+/// rest.
 const PWM_PERIOD: u8 = 2;
 const PWM_PERIOD_BYTES: u64 = 16;
-/// What the gates are driven by, if by anything but the servo.
+/// The amplifier's state while an alignment, and not the servo, drives the gates.
 const ALIGNING: u8 = 2;
-/// An invalid code.
+/// The value that stands for no code.
 const NO_CODE: u16 = u16::MAX;
-/// Samples within which a servo that was asked to arm must have done so: many times what a frame and
-/// what the board may be at take.
+/// Largest number of samples from the request to arm until the servo is armed: many times the duration of a
+/// frame and of the board's other work.
 pub const LONGEST_ARMING: usize = 10_000;
 
 /// Errors of a virtual board.
@@ -40,28 +41,28 @@ pub enum VirtualBoardError {
     /// It could not be started.
     #[error("the virtual board could not be started: {0}")]
     Start(#[source] io::Error),
-    /// It has ended before it was asked to.
+    /// It has ended without a request.
     #[error("the virtual board has stopped: {said}")]
     Stopped {
         /// Its message.
         said: String,
     },
-    /// Its motor was asked to be aligned, and that has not begun or not ended.
+    /// Its motor was to be aligned, and the alignment has not begun or not ended.
     #[error(
         "the motor at the virtual board's bridge is not aligned after {samples} samples; its log: {log}"
     )]
     NotAligned {
-        /// Samples since.
+        /// Samples since the request.
         samples: usize,
-        /// What it logged.
+        /// Its log.
         log: String,
     },
-    /// Its servo was asked to arm, and did not switch the amplifier on.
+    /// Its servo was to arm, and did not switch the amplifier on.
     #[error(
         "the virtual board's amplifier has stayed off for {LONGEST_ARMING} samples; its log: {log}"
     )]
     NotArmed {
-        /// What it logged.
+        /// Its log.
         log: String,
     },
 }
@@ -74,9 +75,9 @@ pub struct Sample {
     pub code: Option<u16>,
     /// Whether the amplifier was on, or the bridge's gates are driven.
     pub amplifier: bool,
-    /// Whether that is by an alignment, or one is about to begin.
+    /// Whether an alignment drives the gates, or is about to begin.
     pub is_aligning: bool,
-    /// What the serial port has sent.
+    /// The bytes that the serial port has sent.
     pub sent: Vec<u8>,
 }
 
@@ -88,7 +89,7 @@ impl Sample {
     }
 }
 
-/// What a run gave.
+/// The result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VirtualBoardReport {
     /// Instructions from reading the count to writing the code; none where that is to memory, for a bridge.
@@ -104,7 +105,7 @@ pub struct VirtualBoardReport {
 /// A request as it goes over the serial port.
 pub fn request(message: &ToBoard) -> Vec<u8> {
     let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-    // It is a few bytes; the buffer has room for the longest.
+    // The buffer has room for the longest message.
     encode(message, &mut buffer).unwrap_or_default().to_vec()
 }
 
@@ -133,12 +134,12 @@ pub struct VirtualBoard {
     input: Option<BufWriter<ChildStdin>>,
     output: BufReader<ChildStdout>,
     decoder: LogDecoder,
-    /// The encoder's position in counts, as the world has it.
+    /// The encoder's position in counts, as the simulated world has it.
     count: i32,
 }
 
 impl VirtualBoard {
-    /// Switches one on: the `program` that is a virtual board, as this `board`, with the ELF in its
+    /// Switches a board on: runs the `program` of the virtual board as this `board`, with the ELF in its
     /// flash, and the drive of its bridge if it has one. It stands still until the first [`Self::sample`].
     ///
     /// # Errors
@@ -183,7 +184,7 @@ impl VirtualBoard {
         self.read_sample_turning(shaft).map_err(|error| self.stopped(&error))
     }
 
-    /// The result of a sample: the position that the encoder has turned to in it, and bytes to the serial
+    /// Answers a sample: with the position to which the encoder has turned in it, and bytes to the serial
     /// port. The next sample begins.
     ///
     /// # Errors
@@ -194,8 +195,8 @@ impl VirtualBoard {
         self.write_answer(turned, bytes).map_err(|error| self.stopped(&error))
     }
 
-    /// Has the servo armed over the serial port, and runs until the clamp of a servo with this period in s has opened. The
-    /// device stands still meanwhile.
+    /// Arms the servo over the serial port, and runs until the clamp of a servo with this period in s has
+    /// opened. The device stands still meanwhile.
     ///
     /// # Errors
     /// Where the board stops, or its servo is not armed.
@@ -211,7 +212,7 @@ impl VirtualBoard {
         Err(VirtualBoardError::NotArmed { log: self.last_log()? })
     }
 
-    /// So many samples in which the device stands still; then the board waits for the first count.
+    /// Runs this many samples with the device at rest; then the board waits for the first count.
     fn hold_still(&mut self, samples: usize) -> Result<(), VirtualBoardError> {
         for _ in 1..samples {
             self.sample()?;
@@ -220,7 +221,7 @@ impl VirtualBoard {
         self.sample().map(drop)
     }
 
-    /// Where the encoder is, in counts.
+    /// The encoder's position in counts.
     pub fn count(&self) -> i32 {
         self.count
     }
@@ -320,7 +321,7 @@ impl VirtualBoard {
     fn stats(&mut self) -> io::Result<InstructionStats> {
         let mut number = || self.bytes().map(u64::from_le_bytes);
         let (count, min, max, sum) = (number()?, number()?, number()?, number()?);
-        // A mean over no samples does not exist, and its neighbours show that.
+        // With a count of 0 the mean is NaN.
         Ok(InstructionStats { count, min, max, mean: sum as f64 / count as f64 })
     }
 
@@ -352,7 +353,7 @@ impl Drop for VirtualBoard {
     }
 }
 
-/// The board waits for a count, holds what it had computed before, and that sample's code is the
+/// The board waits for a count and holds the code that it computed before; the code of that sample is the
 /// answer.
 impl RemoteServo for VirtualBoard {
     type Error = VirtualBoardError;

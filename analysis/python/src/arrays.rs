@@ -21,7 +21,7 @@ pub fn to_python<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, P
 /// The numbers of an array's bytes.
 ///
 /// # Errors
-/// The first that is not finite.
+/// The first number that is not finite.
 pub fn finite(name: &str, bytes: &[u8], unit: &str) -> Result<Vec<f64>, Refusal> {
     let (chunks, _) = bytes.as_chunks::<SIZE>();
     let numbers: Vec<f64> = chunks.iter().map(|bytes| f64::from_ne_bytes(*bytes)).collect();

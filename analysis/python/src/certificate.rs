@@ -14,10 +14,10 @@ use crate::check_signals;
 use crate::refusal::Refusal;
 use crate::source::Source;
 
-/// Scenes between two looks for a signal.
+/// Scenes between two checks for a signal.
 const CHUNK: usize = 256;
 
-/// What `haptic certify --json` prints for a scene.
+/// The output of `haptic certify --json` for a scene.
 #[pyfunction]
 pub fn certify(py: Python<'_>, scene: Source, format: &str) -> Result<String, Refusal> {
     py.detach(|| verdict(&scene, format_of(format)?))
@@ -67,7 +67,7 @@ pub fn index(
 /// The number format of a name.
 ///
 /// # Errors
-/// Which there are.
+/// Where there is no such format.
 pub fn format_of(name: &str) -> Result<Format, Refusal> {
     number::format(name).map_err(|bound| Refusal::Argument {
         name: "format".to_owned(),

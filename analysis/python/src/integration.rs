@@ -13,7 +13,7 @@ pub fn names() -> Vec<&'static str> {
     Method::ALL.map(Method::as_str).to_vec()
 }
 
-/// What two arguments ask for.
+/// The method and the steps of two arguments.
 ///
 /// # Errors
 /// Where one of them is out of its bound.

@@ -1,9 +1,9 @@
-//! What the Python package `haptic` calls: scenes as texts in, JSON and the bytes of arrays out.
-//! `haptic/__init__.py` makes dictionaries and NumPy arrays of them, and has the documentation of the
+//! The functions that the Python package `haptic` calls: scenes as texts in, JSON and the bytes of arrays
+//! out. `haptic/__init__.py` makes dictionaries and NumPy arrays of them, and has the documentation of the
 //! interface.
 //!
-//! A function lets other threads of Python run while it computes. Those that may take long look for a signal
-//! every now and then, so that Ctrl-C ends them.
+//! A function lets other threads of Python run while it computes. Functions that may take long check for a
+//! signal now and then, so that Ctrl-C ends them.
 
 mod arrays;
 mod certificate;

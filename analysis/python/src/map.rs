@@ -1,4 +1,4 @@
-//! What becomes of walls of every stiffness and damping.
+//! The regions of walls of every stiffness and damping.
 
 use haptic_model::file::Purpose;
 use haptic_model::stability_map::{Family, Region};
@@ -10,7 +10,7 @@ use crate::refusal::Refusal;
 use crate::source::Source;
 use crate::{arrays, check_signals};
 
-/// Walls between two looks for a signal.
+/// Walls between two checks for a signal.
 const CHUNK: usize = 16_384;
 
 /// The words of regions, in the order of their codes.

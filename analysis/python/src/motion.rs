@@ -1,4 +1,4 @@
-//! What a scene does: samples of its motion, and whether it dies away.
+//! The motion of a scene: its samples, and whether it dies away.
 
 use haptic_model::file::Purpose;
 use haptic_model::nominal_latency::left_out;
@@ -12,7 +12,7 @@ use crate::refusal::Refusal;
 use crate::source::Source;
 use crate::{arrays, check_signals, integration};
 
-/// Samples between two looks for a signal.
+/// Samples between two checks for a signal.
 const CHUNK: usize = 4096;
 
 /// A motion and its notes.
@@ -50,7 +50,7 @@ pub fn simulate<'py>(
     Ok(columns)
 }
 
-/// What `haptic stability --json` prints for a scene.
+/// The output of `haptic stability --json` for a scene.
 #[pyfunction]
 pub fn stability(
     py: Python<'_>,

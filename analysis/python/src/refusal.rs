@@ -38,9 +38,9 @@ pub enum Refusal {
     Argument {
         /// Its name.
         name: String,
-        /// What it is.
+        /// Its value.
         value: String,
-        /// What it must be.
+        /// Its bound.
         bound: String,
     },
     /// No number could be written.

@@ -8,14 +8,14 @@ use pyo3::prelude::*;
 
 use crate::refusal::Refusal;
 
-/// What errors call a text that is in no file.
+/// The name of a text without a file in errors.
 const NAME: &str = "scene";
 
 /// A scene before it is read.
 #[derive(FromPyObject)]
 pub struct Source(Form, String);
 
-/// What its text is.
+/// The form of its text.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Form {
     /// The path of a file.
@@ -59,7 +59,7 @@ impl Source {
         parent.flatten().unwrap_or(Path::new(""))
     }
 
-    /// The path. A notebook has no standard input, which is what `-` is on a command line.
+    /// The path. A notebook has no standard input, so `-` is a file name, unlike on a command line.
     fn path(&self) -> &str {
         if self.1 == "-" { "./-" } else { &self.1 }
     }

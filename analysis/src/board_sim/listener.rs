@@ -17,22 +17,22 @@ use haptic_servo::wire::Session;
 
 use crate::link::Address;
 
-/// Bytes that are read at a time: what a serial port would have collected in a few milliseconds.
+/// Bytes of one read: as many as a serial port collects in a few milliseconds.
 const BYTES: usize = 256;
 
 /// The error for an address that is not a socket's.
 const NO_SOCKET: &str = "a simulated board listens on a socket, tcp://HOST:PORT or unix:PATH, not \
                          on a serial port";
 
-/// Frames that are sent at a time at most.
+/// Largest number of frames that are sent at a time.
 const FRAMES: usize = 16;
 
-/// A stream of bytes that does not wait.
+/// A non-blocking stream of bytes.
 trait Stream: Read + Write + Send {}
 
 impl<S: Read + Write + Send> Stream for S {}
 
-/// A socket, and who has connected to it: one at a time, as on a serial line.
+/// A socket and its client: one at a time, as on a serial line.
 pub(super) struct Listener {
     socket: Socket,
     client: Option<Box<dyn Stream>>,
@@ -49,7 +49,7 @@ enum Socket {
 }
 
 impl Listener {
-    /// Listens there; gives the address with the port that the system chose where it was to.
+    /// Listens at the address; returns it, with the port that the system chose in place of port 0.
     pub(super) fn bind(address: &Address) -> io::Result<(Self, Address)> {
         let (socket, address) = match address {
             Address::Tcp(address) => {
@@ -117,7 +117,7 @@ impl Listener {
     }
 }
 
-/// A socket of this machine, also where a program that was killed has left its own behind.
+/// Binds a Unix socket; replaces the socket file that a killed program left behind.
 #[cfg(unix)]
 fn bind_unix(path: &Path) -> io::Result<UnixListener> {
     let taken = |why: &str| io::Error::new(ErrorKind::AddrInUse, why);
@@ -191,8 +191,8 @@ where
     Ok(read + all > 0)
 }
 
-/// Sends what the stream takes. Nothing is not sent: to a stream that was closed at the other end
-/// that would be an error, and what came before would be lost.
+/// Sends as many bytes as the stream takes. It does not send an empty slice: on a stream that the other end
+/// has closed this would be an error, and the bytes received before would be lost.
 fn send(client: &mut dyn Stream, bytes: &[u8]) -> io::Result<usize> {
     if bytes.is_empty() {
         return Ok(0);

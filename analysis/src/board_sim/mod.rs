@@ -1,8 +1,8 @@
 //! A simulated board with a simulated device, behind a socket: a thread with the same
 //! cycle and wire as a real one, or a virtual board with the flashed program.
 //!
-//! Its time is that of its ticks, at the rate of a real board or as fast as it can. No tick is late
-//! here, unlike on a real board.
+//! Its time advances by ticks, at the rate of a real board or as fast as possible. No tick is late, unlike on
+//! a real board.
 
 mod listener;
 mod plant_hardware;
@@ -39,9 +39,9 @@ const POLL_INTERVAL: Duration = Duration::from_millis(1);
 /// How fast a simulated board's time passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pacing {
-    /// As a real board's.
+    /// At the rate of a real board.
     RealTime,
-    /// As fast as it can.
+    /// As fast as possible.
     Unthrottled,
 }
 
@@ -67,7 +67,7 @@ pub enum SimulatedBoardError {
     /// Its program could not start, though nothing is wrong with its scene.
     #[error("refused by its {}", .0.as_str())]
     Start(Step),
-    /// The virtual board that it is has stopped.
+    /// The virtual board has stopped.
     #[error(transparent)]
     VirtualBoard(#[from] VirtualBoardError),
 }
@@ -99,7 +99,7 @@ impl SimulatedBoard {
         Ok(Self { address, ended, thread: Some(thread) })
     }
 
-    /// Listens there for a virtual board that has been switched on, whose servo has this period in s.
+    /// Serves a virtual board that has been switched on at the address; `period` of its servo in s.
     ///
     /// # Errors
     /// Where the address cannot be listened at.
@@ -193,7 +193,7 @@ where
     let period = Duration::from_secs_f64(program.scene.timing.period);
     let mut next = Instant::now();
     while !over.load(Ordering::Relaxed) {
-        // No more at a time than wait for the wire.
+        // At most half as many ticks as the queue holds frames; then the socket is served.
         for _ in 0..FRAMES / 2 {
             if pacing == Pacing::RealTime && Instant::now() < next {
                 break;

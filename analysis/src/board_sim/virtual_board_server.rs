@@ -29,13 +29,13 @@ pub enum DrivingBoard {
     Bridge {
         /// The board.
         board: BridgeBoard,
-        /// What the motor turns. The hand is off it while the motor is aligned.
+        /// The shaft of the motor. The hand lets go of it while the motor is aligned.
         shaft: Box<HandHeldShaft>,
     },
 }
 
 impl DrivingBoard {
-    /// Runs a sample, with bytes to the serial port; those that it has sent.
+    /// Runs a sample, with bytes to the serial port; returns the bytes that the port has sent.
     fn sample(&mut self, bytes: &[u8]) -> Result<Vec<u8>, VirtualBoardError> {
         match self {
             Self::Dac { board, plant, count } => {
@@ -64,7 +64,7 @@ impl DrivingBoard {
     }
 }
 
-/// Runs a board's samples as a real one's would pass, or all that it can where `period` is none.
+/// Runs a board's samples in real time with this period, or as fast as possible if `period` is `None`.
 pub(super) fn serve(
     mut board: DrivingBoard,
     mut listener: Listener,

@@ -1,4 +1,4 @@
-//! A page that a program drives: by the protocol of the browser's own developer tools, over a socket.
+//! A page that a program drives over a socket, by the protocol of the browser's developer tools.
 
 use std::net::TcpStream;
 use std::path::Path;
@@ -14,21 +14,21 @@ use super::{BrowserError, TIMEOUT, command};
 
 /// Height of the window in pixels.
 const HEIGHT: u32 = 1000;
-/// Time between two looks at whether something is so.
+/// Time between two checks of a condition.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// A browser with one page.
 pub struct Page {
-    // The socket goes before the browser does.
+    // The socket is dropped before the browser.
     socket: WebSocket<TcpStream>,
     session: String,
     last: u64,
-    /// What the page's console has said that is an error or a warning, uncaught errors included.
+    /// Errors and warnings of the page's console, uncaught errors included.
     pub complaints: Vec<String>,
     _browser: Browser,
 }
 
-/// The browser's process, which ends with this, and then the folder of its profile.
+/// The browser's process and the folder of its profile. Both end when this is dropped, the process first.
 struct Browser {
     process: Child,
     profile: TempDir,
@@ -56,7 +56,7 @@ impl Drop for Browser {
 }
 
 impl Page {
-    /// Starts a browser in a window so many pixels wide, with an empty page.
+    /// Starts a browser with an empty page, in a window of this width in pixels.
     ///
     /// # Errors
     /// If there is no browser, or it does not start.
@@ -96,16 +96,16 @@ impl Page {
         Ok(())
     }
 
-    /// Has a script run in each page that is opened from now on, before its own.
+    /// Runs a script in each page that is opened from now on, before the page's own scripts.
     ///
     /// # Errors
-    /// Where the browser does not take it.
+    /// Where the browser refuses it.
     pub fn run_first(&mut self, script: &str) -> Result<(), BrowserError> {
         let method = "Page.addScriptToEvaluateOnNewDocument";
         self.call(method, json!({ "source": script })).map(|_| ())
     }
 
-    /// Opens an address, and waits until the page says that it is ready.
+    /// Opens an address, and waits until the page reports that it is ready.
     ///
     /// # Errors
     /// Where there is no such page.
@@ -131,7 +131,7 @@ impl Page {
     /// The value of an expression, awaited if it is a promise.
     ///
     /// # Errors
-    /// What the expression throws.
+    /// The exception of the expression.
     pub fn value(&mut self, expression: &str) -> Result<Value, BrowserError> {
         let asked =
             json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
@@ -144,10 +144,10 @@ impl Page {
         }
     }
 
-    /// The value of an expression that is a number, or a text of one.
+    /// The value of an expression that is a number, or the text of a number.
     ///
     /// # Errors
-    /// Where it is none.
+    /// Where the value is of another type.
     pub fn number(&mut self, expression: &str) -> Result<f64, BrowserError> {
         let value = self.value(expression)?;
         let number = value.as_f64().or_else(|| value.as_str()?.parse().ok());
@@ -157,7 +157,7 @@ impl Page {
     /// The value of an expression that is a list of numbers.
     ///
     /// # Errors
-    /// Where it is none.
+    /// Where the value is of another type.
     pub fn numbers(&mut self, expression: &str) -> Result<Vec<f64>, BrowserError> {
         let value = self.value(expression)?;
         let numbers = value.as_array().and_then(|list| list.iter().map(Value::as_f64).collect());
@@ -167,7 +167,7 @@ impl Page {
     /// Waits until an expression is true.
     ///
     /// # Errors
-    /// Where it throws, or never is.
+    /// Where it throws, or does not become true in time.
     pub fn wait_for(&mut self, expression: &str) -> Result<(), BrowserError> {
         let start = Instant::now();
         while self.value(&format!("Boolean({expression})"))? != true {
@@ -180,7 +180,7 @@ impl Page {
         Ok(())
     }
 
-    /// What the mouse does at a place of the page, in pixels of the window: `mousePressed`, `mouseMoved` or
+    /// Sends a mouse event at a place of the page, in pixels of the window: `mousePressed`, `mouseMoved` or
     /// `mouseReleased`.
     ///
     /// # Errors
@@ -190,7 +190,7 @@ impl Page {
         self.call("Input.dispatchMouseEvent", event).map(|_| ())
     }
 
-    /// Presses a key, by its name, and lets it go.
+    /// Presses and releases a key, by its name.
     ///
     /// # Errors
     /// Where the browser does not answer.
@@ -201,8 +201,8 @@ impl Page {
         Ok(())
     }
 
-    /// Left, top, width and height of an element in pixels of the window, into which it is scrolled, once the page
-    /// moves it no more.
+    /// Scrolls an element into the window; returns its left, top, width and height in pixels of the window,
+    /// once the page has stopped moving it.
     ///
     /// # Errors
     /// Where there is no such element.
@@ -229,7 +229,7 @@ impl Page {
         Ok([left + width / 2.0, top + height / 2.0])
     }
 
-    /// Clicks on an element, again where it has moved away from under the mouse.
+    /// Clicks on an element, and again if it has moved away from under the mouse.
     ///
     /// # Errors
     /// Where there is no such element, or it takes no click.
@@ -289,7 +289,7 @@ impl Page {
         }
     }
 
-    /// Keeps what a message complains of.
+    /// Stores the error or the warning of a message, if it has one.
     fn note(&mut self, message: &Value) {
         let details = &message["params"];
         let is_bad = match message["method"].as_str() {
@@ -308,7 +308,7 @@ impl Page {
     }
 }
 
-/// Where the browser's tools listen, by port and path: it writes that into a file of its profile.
+/// Port and path at which the browser's tools listen: the browser writes them into a file of its profile.
 fn address(profile: &Path) -> Result<(u16, String), BrowserError> {
     let file = profile.join("DevToolsActivePort");
     let start = Instant::now();

@@ -1,5 +1,5 @@
-//! A browser without a window, which shows pages as their readers' browsers do: started, and driven by the
-//! protocol of its developer tools.
+//! A headless browser, which shows pages as a reader's browser does: started, and driven by the protocol of
+//! its developer tools.
 
 mod devtools;
 mod site;
@@ -15,13 +15,13 @@ use std::time::Duration;
 use serde_json::Value;
 use thiserror::Error;
 
-/// The browser, and the package that has it.
+/// Name of the browser and of its package.
 pub const NAME: &str = "chromium";
 
-/// Longest that anything may take in it, its start included, on a slow machine.
+/// Timeout of its operations, its start included, on a slow machine.
 pub const TIMEOUT: Duration = Duration::from_secs(120);
 
-/// No window, no sandbox, which root has none of, and nothing of its own on the network.
+/// No window; no sandbox, which is not available to root; no network traffic of its own.
 const ARGUMENTS: [&str; 9] = [
     "--headless",
     "--no-sandbox",
@@ -34,19 +34,19 @@ const ARGUMENTS: [&str; 9] = [
     "--disable-dev-shm-usage",
 ];
 
-/// Why a page could not be looked at.
+/// Why a page could not be examined.
 #[derive(Debug, Error)]
 pub enum BrowserError {
     /// There is no browser.
     #[error("there is no {NAME}; install it (Debian: apt install {NAME})")]
     Missing,
-    /// It could not be started, or the folder of its profile not be made.
+    /// It could not be started, or the folder of its profile could not be created.
     #[error("{NAME} could not be started: {0}")]
     Unstartable(#[source] io::Error),
-    /// It does not say where its tools listen.
+    /// It does not report where its tools listen.
     #[error("{NAME} did not start within {} s", TIMEOUT.as_secs())]
     NotStarted,
-    /// Its tools cannot be talked to.
+    /// The connection to its tools has failed.
     #[error("the developer tools of {NAME} have broken off: {0}")]
     Socket(#[source] Box<tungstenite::Error>),
     /// They sent a message that is not of their protocol.
@@ -88,16 +88,16 @@ pub enum BrowserError {
     NeverTrue {
         /// The expression.
         expression: String,
-        /// What the page's console has said.
+        /// Errors and warnings of the page's console.
         complaints: Vec<String>,
     },
     /// Clicks on an element have hit others.
     #[error("`{selector}` was not clicked within {} s: another element is before it", TIMEOUT.as_secs())]
     NotClicked {
-        /// What finds the element.
+        /// The selector of the element.
         selector: String,
     },
-    /// An expression has a value of another kind.
+    /// An expression has a value of the wrong type.
     #[error("`{expression}` is {value}; it must be {kind}")]
     OtherKind {
         /// The expression.
@@ -107,7 +107,7 @@ pub enum BrowserError {
         /// The requirement.
         kind: &'static str,
     },
-    /// A page cannot be given out.
+    /// A page cannot be served.
     #[error("a page could not be given out on this machine: {0}")]
     Site(#[source] io::Error),
 }
@@ -118,7 +118,8 @@ impl From<tungstenite::Error> for BrowserError {
     }
 }
 
-/// The browser with a folder for its profile, to be started, in a window so many pixels wide and high.
+/// The command that starts the browser, with a folder for its profile and a window of this width and height
+/// in pixels.
 pub fn command(profile: &Path, [width, height]: [u32; 2]) -> Command {
     let mut command = Command::new(NAME);
     command

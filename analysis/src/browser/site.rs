@@ -1,4 +1,4 @@
-//! One page on an address of this machine, given out so that its clocks are fine.
+//! Serves one page on an address of this machine, so that the page's clocks have a fine resolution.
 
 use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
@@ -9,17 +9,17 @@ use std::time::Duration;
 
 use super::BrowserError;
 
-/// Longest that a browser may take to ask for the page.
+/// Timeout of a browser's request for the page.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// Longest head of a question.
+/// Longest head of a request, in bytes.
 const LONGEST_HEAD: usize = 1 << 14;
 
-/// Without these a page's clock goes in steps of 100 us, with them in steps of 5 us: no other site is then in
-/// the page's process, from which it could learn something by time.
+/// Without these headers a page's clock has steps of 100 us, with them steps of 5 us: no other site is then
+/// in the page's process, whose data the page could learn from measured times.
 const ALONE: &str =
     "Cross-Origin-Opener-Policy: same-origin\r\nCross-Origin-Embedder-Policy: require-corp\r\n";
 
-/// A page that is given out; ends when dropped.
+/// A page that is served; ends when dropped.
 pub struct Site {
     address: SocketAddr,
     over: Arc<AtomicBool>,
@@ -44,14 +44,14 @@ impl Site {
                 }
                 let Ok(connection) = connection else { continue };
                 let page = Arc::clone(&page);
-                // Browsers open connections in advance that they never ask anything on.
+                // Browsers open connections in advance on which they never send a request.
                 thread::spawn(move || answer(connection, &page));
             }
         });
         Ok(Self { address, over, thread: Some(thread) })
     }
 
-    /// Where it is.
+    /// The page's address.
     pub fn url(&self) -> String {
         format!("http://{}/", self.address)
     }
@@ -60,7 +60,7 @@ impl Site {
 impl Drop for Site {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Release);
-        // The last connection ends the wait for the next one. Where there is none, the thread ends with the
+        // This last connection ends the thread's wait for connections. If it fails, the thread ends with the
         // program.
         if TcpStream::connect(self.address).is_ok()
             && let Some(thread) = self.thread.take()
@@ -70,7 +70,7 @@ impl Drop for Site {
     }
 }
 
-/// Gives the page, whatever was asked for.
+/// Sends the page as the answer to any request.
 fn answer(mut connection: TcpStream, page: &str) -> io::Result<()> {
     connection.set_read_timeout(Some(PATIENCE))?;
     let mut head = Vec::new();

@@ -13,10 +13,10 @@ use super::torque_source;
 /// Largest part of a sine's torque that may be in its second or third harmonic. A sine that is cut
 /// off at nine tenths of its peak has 3 % in its third; whole codes have less than 1 %.
 const LARGEST: f64 = 0.025;
-/// How much more it has to be than in sines of less than half of the largest torque: friction has
-/// harmonics too, of the same size in all sines.
+/// Factor by which the harmonic must exceed those of sines of less than half of the largest torque: friction
+/// has harmonics too, of the same size in all sines.
 const ABOVE_FRICTION: f64 = 2.0;
-/// Fewest standard deviations that it stands out of the noise by.
+/// Smallest ratio of a harmonic of the motion to the standard deviation of its noise.
 const OUT_OF_NOISE: f64 = 4.0;
 
 /// A sine's torque beside its harmonics, in N m.
@@ -24,12 +24,12 @@ const OUT_OF_NOISE: f64 = 4.0;
 struct Distortion {
     frequency: f64,
     amplitude: f64,
-    /// The larger of the second and the third harmonic that the device felt and was neither commanded nor made by the
-    /// zero crossings of a bridge's current.
+    /// The larger of the second and the third harmonic that the device felt, less the parts that were
+    /// commanded or come from the zero crossings of a bridge's current.
     harmonic: f64,
 }
 
-/// Refuses a record in which the torque that moved the device was cut off.
+/// Refuses a record in which the torque that moved the device was clipped.
 pub fn check(
     record: &Record,
     steps: &[Step],
@@ -86,7 +86,7 @@ fn distortion(
     Some(Distortion { frequency, amplitude, harmonic })
 }
 
-/// Harmonics that are looked at, the fundamental included.
+/// Number of harmonics that are examined, the fundamental included.
 const ORDERS: usize = 3;
 
 /// The phasors of a sine and its harmonics, fitted together with a parabola, and the standard
@@ -116,7 +116,7 @@ fn harmonics(samples: &[f64], angle: f64) -> Option<([Complex<f64>; ORDERS], f64
     for (order, phasor) in phasors.iter_mut().take(orders).enumerate() {
         *phasor = Complex::new(solution[DRIFT + 2 * order], solution[DRIFT + 2 * order + 1]);
     }
-    // Whole counts, at the least, whose error is repeated from period to period.
+    // At least the error of whole counts, which is repeated from period to period.
     let distinct = (n as f64).min(std::f64::consts::TAU / angle);
     let noise = (2.0 * residual.norm_squared() / (n * n) as f64).sqrt();
     Some((phasors, noise.max((1.0 / (6.0 * distinct)).sqrt())))
@@ -179,7 +179,7 @@ mod tests {
     fn what_a_bridge_adds_at_zero_crossings_is_not_clipped() {
         let plain = Correction::of_encoder(SENSING.counts_per_turn);
         let bridge = Correction { source: Some(CROSSING), ..plain };
-        // As a simulation of the paddle's bridge edge by edge has it: the more, the faster the sine.
+        // As in a simulation of the paddle's bridge edge by edge: the part rises with the frequency.
         let record = distorted(|frequency| 0.045 * frequency / 64.0);
         let clipped = |found| matches!(found, Err(IdentifyError::Clipped { frequency: 64.0, .. }));
         assert!(clipped(identify(&record, &plain)));

@@ -51,7 +51,7 @@ pub enum IdentifyError {
     },
 }
 
-/// Most tones that an error names.
+/// Largest number of tones that an error names.
 const MOST: usize = 6;
 
 /// Why tones were left out, as the end of a sentence.

@@ -1,5 +1,5 @@
-//! What the responses say: the disk they lie in, and the rigid device behind a late torque that they
-//! would be of.
+//! Results from the responses: the disk that contains them, and the rigid device behind a late torque that
+//! fits them.
 
 use super::error::IdentifyError;
 use super::estimate::Estimate;
@@ -11,11 +11,11 @@ use super::response::{Correction, FrequencyPoint};
 use super::step::LeftOut;
 use crate::quantity::significant;
 
-/// Least motion in counts: below that the encoder's steps are no noise any more.
+/// Least motion in counts: below it the encoder's steps do not act as noise any more.
 const LEAST_COUNTS: f64 = 1.5;
 
 /// Largest squared residual, in squared deviations a degree of freedom, of a device that passes for rigid:
-/// residuals up to three times those that the noise explains, which allows for noise that is not white.
+/// residuals up to three times the deviation of the noise, which allows for noise that is not white.
 const RIGID: f64 = 9.0;
 
 /// The disk around all responses as they were measured: centre and radius `1/(2 delta)`.
@@ -39,20 +39,20 @@ pub struct Identification {
     /// Mean delay in s of the torque's step response beyond the declared delay, which is the sum of the
     /// amplifier's lag and the output's delay; less than zero where the counts are younger than their time.
     pub mean_delay: Estimate,
-    /// Lag and delay, each for itself, or why they have no intervals.
+    /// Lag and delay separately, or why they have no intervals.
     pub latency: Result<Latency, NoLatency>,
     /// The best fit of all four together.
     pub model: Model,
     /// The disk, with lag and delay in it.
     pub disk: Disk,
-    /// Part of `disk.delta` that lag and delay make, in N m s/rad at the disk's frequency; of a
-    /// delay `t0` alone it is `b cos(w t0) - m w sin(w t0) - b`.
+    /// Part of `disk.delta` that lag and delay cause, in N m s/rad at the disk's frequency; of a delay `t0`
+    /// alone it is `b cos(w t0) - m w sin(w t0) - b`.
     pub bias: f64,
     /// Mean squared residual of the fit in squared deviations.
     pub misfit: f64,
     /// The responses, in the order of the record.
     pub responses: Vec<FrequencyPoint>,
-    /// Tones of the record that none of this is of, and why.
+    /// Tones of the record that were not used, and why.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -62,25 +62,26 @@ impl Identification {
         self.misfit <= RIGID
     }
 
-    /// Damping in N m s/rad that motion takes through the board's own current loop; none with an amplifier outside.
+    /// Damping of the device in N m s/rad that motion loses through the board's own current loop; 0 with an
+    /// external amplifier.
     pub fn motion_loss(&self) -> f64 {
         self.model.source.map_or(0.0, |source| source.loss)
     }
 
-    /// `delta` to certify with, in N m s/rad: the lower end of the damping of a rigid device, less what motion
-    /// takes through the board's own current loop. `None`
-    /// where that is not positive, and for a device that is not rigid: no hand held it, and its
-    /// damping in a hand cannot be measured from the motor alone (theory, section 3.2).
+    /// `delta` to certify with, in N m s/rad: the lower end of the damping of a rigid device, less the
+    /// damping that motion loses through the board's own current loop. `None` where that is not positive, and
+    /// for a device that is not rigid: no hand held it, and its damping in a hand cannot be measured from the
+    /// motor alone (theory, section 3.2).
     pub fn passivity(&self) -> Option<f64> {
         let passivity = self.damping.lo - self.motion_loss();
         (self.is_rigid() && passivity > 0.0).then_some(passivity)
     }
 }
 
-/// Fits the disk and the rigid device to the responses of a record with so long a period in s.
+/// Fits the disk and the rigid device to the responses of a record; `period` in s.
 ///
-/// Lag and delay stay in the model also where they are not significant: a fit that leaves them out
-/// takes what there is of them for damping.
+/// Lag and delay stay in the model also where they are not significant: a fit that leaves them out attributes
+/// their effect to the damping.
 pub fn identify(
     period: f64,
     correction: &Correction,
@@ -105,7 +106,7 @@ pub fn identify(
     let model = profile.best.model;
     let is_rigid = profile.misfit <= RIGID;
     let latency = Latency::of(&profile, measured.fastest(), is_rigid);
-    // Lag and delay of a fit that explains nothing would add images which are not there.
+    // Lag and delay of a fit that explains nothing would add false images.
     let plain = if is_rigid { None } else { measured.fit(0.0, Delay::Fixed(0.0)) };
     let responses = without_images(&measured, &plain.map_or(model, |fit| fit.model));
     let disk = disk(&responses);
@@ -141,7 +142,7 @@ fn without_images(measured: &Measured<'_>, model: &Model) -> Vec<FrequencyPoint>
     measured.responses.iter().map(corrected).collect()
 }
 
-/// The response that is nearest to the rim is the one with the smallest lower end.
+/// The response nearest to the rim has the smallest lower end.
 fn disk(responses: &[FrequencyPoint]) -> Disk {
     // Normal distribution: the deviation of each response rests on many samples.
     let quantile = student(1e6);

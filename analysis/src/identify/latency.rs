@@ -11,12 +11,12 @@ use crate::quantity::significant;
 /// intervals: beyond it the fit may have taken one turn of the phase for another.
 const COARSE: f64 = 0.5;
 
-/// Times in s between a command and its torque, beyond what the measurement was declared to add.
+/// Times in s between a command and its torque, beyond the declared delays of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Latency {
     /// Time constant of the amplifier.
     pub actuator_lag: Estimate,
-    /// Delay of the output. Its lower end is less than zero where the record may be skewed so.
+    /// Delay of the output. Its lower end is less than zero if the record may be skewed by that.
     pub output_delay: Estimate,
 }
 
@@ -29,7 +29,7 @@ pub enum NoLatency {
          delay would not be true"
     )]
     NotRigid,
-    /// As much of the response may be the device's as the amplifier's.
+    /// The device may explain as much of the response as the amplifier.
     #[error(
         "the amplifier's lag cannot be told from the time constant inertia/damping of the device: \
          where the one is {} s, the other may be it. Declare a shorter --longest-lag, if the amplifier's \
@@ -37,7 +37,7 @@ pub enum NoLatency {
         significant(*.0, 3)
     )]
     LikeInertia(f64),
-    /// The responses ask for more lag than there may be.
+    /// The responses allow more lag than the amplifier may have.
     #[error(
         "the responses allow a lag of more than {} s, the longest that is taken for the amplifier's: a \
          slower one looks like the device's inertia. Add faster tones, declare --longest-lag if the \
@@ -45,7 +45,7 @@ pub enum NoLatency {
         significant(*.0, 3)
     )]
     TooSlow(f64),
-    /// The phase leaves too much open.
+    /// The phase does not determine them well enough.
     #[error(
         "lag and delay are known to {} s only: the tones end at {} Hz, and few of them stand out of \
          the noise. Add faster tones, or use a larger torque",
@@ -68,11 +68,12 @@ pub enum NoLatency {
 }
 
 impl Latency {
-    /// Of the devices that responses allow, the fastest at this angular frequency in rad/s.
+    /// Lag and delay of the devices that the responses allow; `fastest` is the highest angular frequency of a
+    /// response in rad/s.
     pub fn of(profile: &Profile, fastest: f64, is_explained: bool) -> Result<Self, NoLatency> {
         let (sum, delay) = (profile.mean_delay(), profile.delay());
         let reach = 0.5 * (sum.hi - sum.lo);
-        // Before the misfit, which too long a lag makes.
+        // Checked before the misfit, because too long a lag causes a misfit.
         match profile.open {
             Some(Open::Longest(longest)) => return Err(NoLatency::TooSlow(longest)),
             Some(Open::Exchange(lag)) => return Err(NoLatency::LikeInertia(lag)),

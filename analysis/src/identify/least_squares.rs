@@ -1,4 +1,4 @@
-//! Damping, inertia and delay of the device that is nearest to some responses, for a lag that is given.
+//! Damping, inertia and delay of the device nearest to some responses, for a given lag.
 
 use haptic_servo::current::TorqueSource;
 use nalgebra::{Complex, Matrix3, Vector3};
@@ -6,22 +6,22 @@ use nalgebra::{Complex, Matrix3, Vector3};
 use super::model::Model;
 use super::response::FrequencyPoint;
 
-/// Most Gauss-Newton steps. Near the solution each gains several digits, the images of the torque
-/// included, which are of the model before the step.
+/// Largest number of Gauss-Newton steps. Near the solution each gains several digits, also with the images of
+/// the torque, which are those of the model before the step.
 const ITERATIONS: usize = 30;
 
-/// A step that is so small, in the units of the system, is the last.
+/// A step smaller than this, in the units of the system, is the last.
 const SMALL: f64 = 1e-11;
 
-/// Smallest relative deviation that is believed: a simulation without noise has none.
+/// Smallest relative deviation that is assumed: a simulation without noise has none.
 const FLOOR: f64 = 1e-9;
 
-/// Most halvings of a step that would raise the squares.
+/// Largest number of halvings of a step that would raise the squares.
 const HALVINGS: i32 = 6;
 
-/// Delays in periods that a search begins between: the phase of the fastest response is periodic.
+/// Shortest delay in periods at which a search starts: the phase of the fastest response is periodic.
 const FIRST: f64 = -2.0;
-/// The last of them.
+/// Longest delay in periods at which a search starts.
 const LAST: f64 = 10.0;
 /// The search's step as phase in rad of the fastest response.
 const SEARCH: f64 = 0.5;
@@ -30,14 +30,14 @@ const DAMPING: usize = 0;
 const INERTIA: usize = 1;
 const DELAY: usize = 2;
 
-/// Responses as they were measured, with the images of the torque held for so long a period.
+/// Responses as they were measured, with the images of the torque that is held for a period.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<'a> {
     /// The responses.
     pub responses: &'a [FrequencyPoint],
     /// Sampling period in s.
     pub period: f64,
-    /// Delays in s that were taken out of the responses, which have theirs of the images still.
+    /// Delays in s that were removed from the responses; the images in them still have these delays.
     pub declared: f64,
     /// The current loop that the torque came from, where it is known.
     pub source: Option<TorqueSource>,
@@ -59,14 +59,15 @@ pub struct Fit {
 /// Knowledge of the delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Delay {
-    /// Where to begin, in s.
+    /// The initial value in s.
     From(f64),
-    /// All of it, in s.
+    /// The known value in s.
     Fixed(f64),
 }
 
 impl Measured<'_> {
-    /// What the images of the torque make of a response of the model at an angular frequency in rad/s.
+    /// Factor by which the images of the torque change a response of the model, at an angular frequency in
+    /// rad/s.
     pub fn images(&self, model: &Model, omega: f64) -> Complex<f64> {
         let delay = model.delay + self.declared;
         Model { delay, ..*model }.images(omega, self.period)
@@ -83,8 +84,8 @@ impl Measured<'_> {
             Delay::From(begin) => (begin, true),
             Delay::Fixed(delay) => (delay, false),
         };
-        // For a given delay the problem is linear; a delay of a device that has no inertia yet would
-        // do nothing: so in turn.
+        // For a given delay the problem is linear, and the delay has no effect on a device that has no
+        // inertia yet. So the first step is without the delay.
         let nothing = self.nothing(begin, lag);
         let mut model = moved(nothing, System::at(self, &nothing, false, false).step()?);
         let mut system = System::at(self, &model, is_free, true);
@@ -103,13 +104,13 @@ impl Measured<'_> {
         is_usable.then_some(Fit { model, squares, deviations, is_delay_free: is_free })
     }
 
-    /// No device behind this delay and this lag in s.
+    /// A model without a device, with this delay and this lag in s.
     fn nothing(&self, delay: f64, lag: f64) -> Model {
         Model { damping: 0.0, inertia: 0.0, delay, lag, source: self.source }
     }
 
-    /// A step that does not raise the squares, and where it leads: responses that no device explains send
-    /// a whole step anywhere.
+    /// A step that does not raise the squares, with the model and the system after it: for responses that no
+    /// device explains, a whole step may lead anywhere.
     fn descent(
         &self,
         model: &Model,
@@ -125,7 +126,7 @@ impl Measured<'_> {
         })
     }
 
-    /// Where to begin with the delay in s: at the best of several, each with the device that fits to it.
+    /// The initial value of the delay in s: the best of several, each with the device that fits to it.
     pub fn rough_delay(&self) -> Option<f64> {
         let step = SEARCH / self.fastest();
         let last = ((LAST - FIRST) * self.period / step).ceil() as usize;
@@ -160,8 +161,8 @@ struct System {
 }
 
 impl System {
-    /// `with_images` takes the images of the model out of the responses, which those of no device are
-    /// not.
+    /// `with_images` removes the images of the model from the responses; without a device there are none to
+    /// remove.
     fn at(measured: &Measured<'_>, model: &Model, with_delay: bool, with_images: bool) -> Self {
         let fastest = measured.fastest();
         let largest = measured.responses.iter().map(|r| r.impedance().norm()).fold(0.0, f64::max);

@@ -12,19 +12,19 @@ use crate::compare_run::{EmulatedBoard, RunError};
 use crate::lockstep::{Difference, RemoteServo};
 use crate::quantity::significant;
 
-/// A record, and whether the board played what this process would have.
+/// A record, and whether the board's codes equal those of this process.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// The record; its torque is that of the codes that drove the device.
     pub record: Record,
     /// Codes of the board that were equal to this process's; `None` where no board took part.
     pub equal: Option<usize>,
-    /// The first that was not.
+    /// The first difference, if there is one.
     pub difference: Option<Difference>,
 }
 
-/// Plays a sweep to a device at rest and records it. With a program `elf` it is the emulated
-/// board's codes that drive the device, and each is compared. Calls `progress` on each tick.
+/// Plays a sweep to a device at rest and records it. With a program `elf` the emulated board's codes drive
+/// the device, and each is compared. Calls `progress` on each tick.
 ///
 /// # Errors
 /// Where the emulated board cannot be started, fails, or does not end.
@@ -67,7 +67,7 @@ pub fn measure<const N: usize>(
     Ok(Measurement { record, equal, difference })
 }
 
-/// Writes a record as the CSV file that it can be [read](super::record::load) from.
+/// Writes a record as a CSV file that can be [read](super::record::load) again.
 ///
 /// # Errors
 /// Where it cannot be written.

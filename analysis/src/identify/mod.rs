@@ -1,5 +1,4 @@
-//! What a device's damping measures: from a record of stepped sines to a `[device]` table
-//! (theory, section 3.3).
+//! Measures a device's damping: from a record of stepped sines to a `[device]` table (theory, section 3.3).
 //!
 //! ```text
 //! record -> steps -> responses J(w) -> disk Re(1/J) >= delta,
@@ -8,11 +7,11 @@
 //!
 //! [`record`] reads a CSV file, [`step`] finds the stretches of steady sine in it, [`response`] takes one bin
 //! of each, [`fit`] draws the conclusions, and [`clipping`] refuses them where the motor did not give the
-//! torques. A conclusion is a [`model`] of the device and of what makes its torque late; [`least_squares`]
-//! finds the nearest one for a lag, [`profile`] the intervals over all lags, and [`latency`] derives lag and
-//! delay from them. [`torque_source`] is `Z`, what the current loop of a board's own bridge adds to the
-//! device. [`port`] records what a board measures; [`rig`] simulates a device that is measured so, with all
-//! that spoils a measurement, and [`measurement`] has the emulated board measure it.
+//! torques. A conclusion is a [`model`] of the device and of its torque's latency; [`least_squares`] finds
+//! the nearest one for a lag, [`profile`] the intervals over all lags, and [`latency`] derives lag and delay
+//! from them. [`torque_source`] is `Z`, the impedance that the current loop of a board's own bridge adds to
+//! the device. [`port`] records a board's measurement; [`rig`] simulates a measured device, with the errors
+//! of a real measurement, and [`measurement`] has the emulated board measure it.
 
 pub mod clipping;
 mod error;

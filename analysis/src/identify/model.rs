@@ -22,7 +22,7 @@ pub struct Model {
     pub delay: f64,
     /// Time constant `tau` in s of the amplifier.
     pub lag: f64,
-    /// The current loop of a board's own bridge, which makes `Z`; `None` of an amplifier outside.
+    /// The current loop of a board's own bridge, which makes `Z`; `None` for an external amplifier.
     pub source: Option<TorqueSource>,
 }
 
@@ -32,7 +32,7 @@ impl Model {
         self.device(omega) * self.output(omega)
     }
 
-    /// The part of it that is the device's, with what its motion moves through the current loop.
+    /// The device's factor of it, with the torque that its motion causes through the current loop.
     pub fn device(&self, omega: f64) -> Complex<f64> {
         let path = self
             .source
@@ -40,17 +40,17 @@ impl Model {
         Complex::new(self.damping, omega * self.inertia) + path
     }
 
-    /// The part of it that is the output's: its lag and its delay.
+    /// The output's factor of it: lag and delay.
     pub fn output(&self, omega: f64) -> Complex<f64> {
         Complex::new(1.0, omega * self.lag) * Complex::from_polar(1.0, omega * self.delay)
     }
 
-    /// Mean delay in s of the torque's step response: what a certificate counts at low frequencies.
+    /// Mean delay in s of the torque's step response: a certificate counts it at low frequencies.
     pub fn mean_delay(&self) -> f64 {
         self.delay + self.lag
     }
 
-    /// What the images of the held torque make of the response, as a factor of `J`.
+    /// Factor by which the images of the held torque change the response `J`.
     ///
     /// A held sine has images around the multiples of the sampling rate; the device answers them and
     /// sampling folds the answer back: the angle is the sum of `(1 - 1/z) / (j w_k)^2 J(j w_k)` over all

@@ -14,7 +14,7 @@ use crate::link::{Address, LinkError, Transport, is_timeout, open};
 const TIMEOUT: Duration = Duration::from_secs(2);
 /// Time between two keep-alive bytes of the host; the board waits five times as long.
 const LISTENING: Duration = Duration::from_millis((SILENCE * 200.0) as u64);
-/// Time in which a board that was still at it falls silent.
+/// Time in which a board whose sweep still ran falls silent.
 const SETTLE: Duration = Duration::from_millis(200);
 /// The record's first line.
 const HEADING: &str = "time,torque,counts";
@@ -36,7 +36,7 @@ pub struct Description {
     pub source: Option<TorqueSource>,
 }
 
-/// What a board has sent.
+/// The record that a board has sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// Its sweep's description.
@@ -65,7 +65,7 @@ pub enum PortError {
         /// The address.
         address: Address,
     },
-    /// A description of another version, or none.
+    /// A description of another version, or an invalid description.
     #[error(
         "the board on {address} describes its sweep as `{line}`, which is not version \
          {SWEEP_PROTOCOL} of the sweep protocol: flash `identify` again"
@@ -93,7 +93,7 @@ pub enum PortError {
     /// The sweep ended before its last sample.
     #[error("the sweep ended with `{}` after {rows} of {ticks} rows: {}", .end.as_str(), remedy(*.end, .travel, .speed))]
     Ended {
-        /// How.
+        /// The way in which it ended.
         end: SweepEnd,
         /// Rows until then.
         rows: u64,
@@ -104,7 +104,7 @@ pub enum PortError {
         /// The limit of speed in rad/s.
         speed: f64,
     },
-    /// A word that no version of this program knows.
+    /// A word that this program does not know.
     #[error("the board ended the sweep with the unknown word `{word}`: flash `identify` again")]
     Word {
         /// The word.
@@ -112,7 +112,7 @@ pub enum PortError {
     },
 }
 
-/// What ended a sweep, and what to do about it.
+/// The cause of a sweep's end, and its remedy.
 fn remedy(end: SweepEnd, travel: &f64, speed: &f64) -> String {
     match end {
         SweepEnd::Done => "nothing is wrong".to_owned(),
@@ -156,7 +156,7 @@ impl Recording {
     /// The record, if it is whole.
     ///
     /// # Errors
-    /// With what ended the sweep before its end.
+    /// The cause, if the sweep ended early.
     pub fn check_complete(&self) -> Result<(), PortError> {
         let Description { ticks, travel, speed, .. } = self.description;
         let (end, rows) = (self.end, self.rows);
@@ -174,7 +174,7 @@ impl Recording {
 pub struct SweepPort {
     address: Address,
     transport: Box<dyn Transport>,
-    /// Bytes that are no whole line yet.
+    /// Bytes of an incomplete line.
     rest: Vec<u8>,
     /// When the last keep-alive byte was sent.
     told: Instant,
@@ -185,7 +185,7 @@ impl SweepPort {
     /// Connects, ends a sweep that may still run, and requests the description.
     ///
     /// # Errors
-    /// Where the port cannot be opened, or no board that plays a sweep is there.
+    /// Where the port cannot be opened, or no board with a sweep answers.
     pub fn open(address: &Address) -> Result<Self, PortError> {
         let transport =
             open(address).map_err(|source| LinkError::Open { address: address.clone(), source })?;
@@ -207,7 +207,7 @@ impl SweepPort {
         Ok(player)
     }
 
-    /// What the board would play.
+    /// The description of the board's sweep.
     pub fn description(&self) -> &Description {
         &self.description
     }
@@ -250,7 +250,7 @@ impl SweepPort {
                     .ok_or_else(|| PortError::Word { word: word.to_owned() })?;
                 return Ok(Recording { description: self.description, text, rows, end });
             }
-            // What comes before the heading is of before the beginning.
+            // Lines before the heading were sent before the sweep began.
             if line == HEADING {
                 (text, rows) = (String::new(), 0);
             } else if text.is_empty() {
@@ -270,7 +270,7 @@ impl SweepPort {
         sent.map_err(|source| self.lost(source))
     }
 
-    /// The next line, if there is one before the time is up.
+    /// The next line; `None` if there is none before the time is up.
     fn line(&mut self, until: Instant) -> Result<Option<String>, PortError> {
         loop {
             if let Some(end) = self.rest.iter().position(|&byte| byte == b'\n') {
@@ -284,7 +284,7 @@ impl SweepPort {
             if left.is_zero() {
                 return Ok(None);
             }
-            // No operating system waits for no time at all.
+            // No operating system takes a timeout of zero.
             let wait = left.clamp(Duration::from_millis(1), LISTENING);
             let mut bytes = [0; 4096];
             let read =

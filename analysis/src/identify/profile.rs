@@ -1,10 +1,10 @@
-//! Intervals of inertia, damping, lag and delay together: what the lag may be, and the other numbers
-//! for every lag that it may be.
+//! Joint intervals of inertia, damping, lag and delay: the allowed lags, and the other numbers for every
+//! allowed lag.
 //!
-//! The squares of the fit are not quadratic in the lag, which a response shows by its square where it is
-//! short, and a lag is not below zero. So no interval is taken from the slopes at the best fit: for each lag
-//! the others are fitted ([`least_squares`](super::least_squares)), and every device whose squares are above
-//! the least by no more than the threshold of the confidence is inside.
+//! The squares of the fit are not quadratic in the lag: a response depends on the square of a short lag, and
+//! a lag is not below zero. So no interval is taken from the slopes at the best fit: for each lag the others
+//! are fitted ([`least_squares`](super::least_squares)), and every device whose squares are above the least
+//! by no more than the threshold of the confidence is inside.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -12,24 +12,24 @@ use super::estimate::{CONFIDENCE, Estimate};
 use super::least_squares::{Delay, Fit, Measured};
 use super::model::Model;
 
-/// Shortest lag that is tried besides none, as phase in rad of the fastest response: a response is known
-/// to a part in 1e7 at best.
+/// Shortest lag that is tried besides 0, as phase in rad of the fastest response: a response is known to a
+/// part in 1e7 at best.
 const SHORTEST: f64 = 1e-4;
-/// Each is longer by this factor than the one before.
+/// Ratio of each lag to the previous one.
 const RATIO: f64 = 1.25;
-/// Most of them: to the longest there is a factor of 1e9.
+/// Largest number of them: from the shortest to the longest there is a factor of 1e9.
 const MOST: usize = 95;
-/// Lags in a row which the squares have risen at, and are beyond the threshold by [`FAR`] times, after
-/// which no longer one is tried.
+/// Number of successive lags at which the squares rise and are beyond the least by [`FAR`] thresholds; after
+/// them no longer lag is tried.
 const RISES: usize = 4;
 /// See [`RISES`].
 const FAR: f64 = 10.0;
-/// Halvings of the range in which the best lag or an end is.
+/// Steps by which the range that contains the best lag or an end is reduced.
 const HALVINGS: usize = 24;
 /// Lags between the ends of an interval at which the intervals of the other numbers are taken.
 const SAMPLES: usize = 32;
-/// How far below those of the devices with delays of 0 and more the squares have to be, in thresholds,
-/// for a negative delay to be believed.
+/// Number of thresholds by which a negative delay must lower the squares, compared with delays of 0 and more,
+/// to be accepted.
 const EARLIER: f64 = 2.0;
 
 /// All devices that the responses allow.
@@ -39,7 +39,7 @@ pub struct Profile {
     pub best: Fit,
     /// Fits at lags from the shortest to the longest that is allowed.
     fits: Vec<Fit>,
-    /// By how much squares may be above the least.
+    /// Largest allowed excess of squares over the least.
     threshold: f64,
     /// Mean squared residual in squared deviations.
     pub misfit: f64,
@@ -49,23 +49,23 @@ pub struct Profile {
     pub is_early: bool,
 }
 
-/// Where lags end that the responses allow, for another reason than theirs.
+/// The end of the allowed lags, where the responses do not set it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Open {
-    /// At the lag in s at which it and the time constant of the device would change places, or their
-    /// order is a matter of choice.
+    /// At the lag in s at which it and the time constant of the device would change places, or their order is
+    /// arbitrary.
     Exchange(f64),
-    /// At the longest in s that the amplifier may have.
+    /// At the longest lag in s that the amplifier may have.
     Longest(f64),
 }
 
-/// Longest lag that an amplifier is believed to have where nothing is said, in periods: a servo with a
-/// slower one does not gain from its sampling rate.
+/// Longest lag that is assumed for an amplifier if none is declared, in periods: a servo with a slower
+/// amplifier does not gain from its sampling rate.
 const LONGEST: f64 = 0.5;
 
 impl Profile {
-    /// Of these responses, with an amplifier that lags by no more than `longest` in s. `None` where they
-    /// do not determine a device.
+    /// The profile of these responses, with an amplifier whose lag is at most `longest` in s. `None` where
+    /// they do not determine a device.
     pub fn of(measured: &Measured<'_>, longest: Option<f64>) -> Option<Self> {
         let begin = measured.rough_delay()?;
         let begin = measured.fit(0.0, Delay::From(begin))?.model.delay;
@@ -145,7 +145,7 @@ impl Profile {
         self.estimate(Model::mean_delay, |fit| fit.deviations[2], |model| model.lag)
     }
 
-    /// Of all devices that are allowed; the number is at least the value of `least` behind a lag.
+    /// The interval over all allowed devices; behind a lag the number is at least the value of `least`.
     fn estimate(
         &self,
         number: impl Fn(&Model) -> f64,
@@ -190,12 +190,12 @@ impl Squares<'_> {
         self.longest.unwrap_or(LONGEST * self.measured.period)
     }
 
-    /// Why the upper end of the allowed lags, which begin `from` one in s and have `reached` the end of
-    /// those that were tried, is not one.
+    /// Why the allowed lags have no upper end, if they have none. They begin at `from` in s; `reached` is the
+    /// end of the tried lags, if they extend to it.
     fn open(&self, best: &Fit, reached: Option<Open>, from: f64) -> Option<Open> {
         let of_device = best.model.inertia / best.model.damping;
         match reached {
-            // What the responses leave open was declared.
+            // The responses leave the end open, and the declaration sets it.
             Some(Open::Longest(_)) if self.longest.is_some() && from == 0.0 => None,
             Some(end) => Some(end),
             // The device's time constant might as well be the amplifier's.
@@ -203,8 +203,8 @@ impl Squares<'_> {
         }
     }
 
-    /// The best fit with a delay that may be; the delay of a torque that no amplifier makes late may be
-    /// negative, where counts are younger than their time.
+    /// The best fit with an allowed delay. Without a lag the delay may be negative, because counts may be
+    /// younger than their time.
     fn at(&self, lag: f64) -> Option<Fit> {
         let fit = self.measured.fit(lag, Delay::From(self.begin - lag));
         let may_be = |fit: &Fit| lag == 0.0 || self.may_be_early || fit.model.delay >= 0.0;
@@ -216,12 +216,12 @@ impl Squares<'_> {
     }
 
     /// Whether the device's inertia can be distinguished from the lag: `(b + j w m) (1 + j w tau)` is the
-    /// same where `tau` and `m/b` change places, so the lag is taken for the shorter of them.
+    /// same where `tau` and `m/b` change places, so the shorter of them counts as the lag.
     fn is_told(fit: &Fit) -> bool {
         fit.model.lag * fit.model.damping < fit.model.inertia
     }
 
-    /// Fits at lags far apart, and where they end if not where the squares are far too large.
+    /// Fits at lags far apart, and where they end, unless they end because the squares are far too large.
     fn tried(&self, threshold: impl Fn(f64) -> f64) -> (Vec<Fit>, Option<Open>) {
         let shortest = SHORTEST / self.measured.fastest();
         let lags = (0..MOST).map(|i| shortest * RATIO.powi(i as i32));

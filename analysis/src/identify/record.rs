@@ -5,8 +5,8 @@ use std::path::Path;
 
 use crate::table::{Column, FoundColumn, Row, Table, TableError};
 
-/// How far a row's time may be from its tick, as a part of the period: a slip of a whole tick is
-/// found, the rounding of printed decimals is not taken for one.
+/// Largest deviation of a row's time from its tick, as a part of the period: a slip of a whole tick is found,
+/// and the rounding of printed decimals is not taken for a slip.
 const JITTER: f64 = 0.25;
 
 /// A measurement.
@@ -18,8 +18,8 @@ pub struct Record {
     pub torque: Vec<f64>,
     /// Counts read at each tick.
     pub counts: Vec<f64>,
-    /// Frequency in Hz that the torque has at each tick, 0 where it has none; `None` where the
-    /// record does not say.
+    /// Frequency in Hz that the torque has at each tick, 0 where it has none; `None` where the record does
+    /// not state it.
     pub frequency: Option<Vec<f64>>,
 }
 
@@ -33,16 +33,16 @@ const COUNTS: Column = Column { names: &["counts", "count"], bound: "a whole num
 const FREQUENCY: Column =
     Column { names: &["frequency", "frequency_hz"], bound: "a finite number of Hz, 0 or more" };
 
-/// Largest count whose neighbours differ as doubles.
+/// Largest count that a double distinguishes from its neighbours.
 const LARGEST_COUNT: f64 = 9_007_199_254_740_991.0;
 
-/// Reads the columns `time` (s), `torque` (N m), `counts` and, where it is there, `frequency` (Hz)
-/// of a CSV file with a header; other columns are passed over. The time must go on by the same
-/// period from row to row.
+/// Reads the columns `time` (s), `torque` (N m), `counts` and, where it is there, `frequency` (Hz) of a CSV
+/// file with a header; other columns are passed over. The time must advance by the same period from row to
+/// row.
 ///
 /// # Errors
-/// Where the file cannot be read, lacks a column, has fewer than [`LEAST_ROWS`] rows, or has
-/// something in it that its column does not hold.
+/// Where the file cannot be read, lacks a column, has fewer than [`LEAST_ROWS`] rows, or has a field that is
+/// invalid in its column.
 pub fn load(path: &Path) -> Result<Record, TableError> {
     read(Table::open(path)?)
 }

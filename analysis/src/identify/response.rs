@@ -18,9 +18,9 @@ pub struct Correction {
     pub count_delay: f64,
     /// Part of each stretch that is left out at its beginning, until the transient has died out.
     pub settle: f64,
-    /// Longest lag in s that the amplifier may have; half a period where nothing is said.
+    /// Longest lag in s that the amplifier may have; half a period if `None`.
     pub longest_lag: Option<f64>,
-    /// The current loop of the board's own bridge that the torque came from; `None` where an amplifier made it.
+    /// The current loop of the board's own bridge that made the torque; `None` where an amplifier made it.
     pub source: Option<TorqueSource>,
 }
 
@@ -83,7 +83,7 @@ pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Opti
     let velocity = Complex::new(0.0, step.omega * correction.count_angle) * counts;
     let admittance = velocity / applied;
     let impedance = 1.0 / admittance;
-    // Of the counts, and of the torque, each relative to what there is.
+    // The deviations of counts and torque, each relative to its amplitude.
     let amplitude = torque.norm();
     let of_torque = correction
         .source
@@ -121,7 +121,7 @@ fn phasor(samples: &[f64], angle: f64) -> Option<(Complex<f64>, f64)> {
 }
 
 /// Deviation of a phasor, from the residuals at the neighbouring frequencies: the noise of a free device is a
-/// random walk, so that its mean over all frequencies says nothing about one of them.
+/// random walk, so that its mean over all frequencies does not apply to one of them.
 fn deviation(residual: &[f64], angle: f64, amplitude: f64) -> f64 {
     /// In steps of one period over the whole stretch; nearer than the first is the sine itself.
     const NEIGHBOURS: [f64; 8] = [-4.5, -3.5, -2.5, -1.5, 1.5, 2.5, 3.5, 4.5];
@@ -136,17 +136,17 @@ fn deviation(residual: &[f64], angle: f64, amplitude: f64) -> f64 {
     // than by the true variance.
     let freedom = 2.0 * powers.len().max(2) as f64;
     let power = 2.0 * powers.iter().sum::<f64>() / (freedom - 2.0);
-    // Whole counts, at the least: 1/12 of a count squared, and no better for being repeated, since the
+    // At least the error of whole counts: 1/12 of a count squared. Repetition does not reduce it, since the
     // error is repeated with the phase.
     let distinct = distinct_errors(residual.len(), angle, amplitude);
     (0.5 * power).sqrt().max((1.0 / (6.0 * distinct)).sqrt())
 }
 
-/// Samples of a sine, of `amplitude` counts, whose rounding errors are not those of others.
+/// Number of samples of a sine, of `amplitude` counts, with different rounding errors.
 ///
-/// The phases of successive periods differ until so many samples are a whole number of periods; of an
-/// even number, one half has the errors of the other with the sign changed. A slow sine is rounded to
-/// the same counts by neighbouring phases.
+/// The phases of successive periods differ until that number of samples is a whole number of periods; of an
+/// even number, one half has the errors of the other with the sign changed. A slow sine is rounded to the
+/// same counts by neighbouring phases.
 fn distinct_errors(samples: usize, angle: f64, amplitude: f64) -> f64 {
     const COUNTS_A_PERIOD: f64 = 4.0;
     let n = samples as f64;

@@ -19,18 +19,18 @@ pub struct Excitation {
     pub frequency: f64,
     /// Amplitude in N m.
     pub amplitude: f64,
-    /// How long, in s.
+    /// Duration in s.
     pub duration: f64,
 }
 
-/// How a device is driven and seen.
+/// How a device is driven and measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensing {
     /// Sampling period in s.
     pub period: f64,
     /// Counts of the encoder in one turn.
     pub counts_per_turn: f64,
-    /// Standard deviation in N m of the torque that is there and not recorded, new in every tick.
+    /// Standard deviation in N m of the torque noise, which acts but is not recorded, new in every tick.
     pub torque_noise: f64,
     /// Time in s, less than the period, by which the counts of a row are older than its time.
     pub skew: f64,
@@ -84,7 +84,7 @@ fn pieces(plant: &Plant, sensing: &Sensing) -> Result<Vec<Piece>, SimulationErro
 }
 
 impl MeasuredDevice {
-    /// A device that is driven and seen so.
+    /// A device that is driven and measured in this way.
     ///
     /// # Errors
     /// Where the device is too fast for its motion over a period to be computed.
@@ -127,7 +127,7 @@ pub struct Rig {
     pub device: Device,
     /// Time constant in s of its amplifier; 0 for an amplifier without lag.
     pub actuator_lag: f64,
-    /// With what.
+    /// How it is driven and measured.
     pub sensing: Sensing,
 }
 

@@ -10,7 +10,7 @@ use crate::quantity::significant;
 /// Fewest periods of a stretch.
 pub const LEAST_PERIODS: usize = 4;
 
-/// How far the length of one period may be from the one before, relatively, in the same stretch.
+/// Largest relative change of the length from one period to the next in the same stretch.
 const STEADY: f64 = 0.05;
 
 /// Rows of a period below which the interpolation of a crossing is worse than that part of it.
@@ -48,8 +48,8 @@ impl LeftOut {
     }
 }
 
-/// The stretches of a record, as its column `frequency` says, or else where the torque crosses zero at steady
-/// intervals; and invalid steps.
+/// The stretches of a record, as its column `frequency` states, or else where the torque crosses zero at
+/// steady intervals; and the stretches that cannot be used, with the reason.
 pub fn steps(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
     let (steps, mut left_out) = match &record.frequency {
         Some(frequency) => (labelled(frequency), Vec::new()),
@@ -87,8 +87,8 @@ fn labelled(frequency: &[f64]) -> Vec<Step> {
     steps
 }
 
-/// By the rising zero crossings of the torque, interpolated between samples. The frequency's error
-/// turns the phases of torque and motion by the same amount, and so does no harm.
+/// The stretches by the rising zero crossings of the torque, interpolated between samples. The frequency's
+/// error turns the phases of torque and motion by the same amount, and so does no harm.
 ///
 /// A stretch whose frequency changes slowly is a sweep, of which no part is a steady sine.
 fn crossings(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
@@ -119,8 +119,8 @@ fn crossings(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
     (steps, sweeps)
 }
 
-/// By which factor the frequency changes from the first half of a stretch's crossings to the second,
-/// if it does.
+/// The factor by which the frequency changes from the first half of a stretch's crossings to the second, if
+/// it changes.
 fn sweep(times: &[f64]) -> Option<f64> {
     let middle = times.len() / 2;
     let mean = |times: &[f64]| Some((times.last()? - times.first()?) / (times.len() - 1) as f64);

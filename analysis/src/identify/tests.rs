@@ -18,7 +18,7 @@ const SENSING: Sensing = Sensing {
     seed: 1,
 };
 
-/// A rig with an amplifier that does not lag.
+/// A rig with an amplifier without lag.
 fn rig(device: Device, sensing: Sensing) -> Rig {
     Rig { device, actuator_lag: 0.0, sensing }
 }
@@ -73,7 +73,7 @@ fn ten_microseconds_of_skew_are_found_and_taken_out() {
     // Theory, section 3.3: 0.5 becomes 0.30 at 100 Hz.
     assert!((found.disk.delta - 0.30).abs() < 0.01, "{:?}", found.disk);
     assert!((found.bias + 0.20).abs() < 0.01, "{}", found.bias);
-    // A delay that is declared is no skew.
+    // A declared delay is not a skew.
     let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02)).unwrap();
     let correction =
         Correction { count_delay: 1e-5, ..Correction::of_encoder(rig.sensing.counts_per_turn) };
@@ -182,7 +182,7 @@ fn a_sweep_is_called_one() {
         let record = moved(torque, 20.0);
         identify(&record, &Correction::of_encoder(61_440.0)).unwrap_err().to_string()
     };
-    // From 1 to 21 Hz: slowly enough that each period is like the one before.
+    // From 1 to 21 Hz: slowly enough that each period is like the previous one.
     let said = refused(&|t| (TAU * (t + 0.5 * t * t)).sin());
     assert!(said.contains("a sweep (chirp) is no steady sine"), "{said}");
     assert!(!said.contains("larger torque"), "{said}");

@@ -1,5 +1,5 @@
-//! The current loop of a board's own bridge as a source of torque (theory, section 3.3): its feedback leaves a part
-//! of the current that motion induces, and its torque is as fine as its current.
+//! The current loop of a board's own bridge as a source of torque (theory, section 3.3): its feedback leaves
+//! a part of the current that motion induces, and its torque is as fine as its current.
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
@@ -8,8 +8,9 @@ use nalgebra::Complex;
 
 /// Torque against the motion over its velocity, in N m s/rad, at an angular frequency in rad/s that is not 0.
 ///
-/// Winding and back-EMF are continuous; the feedback samples the current, and its voltage is held for an instant,
-/// one instant later (theory, section 15.2). What sampling folds back from above its own rate is left out.
+/// Winding and back-EMF are continuous; the feedback samples the current, and its voltage is held for an
+/// instant, one instant later (theory, section 15.2). Frequencies that sampling folds back from above its own
+/// rate are left out.
 pub fn impedance(source: &TorqueSource, omega: f64) -> Complex<f64> {
     let &TorqueSource { gain, resistance, inductance, feedback, instant, .. } = source;
     let decay = (-resistance * instant / inductance).exp();
@@ -23,8 +24,8 @@ pub fn impedance(source: &TorqueSource, omega: f64) -> Complex<f64> {
     gain * (1.0 - controller * acts * sampled) / winding
 }
 
-/// Part of a period in which, at each of the two zeros of a sine of torque, the dead time is given back with the
-/// wrong sign: what motion induces moves the zero of the current away from that of its model.
+/// Part of a period in which, at each of the two zeros of a sine of torque, the dead time is given back with
+/// the wrong sign: the induced current moves the zero of the current away from that of its model.
 const WRONG_SIGN: f64 = 1.0 / 30.0;
 
 /// Counts that both phases of a brushed motor are rounded alike by, in steps of half their difference.
@@ -33,8 +34,8 @@ const STEPS: f64 = 2.0;
 /// Amplitude in N m that the zero crossings of a sine of torque add at a multiple of its angular frequency in
 /// rad/s, 1 for the sine itself.
 ///
-/// At each of them the voltage of the dead time is wrong for a while, which the feedback takes out as its derivative
-/// (theory, section 15.3): the voltage falls with the multiple, and its derivative rises as much.
+/// At each crossing the voltage of the dead time is wrong for a while, which the feedback takes out as its
+/// derivative (theory, section 15.3): the voltage falls with the multiple, and its derivative rises as much.
 pub fn crossing(source: &TorqueSource, omega: f64, multiple: usize) -> f64 {
     let &TorqueSource { resistance, inductance, feedback, instant, zero_crossing, .. } = source;
     let decay = (-resistance * instant / inductance).exp();
@@ -44,7 +45,8 @@ pub fn crossing(source: &TorqueSource, omega: f64, multiple: usize) -> f64 {
 
 /// Standard deviation in N m of a sine of torque of this amplitude, at an angular frequency in rad/s.
 ///
-/// Besides its zero crossings, a current of whole counts is a staircase, of which each step has an error of its own.
+/// Besides its zero crossings, a current of whole counts is a staircase, of which each step has an error of
+/// its own.
 pub fn deviation(source: &TorqueSource, omega: f64, amplitude: f64) -> f64 {
     let step = STEPS * source.step;
     let steps = 4.0 * amplitude / step;
@@ -71,7 +73,7 @@ pub fn parse(text: &str) -> Option<TorqueSource> {
     let is_positive = |number: f64| number > 0.0 && number.is_finite();
     let are_positive =
         [gain, resistance, inductance, feedback, instant, step, zero_crossing].map(is_positive);
-    // An infinite loss is one without a known bound.
+    // An infinite loss stands for a loss without a known bound.
     let are_numbers = are_positive == [true; 7] && feedback < 1.0 && loss >= 0.0;
     are_numbers.then_some(TorqueSource {
         gain,
@@ -103,8 +105,8 @@ mod tests {
         zero_crossing: 0.115,
     };
 
-    /// The same loop from instant to instant, with exact currents of a back-EMF that turns with `omega`: the part
-    /// of the torque at that frequency.
+    /// The same loop from instant to instant, with exact currents of a back-EMF that turns with `omega`: the
+    /// part of the torque at that frequency.
     fn simulated(source: &TorqueSource, omega: f64) -> Complex<f64> {
         let TorqueSource { gain, resistance, inductance, feedback, instant, .. } = *source;
         let decay = (-resistance * instant / inductance).exp();
@@ -117,7 +119,8 @@ mod tests {
         let mut sum = Complex::from(0.0);
         for k in 0..settle + measured {
             let time = f64::from(k) * instant;
-            // The current is its part that follows the back-EMF, that of the voltage, and what decays.
+            // The current is the sum of three parts: one follows the back-EMF, one is that of the voltage,
+            // one decays.
             let follows = -turn(time) / winding;
             let rests = voltage / resistance;
             let rest = current - follows - rests;
@@ -150,9 +153,9 @@ mod tests {
         }
     }
 
-    /// A steady acceleration leaves the current `Ke/k_i dv/dt` with `k_i = K R/h` at the samples: a mass. Between
-    /// them the voltage is held while the back-EMF goes on: the mean of that arc is `Ke h^2/(12 L) dv/dt` less,
-    /// where an instant is short beside the winding's time constant.
+    /// A steady acceleration leaves the current `Ke/k_i dv/dt` with `k_i = K R/h` at the samples: a mass.
+    /// Between them the voltage is held while the back-EMF goes on: the mean of that arc is
+    /// `Ke h^2/(12 L) dv/dt` less, where an instant is short beside the winding's time constant.
     #[test]
     fn slow_motion_feels_a_mass() {
         let omega = 1.0;

@@ -17,10 +17,10 @@ use haptic_model::board::timing::{QUERY, REQUEST, RetryTiming};
 use super::transport::{self, Transport, is_timeout};
 use super::{Address, LinkError};
 
-/// What a board said, kept.
+/// A message of a board that owns its text.
 pub type Message = ToHost<String>;
 
-/// A connection to a board that has said who it is.
+/// A connection to a board that has identified itself.
 pub struct Link {
     address: Address,
     wire: Wire,
@@ -35,7 +35,7 @@ pub struct Link {
 struct Wire {
     transport: Box<dyn Transport>,
     decoder: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
-    /// Bytes that were read, and how many of them were looked at.
+    /// Bytes that were read; `filled` is their number, `used` the number of decoded bytes.
     bytes: Box<[u8; 4096]>,
     filled: usize,
     used: usize,
@@ -49,7 +49,7 @@ impl Wire {
         self.transport.flush()
     }
 
-    /// The next message, if there is one before the time is up.
+    /// The next message; `None` if there is none before the time is up.
     fn receive(&mut self, until: Instant) -> io::Result<Option<Message>> {
         loop {
             while self.used < self.filled {
@@ -63,7 +63,7 @@ impl Wire {
             if left.is_zero() {
                 return Ok(None);
             }
-            // No operating system waits for no time at all.
+            // No operating system takes a timeout of zero.
             self.transport.wait_at_most(left.max(Duration::from_millis(1)))?;
             match self.transport.read(self.bytes.as_mut_slice()) {
                 Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
@@ -74,7 +74,7 @@ impl Wire {
         }
     }
 
-    /// Asks until there is an answer that `wanted` takes, or the time is up.
+    /// Repeats a request until `wanted` accepts an answer, or the time is up.
     fn ask<T>(
         &mut self,
         question: &ToBoard,
@@ -149,7 +149,7 @@ impl Link {
         }
     }
 
-    /// Where the board is.
+    /// The board's address.
     pub fn address(&self) -> &Address {
         &self.address
     }
@@ -159,17 +159,17 @@ impl Link {
         &self.program
     }
 
-    /// What the board's numbers mean.
+    /// The units of the board's numbers.
     pub fn board(&self) -> &BoardUnits {
         &self.board
     }
 
-    /// What stopped the board before it was last started.
+    /// The fault that stopped the board before its last start.
     pub fn previous_fault(&self) -> Option<PreviousFault> {
         self.previous_fault
     }
 
-    /// Frames from the board that were none.
+    /// Invalid frames from the board.
     pub fn discarded(&self) -> Discarded {
         self.wire.decoder.discarded()
     }
@@ -184,8 +184,8 @@ impl Link {
         self.in_words(outcome, &changes)
     }
 
-    /// What became of a request for these changes, in words: for a set that is refused, what runs there
-    /// is judged again here, with the remedies that a board has no room to look for.
+    /// The outcome of a request for these changes, in words. A refused set is judged again here, with the
+    /// remedies that a board has no room to look for.
     ///
     /// # Errors
     /// Where the board does not answer.
@@ -225,7 +225,7 @@ impl Link {
         Ok(self.request("the request to disarm", |id| ToBoard::Disarm { id })?.into())
     }
 
-    /// What exactly runs.
+    /// The scene that runs, with all numbers of its servo.
     ///
     /// # Errors
     /// Where the board does not answer.
@@ -238,7 +238,7 @@ impl Link {
         })
     }
 
-    /// The numbers that run.
+    /// The active parameters.
     ///
     /// # Errors
     /// Where the board does not answer.
@@ -249,7 +249,7 @@ impl Link {
         })
     }
 
-    /// How it is going.
+    /// The board's status.
     ///
     /// # Errors
     /// Where the board does not answer.
@@ -260,7 +260,7 @@ impl Link {
         })
     }
 
-    /// Says something that is not answered, or whose answer is taken with [`Self::receive`].
+    /// Sends a message that is not answered, or whose answer is taken with [`Self::receive`].
     ///
     /// # Errors
     /// Where the link is lost.
@@ -268,7 +268,7 @@ impl Link {
         self.wire.send(message).map_err(|source| self.lost(source))
     }
 
-    /// The next message, whatever it is; `None` when the time is up.
+    /// The next message of any type; `None` when the time is up.
     ///
     /// # Errors
     /// Where the link is lost.
@@ -276,7 +276,7 @@ impl Link {
         self.wire.receive(until).map_err(|source| self.lost(source))
     }
 
-    /// A number for a request that was not used before; the answer has the same.
+    /// A new number for a request; the answer has the same number.
     pub fn next_id(&mut self) -> Id {
         self.last_id = self.last_id.wrapping_add(1);
         self.last_id
@@ -308,7 +308,7 @@ impl Link {
         }
     }
 
-    /// The error of a board that has not answered for so long.
+    /// The error of a board that has not answered for this time.
     pub fn silent(&self, what: &'static str, after: Duration) -> LinkError {
         LinkError::Unanswered { address: self.address.clone(), what, after }
     }

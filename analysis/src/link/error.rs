@@ -1,4 +1,4 @@
-//! Why a board cannot be talked to.
+//! Errors of the link to a board.
 
 use std::io;
 use std::path::Path;
@@ -10,7 +10,7 @@ use thiserror::Error;
 use super::Address;
 use super::holder::holders;
 
-/// Why a board cannot be talked to.
+/// Errors of the link to a board.
 #[derive(Debug, Error)]
 pub enum LinkError {
     /// No such port, or it is in use.
@@ -30,10 +30,10 @@ pub enum LinkError {
     Silent {
         /// The address.
         address: Address,
-        /// How long it was asked.
+        /// The time for which it was asked.
         after: Duration,
     },
-    /// The other end has closed the socket before it said who it is.
+    /// The other end has closed the socket before it identified itself.
     #[error(
         "{address} is in use by another program: a board serves one at a time. If it is `haptic \
          scope`, press t there to tune, A to arm, d to disarm; or end it first"
@@ -45,14 +45,14 @@ pub enum LinkError {
     /// A board of another version.
     #[error(transparent)]
     Protocol(#[from] OtherProtocol),
-    /// The board answered before and does no longer.
+    /// The board has stopped answering.
     #[error("the board on {address} has not answered {what} within {} s", .after.as_secs_f64())]
     Unanswered {
         /// The address.
         address: Address,
         /// The request.
         what: &'static str,
-        /// How long was waited.
+        /// The time waited.
         after: Duration,
     },
     /// The port is gone.
@@ -90,7 +90,7 @@ fn why_silent(address: &Address) -> String {
     }
 }
 
-/// The ports that there are.
+/// The available ports.
 fn ports(address: &Address) -> String {
     if !matches!(address, Address::Serial { .. }) {
         return String::new();

@@ -1,4 +1,4 @@
-//! Who else has a serial port open.
+//! The other programs that have a serial port open.
 
 use std::path::Path;
 

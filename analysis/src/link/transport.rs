@@ -43,7 +43,7 @@ pub fn open(address: &Address) -> io::Result<Box<dyn Transport>> {
     Ok(match address {
         Address::Serial { port, baud } => {
             let port = serialport::new(port, *baud).timeout(TIMEOUT).open()?;
-            // What a probe has kept from before is not for us.
+            // Discards old bytes that the debug probe has buffered.
             port.clear(serialport::ClearBuffer::All)?;
             Box::new(port)
         }
@@ -65,7 +65,7 @@ fn connect(address: &str) -> io::Result<TcpStream> {
     for address in address.to_socket_addrs()? {
         match TcpStream::connect_timeout(&address, TIMEOUT) {
             Ok(stream) => {
-                // Messages are small, and each waits for the answer to the one before.
+                // Messages are small, and each waits for the answer to the previous one.
                 stream.set_nodelay(true)?;
                 stream.set_write_timeout(Some(TIMEOUT))?;
                 return Ok(stream);
@@ -76,7 +76,7 @@ fn connect(address: &str) -> io::Result<TcpStream> {
     Err(last)
 }
 
-/// Whether a read has only run out of time.
+/// Whether a read has only timed out.
 pub fn is_timeout(error: &io::Error) -> bool {
     matches!(
         error.kind(),

@@ -18,10 +18,10 @@ pub enum Action {
 
 /// The keys, as the last line of the view names them.
 pub const KEYS: &str = "q quits   t tunes   A arms   d disarms";
-/// And where a line is typed.
+/// The keys while a line is typed.
 pub const PROMPT_KEYS: &str = "Enter sends   Esc cancels";
 
-/// The line that is typed, and what came of the last one.
+/// The line that is typed, and the result of the last one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Control {
     /// The line so far, where one is typed.
@@ -59,7 +59,7 @@ impl Control {
         }
     }
 
-    /// A line that is not a change stays, to be mended.
+    /// An invalid line stays, to be corrected.
     fn edit(&mut self, mut line: String, key: KeyCode) -> Action {
         match key {
             KeyCode::Esc => return Action::None,

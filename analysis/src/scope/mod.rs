@@ -21,15 +21,15 @@ use self::sample::{Sample, Scale};
 /// The state of a board.
 #[derive(Clone, Debug)]
 pub struct Scope {
-    /// Where it is.
+    /// Its address.
     pub address: String,
     /// Its own description.
     pub connected: Option<ConnectedBoard>,
     /// Why there is no link now.
     pub lost: Option<String>,
-    /// How it was going when it was last asked, and the frames that could not be read here.
+    /// Its last status, and the frames that the host could not read.
     pub status: Option<(Status, Discarded)>,
-    /// The numbers that run.
+    /// The active parameters.
     pub parameters: Option<ActiveParameters>,
     /// The last seconds.
     pub history: History,
@@ -42,9 +42,9 @@ pub struct Scope {
 pub struct ConnectedBoard {
     /// Name of its program.
     pub program: String,
-    /// What its numbers mean.
+    /// The units of its numbers.
     pub board: BoardUnits,
-    /// What stopped it before it was last started.
+    /// The fault that stopped it before its last start.
     pub previous_fault: Option<PreviousFault>,
     scale: Scale,
 }

@@ -23,22 +23,22 @@ const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// A board's event.
 #[derive(Clone, Debug)]
 pub enum Event {
-    /// A board has said who it is.
+    /// A board has identified itself.
     Connected {
         /// Name of its program.
         program: String,
-        /// What its numbers mean.
+        /// The units of its numbers.
         board: BoardUnits,
-        /// What stopped it before it was last started.
+        /// The fault that stopped it before its last start.
         previous_fault: Option<PreviousFault>,
     },
     /// Ticks.
     Ticks(Vec<Frame>),
-    /// How it is going, and the frames that the host could not read.
+    /// Its status, and the frames that the host could not read.
     Status(Status, Discarded),
-    /// The numbers that run.
+    /// The active parameters.
     ActiveParameters(ActiveParameters),
-    /// What became of a request.
+    /// The result of a request.
     Reply(Request, Reply),
     /// The link is lost, and a new one is tried.
     Lost(String),
@@ -54,7 +54,7 @@ pub struct BoardPoller {
 }
 
 impl BoardPoller {
-    /// Asks the board behind this link for every so many ticks.
+    /// Requests one of `every` ticks from the board behind this link.
     pub fn start(link: Link, every: NonZeroU32) -> Self {
         let (events, receiver) = mpsc::channel();
         let (requests, inbox) = mpsc::channel();
@@ -64,9 +64,9 @@ impl BoardPoller {
         Self { events: receiver, requests, ended, thread: Some(thread) }
     }
 
-    /// Asks the board for something; what becomes of it is an event.
+    /// Sends a request to the board; its result is an event.
     pub fn request(&self, request: Request) {
-        // A thread that is gone has said why.
+        // A thread that has ended has reported why.
         let _ = self.requests.send(request);
     }
 
@@ -98,7 +98,7 @@ struct PollerThread {
 struct PendingRequest {
     id: Id,
     request: Request,
-    /// When it is asked again.
+    /// When it is sent again.
     again: Instant,
     /// When it counts as unanswered.
     end: Instant,
@@ -243,8 +243,8 @@ impl PollerThread {
         Ok(())
     }
 
-    /// Passes on a request; one at a time, but that disarming waits for nothing. Asks again, since
-    /// bytes get lost.
+    /// Passes on a request; one at a time, except that disarming does not wait. Repeats it, since bytes get
+    /// lost.
     fn ask(&self, link: &mut Link, pending: &mut Option<PendingRequest>) -> Result<(), PollEnd> {
         let now = Instant::now();
         while let Ok(request) = self.requests.try_recv() {

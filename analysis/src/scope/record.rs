@@ -12,7 +12,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Writes there.
+    /// Writes to this stream.
     pub fn new(to: Box<dyn Write>) -> Self {
         Self { rows: BufWriter::new(to), count: 0 }
     }
@@ -29,7 +29,7 @@ impl Recorder {
         writeln!(self.rows, "{}", Row::from(sample))
     }
 
-    /// Has everything written that was added.
+    /// Writes everything that was added.
     ///
     /// # Errors
     /// Where it cannot be written.
@@ -53,7 +53,7 @@ mod tests {
     use super::super::sample::Scale;
     use super::*;
 
-    /// The rows of a library for such tables, to the letter.
+    /// The rows equal those of a CSV library, byte for byte.
     #[test]
     fn rows_are_those_of_the_library_for_csv() {
         let board = BoardUnits {

@@ -90,7 +90,7 @@ fn heading(scope: &Scope, width: usize) -> Vec<Line<'static>> {
     vec![Line::from(first), trouble(scope)]
 }
 
-/// The worst that there is to say.
+/// The most serious problem.
 fn trouble(scope: &Scope) -> Line<'static> {
     if let Some(why) = &scope.lost {
         return Line::from(format!("{why}; connecting again")).red();
@@ -151,7 +151,7 @@ fn draw_curve(
     frame.render_widget(chart, area);
 }
 
-/// A range with some height, also of a curve that has none.
+/// A range with a height above zero, also for a flat curve.
 fn range((low, high): (f64, f64)) -> (f64, f64) {
     let height = (high - low).max(1e-6 * low.abs().max(high.abs()).max(1.0));
     let middle = 0.5 * (low + high);

@@ -1,4 +1,4 @@
-//! Who may have the page, and the wire.
+//! Access to the page and to the wire.
 
 use std::fmt;
 use std::hint::black_box;
@@ -15,17 +15,17 @@ const BYTES: usize = 16;
 pub struct Token(String);
 
 impl Token {
-    /// A new one, of the system's random numbers.
+    /// A new token, from the system's random numbers.
     ///
     /// # Errors
-    /// Where it has none.
+    /// Where the system has none.
     pub fn random() -> Result<Self, getrandom::Error> {
         let mut bytes = [0; BYTES];
         getrandom::fill(&mut bytes)?;
         Ok(Self(bytes.iter().map(|byte| format!("{byte:02x}")).collect()))
     }
 
-    /// Whether it is this one, in a time that does not tell how much of it is right.
+    /// Whether it equals this token, in a time that does not depend on how much of it is right.
     fn is(&self, given: &str) -> bool {
         let (ours, given) = (self.0.as_bytes(), given.as_bytes());
         let differences = ours.iter().zip(given).fold(0, |all, (a, b)| black_box(all | (a ^ b)));
@@ -39,10 +39,10 @@ impl fmt::Display for Token {
     }
 }
 
-/// What a request must show.
+/// The requirements on a request.
 pub struct Access {
     token: Token,
-    /// The names under which this machine is asked for.
+    /// The host names of this server.
     hosts: Vec<String>,
 }
 
@@ -53,7 +53,7 @@ impl Access {
         Self { token, hosts }
     }
 
-    /// That this machine was asked for by its own address: a name of someone else may point here.
+    /// Checks that the request names this machine by its own address: a foreign name may point here.
     ///
     /// # Errors
     /// The answer.
@@ -66,7 +66,7 @@ impl Access {
         Err(PageRefusal::Host { host, own }.into())
     }
 
-    /// That the page that asks, where it is a page, is this server's or one from a file.
+    /// Checks that the requesting page, if it is a page, is of this server or from a file.
     ///
     /// # Errors
     /// The answer.
@@ -77,10 +77,10 @@ impl Access {
                 .is_some_and(|host| self.hosts.iter().any(|own| own.eq_ignore_ascii_case(host)))
         };
         match head.header("origin")? {
-            // A browser says so of a page from a file.
+            // The origin that browsers send for a page from a file.
             Some("null") => Ok(()),
             Some(origin) if is_own(origin) => Ok(()),
-            // A browser names the page that opens a socket, always.
+            // A browser always sends the origin of a page that opens a socket.
             None if head.path() != "/wire" => Ok(()),
             origin => {
                 let origin = origin.unwrap_or("nobody").to_owned();
@@ -89,7 +89,7 @@ impl Access {
         }
     }
 
-    /// Checks that the client knows the token.
+    /// Checks that the client has sent the token.
     ///
     /// # Errors
     /// The answer.

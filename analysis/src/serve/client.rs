@@ -1,5 +1,5 @@
-//! The socket of a page: the wire's bytes as they are in binary messages, and what happens to the port in
-//! texts, as JSON: `{"port": "open"}`, and `{"port": "lost", "why": ..}`.
+//! The socket of a page: the wire's bytes, unchanged, in binary messages, and the state of the port in text
+//! messages, as JSON: `{"port": "open"}`, and `{"port": "lost", "why": ..}`.
 
 use std::net::TcpStream;
 use std::sync::atomic::Ordering;
@@ -21,17 +21,17 @@ use crate::link::is_timeout;
 
 /// Longest time that bytes to a page wait.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
-/// Longest message of a page, in bytes: more than what a page says at a time.
+/// Longest message of a page, in bytes: more than a page sends at a time.
 const LONGEST: usize = 4096;
 /// Most bytes that wait in the socket of a page; with more of them it is too slow.
 const WAITING: usize = 1 << 20;
 /// Time after which a second page is refused. Until then the first may turn out to have left: a page that is
-/// loaded again.
+/// reloaded.
 const QUEUE_TIMEOUT: Duration = Duration::from_millis(500);
-/// Time in which a page that is refused may say that it has understood.
+/// Time in which a refused page may confirm that the socket is closed.
 const GOODBYE: Duration = Duration::from_secs(1);
 
-/// That a socket is asked for, as browsers do; the key that they are answered with.
+/// Checks that the request is an upgrade to a WebSocket; returns the key for the response.
 pub fn check_upgrade(head: &Head) -> Result<String, HttpResponse> {
     let has = |name, word: &str| {
         let value = head.header(name)?.unwrap_or_default();
@@ -128,7 +128,7 @@ impl Page<'_, '_> {
                 waiting = self.seat.send(bytes).err();
             }
             if waiting.is_some() {
-                // A page that says more than the port takes is read no faster.
+                // A page that sends more than the port takes is read at the port's rate.
                 thread::sleep(POLL_INTERVAL);
                 continue;
             }
@@ -177,7 +177,7 @@ impl Page<'_, '_> {
     }
 }
 
-/// Closes a socket, and waits a little for the page to have read why.
+/// Closes a socket, and waits a little until the page has read the reason.
 fn close(socket: &mut WebSocket<&TcpStream>, frame: &CloseFrame) {
     if socket.close(Some(frame.clone())).is_err() {
         return;

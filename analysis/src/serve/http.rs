@@ -1,4 +1,4 @@
-//! Requests and answers of HTTP, as few as a page and its socket take: one a connection.
+//! Requests and responses of HTTP, only as far as a page and its socket need them: one per connection.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -13,7 +13,7 @@ const LONGEST: usize = 16_384;
 const HEADERS: usize = 100;
 /// Longest time that a request or its answer may take.
 pub const TIMEOUT: Duration = Duration::from_secs(5);
-/// Longest time between two looks at whether it is over.
+/// Longest time between two checks whether the server ends.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// The head of a request.
@@ -23,12 +23,12 @@ pub struct Head {
     pub method: String,
     target: String,
     headers: Vec<(String, String)>,
-    /// Bytes that came behind it.
+    /// Bytes that were received behind it.
     pub rest: Vec<u8>,
 }
 
 impl Head {
-    /// Reads one.
+    /// Reads a head.
     ///
     /// # Errors
     /// The response to a malformed request.
@@ -58,7 +58,7 @@ impl Head {
         }
     }
 
-    /// The head that these bytes begin with; `None` where it goes on.
+    /// The head at the beginning of these bytes; `None` if it is incomplete.
     fn parse(bytes: &[u8]) -> Result<Option<Self>, HttpResponse> {
         let mut headers = [httparse::EMPTY_HEADER; HEADERS];
         let mut request = httparse::Request::new(&mut headers);
@@ -86,7 +86,7 @@ impl Head {
         self.target.split('?').next().unwrap_or_default()
     }
 
-    /// A value behind the question mark.
+    /// The value of a query parameter.
     pub fn query(&self, name: &str) -> Option<&str> {
         let (_, query) = self.target.split_once('?')?;
         let mut each = query.split('&').filter_map(|pair| pair.split_once('='));
@@ -96,7 +96,7 @@ impl Head {
     /// A header by its name in small letters.
     ///
     /// # Errors
-    /// The answer where it is there twice: one reader may take the first, and another one the last.
+    /// The response if it occurs twice: one reader may take the first, and another one the last.
     pub fn header(&self, name: &str) -> Result<Option<&str>, HttpResponse> {
         let mut all = self.headers.iter().filter(|(given, _)| given == name);
         match (all.next(), all.next()) {
@@ -118,7 +118,7 @@ pub struct HttpResponse {
 }
 
 impl HttpResponse {
-    /// A sentence.
+    /// A refusal, as a sentence.
     pub fn refusal(status: u16, sentence: String) -> Self {
         let (headers, kind) = (Vec::new(), "text/plain; charset=utf-8");
         Self { status, headers, kind, body: sentence + "\n" }
@@ -131,7 +131,7 @@ impl HttpResponse {
         Self { status: 200, headers, kind, body: page.to_owned() }
     }
 
-    /// Nothing.
+    /// An empty response.
     pub fn nothing() -> Self {
         let kind = "text/plain; charset=utf-8";
         Self { status: 204, headers: Vec::new(), kind, body: String::new() }
@@ -164,7 +164,7 @@ impl HttpResponse {
     }
 }
 
-/// Reads what still comes, for a while.
+/// Reads the remaining bytes, for a while.
 fn drain(mut stream: &TcpStream) {
     let (end, mut chunk) = (Instant::now() + 4 * POLL_INTERVAL, [0; 4096]);
     if stream.set_read_timeout(Some(POLL_INTERVAL)).is_err() {

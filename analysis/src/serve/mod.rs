@@ -31,13 +31,13 @@ use self::shared::Shared;
 
 /// Connections at a time: a page takes two, and a browser opens some in advance.
 const CONNECTIONS: usize = 16;
-/// Longest time between two looks at whether it is over.
+/// Longest time between two checks whether the server ends.
 const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
 /// Why there is no server.
 #[derive(Debug, Error)]
 pub enum ServeError {
-    /// Others would reach the motor.
+    /// Other machines could reach the motor.
     #[error(
         "--listen {address} can be reached from other machines, and who reaches it can arm a motor: name an \
          address of this machine alone, such as 127.0.0.1:0; for another machine, forward the port with \
@@ -55,7 +55,7 @@ pub enum ServeError {
         /// Why.
         source: io::Error,
     },
-    /// There is no secret.
+    /// The token could not be created.
     #[error("the system has no random numbers: {0}")]
     Random(#[from] getrandom::Error),
 }
@@ -69,7 +69,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// That an address is of this machine alone.
+    /// Checks that an address is of this machine alone.
     ///
     /// # Errors
     /// Where it is not.
@@ -114,7 +114,7 @@ impl Server {
         Ok(Self { address, token, over, threads })
     }
 
-    /// Where it listens.
+    /// The address at which it listens.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
@@ -140,7 +140,7 @@ impl Drop for Server {
     }
 }
 
-/// Takes connections until it is over, and waits for those that there are.
+/// Accepts connections until the server ends, and waits for the open ones.
 fn listen_at(listener: &TcpListener, shared: &Arc<Shared>) {
     let mut threads: Vec<JoinHandle<()>> = Vec::new();
     while !shared.over.load(Ordering::Relaxed) {
@@ -199,11 +199,11 @@ fn serve(stream: &TcpStream, shared: &Shared) {
 enum Route {
     /// The page.
     Page,
-    /// The picture that browsers ask every server for.
+    /// The icon that browsers request from every server.
     Nothing,
     /// The wire.
     Wire {
-        /// What the page's browser shall see in the answer.
+        /// The key that the page's browser expects in the response.
         key: String,
     },
 }

@@ -1,4 +1,4 @@
-//! The port of a board, read all the time, and the one page that has it.
+//! The port of a board, which is always read, and the page that has it.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -38,7 +38,7 @@ pub enum News {
     Open,
 }
 
-/// Who has the port: one page at a time.
+/// The right to use the port: one page at a time.
 #[derive(Clone)]
 pub struct Seats {
     shared: Arc<Mutex<State>>,
@@ -61,7 +61,7 @@ pub struct Seat {
     news: Receiver<News>,
 }
 
-/// Seats, and what those who have one say to the board.
+/// Seats, and the bytes from their pages to the board.
 pub fn seats() -> (Seats, Receiver<Vec<u8>>) {
     let (to_board, wire) = sync_channel(MESSAGES);
     let shared = Arc::new(Mutex::new(State { client: None, taken: 0, lost: None }));
@@ -97,16 +97,16 @@ impl Seats {
     }
 
     fn with<T>(&self, of: impl FnOnce(&mut State) -> T) -> T {
-        // Nothing that is done with it is done by halves.
+        // The state is valid after a panic, too: every change of it is complete.
         of(&mut self.shared.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
 impl Seat {
-    /// The next new bytes; `Disconnected` where the page has lost the port.
+    /// The next news; `Disconnected` where the page has lost the port.
     ///
     /// # Errors
-    /// Where nothing is.
+    /// Where nothing is new.
     pub fn news(&self) -> Result<News, TryRecvError> {
         self.news.try_recv()
     }
@@ -118,7 +118,7 @@ impl Seat {
     pub fn send(&self, bytes: Vec<u8>) -> Result<(), Vec<u8>> {
         match self.seats.to_board.try_send(bytes) {
             Err(TrySendError::Full(bytes)) => Err(bytes),
-            // Without the port's thread it is over.
+            // Without the port's thread the server ends.
             Ok(()) | Err(TrySendError::Disconnected(_)) => Ok(()),
         }
     }
@@ -184,7 +184,7 @@ impl Port {
     }
 }
 
-/// Waits before the next try. What a page says meanwhile is lost, as on a line without a board.
+/// Waits before the next try. Bytes that a page sends meanwhile are lost, as on a line without a board.
 fn wait(wire: &Receiver<Vec<u8>>, over: &AtomicBool) {
     let end = Instant::now() + RETRY;
     while !over.load(Ordering::Relaxed) && Instant::now() < end {

@@ -1,4 +1,4 @@
-//! What all threads of a server share.
+//! The state that all threads of a server share.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize};
@@ -7,7 +7,7 @@ use super::access::Access;
 use super::port::Seats;
 use super::report::Report;
 
-/// What every connection needs.
+/// The data for every connection.
 pub(super) struct Shared {
     pub access: Access,
     pub page: String,

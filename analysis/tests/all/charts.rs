@@ -109,7 +109,7 @@ fn the_numbers_of_every_picture_are_a_table() {
         assert!(table.starts_with(header), "{arguments:?}: {}", &table[..100]);
         assert!(table.lines().count() > rows, "{arguments:?}: {}", table.lines().count());
     }
-    // What a trace has written, a trace draws.
+    // A trace draws the table that a trace has written.
     let trace = chart(folder.path(), &["trace", "moving.toml", "-o", "trace.csv"]);
     assert_eq!(trace.status.code(), Some(0), "{trace:?}");
     assert!(svg(folder.path(), &["trace", "trace.csv"]).contains("torque limit"));
@@ -238,7 +238,7 @@ fn a_trace_names_the_reasons_that_occur_and_no_others() {
         assert_eq!(reasons.map(|reason| svg.contains(reason)), named, "{arguments:?}");
         assert!(svg.contains(other), "{arguments:?}: {other}");
     }
-    // What the program writes it also draws.
+    // The program also draws the table that it writes.
     let simulated = program(&["simulate", "missing.toml", "--csv"])
         .current_dir(folder.path())
         .output()
@@ -265,8 +265,8 @@ fn a_line_that_a_trace_does_not_show_is_not_in_its_key() {
     assert!(page.contains("torque limit 0.1 N m is outside of the picture"));
 }
 
-/// Numbers that a file may have and no machine has: a picture, or a sentence that names the number out of
-/// range; never a computation without end.
+/// Numbers that a file may have and no machine has give a picture, or a sentence that names the number out of
+/// range; never an endless computation.
 #[test]
 fn extreme_numbers_come_to_an_end() {
     let folder = folder();

@@ -1,4 +1,4 @@
-//! The programs' servos around the simulated device: what a hand feels.
+//! The programs' servos around the simulated device: the torque that a hand feels.
 
 use analysis::compare_run::{Input, RunOutcome, run_with_backend};
 use analysis::program::{ALL, Program};

@@ -132,7 +132,7 @@ fn the_verdict_adds_the_parts() {
     refused(&format!("{DETENTS}{WALL}"), "a torque profile with end stops");
 }
 
-/// Nothing panics, and where there is no answer, the sentence says why.
+/// Nothing panics, and if there is no answer, the sentence gives the reason.
 #[test]
 fn every_command_answers_or_says_why_not() {
     let folder = tempfile::tempdir().unwrap();

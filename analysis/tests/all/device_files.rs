@@ -235,7 +235,7 @@ fn a_measured_device_is_identified_and_its_table_is_a_device_file() {
     std::fs::write(&table, lines.map(|line| format!("{line}\n")).collect::<String>()).unwrap();
     let device = answer(&haptic(&["device", "--json", &table], ""));
     assert!((device["delta"].as_f64().unwrap() - 0.5).abs() < 0.01, "{device}");
-    // A row that is spoilt is named, and so is an option.
+    // An invalid row is named, and an invalid option is refused.
     let text = std::fs::read_to_string(&csv).unwrap().replacen("0.006000,", "six,", 1);
     std::fs::write(&csv, text).unwrap();
     let message = complaint(haptic(&arguments[..4], ""));

@@ -106,7 +106,7 @@ fn coefficients_are_judged_as_a_format_rounds_them() {
     refused(&strong, "i1f31", &["limits.torque", "1.5", "Q1.31"]);
 }
 
-/// What the machine is besides decides whether it comes to rest; what fails is a warning.
+/// Other properties of the machine decide whether it comes to rest; a failed check is a warning.
 #[test]
 fn steps_are_held_against_friction() {
     let judge = |friction: &str, limits: &str| {
@@ -136,7 +136,7 @@ fn steps_are_held_against_friction() {
     assert!(some["rest"]["comes_to_rest"].is_null());
     let assumptions = some["assumptions"].to_string();
     assert!(assumptions.contains("the step of the DAC is not stated"), "{assumptions}");
-    // There is none, so that nothing is missing.
+    // There is no current loop, so that no number of it is missing.
     assert!(!assumptions.contains("current loop"), "{assumptions}");
     let strong = judge("", "torque = 3.0\nfull_scale = 2.0");
     assert!(strong["warnings"][0].as_str().unwrap().contains("full scale of 2 N m"));
@@ -208,7 +208,8 @@ fn phased_wall(output_delay: &str) -> String {
     .replace('\n', " ")
 }
 
-/// A board has a phase where the scene has an output delay; and where that is no board's, it says why.
+/// A board has a phase where the scene has an output delay; if no board can have that delay, the answer gives
+/// the reason.
 #[test]
 fn a_scene_with_an_output_delay_is_judged_as_on_a_board_with_that_phase() {
     for (delay, why) in [
@@ -223,7 +224,7 @@ fn a_scene_with_an_output_delay_is_judged_as_on_a_board_with_that_phase() {
         let board = answer["board"].as_str();
         assert_eq!(board.is_some(), why.is_some(), "{delay}: {board:?}");
         assert!(why.is_none_or(|why| board.unwrap().contains(why)), "{delay}: {board:?}");
-        // No loss of damping is known to be allowed, which is no result.
+        // No allowed loss of damping is known, and the message names none.
         assert_eq!(answer["margin"], 0.0, "{delay}");
         assert!(!answer["message"].as_str().unwrap().contains("may lose"), "{answer}");
         let output = haptic(&["certify", "-"], phased_wall(delay).as_bytes());
@@ -233,7 +234,8 @@ fn a_scene_with_an_output_delay_is_judged_as_on_a_board_with_that_phase() {
     }
 }
 
-/// A board that latches its torques reads counts late, too, which a scene with a lag states as its jitter.
+/// A board that latches its torques reads counts late, too, which a scene with a lag has to state as its
+/// jitter.
 #[test]
 fn a_latched_scene_with_a_lag_is_for_boards_with_its_jitter() {
     let latched = phased_wall("0").replace("\"delay\": 0", "\"delay\": 1");
@@ -446,19 +448,19 @@ fn advice_names_the_cheapest_format_and_why_not_the_others() {
     assert!((answer["coupling_stiffness"].as_f64().unwrap() - 88.0).abs() < 1e-6);
     let coarse = format(answer, "i16f16")["rejected"].to_string();
     assert!(coarse.contains("limit cycle") && coarse.contains("is above 0.0005 N m"), "{coarse}");
-    // What f32 rounds away a rad off zero is too much for this, and 31 bits are not.
+    // The rounding error of f32 at 1 rad is too large for this bound, that of 31 bits is not.
     let output = advise(&["--hum", "0.0005", "--error", "2e-6"]);
     let answer = &lines(&output)[0];
     assert_eq!(answer["format"], "i1f31-truncated", "{answer}");
     assert!(answer["message"].as_str().unwrap().contains("angles in 4 rad"), "{answer}");
     assert!(format(answer, "f32")["rejected"].to_string().contains("error"), "{answer}");
-    // A core that has hardly any time has time for none but the cheapest.
+    // With a very small share of the core, most formats take too much time.
     let output = advise(&["--hum", "1e-9", "--share", "0.001"]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let answer = &lines(&output)[0];
     assert!(answer["format"].is_null());
     assert!(format(answer, "f64")["rejected"].to_string().contains("share of the core"));
-    // An encoder that is too coarse is no format's fault, and the answer is no all the same.
+    // A too coarse encoder is not the fault of a format, but the answer is still no.
     let output = advise(&["--hum", "0.0005", "--counts-per-rev", "1000"]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let answer = &lines(&output)[0];
@@ -579,7 +581,7 @@ fn friction_of_the_device_ends_a_hum() {
     let message = answer["message"].as_str().unwrap();
     assert!(message.starts_with("no:") && message.contains("friction of 0.0457"), "{message}");
     assert!(message.contains("N m is lower"), "{message}");
-    // A program's scene does not say: 924 N m/rad times half of its count are 0.0473 N m.
+    // A program's scene does not state its friction: 924 N m/rad times half of its count are 0.0473 N m.
     let program = |friction: &str| {
         let question = ["advise", "damper_wall", "--hum", "0.001", "--rate", "1000"];
         haptic(&[&question[..], &["--friction", friction]].concat(), b"").status.code()
@@ -601,7 +603,7 @@ fn a_run_of_no_ticks_is_refused_with_its_bounds() {
     }
 }
 
-/// Of the board that is flashed, and not of the smallest.
+/// The size is that of the flashed board, and not of the smallest.
 #[test]
 fn flash_says_how_much_the_board_has() {
     for (board, sentence) in [

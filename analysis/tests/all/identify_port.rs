@@ -1,5 +1,5 @@
-//! `haptic identify --port`: a board that plays a sweep is a thread behind a socket, which says what
-//! the program on a board says, around a simulated device.
+//! `haptic identify --port`: a board that plays a sweep is a thread behind a socket, which sends the same
+//! lines as the program on a board, around a simulated device.
 
 use std::io::{Read, Write};
 use std::os::unix::net::{UnixListener, UnixStream};
@@ -25,9 +25,9 @@ struct Board {
     clips_at: Option<f64>,
     /// Where the sweep ends, and why.
     ends: Option<(u64, SweepEnd)>,
-    /// Where it falls silent for good.
+    /// Where it falls silent permanently.
     dies_at: Option<u64>,
-    /// Says nothing at all, or something else.
+    /// Text that it sends in place of the description.
     says: Option<&'static str>,
 }
 
@@ -100,7 +100,7 @@ impl Board {
         host.write_all(text.as_bytes())
     }
 
-    /// Runs `haptic identify --port` on it; gives what it answers, and its record.
+    /// Runs `haptic identify --port` on it; returns its output, and its record.
     fn identify(self, arguments: &[&str]) -> (Output, Option<String>) {
         let folder = TempDir::new().unwrap();
         let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
@@ -114,7 +114,7 @@ impl Board {
         (output, std::fs::read_to_string(record).ok())
     }
 
-    /// The sentence with which that ends.
+    /// The sentence with which that ends, and the record.
     fn complaint(self) -> (String, Option<String>) {
         let (output, record) = self.identify(&[]);
         assert_eq!(output.status.code(), Some(2), "{output:?}");

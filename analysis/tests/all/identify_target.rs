@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::common::haptic;
 use serde_json::Value;
 
-/// What the scenes' programs are certified for.
+/// The device that the scenes' programs are certified for.
 const DAMPING: f64 = 0.022;
 const INERTIA: f64 = 2.2e-5;
 const TICKS: u64 = 52_500;
@@ -87,7 +87,7 @@ fn ten_microseconds_of_skew_are_reported_as_the_bias_that_they_are() {
     let bias = DAMPING * (omega * 1e-5).cos() - INERTIA * omega * (omega * 1e-5).sin() - DAMPING;
     assert!((number(&found, "/bias") - bias).abs() < 0.1 * bias.abs(), "{}", found["bias"]);
     assert!(found["notes"][0].as_str().unwrap().contains("us late against the torque"));
-    // A declared delay is not an error.
+    // A declared delay is not a skew.
     let declared = answer(&[&skewed[..], &["--count-delay", "1e-5"]].concat());
     assert_eq!(declared["skew_significant"], false);
     assert!(declared["notes"].as_array().unwrap().is_empty(), "{declared}");

@@ -109,7 +109,7 @@ fn a_mode_that_there_is_not_is_refused_by_name_value_and_bound() {
     assert!(said.contains("no stiffness; it has coupling.stiffness, torque_limit, mode"), "{said}");
 }
 
-/// The host has no table of another mode: it says so, and what to do.
+/// The host has no table of another mode: the message states this, and what to do.
 #[test]
 fn another_mode_is_refused_with_numbers_that_it_is_not_certified_with() {
     let of = |mode: f64, stiffness: f64| Scene {
@@ -140,9 +140,9 @@ fn another_mode_is_refused_with_numbers_that_it_is_not_certified_with() {
         assert!(said.starts_with("mode 8 is not certified with the other numbers"), "{said}");
         assert!(said.contains("the board alone has its table"), "{said}");
     }
-    // With the numbers of the program every mode can be had again.
+    // With the numbers of the program every mode can be selected again.
     assert_eq!(rig.tune(&["coupling.stiffness=44"]).status.code(), Some(0));
-    // What has nothing to do with the mode has its own reason.
+    // A refusal that does not depend on the mode has its own reason.
     for mode in ["mode=0", "mode=1"] {
         for (change, part) in [
             ("torque_limit=5", "above the DAC's full scale"),

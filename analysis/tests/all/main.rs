@@ -1,6 +1,6 @@
-//! The tests of the program `haptic` and of what it is made of, in one program: it links once, and while
-//! some of them wait for a compiler or an emulator others compute. `cargo test -p analysis --test all NAME::`
-//! runs those of one file.
+//! The tests of the program `haptic` and of its library, in one program: it links once, and while some of
+//! them wait for a compiler or an emulator others compute. `cargo test -p analysis --test all NAME::` runs
+//! those of one file.
 
 mod charts;
 mod closed_loop;

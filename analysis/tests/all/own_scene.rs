@@ -19,7 +19,7 @@ impl Scene {
     }
 
     fn begin() -> Self {
-        // A test that was killed has left it.
+        // A killed test may have left it.
         let _ = fs::remove_file(Self::file());
         let begun = haptic(&["new", NAME]);
         assert!(begun.status.success(), "{begun:?}");
@@ -50,7 +50,7 @@ fn a_new_file_is_all_that_the_commands_need() {
     let again = complaint(haptic(&["new", NAME]));
     assert!(again.contains("exists already"), "{again}");
 
-    // The copy is what it was copied from, tick by tick.
+    // The copy equals its original, tick by tick.
     let copied = |name| haptic(&["run", name, "--csv", "--ticks", "1000"]);
     let (copy, original) = (copied(NAME), copied("damper_wall"));
     assert!(copy.status.success(), "{}", String::from_utf8_lossy(&copy.stderr));

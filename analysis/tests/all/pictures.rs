@@ -1,5 +1,5 @@
-//! The pictures of the documents are what the commands of the charts' guide draw. With
-//! `PICTURES=overwrite` they become it.
+//! The pictures of the documents equal the output of the commands of the charts' guide. With
+//! `PICTURES=overwrite` they are replaced by it.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -58,11 +58,11 @@ fn the_pictures_of_the_documents_are_what_commands_draw() {
         );
         drawn.push(kept);
     }
-    // Nothing is shown or kept that no command draws.
+    // Every picture that is shown or kept is drawn by a command.
     for document in DOCUMENTS {
         let text = read(root().join(document));
         let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
-        // All are below the repository, one folder deep or none.
+        // All are in the repository's root or one folder deep.
         let shown = links.map(|link| link.strip_prefix("../").unwrap_or(link));
         let of_tables = |link: &&str| link.starts_with(TABLES);
         for picture in shown.filter(|link| link.ends_with(".svg") && !of_tables(link)) {
@@ -77,7 +77,7 @@ fn the_pictures_of_the_documents_are_what_commands_draw() {
     }
 }
 
-/// The documents say of them that they are certified.
+/// The documents state that they are certified.
 #[test]
 fn the_scenes_of_the_pictures_are_certified() {
     for name in ["wall.toml", "push.toml", "detents.toml", "snap.toml"] {

@@ -44,7 +44,7 @@ fn shapes_add_up_to_one_table() {
     let knob = profile(&format!("damping = 1e-4\n{DETENTS}{stops}"));
     assert_eq!(knob.ends, Some(Ends { from: -2.0, to: 2.0, stiffness: 15.0 }));
     assert_eq!((knob.count, knob.damping, knob.outline().wraps), (24.0, 1e-4, true));
-    // In front of what the shapes say stands what the environment says.
+    // The keys of the environment override those of the shapes.
     let keys = format!("torque = 0.02\ncount = 30\ncentre = 0.1\nto = 1.5\n{DETENTS}{stops}");
     let changed = profile(&keys);
     assert_eq!((changed.torque, changed.count, changed.centre), (0.02, 30.0, 0.1));
@@ -401,7 +401,7 @@ fn a_design_says_the_most_torque_the_most_detents_and_the_longest_period() {
     assert_eq!(none.status.code(), Some(2), "{none:?}");
 }
 
-/// A type of scene of which no board has counted the instructions is named so.
+/// A type of scene whose instructions no board has counted is reported as such.
 #[test]
 fn advice_about_a_profile_has_no_infinite_numbers() {
     let stops = shape("end_stops", "from = -2\nto = 2\nstiffness = 15");
@@ -419,7 +419,7 @@ fn advice_about_a_profile_has_no_infinite_numbers() {
     }
 }
 
-/// Nothing panics, and where there is no answer, the sentence says why.
+/// Nothing panics, and if there is no answer, the sentence gives the reason.
 #[test]
 fn every_command_answers_or_says_why_not() {
     let folder = tempfile::tempdir().unwrap();
@@ -484,7 +484,7 @@ fn every_command_answers_or_says_why_not() {
     for word in ["repetitions in a turn", "torque (N m)", "delay of 2", "the scene"] {
         assert!(map.contains(word), "{word}");
     }
-    // A wall has none of this.
+    // A wall has no profile.
     let wall = folder.path().join("wall.toml");
     std::fs::write(&wall, crate::common::WALL).unwrap();
     let drawn = program(&["chart", "profile"]).arg(&wall).args(["-o", "x.svg"]).output().unwrap();
@@ -494,7 +494,7 @@ fn every_command_answers_or_says_why_not() {
     assert_eq!(count.status.code(), Some(2));
 }
 
-/// Without a coupling nothing linear is said of a profile beside a lag, and what would help.
+/// Without a coupling there is no linear bound for a profile beside a lag; the message names the remedy.
 #[test]
 fn a_profile_without_a_bound_is_undecided_by_every_rule() {
     let lagging = text(DETENTS)

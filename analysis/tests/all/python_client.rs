@@ -38,7 +38,7 @@ fn python(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// What a few lines of Python print of their arguments.
+/// The output of a few lines of Python with these arguments.
 fn printed(code: &str, arguments: &[String]) -> Value {
     let arguments = arguments.iter().map(String::as_str);
     let output = python(&["-c", code].into_iter().chain(arguments).collect::<Vec<_>>());

@@ -1,4 +1,4 @@
-//! What the README and the guides show is what the program prints, and what the repository holds.
+//! The README and the guides show the output of the program, and the contents of the repository.
 
 use std::path::Path;
 
@@ -111,7 +111,7 @@ fn what_is_flashed_does_on_a_virtual_board_what_the_guide_shows() {
     assert_eq!(without_instructions(&printed), without_instructions(shown));
 }
 
-/// What the program says of a command, as far as its words name one.
+/// The help of the command that the first of these words name.
 fn help(words: &str) -> String {
     let (mut path, mut said) = (Vec::new(), None);
     for word in words.split_whitespace() {
@@ -147,7 +147,7 @@ fn commands_and_options_that_documents_name_are_there() {
                 continue;
             };
             let words = after.split(['`', '#', '>']).next().unwrap();
-            // `haptic` alone, or a word in place of which any command stands.
+            // `haptic` alone, or a placeholder for any command.
             if !words.starts_with(|c: char| c.is_ascii_lowercase()) {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! The report as a file; what its reader sees of it is looked at in `tests/browser`.
+//! The report as a file; its appearance is tested in `tests/browser`.
 
 use crate::common::{MOTION, WALL, complaint, haptic, report};
 

@@ -32,7 +32,7 @@ fn json(text: &str) -> Result<SceneFile, FileError> {
     file::parse("scene.json", Format::Json, text)
 }
 
-/// The wall with one line replaced; what comes out must start with the file and the line.
+/// The wall with one line replaced; the message must start with the file and the line.
 fn refused(line: &str, replacement: &str, place: &str, words: &[&str]) {
     let text = WALL.replacen(line, replacement, 1);
     assert_ne!(text, WALL, "{line} is not in the file");
@@ -345,15 +345,14 @@ fn polynomials_are_bounded() {
     assert!(with("[1, \"a\"]", "[1]", 0).unwrap_err().contains("numerator[1]"));
     assert!(with("[1, 1e999]", "[1]", 0).unwrap_err().contains("numerator[1]"));
     assert!(with("[1,2]", "[1]", 8).unwrap_err().contains("unit_zeros"));
-    // Zeros at a denominator's end are delay, of which there are eight samples.
+    // Zeros at a denominator's end are delay, of at most eight samples.
     assert_eq!(with("[1]", "[1,2,3,4,5,6,7,8,9,0,0,0,0,0,0,0,0]", 0), Ok(()));
     for denominator in ["[1,2,3,4,5,6,7,8,9,0,0,0,0,0,0,0,0,0]", "[1,2,3,4,5,6,7,8,9,10]"] {
         assert!(with("[1]", denominator, 0).unwrap_err().contains("zeros at its end are delay"));
     }
 }
 
-/// Degree six with five samples of delay, in the denominator and beside it: the same to everybody who
-/// looks at it.
+/// Degree six with five samples of delay, in the denominator and beside it: all results are the same.
 #[test]
 fn delay_in_a_denominator_is_delay() {
     let with = |denominator: &str, delay: u32| {

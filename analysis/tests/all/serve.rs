@@ -21,11 +21,11 @@ use crate::wire::Rig;
 type Socket = WebSocket<MaybeTlsStream<TcpStream>>;
 
 const PAGE: &str = "<!DOCTYPE html><title>the page</title>";
-/// Longest that anything may take, on a slow machine.
+/// Timeout of all operations, on a slow machine.
 const TIMEOUT: Duration = Duration::from_secs(60);
-/// Of a second page.
+/// Close code of a second page.
 const IN_USE: u16 = 4000;
-/// Of a page that does not read.
+/// Close code of a page that does not read.
 const TOO_SLOW: u16 = 4001;
 
 fn loopback() -> SocketAddr {
@@ -87,7 +87,7 @@ fn text(socket: &mut Socket) -> Value {
     }
 }
 
-/// So many bytes of the board.
+/// This many bytes of the board.
 fn bytes(socket: &mut Socket, count: usize) -> Vec<u8> {
     let mut bytes = Vec::new();
     while bytes.len() < count {
@@ -191,7 +191,7 @@ fn what_is_no_request_is_answered() {
         let answer = raw(&board.server, request);
         assert!(answer.starts_with(&format!("HTTP/1.1 {status} ")), "{answer}");
     }
-    // And goes on.
+    // The server goes on.
     connect(&board.server);
 }
 
@@ -334,7 +334,7 @@ fn a_page_that_does_not_read_does_not_stop_the_port() {
         match slow.read() {
             Ok(Message::Close(frame)) => break frame.map(|frame| u16::from(frame.code)),
             Ok(_) => {}
-            // What it was sent was cut off in the middle.
+            // Its message was cut off in the middle.
             Err(_) => break None,
         }
     };
@@ -350,7 +350,7 @@ fn a_page_that_says_text_or_too_much_at_once_is_sent_away() {
     drop(socket);
     let mut socket = connect(&board.server);
     text(&mut socket);
-    // It may be sent away before all of that is sent.
+    // The server may close the socket before all of that is sent.
     let sent = socket.send(Message::binary(vec![0; 1 << 20]));
     let hung_up = [ErrorKind::BrokenPipe, ErrorKind::ConnectionReset];
     let is_sent_away = matches!(&sent, Err(Error::Io(error)) if hung_up.contains(&error.kind()));

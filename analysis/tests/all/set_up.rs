@@ -1,5 +1,5 @@
-//! What set-up does to a machine of Debian's that lacks the compiler for the board; its programs are
-//! scripts that write down what they are asked.
+//! The effect of set-up on a Debian machine that lacks the compiler for the board; the machine's programs are
+//! scripts, of which `apt-get` writes down its arguments.
 
 use std::fs::{self, File};
 use std::io::{Read, Write};
@@ -48,7 +48,7 @@ impl Machine {
         command
     }
 
-    /// What was done besides looking.
+    /// The arguments of `apt-get` in calls that change the machine.
     fn done(&self) -> String {
         fs::read_to_string(self.0.path().join("done")).unwrap_or_default()
     }
@@ -59,7 +59,7 @@ impl Machine {
         said(&output)
     }
 
-    /// Sets up at a terminal where a person answers; what was seen there.
+    /// Sets up at a terminal with this answer of a user; returns the output there.
     fn set_up_and_answer(&self, answer: &str) -> String {
         let terminal = nix::pty::openpty(None, None).unwrap();
         let side = || Stdio::from(terminal.slave.try_clone().unwrap());

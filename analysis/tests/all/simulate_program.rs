@@ -1,4 +1,4 @@
-//! The commands that say what a scene would do, as programs call them.
+//! The commands that predict the motion of a scene, as programs call them.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ fn json(arguments: &[&str]) -> (i32, Value) {
     (output.status.code().unwrap(), answer(&output))
 }
 
-/// A scene file with something behind the wall above.
+/// A scene file with more text behind the wall above.
 fn scene(folder: &TempDir, more: &str) -> PathBuf {
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, format!("{WALL}{more}")).unwrap();
@@ -122,7 +122,7 @@ fn advice_on_models_as_json_and_bad_questions_named() {
     }
 }
 
-/// What a loop does that grows until there are no numbers for it.
+/// The motion of a loop that grows beyond the range of numbers.
 #[test]
 fn a_motion_ends_where_the_numbers_do() {
     let folder = TempDir::new().unwrap();
@@ -152,7 +152,7 @@ fn a_motion_ends_where_the_numbers_do() {
         assert_eq!(text.status.code(), Some(1));
         assert!(String::from_utf8(text.stdout).unwrap().contains(&format!("{computed} over")));
 
-        // The picture shows what can be drawn and says what it leaves out.
+        // The picture shows the part that can be drawn, and names the omitted part.
         let picture = folder.path().join("trace.svg");
         let output = haptic(&["chart", "trace", name(&path), "-o", name(&picture)]);
         assert_eq!(output.status.code(), Some(1));
@@ -185,7 +185,7 @@ fn numbers_out_of_range_are_said_to_be_so() {
             assert!(message.len() < 400, "{message}");
         }
     }
-    // What a servo is given no chance to run either.
+    // Such a scene is refused for a servo, too.
     std::fs::write(&path, WALL.replace("inertia = 2.2e-5", "inertia = 1e-300")).unwrap();
     assert!(complaint(haptic(&["run", name(&path)])).contains("rates of up to"));
 }
@@ -259,7 +259,7 @@ fn a_design_is_a_scene_that_certifies() {
         assert!(designed.starts_with(&format!("# {said}")), "{designed}");
         let certify = haptic_reading(&["certify", "-", "--json"], designed.as_bytes());
         assert_eq!(answer(&certify)["verdict"], "certified", "{designed}");
-        // What the user wrote stays.
+        // The user's own text stays.
         for table in ["[simulation]", "[human]", "encoder_step = 0.0001"] {
             assert!(designed.contains(table), "{designed}");
         }
@@ -299,7 +299,7 @@ fn a_design_says_what_else_it_has_changed() {
     assert_eq!(report["notes"].as_array().map(Vec::len), Some(1), "{report}");
 }
 
-/// Four times as stiff as what the device can render.
+/// Four times as stiff as the device can render.
 #[test]
 fn a_device_that_runs_away_is_a_no() {
     let folder = TempDir::new().unwrap();
@@ -360,8 +360,7 @@ fn designs_of_several_scenes_go_into_a_folder_and_find_their_torques_from_there(
     assert!(said.lines().all(|line| line.starts_with('#')) && said.contains("--output"), "{said}");
 }
 
-/// A chain of masses, simulated although a certificate is not taken of it where the encoder is at
-/// the hand.
+/// A chain of masses is simulated with the encoder at the hand, too, where it cannot be certified.
 #[test]
 fn chains_move_and_may_be_seen_from_either_end() {
     let folder = TempDir::new().unwrap();
@@ -382,7 +381,8 @@ fn chains_move_and_may_be_seen_from_either_end() {
     assert!(ends[0][1] > 0.0 && ends[1][1] > ends[0][1]);
 }
 
-/// A simulation has the middle of a range and no jitter, and says so; of a latency that is known it has all.
+/// A simulation has the middle of a range and no jitter, and reports this; a latency that is known exactly is
+/// simulated completely.
 #[test]
 fn what_is_left_out_of_a_latency_is_said() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,8 +1,8 @@
 //! The exact method against trajectories of sixty digits over a thousand samples.
 //!
-//! The reference is written from the equations of motion and the environments' difference
-//! equations as theory, section 5, has them, in fixed point of 240 places; it shares no code with what it
-//! checks, and its inputs are the exact values of the floats that the simulation is given.
+//! The reference is written from the equations of motion and the environments' difference equations as
+//! theory, section 5, has them, in fixed point of 240 places; it shares no code with the simulation, and its
+//! inputs are the exact values of the floats that the simulation is given.
 
 use crate::reference::{Matrix, Real, characteristic, exponential, image, modulus_of_root};
 use analysis::chain::{Link, Mass};
@@ -136,7 +136,7 @@ fn wall_in_a_hand_that_pushes() {
     compare("wall in a hand", &experiment, &reference);
 }
 
-/// A loop just past the line: what grows must grow by the right factor.
+/// A loop just past the line: a growing motion must grow by the right factor.
 #[test]
 fn loop_that_grows() {
     let start = Motion { position: 0.0, velocity: 0.1 };

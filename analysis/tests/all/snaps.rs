@@ -1,4 +1,4 @@
-//! Detents with a snap point in scene files, and what the commands make of them.
+//! Detents with a snap point in scene files, and the commands' results for them.
 
 use std::f64::consts::TAU;
 
@@ -130,14 +130,14 @@ fn the_verdict_is_that_of_the_steepest_branch() {
 fn the_chart_has_a_line_for_each_detent() {
     let file = read(&format!("{SNAP}{STOPS}")).unwrap();
     let curve = ProfileCurve::of(&file.scene).unwrap();
-    // Seven detents on either side of the one at zero are between the end stops.
+    // Seven detents on either side of the detent at zero are between the end stops.
     assert_eq!(curve.branches.len(), 15);
     let middle = &curve.branches[7];
     let reach = 0.75 * TAU / 24.0;
     for (snap, sign) in middle.snaps.iter().zip([-1.0, 1.0]) {
         assert!((snap[0] - sign * reach).abs() < 1e-9, "{snap:?}");
         assert!((snap[1] - sign * 0.1).abs() < 1e-5, "{snap:?}");
-        // A quarter of a pitch on the other side of the next one's centre.
+        // A quarter of a pitch on the other side of the next detent's centre.
         assert!((snap[2] + sign * 0.1 * 0.25 / 0.75).abs() < 1e-5, "{snap:?}");
     }
     assert_eq!(curve.branches[0].snaps.len(), 1);
@@ -150,7 +150,7 @@ fn the_chart_has_a_line_for_each_detent() {
     assert_eq!(alone.fall.slope, 0.0);
 }
 
-/// Nothing panics, and where there is no answer, the sentence says why.
+/// Nothing panics, and if there is no answer, the sentence gives the reason.
 #[test]
 fn every_command_answers_or_says_why_not() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! What the program writes to a terminal: its colours and its lines.
+//! The program's output on a terminal: its colours and its lines.
 
 use std::fs::OpenOptions;
 use std::io::Read;
@@ -8,8 +8,8 @@ use serialport::{SerialPort, TTYPort};
 
 use crate::common::{WALL, haptic, program};
 
-/// What the program writes to a terminal of so many columns, and its exit status. Both of its outputs
-/// are the terminal.
+/// The program's output on a terminal of this many columns, and its exit status. Both of its outputs are the
+/// terminal.
 fn shown(arguments: &[&str], columns: u32, environment: &[(&str, &str)]) -> (String, Option<i32>) {
     let (mut master, mut slave) = TTYPort::pair().unwrap();
     slave.set_exclusive(false).unwrap();
@@ -53,7 +53,7 @@ fn colours_are_for_terminals_that_have_them_and_people_who_want_them() {
     {
         assert_eq!(coloured(arguments, &[]), (true, Some(status)), "{arguments:?}");
         for plain in [("NO_COLOR", "1"), ("TERM", "dumb")] {
-            // A server that builds says so, which gives its terminal no colours.
+            // A build server sets `CI`, which does not switch colours on.
             for environment in [&[plain][..], &[plain, ("CI", "true")]] {
                 assert_eq!(
                     coloured(arguments, environment),

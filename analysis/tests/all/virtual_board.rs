@@ -64,8 +64,8 @@ fn with_its_bridge(scene: &str, ticks: &str) -> (Vec<f64>, Vec<f64>) {
     columns(&in_hand.stdout)
 }
 
-/// The hand's spring of 6 N m/rad to where it wants to be, 0.12 rad: the motor's torque is the servo's, or
-/// the device would rest elsewhere.
+/// The hand is a spring of 6 N m/rad to its set-point of 0.12 rad: the motor's torque is the servo's, or the
+/// device would rest elsewhere.
 #[test]
 fn a_hand_rests_in_the_wall_of_a_motor_board_by_the_motor_s_torque() {
     let (angles, torques) = with_its_bridge("bridge_wall", "1700");
@@ -77,7 +77,7 @@ fn a_hand_rests_in_the_wall_of_a_motor_board_by_the_motor_s_torque() {
     let angle = mean(angles) + 0.5 * count;
     let (torque, hand) = (mean(torques), 6.0 * (0.12 - angle));
     println!("{torque:.4} N m at {angle:.5} rad, where the hand pushes with {hand:.4} N m");
-    // What the steps of the current's converter leave.
+    // The error of the current's ADC steps.
     assert!((torque - hand).abs() < 0.01, "{torque} N m against {hand} N m of the hand");
     assert!(torque > 0.4);
 }
@@ -173,7 +173,7 @@ fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
         let (status, running) = board.tune(&["stiffness=20"]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
         assert_eq!(running["parameters"]["stiffness"], 20.0);
-        // Past the line: the board itself says no, says what would pass, and goes on.
+        // Past the line: the board itself refuses, names numbers that would pass, and goes on.
         let (status, refused) = board.tune(&["damping=0.02"]);
         assert_eq!(status, Some(1), "{refused}");
         assert!(refused["refused"].to_string().contains("would pass"), "{refused}");
@@ -183,7 +183,7 @@ fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
     }
 }
 
-/// With what its power stage measures.
+/// With the measurements of its power stage.
 #[test]
 fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
     let board = SimulatedBoard::of(BoardModel::BG431bEsc1, "bridge_wall");

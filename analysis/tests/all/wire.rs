@@ -59,7 +59,7 @@ impl Held {
         self.0.lock().unwrap().seen.clear();
     }
 
-    /// The code after so many more ticks.
+    /// The code after this many more ticks.
     fn after(&self, ticks: u64) -> u16 {
         let end = self.0.lock().unwrap().ticks + ticks;
         loop {
@@ -87,7 +87,7 @@ impl Rig {
         rig
     }
 
-    /// The same as it is when it is switched on.
+    /// The same board just after it is switched on: not armed.
     pub fn off(pacing: Pacing) -> Self {
         let folder = TempDir::new().unwrap();
         let address = Address::Unix(folder.path().join("board"));
@@ -285,7 +285,7 @@ fn scope_records_rows_and_ends_quietly() {
     assert_eq!((last["state"].as_str(), last["limit"].as_str()), ("running", "none"));
     assert_eq!(number(last, "count"), f64::from(DEPTH));
     assert!((number(last, "code") - code(22.0)).abs() <= 1.0);
-    // The coupling torque: what the motor applies is its negative.
+    // The coupling torque: the motor applies its negative.
     let torque = (2048.0 - number(last, "code")) / 1791.0 * 2.0;
     assert!((number(last, "torque") - torque).abs() < 1e-12);
     assert!((number(last, "slack") - 0.001).abs() < 1e-12);
@@ -445,8 +445,8 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
             Ok(_) => {
                 assert_eq!(outcome, RequestResult::Done, "set {i}");
                 running = stiffness;
-                // Near its limit a wall is certified and rings at half the sample rate for as long as
-                // one likes: its torque at rest is still to come.
+                // Near its limit a certified wall rings at half the sample rate for a long time: it has not
+                // reached its torque at rest.
                 if stiffness * 0.001 / 2.0 + damping > 0.9 * 0.022 {
                     continue;
                 }

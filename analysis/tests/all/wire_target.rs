@@ -66,7 +66,7 @@ impl Board {
         board
     }
 
-    /// The code after so many more ticks.
+    /// The code after this many more ticks.
     fn after(&self, ticks: u64) -> u16 {
         let end = self.seen.lock().unwrap().ticks + ticks;
         loop {
@@ -80,8 +80,8 @@ impl Board {
         }
     }
 
-    /// The code, once it is the same for a while: what a wall does in its coupling after a swap takes long to
-    /// die away where its damping is near the certified limit.
+    /// The code, once it is the same for a while: the motion of a wall in its coupling after a swap takes
+    /// long to die away where its damping is near the certified limit.
     fn settle(&self) -> u16 {
         for _ in 0..200 {
             self.forget();
@@ -108,7 +108,7 @@ impl Board {
         Link::open(&Address::Unix(self.socket.clone())).unwrap()
     }
 
-    /// Writes bytes, waits for so many ticks, and asks on the same wire how it is going.
+    /// Writes bytes, waits for this many ticks, and requests the status on the same wire.
     fn disturb(&self, bytes: &[u8], ticks: u64) -> Status {
         let mut stream = UnixStream::connect(&self.socket).unwrap();
         stream.write_all(bytes).unwrap();
@@ -125,7 +125,7 @@ impl Board {
         status.unwrap()
     }
 
-    /// Ends the board; gives what it says of itself.
+    /// Ends the board; returns its report.
     fn end(mut self) -> EmulatorReport {
         self.over.store(true, Ordering::Relaxed);
         self.world.take().unwrap().join().unwrap()
@@ -207,9 +207,9 @@ fn the_servo_keeps_time_whatever_comes_over_the_wire() {
     let wanted = board.settle();
     let mut random = fastrand::Rng::with_seed(5);
     let noise: Vec<u8> = (0..5000).map(|_| random.u8(..)).collect();
-    // Blocks that are longer than what comes.
+    // Blocks that are longer than the bytes that follow.
     let truncated = [0, 9, 9, 9, 0].repeat(1000);
-    // Six bytes whose last four are no checksum of the first two.
+    // Six bytes whose last four are not the checksum of the first two.
     let wrong = [0, 7, 1, 2, 3, 4, 5, 6, 0].repeat(1000);
     // Longer than any message.
     let long = [[1; 500].as_slice(), &[0]].concat().repeat(20);
@@ -242,7 +242,7 @@ fn the_servo_keeps_time_whatever_comes_over_the_wire() {
 /// Tick, time, count, position, code, torque, state, limit and slack.
 type Row = (u64, f64, i64, f64, u16, f64, String, String, f64);
 
-/// What the board streams is what its world has seen.
+/// The board streams the values that its world has seen.
 #[test]
 fn scope_records_the_emulated_board() {
     let board = Board::start();

@@ -1,4 +1,4 @@
-//! A browser without a window, to look at pages as their readers' browsers do.
+//! A headless browser, which shows pages as a reader's browser does.
 
 use std::io::Read;
 use std::path::Path;
@@ -9,15 +9,15 @@ use analysis::browser::{NAME, TIMEOUT, command};
 
 use crate::common::set_up_tool;
 
-/// Makes sure that there is one.
+/// Makes sure that a browser is installed.
 ///
 /// # Errors
-/// Where there can be none, with what to install.
+/// Where it cannot be installed, with the package to install.
 pub fn set_up() -> Result<(), String> {
     set_up_tool(NAME)
 }
 
-/// The page as it is after its scripts have run, in a window so many pixels wide.
+/// The page after its scripts have run, in a window of this width in pixels.
 pub fn dom(page: &Path, width: u32) -> String {
     let profile = tempfile::tempdir().unwrap();
     let mut child = command(profile.path(), [width, 1200])

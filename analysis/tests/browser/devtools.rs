@@ -1,4 +1,4 @@
-//! A page in a browser that a test drives: what fails, fails the test.
+//! A page in a browser that a test drives: every error fails the test.
 
 use std::path::Path;
 
@@ -9,17 +9,17 @@ use serde_json::Value;
 pub struct Page(browser::Page);
 
 impl Page {
-    /// Starts a browser in a window so many pixels wide, with an empty page.
+    /// Starts a browser with an empty page, in a window of this width in pixels.
     pub fn start(width: u32) -> Self {
         Self(done(browser::Page::start(width)))
     }
 
-    /// What the page's console has said that is an error or a warning.
+    /// Errors and warnings of the page's console.
     pub fn complaints(&self) -> &[String] {
         &self.0.complaints
     }
 
-    /// Opens an address, and waits until the page says that it is ready.
+    /// Opens an address, and waits until the page reports that it is ready.
     pub fn open(&mut self, address: &str) {
         done(self.0.open(address));
     }
@@ -39,12 +39,12 @@ impl Page {
         done(self.0.wait_for(expression));
     }
 
-    /// What the mouse does at a place of the page.
+    /// Sends a mouse event at a place of the page.
     pub fn mouse(&mut self, what: &str, place: [f64; 2]) {
         done(self.0.mouse(what, place));
     }
 
-    /// Presses a key, by its name, and lets it go.
+    /// Presses and releases a key, by its name.
     pub fn key(&mut self, key: &str) {
         done(self.0.key(key));
     }
@@ -65,10 +65,10 @@ impl Page {
     }
 }
 
-/// What was done.
+/// The value of a successful operation.
 ///
 /// # Panics
-/// Where it was not, with why.
+/// With the error of a failed operation.
 #[track_caller]
 fn done<T>(result: Result<T, browser::BrowserError>) -> T {
     result.unwrap_or_else(|error| panic!("{error}"))

@@ -28,12 +28,12 @@ pub fn explore_without_file(folder: &Path) -> String {
     read(page)
 }
 
-/// A number between two, evenly.
+/// A random number between two, evenly distributed.
 fn between(random: &mut fastrand::Rng, least: f64, most: f64) -> f64 {
     least + (most - least) * random.f64()
 }
 
-/// A number between two, evenly in its logarithm.
+/// A random number between two, evenly distributed in its logarithm.
 fn scaled(random: &mut fastrand::Rng, least: f64, most: f64) -> f64 {
     between(random, least.ln(), most.ln()).exp()
 }

@@ -101,7 +101,7 @@ pub fn each_picture_is_saved_as_a_png_of_its_size() {
     for name in expected {
         let canvas = format!("#picture-{name} > canvas");
         page.middle(&canvas);
-        // The handle's has no words of its own but those beside it, and is drawn as time goes by.
+        // The handle's picture has no words but those beside it, and is drawn as time goes by.
         let drawn_of = match name {
             "handle" => "window.haptic.dragged().counts.length > 100".to_owned(),
             _ => format!(
@@ -132,7 +132,8 @@ pub fn each_picture_is_saved_as_a_png_of_its_size() {
     assert_silent(&page);
 }
 
-/// Has the page copy its link, with a clipboard of the test's own: the machine's is that of who works there.
+/// Has the page copy its link, with a clipboard of the test's own: the machine's clipboard belongs to its
+/// user.
 fn copied_link(page: &mut Page) -> String {
     page.value(
         "Object.defineProperty(navigator, 'clipboard', { configurable: true, value: \

@@ -12,7 +12,7 @@ fn numbers(list: &Value) -> Vec<i64> {
     list.as_array().unwrap().iter().map(|number| number.as_f64().unwrap() as i64).collect()
 }
 
-/// Drags the handle to the right by so many pixels, and keeps it there.
+/// Drags the handle to the right by this many pixels, and keeps it there.
 fn drag(page: &mut Page, pixels: f64) {
     let [x, y] = page.middle(DRAWING);
     page.mouse("mouseMoved", [x, y]);

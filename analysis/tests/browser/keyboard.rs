@@ -61,7 +61,7 @@ window.focused = async () => {
 undefined
 "#;
 
-/// Goes through the page, and gives how many elements had the focus.
+/// Goes through the page, and returns the number of elements that had the focus.
 fn walk(page: &mut Page) -> usize {
     page.value(DEFINITIONS);
     page.value("for (const one of document.querySelectorAll('details')) one.open = true");
@@ -71,7 +71,7 @@ fn walk(page: &mut Page) -> usize {
         tab(page);
         let focused = page.value("focused()");
         if focused.is_null() {
-            // Behind the last one the focus is the browser's own.
+            // Behind the last element the browser itself has the focus.
             if page.value(left) == json!([]) {
                 break;
             }
@@ -94,7 +94,7 @@ fn focus(page: &mut Page, selector: &str) {
     page.value(&format!("document.querySelector({selector:?}).focus()"));
 }
 
-/// What a mouse drags goes by arrow keys.
+/// Arrow keys move all that a mouse drags.
 fn move_by_arrows(page: &mut Page) {
     let before = scene(page);
     focus(page, "[data-key='environment.stiffness'] input[type='range']");

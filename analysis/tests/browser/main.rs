@@ -1,5 +1,5 @@
-//! The report as its reader sees it: in a browser, which is not everywhere. Where there is none, and none
-//! may be installed, these tests say so and count as ignored.
+//! The report as its reader sees it, in a browser. Where there is no browser, and none can be installed,
+//! these tests report this and count as ignored.
 
 mod bench;
 mod chromium;
@@ -121,7 +121,7 @@ fn main() -> ExitCode {
     libtest_mimic::run(&arguments, TESTS.map(trial).into()).exit_code()
 }
 
-/// What a browser finds on a page, in a window so many pixels wide.
+/// The measurements of a browser on a page, in a window of this width in pixels.
 fn measure(folder: &Path, page: &str, width: u32) -> Value {
     let copy = folder.join("measured.html");
     std::fs::write(&copy, page.replace("</body>", &format!("<script>{MEASURE}</script></body>")))
@@ -204,7 +204,7 @@ fn the_measurement_finds_what_it_looks_for() {
     }
 }
 
-/// And not passed: this program once more, where no program is to be found.
+/// They do not count as passed: runs this program again, with a path that has no programs.
 fn without_a_browser_these_tests_are_ignored() {
     let this = std::env::current_exe().unwrap();
     let run = std::process::Command::new(this).env("PATH", "/nowhere").output().unwrap();

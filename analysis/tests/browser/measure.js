@@ -1,4 +1,4 @@
-// Finds what a reader of the page could not read, and writes it into the page.
+// Finds the parts of the page that a reader could not read, and writes them into the page.
 window.addEventListener("load", () => {
   const found = [];
   const width = document.documentElement.clientWidth;

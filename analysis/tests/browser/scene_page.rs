@@ -1,5 +1,5 @@
-//! What a person does on the page of `haptic explore`: changes a field, applies a remedy, makes a mistake, follows
-//! a link, moves the scene on its map.
+//! A user on the page of `haptic explore`: changes a field, applies a remedy, makes a mistake, follows a
+//! link, moves the scene on its map.
 
 use serde_json::Value;
 

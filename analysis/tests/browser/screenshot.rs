@@ -25,7 +25,8 @@ const WORDS: &str = "Description";
 /// Sides of the squares in pixels of which the mean colours are compared.
 const SQUARE: usize = 20;
 
-/// A mean colour is another one where red, green or blue is so far off, of 255. Text on its ground is not.
+/// Mean colours differ where red, green or blue differs by more than this, of 255. Text on its ground does
+/// not.
 const FAR: f64 = 60.0;
 
 /// Largest part of squares of another colour: with another font, sliders and lines are elsewhere.

@@ -181,7 +181,7 @@ pub fn a_link_is_lost_and_back_and_a_second_page_is_refused() {
     let server = Server::start(port, any, read(&file), Box::new(|_| {})).unwrap();
     let mut page = connected(&server.url());
 
-    // Of a page from a file, too; the first one goes on.
+    // A page from a file is refused, too; the first page goes on.
     let mut second = Page::start(400);
     second.open_file(&file);
     let connect = |page: &mut Page, address: &str| {
@@ -246,7 +246,7 @@ pub fn a_foreign_page_does_not_reach_the_board() {
     assert_eq!(outcome(&mut page), "open");
 }
 
-/// The program as it is flashed says the same.
+/// The flashed program gives the same answers.
 pub fn a_virtual_board_is_watched_and_armed() {
     let folder = tempfile::tempdir().unwrap();
     let port = format!("unix:{}", folder.path().join("board").display());

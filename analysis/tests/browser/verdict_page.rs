@@ -1,5 +1,5 @@
-//! What the page says of a scene is what `haptic certify` prints of it, letter for letter: of its presets, and
-//! of scenes of which there is more or less to say.
+//! The page shows the output of `haptic certify` for a scene, letter for letter: for its presets, and for
+//! scenes with longer and shorter answers.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -67,7 +67,7 @@ pub fn write_scene(page: &mut Page, folder: &Path) -> String {
     file.to_str().unwrap().to_owned()
 }
 
-/// What `haptic certify --json` prints of a scene file.
+/// The output of `haptic certify --json` for a scene file.
 pub fn certified(file: &str) -> String {
     let run = haptic(&["certify", file, "--json"]);
     assert!(run.stderr.is_empty(), "{run:?}");
@@ -157,7 +157,7 @@ pub fn the_rows_of_the_page_are_those_of_the_program() {
         let [remedies, margin] = ["remedies", "margin"].map(|label| values(&rows, label).len());
         assert!(verdict != "rejected" || remedies > 0, "{rows:?}");
         assert!(verdict != "certified" || (remedies, margin) == (0, 1), "{rows:?}");
-        // Remedies are buttons, which say no more than the rows.
+        // Remedies are buttons, which show no more than the rows.
         let buttons = page.value("document.querySelectorAll('#verdict-rows button').length");
         assert_eq!(buttons == json!(0), remedies == 0, "{rows:?}");
     }

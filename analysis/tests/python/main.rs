@@ -1,6 +1,6 @@
 //! The package for Python, installed by pip from this checkout: its answers against those of the program, and
 //! its example. It needs Python, and the packages that it is built and drawn with, which come from PyPI the
-//! first time. Where there are none, these tests say so and count as ignored.
+//! first time. Where they are missing, these tests report this and count as ignored.
 
 #[allow(dead_code)]
 #[path = "../all/common/mod.rs"]
@@ -22,7 +22,7 @@ const EXAMPLE: &str = "the_example_draws_its_map";
 /// The example without dependencies.
 const IGNORED: &str = "without_python_these_tests_are_ignored";
 
-/// What the package needs to be built, and to run its example.
+/// The packages for the build of the package, and for its example.
 const FROM_PYPI: [&str; 3] = ["maturin>=1.9,<2", "numpy", "matplotlib"];
 
 fn main() -> ExitCode {
@@ -88,7 +88,7 @@ impl Environment {
         pip
     }
 
-    /// Makes it, with what the package needs.
+    /// Creates it, with the packages that the package needs.
     ///
     /// # Errors
     /// Where there is no Python, or no PyPI.
@@ -99,7 +99,7 @@ impl Environment {
         if !self.0.join("pyvenv.cfg").exists() {
             let made = finished(Command::new("python3").args(["-m", "venv"]).arg(&self.0));
             made.map_err(|why| {
-                // Of a half-made one pip would be missing the next time, too.
+                // An incomplete environment would lack pip the next time, too.
                 std::fs::remove_dir_all(&self.0).ok();
                 format!("python3 -m venv: {why}")
             })?;
@@ -107,8 +107,8 @@ impl Environment {
         finished(&mut self.pip(&FROM_PYPI)).map_err(|why| format!("pip has no PyPI: {why}"))
     }
 
-    /// Installs the package from this checkout as a user does, but compiled as tests are. What it is built
-    /// with is in the environment, so that pip does not fetch it.
+    /// Installs the package from this checkout as a user does, but compiled as tests are. The build tools are
+    /// in the environment, so that pip does not fetch them.
     ///
     /// # Panics
     /// Where it cannot be installed.
@@ -125,7 +125,7 @@ impl Environment {
 /// Runs a program to its end.
 ///
 /// # Errors
-/// The last lines that it says, where it fails.
+/// The last lines of its output, if it fails.
 fn finished(command: &mut Command) -> Result<(), String> {
     let output = command.output().map_err(|error| error.to_string())?;
     if output.status.success() {
@@ -138,7 +138,7 @@ fn finished(command: &mut Command) -> Result<(), String> {
     Err(last.into_iter().rev().collect::<Vec<_>>().join("\n"))
 }
 
-/// Runs a file of Python in a folder of its own; what it prints.
+/// Runs a file of Python in a folder of its own; returns its output.
 fn python(folder: &Path, file: &str, arguments: &[&str]) -> String {
     let mut python = Environment::kept().program("python");
     python.arg(root().join(file)).args(arguments).current_dir(folder);
@@ -153,7 +153,7 @@ fn agrees(test: &str) {
     python(folder.path(), "analysis/tests/python/agree.py", &[program, test]);
 }
 
-/// And prints what the guide shows of it.
+/// It also prints the text that the guide shows.
 fn the_example_draws_its_map() {
     let folder = tempfile::tempdir().unwrap();
     let printed = python(folder.path(), "analysis/python/examples/map.py", &["map.png"]);
@@ -173,7 +173,7 @@ fn the_example_draws_its_map() {
     assert!((0.05..0.3).contains(&share), "{share}");
 }
 
-/// And not passed: this program once more, where no program is to be found.
+/// They do not count as passed: runs this program again, with a path that has no programs.
 fn without_python_these_tests_are_ignored() {
     let this = std::env::current_exe().unwrap();
     let run = Command::new(this).env("PATH", "/nowhere").output().unwrap();

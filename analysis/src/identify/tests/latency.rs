@@ -59,7 +59,7 @@ fn each_interval_holds_the_truth_in_95_of_100_records() {
         ];
         println!("{output:?}: {hits:?}");
         assert!(hits.iter().all(|&hits| hits >= 95), "{output:?}: {hits:?}");
-        // No interval is wide for that.
+        // No interval is wide because of that.
         for found in &all {
             let reach = |e: Estimate| 0.5 * (e.hi - e.lo);
             assert!(reach(found.damping) < 2e-3 * KNOB.damping, "{:?}", found.damping);

@@ -22,7 +22,7 @@ damping = 0.01
 delay = 1
 "#;
 
-/// What happens to it, for a report that shows it.
+/// Its simulation, for a report that shows it.
 pub const MOTION: &str = r#"
 [simulation]
 samples = 300
@@ -42,7 +42,7 @@ pub fn program(arguments: &[&str]) -> Command {
     command
 }
 
-/// Runs the program with nothing to read.
+/// Runs the program with an empty standard input.
 pub fn haptic(arguments: &[&str]) -> Output {
     program(arguments).stdin(Stdio::null()).output().unwrap()
 }
@@ -64,8 +64,8 @@ pub fn haptic_reading(arguments: &[&str], input: &[u8]) -> Output {
     output
 }
 
-/// Makes sure that there is a program that a test needs beside the project, which is the name of its
-/// package, too.
+/// Makes sure that a program is installed that a test needs beside the project; its package has the same
+/// name.
 ///
 /// # Errors
 /// As for [`set_up_package`].
@@ -73,11 +73,11 @@ pub fn set_up_tool(name: &str) -> Result<(), String> {
     set_up_package(name, &[name, "--version"])
 }
 
-/// Makes sure that there is what a test needs beside the project: a command that succeeds with it. Where it is
-/// missing its package is installed, as the project's other tools are, by root on Debian.
+/// Makes sure that a package is installed that a test needs beside the project: `command` has to succeed. If
+/// it fails, root on Debian installs the package, as for the project's other tools.
 ///
 /// # Errors
-/// Elsewhere, with what to install.
+/// Elsewhere, with the package to install.
 pub fn set_up_package(package: &str, command: &[&str]) -> Result<(), String> {
     let run = || Command::new(command[0]).args(&command[1..]).output();
     let is_there = || run().is_ok_and(|output| output.status.success());
@@ -95,13 +95,13 @@ pub fn set_up_package(package: &str, command: &[&str]) -> Result<(), String> {
 /// The program itself, set up.
 ///
 /// # Panics
-/// Where there can be none, with what to install.
+/// Where it cannot be installed, with the package to install.
 pub fn tool(name: &str) -> &str {
     set_up_tool(name).unwrap_or_else(|error| panic!("this test runs {name}: {error}"));
     name
 }
 
-/// The one JSON object that is an answer.
+/// The JSON object of an answer.
 pub fn answer(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))
 }
