@@ -1,4 +1,4 @@
-//! A scene as text, judged; with what would make it pass; and moved by a push while it is not certified.
+//! Judges a scene that is a text, with its remedies, and simulates it from a deflection.
 
 use std::error::Error;
 use std::path::Path;
@@ -8,7 +8,7 @@ use haptic_model::simulation::{Experiment, Integration, simulate};
 use haptic_model::verdict;
 use haptic_model::verdict_text;
 
-/// A wall with twice the damping that the device can have rendered.
+/// A wall with twice the damping that the device can render.
 const SCENE: &str = r#"
 name = "wall"
 device = { inertia = 2.2e-5, damping = 0.022 }

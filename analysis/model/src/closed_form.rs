@@ -1,8 +1,8 @@
 //! Indices `alpha` that are known by formula (theory, section 5), as enclosures in N m s/rad.
 //!
-//! The certificate does not use them: it judges every linear scene by the general test, and these
-//! are what that test is checked against. Arguments: stiffness `k` in N m/rad, damping `b` in
-//! N m s/rad, period `t` in s, delay `n` in samples.
+//! The certificate does not use them: it judges every linear scene by the general test, and these formulas
+//! check that test. Arguments: stiffness `k` in N m/rad, damping `b` in N m s/rad, period `t` in s, delay `n`
+//! in samples.
 
 use haptic_servo::passivity::interval::Interval;
 

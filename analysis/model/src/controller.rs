@@ -1,4 +1,4 @@
-//! A servo with its types forgotten, so that programs can hold one of any scene and format.
+//! A servo without its type parameters, so that programs can hold a servo of any scene and format.
 
 use haptic_servo::certificate::Certified;
 use haptic_servo::encoder::RawCount;
@@ -9,7 +9,7 @@ use haptic_servo::servo::{BuildError, Servo, Transducers};
 use haptic_servo::torque::LimitReason;
 use haptic_servo::tuning::Tunable;
 
-/// What a tick gave.
+/// The result of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
     /// Position in counts, extended over the counter's wraps.
@@ -29,10 +29,10 @@ pub trait Controller {
     /// One tick with the counter's content.
     fn tick(&mut self, raw: i32) -> Tick;
 
-    /// One tick at an angle in rad that no encoder has counted: the torque in N m.
+    /// One tick at an angle in rad without an encoder's rounding: the torque in N m.
     ///
     /// # Errors
-    /// Where the number format does not hold the angle.
+    /// If the number format does not hold the angle.
     fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange>;
 }
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// A passive hand that holds the device; all three are 0 or more, and all zero is no hand.
+/// A passive hand that holds the device; all three numbers are 0 or more, and with all at 0 there is no hand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hand {
     /// Inertia `m_h` in kg m^2 that moves with the device.
@@ -39,9 +39,9 @@ pub struct HandSetpoint {
 /// in and eases out again gives and gets back about the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Energy {
-    /// What the hand put in.
+    /// Energy that the hand gave to the device.
     pub given: f64,
-    /// What the device returned to the hand.
+    /// Energy that the device returned to the hand.
     pub got_back: f64,
 }
 
@@ -56,14 +56,14 @@ impl Energy {
     }
 }
 
-/// What an incremental encoder makes of an angle: the whole counts below it.
+/// An incremental encoder: converts an angle to the whole counts below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimulatedEncoder {
     counts_per_radian: f64,
 }
 
 impl SimulatedEncoder {
-    /// An encoder with so many counts a turn.
+    /// An encoder with `counts_per_turn` counts a turn.
     pub fn new(counts_per_turn: f64) -> Self {
         Self { counts_per_radian: counts_per_turn / std::f64::consts::TAU }
     }

@@ -8,13 +8,13 @@ use crate::device::{Hand, HandSetpoint};
 /// at the end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HandTrajectory {
-    /// What the hand does, in a few words.
+    /// The movement of the hand, in a few words.
     pub description: &'static str,
     /// The hand, as long as it holds the device.
     pub hand: Hand,
     /// Times in s, rising, with the set-point in rad at each.
     pub path: Vec<(f64, f64)>,
-    /// When it lets go, in s.
+    /// Time in s at which it lets go.
     pub release: f64,
 }
 

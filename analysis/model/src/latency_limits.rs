@@ -1,5 +1,5 @@
-//! How stiff a spring may be where torques come late and through a current loop, over the servo's rate: the
-//! proved limit, and common assumptions.
+//! The largest stiffness of a spring over the servo's rate, where torques come late and through a current
+//! loop: the proved limits and the common assumption.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -9,8 +9,8 @@ use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::parameter::MAX_DELAY;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-/// By how much a spring may exceed the certified one before some hand is known to destabilise it: hands
-/// that do not vary in time allow 1.3 % more at the most (theory, section 13.1).
+/// Factor over the certified stiffness from which some hand is known to destabilise a spring: hands that do
+/// not vary in time allow at most 1.3 % more (theory, section 13.1).
 const UNSAFE: f64 = 1.015;
 /// Halvings of the range of a stiffness.
 const HALVINGS: u32 = 40;
@@ -31,7 +31,8 @@ pub struct LatencyPoint {
 }
 
 impl LatencyPoint {
-    /// Whether a hand is known in which the last of them oscillates on a board that latches its torques.
+    /// Whether a hand is known in which a spring of the stiffness `folklore` oscillates on a board that
+    /// latches its torques.
     pub fn folklore_is_unsafe(&self) -> bool {
         self.folklore > UNSAFE * self.latched
     }
@@ -47,7 +48,7 @@ pub struct LatencyLimits {
 }
 
 impl LatencyLimits {
-    /// Of a device, with torques this many seconds after their counts.
+    /// For a device, with torques `phase` s after their counts.
     pub fn new(
         device: &Device,
         bandwidth: f64,
@@ -80,7 +81,7 @@ pub fn lag_of(bandwidth: f64) -> f64 {
     1.0 / (TAU * bandwidth)
 }
 
-/// The largest certified spring in N m/rad without a coupling, so many samples late.
+/// The largest certified spring in N m/rad without a coupling, with a delay in samples.
 pub fn largest_spring(device: &Device, period: f64, latency: Latency, delay: usize) -> f64 {
     let scene = |stiffness| Scene {
         device: *device,

@@ -36,17 +36,18 @@
 //! # Features
 //!
 //! None is on by default. `clap` gives quantities and methods names on a command line.
+//!
 //! # Stability
 //!
 //! Versions follow semantic versioning; before 1.0 a minor version may break the interface. The keys of scene
-//! files and of reports in JSON keep their meaning: new ones may come. What a certificate may do from version
-//! to version is said by [`haptic_servo`], whose version is that of this package. Exempt are the texts of
+//! files and of reports in JSON keep their meaning; new keys may come. [`haptic_servo`], whose version is
+//! that of this package, states how certificates may change from version to version. Exempt are the texts of
 //! errors and reports. The minimum supported Rust version is 1.95; a minor version may raise it.
 
-// A board that runs, in words and units.
+// A running board, in words and units.
 pub mod board;
 
-// What scenes are worth and would do, and how far one may go.
+// Verdicts, simulations and limits of scenes.
 pub mod closed_form;
 pub mod design;
 pub mod latency_limits;

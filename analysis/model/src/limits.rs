@@ -1,4 +1,4 @@
-//! The stiffest wall that is certified, and what an encoder's step does to its torque.
+//! The stiffest wall that is certified, and the effect of an encoder's step on its torque.
 
 use haptic_servo::certificate::PassivityProblem;
 use haptic_servo::environment::Wall;
@@ -11,20 +11,20 @@ use haptic_servo::scene::{Coupling, Scene, Timing};
 use crate::response::Response;
 use crate::simulation::closed_loop::transfers;
 
-/// How stiff a wall may be.
+/// The largest stiffness of a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
     /// No stiffness is certified.
     Nothing,
     /// Up to this one in N m/rad.
     RoundUp3(f64),
-    /// However stiff: what the hand feels is the coupling.
+    /// Any stiffness: the hand feels the coupling.
     Any,
 }
 
 /// A stiffness this many times the standard coupling's counts as a rigid wall.
 const RIGID: f64 = 1e6;
-/// The softest that is tried, over the standard coupling's.
+/// The smallest stiffness that is tried, over the standard coupling's.
 const SOFT: f64 = 1e-6;
 /// Stiffnesses between the two that are tried before the search closes in.
 const STEPS: u32 = 48;
@@ -34,11 +34,11 @@ const HALVINGS: usize = 40;
 const LONGEST: usize = 1_000_000;
 /// An impulse response has died away when this many samples in a row add less than [`SMALL`].
 const QUIET: usize = 64;
-/// Part of the sum.
+/// As a fraction of the sum.
 const SMALL: f64 = 1e-12;
 
-/// The scene with another stiffness in N m/rad, and with another delay in samples if one is given;
-/// unchanged where its environment is no wall.
+/// The scene with another stiffness in N m/rad, and with another delay in samples if one is given; unchanged
+/// if its environment has no wall.
 pub fn with_wall(scene: &Scene, stiffness: f64, delay: Option<usize>) -> Scene {
     let mut changed = *scene;
     if let Some(wall) = changed.environment.wall_mut() {
@@ -47,15 +47,15 @@ pub fn with_wall(scene: &Scene, stiffness: f64, delay: Option<usize>) -> Scene {
     changed
 }
 
-/// The scene at another period in s. A worst period keeps its ratio to it, and a coupling spring
-/// becomes the standard one, `2 delta / T`, which is what a period allows. Delays and lags stay what
-/// they are: they are those of the hardware.
+/// The scene at another period in s. A worst period keeps its ratio to it, and a coupling spring becomes the
+/// standard one, `2 delta / T`, which that period allows. Delays and lags stay unchanged: they belong to the
+/// hardware.
 pub fn at_period(scene: &Scene, period: f64) -> Scene {
     let ratio = period / scene.timing.period;
     let worst_period = scene.timing.worst_period.map(|worst| worst * ratio);
     let timed = Scene { timing: Timing { period, worst_period }, ..*scene };
     match scene.coupling {
-        // The matched one is that of any period.
+        // A matched coupling follows from the period itself.
         Coupling::Rigid | Coupling::Matched => timed,
         Coupling::Spring { .. } => {
             let stiffness = standard_coupling(&timed);
@@ -64,8 +64,8 @@ pub fn at_period(scene: &Scene, period: f64) -> Scene {
     }
 }
 
-/// The standard coupling `2 delta / T` in N m/rad, `delta` scaled to the worst period; from below,
-/// so that rounding does not make it the stiffer one.
+/// The standard coupling `2 delta / T` in N m/rad, `delta` scaled to the worst period; rounded down, so that
+/// it is never the stiffer one.
 pub fn standard_coupling(scene: &Scene) -> f64 {
     let period = scene.timing.period;
     let worst = scene.timing.worst_period.unwrap_or(period);
@@ -73,8 +73,8 @@ pub fn standard_coupling(scene: &Scene) -> f64 {
     (2.0 * delta / worst) * (1.0 - 1e-12)
 }
 
-/// The stiffness in N m/rad that the coupling has at rest; `None`: it is rigid, or there is none. That of
-/// a matched coupling is about `2 delta / (T + d + tau)`, with all of its delays and lags.
+/// The stiffness in N m/rad of the coupling at rest; `None` if it is rigid or does not exist. The stiffness
+/// of a matched coupling is about `2 delta / (T + d + tau)`, with all of its delays and lags.
 fn coupling_stiffness(scene: &Scene) -> Option<f64> {
     match scene.coupling {
         Coupling::Rigid => None,
@@ -141,7 +141,7 @@ pub struct Point {
     pub rate: f64,
     /// Largest certified stiffness in N m/rad; that of the coupling where there is no limit.
     pub stiffness: f64,
-    /// Peak torque in N m that half an encoder's count may cost at [`Curves::used`] of it.
+    /// Peak torque in N m that half an encoder's count may cause at [`Curves::used`] of that stiffness.
     pub ripple: Option<f64>,
 }
 
@@ -154,8 +154,8 @@ pub struct Curves {
     pub points: usize,
     /// Counts of the encoder a turn.
     pub counts_per_turn: f64,
-    /// The part of the largest stiffness at which the ripple is taken: at all of it there is no
-    /// bound.
+    /// Fraction of the largest stiffness at which the ripple is taken: at the largest stiffness itself there
+    /// is no bound.
     pub used: f64,
 }
 

@@ -1,6 +1,6 @@
 //! Line search for the angle that minimises a function: a grid, then golden sections.
 
-/// Points at which the function is looked at before the search closes in.
+/// Grid points at which the function is evaluated before the search closes in.
 const GRID: usize = 32;
 
 /// Steps of the search: a minimum's angle is known to the square root of `f64`'s resolution.
@@ -9,13 +9,13 @@ const REFINEMENTS: usize = 40;
 /// Ranges so narrow, in rad, need no search.
 const NARROW: f64 = 1e-9;
 
-/// Only ranges as wide as this, in rad, can tell that a function is the same everywhere.
+/// Only over ranges wider than this, in rad, can a function count as constant.
 const WIDE: f64 = 1.0;
 
 /// Differences of the function below this part of its size are rounding.
 const FLAT: f64 = 1e-9;
 
-/// Nearest to 0 that the function is looked at: near enough to stand for the limit, far enough for
+/// Smallest angle at which the function is evaluated: near enough to 0 to stand for the limit, far enough for
 /// `z - 1`, where a pole or a zero may sit, to have digits.
 const NEAR_ZERO: f64 = 1e-3;
 

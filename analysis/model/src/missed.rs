@@ -6,7 +6,7 @@ pub enum Missed {
     /// None.
     #[default]
     None,
-    /// The last of so many, over and over.
+    /// The last of every so many ticks.
     Every(u32),
     /// Each with this probability, the same ones for the same seed.
     Random {

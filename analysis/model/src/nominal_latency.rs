@@ -1,9 +1,9 @@
-//! What simulations, responses and curves take for a latency that is known in part: each time by the middle
-//! of its range, and no jitter. The certificate covers all of it.
+//! The nominal latency of simulations, responses and curves, for a latency that is known in part: the middle
+//! of each time's range, and no jitter. The certificate covers the whole range.
 
 use haptic_servo::scene::Latency;
 
-/// The parts of a latency that a picture leaves out, in a few words; `None` if it is complete.
+/// The parts of a latency that the model leaves out, as short text; `None` if it is complete.
 pub fn left_out(latency: &Latency) -> Option<&'static str> {
     let Latency {
         output_delay,
@@ -25,7 +25,7 @@ pub fn left_out(latency: &Latency) -> Option<&'static str> {
 
 /// A title that names the parts left out of the latency of one of the scenes.
 pub fn titled<'l>(title: &str, latencies: impl IntoIterator<Item = &'l Latency>) -> String {
-    // The longest says the most.
+    // The longest text names the most parts.
     let words = latencies.into_iter().filter_map(left_out).max_by_key(|words| words.len());
     words.map_or_else(|| title.to_owned(), |words| format!("{title} ({words})"))
 }

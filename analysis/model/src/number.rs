@@ -1,4 +1,4 @@
-//! Number formats by name, and what of a scene does not fit them.
+//! Number formats by name, and the numbers of a scene that do not fit them.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use haptic_servo::scene::Scene;
 /// The format of a name such as `f32`, `f64`, `i8f24`, `i8f24-truncated` or `q8.24`.
 ///
 /// # Errors
-/// A sentence that says what there is.
+/// A sentence that describes the valid names.
 pub fn format(name: &str) -> Result<Format, String> {
     let lower = name.to_ascii_lowercase();
     if let Some(rounded) = lower.strip_suffix("-truncated") {
@@ -56,8 +56,8 @@ impl fmt::Display for DoesNotFit {
 
 impl std::error::Error for DoesNotFit {}
 
-/// Whether a format holds a scene's angles and torques. That it holds the coefficients is seen by
-/// their certificate: they are as they were written where it does not.
+/// Whether a format holds a scene's angles and torques. Its coefficients are checked by their certificate:
+/// where the format does not hold them, they stay as they were written.
 ///
 /// # Errors
 /// The first number that it does not hold.

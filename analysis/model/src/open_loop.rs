@@ -1,8 +1,8 @@
 //! The open loop of device and controller at each frequency, and its margins.
 //!
-//! Of one device in one hand: `P(z) C(z)` from sampled position back to it, with the motor's sign taken
-//! out, so that the closed loop is on its border where the product is -1. The certificate, which
-//! covers every hand, has margins of its own.
+//! For one device in one hand: `P(z) C(z)` from sampled position back to it, with the motor's sign taken out,
+//! so that the closed loop is on its stability border where the product is -1. The certificate, which covers
+//! every hand, has margins of its own.
 
 use std::f64::consts::PI;
 
@@ -17,7 +17,7 @@ use crate::stability_map::plant::SampledPlant;
 
 /// Frequencies of a curve.
 const POINTS: usize = 2000;
-/// Decades below half the sample rate that a curve begins at.
+/// Decades below half the sample rate at which a curve begins.
 const DECADES: f64 = 5.0;
 /// Halvings of a step in which a curve crosses a level: to the digits of a double.
 const HALVINGS: usize = 50;
@@ -52,7 +52,7 @@ pub struct OpenLoop {
     /// The factors on the controller that put the closed loop on its border, where the phase is that of
     /// -1, at rising frequencies.
     pub gain_margins: Vec<Margin>,
-    /// What the phase has over -180 degrees where the gain is 1, from -180 to 180, likewise.
+    /// The distance of the phase from -180 degrees where the gain is 1, from -180 to 180 degrees, likewise.
     pub phase_margins: Vec<Margin>,
 }
 
@@ -60,7 +60,7 @@ impl OpenLoop {
     /// The loop of an experiment's machine and scene.
     ///
     /// # Errors
-    /// Where the machine or the scene has none.
+    /// If the machine or the scene has no linear loop.
     pub fn of(experiment: &Experiment) -> Result<Self, SimulationError> {
         let scene = &experiment.scene;
         let plant = SampledPlant::new(&experiment.tick(Integration::default())?);
@@ -120,13 +120,13 @@ impl OpenLoop {
         above.copied().min_by(|a, b| a.value.total_cmp(&b.value))
     }
 
-    /// The factor below 1 that does.
+    /// The factor below 1 that first puts the closed loop on its border.
     pub fn gain_reduction(&self) -> Option<Margin> {
         let below = self.gain_margins.iter().filter(|margin| margin.value < 1.0);
         below.copied().max_by(|a, b| a.value.total_cmp(&b.value))
     }
 
-    /// The phase margin that is nearest to none.
+    /// The phase margin that is nearest to 0.
     pub fn phase_margin(&self) -> Option<Margin> {
         self.phase_margins.iter().copied().min_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))
     }
@@ -183,7 +183,7 @@ mod tests {
     fn the_phase_margin_is_what_a_delay_may_take_of_it() {
         let found = OpenLoop::of(&Experiment::at_rest(&file(6.0, 0.0, 0))).unwrap();
         let margin = found.phase_margin().unwrap();
-        // Lag of so many whole samples at the crossover, where the gain stays what it is.
+        // Lag of so many whole samples at the crossover; the gain stays unchanged.
         let lag = |samples: usize| 360.0 * margin.hertz * 0.001 * samples as f64;
         for delay in 1..=8 {
             let experiment = Experiment::at_rest(&file(6.0, 0.0, delay));

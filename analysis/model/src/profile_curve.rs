@@ -11,9 +11,10 @@ use crate::snap_branches::{self, Branch, held, slope};
 
 /// Points of a curve.
 const POINTS: usize = 4000;
-/// Part of a range between end stops that is shown beyond either of them at most.
+/// Largest range that is shown beyond an end stop, as a fraction of the range between the end stops.
 const BEYOND: f64 = 0.08;
-/// Torque of the end stops that is shown, in torques of the profile: else they hide it.
+/// Torque of the end stops up to which they are shown, in torques of the profile: more would hide the
+/// profile.
 const PUSHED: f64 = 1.5;
 /// Repetitions that are shown of a profile without end stops.
 const REPETITIONS: f64 = 3.0;
@@ -34,21 +35,21 @@ pub struct Piece {
 /// A torque profile over angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileCurve {
-    /// Angle in rad, torque in N m and potential in J, from its least on.
+    /// Angle in rad, torque in N m and potential in J above its least value.
     pub points: Vec<[f64; 3]>,
     /// The piece that rises most.
     pub rise: Piece,
     /// The piece that falls most.
     pub fall: Piece,
-    /// The steepest rise in N m/rad with which the scene certifies, all torques in proportion, or the end
-    /// stops where these are steepest; `None` where there is none.
+    /// The steepest rise in N m/rad with which the scene certifies: all torques change in proportion, or only
+    /// the end stops if they are steepest. `None` if there is none.
     pub certified: Option<f64>,
     /// The branches of a profile with a snap point, of which `points` has those of the nearest detents.
     pub branches: Vec<Branch>,
 }
 
 impl ProfileCurve {
-    /// Of a scene with a torque profile; `None` of another.
+    /// For a scene with a torque profile; `None` for any other.
     pub fn of(scene: &Scene) -> Option<Self> {
         Self::over(scene, &shown(scene.environment.profile()?))
     }
@@ -77,7 +78,7 @@ impl ProfileCurve {
         let certified =
             certified_rise(scene, profile, pieces[0].slope, line).map(|slope| slope + line);
         for piece in &mut pieces {
-            // The line of a branch is beside all of them; where the table is level there is nothing else.
+            // The line of a branch adds to all pieces; where the table is level there is only this line.
             if let (Some(snap), true) = (profile.snap, piece.slope == 0.0) {
                 (piece.angle, piece.width) = snap_branches::next_to(piece.angle, &snap, profile);
             }
@@ -140,7 +141,7 @@ fn steepest(profile: &AnyProfile, shown: &Range<f64>, torque: impl Fn(f64) -> f6
         });
         let angle = angles.min_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
         let angle = angle.unwrap_or(middle);
-        // As far as the line goes on, but for the rounding of knots to units.
+        // As far as the straight line continues, except for the rounding of knots to units.
         let is_same = |at: f64| {
             let rise = torque(at + 0.5 * width) - torque(at - 0.5 * width);
             (rise / width - sign * steepest).abs() <= 2.5 * unit
@@ -168,11 +169,11 @@ fn steepest(profile: &AnyProfile, shown: &Range<f64>, torque: impl Fn(f64) -> f6
 /// The design's answer with everything else as it is.
 const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };
 
-/// Of the table and its end stops, beside the line to a snap point: that grows with the torque, and stays as
-/// it is where the end stops grow.
+/// For the table and its end stops, beside the line to a snap point: this line grows with the torque, and
+/// stays unchanged where the end stops grow.
 fn certified_rise(scene: &Scene, profile: &AnyProfile, rise: f64, line: f64) -> Option<f64> {
     let is_of_stops = profile.ends.is_some_and(|ends| ends.stiffness == rise);
-    // A wall beside the profile has the name of that stiffness.
+    // With a wall beside the profile this quantity is the stiffness of the wall.
     if is_of_stops && scene.environment.wall().is_none() {
         return match largest(scene, Quantity::Stiffness, &AS_IT_IS) {
             DesignLimit::Limit(stiffness, _) => Some(stiffness),
@@ -195,7 +196,7 @@ pub struct DetentLimits {
 }
 
 impl DetentLimits {
-    /// Of a scene with another delay, for these numbers of repetitions.
+    /// For a scene with another delay, for these numbers of repetitions.
     pub fn of(scene: &Scene, delay: usize, counts: impl Iterator<Item = u32>) -> Self {
         let late = Quantity::Delay.set(scene, delay as f64).unwrap_or(*scene);
         let point = |count: u32| {

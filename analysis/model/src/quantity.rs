@@ -1,6 +1,6 @@
 //! Numbers as people write them.
 
-/// A number with so many significant digits and no trailing zeros, in exponential form where
+/// A number with `digits` significant digits and no trailing zeros, in exponential form where
 /// plain digits would be long.
 ///
 /// ```
@@ -26,7 +26,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// The number nearest to `value` of those with so many significant digits.
+/// The number nearest to `value` of those with `digits` significant digits.
 ///
 /// ```
 /// use haptic_model::quantity::rounded;
@@ -38,7 +38,7 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.precision$e}").parse().unwrap_or(value)
 }
 
-/// A name of at most this many letters, with dots for the rest.
+/// A name of at most `letters` characters, with dots in place of the rest.
 ///
 /// ```
 /// use haptic_model::quantity::shortened;

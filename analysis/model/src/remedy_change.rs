@@ -1,4 +1,4 @@
-//! What passes instead of a rejected scene, as changes of its file.
+//! The remedies of a rejected scene, as changes of its file.
 
 use haptic_servo::certificate::Remedy;
 use haptic_servo::environment::Environment;
@@ -9,13 +9,13 @@ use serde_json::{Value, json};
 use crate::file::{SceneFile, key, scene};
 use crate::verdict::VerdictReport;
 
-/// A remedy, and how the file is changed to have it.
+/// A remedy, and the changes of the file that apply it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RemedyChange {
     /// The remedy in words, as the report has it.
     pub sentence: String,
-    /// Keys and their values, null for a removed key: the value that passes and is nearest to the present
-    /// one. Empty where no key of the file is that number.
+    /// Keys and their values, null for a removed key: the passing value that is nearest to the present one.
+    /// Empty where no key of the file has that number.
     pub changes: Vec<(&'static str, Value)>,
 }
 
@@ -49,7 +49,7 @@ fn changes(file: &SceneFile, remedy: &Remedy) -> Vec<(&'static str, Value)> {
     untyped.into_iter().chain(changed.clone()).collect()
 }
 
-/// The key of a number; `None` where the file has another one in its place.
+/// The key of a number; `None` where the file has another number in its place.
 fn key_of(file: &SceneFile, parameter: Parameter) -> Option<&'static str> {
     let is_chain = file.chain.masses().len() > 1;
     let is_beside_wall = match &file.scene.environment {
@@ -57,7 +57,7 @@ fn key_of(file: &SceneFile, parameter: Parameter) -> Option<&'static str> {
         _ => false,
     };
     Some(match parameter {
-        // That of a chain follows from its masses.
+        // The damping of a chain follows from its masses.
         Parameter::DeviceDamping if is_chain => return None,
         Parameter::Stiffness if is_beside_wall => key::WALL_STIFFNESS.path,
         Parameter::Damping if is_beside_wall => key::WALL_DAMPING.path,
@@ -65,13 +65,13 @@ fn key_of(file: &SceneFile, parameter: Parameter) -> Option<&'static str> {
     })
 }
 
-/// Whether a device may be said to have that passivity: no more than what its masses have.
+/// Whether a device may be declared to have that passivity: no more than its masses give.
 fn is_passivity(file: &SceneFile, value: f64) -> bool {
     let own = file.chain.as_rigid().ok().map(|own| own.passivity());
     own.is_none_or(|own| value <= own)
 }
 
-/// The end of the values that pass which is nearer to the present value.
+/// The end of the passing values that is nearer to the present value.
 fn nearest(remedy: &Remedy, present: Option<f64>) -> Option<f64> {
     let Remedy { lowest, highest, .. } = *remedy;
     match (lowest, highest, present) {

@@ -39,11 +39,12 @@ impl Response {
 
     /// Value on the unit circle at the angle `theta` in rad.
     pub fn at_angle(&self, theta: f64) -> Complex<f64> {
-        // Of a library of our own: each system's has other last digits, and the verdict says where.
+        // From a library, not from the system: the last digits differ between systems, and the verdict states
+        // the angle.
         self.at(Complex::new(libm::cos(theta), libm::sin(theta)))
     }
 
-    /// The difference equation; `None` if the degree is beyond what the certificate admits.
+    /// The difference equation; `None` if the degree is beyond the certificate's limit.
     pub fn filter(&self) -> Option<Filter> {
         let t = &self.transfer;
         let up = |power: i32| power.max(0) as usize;
@@ -83,12 +84,12 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// What multiplies the input of now, of one tick ago, and so on.
+    /// Coefficients of the input of this tick, of one tick ago, and so on.
     pub fn numerator(&self) -> &[f64] {
         &self.numerator
     }
 
-    /// What multiplies the output, likewise; the first is 1.
+    /// Coefficients of the output, likewise; the first is 1.
     pub fn denominator(&self) -> &[f64] {
         &self.denominator
     }

@@ -1,5 +1,5 @@
-//! An amplifier whose current loop is updated a whole number of times in a period (theory, section 13.8): from
-//! one update to the next its torque goes in a straight line, and what it lacks shrinks by the same factor.
+//! An amplifier whose current loop is updated a whole number of times in a period (theory, section 13.8):
+//! from one update to the next its torque goes in a straight line, and its error shrinks by the same factor.
 
 use haptic_servo::scene::Latency;
 use nalgebra::Complex;
@@ -9,12 +9,12 @@ use nalgebra::Complex;
 pub struct SampledActuator {
     /// Time in s between two updates.
     between: f64,
-    /// The rest of a step after it.
+    /// Fraction of a step that remains after that time.
     left: f64,
 }
 
 impl SampledActuator {
-    /// Of a scene with this period in s; `None` where its amplifier is not updated.
+    /// For a scene with this period in s; `None` where its amplifier is not updated.
     pub fn of(latency: &Latency, period: f64) -> Option<Self> {
         let updates = latency.actuator_updates;
         let between = period / f64::from(updates);
@@ -27,7 +27,7 @@ impl SampledActuator {
         self.between
     }
 
-    /// Updates in so many s, to the nearest.
+    /// Number of updates in `time` s, to the nearest.
     pub fn in_time(&self, time: f64) -> u32 {
         (time / self.between).round() as u32
     }
@@ -39,15 +39,15 @@ impl SampledActuator {
         (updates - updates.round()).abs() <= ROUNDING
     }
 
-    /// Slope of the torque until the next update in N m/s, for a torque that lacks 1 N m.
+    /// Slope of the torque until the next update in N m/s, for a torque that is 1 N m below its command.
     pub fn slope(&self) -> f64 {
         (1.0 - self.left) / self.between
     }
 
     /// Torque from a command that changes at updates only, at an angular frequency in rad/s that is not 0.
     ///
-    /// Its step response is what one lag makes of a step, joined by straight lines: the response to a pulse is
-    /// constant between updates.
+    /// Its step response is that of a first-order lag at the updates, joined by straight lines: the response
+    /// to a pulse is constant between updates.
     pub fn response(&self, omega: f64) -> Complex<f64> {
         let step = Complex::from_polar(1.0, -omega * self.between);
         let pulse = (1.0 - step) / Complex::new(0.0, omega * self.between);

@@ -18,8 +18,8 @@ pub struct Branch {
     pub snaps: Vec<[f64; 3]>,
 }
 
-/// The torque in N m at an angle in rad of a profile that holds the knob in the detent next to another angle;
-/// neither late nor damped, by the law that runs.
+/// The torque in N m of a profile at an angle in rad, while the detent next to another angle holds the knob:
+/// by the law that runs, without delay and damping.
 pub fn held(scene: &Scene, profile: &AnyProfile) -> Option<impl Fn(f64, f64) -> f64 + use<>> {
     let mut still = *profile;
     (still.delay, still.damping) = (0, 0.0);
@@ -34,7 +34,7 @@ pub fn held(scene: &Scene, profile: &AnyProfile) -> Option<impl Fn(f64, f64) -> 
     })
 }
 
-/// Those whose centre is shown; none of a profile without a snap point.
+/// The branches whose centre is shown; none for a profile without a snap point.
 pub fn of(scene: &Scene, profile: &AnyProfile, shown: &Range<f64>) -> Vec<Branch> {
     let (Some(snap), Some(torque)) = (profile.snap, held(scene, profile)) else {
         return Vec::new();
@@ -46,7 +46,7 @@ pub fn of(scene: &Scene, profile: &AnyProfile, shown: &Range<f64>) -> Vec<Branch
 }
 
 struct Numbers {
-    /// Centre of the branch 0, distance of two, and from a centre to its snap point, all in rad.
+    /// Centre of the branch 0, distance of two centres, and from a centre to its snap point, all in rad.
     first: f64,
     pitch: f64,
     reach: f64,
@@ -66,7 +66,7 @@ impl Numbers {
     fn branch(&self, branch: i32, shown: &Range<f64>, torque: &impl Fn(f64, f64) -> f64) -> Branch {
         let centre = self.first + f64::from(branch) * self.pitch;
         let end = |side: f64, is_last: bool| {
-            // The last one goes on beyond its end stop.
+            // The lowest and the highest branch continue beyond their end stop.
             let free = if side < 0.0 { shown.start } else { shown.end };
             if is_last { free } else { centre + side * self.reach }
         };

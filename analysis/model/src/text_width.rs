@@ -1,7 +1,7 @@
 //! Text at a width.
 
-/// Breaks the lines of a text that are wider than so many columns between words; what follows is
-/// indented by `hang` columns. Nothing is broken where there is no width.
+/// Breaks the lines of a text that are wider than `width` columns between words; the lines that continue one
+/// are indented by `hang` columns. Without a width nothing is broken.
 pub fn wrapped(text: &str, width: Option<usize>, hang: usize) -> String {
     let Some(width) = width else { return text.to_owned() };
     let indent = " ".repeat(if hang < width / 2 { hang } else { 0 });

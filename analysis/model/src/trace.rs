@@ -1,4 +1,4 @@
-//! A run as samples over time: what a simulation, a scenario or a recording gave.
+//! A run as samples over time: the result of a simulation, a scenario or a recording.
 
 use std::ops::Range;
 use std::path::Path;
@@ -9,12 +9,12 @@ use crate::simulation::tick_status::TickStatus;
 use crate::simulation::torque_signal::TorqueSignal;
 use crate::simulation::{Experiment, Integration, SimulationError, simulate};
 
-/// A step of the encoder is at most one in so many of the largest velocity.
+/// A step of the encoder over the window of a velocity is at most the largest velocity over this number.
 const STEPS: f64 = 20.0;
-/// A velocity is taken over at most one in so many of the samples.
+/// The window of a velocity is at most the samples of the run over this number.
 const SMEARED: usize = 12;
 
-/// What the samples are counted in.
+/// Unit of the samples' times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TimeUnit {
     /// Seconds.
@@ -27,15 +27,15 @@ pub enum TimeUnit {
 /// A run to draw.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    /// Its name.
+    /// Its title.
     pub title: String,
-    /// What the times are in.
+    /// Unit of the times.
     pub time_unit: TimeUnit,
-    /// When the samples were taken, each later than the one before.
+    /// Times of the samples, each later than the one before.
     pub time: Vec<f64>,
     /// Angle of the device in rad, a sample each.
     pub position: Vec<f64>,
-    /// Where the hand wanted to be in rad, as long as it held the device.
+    /// Set-point of the hand in rad, as long as it held the device.
     pub hand: Vec<f64>,
     /// Velocity in rad/s, a sample each; empty where it was not recorded, to be taken from the angle.
     pub velocity: Vec<f64>,
@@ -44,22 +44,21 @@ pub struct Trace {
     /// Torque in N m with which the hand drives the device, in the direction of the angle; empty where
     /// it is not known or there is none.
     pub hand_torque: Vec<f64>,
-    /// What the torque is limited to, in N m.
+    /// Limit of the torque in N m.
     pub torque_limit: Option<f64>,
-    /// Why the torque is not what the scene asked for.
+    /// Status of the servo, a sample each.
     pub limit: Vec<TickStatus>,
-    /// When the hand lets go, on the same clock.
+    /// Time at which the hand lets go, on the same clock.
     pub release: Option<f64>,
     /// Angle in rad beyond which a one-sided wall is felt.
     pub face: Option<f64>,
-    /// When the run went beyond what a picture can show, if it did; there are no samples from
-    /// there on.
+    /// Time at which the run went beyond the range of a picture, if it did; there are no samples from there
+    /// on.
     pub lost: Option<f64>,
 }
 
 impl Trace {
-    /// What a scene file's simulation does, taken exactly through each tick; `folder` is where its
-    /// torque file is looked for.
+    /// The simulation of a scene file, exact through each tick; `folder` is the folder of its torque file.
     ///
     /// # Errors
     /// Where the file has no `[simulation]`, or its scene cannot run.
@@ -87,7 +86,7 @@ impl Trace {
         Ok(trace)
     }
 
-    /// Ends the run at the first sample that is not fine, or where there is no more of it.
+    /// Ends the run at the first sample that is not fine, or at the end of the recording.
     pub fn until(mut self, is_fine: impl Fn(f64) -> bool) -> Self {
         let fine = |column: &[f64], i: usize| column.get(i).is_none_or(|value| is_fine(*value));
         let all = |&i: &usize| {
@@ -124,9 +123,8 @@ impl Trace {
         self.begin(0)..self.begin(self.time.len())
     }
 
-    /// Samples over which a velocity is taken that was not recorded: as many as a picture does not
-    /// show apart, and as many more, up to a `SMEARED` part of the run, as make a step of the
-    /// encoder a small part of the velocities.
+    /// Samples over which a velocity is taken that was not recorded: as many as a picture cannot separate,
+    /// and more, up to the run over `SMEARED`, until a step of the encoder is a small part of the velocities.
     pub fn window(&self) -> usize {
         let last = self.time.len().saturating_sub(1).max(1);
         let (least, most) = ((self.time.len() / 400).clamp(1, last), (last / SMEARED).max(1));
@@ -140,10 +138,10 @@ impl Trace {
         wider.take_while(|window| *window < most).find(is_fine).unwrap_or(most.max(least))
     }
 
-    /// The encoder's step: the least by which changes of the angle from a sample to the next differ,
-    /// of some size beside the largest; `None` if it never changes.
+    /// The encoder's step: the smallest difference, larger than rounding, between two changes of the angle
+    /// from a sample to the next; `None` if the angle never changes.
     fn step(&self) -> Option<f64> {
-        /// Smaller changes, as a part of the largest change, come from rounding.
+        /// Differences below this fraction of the largest change come from rounding.
         const ROUNDED: f64 = 1e-6;
         let changes = self.position.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         let mut changes: Vec<_> = changes.chain([0.0]).collect();
@@ -153,7 +151,7 @@ impl Trace {
         steps.filter(|step| *step > least).min_by(f64::total_cmp)
     }
 
-    /// The mean velocity over so many samples, around each sample as far as the run goes.
+    /// The mean velocity over `window` samples, around each sample as far as the run goes.
     fn means(&self, window: usize) -> impl Iterator<Item = f64> + '_ {
         let last = self.time.len().saturating_sub(1);
         let window = window.min(last);

@@ -8,11 +8,11 @@ use nalgebra::{Complex, DMatrix};
 use crate::response::Response;
 use crate::stability::eigenvalues;
 
-/// Distance from the unit circle below which a pole is drawn as lying on it: a picture cannot show
-/// the difference. The certificate, which decides, knows better.
+/// Distance from the unit circle below which a pole is drawn as lying on it: a picture cannot show the
+/// difference. The certificate, which decides, is more exact.
 const ON_CIRCLE: f64 = 1e-7;
 
-/// What a residue's size may be in rounding.
+/// Relative rounding error of a residue.
 const ROUNDING: f64 = 1e-6;
 
 /// A pole on the upper half of the unit circle; each has its mirror image on the lower half.
@@ -24,11 +24,11 @@ pub struct UnitCirclePole {
     pub kind: Kind,
 }
 
-/// What a pole on the unit circle does to passivity.
+/// The effect of a pole on the unit circle on passivity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// A simple pole with `k = rho / z0` in N m s/rad. Passive is a positive one: the curve closes
-    /// through infinity on the right.
+    /// A simple pole with `k = rho / z0` in N m s/rad. A positive `k` is passive: the curve closes through
+    /// infinity on the right.
     Simple(Complex<f64>),
     /// More than one pole at the same place: never passive.
     Repeated,
@@ -40,14 +40,13 @@ impl UnitCirclePole {
         matches!(self.kind, Kind::Simple(k) if k.re > 0.0 && k.im.abs() <= ROUNDING * k.norm())
     }
 
-    /// Whether its way through infinity is drawn: around several poles at one place it is longer than a
+    /// Whether its way through infinity is drawn: the way around several poles at one place is longer than a
     /// picture's frame.
     pub fn is_simple(&self) -> bool {
         matches!(self.kind, Kind::Simple(_))
     }
 
-    /// Whether the residue is real: then the curve closes on the right or on the left, and
-    /// otherwise askew.
+    /// The residue, if it is real: then the curve closes on the right or on the left, and otherwise askew.
     pub fn residue(&self) -> Option<f64> {
         match self.kind {
             Kind::Simple(k) if k.im.abs() <= ROUNDING * k.norm() => Some(k.re),
@@ -91,7 +90,7 @@ pub fn poles(g: &Transfer) -> Vec<UnitCirclePole> {
     found
 }
 
-/// The number of poles outside of the unit circle, beyond what counts as lying on it.
+/// The number of poles outside of the unit circle, farther than those that count as lying on it.
 pub fn outside(g: &Transfer) -> usize {
     roots(g).into_iter().filter(|z| z.norm() >= 1.0 + ON_CIRCLE).count()
 }

@@ -1,4 +1,4 @@
-//! What the certificate says about a scene, as the fields that people and programs read.
+//! The verdict on a scene, as the fields that people and programs read.
 
 use std::fmt;
 
@@ -77,10 +77,10 @@ pub struct AtRest {
     pub numbers: f64,
     /// Bound for the DAC's step; `None`: not stated.
     pub converter: Option<f64>,
-    /// Bound for the steps of a current loop; absent: there is none.
+    /// Bound for the steps of a current loop; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub current: Option<f64>,
-    /// The addition where the torque changes its sign; absent: nothing.
+    /// The addition where the torque changes its sign; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing: Option<f64>,
     /// The sum: bound on the torque's error, and the friction that prevents a limit cycle.
@@ -89,7 +89,7 @@ pub struct AtRest {
     pub friction: Option<f64>,
     /// Whether that is enough; `None` where it cannot be said.
     pub comes_to_rest: Option<bool>,
-    /// Whether the steps do no more than that in any motion. Otherwise they do where it moves through
+    /// Whether the steps cause no more than that in any motion. Otherwise they cause more in a motion through
     /// a face.
     pub in_any_motion: bool,
 }
@@ -124,11 +124,11 @@ impl AtRest {
 /// A judged scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VerdictReport {
-    /// What the person calls the scene.
+    /// Name of the scene.
     pub name: String,
     /// The answer.
     pub verdict: Verdict,
-    /// What each rule says.
+    /// The answer of each rule.
     pub rules: Rules,
     /// `ok`, or the code of the reason.
     pub reason: &'static str,
@@ -146,8 +146,8 @@ pub struct VerdictReport {
     /// Passivity of the device in N m s/rad, scaled to the worst period; the certificate compares
     /// with the lower end of an enclosure of it.
     pub delta: f64,
-    /// Damping in N m s/rad that the device may lose with everything else as it runs; negative: what
-    /// it lacks.
+    /// Damping in N m s/rad that the device may lose with everything else unchanged; negative: the damping
+    /// that it lacks.
     pub margin: Option<f64>,
     /// The same where the torque is limited as on a board; `None` where no board renders the scene.
     #[serde(skip)]
@@ -165,15 +165,15 @@ pub struct VerdictReport {
     /// Number format of the coefficients that were judged; `None`: as they were written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub format: Option<String>,
-    /// What steps do at rest, where the scene is certified and they were stated.
+    /// The errors from steps at rest, where the scene is certified and the steps were stated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest: Option<AtRest>,
     /// Why no board renders a scene that is certified; `None` where one does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub board: Option<String>,
-    /// What the verdict rests on.
+    /// The assumptions of the verdict.
     pub assumptions: Vec<String>,
-    /// Those of the assumptions that do not hold.
+    /// The assumptions that do not hold.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// The answer as a sentence.
@@ -185,7 +185,7 @@ pub struct VerdictReport {
     pub changes: Option<Remedies>,
 }
 
-/// Judges a scene as it was written, of a machine of which nothing more is known.
+/// Judges a scene as it was written; nothing more is known of the machine.
 pub fn judge(name: &str, scene: &Scene) -> VerdictReport {
     judge_in(name, scene, Format::F64, &Resolution::default())
 }
@@ -272,7 +272,7 @@ fn in_sentences(remedies: &Remedies) -> Vec<String> {
 }
 
 impl VerdictReport {
-    /// The margin in words; `None` where there is none.
+    /// The margin in words; `None` if it does not exist.
     pub fn margin_in_words(&self) -> Option<String> {
         Some(in_words(self.margin?, self.is_margin_known))
     }
@@ -291,12 +291,12 @@ fn in_words(margin: f64, is_known: bool) -> String {
 const NO_MARGIN: &str = "none is known: where torques lag, and a limit or a face has them judged by a \
                          bound, the coupling is made for this passivity of the device and for no less";
 
-/// When a board would put the scene's torques out.
+/// The output timing of the scene on a board.
 fn timing_on_a_board(scene: &Scene) -> OutputTiming {
     OutputTiming::of_delay(scene.latency.code_delay(scene.timing.period))
 }
 
-/// Whether the index at the port is another one than that of `E'`.
+/// Whether the index at the port differs from that of `E'`.
 fn has_port_index(scene: &Scene) -> bool {
     !scene.latency.is_none() || scene.coupling == Coupling::Matched
 }
@@ -325,12 +325,12 @@ fn enclosure(interval: Option<Interval>) -> Enclosure {
     Enclosure { lo: interval.map(Interval::lo), hi: interval.map(Interval::hi) }
 }
 
-/// Angle in rad at which the linear index is reached: looked for in the part of the circle that the
+/// Angle in rad at which the linear index is reached: searched in the part of the circle that the
 /// certificate has enclosed. None where the real part is the same all around.
 fn minimum_angle(scene: &Scene, assessment: &Assessment) -> Option<f64> {
     let cosine = assessment.cos_theta?;
     if assessment.rule == Rule::Exact && has_port_index(scene) {
-        // The minimum depends on delta; the enclosure of its place is narrow.
+        // The index at the port depends on delta; the enclosure of its place is narrow.
         let is_known = cosine.lo() > -1.0 || cosine.hi() < 1.0;
         return is_known.then(|| libm::acos(cosine.midpoint().clamp(-1.0, 1.0)));
     }

@@ -8,8 +8,8 @@ pub fn text(report: &VerdictReport) -> String {
     rows(report).iter().map(|(label, value)| format!("{label:<18} {value}\n")).collect()
 }
 
-/// The report for a person: a label and its value in each row; no label where a row goes on with the one
-/// before.
+/// The report for a person: a label and its value in each row; a row that continues the one before has no
+/// label.
 pub fn rows(report: &VerdictReport) -> Vec<(&'static str, String)> {
     let mut rows = vec![
         ("scene", report.name.clone()),
@@ -51,7 +51,7 @@ fn list(rows: &mut Vec<(&'static str, String)>, label: &'static str, items: &[St
     }
 }
 
-/// The middle of an enclosure to the digits that are certain, and how far it reaches.
+/// The middle of an enclosure, and half its width.
 fn enclosure(enclosure: Enclosure) -> String {
     match enclosure {
         Enclosure { lo: Some(lo), hi: Some(hi) } => {

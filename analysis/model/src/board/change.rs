@@ -16,7 +16,7 @@ pub struct DuplicateParameter {
 /// One change: `stiffness=30`.
 ///
 /// # Errors
-/// A sentence where it is not a name and a finite number.
+/// A sentence if the text is not a name and a finite number.
 pub fn change(text: &str) -> Result<(Parameter, f64), String> {
     let (name, value) =
         text.split_once('=').ok_or_else(|| format!("expected NAME=VALUE, got `{text}`"))?;
@@ -30,7 +30,7 @@ pub fn change(text: &str) -> Result<(Parameter, f64), String> {
     }
 }
 
-/// Changes as the wire has them.
+/// Collects changes into the type of the wire protocol.
 ///
 /// # Errors
 /// Where a parameter is given twice.
@@ -41,7 +41,7 @@ pub fn collect(changes: &[(Parameter, f64)]) -> Result<Changes, DuplicateParamet
             return Err(DuplicateParameter { name });
         }
     }
-    // More than there are parameters would have one of them twice.
+    // More changes than parameters would contain a duplicate, which is refused above.
     Ok(changes.iter().copied().collect())
 }
 
@@ -49,7 +49,7 @@ pub fn collect(changes: &[(Parameter, f64)]) -> Result<Changes, DuplicateParamet
 /// spaces at the equals sign: `stiffness = 20, damping = 0.01`.
 ///
 /// # Errors
-/// A sentence if there is no number, or other text.
+/// A sentence if the line has no change, an invalid change or a duplicate parameter.
 pub fn line(text: &str) -> Result<Changes, String> {
     let sides: Vec<&str> = text.split('=').map(str::trim).collect();
     let together = sides.join("=");

@@ -8,7 +8,7 @@ use haptic_servo::wire::message::{ActiveParameters, BoardUnits, Changes, Previou
 use super::history::History;
 use crate::quantity::significant;
 
-/// The numbers that run, as they are typed: `stiffness=22 damping=0.01`.
+/// The active numbers, as they are typed: `stiffness=22 damping=0.01`.
 pub fn numbers(parameters: &ActiveParameters) -> String {
     changes(&parameters.values)
 }
@@ -24,7 +24,7 @@ pub fn name(parameter: Parameter) -> &'static str {
     tuning::name(parameter).unwrap_or(parameter.name_and_unit().0)
 }
 
-/// What stopped the board before it was last started.
+/// The fault that stopped the board before its last reset.
 pub fn previous_fault(previous_fault: &PreviousFault) -> String {
     format!("before the last reset, in tick {}: {}", previous_fault.tick, previous_fault.fault)
 }
@@ -34,8 +34,7 @@ pub fn reset(status: &Status) -> String {
     format!("last reset: {}", status.reset)
 }
 
-/// What the servo has to spare, of its certificate and of its time; `slack` in s is that of the
-/// last tick.
+/// The reserves of the certificate (margin) and of the time (slack); `slack` in s is that of the last tick.
 pub fn reserves(
     parameters: &ActiveParameters,
     status: &Status,
@@ -56,7 +55,7 @@ pub fn worst_slack(status: &Status, board: &BoardUnits) -> Option<f64> {
     (counts <= board.timer_counts).then(|| f64::from(counts) / f64::from(board.timer_counts))
 }
 
-/// What a change of its numbers costs a board that is armed.
+/// The longest time without torque while an armed board changes its numbers.
 pub fn gap(board: &BoardUnits) -> String {
     let gap = significant(1e3 * board.longest_gap, 3);
     format!("the torque was released for up to {gap} ms while the set was swapped in")
@@ -79,7 +78,7 @@ pub fn limits(history: &History) -> String {
     format!("limited by {}", each.collect::<Vec<_>>().join(", "))
 }
 
-/// What got lost on the way; `here` is what the host could not read.
+/// Lost ticks and bad frames; `here` counts the frames that the host could not read.
 pub fn losses(status: &Status, here: Discarded) -> String {
     let (there, here) = (status.discarded.total(), here.total());
     let Status { dropped, thinned, .. } = status;

@@ -14,7 +14,7 @@ pub struct History {
 }
 
 impl History {
-    /// Keeps so many seconds.
+    /// Keeps the samples of the last `window` seconds.
     pub fn new(window: f64) -> Self {
         Self { samples: VecDeque::new(), window }
     }
@@ -24,8 +24,8 @@ impl History {
         self.window
     }
 
-    /// Adds a sample and drops those that are too old. A sample earlier than the last comes from a board that
-    /// was started again: all before it are dropped.
+    /// Adds a sample and drops samples that are too old. A tick below the last one shows that the board was
+    /// restarted: all earlier samples are dropped.
     pub fn push(&mut self, sample: Sample) {
         if self.samples.back().is_some_and(|last| sample.tick < last.tick) {
             self.samples.clear();
@@ -47,8 +47,8 @@ impl History {
         self.samples.back()
     }
 
-    /// Points of a curve, at most two for each of `columns`: the smallest and the largest value of
-    /// each, so that no peak is lost. Times in s before the last sample, which are not positive.
+    /// Points of a curve, at most two for each of `columns`: the smallest and the largest value of each, so
+    /// that no peak is lost. Times are in s relative to the last sample: 0 or negative.
     pub fn curve(&self, columns: usize, value: impl Fn(&Sample) -> f64) -> Vec<(f64, f64)> {
         let Some(last) = self.last() else { return Vec::new() };
         let width = self.window / columns.max(1) as f64;
@@ -81,7 +81,7 @@ impl History {
         })
     }
 
-    /// What limited the torque, and in which share of the samples, the most frequent first.
+    /// The reasons for limited torques, each with its share of the samples, the most frequent first.
     pub fn limits(&self) -> Vec<(LimitReason, f64)> {
         let mut counts: Vec<(LimitReason, usize)> = Vec::new();
         for sample in &self.samples {

@@ -1,5 +1,5 @@
-//! A board that runs, in words and units: the same ones on a terminal and in a browser. What carries its
-//! messages is elsewhere.
+//! A running board in words and units, the same on a terminal and in a browser. The transport of its messages
+//! is elsewhere.
 
 pub mod change;
 pub mod formatting;

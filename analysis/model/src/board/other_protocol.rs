@@ -1,9 +1,9 @@
-//! A board whose protocol is not this one.
+//! A board with another version of the protocol.
 
 use haptic_servo::wire::PROTOCOL;
 use thiserror::Error;
 
-/// A board of another version.
+/// A board with another version of the protocol.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
     "the board on {address} runs `{program}` with version {theirs} of the protocol, but this program speaks \

@@ -1,4 +1,4 @@
-//! What a board's power stage measures, in the units of a data sheet.
+//! Measurements of a board's power stage, in the units of a data sheet.
 
 use std::fmt;
 

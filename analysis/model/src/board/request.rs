@@ -1,4 +1,4 @@
-//! Requests to a board, and what became of them, in words.
+//! Requests to a board and their results, in words.
 
 use haptic_servo::servo::Step;
 use haptic_servo::tuning::{Parameters, RenderError};
@@ -50,7 +50,7 @@ impl Request {
     }
 }
 
-/// What became of a request.
+/// The state of a request.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
     /// It was sent.
@@ -85,7 +85,7 @@ impl Reply {
     }
 }
 
-/// What became of a request, in words.
+/// The board's answer to a request, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RequestResult {
     /// The request has taken effect.
@@ -103,8 +103,8 @@ impl From<Outcome> for RequestResult {
     }
 }
 
-/// Why a board has refused changes at this step: what runs there is judged again here, with the remedies that
-/// a board has no room to look for.
+/// Why a board has refused changes at this step: the host judges them again, with the remedies that a board
+/// has no room to look for.
 pub fn refusal_in_words(
     step: Step,
     changes: &Changes,

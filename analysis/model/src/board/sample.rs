@@ -1,4 +1,4 @@
-//! A tick of a board in the units of the world.
+//! A tick of a board in physical units.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -11,10 +11,10 @@ use serde::Serialize;
 
 use crate::quantity::rounded;
 
-/// Digits of a time: a multiple of a period of few digits has not more, but for its rounding.
+/// Digits of a time: a multiple of a period with few digits has no more, except by rounding.
 const DIGITS: usize = 15;
 
-/// A tick of a board in the units of the world.
+/// A tick of a board in physical units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Periods since the board's servo started; wraps on the board and not here.
@@ -29,7 +29,7 @@ pub struct Sample {
     pub code: u16,
     /// Coupling torque `F` in N m, as in every other trace; the motor applies `-F`.
     pub torque: f64,
-    /// What the servo was doing.
+    /// The state of the servo.
     pub state: State,
     /// The reason if the torque is limited.
     pub limit: LimitReason,
@@ -37,7 +37,7 @@ pub struct Sample {
     pub slack: f64,
 }
 
-/// From a board's ticks to samples.
+/// Converts a board's ticks to samples.
 #[derive(Clone, Debug)]
 pub struct Scale {
     board: BoardUnits,
@@ -46,12 +46,12 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Of this board.
+    /// For this board.
     pub fn new(board: BoardUnits) -> Self {
         Self { board, tick: 0, count: 0 }
     }
 
-    /// A tick, which came after those before: the numbers that wrap on the wire do not wrap here.
+    /// Converts the next tick; the ticks come in order. Numbers that wrap on the wire do not wrap here.
     pub fn sample(&mut self, frame: &Frame) -> Sample {
         let board = &self.board;
         self.tick += u64::from(frame.tick.wrapping_sub(self.tick as u32));
@@ -63,7 +63,7 @@ impl Scale {
             count: self.count,
             position: self.count as f64 * TAU / board.counts_per_turn,
             code: frame.code.get(),
-            // No torque is 0 and not -0.
+            // Zero torque is 0 and not -0.
             torque: 0.0 - f64::from(frame.code.offset()) * torque_per_code,
             state: frame.state,
             limit: frame.limit,
@@ -107,7 +107,7 @@ impl fmt::Display for Row {
     }
 }
 
-/// A number as JSON has it, so that all tables of this workspace write it alike.
+/// A number in the notation of JSON, so that all tables of this workspace write it alike.
 fn decimal(number: f64) -> String {
     serde_json::Number::from_f64(number).map_or(number.to_string(), |number| number.to_string())
 }

@@ -1,4 +1,4 @@
-//! Where the impedance of a chain can lie, over all passive hands.
+//! The set of a chain's impedances over all passive hands.
 //!
 //! At a frequency `w` the hand's impedance is anywhere in the right half plane, and each mass and
 //! each link is a Moebius map, so the impedance that the motor feels is anywhere in a disk
@@ -16,9 +16,9 @@
 //! ```
 //!
 //! (right-hand sides from before the step). For a link `y = s/(c s + k)`; multiplied by
-//! `kappa = k^2 + c^2 u`, `u = w^2`, everything is a polynomial in `u`. What tends to zero with the
-//! frequency is divided out by hand, `g = u G`, `a = u A`, `e = w E`: without that the infimum of
-//! `d = a / g` drowns at low frequency in terms that cancel. Every term of `A` is positive.
+//! `kappa = k^2 + c^2 u`, `u = w^2`, everything is a polynomial in `u`. Factors that tend to zero with the
+//! frequency are divided out by hand, `g = u G`, `a = u A`, `e = w E`: otherwise the infimum of `d = a / g`
+//! is lost at low frequency in terms that cancel. Every term of `A` is positive.
 
 use num_bigint::BigInt;
 use num_traits::One;
@@ -49,8 +49,8 @@ pub struct LeastReal {
 }
 
 impl LeastReal {
-    /// Of the impedance behind the first mass: everything but its own inertia and damping, in units
-    /// of `10^-places` N m s/rad.
+    /// Of the impedance behind the first mass: everything except its own inertia and damping, in units of
+    /// `10^-places` N m s/rad.
     pub fn behind_motor(chain: &Chain, places: u32) -> Self {
         let mut disk = Disk {
             unit: Polynomial::new(vec![BigInt::one()]),

@@ -1,8 +1,8 @@
 //! Polynomials of whole numbers of any size.
 //!
-//! Where a chain has undamped resonances inside, twelve digits of its polynomials cancel. Numbers
-//! that do not round make that no concern, and a chain's are decimals: multiplied by a power of ten
-//! they are whole, and everything that follows stays so.
+//! Where a chain has undamped resonances inside, twelve digits of its polynomials cancel. Exact arithmetic
+//! loses none of them. The numbers of a chain are decimals: multiplied by a power of ten they are whole, and
+//! all results computed from them are whole, too.
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -25,12 +25,12 @@ impl Decimal {
         Self { digits, power: exponent.parse::<i32>().unwrap_or(0) - fraction.len() as i32 }
     }
 
-    /// The power of ten that makes it whole.
+    /// The power of ten that makes the number whole.
     pub fn places(&self) -> u32 {
         if self.digits.is_zero() { 0 } else { (-self.power).max(0).unsigned_abs() }
     }
 
-    /// Times `10^places`, no fewer than [`Self::places`].
+    /// The number times `10^places`; `places` is at least [`Self::places`].
     pub fn whole(&self, places: u32) -> BigInt {
         let power = i64::from(self.power) + i64::from(places);
         &self.digits * BigInt::from(10).pow(power.max(0).unsigned_abs() as u32)
@@ -65,12 +65,12 @@ impl Polynomial {
         self.0.get(power).cloned().unwrap_or_default()
     }
 
-    /// The power of the variable that divides it.
+    /// The highest power of the variable that divides it.
     pub fn trailing_zeros(&self) -> usize {
         self.0.iter().take_while(|coefficient| coefficient.is_zero()).count()
     }
 
-    /// Divided by a power of the variable; what does not divide is dropped.
+    /// Divided by a power of the variable; the remainder is dropped.
     pub fn shifted_down(&self, power: usize) -> Self {
         Self(self.0.iter().skip(power).cloned().collect())
     }
@@ -108,7 +108,7 @@ impl Polynomial {
         Self::new(self.0.iter().enumerate().skip(1).map(|(i, a)| a * BigInt::from(i)).collect())
     }
 
-    /// The value somewhere.
+    /// The value at `x`.
     pub fn at(&self, x: &BigRational) -> BigRational {
         let zero = BigRational::zero();
         self.0.iter().rev().fold(zero, |sum, a| sum * x + BigRational::from(a.clone()))

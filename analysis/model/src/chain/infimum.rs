@@ -6,27 +6,27 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use super::exact::Polynomial;
 
-/// Most boxes that are looked at: what a chain of ten masses takes is some hundreds.
+/// Largest number of boxes that are examined: a chain of ten masses takes some hundreds.
 const MAX_BOXES: usize = 20_000;
-/// Most halvings of one box.
+/// Largest number of halvings of one box.
 const MAX_LEVEL: u32 = 160;
 
 /// The infimum of `p(x) / r(x)` over `x >= 0`.
 pub struct Infimum {
-    /// A number that it is not below.
+    /// A lower bound of it.
     pub lower: BigRational,
-    /// A number that it is not above.
+    /// An upper bound of it.
     pub upper: BigRational,
-    /// Where it is.
+    /// The place where it is reached.
     pub minimizer: Minimizer,
 }
 
-/// Where an infimum over the half line is.
+/// The place of an infimum over the half line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Minimizer {
     /// At 0.
     Zero,
-    /// There.
+    /// At this number.
     At(f64),
     /// In the limit of infinity.
     Infinity,
@@ -66,7 +66,7 @@ pub fn infimum(
         if right.r[0].is_positive() && right.value(0) < best.0 {
             best = (right.value(0), right.left());
         }
-        // The more promising half first: it lets the other be settled sooner.
+        // The half with the smaller bound first: the other is then settled sooner.
         let ordered = if left.bound < right.bound { [right, left] } else { [left, right] };
         waiting.extend(ordered);
     }
@@ -109,7 +109,7 @@ impl Box {
     fn halved(self) -> (Self, Self) {
         let (mut pl, mut pr) = halves(self.p);
         let (mut rl, mut rr) = halves(self.r);
-        // Halving without fractions doubles everything; undo what divides.
+        // Halving without fractions doubles everything; a common power of two is divided out.
         let mut all = [&mut pl, &mut pr, &mut rl, &mut rr];
         let twos = |part: &&mut Vec<BigInt>| part.iter().filter_map(BigInt::trailing_zeros).min();
         let common = all.iter().filter_map(twos).min().unwrap_or(0);
@@ -144,7 +144,7 @@ fn bernstein(p: &Polynomial, degree: usize, scale: i64) -> Vec<BigInt> {
         (0..i)
             .fold(BigInt::one(), |value, k| value * BigInt::from(degree - k) / BigInt::from(k + 1))
     };
-    // The product of all binomials is more than their least common multiple; it will do.
+    // The product of all binomials is a common multiple, which is enough; the least one is smaller.
     let common = (0..=degree).map(binomial).product::<BigInt>();
     let coefficient = |i: usize| {
         let power = if scale < 0 { -scale * (degree - i) as i64 } else { scale * i as i64 };

@@ -1,11 +1,11 @@
-//! The same device with fewer masses: links that are stiff enough may as well be welded.
+//! The same device with fewer masses: links that are stiff enough are made rigid.
 
 use super::{Chain, Link, Mass};
 
 impl Chain {
-    /// The chain with so many masses at most, at least one: again and again the link that follows
-    /// fastest is made rigid, and the masses at its ends become one. Inertia and damping in all,
-    /// the encoder's end and the amplifier stay what they are.
+    /// The chain with at most `masses` masses, and at least one: repeatedly, the fastest link is made rigid,
+    /// and the masses at its ends become one. Total inertia, total damping, the encoder's end and the
+    /// amplifier stay unchanged.
     ///
     /// ```
     /// use haptic_model::chain::{Chain, Link, Mass};
@@ -27,8 +27,8 @@ impl Chain {
         lumped
     }
 
-    /// How fast in 1/s a link follows: the modulus of the slower root of
-    /// `s^2 + c w s + k w = 0`, with `w = 1/m1 + 1/m2` of the masses at its ends.
+    /// Rate of a link in 1/s: the modulus of the slower root of `s^2 + c w s + k w = 0`, with
+    /// `w = 1/m1 + 1/m2` of the masses at its ends.
     fn rate(&self, link: usize) -> f64 {
         let Link { stiffness, damping } = self.links[link];
         let mobility = 1.0 / self.masses[link].inertia + 1.0 / self.masses[link + 1].inertia;

@@ -5,9 +5,8 @@
 //!        b1               b2                    bN
 //! ```
 //!
-//! What a certificate needs to know of it is one number, the output strict passivity
-//! [`Chain::excess_passivity`] between motor torque and velocity at the encoder, for every passive
-//! hand (theory, section 3).
+//! A certificate needs one number of the chain: the output strict passivity [`Chain::excess_passivity`]
+//! between motor torque and velocity at the encoder, in every passive hand (theory, section 3).
 
 mod disk;
 mod exact;
@@ -21,7 +20,7 @@ use thiserror::Error;
 
 pub use passivity::{ExcessPassivity, NoPassivity, Reached};
 
-/// Most masses of a chain: more modes than anybody identifies of one axis. The polynomials of
+/// Largest number of masses in a chain: more modes than are ever identified on one axis. The polynomials of
 /// `omega^2` have the degree `2 (N - 2)`.
 pub const MAX_MASSES: usize = 10;
 
@@ -34,12 +33,12 @@ pub struct Mass {
     pub damping: f64,
 }
 
-/// What connects two masses: a spring and a damper side by side.
+/// The connection of two masses: a spring and a damper side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
     /// Stiffness in N m/rad, 0 or more.
     pub stiffness: f64,
-    /// Damping in N m s/rad, 0 or more; not both 0, or nothing is connected.
+    /// Damping in N m s/rad, 0 or more; stiffness and damping are not both 0.
     pub damping: f64,
 }
 
@@ -62,7 +61,7 @@ pub struct Chain {
     actuator_lag: f64,
 }
 
-/// Why these numbers are no chain.
+/// Why these numbers are not a chain.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ChainError {
     /// Number of masses.
@@ -76,7 +75,7 @@ pub enum ChainError {
         /// How many links there are.
         links: usize,
     },
-    /// A number that no mass, link or amplifier has.
+    /// A number out of the range of a mass, link or amplifier.
     #[error("the {what} is {value}; it must be {bound}")]
     OutOfBounds {
         /// Which number.
@@ -144,9 +143,9 @@ impl Chain {
         Ok(self)
     }
 
-    /// The rigid body that stands for the chain in a certificate: all inertia, all damping to the
-    /// ground, and the lower end of the chain's passivity where that is not the damping. It never
-    /// exceeds the damping, of which the sum is rounded and may be below it by a last bit.
+    /// The rigid body that stands for the chain in a certificate: total inertia, total damping to the ground,
+    /// and the lower end of the chain's passivity if the chain is not rigid. The passivity is limited to the
+    /// damping: the sum of the dampings is rounded and may be a last bit below it.
     pub fn as_rigid(&self) -> Result<Device, NoPassivity> {
         let passivity = match self.is_rigid() {
             true => None,
@@ -185,12 +184,12 @@ impl Chain {
         self.masses.len() == 1 && self.actuator_lag == 0.0
     }
 
-    /// Inertia in kg m^2 that is felt where everything moves together.
+    /// Total inertia in kg m^2, which is felt if all masses move together.
     pub fn inertia(&self) -> f64 {
         self.masses.iter().map(|mass| mass.inertia).sum()
     }
 
-    /// Damping in N m s/rad that is felt where everything moves together.
+    /// Total damping in N m s/rad, which is felt if all masses move together.
     pub fn damping(&self) -> f64 {
         self.masses.iter().map(|mass| mass.damping).sum()
     }

@@ -24,16 +24,16 @@ const HIDDEN: u32 = 50;
 pub struct ExcessPassivity {
     /// `delta` in N m s/rad, to within the last digit.
     pub value: f64,
-    /// Encloses it, the numbers of the device being the shortest decimals that they stand for.
+    /// Enclosure of it, with each number of the device taken as its shortest decimal.
     pub delta: Interval,
-    /// The frequency.
+    /// The frequency at which it is reached.
     pub reached: Reached,
 }
 
 /// Frequency at which the impedance of a device can come nearest to passivity's bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reached {
-    /// At all: the bound does not depend on the frequency.
+    /// At all frequencies: the bound does not depend on the frequency.
     Everywhere,
     /// In the limit of frequency 0.
     AtRest,
@@ -44,7 +44,7 @@ pub enum Reached {
 }
 
 impl Reached {
-    /// The angular frequency in rad/s; 0 where any will do, `None` where it is infinite.
+    /// The angular frequency in rad/s; 0 if it is reached at any, `None` if it is infinite.
     pub fn omega(self) -> Option<f64> {
         match self {
             Self::Everywhere | Self::AtRest => Some(0.0),
@@ -54,7 +54,7 @@ impl Reached {
     }
 }
 
-/// Why a device has no output strict passivity at all, for whatever damping.
+/// Why a device has no output strict passivity at all, whatever its damping.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoPassivity {
     /// The encoder does not see the mass that the motor drives.
@@ -129,7 +129,7 @@ impl Chain {
         Ok(ExcessPassivity { value, delta, reached })
     }
 
-    /// Bounds of the damping that the rest of the chain adds to the damping `motor` of its first mass.
+    /// Bounds of the damping that the rest of the chain adds to `motor`, the damping of its first mass.
     fn behind_motor(&self, places: u32, motor: &BigInt) -> (BigRational, BigRational, Reached) {
         let LeastReal { touch, curvature } = LeastReal::behind_motor(self, places);
         if touch.is_zero() || curvature.is_zero() {
@@ -163,8 +163,8 @@ impl Chain {
         NoPassivity::ActuatorLag { lag, omega: (damping / (motor.inertia * lag)).sqrt() }
     }
 
-    /// A frequency at which the device without a hand is plainly not passive between motor and
-    /// encoder, looked for around its resonances.
+    /// A frequency at which the device without a hand is clearly not passive between motor and encoder,
+    /// searched around its resonances.
     fn witness(&self) -> Option<f64> {
         let slowest = |link: f64| (link / self.inertia()).sqrt();
         let stiffest = self.links().iter().map(|link| link.stiffness).fold(0.0, f64::max);

@@ -10,8 +10,8 @@ use super::*;
 
 type Complex<T> = nalgebra::Complex<T>;
 
-/// `R22 - R12^2 / R11` of theory 3.2 at `w`: what [`Chain::excess_passivity`] is the infimum of.
-/// The formula in its other form, `|Z12 Z21| + Re(Z12 Z21) = 2 R12^2` for a reciprocal device.
+/// `R22 - R12^2 / R11` of theory 3.2 at `w`; [`Chain::excess_passivity`] is its infimum. The formula in its
+/// other form, `|Z12 Z21| + Re(Z12 Z21) = 2 R12^2` for a reciprocal device.
 fn bound_at<T: Num + Clone + FromDecimal>(chain: &Chain, w: T) -> T {
     let (n, zero) = (chain.masses().len(), T::zero());
     let mut z = vec![vec![Complex::new(zero.clone(), zero); n]; n];
@@ -169,8 +169,8 @@ fn what_is_grounded_nowhere_else_leaves_the_damping_of_the_motor() {
     assert!(found.delta.contains(0.5) && found.delta.hi() < 0.5 + 1e-12, "{found:?}");
 }
 
-/// The passivity of a chain whose links hardly give way is its damping but for the last bits, and
-/// the sum of the dampers is rounded either way.
+/// The passivity of a chain with nearly rigid links is its damping except for the last bits, and the sum of
+/// the dampers is rounded either way.
 #[test]
 fn the_rigid_stand_in_has_no_more_passivity_than_damping() {
     for part in 1..100 {

@@ -1,6 +1,6 @@
 //! The last number that passes.
 
-/// Where something ceases to pass.
+/// The end of the range of values that pass.
 pub enum Edge {
     /// After this value, the last one to pass.
     At(f64),
@@ -10,8 +10,8 @@ pub enum Edge {
     Never,
 }
 
-/// Looks for the last value that passes in the direction of `outward`, a factor; values the other
-/// way pass all the more. Numbers are tried up to 60 octaves from `start`, which is not 0.
+/// Looks for the last value that passes in the direction of `outward`, a factor; if a value passes, so do all
+/// values in the other direction. Numbers are tried up to 60 octaves from `start`, which is not 0.
 pub fn edge(passes: impl Fn(f64) -> bool, start: f64, outward: f64) -> Edge {
     /// Octaves in each direction: more than any two numbers of one machine are apart.
     const OCTAVES: usize = 60;

@@ -1,9 +1,8 @@
-//! The design procedure of theory, section 6, in its three directions: the environments that may be rendered
-//! on a device, what device a class of environments needs, and how long the period may be.
+//! The design procedure of theory, section 6, in its three directions: the environments that a device can
+//! render, the device that a class of environments needs, and the longest period.
 //!
-//! The certificate itself is asked, and the answer is the last value that it passes: the value's
-//! neighbour among the numbers of `f64` is refused. So every answer is exact and comes as scenes
-//! that certify.
+//! The certificate itself judges each value. The answer is the last value that passes: the next number of
+//! `f64` is refused. So every answer is exact and comes with scenes that certify.
 
 mod edge;
 mod quantity;
@@ -19,12 +18,12 @@ pub use quantity::{Quantity, SAMPLES};
 
 use edge::{Edge, edge};
 
-/// What a design takes for granted.
+/// The conditions of a design.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terms {
-    /// Part of the device's passivity that is counted on, greater than 0 and at most 1.
+    /// Fraction of the device's passivity that is used, greater than 0 and at most 1.
     pub safety: f64,
-    /// What couples device and environment.
+    /// The coupling of device and environment.
     pub coupling: Choice,
 }
 
@@ -37,19 +36,19 @@ impl Default for Terms {
 /// The coupling of a design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
-    /// The standard one, `2 delta / T` with the longest period. Where torques lag there is no standard
-    /// spring, and the scene's is kept, and so is a matched coupling.
+    /// The standard coupling, `2 delta / T` with the longest period. Where torques lag there is no standard
+    /// spring, and the scene's coupling is kept. A matched coupling is kept, too.
     Standard,
-    /// Whatever the scene has.
+    /// The coupling of the scene.
     Kept,
 }
 
-/// How far a number goes.
+/// The limit of a number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DesignLimit<T> {
-    /// To this value and no further; with it the scene, or the scenes, that certify.
+    /// The last value that passes, and the scene, or the scenes, with it, which certify.
     Limit(f64, T),
-    /// As far as one likes; with the scene, or the scenes, as they were where those certify.
+    /// There is no limit. The scene, or the scenes, are unchanged if they certify.
     Unlimited(T),
     /// No value passes.
     Nothing,
@@ -57,7 +56,7 @@ pub enum DesignLimit<T> {
     NoSuchNumber,
 }
 
-/// The scene as it is judged: with the part of its passivity that is counted on and its coupling.
+/// The scene as it is judged: with the used fraction of its passivity, and with the coupling of the design.
 pub fn prepared(scene: &Scene, terms: &Terms) -> Scene {
     let mut scene = *scene;
     let delta = terms.safety * scene.device.passivity.unwrap_or(scene.device.damping);
@@ -76,7 +75,7 @@ fn passes(scene: &Scene) -> bool {
     PassivityProblem::of(scene).is_ok_and(|posed| posed.is_certified())
 }
 
-/// The most of a quantity that may be rendered, everything else as in the scene.
+/// The largest value of a quantity that certifies, everything else as in the scene.
 pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> DesignLimit<Scene> {
     let scene = prepared(scene, terms);
     if quantity.set(&scene, 0.0).is_none() {
@@ -112,7 +111,7 @@ pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> DesignLimit<
     }
 }
 
-/// The most repetitions in a turn that pass: with fewer of them a profile is less steep.
+/// The largest number of repetitions in a turn that passes: with fewer of them a profile is less steep.
 fn most_repetitions(passes: impl Fn(u32) -> bool) -> Option<u32> {
     let (mut inside, mut outside) = (1, 2);
     if !passes(inside) {
@@ -129,8 +128,8 @@ fn most_repetitions(passes: impl Fn(u32) -> bool) -> Option<u32> {
     Some(inside)
 }
 
-/// The border of the region of two quantities that may be rendered: the most of the second at evenly spaced
-/// values of the first, from none of it to the most. Empty where there is no border.
+/// The border of the certified region of two quantities: the largest value of the second at evenly spaced
+/// values of the first, from its least to its largest. Empty where there is no border.
 pub fn border(
     scene: &Scene,
     [first, second]: [Quantity; 2],
@@ -146,7 +145,7 @@ pub fn border(
         Quantity::Delay => index as f64,
         _ => least + (most - least) * index as f64 / points.saturating_sub(1).max(1) as f64,
     };
-    // Of whole numbers there may be fewer than points.
+    // A range may have fewer whole numbers than points.
     let value = |index: usize| if first.is_whole() { value(index).round() } else { value(index) };
     let count = if first == Quantity::Delay { most as usize + 1 } else { points };
     let point = |value: f64| {
@@ -161,10 +160,10 @@ pub fn border(
     values.into_iter().filter_map(point).collect()
 }
 
-/// The least damping in N m s/rad that the motor's mass needs on a device for all of these
-/// environments, with the standard coupling that goes with it. The rest of a chain stays as it is;
-/// a rigid device is nothing but its motor's mass. What a free mode cancels grows with the damping,
-/// and a passivity that was declared is that of another device.
+/// The least damping in N m s/rad of the motor's mass with which all of these environments certify, with the
+/// standard coupling of that device. The rest of a chain stays unchanged; a rigid device consists of its
+/// motor's mass alone. The damping that a free mode cancels grows with that of the device. A declared
+/// passivity is not used: it belongs to another device.
 pub fn device(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>> {
     let terms = Terms { coupling: Choice::Standard, ..*terms };
     let on = |file: &SceneFile, damping: f64| -> Option<(Chain, Scene)> {
@@ -183,7 +182,7 @@ pub fn device(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>>
         files.iter().filter_map(with).collect()
     };
     let most = files.iter().map(|file| file.scene.device.damping).fold(0.0, f64::max);
-    // A device of which nothing is known yet may be any.
+    // No device states a damping: the search starts at 1 N m s/rad.
     let start = if most > 0.0 { most } else { 1.0 };
     match edge(fits, start, 0.5) {
         Edge::At(value) => DesignLimit::Limit(value, at(value)),
@@ -194,16 +193,16 @@ pub fn device(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>>
     }
 }
 
-/// The longest period in s with which all of these environments may be rendered on their devices;
-/// a longest period that is tolerated, and a simulation's latency, grow with it. The law of each is as its scene has it, so a
-/// rational one keeps its coefficients whatever the period.
+/// The longest period in s with which all of these environments certify on their devices. A tolerated longest
+/// period and a simulation's latency grow with it. Each law stays as its scene has it, so a rational law
+/// keeps its coefficients at every period.
 pub fn period(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>> {
     let start = files.iter().map(|file| file.scene.timing.period).fold(f64::INFINITY, f64::min);
     timed(files, terms, start, 2.0, |period| period)
 }
 
-/// The lowest sample rate in Hz, the inverse of [`period`]: with the number itself, and not only with the
-/// period that it is rounded from, all of these scenes certify.
+/// The lowest sample rate in Hz, the inverse of [`period`]. All of these scenes certify at this rate itself,
+/// and not only at the period that it is rounded from.
 pub fn rate(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>> {
     let rates = files.iter().map(|file| file.scene.timing.period.recip());
     timed(files, terms, rates.fold(0.0, f64::max), 0.5, f64::recip)

@@ -1,4 +1,4 @@
-//! The numbers of a scene that a design takes as far as they go.
+//! The numbers of a scene that a design takes to their limit.
 
 use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
 use haptic_servo::parameter::Parameter;
@@ -7,7 +7,7 @@ use haptic_servo::scene::Scene;
 /// Unit of a delay.
 pub const SAMPLES: &str = "samples";
 
-/// A number of a scene that a design can take as far as it goes.
+/// A number of a scene that a design can take to its limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Quantity {
@@ -44,7 +44,7 @@ impl Quantity {
         }
     }
 
-    /// The scene with this much of it; `None` where its environment has no such number.
+    /// The scene with this value of the quantity; `None` where its environment has no such number.
     pub(crate) fn set(self, scene: &Scene, value: f64) -> Option<Scene> {
         match self {
             Self::Stiffness => scene.with(Parameter::Stiffness, value),
@@ -53,7 +53,7 @@ impl Quantity {
             Self::Cancellation => scene.with(Parameter::Residual, scene.device.damping - value),
             Self::ActuatorLag => scene.with(Parameter::ActuatorLag, value),
             Self::Torque => scene.with(Parameter::ProfileTorque, value),
-            // What does not repeat has no number of repetitions to choose.
+            // A profile that does not repeat has no number of repetitions.
             Self::Count if !scene.environment.profile()?.outline().wraps => None,
             Self::Count => scene.with(Parameter::Count, value),
             Self::OutputDelay => {
@@ -66,8 +66,8 @@ impl Quantity {
         }
     }
 
-    /// How much of it a scene has that was set to a value: where the amplifier is updated some times in a period,
-    /// the delay of its last update.
+    /// The value that a scene has after it was set to `value`: where the amplifier is updated N times in a
+    /// period, an output delay becomes that of the last update before it.
     pub(super) fn reached(self, scene: &Scene, value: f64) -> f64 {
         match self {
             Self::OutputDelay => last_update(scene, value),
@@ -75,7 +75,7 @@ impl Quantity {
         }
     }
 
-    /// The least of it that a scene may have: none, or next to none.
+    /// The least value that a scene may have: 0, nearly 0 for a torque, or 1 for a number of repetitions.
     pub(super) fn least(self) -> f64 {
         match self {
             Self::Torque => 1e-12,
@@ -89,7 +89,7 @@ impl Quantity {
         matches!(self, Self::Delay | Self::Count)
     }
 
-    /// The largest that a scene of this period in s may have, whatever its certificate says; `None` where
+    /// The largest value that a scene of this period in s may have, apart from its certificate; `None` where
     /// there is no such bound.
     pub(super) fn longest(self, period: f64) -> Option<f64> {
         match self {
@@ -100,9 +100,9 @@ impl Quantity {
     }
 }
 
-/// The longest time up to one in s at which the amplifier of a scene is updated; any, where it is so all the time.
+/// The last update of a scene's amplifier up to `time`, in s; `time` itself if the amplifier is continuous.
 fn last_update(scene: &Scene, time: f64) -> f64 {
-    /// Of a whole number of updates, as decimals have it.
+    /// Relative rounding of a whole number of updates, from its decimals.
     const ROUNDING: f64 = 1e-9;
     let (period, latency) = (scene.timing.period, &scene.latency);
     if latency.actuator_updates == 0 {

@@ -29,7 +29,7 @@ fn file(scene: Scene) -> SceneFile {
     SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction, shapes }
 }
 
-/// The scene, as read back from its file.
+/// The scene, written to a file and read back.
 fn read(file: &SceneFile) -> Scene {
     let text = write::toml(file);
     parse("designed.toml", Format::Toml, &text)
@@ -53,7 +53,7 @@ fn delayed_spring(stiffness: f64) -> Scene {
     Scene { coupling, ..scene(Environment::DelayedSpring(Wall::spring(stiffness, 1))) }
 }
 
-/// Of a spring behind `n + eps` samples, nearly rigid: with `e = 1 + 2 n + 2 eps + 2 tau / T`,
+/// For a spring behind `n + eps` samples, nearly rigid: with `e = 1 + 2 n + 2 eps + 2 tau / T`,
 /// `K T / delta < (sqrt(e^2 + 4 D) - e) / D`.
 #[test]
 fn the_longest_latency_and_the_slowest_current_loop_are_those_of_the_closed_form() {
@@ -88,7 +88,8 @@ fn a_latency_is_at_most_what_a_scene_may_have_and_a_matched_coupling_stays() {
     assert_eq!(prepared(&lagging, &Terms::default()).coupling, lagging.coupling);
 }
 
-/// Delays between two updates of an amplifier are invalid, and every period has as many updates.
+/// A delay between two updates of an amplifier is invalid, and the number of updates in a period stays the
+/// same.
 #[test]
 fn an_amplifier_in_updates_keeps_a_delay_of_whole_updates() {
     let kept = Terms { coupling: Choice::Kept, ..Terms::default() };
@@ -190,8 +191,8 @@ fn the_border_of_free_mode_is_where_a_pole_meets_the_circle() {
     }
 }
 
-/// A chain of two has `b_1 + b_2 c / (b_2 + c)` (theory, section 3.2), of which a design gives the
-/// first.
+/// Two masses have the passivity `b_1 + b_2 c / (b_2 + c)` (theory, section 3.2), of which a design gives
+/// `b_1`.
 #[test]
 fn a_chain_stays_as_it_is_but_for_its_motor() {
     let masses = [0.02, 0.005].map(|damping| Mass { inertia: 1.1e-5, damping });
@@ -214,7 +215,7 @@ fn a_chain_stays_as_it_is_but_for_its_motor() {
         let scene = Scene { device: less.as_rigid().unwrap(), ..file.scene };
         assert!(!passes(&prepared(&scene, &terms)));
     }
-    // Softer than what the rest of the chain holds already.
+    // So soft a spring that the damping of the rest of the chain is enough.
     let soft = Scene { device: device_of_chain, ..scene(wall(1.0, 0.0, 1)) };
     let (damping, found) = limit(device(&[SceneFile { scene: soft, ..file }], &Terms::default()));
     assert!(damping == 0.0 && passes(&read(&found[0])));

@@ -9,16 +9,16 @@ use super::section::{Found, Section};
 use super::tree::Span;
 use crate::chain::{Chain, EncoderPlace, Link, MAX_MASSES, Mass, NoPassivity};
 
-/// What a file is read for.
+/// The purpose of reading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// To certify: a device without passivity is an error.
     Certify,
-    /// For a look only: a device without passivity gets no certificate, so the scene's `passivity` is NaN.
+    /// To simulate: a device without passivity gets no certificate, so the scene's `passivity` is NaN.
     Simulate,
 }
 
-/// What `[device]` says.
+/// The contents of `[device]`.
 pub struct DeviceTable {
     /// The chain, without the lag of its amplifier.
     pub chain: Chain,
@@ -79,7 +79,7 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     })
 }
 
-/// A step response of no known shape has no lag beside it: no bound is known for both.
+/// A step response of unknown shape cannot stand beside a lag: no bound is known for both.
 fn alone(
     section: &Section<'_>,
     response: Option<&Found<TimeRange>>,
@@ -150,8 +150,8 @@ fn link(mut section: Section<'_>) -> Read<Link> {
     Ok(Link { stiffness: stiffness.value, damping })
 }
 
-/// The bounds of the keys are those of a chain, so that this does not fail; if it did, it would be
-/// with a sentence and not with a panic.
+/// The bounds of the keys are those of a chain, so this does not fail; an error would be reported, not a
+/// panic.
 fn chain(
     section: &Section<'_>,
     key: &Key,
@@ -171,9 +171,9 @@ fn placed(section: &Section<'_>, chain: Chain, encoder: Option<&Found<String>>) 
     }
 }
 
-/// The `passivity` of the rigid body that stands for the chain: the lower end of what the chain
-/// has, unless something smaller has been measured. A rigid body's is its damping. Either is at most
-/// the damping, whose sum over a chain is rounded.
+/// The `passivity` of the rigid body that stands for the chain: the declared value, or the lower end of the
+/// chain's passivity; `None` for a rigid body without a declared value, whose passivity is its damping. It is
+/// at most the damping, whose sum over a chain is rounded.
 fn passivity(
     section: &Section<'_>,
     chain: &Chain,

@@ -14,9 +14,9 @@ use crate::chain::Chain;
 /// A file that describes a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceFile {
-    /// What the person calls it, or the scene that it is part of.
+    /// Name of the device, or of the scene that contains it.
     pub name: Option<String>,
-    /// The device, behind its amplifier; of a lag that is known to lie in a range, the middle.
+    /// The device behind its amplifier; for a lag that lies in a range, with the middle of it.
     pub chain: Chain,
 }
 
@@ -44,7 +44,7 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
     Ok(DeviceFile { name: name?.map(|found| found.value), chain })
 }
 
-/// The chain behind its amplifier. No lag that was read is refused.
+/// The chain behind its amplifier. Every lag that was read is valid for it.
 fn lagging(faults: &Faults, chain: Chain, lag: TimeRange, span: Span) -> Read<Chain> {
     chain.with_actuator_lag(lag.middle()).map_err(|error| {
         let (key, value) = (key::ACTUATOR_LAG.path.to_owned(), lag.middle().to_string());

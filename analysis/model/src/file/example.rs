@@ -22,13 +22,13 @@ const SET: &[&Key] = &[
 /// Columns of a comment.
 const WIDTH: usize = 96;
 
-/// What there is an example of.
+/// The names of the examples.
 pub fn names() -> impl Iterator<Item = &'static str> {
     kind::ALL.iter().map(|kind| kind.name).chain([CHAIN, COMPOSED])
 }
 
-/// The example of that name: a scene file that certifies, in which every key that may be left out
-/// is a comment. Nothing where there is no such example.
+/// The example of that name: a scene file that certifies, in which most optional keys are comments. `None` if
+/// there is no such example.
 pub fn toml(name: &str) -> Option<String> {
     let is_chain = name == CHAIN;
     let kind = Kind::find(match name {
@@ -66,8 +66,8 @@ fn environment(lines: &mut Vec<String>, kind: &Kind, is_composed: bool) {
     }
 }
 
-/// The keys of a torque profile, and two shapes; knots are another way to the same. And a wall and a
-/// canceller, where these are beside it.
+/// The keys of a torque profile and two shapes, for which knots are an alternative. If `is_composed`, also a
+/// wall and a canceller.
 fn profile(lines: &mut Vec<String>, kind: &Kind, is_composed: bool) {
     let is_table =
         |key: &&Key| ![&key::KNOTS, &key::KNOTS_PERIOD, &key::SHAPE, &key::WALL].contains(key);
@@ -108,7 +108,7 @@ fn device(lines: &mut Vec<String>, keys: impl Iterator<Item = &'static Key>, is_
     let of_a_chain = [&key::ENCODER];
     for key in keys.filter(|key| ![&key::MASS, &key::LINK].contains(key)) {
         let belongs = if is_chain { !of_a_body.contains(&key) } else { !of_a_chain.contains(&key) };
-        // A chain's passivity is not the example's.
+        // The example's passivity is not that of the chain.
         if belongs && !(is_chain && *key == key::PASSIVITY) {
             line(lines, key, key.example, is_set(key));
         }
@@ -125,7 +125,7 @@ fn device(lines: &mut Vec<String>, keys: impl Iterator<Item = &'static Key>, is_
     }
 }
 
-/// A key with its words above it; an unset key is a comment.
+/// A key with its description above it; an unset key is a comment.
 fn line(lines: &mut Vec<String>, key: &Key, value: &str, is_set: bool) {
     let unit = if key.unit.is_empty() { String::new() } else { format!(" In {}.", key.unit) };
     let text = format!("{}{unit}", key.doc);
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
     use crate::file::{Format, parse};
 
-    /// With the key, which is a comment in it.
+    /// The text with this key, which is a comment in it.
     fn with(text: &str, key: &Key) -> String {
         let commented = format!("# {} =", key.name());
         let mut table = "";
@@ -155,7 +155,7 @@ mod tests {
             let is_torque = key.name().starts_with("torque") && line.starts_with("torque_pulses");
             match line.strip_prefix("# ") {
                 Some(rest) if line.starts_with(&commented) && table == key.table() => rest,
-                // Updates are those of a lag.
+                // Updates need a lag.
                 Some(rest)
                     if *key == key::ACTUATOR_UPDATES && line.starts_with("# actuator_lag") =>
                 {

@@ -1,43 +1,43 @@
-//! Every key of a scene file: its full name, its unit, the bound on its value, what counts where it
-//! is left out, and an example.
+//! Every key of a scene file: its full name, unit, bound, the default or the meaning of leaving it out, and
+//! an example.
 //!
-//! Reading, the reference, the JSON schema and the examples are made of this one table; the doc
-//! comments in it are the reference's words.
+//! The reader, the reference, the JSON schema and the examples use this one table; the doc comments in it are
+//! the text of the reference.
 //!
-//! Bounds here are about what a number can mean at all. Whether a scene with these numbers is
-//! safe is the certificate's question: a negative stiffness is a bad spring, not a bad file.
+//! A bound here excludes numbers that have no meaning at all. Whether a scene with these numbers is safe is
+//! decided by the certificate: a negative stiffness is a bad spring, not a bad file.
 
 use haptic_servo::parameter::{Parameter, Range};
 
 use Presence::{Default, Needed, Optional};
 
-/// What a value must satisfy.
+/// The bound of a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
     /// A number in this range. Numbers are finite in every case.
     Number(Range),
-    /// Not a number at all, but this, in words that end a sentence.
+    /// Another form than a number, with its requirement as the end of a sentence.
     Other(Form, &'static str),
 }
 
-/// What a value is that is not a number.
+/// The form of a value that is not a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
     /// A string.
     Text,
-    /// One of these strings; of none, one of the types of environment.
+    /// One of these strings; an empty list stands for the types of environment or of shape.
     OneOf(&'static [&'static str]),
     /// `true` or `false`.
     Boolean,
-    /// Numbers in a row.
+    /// A list of numbers.
     Numbers,
-    /// Pairs of numbers in a row.
+    /// A list of pairs of numbers.
     Pairs,
     /// A table.
     Table,
-    /// Tables in a row.
+    /// A list of tables.
     Tables,
-    /// A time, or the two ends of the range that it is known to lie in.
+    /// A time, or the two ends of the range in which it is known to lie.
     Time,
 }
 
@@ -47,7 +47,7 @@ impl Bound {
         matches!(self, Self::Number(range) if range.admits(value))
     }
 
-    /// What the value must be, with its unit: ends a sentence that starts with "it must be".
+    /// The requirement on the value, with its unit: ends a sentence that starts with "it must be".
     pub fn requirement(self, unit: &str) -> String {
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         match self {
@@ -67,14 +67,14 @@ fn unit_phrase(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" in{unit}") }
 }
 
-/// Whether a key must be there, and what counts where it is not.
+/// Whether a key is required, and its default or meaning if it is left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Presence {
-    /// It must be there, wherever its table is.
+    /// Required wherever its table is present.
     Needed,
-    /// This number, where it is left out.
+    /// This number, if the key is left out.
     Default(f64),
-    /// It may be left out, which means this.
+    /// It may be left out, with this meaning.
     Optional(&'static str),
 }
 
@@ -85,15 +85,15 @@ pub struct Key {
     pub path: &'static str,
     /// Unit of the value, empty for a bare number.
     pub unit: &'static str,
-    /// What the value must satisfy.
+    /// The bound of the value.
     pub bound: Bound,
-    /// Whether it must be there.
+    /// Whether the key is required.
     pub presence: Presence,
     /// A value as TOML writes it; empty for a table that is written with its header.
     pub example: &'static str,
     /// Description.
     pub doc: &'static str,
-    /// The number of a scene that it is, if it is one.
+    /// The parameter of a scene that it sets, if it is one.
     pub parameter: Option<Parameter>,
 }
 
@@ -104,23 +104,23 @@ impl Key {
         Self { path: "", unit: "", bound, presence, example: "", doc: "", parameter: None }
     }
 
-    /// The name in its own table: what stands in the file.
+    /// The name in its own table, as the file has it.
     pub fn name(&self) -> &'static str {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 
-    /// What the value must be, with its unit.
+    /// The requirement on the value, with its unit.
     pub fn requirement(&self) -> String {
         self.bound.requirement(self.unit)
     }
 
-    /// The path of the table that it stands in; empty for the file itself.
+    /// The path of its table; empty for the file itself.
     pub fn table(&self) -> &'static str {
         self.path.rsplit_once('.').map_or("", |(table, _)| table)
     }
 }
 
-/// Name, unit and bound of a number of a scene, which are those of the firmware.
+/// A key of a scene's parameter, with the name, unit and bound of the firmware.
 const fn of(parameter: Parameter) -> Key {
     Key {
         path: parameter.key(),
@@ -130,7 +130,7 @@ const fn of(parameter: Parameter) -> Key {
     }
 }
 
-/// An unknown key.
+/// A key that is not a parameter of the firmware.
 const fn other(path: &'static str, unit: &'static str, bound: Bound) -> Key {
     let presence = Presence::Needed;
     Key { path, unit, bound, presence, example: "", doc: "", parameter: None }

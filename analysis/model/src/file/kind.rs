@@ -15,14 +15,14 @@ pub struct Kind {
     pub needed: &'static [&'static Key],
     /// The keys that it may have.
     pub optional: &'static [&'static Key],
-    /// One without numbers.
+    /// The environment before its numbers are set.
     pub blank: Environment,
-    /// Values of its example, where those of the keys' would not certify.
+    /// Values of its example, where the keys' own examples would not certify.
     pub values: &'static [(&'static Key, &'static str)],
 }
 
-/// What a wall may have besides stiffness, damping and delay. Its delay must be stated, because a forgotten
-/// delay is not accounted for.
+/// The optional keys of a wall besides stiffness, damping and delay. The delay is required, because a
+/// forgotten delay is not accounted for.
 const OF_A_WALL: &[&Key] = &[&key::FILTER, &key::FACE, &key::ONE_SIDED];
 
 const ZERO: Coefficients = match Coefficients::new(&[0.0]) {
@@ -112,10 +112,10 @@ impl Kind {
         ALL.iter().find(|kind| kind.name == name)
     }
 
-    /// The type that a file has for an environment; `None` for what no file can say.
+    /// The type that a file has for an environment; `None` for stated environments and for torque profiles.
     pub fn of(environment: &Environment) -> Option<&'static Self> {
         let name = match environment {
-            // A spring with a face is a wall without damping to the reader of a file.
+            // In a file, a spring with a face is a wall without damping.
             Environment::DelayedSpring(Wall { one_sided: false, face: 0.0, .. }) => {
                 "delayed-spring"
             }

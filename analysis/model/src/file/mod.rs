@@ -1,9 +1,9 @@
 //! Scene files: TOML, or JSON of the same shape.
 //!
-//! Each key has its unit, bound, default and example in one table ([`key`]), and each type of
-//! environment its keys in another ([`kind`]). What reads a file goes by them, and so do the
-//! reference ([`mod@reference`], kept as `SCENE.md`), the JSON schema ([`schema`]) and the examples
-//! ([`example`]). An unknown key is an error, and all errors of a file are said at once.
+//! Each key has its unit, bound, default and example in one table ([`key`]), and each type of environment its
+//! keys in another ([`kind`]). The reader uses these tables, and so do the reference ([`mod@reference`], kept
+//! as `SCENE.md`), the JSON schema ([`schema`]) and the examples ([`example`]). An unknown key is an error,
+//! and all errors of a file are reported at once.
 
 pub mod device;
 mod device_file;
@@ -38,8 +38,7 @@ use faults::{Faults, Read};
 use problem::Fault;
 use tree::Node;
 
-/// Longest scene file in bytes: a hundred times the longest that a person writes, and read in a
-/// moment.
+/// Longest scene file in bytes: a hundred times the longest that is written by hand, and still read quickly.
 pub const MAX_BYTES: u64 = 4 << 20;
 
 /// The two formats of a scene.
@@ -81,7 +80,7 @@ pub fn load_json(file: &str) -> Result<serde_json::Value, FileError> {
     load_with(file, |root, _| Ok(root.value.into_json()))
 }
 
-/// Reads the device of a file, which has nothing else or is a scene; `-` is standard input.
+/// Reads the device of a device file or of a scene file; `-` is standard input.
 pub fn load_device(file: &str) -> Result<DeviceFile, FileError> {
     load_with(file, |root, source| device_file::read(source, root))
 }
@@ -125,11 +124,11 @@ pub fn parse_for(
     parse_with(file, 1, format, text, |root, source| scene::read(source, root, purpose))
 }
 
-/// The text of a scene or device file as JSON with the same keys, in the same order, whether or not there are
-/// such keys and values. What no key takes, a date or a null, is null.
+/// The text of a scene or device file as JSON with the same keys in the same order; keys and values are not
+/// checked. A value that no key takes, a date or a null, becomes null.
 ///
 /// # Errors
-/// Where the text is neither TOML nor JSON, as `format` says.
+/// If the text is not valid in `format`.
 pub fn as_json(file: &str, format: Format, text: &str) -> Result<serde_json::Value, FileError> {
     parse_with(file, 1, format, text, |root, _| Ok(root.value.into_json()))
 }
@@ -157,7 +156,7 @@ fn parse_with<T>(
     match (found, FileError::of(file, text, first_line, faults.sorted())) {
         (Ok(found), None) => Ok(found),
         (_, Some(error)) => Err(error),
-        // An unread value has been reported; otherwise this is the fallback.
+        // A failed read has been reported; this case is only a fallback.
         (Err(_), None) => Err(FileError::whole(file, first_line, 1, Problem::Empty)),
     }
 }

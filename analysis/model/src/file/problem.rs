@@ -1,4 +1,4 @@
-//! The faults of a file, as sentences that name the file, the line, the key, the value and the bound.
+//! The errors of a file, as sentences that name the file, the line, the key, the value and the bound.
 
 use std::fmt;
 
@@ -64,7 +64,7 @@ pub enum Problem {
         /// Its range.
         bound: String,
     },
-    /// A key that means nothing here.
+    /// An unknown key.
     #[error("`{key}` is not a key of {table}; {advice}")]
     Unknown {
         /// Full name of the key.
@@ -96,14 +96,14 @@ pub enum Problem {
         /// Its range.
         bound: String,
     },
-    /// A device that no certificate can be taken of.
+    /// A device without passivity, which has no certificate.
     #[error("`{key}` = {value} leaves the device without passivity: {reason}")]
     NoPassivity {
         /// Full name of the key.
         key: &'static str,
         /// The value as written.
         value: String,
-        /// The reason.
+        /// Why it has no passivity.
         reason: NoPassivity,
     },
     /// Keys that contradict one another.
@@ -121,7 +121,7 @@ pub enum Problem {
     Shapes {
         /// Full name of the key.
         key: String,
-        /// Why they do not.
+        /// The reason.
         reason: String,
     },
 }
@@ -144,8 +144,8 @@ impl Problem {
         Self::WrongKind { key, value: excerpt(value), found, bound }
     }
 
-    /// Full name of the key that it is about, with the numbers of lists, such as
-    /// `environment.shape[0].torque`; `None` where it is about no key.
+    /// Full name of the key that it is about, with the indices of lists, such as
+    /// `environment.shape[0].torque`; `None` if it is not about a key.
     pub fn key(&self) -> Option<&str> {
         match self {
             Self::Duplicate { key }
@@ -175,13 +175,13 @@ impl Problem {
 /// A problem and the bytes of the text that it is about.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// Where.
+    /// Its place.
     pub span: Span,
-    /// What.
+    /// The problem.
     pub problem: Problem,
 }
 
-/// Most problems shown for a file; a text of another kind has one in each line.
+/// Largest number of problems shown for a file; a text of another kind has a problem in each line.
 const MOST: usize = 20;
 
 /// A bad file: its name, the place, and the error.
@@ -246,7 +246,7 @@ impl FileError {
         self.report_within(colour, None)
     }
 
-    /// The same, with messages broken to so many columns.
+    /// The same, with messages broken to `width` columns.
     pub fn report_within(&self, colour: bool, width: Option<usize>) -> String {
         let each = std::iter::once(self).chain(&self.rest);
         let mut parts: Vec<String> = each.map(|error| error.report_alone(colour, width)).collect();
@@ -260,7 +260,7 @@ impl FileError {
     }
 
     fn report_alone(&self, colour: bool, width: Option<usize>) -> String {
-        // Behind the word in front, under which the other lines are indented.
+        // The title stands behind this word; its further lines are indented by the same width.
         const ERROR: usize = "error: ".len();
         let room = width.map(|width| width.saturating_sub(ERROR).max(1));
         let title = wrapped(&self.sentence(), room, 0);
@@ -329,7 +329,7 @@ pub fn excerpt(text: &str) -> String {
     short
 }
 
-/// A path is a person's own words and is repeated whole, but printable.
+/// A path comes from the user and is repeated whole, without control characters.
 fn excerpt_path(path: &str) -> String {
     path.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
 }

@@ -11,16 +11,16 @@ use super::shape::ShapeKind;
 use super::tree::Span;
 use crate::quantity::significant;
 
-/// Most shapes of a profile.
+/// Largest number of shapes in a profile.
 const MOST_SHAPES: usize = 16;
-/// Most knots of a table: each piece between two of them takes two cells to show.
+/// Largest number of knots in a table: each piece between two of them takes two cells to show.
 const MOST_KNOTS: usize = 2048;
 /// Cells of the smallest and of the largest table.
 const CELLS: [usize; 2] = [16, 4096];
-/// Cells in the narrowest straight piece, so that one at the least is all within it.
+/// Cells in the narrowest straight piece, so that at least one cell is completely within it.
 const CELLS_OF_A_PIECE: f64 = 2.0;
-/// How far the last knot may be from where the period ends, as a part of the period: it is written with a
-/// few digits.
+/// Largest distance of the last knot from the end of the period, as a fraction of the period: it is written
+/// with few digits.
 const CLOSED: f64 = 1e-6;
 
 /// The shapes of a torque profile as a file has them.
@@ -30,15 +30,15 @@ pub struct Shapes {
     pub shapes: Vec<Shape>,
     /// End stops that keys of `[environment]` itself give.
     pub ends: Option<Ends>,
-    /// Number of the table's cells, where the file says it.
+    /// Number of the table's cells, if the file states it.
     pub cells: Option<usize>,
 }
 
 impl Shapes {
-    /// Their sum as a table, with as many cells as show every straight piece.
+    /// Their sum as a table, with enough cells to show every straight piece.
     ///
     /// # Errors
-    /// Why they are no profile.
+    /// If they are not a valid profile.
     pub fn sampled(&self, delay: usize) -> Result<AnyProfile, ShapeError> {
         let mut shapes = self.shapes.clone();
         shapes.extend(self.ends.map(|Ends { from, to, stiffness }| Shape::EndStops {
@@ -80,7 +80,7 @@ fn narrowest_piece(shape: &Shape) -> f64 {
     }
 }
 
-/// A torque profile, and where its numbers stood.
+/// A torque profile, and the places of its numbers in the file.
 pub struct ProfileTable {
     /// The environment.
     pub environment: Environment,
@@ -90,7 +90,7 @@ pub struct ProfileTable {
     torque: Option<Span>,
 }
 
-/// Where a shape stood.
+/// The place of a shape in the file.
 struct Place {
     /// The table that its keys stand in.
     table: String,
@@ -101,7 +101,7 @@ struct Place {
     knots: Vec<Pair>,
 }
 
-/// A shape and where it stood.
+/// A shape and its place.
 type Placed = (Shape, Place);
 
 /// Reads `[environment]` of a torque profile.
@@ -190,7 +190,7 @@ fn cells(section: &mut Section<'_>) -> Read<Option<usize>> {
     Err(section.conflict(&key::CELLS, span, reason))
 }
 
-/// The end stops that the environment's own keys give, all three of them.
+/// The end stops from the environment's own keys, which needs all three of them.
 fn own_ends(
     section: &mut Section<'_>,
     keys: [(&'static Key, &Option<Found<f64>>); 3],
@@ -299,7 +299,7 @@ fn table(
     Ok(Some((shape, place)))
 }
 
-/// Whether the last knot is where the period ends.
+/// Checks that the last knot is at the end of the period.
 fn closes(section: &Section<'_>, key: &Key, period: f64, place: &Place) -> Read<()> {
     let ([first, _], [last, _]) = (&place.knots[0], &place.knots[place.knots.len() - 1]);
     let end = first.value + period;
@@ -319,7 +319,7 @@ fn out_of_bounds(section: &Section<'_>, key: String, span: &Span, bound: String)
     section.report(span.clone(), Problem::OutOfBounds { key, value, bound })
 }
 
-/// What the library says against the shapes, with the place in the file.
+/// Reports the library's error in the shapes, with its place in the file.
 fn refused(
     section: &Section<'_>,
     shapes: &Shapes,

@@ -51,7 +51,7 @@ fn has_keys(table: &Key) -> bool {
     key::ALL.iter().any(|key| key.table() == table.path)
 }
 
-/// `[device]`, `[[device.mass]]`, or a table that is written into a line.
+/// The heading of a table, `[device]`, or of a list of tables, `[[device.mass]]`.
 fn heading(table: &Key) -> String {
     match table.bound {
         key::Bound::Other(key::Form::Tables, _) => format!("`[[{}]]`", table.path),
@@ -83,7 +83,7 @@ fn rows(keys: &[&Key]) -> String {
     text
 }
 
-/// Name, keys that there must be, keys that there may be, and words of a type.
+/// Name, required keys, optional keys and description of a type.
 type Row = (&'static str, &'static [&'static Key], &'static [&'static Key], &'static str);
 
 fn types(kinds: impl Iterator<Item = Row>) -> String {

@@ -20,14 +20,14 @@ use crate::device::Hand;
 /// The contents of a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFile {
-    /// What the person calls the scene.
+    /// Name of the scene.
     pub name: String,
     /// The scene itself; nothing about it is certified yet. Its device is the rigid body that
     /// stands for the chain: all inertia, all damping to the ground, and the chain's passivity.
     pub scene: Scene,
     /// The device as the file describes it, for simulation; the lags at its two ends are the scene's.
     pub chain: Chain,
-    /// What a simulation starts from.
+    /// The settings of a simulation.
     pub simulation: Option<Simulation>,
     /// A passive hand that holds the device, for simulation.
     pub hand: Option<Hand>,
@@ -37,7 +37,7 @@ pub struct SceneFile {
     pub full_scale: Option<f64>,
     /// Dry friction of the device in N m.
     pub friction: Option<f64>,
-    /// What the scene's torque profile was sampled from.
+    /// The shapes that the scene's torque profile was sampled from.
     pub shapes: Option<Shapes>,
 }
 
@@ -62,7 +62,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let servo = servo.and_then(servo_of);
     let coupling = coupling.and_then(|table| table.map_or(Ok(Coupling::Rigid), coupling_of));
     let environment = environment.and_then(environment_of);
-    // Of a servo that could not be read, any latency is short enough.
+    // If the servo could not be read, any latency is short enough.
     let period = servo.as_ref().map_or(f64::INFINITY, |servo| servo.timing.period);
     let rubs = device.as_ref().map_or(0.0, |table| table.friction.unwrap_or(0.0));
     let simulation = simulation
@@ -100,7 +100,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
 /// The file as a whole: it has no name, and must be a table.
 const ROOT: Key = Key::root("a table of `name`, [device], [servo] and [environment]");
 
-/// What `[servo]` says.
+/// The contents of `[servo]`.
 struct Servo {
     timing: Timing,
     output_delay: Option<Found<TimeRange>>,
@@ -126,7 +126,7 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
     Ok(Servo { timing, output_delay, output_jitter, worst_period: worst })
 }
 
-/// The times between count and torque, each of which has a bound that other keys give.
+/// The times between count and torque, each with a bound that depends on other keys.
 fn latency_of(
     top: &Section<'_>,
     servo: &Servo,
@@ -152,7 +152,7 @@ fn latency_of(
         (&Ok(output_delay), &Ok(actuator_lag)) => {
             Latency { output_delay, actuator_lag, ..Latency::NONE }.largest_jitter(is_late, period)
         }
-        // Of times that could not be read, any jitter is small enough.
+        // If the times could not be read, any jitter is small enough.
         _ => f64::INFINITY,
     };
     let output_jitter = jitter_of(top, servo, largest);
@@ -218,7 +218,7 @@ fn limits_of(mut section: Section<'_>) -> Read<[Option<f64>; 3]> {
     Ok([torque?, encoder?, full_scale?])
 }
 
-/// What `[environment]` says.
+/// The contents of `[environment]`.
 enum EnvironmentTable {
     Profile(Box<ProfileTable>),
     Other(Box<Environment>),
@@ -290,8 +290,8 @@ fn rational(section: &mut Section<'_>) -> Read<Rational> {
     Ok(Rational { numerator, denominator, delay, unit_zeros: zeros })
 }
 
-/// Descending coefficients without leading zeros; a denominator must have a coefficient that is not zero.
-/// Also returns how many zeros at its end, up to `most`, were beyond the degree and removed.
+/// Descending coefficients without leading zeros; a denominator needs a coefficient that is not zero. Also
+/// returns the number of zeros, up to `most`, that were removed from its end because the degree was too high.
 fn polynomial(section: &mut Section<'_>, key: &Key, most: usize) -> Read<(Coefficients, usize)> {
     let Some(Found { mut value, span }) = section.list(key)? else {
         return Err(section.missing(key));

@@ -29,7 +29,7 @@ fn table(path: &str) -> Value {
             let keys = object(keys, |key| needs(kind.needed, key));
             of_kind(&key::SHAPE_TYPE, kind.name, kind.doc, keys)
         })),
-        // Inertia and damping are those of a rigid body, and a chain's masses have their own.
+        // A spring needs a stiffness, and a matched coupling takes none.
         "coupling" => {
             let mut schema = object(keys, |_| false);
             let matched = json!({ "const": super::scene::MATCHED });
@@ -47,6 +47,7 @@ fn table(path: &str) -> Value {
             schema["oneOf"] = json!([spring, matched]);
             schema
         }
+        // Inertia and damping are those of a rigid body, and a chain's masses have their own.
         "device" => {
             let mut schema = object(keys, |_| false);
             let body = [key::INERTIA.name(), key::DEVICE_DAMPING.name()];

@@ -9,8 +9,8 @@ use super::key::{Key, Presence};
 use super::problem::{Fault, Problem, excerpt};
 use super::tree::{Entry, Node, Span, Value};
 
-/// How alike two names must be (0 to 1) for one to be taken as a slip of the other. Chosen so
-/// that one wrong, missing or swapped letter in a word of six still counts.
+/// Similarity of two names (0 to 1) from which one counts as a misspelling of the other. Chosen so that one
+/// wrong, missing or swapped letter in a word of six still counts.
 const ALIKE: f64 = 0.9;
 
 /// A table of the file that is being read.
@@ -18,7 +18,7 @@ pub struct Section<'t> {
     text: &'t str,
     faults: &'t Faults,
     path: &'static str,
-    /// Its name with its number among others, such as `environment.shape[0]`, where messages give that.
+    /// Its name with its index in a list, such as `environment.shape[0]`, where messages use that.
     numbered: Option<String>,
     title: String,
     span: Span,
@@ -27,7 +27,7 @@ pub struct Section<'t> {
     needed: &'static [&'static Key],
 }
 
-/// A value and where it stood.
+/// A value and its place in the text.
 pub struct Found<T> {
     /// The value.
     pub value: T,
@@ -39,7 +39,7 @@ pub struct Found<T> {
 pub type Pair = [Found<f64>; 2];
 
 impl<'t> Section<'t> {
-    /// Starts on a node that must be a table; `title` is what messages call it.
+    /// Starts on a node that must be a table; `title` is its name in messages.
     pub fn new(
         (text, faults): (&'t str, &'t Faults),
         title: &str,
@@ -57,7 +57,7 @@ impl<'t> Section<'t> {
         }
     }
 
-    /// From here on messages call the table's keys by this name of the table.
+    /// From here on messages use this name of the table in the full names of its keys.
     pub fn number_as(&mut self, name: String) {
         self.numbered = Some(name);
     }
@@ -70,8 +70,8 @@ impl<'t> Section<'t> {
         }
     }
 
-    /// From here on messages call the table this, since its kind is known, and these keys must be
-    /// there.
+    /// From here on messages use this title, since the type of the table is known, and these keys are
+    /// required.
     pub fn specialize(&mut self, title: String, needed: &'static [&'static Key]) {
         (self.title, self.needed) = (title, needed);
     }
@@ -113,7 +113,7 @@ impl<'t> Section<'t> {
         self.entries.iter().any(|entry| entry.name == key.name())
     }
 
-    /// The text there, safe to print.
+    /// The text at `span`, safe to print.
     pub fn written(&self, span: &Span) -> String {
         excerpt(&self.text[span.clone()])
     }
@@ -296,7 +296,7 @@ impl<'t> Section<'t> {
         self.report(span, Problem::Conflict { key: self.name_of(key), value, reason })
     }
 
-    /// Reports a key that is not there, or the slip that was written in its place.
+    /// Reports a missing key, or the misspelt key in its place.
     pub fn missing(&mut self, key: &Key) -> Reported {
         match self.entries.iter().position(|entry| alike(&entry.name, key.name())) {
             Some(slip) => {

@@ -77,7 +77,8 @@ impl ShapeKind {
         self.needed.iter().chain(self.optional).copied()
     }
 
-    /// The shape of this type with these numbers, 0 for a missing number; `None` for a table, which has none.
+    /// The shape of this type with these numbers, 0 for a missing number; `None` for a table, which has knots
+    /// instead.
     pub fn shape(&self, number: impl Fn(&Key) -> f64) -> Option<Shape> {
         let torque = || number(&key::SHAPE_TORQUE);
         Some(match self.name {

@@ -10,7 +10,7 @@ use super::faults::Read;
 use super::key::{self, Key};
 use super::section::{Found, Section};
 
-/// What a simulation starts from and what the hand does.
+/// The settings of a simulation, with the torque of the hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
     /// Number of samples.
@@ -101,7 +101,7 @@ fn missed_of(mut table: Section<'_>) -> Read<Missed> {
     let fraction = table.optional(&key::MISSED_FRACTION);
     let seed = table.optional(&key::MISSED_SEED);
     let (every, fraction, seed) = match (every, fraction, seed) {
-        // A missing key may be a typo of the unknown key, which is then suggested.
+        // Before `finish`, so that a misspelt `fraction` is reported with the intended key.
         (Ok(None), Ok(None), Ok(_)) => {
             let reported = table.missing(&key::MISSED_FRACTION);
             table.finish();

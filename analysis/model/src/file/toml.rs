@@ -7,7 +7,7 @@ use super::faults::{Faults, Read};
 use super::problem::{Fault, Problem};
 use super::tree::{Entry, Node, Value};
 
-/// Parses a TOML document; its top is always a table. All places that are not TOML are reported.
+/// Parses a TOML document; its top is always a table. All syntax errors are reported.
 pub fn parse(text: &str, faults: &Faults) -> Read<Node> {
     let (document, errors) = DeTable::parse_recoverable(text);
     let reported = errors.iter().map(|error| {

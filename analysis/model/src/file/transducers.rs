@@ -10,7 +10,7 @@ use super::SceneFile;
 /// Torque in N m at full scale for a scene file that has no limit of its own.
 const FULL_SCALE: f64 = 5.0;
 
-/// Counts a turn for a scene file that does not say its encoder's step.
+/// Counts a turn for a scene file that does not state its encoder's step.
 const COUNTS_PER_TURN: f64 = 65_536.0;
 
 impl SceneFile {

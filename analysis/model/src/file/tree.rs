@@ -1,11 +1,11 @@
-//! A document as a tree of values that remember where they stood, for TOML and JSON alike.
+//! A document as a tree of values with their places in the text, for TOML and JSON alike.
 
 use std::ops::Range;
 
 /// Bytes of the text that a value or a key was written in.
 pub type Span = Range<usize>;
 
-/// A value and where it stood.
+/// A value and its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     /// Bytes of the value in the text.
@@ -14,20 +14,20 @@ pub struct Node {
     pub value: Value,
 }
 
-/// A value of either format; TOML's dates are [`Value::Other`], for no key takes one.
+/// A value of either format; a date of TOML is [`Value::Other`], because no key takes it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// Integer or decimal number; what the text wrote may be infinite or not a number.
+    /// Integer or decimal number; as written it may be infinite or NaN.
     Number(f64),
     /// A string.
     Text(String),
     /// `true` or `false`.
     Boolean(bool),
-    /// Values in a row.
+    /// A list of values.
     List(Vec<Node>),
     /// A table, or an object.
     Table(Vec<Entry>),
-    /// Anything that no key takes, by the name of its kind.
+    /// A value that no key takes, with the name of its kind.
     Other(&'static str),
 }
 
@@ -58,7 +58,7 @@ impl Value {
         }
     }
 
-    /// What a person calls this kind of value.
+    /// The name of this kind of value in messages.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Number(_) => "a number",

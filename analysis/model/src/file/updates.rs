@@ -1,4 +1,4 @@
-//! What the other keys have to be where the amplifier is updated some times in a period.
+//! The conditions on the other keys where the amplifier is updated N times in a period.
 
 use haptic_servo::scene::{Latency, TimeRange, Timing};
 
@@ -7,7 +7,7 @@ use super::key::{self, Key};
 use super::section::{Found, Section};
 use super::tree::Span;
 
-/// Where the keys are.
+/// The places of the keys.
 pub struct Places {
     /// `device.actuator_updates`.
     pub updates: Span,
@@ -18,7 +18,7 @@ pub struct Places {
 }
 
 impl Places {
-    /// Where these keys stand, if the amplifier is updated at all.
+    /// The places of these keys, if the amplifier is updated at all.
     pub fn of(
         updates: &Option<Found<f64>>,
         output_delay: &Option<Found<TimeRange>>,
@@ -30,7 +30,7 @@ impl Places {
         Some(Self { updates, output_delay, worst_period })
     }
 
-    /// Refuses what no current loop in updates has.
+    /// Reports values that a current loop with updates cannot have.
     pub fn check(&self, top: &Section<'_>, latency: &Latency, timing: &Timing) -> Read<()> {
         let no = |key: &Key, span: &Option<Span>, reason: String| {
             let span = span.as_ref().unwrap_or(&self.updates).clone();

@@ -74,12 +74,12 @@ pub fn toml(file: &SceneFile) -> String {
     lines.join("\n") + "\n"
 }
 
-/// A key that need not be there.
+/// An optional key.
 fn number(lines: &mut Vec<String>, key: &str, value: Option<f64>) {
     lines.extend(value.map(|value| format!("{key} = {value:?}")));
 }
 
-/// A time or its range, unless it is the 0 that counts where it is left out.
+/// A time or its range, unless it is 0, the default.
 fn time(lines: &mut Vec<String>, key: &str, TimeRange { least, most }: TimeRange) {
     // By their bits: -0.0 is another number than 0.0.
     match (least.to_bits(), most.to_bits()) {
@@ -119,7 +119,7 @@ fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Optio
     }
 }
 
-/// The type of an environment as a file has it.
+/// The name of an environment's type in a file.
 pub fn kind(environment: &Environment) -> &'static str {
     Kind::of(environment).map_or("stated", |kind| kind.name)
 }
@@ -158,7 +158,7 @@ fn environment(lines: &mut Vec<String>, environment: &Environment) {
     }
 }
 
-/// A number as TOML has it, a whole one without a point.
+/// A number in the notation of TOML, a whole number without a point.
 fn number_of(key: &Key, value: f64) -> String {
     match key.bound {
         Bound::Number(Range::Whole(..)) => format!("{value}"),
@@ -176,7 +176,7 @@ fn list(coefficients: &Coefficients) -> String {
     text + "]"
 }
 
-/// A string as TOML's basic strings have it, which is as JSON has it.
+/// A string in the notation of TOML's basic strings, which is that of JSON.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
@@ -238,7 +238,7 @@ mod tests {
         let [first, second] =
             again(&text(&chain("encoder = \"hand\"\nactuator_lag = 1e-4\n"), SPRING));
         assert_eq!(first.scene.latency.actuator_lag, TimeRange::exactly(1e-4));
-        // Its passivity is not a number, which equals nothing.
+        // Its passivity is NaN, which equals nothing.
         assert_eq!((&first.chain, toml(&first)), (&second.chain, toml(&second)));
     }
 

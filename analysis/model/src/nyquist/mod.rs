@@ -1,15 +1,14 @@
-//! What of a scene the verdict rests on, as curves and lines of the plane.
+//! The curves and lines of the plane on which the verdict of a scene rests.
 //!
 //! - A linear scene is judged by its environment with the coupling taken in, `E'` (theory, section
 //!   4.1): at the standard coupling that is the environment. Where updates may be missed and torques
 //!   are latched, a second such curve counts as well.
 //! - A one-sided or limited scene is judged by a bound on its index, an upright line: its linear
 //!   environment only has to have an index at all.
-//!
 //! - Where torques lag, and behind a matched coupling, a linear scene is judged at the device's port
-//!   (theory, section 13): by the controller with delay and lags, less what no sample shows.
+//!   (theory, section 13): by the controller with delay and lags, less the ripple between samples.
 //!
-//! Judged is the distance to the critical line, at minus the largest index that passes.
+//! The verdict rests on the distance to the critical line, which is at minus the largest index that passes.
 
 mod window;
 pub mod words;
@@ -34,7 +33,7 @@ pub use window::{critical_lines, usual_window};
 /// curve is longest.
 const POINTS: usize = 1600;
 
-/// Nearest to a pole that the curve is drawn, in rad.
+/// Smallest distance in rad from a pole at which the curve is drawn.
 const NEAREST: f64 = 1e-3;
 
 /// Points beside the angle at which the real part is least, on each side: a resonance may be
@@ -62,16 +61,16 @@ fn unbuildable(why: Unbuildable) -> &'static str {
     }
 }
 
-/// What a curve is to the verdict.
+/// The role of a curve in the verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// It is compared with the critical line.
     Judged,
-    /// So is this one: torques are latched, and updates may be missed.
+    /// It is compared with the critical line, too: torques are latched, and updates may be missed.
     JudgedLatched,
     /// It is compared with the critical line, and has delay, amplifier and sensor in it.
     JudgedAtPort,
-    /// Its poles are judged; in place of its real part, a bound is.
+    /// Its poles are judged, and a bound in place of its real part.
     Linear,
     /// The environment without its coupling, which is not judged.
     Alone,
@@ -106,11 +105,11 @@ pub struct Curve {
     pub poles: Vec<UnitCirclePole>,
     /// Number of poles outside of it.
     pub outside: usize,
-    /// Real part that the curve has near its pole at rest.
+    /// Real part of the curve near its pole at rest.
     pub asymptote: Option<f64>,
     /// Where the real part is least; `None` where it is the same all around.
     pub minimum: Option<(f64, f64)>,
-    /// Minus the least real part; `None` where poles forbid that there is an index.
+    /// Minus the least real part; `None` where poles rule out an index.
     pub alpha: Option<f64>,
 }
 
@@ -149,7 +148,7 @@ impl Curve {
         let outside = outside(velocity.transfer());
         let real = |theta: f64| value(theta).re;
         let angle = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
-        // Where the certificate has found it, and where it is found here.
+        // The minimum that the certificate has found, and the minimum found here.
         let known =
             deciding.and_then(|cos| minimizing_angle(real, angle(cos.hi()), angle(cos.lo())));
         let found = minimizing_angle(real, 0.0, PI);
@@ -189,8 +188,8 @@ impl Curve {
         self.branches.iter().flat_map(of)
     }
 
-    /// The least real part that is drawn: minus infinity where the curve goes to infinity on the
-    /// left or askew, or has poles outside of the circle and with them no meaning.
+    /// The least real part that is drawn; minus infinity without an index: the curve goes to infinity on the
+    /// left or askew, or has poles outside of the circle.
     fn least_real(&self) -> f64 {
         if self.alpha.is_none() {
             return f64::NEG_INFINITY;
@@ -202,15 +201,15 @@ impl Curve {
 /// A scene as its Nyquist curves and the line that they must not cross.
 #[derive(Debug)]
 pub struct NyquistScene {
-    /// What the person calls it.
+    /// Name of the scene.
     pub name: String,
     /// Period in s.
     pub period: f64,
-    /// Its curves, the judged curve first.
+    /// Its curves, the judged curves first.
     pub curves: Vec<Curve>,
-    /// What the index has to stay below; `None` where the rule passes none.
+    /// The limit that the index must stay below; `None` where the rule passes none.
     pub limit: Option<f64>,
-    /// What that is called.
+    /// Name of the limit.
     pub limit_name: &'static str,
     /// The bound that is judged in place of the curve: of one-sided and limited scenes.
     pub bound: Option<f64>,
@@ -242,7 +241,7 @@ impl NyquistScene {
                 vec![curve(Role::Judged, transfers.environment, alone)]
             }
             (Rule::Exact, latched) => {
-                // Of two the certificate has the larger one, without its name.
+                // Of two indices the certificate states the larger one, without its curve.
                 let alpha = assessment.alpha_coupled.filter(|_| latched.is_none());
                 let judged =
                     curve(Role::Judged, transfers.equivalent, alpha.map(Interval::midpoint));
@@ -262,9 +261,9 @@ impl NyquistScene {
         })
     }
 
-    /// How far the judged curve keeps to the right of the critical line, in N m s/rad: negative where it
-    /// crosses, minus infinity where poles or the coupling forbid that anything passes; not a number where no
-    /// bound is known.
+    /// Distance in N m s/rad of the judged curve, or of its bound, to the right of the critical line:
+    /// negative where it crosses the line, minus infinity where poles or the coupling rule out a certificate,
+    /// NaN where no bound is known.
     pub fn clearance(&self) -> f64 {
         let Some(limit) = self.limit else { return f64::NEG_INFINITY };
         let real = |curve: &Curve| match curve.role {
@@ -280,12 +279,12 @@ impl NyquistScene {
         )
     }
 
-    /// The factor by which the judged curve may grow until it touches the critical line; `None` where it
-    /// passes at no size, or at any.
+    /// The factor by which the judged curve, or its bound, may grow until it touches the critical line;
+    /// `None` where it passes at no size or at any size, and for a curve at the port.
     pub fn gain_margin(&self) -> Option<f64> {
         let index = |curve: &Curve| match curve.role {
             Role::Judged | Role::JudgedLatched => curve.alpha,
-            // What no sample shows grows with the square.
+            // The ripple between samples grows with the square.
             Role::JudgedAtPort => None,
             Role::Linear => curve.alpha.and(self.bound),
             Role::Alone => Some(f64::NEG_INFINITY),
@@ -295,9 +294,9 @@ impl NyquistScene {
         self.limit.filter(|_| largest > 0.0).map(|limit| limit / largest)
     }
 
-    /// By how much in rad a curve may turn clockwise until it touches the critical line, and where
-    /// it would: the angle on the circle in rad, and the value. `None` where it never reaches as
-    /// far as the line, and where it goes to infinity: there any lag is too much.
+    /// The angle in rad by which a curve may turn clockwise until it touches the critical line, and the place
+    /// where it would: the angle on the circle in rad, and the value. `None` where it never reaches as far as
+    /// the line, and where it goes to infinity: there any lag is too much.
     pub fn phase_margin(&self, curve: &Curve) -> Option<(f64, f64, (f64, f64))> {
         let limit = self.limit.filter(|_| curve.role.is_judged() && curve.alpha.is_some())?;
         let is_at_port = curve.role == Role::JudgedAtPort;
@@ -332,8 +331,8 @@ fn is_judged_at_port(scene: &Scene) -> bool {
     !scene.latency.is_none() || scene.coupling == Coupling::Matched
 }
 
-/// The controller with delay, amplifier and sensor: `H g - D abs(H)^2 / (4 delta)` of equation 38. Of times
-/// that lie in a range it has the middle, and a delay that differs from tick to tick is left out.
+/// The controller with delay, amplifier and sensor: `H g - D abs(H)^2 / (4 delta)` of equation 38. Times that
+/// lie in a range have their middle, and output jitter is left out.
 struct PortCurve {
     controller: Response,
     response: SampledResponse,
@@ -343,7 +342,7 @@ struct PortCurve {
 }
 
 impl PortCurve {
-    /// `None` where two lags are too much alike for their difference.
+    /// `None` where two lags are too similar for their difference.
     fn of(scene: &Scene, controller: Transfer) -> Option<Self> {
         let Latency { actuator_lag, sensor_lag, actuator_updates: updates, .. } = scene.latency;
         let period = Interval::decimal(scene.timing.period);
@@ -409,7 +408,7 @@ fn angles(from: f64, to: f64) -> impl Iterator<Item = f64> {
     up.chain(down).chain((to == PI).then_some(PI))
 }
 
-/// An angle, and others on both sides of it, each a third further than the one before.
+/// An angle, and others on both sides of it, each 1.4 times as far away as the one before.
 fn around(theta: Option<f64>) -> impl Iterator<Item = f64> {
     theta.into_iter().flat_map(|theta| {
         let step = |index: i32| 1e-9 * 1.4_f64.powi(index);

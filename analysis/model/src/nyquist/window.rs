@@ -1,10 +1,10 @@
-//! How much of the plane shows the judged curve.
+//! The part of the plane that shows the judged curves and bounds.
 
 use std::ops::Range;
 
 use super::{Curve, NyquistScene, Role};
 
-/// The lines at minus the largest index that passes, each once and from the left, with their names called.
+/// The critical lines, at minus the largest index that passes, each once and from the left, with their names.
 pub fn critical_lines(scenes: &[NyquistScene]) -> Vec<(f64, &'static str)> {
     let line = |scene: &NyquistScene| Some((-scene.limit?, scene.limit_name));
     let mut lines: Vec<_> = scenes.iter().filter_map(line).collect();
@@ -13,7 +13,7 @@ pub fn critical_lines(scenes: &[NyquistScene]) -> Vec<(f64, &'static str)> {
     lines
 }
 
-/// Ranges of the two axes that show the judged curve, for axes without a given range.
+/// Ranges of the two axes that show the judged curves and bounds; a range that is given stays.
 pub fn usual_window(
     scenes: &[NyquistScene],
     wanted_x: Option<Range<f64>>,
@@ -36,7 +36,7 @@ pub fn usual_window(
     let right = span(seen.chain(lines).chain(bounds).chain([0.0]));
     // Room on the left for the name of the critical line.
     let width = right.end - right.start;
-    // More on the right where there is infinity.
+    // More on the right if a curve closes through infinity.
     let ways = curves().flat_map(|curve| &curve.poles).filter(|pole| pole.is_simple());
     let room = [0.1, 0.16 + 0.015 * ways.clone().count() as f64][usize::from(ways.count() > 0)];
     let usual = right.start - 0.3 * width..right.end + room * width;
@@ -44,7 +44,7 @@ pub fn usual_window(
     let finite = curves().filter(|curve| !is_endless(curve));
     let tallest = span(finite.flat_map(|curve| curve.values()).map(|p| p.1.abs()));
     let height = if endless {
-        // The curve has no end; as much of it as is wide is enough to see where it goes.
+        // The curve has no end; a height like the width is enough to see its direction.
         (1.2 * (x.end - x.start)).max(1.1 * tallest.end)
     } else {
         (1.3 * tallest.end).max(0.1 * width)
@@ -52,7 +52,7 @@ pub fn usual_window(
     (x, wanted_y.unwrap_or(-height..height))
 }
 
-/// The range of those of some values that are small enough for an axis; from zero to zero if there are none.
+/// The range of the values that are small enough for an axis; from zero to zero if there are none.
 fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
     let mut finite = values.filter(|value| value.abs() <= 1e300);
     let first = finite.next().unwrap_or(0.0);

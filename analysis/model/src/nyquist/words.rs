@@ -6,11 +6,11 @@ use super::{Curve, NyquistScene, Role};
 use crate::quantity::significant;
 use crate::unit_circle_poles::{Kind, UnitCirclePole};
 
-/// What the two halves of a curve are.
+/// The meaning of the two halves of a curve.
 pub const HALVES: &str =
     "thick: frequencies from 0 to half the sample rate; thin: their mirror image";
 
-/// About a curve, and where it is the only scene's what its mark is.
+/// Describes a curve, and its mark if there is one scene only.
 pub fn curve(name: &str, scene: &NyquistScene, curve: &Curve, is_single: bool) -> Vec<String> {
     let what = match curve.role {
         Role::Judged => "",
@@ -63,7 +63,7 @@ fn least_words(curve: &Curve) -> &'static str {
     if curve.minimum.is_some() { "least real part, -alpha" } else { "real part everywhere, -alpha" }
 }
 
-/// About the line that is judged in place of a curve; nothing of a scene whose curve is judged.
+/// Describes the bound that is judged in place of a curve; `None` for a scene whose curve is judged.
 pub fn bound(name: &str, scene: &NyquistScene) -> Option<Vec<String>> {
     let linear = scene.curves.iter().any(|curve| curve.role == Role::Linear);
     let mut words = match scene.bound {
@@ -78,7 +78,7 @@ pub fn bound(name: &str, scene: &NyquistScene) -> Option<Vec<String>> {
     Some(words)
 }
 
-/// How much larger the judged curve may be.
+/// The gain margin, or the reason why there is no critical line.
 fn margins(scene: &NyquistScene) -> Vec<String> {
     if scene.limit.is_none() {
         let words = "no critical line: the rule for one-sided or limited scenes passes none behind a \
@@ -93,7 +93,7 @@ fn margins(scene: &NyquistScene) -> Vec<String> {
     )]
 }
 
-/// What a pole does to the curve.
+/// The effect of a pole on the curve.
 fn sentence(pole: &UnitCirclePole) -> String {
     let place = match pole.theta {
         0.0 => "pole at rest, z = 1".to_owned(),

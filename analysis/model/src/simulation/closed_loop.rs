@@ -9,20 +9,19 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 use super::discrete_plant::DiscretePlant;
 use crate::response::Response;
 
-/// The transfer functions of environment and controller. Only a matched coupling depends on the
-/// passivity that the scene declares; with another one a scene that has none is simulated like any
-/// other.
+/// The transfer functions of environment and controller. Only a matched coupling depends on the passivity
+/// that the scene declares; with another coupling a scene without passivity is simulated like any other.
 ///
 /// # Errors
 /// Where the environment is not causal, the loop of coupling and environment has no solution, or
 /// a number is out of range.
 pub fn transfers(scene: &Scene) -> Result<LoopTransfers, Unbuildable> {
-    /// So large that the standard coupling, which the equivalent environment stands behind, is as
-    /// good as rigid: whatever has a controller then has an equivalent. Below 0, since no device
-    /// has more passivity than damping.
+    /// So large that the standard coupling, behind which the equivalent environment stands, is practically
+    /// rigid: every scene with a controller then has an equivalent. Below 0, since no device has more
+    /// passivity than damping.
     const ANY: f64 = -1e200;
     let mut scene = *scene;
-    // The matched coupling is made of the passivity, and nothing stands behind another one there.
+    // A matched coupling follows from the passivity, and nothing stands behind another coupling there.
     if scene.coupling != Coupling::Matched {
         scene.device.passivity = Some(ANY);
     }
@@ -31,8 +30,8 @@ pub fn transfers(scene: &Scene) -> Result<LoopTransfers, Unbuildable> {
 
 /// `z(k+1) = matrix z(k) + inputs`, with the coupling torque `F = torque z`.
 ///
-/// The state `z` is that of the plant, the motor torques of ticks before that are still to act, and that
-/// of the controller `C = E / (1 + V E)` (direct form II, transposed).
+/// The state `z` consists of the states of the plant, the motor torques of earlier ticks that have not acted
+/// yet, and the states of the controller `C = E / (1 + V E)` (direct form II, transposed).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLoop {
     /// State transition over a tick.

@@ -17,7 +17,7 @@ pub struct Discretization {
     pub period: f64,
     /// Whole ticks from the sample to the torque that follows from it.
     pub whole: usize,
-    /// Time in s that it takes besides, less than the period.
+    /// Further time in s, less than the period.
     pub latency: f64,
 }
 
@@ -29,7 +29,7 @@ impl Discretization {
 
     /// The same with this time in s from the sample to its torque.
     pub fn delayed(self, delay: f64) -> Self {
-        // A rest that comes from rounding alone is not a part of a tick.
+        // A remainder that comes from rounding alone is not a part of a tick.
         const ROUNDING: f64 = 1e-12;
         let ticks = delay / self.period;
         let whole = (ticks + ROUNDING).floor();
@@ -53,7 +53,7 @@ impl Discretization {
         })
     }
 
-    /// Says where a torque begins between two updates of the amplifier.
+    /// An error if a torque begins between two updates of the amplifier.
     pub(super) fn at_updates(&self, plant: &Plant) -> Result<(), SimulationError> {
         match plant.sampled() {
             Some(actuator) if !actuator.is_whole(self.latency) => {
@@ -65,8 +65,8 @@ impl Discretization {
     }
 }
 
-/// Pieces of equal length of a part of a tick, over each of which the motor's input is held: one, unless the
-/// amplifier is updated.
+/// Pieces of equal length of a part of a tick; the motor's input is held over each. There is one piece,
+/// unless the amplifier is updated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pieces {
     /// How many there are.
@@ -78,7 +78,7 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    /// All of them, of states and inputs, of which the motor's is the command.
+    /// Over all pieces, for states and inputs; the motor's input is the command.
     fn through(&self, plant: &Plant, method: Method, omega: f64) -> DMatrix<f64> {
         let step = step(plant, method, omega, self.length / f64::from(self.steps));
         repeated(&plant.commanded(repeated(&step, self.steps)), self.count)
@@ -91,7 +91,7 @@ impl Pieces {
 pub struct DiscretePlant {
     /// From the state at the tick's start.
     pub transition: DMatrix<f64>,
-    /// From the motor torque before the next one, which lasts for the latency; zero without one.
+    /// From the motor torque before the next one, which lasts for the latency; zero without latency.
     pub previous: DVector<f64>,
     /// From the motor torque that the sample of `whole` ticks ago leads to.
     pub motor: DVector<f64>,
@@ -157,8 +157,8 @@ impl DiscretePlant {
         }
     }
 
-    /// The state after a tick from `state` with these torques in N m held over it; nothing is left
-    /// of the torque of the tick before, and the hand plays no sine.
+    /// The state after a tick from `state` with these torques in N m held over it; no torque of an earlier
+    /// tick remains, and the hand has no sine torque.
     pub fn end(&self, state: &DVector<f64>, motor: f64, hand: f64) -> DVector<f64> {
         &self.transition * state + &self.motor * motor + &self.hand * hand
     }
@@ -168,13 +168,13 @@ impl DiscretePlant {
         self.previous.iter().any(|&effect| effect != 0.0)
     }
 
-    /// Torques of ticks before that are still to act.
+    /// Number of torques of earlier ticks that have not acted yet.
     pub fn pending(&self) -> usize {
         self.whole + usize::from(self.is_late())
     }
 
-    /// Transition of the plant's states with the torques behind them that are still to act, the newest
-    /// first, and what the torque of this tick's sample adds to the two.
+    /// Transition of the plant's states with the torques that have not acted yet behind them, the newest
+    /// first, and the effect on both of the torque of this tick's sample.
     pub fn with_pending(&self) -> (DMatrix<f64>, DVector<f64>) {
         let (n, pending) = (self.transition.nrows(), self.pending());
         let size = n + pending;

@@ -10,7 +10,7 @@ use crate::quantity::significant;
 /// Why there is no answer.
 #[derive(Debug, Error)]
 pub enum SimulationError {
-    /// The file does not say what to simulate.
+    /// The file has no `[simulation]`.
     #[error("{scene}: a simulation needs a [simulation] table with `samples`")]
     NoSimulation {
         /// Name of the scene.
@@ -40,10 +40,10 @@ pub enum SimulationError {
         file: String,
         /// The line, counted from 1.
         line: usize,
-        /// What stands there.
+        /// The text there.
         value: String,
     },
-    /// The amplifier is updated at other instants than that at which a torque begins.
+    /// A torque begins between two updates of the amplifier.
     #[error(
         "a torque begins {delay} s after its count or a later one, between two updates of the amplifier, which \
          are {between} s apart"
@@ -72,9 +72,9 @@ pub enum SimulationError {
          loop is unstable (`haptic stability`)", significant(*.time, 6)
     )]
     Overflow {
-        /// The first sample, counted from 0, of which something is no finite number.
+        /// The first sample, counted from 0, with a number that is not finite.
         sample: usize,
-        /// When that is in s.
+        /// Its time in s.
         time: f64,
     },
     /// No eigenvalues were found.

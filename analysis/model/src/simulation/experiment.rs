@@ -37,7 +37,7 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// What a scene file asks for; `folder` is where its torque file is looked for.
+    /// The experiment of a scene file; `folder` is the folder of its torque file.
     ///
     /// # Errors
     /// Where the file has no `[simulation]`, or its torque file cannot be read.
@@ -62,7 +62,7 @@ impl Experiment {
         })
     }
 
-    /// The scene and the machine of a file, at rest, with nothing to disturb them but latency.
+    /// The scene and the machine of a file, at rest, undisturbed except for latency.
     pub fn at_rest(file: &SceneFile) -> Self {
         Self {
             plant: Plant::of(&file.chain).with_hand(file.hand.unwrap_or_default()),
@@ -71,7 +71,7 @@ impl Experiment {
         }
     }
 
-    /// A scene on its rigid device in no hand, at rest, with nothing to disturb it.
+    /// A scene on its rigid device without a hand, at rest and undisturbed.
     pub fn still(scene: &Scene) -> Self {
         Self {
             scene: *scene,
@@ -139,7 +139,7 @@ impl Experiment {
 pub struct Integration {
     /// The method.
     pub method: Method,
-    /// Steps a tick, at least one; the exact method takes the tick in one whatever this is.
+    /// Steps a tick, at least one; the result of the exact method does not depend on them.
     pub substeps: u32,
 }
 

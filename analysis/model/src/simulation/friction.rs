@@ -1,8 +1,8 @@
 //! Coulomb friction on the motor's mass: it slides against a constant torque, or it sticks.
 //!
-//! In each of the two the plant is linear and steps by the method's matrices; the time of the
-//! change has to be found. A step at whose end the mode no longer holds is halved until the change
-//! lies in a piece of it that is too short to matter.
+//! In each of the two modes the plant is linear and steps by the method's matrices; the time of the change
+//! has to be found. A step at whose end the mode no longer holds is halved until the change lies in a piece
+//! that is too short to matter.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,14 +15,14 @@ use super::torque_signal::TorqueSignal;
 const HALVINGS: usize = 20;
 /// Least steps a tick. A change and back within one step would not be seen.
 const LEAST_STEPS: u32 = 8;
-/// Changes that are placed within one step. A mass that trembles at the border between the modes
-/// changes at every look; from here on it is looked at once a step.
+/// Changes that are placed within one step. A mass that trembles at the border between the modes changes at
+/// every check; beyond this number it is checked once a step.
 const CHANGES: u32 = 16;
 
 /// How the motor's mass moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mode {
-    /// It does not.
+    /// It does not move.
     Stuck,
     /// In the direction of this sign.
     Slides(f64),
@@ -42,9 +42,9 @@ pub struct FrictionPlant {
 /// A part of the tick over which the commanded torque is held.
 #[derive(Clone, Debug)]
 struct Part {
-    /// Over each of which the motor's input is held.
+    /// Number of pieces, over each of which the motor's input is held.
     pieces: u32,
-    /// In each of them.
+    /// Steps in each piece.
     steps: u32,
     /// A step and its halves, for a motor's mass that slides.
     slides: Vec<DMatrix<f64>>,
@@ -99,7 +99,7 @@ impl FrictionPlant {
         &self.state
     }
 
-    /// One tick with the motor torques before and after the latency, in N m.
+    /// One tick with the motor torques in N m before and after the latency.
     pub fn tick(&mut self, k: usize, hand_torque: &TorqueSignal, [before, after]: [f64; 2]) {
         let n = self.plant.order();
         let [sine, cosine] = hand_torque.sine(k, self.period);

@@ -35,11 +35,11 @@ pub struct HeldDevice {
     whole: usize,
     /// The part of a tick before its new torque, where there is one.
     before: Option<Part>,
-    /// The part with it.
+    /// The part with its new torque.
     after: Part,
 }
 
-/// How a device moves, with the torques that are still to act on it.
+/// The motion of a device, with the torques that have not acted on it yet.
 #[derive(Clone, Debug)]
 pub struct DeviceState {
     states: DVector<f64>,
@@ -61,7 +61,7 @@ impl DeviceState {
 }
 
 impl HeldDevice {
-    /// Solves the motion over one period of `period` s, with torques that neither wait nor lag.
+    /// Solves the motion over one period of `period` s, for torques without delay and lag.
     ///
     /// # Errors
     /// Where device and hand are too fast for their motion over a period to be computed.
@@ -103,8 +103,8 @@ impl HeldDevice {
         }
     }
 
-    /// One tick whose sample gives this motor torque in N m: takes the state to its end, and gives the
-    /// work in J that the hand did on the device.
+    /// One tick with the motor torque in N m of its sample: takes the state to the end of the tick, and
+    /// returns the work in J that the hand did on the device.
     pub fn step(&self, state: &mut DeviceState, motor: f64, setpoint: HandSetpoint) -> f64 {
         state.torques.push_front(motor);
         let [old, new] = [self.whole + 1, self.whole].map(|age| state.torques[age]);
@@ -127,7 +127,7 @@ impl HeldDevice {
     }
 }
 
-/// A part of a tick as often as it is repeated.
+/// A part of a tick, as many times as it is repeated.
 fn each((part, command): (&Part, f64)) -> impl Iterator<Item = (&Part, f64)> {
     std::iter::repeat_n((part, command), part.count as usize)
 }
@@ -138,7 +138,7 @@ struct Part {
     /// How often it is repeated: once, unless the amplifier is updated.
     count: u32,
     tick: DiscretePlant,
-    /// `int x'^2 dt` over it as a quadratic form of [`at`] its start.
+    /// `int x'^2 dt` over it as a quadratic form in [`at`] at its start.
     velocity_energy: DMatrix<f64>,
     /// `int u x' dt` likewise, where the amplifier lags; otherwise `u` is constant.
     motor_work: Option<DMatrix<f64>>,
@@ -153,8 +153,8 @@ impl Part {
         Ok(Self { count, tick, velocity_energy, motor_work })
     }
 
-    /// Takes the states to its end, with a commanded torque and the motor's input that it is; gives the energy
-    /// in J that the device's damping took less that which the motor gave.
+    /// Takes the states to the end of the part, with a commanded torque and the motor's input that follows
+    /// from it. Returns the energy in J that the device's damping took, less the energy that the motor gave.
     fn spent(
         &self,
         device: &Device,
@@ -293,7 +293,7 @@ mod tests {
         assert!(work.abs() < 1e-9);
     }
 
-    /// A delay of 2.25 periods against ticks of a quarter of a period in which nothing waits.
+    /// A delay of 2.25 periods against ticks of a quarter of a period without delay.
     #[test]
     fn a_torque_acts_from_its_delay_on() {
         let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 5.0 };
@@ -321,8 +321,8 @@ mod tests {
         }
     }
 
-    /// A delay of three updates of five in a period, against ticks of one between two updates, over which the
-    /// torque goes on from the middle of a straight line: the mean of both ends, in ever finer parts.
+    /// A delay of three updates, with five updates in a period, against short ticks without delay: each holds
+    /// the torque in the middle of its part of the straight line between two updates.
     #[test]
     fn the_torque_of_an_amplifier_in_updates_goes_in_straight_lines() {
         const FINE: usize = 64;

@@ -1,4 +1,4 @@
-//! The linear loop, fast: a few states, one matrix, nothing else in the way.
+//! A fast form of the linear loop: a few states, one matrix, nothing else.
 
 use nalgebra::DVector;
 
@@ -8,7 +8,7 @@ use super::plant::{POSITION, VELOCITY};
 use super::torque_signal::TorqueSignal;
 use super::trajectory::Columns;
 
-/// Samples between two looks at whether the motion has died away.
+/// Samples between two checks whether the motion has died away.
 pub(super) const LOOK: usize = 256;
 
 /// A motion below this in every state counts as zero. It would decay into subnormal numbers, which
@@ -17,11 +17,11 @@ pub(super) const DEAD: f64 = 1e-200;
 
 /// A linear loop in motion.
 pub trait Linear: std::fmt::Debug {
-    /// The next samples.
+    /// Computes the next samples.
     fn fill(&mut self, hand_torque: &TorqueSignal, columns: Columns<'_>);
 }
 
-/// The loop with as many states as it needs, or none where it has too many.
+/// The loop with the number of states that it needs; `None` where it has too many.
 pub fn kernel(
     closed: &ClosedLoop,
     tick: &DiscretePlant,
@@ -68,7 +68,7 @@ impl<const N: usize> Kernel<N> {
         }
     }
 
-    /// Runs with what `inputs` adds to the next state in tick `k`.
+    /// Runs the loop; `inputs` gives the addition to the next state in tick `k`.
     fn run(&mut self, columns: Columns<'_>, inputs: impl Fn(&Self, usize) -> Option<[f64; N]>) {
         let Columns { position, velocity, torque } = columns;
         let chunks = position.chunks_mut(LOOK).zip(velocity.chunks_mut(LOOK));
@@ -125,8 +125,8 @@ fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Column by column, so that all rows go side by side; even and odd columns apart, because each
-/// sum has to wait for the one before.
+/// Column by column, so that all rows are computed side by side; even and odd columns have sums of their own,
+/// because each addition waits for the one before.
 #[inline(always)]
 fn times<const N: usize>(columns: &[[f64; N]; N], state: &[f64; N]) -> [f64; N] {
     let mut sums = [[0.0; N]; 2];

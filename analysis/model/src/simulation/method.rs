@@ -1,8 +1,8 @@
-//! From continuous time to one tick, by the exact exponential or by a method that others use.
+//! From continuous time to one tick, by the exact exponential or by a common approximate method.
 //!
-//! Every method is linear, so over a step it is a matrix, and over a tick a power of that matrix.
-//! What stands beside the plant's states in the matrix: the held inputs, and the sine torque of the
-//! hand with its cosine, whose values within a step all methods are given exactly.
+//! Every method is linear, so over a step it is a matrix, and over a tick a power of that matrix. Beside the
+//! plant's states the matrix has the held inputs, and the sine torque of the hand with its cosine, whose
+//! values within a step are exact in all methods.
 
 use nalgebra::{DMatrix, DVector, Matrix2, linalg::balancing};
 
@@ -163,21 +163,21 @@ fn trapezoidal(plant: &Plant, omega: f64, h: f64) -> DMatrix<f64> {
     let mut later = rates_after(plant, omega, h);
     later.columns_mut(0, n).fill(0.0);
     let explicit = kept(plant) + (rates(plant) + later) * (0.5 * h);
-    // The damped masses and springs have no pole in the right half-plane, so 1 - A h / 2 can be
-    // inverted; where overflow prevents it, so does the answer.
+    // The damped masses and springs have no pole in the right half-plane, so 1 - A h / 2 can be inverted; if
+    // overflow prevents it, the result is NaN.
     implicit.lu().solve(&explicit).unwrap_or_else(|| explicit * f64::NAN)
 }
 
-/// Balances a matrix in place for its exponential or its eigenvalues; the scales of its rows.
-/// `None` where the squares of its numbers overflow: there is no telling which is larger.
+/// Balances a matrix in place for its exponential or its eigenvalues; returns the scales of its rows. `None`
+/// where the squares of its numbers overflow: their sizes cannot be compared.
 pub(crate) fn balance(matrix: &mut DMatrix<f64>) -> Option<DVector<f64>> {
     const LARGEST: f64 = 1e150;
     let in_range = matrix.iter().all(|entry| entry.abs() <= LARGEST);
     in_range.then(|| balancing::balance_parlett_reinsch(matrix))
 }
 
-/// Largest rate in a step, as a multiple of its inverse, of which the exponential can be taken: it
-/// needs tenth powers.
+/// Largest product of a rate and the length of the step of which the exponential can be computed: it needs
+/// tenth powers.
 const FASTEST: f64 = 1e25;
 
 /// The exponential of the whole generator, after it is brought to entries of similar size: a

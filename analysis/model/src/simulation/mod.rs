@@ -1,10 +1,10 @@
-//! What a scene would do: the sampled loop of servo, device and hand, tick by tick.
+//! Simulates a scene: the sampled loop of servo, device and hand, tick by tick.
 //!
 //! In tick `k` the servo reads the angle at `t = k T`, computes the coupling torque `F(k)`, and the
-//! motor applies `-F(k)` until the next tick. Position, velocity and `F` are recorded at that
-//! instant, before the torque acts. With a delay of the output it acts that much later, also by more
-//! than a tick; amplifier and encoder may lag. Environment and hidden states start at rest at zero. A scene
-//! need not be certified to be simulated; that it need not is the use of a simulation.
+//! motor applies `-F(k)` until the next tick. Position, velocity and `F` are recorded at that instant, before
+//! the torque acts. With an output delay the torque acts that much later, also by more than a tick; amplifier
+//! and encoder may lag. Environment and hidden states start at rest at zero. A scene need not be certified to
+//! be simulated: a simulation shows the motion of rejected scenes, too.
 //!
 //! ```
 //! use haptic_model::file::{Format, parse};
@@ -69,7 +69,7 @@ impl Simulator {
     /// Sets an experiment up.
     ///
     /// # Errors
-    /// Where the scene has no law that could run.
+    /// If the scene has no law that can run.
     pub fn new(experiment: &Experiment, integration: Integration) -> Result<Self, SimulationError> {
         let hand_torque = experiment.hand_torque.clone();
         // Rejects scenes without law or motion, for every way to run them.
@@ -105,10 +105,10 @@ fn linear(experiment: &Experiment, tick: &DiscretePlant) -> Option<Box<dyn Linea
     kernel::kernel(&closed, tick, experiment.scene.timing.period, &start)
 }
 
-/// Runs an experiment from its start to its end, or as far as there are numbers for it.
+/// Runs an experiment from its start to its end, or until the motion leaves the range of numbers.
 ///
 /// # Errors
-/// Where the scene has no law that could run.
+/// If the scene has no law that can run.
 pub fn simulate(
     experiment: &Experiment,
     integration: Integration,

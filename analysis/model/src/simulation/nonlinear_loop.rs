@@ -32,7 +32,7 @@ pub struct NonlinearLoop {
 trait Ticks: Iterator<Item = bool> + std::fmt::Debug {}
 impl<T: Iterator<Item = bool> + std::fmt::Debug> Ticks for T {}
 
-/// The plant with the torques that are still to act on it.
+/// The plant with the torques that have not acted on it yet.
 #[derive(Debug)]
 pub struct Machine {
     body: Body,
@@ -45,13 +45,13 @@ pub struct Machine {
 /// The plant, with Coulomb friction or without.
 #[derive(Debug)]
 enum Body {
-    /// Without.
+    /// Without friction.
     Smooth(Box<Smooth>),
-    /// With.
+    /// With friction.
     FrictionPlant(Box<FrictionPlant>),
 }
 
-/// A plant whose ticks are all one matrix.
+/// A plant with one matrix for all ticks.
 #[derive(Debug)]
 struct Smooth {
     tick: DiscretePlant,
@@ -64,7 +64,7 @@ impl NonlinearLoop {
     /// Sets an experiment up.
     ///
     /// # Errors
-    /// Where the scene has no law that could run.
+    /// If the scene has no law that can run.
     pub fn new(experiment: &Experiment, integration: Integration) -> Result<Self, SimulationError> {
         Ok(Self {
             servo: UnquantizedServo::new(&experiment.scene)?,
@@ -76,7 +76,7 @@ impl NonlinearLoop {
         })
     }
 
-    /// The next samples, and what the servo did at each.
+    /// Computes the next samples, and the status of the servo at each.
     pub fn fill(
         &mut self,
         hand_torque: &TorqueSignal,
@@ -111,8 +111,8 @@ impl NonlinearLoop {
     }
 }
 
-/// The angle in rad that an encoder with this step shows, and whether its count was too large for
-/// the servo's 32 bits, where the angle stands still.
+/// The angle in rad that an encoder with this step shows, and the limit if its count is too large for the
+/// servo's 32 bits: the angle then saturates.
 fn read(position: f64, step: f64) -> (f64, LimitReason) {
     let count = (position / step).floor();
     let nearest = count.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
@@ -158,7 +158,7 @@ impl Machine {
         self.state()[self.measured]
     }
 
-    /// One tick of whose sample follows this motor torque in N m.
+    /// One tick with the motor torque in N m of its sample.
     pub fn tick(&mut self, k: usize, hand_torque: &TorqueSignal, torque: f64) {
         self.torques.push_front(torque);
         let torques = [self.whole + 1, self.whole].map(|age| self.torques[age]);

@@ -46,7 +46,7 @@ pub struct Plant {
     motor: usize,
     hand: usize,
     measured: usize,
-    /// The amplifier and the state of its torque, where it is updated some times in a tick.
+    /// The amplifier and the state of its torque, where it is updated N times in a tick.
     sampled: Option<(SampledActuator, usize)>,
     rates: DMatrix<f64>,
     inputs: DMatrix<f64>,
@@ -69,8 +69,8 @@ impl Plant {
         if lag > 0.0 { plant.with_actuator_lag(lag) } else { plant }
     }
 
-    /// Masses in a row from the motor to the hand, with a link between each and the next, the
-    /// encoder on the motor's; links that are not given are not there.
+    /// Masses in a row from the motor to the hand, with a link between each and the next, the encoder on the
+    /// motor's; missing links connect nothing.
     ///
     /// # Panics
     /// Without a mass, or with a mass whose inertia is not positive: there is no such machine.
@@ -178,7 +178,7 @@ impl Plant {
         Self { rates, inputs, ..self }
     }
 
-    /// The same with an amplifier that is updated some times in a tick: the motor's input is then the
+    /// The same with an amplifier that is updated N times in a tick: the motor's input is then the
     /// [slope](Plant::motor_input) of its torque.
     pub fn with_sampled_actuator(self, actuator: SampledActuator) -> Self {
         let torque = self.order();
@@ -198,8 +198,8 @@ impl Plant {
         Self { rates, inputs, measured: n, ..self }
     }
 
-    /// The same with the lags of a scene of this period in s at its two ends, of those that lie in a range
-    /// the middle.
+    /// The same with the lags of a scene of this period in s at its two ends; a lag that lies in a range has
+    /// the middle of it.
     pub fn with_lags(mut self, latency: &Latency, period: f64) -> Self {
         let Latency { actuator_lag, sensor_lag, .. } = *latency;
         if let Some(actuator) = SampledActuator::of(latency, period) {
@@ -222,7 +222,7 @@ impl Plant {
         self
     }
 
-    /// The amplifier that is updated some times in a tick, if it is.
+    /// The amplifier, if it is updated N times in a tick.
     pub fn sampled(&self) -> Option<SampledActuator> {
         self.sampled.map(|(actuator, _)| actuator)
     }
@@ -234,8 +234,8 @@ impl Plant {
             .map_or(command, |(actuator, torque)| actuator.slope() * (command - states[torque]))
     }
 
-    /// A matrix of states and inputs from one update to the next, whose motor input is that of
-    /// [`Plant::motor_input`], as one whose motor input is the command.
+    /// Converts a matrix of states and inputs from one update to the next: its motor input, that of
+    /// [`Plant::motor_input`], becomes the command.
     pub fn commanded(&self, mut through: DMatrix<f64>) -> DMatrix<f64> {
         let Some((actuator, torque)) = self.sampled else { return through };
         let (n, slope) = (self.order(), actuator.slope());
@@ -258,7 +258,7 @@ impl Plant {
         self.masses.len()
     }
 
-    /// The state that the servo reads: the encoder's position, or what its filter makes of it.
+    /// The state that the servo reads: the encoder's position, or the output of its filter.
     pub fn measured(&self) -> usize {
         self.measured
     }
@@ -268,7 +268,7 @@ impl Plant {
         2 * self.motor + 1
     }
 
-    /// Inertia in kg m^2 of the motor's mass with what moves with it.
+    /// Inertia in kg m^2 of the motor's mass with all that moves with it.
     pub fn motor_inertia(&self) -> f64 {
         self.masses[self.motor].inertia
     }

@@ -218,7 +218,7 @@ fn a_device_behind_the_matched_coupling_hums_and_rests_as_the_certificate_says()
         let steps = Resolution { encoder: Some(step), ..Resolution::default() };
         let bound = QuantizationBound::of(&scene, Format::F64, &steps).unwrap();
         let hum = bound.hum();
-        // Compliances of one sample, of a sample on its way, and of 0.4 of another.
+        // Compliances of one sample, of a sample that has not acted yet, and of 0.4 of another.
         let fed_back = 2.4 * compliance * stiffness;
         if one_sided {
             let most = 0.5 * step * stiffness / (1.0 - fed_back);
@@ -306,7 +306,7 @@ fn a_scene_without_a_law_is_refused() {
     assert!(error.to_string().contains("future samples"), "{error}");
 }
 
-/// What of a loop in the tests of latency differs.
+/// The differences between the loops in the tests of latency.
 struct LateLoop {
     latency: Latency,
     matched: bool,
@@ -324,10 +324,10 @@ fn integrated(case: &LateLoop, samples: usize, start: Motion) -> Vec<f64> {
     let (whole, part) = ((delay / period) as usize, delay / period - (delay / period).floor());
     let h = period / FINE as f64;
     let updates = case.latency.actuator_updates as usize;
-    // What an amplifier that is updated makes up for until the next update.
+    // Fraction of its error that an updated amplifier removes until the next update.
     let caught_up = 1.0 - (-period / (updates as f64 * lag)).exp();
-    // Position, velocity, torque of the amplifier or the command until it is updated, angle behind the
-    // filter.
+    // States: position, velocity, torque of the amplifier, angle behind the filter. The command is a torque,
+    // or the slope of an updated amplifier's torque.
     let rate = |s: [f64; 4], command: f64| {
         let torque = if lag > 0.0 { s[2] } else { command };
         let amplifier = match updates {
@@ -372,7 +372,7 @@ fn integrated(case: &LateLoop, samples: usize, start: Motion) -> Vec<f64> {
     positions
 }
 
-/// An amplifier that is updated so often, some updates after the count.
+/// An amplifier with that number of updates in a period, whose torque begins `late` updates after the count.
 fn updated(updates: u16, late: f64) -> Latency {
     let latency = Latency::sampled(updates, 2e-4, 1e-3);
     let delay = late * 1e-3 / f64::from(updates);

@@ -23,7 +23,7 @@ impl TickStatus {
     /// It ran and nothing was limited.
     pub const UNLIMITED: Self = Self::Ran(LimitReason::None);
 
-    /// In one word, for tables: the servo's own word for its limit.
+    /// In one word, for tables; for a limit, the servo's own word.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Ran(reason) => reason.as_str(),
@@ -31,7 +31,7 @@ impl TickStatus {
         }
     }
 
-    /// All states, full service first.
+    /// All values; a tick without a limit comes first.
     pub fn all() -> impl Iterator<Item = Self> {
         LimitReason::ALL.into_iter().map(Self::Ran).chain([Self::Missed])
     }

@@ -26,11 +26,11 @@ pub enum TorqueSignal {
 }
 
 impl TorqueSignal {
-    /// What a scene file asks for over so many samples of `period` (s); a torque file is looked
-    /// for beside the scene file.
+    /// The torque of a scene file over `samples` samples of `period` (s); a torque file is read from
+    /// `folder`.
     ///
     /// # Errors
-    /// Where the torque file cannot be read, or has something in it that is not a finite number.
+    /// If the torque file cannot be read, or contains a value that is not a finite number.
     pub fn load(
         torque: &HandTorque,
         folder: &Path,
@@ -87,17 +87,17 @@ impl TorqueSignal {
     }
 }
 
-/// What `TAU` leaves out of 2 pi.
+/// The difference between 2 pi and `TAU`.
 const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 
-/// Numbers apart by commas, spaces or lines; `#` begins a comment.
+/// Numbers separated by commas, semicolons, spaces or lines; `#` begins a comment.
 fn read(path: &Path) -> Result<Vec<f64>, SimulationError> {
     let file = path.display().to_string();
     let bytes = std::fs::read(path)
         .map_err(|error| SimulationError::TorqueFile { file: file.clone(), error })?;
     let text = crate::file::text_of(&file, 1, &bytes)
         .map_err(|error| SimulationError::TorqueText(Box::new(error)))?;
-    // As spreadsheets begin their files.
+    // Spreadsheets begin their files with a byte order mark.
     let text = text.trim_start_matches('\u{feff}');
     let mut torque = Vec::new();
     for (index, line) in text.lines().enumerate() {

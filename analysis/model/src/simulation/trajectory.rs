@@ -1,11 +1,11 @@
-//! What a simulation gives: samples at the instants of the ticks.
+//! The result of a simulation: samples at the instants of the ticks.
 
 use serde::Serialize;
 
 use super::tick_status::TickStatus;
 
-/// Samples at the instants of the ticks, all of them finite: a motion that grows beyond the range
-/// of numbers ends before it does ([`Experiment::completed`](super::Experiment::completed)).
+/// Samples at the instants of the ticks, all of them finite: a motion that grows beyond the range of numbers
+/// is cut off before ([`Experiment::completed`](super::Experiment::completed)).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Trajectory {
     /// Position of the encoder's mass in rad.
@@ -19,7 +19,7 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
-    /// Room for so many samples.
+    /// A trajectory of that many samples.
     pub fn of_length(samples: usize) -> Self {
         let zeros = || vec![0.0; samples];
         let limit = vec![TickStatus::UNLIMITED; samples];

@@ -1,6 +1,6 @@
 //! The servo in `f64` and radians: the firmware's law and coupling without quantisation by encoder and DAC.
 //!
-//! Nothing here is certified: what a scene would do is asked before it is safe.
+//! Nothing here is certified: a scene is simulated before it is known to be safe.
 
 use haptic_servo::coupling::Solver;
 use haptic_servo::environment::{DataLaw, Discretize, Law};

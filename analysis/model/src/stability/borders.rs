@@ -54,7 +54,7 @@ impl Borders {
         let scene = &experiment.scene;
         let device = scene.device;
         let period = scene.timing.period;
-        // So stiff that what does not depend on the stiffness has no digits left in the sum.
+        // So stiff that the terms without stiffness have no digits left in the sum.
         let unit = 1e6 * (device.damping / period + device.inertia / (period * period));
         let environment = |stiffness: f64| -> Result<Response, SimulationError> {
             let changed = scene.with(Parameter::Stiffness, stiffness).unwrap_or(*scene);
@@ -86,12 +86,12 @@ impl Borders {
         let [without, with] = &self.environments;
         let (without, with) = (without.at(z), with.at(z));
         let each = (with - without) / self.unit;
-        // On a pole of the plant the loop is what the environment alone makes of it.
+        // On a pole of the plant the environment alone determines the loop.
         let through = self.plant(z).map(|plant| one / (plant + self.compliance.at(z)));
         -(through.unwrap_or_default() + without) / each
     }
 
-    /// All of them that are positive, rising.
+    /// All of them that are positive, in rising order.
     pub(super) fn all(&self) -> Vec<f64> {
         let angles = self.angles();
         let values: Vec<f64> = angles.iter().map(|&theta| self.at(theta).im).collect();
@@ -101,7 +101,7 @@ impl Borders {
                 found.push(self.at(self.root(angle[0], angle[1])));
             }
         }
-        // Where the sign changed by way of a pole there is no root.
+        // A change of sign through a pole is not a root.
         let real = |k: &Complex<f64>| k.re > 0.0 && k.re.is_finite() && k.im.abs() <= 1e-6 * k.re;
         let mut stiffnesses: Vec<f64> = found.iter().filter(|k| real(k)).map(|k| k.re).collect();
         stiffnesses.sort_by(f64::total_cmp);
@@ -126,7 +126,7 @@ impl Borders {
             })
         });
         let mut angles: Vec<f64> = even.chain(small).chain(around).collect();
-        // The angle pi is a root by symmetry, and is looked at by itself.
+        // The angle pi is a root by symmetry, and is evaluated separately.
         angles.retain(|theta| (1e-9..PI - 1e-9).contains(theta));
         angles.sort_by(f64::total_cmp);
         angles.dedup();

@@ -24,7 +24,7 @@ use borders::Borders;
 /// Distance from the unit circle within which an eigenvalue counts as being on it.
 pub const ON_CIRCLE: f64 = 1e-10;
 
-/// What becomes of a small motion.
+/// The behaviour of a small motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StabilityVerdict {
@@ -52,7 +52,7 @@ impl fmt::Display for StabilityVerdict {
 pub struct Stability {
     /// Largest modulus of the closed loop's eigenvalues: the factor by which motion grows a tick.
     pub spectral_radius: f64,
-    /// What that means.
+    /// The verdict that follows from it.
     pub verdict: StabilityVerdict,
     /// Stiffness of the environment in N m/rad at which the loop stops being stable, everything
     /// else as it is: the upper end of the lowest range in which it is. `None` where there is no
@@ -135,7 +135,7 @@ pub fn critical_stiffness(
     experiment: &Experiment,
     integration: Integration,
 ) -> Result<Option<f64>, SimulationError> {
-    /// What eigenvalues are off by, when the slowest of a heavy machine is next to 1.
+    /// Error of the eigenvalues when the slowest of a heavy machine is next to 1.
     const ROUNDING: f64 = 1e-12;
     if experiment.scene.get(Parameter::Stiffness).is_none() {
         return Ok(None);

@@ -26,19 +26,19 @@ pub struct Border {
 /// Which formula is compared with which limit.
 #[derive(Clone, Copy)]
 enum Formula {
-    /// The index of the environment alone with what the paper's rule leaves it.
+    /// The index of the environment alone, against the limit of the paper's rule.
     Paper,
-    /// The bound on the index of one-sided and limited scenes, with the same.
+    /// The bound on the index of one-sided and limited scenes, against the same limit.
     Bound,
-    /// Without a coupling the index of the environment a sample later, with `delta` (theory,
-    /// section 5: the standard coupling is worth one tick).
+    /// For a rigid coupling: the index of the environment a sample later, against `delta` (theory, section 5:
+    /// the standard coupling is worth one tick).
     SampleLater,
 }
 
 impl Formula {
-    /// The one for these scenes, if there is one: of a scene that may miss updates, and has no
-    /// compliance, two indices count, for torques that lag there is no formula, and a coupling that is stiffer than the standard one leaves
-    /// the paper's rule nothing.
+    /// The formula for these scenes; `None` if there is none: with a rigid coupling, two indices count where
+    /// updates may be missed, and torques that lag have no formula; behind a coupling stiffer than the
+    /// standard one the paper's rule has no limit.
     fn of(scene: &Scene) -> Option<Self> {
         let posed = PassivityProblem::of(scene).ok()?;
         let misses = scene.timing.worst_period.is_some_and(|worst| worst != scene.timing.period);
@@ -60,7 +60,7 @@ impl Formula {
         }
     }
 
-    /// What the limit has over the index; `None` where one of them does not exist.
+    /// The limit minus the index; `None` where one of them does not exist.
     fn spare(self, scene: &Scene) -> Option<f64> {
         let posed = PassivityProblem::of(scene).ok()?;
         let (limit, index) = match self {
@@ -98,7 +98,8 @@ pub fn closed_form_border(family: &Family, map: &Map) -> Option<Border> {
     (points.len() > 1).then(|| Border { name: formula.name(), points })
 }
 
-/// The index in N m s/rad of an environment so many samples later, where there is a formula for it.
+/// The index in N m s/rad of an environment with a delay that is `later` samples longer, where there is a
+/// formula for it.
 fn index_of(scene: &Scene, later: usize) -> Option<Interval> {
     let period = Interval::decimal(scene.timing.period);
     match scene.environment {

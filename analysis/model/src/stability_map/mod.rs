@@ -1,5 +1,4 @@
-//! What becomes of walls of every stiffness and damping on one device: certified, merely stable, or
-//! neither.
+//! Verdicts on walls of every stiffness and damping on one device: certified, merely stable, or neither.
 
 pub mod border;
 pub mod plane;
@@ -24,8 +23,8 @@ use plant::SampledPlant;
 /// Verdicts on a scene, from the worst to the best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Region {
-    /// Certified, and yet without a hand it does not come to rest: its torque is later than the
-    /// certificate takes it to be.
+    /// Certified, and yet without a hand it does not come to rest: its torque is later than the certificate
+    /// assumes.
     Wrong,
     /// Even without a hand it does not come to rest.
     Unstable,
@@ -72,7 +71,7 @@ impl Region {
 /// Why there is no map.
 #[derive(Debug, Error)]
 pub enum MapError {
-    /// Nothing of the environment is a stiffness or a damping.
+    /// The environment has no wall with a stiffness and a damping.
     #[error(
         "{scene}: a map shows stiffness and damping of a wall, but this environment has no wall; \
          it must be a delayed-spring, a damper-wall or a free-mode-wall"
@@ -102,16 +101,16 @@ pub enum MapError {
 pub struct Family {
     scene: Scene,
     plant: SampledPlant,
-    /// Whether the verdict rests on what does not hold: the torque is later than the certificate
-    /// takes it to be.
+    /// Whether the verdict rests on an assumption that does not hold: the torque is later than the
+    /// certificate assumes.
     may_be_wrong: bool,
     kept: Option<Kept>,
 }
 
-/// What the verdicts on scenes of the same delays and lags have in common.
+/// The responses that the verdicts on scenes of the same delays and lags share.
 type Kept = KeptResponses<Vec<SampledResponse>>;
 
-/// That of a scene; none where nothing lags.
+/// The responses of a scene; `None` where nothing lags.
 fn kept(scene: &Scene) -> Option<Kept> {
     PassivityProblem::of(scene).ok()?.kept_responses()
 }
@@ -126,7 +125,7 @@ impl Family {
         Self::on(&file.name, alone)
     }
 
-    /// The walls of a scene that a person calls `name`, on its rigid device in no hand.
+    /// The walls of a scene called `name`, on its rigid device in no hand.
     ///
     /// # Errors
     /// Where the environment has no wall, or the device's motion is beyond the range of numbers.
@@ -141,12 +140,12 @@ impl Family {
         let tick = alone.tick(Integration::default())?;
         let (scene, plant) = (alone.scene, SampledPlant::new(&tick));
         let family = Self { scene, plant, may_be_wrong: alone.latency > 0.0, kept: None };
-        // No wall is too stiff for its coupling where there is none.
+        // With stiffness and damping 0 no wall is too stiff for its coupling.
         let kept = kept(&family.member(0.0, 0.0));
         Ok(Self { kept, ..family })
     }
 
-    /// The scene that the others differ from.
+    /// The scene from which the others differ.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -177,8 +176,8 @@ impl Family {
         judged(&scene, self.kept.as_ref(), is_stable, self.may_be_wrong)
     }
 
-    /// A scene with the same controller that is found sooner: only a matched coupling looks at latencies, which
-    /// the plant has in it.
+    /// A scene with the same controller, which is computed sooner: only a matched coupling depends on
+    /// latencies, and the plant has them in it.
     fn prompt(&self, scene: Scene) -> Scene {
         match (&self.kept, scene.coupling) {
             (None, _) | (_, Coupling::Matched) => scene,
@@ -198,7 +197,7 @@ impl Family {
     }
 }
 
-/// What becomes of a scene that is stable without a hand or not.
+/// The region of a scene, from its stability without a hand and its verdict.
 fn judged(scene: &Scene, kept: Option<&Kept>, is_stable: bool, may_be_wrong: bool) -> Region {
     if !is_stable && !may_be_wrong {
         return Region::Unstable;
@@ -210,7 +209,7 @@ fn judged(scene: &Scene, kept: Option<&Kept>, is_stable: bool, may_be_wrong: boo
     }
 }
 
-/// The middle of one of so many equal parts of a range.
+/// The middle of the part `index` of a range, of `parts` equal parts.
 pub fn middle(range: &Range<f64>, index: usize, parts: usize) -> f64 {
     range.start + (range.end - range.start) * (index as f64 + 0.5) / parts as f64
 }
@@ -283,7 +282,7 @@ impl Map {
         })
     }
 
-    /// The part of the cells that a region has, from 0 to 1.
+    /// The share of the cells in a region, from 0 to 1.
     pub fn share(&self, region: Region) -> f64 {
         let count = self.regions.iter().filter(|&&found| found == region).count();
         count as f64 / self.regions.len().max(1) as f64

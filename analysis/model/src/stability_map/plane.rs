@@ -1,5 +1,5 @@
-//! What becomes of scenes that differ in two of their numbers: of a wall its stiffness and damping, of a
-//! torque profile its torque and number of repetitions, of any scene two that a person chooses.
+//! Verdicts on scenes that differ in two of their numbers: in stiffness and damping of a wall, in torque and
+//! number of repetitions of a torque profile, or in any two numbers that the user chooses.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -19,7 +19,7 @@ use crate::simulation::{Experiment, Integration, SimulationError};
 
 /// How far an axis goes beyond the scene's own number.
 const BEYOND: f64 = 2.5;
-/// Least period on an axis, as a part of the scene's own: a period of zero is invalid.
+/// Least period on an axis, as a fraction of the scene's own: a period of zero is invalid.
 const SHORTEST: f64 = 0.05;
 
 /// The numbers that may be an axis: those that the verdict rests on, except those of the device's chain and
@@ -51,7 +51,7 @@ pub enum PlaneError {
         scene: String,
         /// The number.
         parameter: Parameter,
-        /// The keys of those that there are.
+        /// The keys of the valid numbers.
         choice: String,
     },
     /// Both axes are the same.
@@ -78,18 +78,18 @@ pub struct Plane {
     judge: Judge,
 }
 
-/// What a member is judged by.
+/// The way in which a member is judged.
 #[derive(Clone, Debug)]
 enum Judge {
     /// A wall of another stiffness and damping.
     Walls(Box<Family>),
     /// A scene on a device that no axis changes.
     OnePlant(SampledPlant),
-    /// One whose vertical axis is a time of the loop: all of a row are on the same device.
+    /// The vertical axis is a time of the loop: all members of a row are on the same device.
     PlantOfRow,
-    /// One whose horizontal axis is.
+    /// The horizontal axis is a time of the loop.
     PlantOfMember,
-    /// An environment without a transfer function: by its certificate alone.
+    /// The environment has no transfer function: only its certificate judges it.
     Certificate,
 }
 
@@ -171,7 +171,7 @@ impl Plane {
         self.axes
     }
 
-    /// Whether a region says what becomes of the scene without a hand, beside its certificate.
+    /// Whether a region states the stability of the scene without a hand, beside its certificate.
     pub fn says_stability(&self) -> bool {
         !matches!(self.judge, Judge::Certificate)
     }
@@ -229,7 +229,7 @@ impl Plane {
     }
 }
 
-/// The members with one number on the vertical axis, and their common part.
+/// The members with one number on the vertical axis, with the plant and the responses that they share.
 #[derive(Clone, Debug)]
 pub struct Row<'a> {
     plane: &'a Plane,
@@ -239,7 +239,7 @@ pub struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// The verdict on a member; what cannot be is rejected.
+    /// The verdict on a member; an invalid member is rejected.
     pub fn region(&self, x: f64) -> Region {
         let plane = self.plane;
         if let Judge::Walls(family) = &plane.judge {
@@ -298,7 +298,7 @@ fn own_number(scene: &Scene, axis: Parameter) -> f64 {
     }
 }
 
-/// From nothing, or a little, to a multiple of the scene's own number, or of a usual number if that is zero.
+/// From 0 or a little more to a multiple of the scene's own number, or to a usual number if that is zero.
 fn usual_range(scene: &Scene, axis: Parameter) -> Range<f64> {
     /// The design's answer with everything else as it is.
     const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };
@@ -315,7 +315,7 @@ fn usual_range(scene: &Scene, axis: Parameter) -> Range<f64> {
         Parameter::Filter => 0.0..1.0,
         Parameter::Count => 0.0..(BEYOND * own).max(8.0).ceil(),
         Parameter::ProfileTorque => match largest(scene, Quantity::Torque, &AS_IT_IS) {
-            // About twice what certifies.
+            // About twice the certified torque.
             DesignLimit::Limit(torque, _) => 0.0..2.0 * torque.max(own),
             _ => 0.0..to(1.0),
         },
@@ -327,9 +327,9 @@ fn usual_range(scene: &Scene, axis: Parameter) -> Range<f64> {
     }
 }
 
-/// A range that a value is well inside of, as far as the parameter's range lets it.
+/// A range that is extended until a value is well inside of it.
 fn with_room(range: Range<f64>, value: f64) -> Range<f64> {
-    /// Part of the range on the other side of the value.
+    /// Fraction of the range beyond the value.
     const ROOM: f64 = 0.15;
     if !value.is_finite() {
         return range;

@@ -18,8 +18,8 @@ pub struct SampledPlant {
 }
 
 impl SampledPlant {
-    /// Of a plant that is taken through a tick (Faddeev and Le Verrier's recursion). Torques that are
-    /// late are states of their own.
+    /// For a plant over a tick (Faddeev and Le Verrier's recursion). Torques that are late are states of
+    /// their own.
     pub fn new(tick: &DiscretePlant) -> Self {
         let (transition, motor) = tick.with_pending();
         Self::of_states(&transition, &motor, tick.measured)

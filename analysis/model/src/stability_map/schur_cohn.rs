@@ -1,9 +1,9 @@
 //! Whether a polynomial has all its roots inside the unit circle, without looking for them.
 
-/// Schur-Cohn's test: of a polynomial and its reverse, the part that is left after the leading coefficient is
-/// taken away has one root less, and keeps the others inside, as long as the constant coefficient is the
-/// smaller one. `coefficients` has the highest power first, and is used up. Roots on the circle or outside,
-/// and NaN, are not inside.
+/// Schur-Cohn's test: a polynomial minus the multiple of its reverse that removes the constant coefficient
+/// has, divided by `z`, one root less, and keeps the others inside, as long as the constant coefficient is
+/// smaller in size than the leading one. `coefficients` has the highest power first, and is overwritten.
+/// Roots on the circle or outside, and NaN, are not inside.
 pub fn all_inside(coefficients: &mut [f64]) -> bool {
     let mut rest = coefficients;
     while let [leading, .., constant] = *rest {

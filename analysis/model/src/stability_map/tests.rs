@@ -141,14 +141,15 @@ fn nothing_that_the_dashed_border_encloses_is_rejected() {
             drawn.push((coupling, border.name));
         }
     }
-    // The paper's rule passes nothing behind these; the region of the rigid device is the exact rule's.
+    // The paper's rule passes nothing behind these; the border of the rigid coupling is that of the exact
+    // rule.
     assert!(drawn.iter().all(|(coupling, _)| *coupling != stiff), "{drawn:?}");
     assert!(drawn.iter().any(|(coupling, _)| coupling.is_empty()) && drawn.len() > 5, "{drawn:?}");
 }
 
 #[test]
 fn a_wrong_verdict_and_none_at_all_are_told_from_no() {
-    // A torque that is nearly a sample later than the certificate takes it to be.
+    // A torque that is nearly a sample later than the certificate assumes.
     let latency = "type = \"damper-wall\"\nstiffness = 1\ndamping = 0\ndelay = 0\n[simulation]\nsamples = 1\n\
                    latency = 0.0009";
     let family = Family::of(&self::file(latency, STANDARD)).unwrap();
@@ -166,7 +167,7 @@ fn a_wrong_verdict_and_none_at_all_are_told_from_no() {
         let undecided = assess(&rigid.member(k, b)).outcome.is_err_and(|why| why.is_undecided());
         assert!(undecided, "{k} {b} {region:?}");
     }
-    // On the border itself the certificate leaves it open.
+    // On the border itself the certificate is undecided.
     let family = Family::of(&wall(1, STANDARD)).unwrap();
     for (stiffness, undecided) in [(43.0, false), (44.0, true), (45.0, false)] {
         let outcome = assess(&family.member(stiffness, 0.0)).outcome;
@@ -201,7 +202,7 @@ fn what_walls_have_in_common_changes_no_verdict() {
         let family = Family::of(&file).unwrap();
         assert!(family.kept.is_some(), "{latency:?}");
         let alone = Family { kept: None, ..family.clone() };
-        // What others have in common counts for nothing.
+        // The responses of another family have no effect.
         let foreign = Family { kept: before, ..family.clone() };
         for (k, b) in (1..9).flat_map(|k| (-2..6).map(move |b| (k, b))) {
             let (k, b) = (5.0 * f64::from(k), 0.004 * f64::from(b));
@@ -220,7 +221,7 @@ fn what_walls_have_in_common_changes_no_verdict() {
     assert!(kinds.len() >= 3, "{kinds:?}");
 }
 
-/// Of a row the device is computed once, of a member of the turned map each time.
+/// The device is computed once for a row, and for each member of the turned map.
 #[test]
 fn a_map_that_is_turned_shows_the_same() {
     for (own, other) in [

@@ -26,9 +26,9 @@ const REACHES: [i32; 5] = [1, 3, 8, 16, 24];
 /// Where in the gap between two frequencies absorbers may resonate, in the order in which these are tried:
 /// the farther from a frequency, the less does the hand's response vary around it.
 const PLACES: [&[f64]; 3] = [&[0.5], &[0.2, 0.5, 0.8], &[0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97]];
-/// Largest reactance that is asked for, over the damping.
+/// Largest reactance that is prescribed, over the damping.
 const OPEN: f64 = 1e3;
-/// Angles at which the disk is looked at.
+/// Number of angles at which the disk is examined.
 const ANGLES: usize = 400;
 
 /// A loop whose torque passes through a delay and lags, around a rigid device.
@@ -42,7 +42,7 @@ pub(super) struct LaggingLoop {
     controller: Response,
 }
 
-/// What `2 b p` reaches at one angle, as far as the met aliases go.
+/// The disk of `2 b p` at one angle, from the aliases that are met.
 struct Disk {
     /// Angular frequency in rad/s of each alias, and its `q`.
     aliases: Vec<(f64, Complex<f64>)>,
@@ -53,8 +53,8 @@ struct Disk {
 }
 
 impl LaggingLoop {
-    /// Of a scene on its device; `None` where the device is no single mass with damping, or the loop
-    /// has no transfer function.
+    /// For a scene on its device; `None` where the device is not a single mass with damping, or the loop has
+    /// no transfer function.
     pub(super) fn new(scene: &Scene, device: &Chain) -> Option<Self> {
         let controller = Response::new(transfers(scene).ok()?.controller);
         let latency = &scene.latency;
@@ -116,7 +116,8 @@ impl LaggingLoop {
         needed(worst.max(1e-3))
     }
 
-    /// Where the most damping is needed, and on both sides where still most of what lacks is.
+    /// The angle at which the most damping is needed, and the farthest on both sides at which more than half
+    /// of the missing damping is.
     fn angles(&self, reach: i32) -> Vec<f64> {
         let needed = |theta: f64| self.disk(theta, reach).needed();
         let worst = minimizing_angle(|theta| -needed(theta), 0.0, PI).unwrap_or(0.5 * PI);
@@ -167,7 +168,7 @@ struct Wanted {
     rate: f64,
     /// Over the device's damping.
     reactance: f64,
-    /// What a deviation of 1 moves `p` by, over the size of its disk.
+    /// Change of `p` for a deviation of 1, over the size of its disk.
     weight: f64,
 }
 
@@ -203,7 +204,8 @@ impl Part {
         }
     }
 
-    /// Its number with a reactance of 1 where that matters the most, so that all columns have a size.
+    /// Its number for a largest reactance of 1 at the frequencies, so that all columns have about the same
+    /// size.
     fn size(&self, rates: &[f64]) -> f64 {
         let largest = rates.iter().map(|&rate| self.reactance(rate).abs()).fold(0.0, f64::max);
         1.0 / largest
@@ -222,7 +224,7 @@ impl Part {
 
 /// A mass, a spring, and absorbers that resonate between the frequencies, below and above them.
 fn parts(rates: &[f64], places: &[f64]) -> Vec<Part> {
-    /// Frequencies that are nearer to each other, relative to their size, are one.
+    /// Frequencies that are nearer to each other, relative to their size, count as one.
     const ONE: f64 = 1e-6;
     let (first, last) = (rates[0], rates[rates.len() - 1]);
     let gaps = rates.windows(2).map(|two| (two[0], two[1]));

@@ -21,12 +21,12 @@ pub struct HandImpedance {
     pub stiffness: f64,
     /// The link between device and hand; `None`: the hand is on the device.
     pub link: Option<Compliance>,
-    /// Masses on springs beside each other, on what the hand holds.
+    /// Masses on springs, side by side, on the mass that the hand holds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub absorbers: Vec<Absorber>,
 }
 
-/// A mass on a spring of its own: together they take what moves them at their resonance to a halt.
+/// A mass on a spring of its own: at their resonance they keep the held mass at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Absorber {
     /// Inertia in kg m^2 of the mass.
@@ -81,7 +81,7 @@ pub(super) fn impedance_grid(inertia: f64, period: f64, angle: f64) -> Vec<HandI
     hands
 }
 
-/// A device with so many times its inertia in a hand.
+/// A device with its inertia times `lighter`, in a hand.
 pub fn plant(device: &Chain, lighter: f64, impedance: &HandImpedance) -> Plant {
     let light = |mass: &Mass| Mass { inertia: lighter * mass.inertia, ..*mass };
     let mut masses: Vec<Mass> = device.masses().iter().map(light).collect();

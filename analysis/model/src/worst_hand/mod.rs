@@ -1,14 +1,14 @@
-//! The hand in which a scene oscillates the most: what a rejection means in practice.
+//! The hand in which a scene oscillates the most: the meaning of a rejection in practice.
 //!
-//! For a rigid device the rule of theory, section 4.1, is necessary as well as sufficient: below the device's
-//! passivity lies an angle on the unit circle at which some passive hand makes the sampled loop grow. Where
-//! the real part is smallest is where that hand resonates, so the search starts from masses and springs that
-//! resonate near there, then climbs in all their numbers. Where none of them does, the hand is constructed as
-//! in the proof (theory, section 13.6): for a rigid device it has the needed impedance at all frequencies
-//! that a sample confuses.
+//! For a rigid device the rule of theory, section 4.1, is necessary as well as sufficient: if the device has
+//! too little passivity, there is an angle on the unit circle at which some passive hand makes the sampled
+//! loop grow. That hand resonates where the real part is smallest, so the search starts from masses and
+//! springs that resonate near there, then climbs in all their numbers. Where none of them makes it grow, the
+//! hand is constructed as in the proof (theory, section 13.6): for a rigid device it has the needed impedance
+//! at all frequencies that give the same samples.
 //!
-//! Where torques lag, delay, amplifier and sensor are part of the loop in which hands are tried. On the
-//! other devices not every rejected scene has such a hand.
+//! Where torques lag, delay, amplifier and sensor are part of the loop in which hands are tried. On other
+//! devices not every rejected scene has such a hand.
 
 mod constructed;
 mod impedance;
@@ -31,7 +31,7 @@ use constructed::LaggingLoop;
 
 pub use impedance::{Absorber, Compliance, HandImpedance, plant};
 
-/// What makes a loop count as growing: so much a tick above 1.
+/// Growth over 1 in a tick from which a loop counts as growing.
 pub const GROWTH_THRESHOLD: f64 = 1e-9;
 
 /// Angle in rad a tick below which a motion creeps rather than resonates.
@@ -40,7 +40,7 @@ const SLOWEST_RESONANCE: f64 = 1e-2;
 /// Heaviest hand, over the device: far beyond, two eigenvalues near 1 cannot be separated.
 const HEAVIEST: f64 = 1e4;
 
-/// A hand, and what the loop does in it.
+/// A hand, and the behaviour of the loop in it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HandCase {
     /// Inertia in kg m^2 of the device.
@@ -53,15 +53,15 @@ pub struct HandCase {
     pub frequency: f64,
 }
 
-/// What the search came to.
+/// The result of the search.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SearchResult {
     /// The worst hand of all that were tried.
     pub worst: HandCase,
     /// Whether the loop grows in it.
     pub oscillates: bool,
-    /// Where it does not: a hand on a lighter device of the same damping in which it would. The
-    /// certificate counts on the damping alone.
+    /// Where it does not: a hand in which it grows on a lighter device of the same damping. The certificate
+    /// depends on the damping alone.
     pub lighter: Option<HandCase>,
     /// Number of hands that were tried.
     pub tried: usize,
@@ -103,7 +103,7 @@ impl HandCase {
     }
 }
 
-/// The worst hand on the device of a scene, with so many times its inertia.
+/// The worst hand on the device of a scene, with its inertia times `lighter`.
 fn worst(
     scene: &Scene,
     device: &Chain,
@@ -126,8 +126,8 @@ fn worst(
     Ok(worst)
 }
 
-/// The damping in N m s/rad below which some hand that does not vary in time destabilises a scene on a
-/// device (theory, equation 43), from many aliases and a grid of angles; `None` where the device is no single
+/// The damping in N m s/rad below which some hand that does not vary in time destabilises a scene on a device
+/// (theory, equation 43), from many aliases and a grid of angles; `None` where the device is not a single
 /// mass with damping, or the loop has no transfer function.
 pub fn needed(scene: &Scene, device: &Chain) -> Option<f64> {
     Some(LaggingLoop::new(scene, device)?.needed())
@@ -176,7 +176,7 @@ struct HandSearch<'d> {
 impl<'d> HandSearch<'d> {
     fn new(scene: &Scene, device: &'d Chain, lighter: f64) -> Result<Self, SimulationError> {
         let experiment = Experiment::still(scene);
-        // Reports faults before any search.
+        // Reports an error of the scene before the search.
         eigenvalues(&closed_loop(&experiment, Integration::default())?.matrix)?;
         Ok(Self { device, lighter, experiment, tried: 0 })
     }
@@ -195,7 +195,7 @@ impl<'d> HandSearch<'d> {
     fn angle(&self) -> f64 {
         let scene = &self.experiment.scene;
         if !scene.latency.is_none() || scene.coupling == Coupling::Matched {
-            // The place where the certificate found the port to lack the most.
+            // The angle of the index at the port, from the certificate.
             let place = assess(scene).cos_theta.map(|cosine| cosine.midpoint().clamp(-1.0, 1.0));
             return place.map_or(0.5 * PI, f64::acos);
         }
@@ -206,14 +206,14 @@ impl<'d> HandSearch<'d> {
         minimizing_angle(|theta| velocity.at_angle(theta).re, 0.0, PI).unwrap_or(0.5 * PI)
     }
 
-    /// What the loop does in a hand.
+    /// The behaviour of the loop in a hand.
     fn of(&mut self, hand: HandImpedance) -> Result<HandCase, SimulationError> {
         self.tried += 1;
         self.experiment.plant = plant(self.device, self.lighter, &hand);
         let closed = closed_loop(&self.experiment, Integration::default())?;
-        // Numbers too far apart for their eigenvalues prove nothing.
+        // If the eigenvalues are not found, the hand proves nothing: its numbers are too far apart.
         let all = eigenvalues(&closed.matrix).unwrap_or_default();
-        // What creeps back to rest is always nearest to 1 and would hide what resonates.
+        // A slow return to rest is always nearest to 1 and would hide a resonance.
         let matters = |z: &&Complex<f64>| {
             z.arg().abs() > SLOWEST_RESONANCE || z.norm() > 1.0 + GROWTH_THRESHOLD
         };
@@ -230,7 +230,7 @@ impl<'d> HandSearch<'d> {
 
     /// Changes one number at a time for as long as that makes it worse, by ever smaller factors.
     fn climb(&mut self, start: HandCase) -> Result<HandCase, SimulationError> {
-        /// Factor of the first changes, and the one at which they end.
+        /// Factor of the first changes, and the factor at which they end.
         const FACTORS: [f64; 2] = [4.0, 1.01];
         let mut best = start;
         let mut factor = FACTORS[0];
@@ -252,7 +252,7 @@ impl<'d> HandSearch<'d> {
     /// A hand with one of its numbers larger or smaller by a factor. A number that is zero begins at a value
     /// that is small beside the device.
     fn neighbours(&self, hand: &HandImpedance, factor: f64) -> Vec<HandImpedance> {
-        /// A value that is small beside the device.
+        /// Ratio of such a value to that of the device.
         const SMALL: f64 = 1e-3;
         let (inertia, period) = (self.inertia(), self.experiment.scene.timing.period);
         let damping = self.device.damping().max(inertia / period) * SMALL;
@@ -284,8 +284,8 @@ impl<'d> HandSearch<'d> {
                 );
             all.extend(links.map(|link| HandImpedance { link: Some(link), ..hand.clone() }));
         }
-        // A mass behind nothing is in no hand, and its rest anywhere a double eigenvalue 1, which
-        // rounding moves to either side.
+        // A mass behind an empty link is not part of a hand. Its rest at any place is a double eigenvalue 1,
+        // which rounding moves to either side.
         let holds = |link: Compliance| link.stiffness > 0.0 || link.damping > 0.0;
         // Springs that resonate far above the sample rate are as good as rigid.
         let stiffest = |mass: f64| (inertia + mass) * (4.0 * PI / period).powi(2);

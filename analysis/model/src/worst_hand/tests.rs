@@ -109,7 +109,7 @@ fn a_mass_behind_nothing_is_no_hand() {
     assert!(!found.oscillates && found.lighter.is_none(), "{found:?}");
 }
 
-/// What the search says must come true tick by tick.
+/// A simulation tick by tick must agree with the search.
 #[test]
 fn the_hand_that_was_found_makes_a_simulation_grow() {
     let scene = scene(30.0, 0.01, 1, Coupling::Spring { stiffness: 44.0 });

@@ -1,4 +1,5 @@
-//! `[environment]` of a torque profile: its shapes as they were read, and changes since.
+//! `[environment]` of a torque profile: its shapes as they were read, and the numbers that differ from
+//! theirs.
 
 use haptic_servo::environment::{AnyProfile, Ends, Shape, Wall};
 
@@ -9,7 +10,7 @@ use crate::file::profile::Shapes;
 use crate::file::shape;
 use crate::file::shape::span;
 
-/// A torque profile, with what a canceller beside it leaves of the damping.
+/// A torque profile, with the residual damping of a canceller beside it.
 pub fn profile(
     lines: &mut Vec<String>,
     residual: Option<f64>,
@@ -29,7 +30,7 @@ pub fn profile(
     changed(&key::PROFILE_TORQUE, Some(profile.torque), was(|own| own.torque));
     changed(&key::COUNT, Some(profile.count), was(|own| own.count));
     changed(&key::CENTRE, Some(profile.centre), was(|own| own.centre));
-    // Those of keys are in no shape.
+    // End stops from keys are in no shape.
     let of_shapes = own.and_then(|own| own.ends).filter(|_| shapes.ends.is_none());
     let numbers = |Ends { from, to, stiffness }: Ends| [from, to, stiffness].map(Some);
     let [now, before] = [profile.ends, of_shapes].map(|ends| ends.map_or([None; 3], numbers));
@@ -44,7 +45,7 @@ pub fn profile(
     }
 }
 
-/// The wall beside it: below its shapes, whose tables end that of the environment's own keys.
+/// The wall beside it. It is written below the shapes, whose tables end the environment's own table.
 pub fn wall(wall: &Wall) -> Vec<String> {
     let Wall { stiffness, damping, filter, delay, face, one_sided } = *wall;
     let mut lines = vec![format!("[{}]", key::WALL.path)];
