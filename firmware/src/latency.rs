@@ -83,7 +83,7 @@ pub struct Latency {
     pub actuator_lag: TimeRange,
     /// Time constant of the filter between encoder and servo.
     pub sensor_lag: TimeRange,
-    /// Where the amplifier is no lag: its step response rises or rests, begins after the least and has
+    /// Where the amplifier is not a lag: its step response rises or rests, begins after the least and has
     /// ended before the most of this, which is a period at the most. Zero where the torque follows at once.
     pub actuator_response: TimeRange,
     /// How often in a period the amplifier's current loop is updated; 0: its lag is continuous. Between two

@@ -12,7 +12,7 @@ fn replay(name: &str, corpus: &str, run: impl Fn(&[u8])) {
     let mut inputs = 0;
     for (number, line) in corpus.lines().enumerate() {
         let input =
-            bytes(line).unwrap_or_else(|| panic!("{name}: line {} is no input", number + 1));
+            bytes(line).unwrap_or_else(|| panic!("{name}: line {} is not an input", number + 1));
         run(&input);
         inputs += 1;
     }

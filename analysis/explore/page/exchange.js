@@ -48,7 +48,8 @@ function presetChoice(store, engine, presets) {
 /** Takes a scene file as the scene, with all that is wrong in it but its grammar. */
 function readScene(store, engine, text, name) {
   const { scene, errors } = engine.json("parse", text);
-  notice(scene ? "" : `${name} is no scene file: ${errors.map(placed).join("; ")}. The scene is as it was.`);
+  const faults = () => errors.map(placed).join("; ");
+  notice(scene ? "" : `${name} is not a scene file: ${faults()}. The scene is as it was.`);
   if (scene) store.replace(scene);
 }
 

@@ -211,7 +211,7 @@ class ChoiceField extends Field {
   }
 
   draw(value) {
-    // A table is no word.
+    // A table is not a word.
     if (value === undefined || typeof value === "object") {
       this.#select.selectedIndex = -1;
       return;

@@ -46,7 +46,7 @@ class Fields {
     this.#kinds = kinds;
     this.#shapes = shapes;
     store.listen(() => this.show());
-    // Enter in a field is no answer to anything.
+    // Enter in a field is not an answer to anything.
     this.#form.addEventListener("submit", (event) => event.preventDefault());
     this.#hint();
   }

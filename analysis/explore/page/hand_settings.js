@@ -49,7 +49,7 @@ class HandSettings {
       make("span", { className: "unit" }, unit), slider, error);
   }
 
-  /** The numbers of all fields, null where one is left empty; undefined where one is no number. */
+  /** The numbers of all fields, null where one is left empty; undefined where one is not a number. */
   read() {
     const values = {};
     for (const name of Object.keys(this.#fields)) values[name] = this.#number(name);

@@ -12,7 +12,7 @@
 //
 // Panels are above each other and share the horizontal axis. `paint` draws in the units of the axes:
 //
-//   pen.line(xs, ys, { ink, width, dash })   a line; ends where a value is no number, and goes on after it
+//   pen.line(xs, ys, { ink, width, dash })   a line; ends where a value is not a number, and goes on after it
 //   pen.upright(x, stroke), pen.level(y, stroke)   from side to side
 //   pen.band(from, to, ink)                  between two values of x, filled
 //   pen.ring(x, y, stroke), pen.dot(x, y, stroke), pen.cross(x, y, stroke)

@@ -125,7 +125,7 @@ impl Client {
     /// Takes bytes from the board, and passes its ticks to `each`.
     ///
     /// # Errors
-    /// Why this is no board to go on with.
+    /// Why this is not a board to go on with.
     pub fn receive(
         &mut self,
         bytes: &[u8],

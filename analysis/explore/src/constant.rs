@@ -277,7 +277,7 @@ fn profiled(environment: &Environment, shapes: Option<&Shapes>) -> Result<Typed,
     let composed = match environment {
         Environment::Composed(composed) => *composed,
         Environment::Profile(profile) => Composed { residual: None, wall: None, profile: *profile },
-        _ => return Err("the environment is no torque profile".to_owned()),
+        _ => return Err("the environment is not a torque profile".to_owned()),
     };
     let Composed { residual, wall, profile } = composed;
     let (is_alone, has_snap) = (residual.is_none() && wall.is_none(), profile.snap.is_some());

@@ -89,7 +89,7 @@ pub fn begin(text: &str, _: &mut Vec<f64>) -> PageResult {
 /// cell. The numbers are the regions by their places in the list that the beginning has given.
 pub fn row(text: &str, numbers: &mut Vec<f64>) -> PageResult {
     let mut words = text.split(' ').map(|word| {
-        word.parse::<usize>().map_err(|_| format!("`{word}` is no number of a row or column"))
+        word.parse::<usize>().map_err(|_| format!("`{word}` is not a number of a row or column"))
     });
     MAP.with_borrow(|map| {
         let Some(Map { plane, ranges: [along, up], cells: [columns, rows] }) = map else {

@@ -34,7 +34,7 @@ impl<'py> FromPyObject<'_, 'py> for Form {
             "path" => Ok(Self::Path),
             "text" => Ok(Self::Text),
             "dictionary" => Ok(Self::Dictionary),
-            other => Err(PyValueError::new_err(format!("`{other}` is no form of a scene"))),
+            other => Err(PyValueError::new_err(format!("`{other}` is not a form of a scene"))),
         }
     }
 }

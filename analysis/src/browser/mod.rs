@@ -50,7 +50,7 @@ pub enum BrowserError {
     #[error("the developer tools of {NAME} have broken off: {0}")]
     Socket(#[source] Box<tungstenite::Error>),
     /// They sent a message that is not of their protocol.
-    #[error("the developer tools of {NAME} have said `{said}`, which is no message: {source}")]
+    #[error("the developer tools of {NAME} have sent `{said}`, which is not a message: {source}")]
     NoMessage {
         /// The message.
         said: String,

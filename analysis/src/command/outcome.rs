@@ -74,7 +74,7 @@ fn coasting(program: &Program, outcome: &RunOutcome) -> String {
         format!("that the encoder's and the {steps}'s steps ask for, {friction} N m,")
     } else if let Some(current_loop) = program.bridge {
         let friction = RoundUp3(current_loop.resolution().deviation);
-        format!("of what the current loop's steps leave, {friction} N m,")
+        format!("against the remaining error of the current loop, {friction} N m,")
     } else {
         let full_scale = program.transducers.full_scale_torque;
         let half_step = 0.5 * full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE);

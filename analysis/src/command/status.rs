@@ -156,7 +156,7 @@ pub enum CommandError {
     },
     /// There is no torque profile to draw.
     #[error(
-        "{scene}: the environment is no torque profile, which has `environment.type` = \"profile\""
+        "{scene}: the environment is not a torque profile, which has `environment.type` = \"profile\""
     )]
     NoProfile {
         /// Name of the scene.

@@ -131,8 +131,8 @@ fn sweep(times: &[f64]) -> Option<f64> {
 
 fn sweeping(ratio: f64) -> String {
     format!(
-        "its frequency changes by a factor of {} from its first half to its second; a sweep (chirp) is no steady sine. \
-         Record one frequency after the other",
+        "its frequency changes by a factor of {} from its first half to its second; a sweep (chirp) is \
+         not a steady sine. Record one frequency after the other",
         significant(ratio, 3)
     )
 }

@@ -184,7 +184,7 @@ fn a_sweep_is_called_one() {
     };
     // From 1 to 21 Hz: slowly enough that each period is like the previous one.
     let said = refused(&|t| (TAU * (t + 0.5 * t * t)).sin());
-    assert!(said.contains("a sweep (chirp) is no steady sine"), "{said}");
+    assert!(said.contains("a sweep (chirp) is not a steady sine"), "{said}");
     assert!(!said.contains("larger torque"), "{said}");
 }
 

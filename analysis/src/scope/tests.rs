@@ -114,7 +114,7 @@ fn shows_what_a_power_stage_measures() {
     let shown = screen(&scope, 120, 40);
     let lines: Vec<_> = shown.lines().map(|line| line.trim_matches('"').trim_end()).collect();
     let at = lines.iter().position(|line| *line == LINE);
-    let at = at.unwrap_or_else(|| panic!("{LINE:?} is no line of\n{shown}"));
+    let at = at.unwrap_or_else(|| panic!("{LINE:?} is not a line of\n{shown}"));
     // Between the facts of every board, of which none gives way.
     assert!(lines[at - 1].starts_with("energy into the hand"), "{shown}");
     assert!(lines[at + 1].starts_with("ticks dropped"), "{shown}");

@@ -67,7 +67,10 @@ impl Head {
             Ok(httparse::Status::Partial) => return Ok(None),
             Err(error) => {
                 let status = if error == httparse::Error::TooManyHeaders { 431 } else { 400 };
-                return Err(HttpResponse::refusal(status, format!("this is no request: {error}")));
+                return Err(HttpResponse::refusal(
+                    status,
+                    format!("this is not a request: {error}"),
+                ));
             }
         };
         let header = |header: &httparse::Header<'_>| {

@@ -38,7 +38,7 @@ pub enum SetupError {
     #[error(transparent)]
     Apt(#[from] AptError),
     /// A step was taken and has not helped.
-    #[error("`{0}` succeeded, but what it should install is still not found")]
+    #[error("`{0}` succeeded, but the package that it should install is still not found")]
     InVain(Step),
     /// The workspace cannot be found or written to.
     #[error(transparent)]

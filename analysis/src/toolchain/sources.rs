@@ -50,10 +50,10 @@ pub enum SourcesError {
     Exists(PathBuf),
 }
 
-/// Why a name is no name for a new scene.
+/// Why a name cannot be a new scene's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BadName {
-    /// It is no name of a module.
+    /// It is not a name of a module.
     #[error(
         "expected lower-case letters, digits and underscores, with a letter first, for example \
          soft_wall"

@@ -194,7 +194,7 @@ fn an_amplifier_in_updates_has_a_lag_and_a_delay_of_whole_updates() {
         "output_delay = 3.4e-4",
         "9:16",
         &[
-            "`servo.output_delay` = 3.4e-4 is no whole number of updates",
+            "`servo.output_delay` = 3.4e-4 is not a whole number of updates",
             "`device.actuator_updates` = 3 in a period",
             "the nearest is 1: 0.0003333",
         ],

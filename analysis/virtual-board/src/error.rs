@@ -71,7 +71,7 @@ pub enum BootError {
         /// Why.
         source: std::io::Error,
     },
-    /// It is no program.
+    /// It is not a program.
     #[error("{path}: {source}")]
     Image {
         /// The file.

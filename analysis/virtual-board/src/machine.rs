@@ -38,7 +38,7 @@ impl Machine {
     /// Switches a board on that has this program in its flash and this device at its pins.
     ///
     /// # Errors
-    /// Where the file cannot be read, or is no program for the chip.
+    /// Where the file cannot be read, or is not a program for the chip.
     pub fn boot(
         elf: &Path,
         chip: &'static Chip,

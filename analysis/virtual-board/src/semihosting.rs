@@ -54,7 +54,7 @@ pub enum CallError {
         /// Where.
         address: u32,
     },
-    /// What a call refers to is not in memory, or is no open file.
+    /// What a call refers to is not in memory, or is not an open file.
     #[error("the program's call {operation:#x} is not understood: {block:x?}")]
     Malformed {
         /// Which.
@@ -92,7 +92,7 @@ impl Guest {
     /// its answers to the second.
     ///
     /// # Errors
-    /// Where the file cannot be read, or is no program for the chip.
+    /// Where the file cannot be read, or is not a program for the chip.
     pub fn boot(
         elf: &Path,
         chip: &'static Chip,

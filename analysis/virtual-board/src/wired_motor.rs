@@ -9,9 +9,9 @@ const BRUSHED: &str = "brushed";
 /// Electrical angle in rad of a brushless motor's magnets at the encoder's zero: any, for an alignment to find.
 const OFFSET: f64 = 1.0;
 
-/// Why words are no motor.
+/// Error: the words are not a motor.
 #[derive(Debug, thiserror::Error)]
-#[error("{name} is {word}, which is no {wanted}")]
+#[error("{name} is {word}, not {wanted}")]
 pub struct NoMotor {
     name: &'static str,
     word: String,
@@ -25,14 +25,14 @@ pub fn parse([winding, numbers @ ..]: &[String; 5]) -> Result<(Motor, Supply), N
         (BRUSHED, _) => Winding::Brushed,
         (_, Ok(pole_pairs @ 1..)) => Winding::Brushless { pole_pairs, offset: OFFSET },
         _ => {
-            let (name, wanted) = ("winding", "`brushed` and no number of pole pairs");
+            let (name, wanted) = ("winding", "`brushed` or a number of pole pairs");
             return Err(NoMotor { name, word: winding.clone(), wanted });
         }
     };
     let mut values = [0.0; 4];
     for ((value, word), name) in values.iter_mut().zip(numbers).zip(NAMES) {
         let positive = |number: &f64| *number > 0.0 && number.is_finite();
-        let refused = || NoMotor { name, word: word.clone(), wanted: "positive number" };
+        let refused = || NoMotor { name, word: word.clone(), wanted: "a positive number" };
         *value = word.parse().ok().filter(positive).ok_or_else(refused)?;
     }
     let [resistance, inductance, torque_constant, volts] = values;

@@ -84,7 +84,7 @@ const NOTHING: Coefficients = match Coefficients::new(&[1.0]) {
     None => panic!("one coefficient fits"),
 };
 
-/// Stands in where an environment is no rational function.
+/// Stands in where an environment is not a rational function.
 const NO_RATIONAL: Rational =
     Rational { numerator: NOTHING, denominator: NOTHING, delay: 0, unit_zeros: 0 };
 

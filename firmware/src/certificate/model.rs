@@ -273,7 +273,7 @@ const fn exactly_solved_bound<E: EnvironmentModel>(
     n: &LoopIntervals,
 ) -> Option<Interval> {
     let wall = match environment.wall() {
-        // A spring that pulls away is no monotone law.
+        // A spring that pulls away is not a monotone law.
         Some(w) if w.stiffness < 0.0 => return None,
         Some(w) => wall_bound(&w, n),
         None => Interval::ZERO,

@@ -28,7 +28,7 @@ struct Cells {
 }
 
 impl Cells {
-    /// `None` where a current loop is updated and its delay is no whole number of updates.
+    /// `None` where a current loop is updated and its delay is not a whole number of updates.
     const fn of(lagging: &Lagging, period: Interval) -> Option<Self> {
         let latency = &lagging.latency;
         let mut delay_in_updates = Interval::ZERO;

@@ -60,7 +60,7 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
         };
         let varied = Varied { scene, format, parameter };
         let remedy = match ORDER[i] {
-            // With another one alone, the delay is no whole number of updates.
+            // With another one alone, the delay is not a whole number of updates.
             Parameter::Period | Parameter::OutputDelay if scene.latency.actuator_updates != 0 => {
                 None
             }

@@ -16,7 +16,7 @@ impl CurrentLoop {
     /// The latency of a scene whose torques this loop makes, by when its program puts codes out.
     ///
     /// # Panics
-    /// In a constant, as a compile error, where a phase is no whole number of instants.
+    /// In a constant, as a compile error, where a phase is not a whole number of instants.
     #[track_caller]
     pub const fn latency(&self, timing: OutputTiming) -> Latency {
         let response = self.response();
@@ -31,7 +31,7 @@ impl CurrentLoop {
     /// out at the next count.
     ///
     /// # Panics
-    /// In a constant, as a compile error, where a phase is no whole number of instants.
+    /// In a constant, as a compile error, where a phase is not a whole number of instants.
     #[track_caller]
     pub const fn instants_in(&self, timing: OutputTiming) -> u32 {
         let Some(phase) = timing.phase() else { return 0 };

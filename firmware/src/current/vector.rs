@@ -36,7 +36,7 @@ impl Rotation {
     /// longer.
     #[inline(always)]
     pub(super) const fn ahead(self, angle: f32) -> Self {
-        // More is no speed of a handle, but a jump of its count.
+        // More is not a speed of a handle, but a jump of its count.
         let angle = angle.clamp(-0.5, 0.5);
         let square = angle * angle;
         let (cosine, sine) = (1.0 - 0.5 * square, angle * (1.0 - square * (1.0 / 6.0)));

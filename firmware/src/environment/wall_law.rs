@@ -111,7 +111,7 @@ impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> WallLaw<N, V, S, D>
         } else if depth <= N::ZERO {
             N::ZERO
         } else {
-            // Where the depth is no number the torque shall be none, either, which is a fault.
+            // Where the depth is not a number the torque shall be none, either, which is a fault.
             self.line(x, depth).positive_part()
         }
     }

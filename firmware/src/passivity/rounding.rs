@@ -21,7 +21,7 @@ pub(super) const fn add_down(a: f64, b: f64) -> f64 {
     let swapped = (a ^ b) & ((a & MAGNITUDE < b & MAGNITUDE) as u64).wrapping_neg();
     let (large, small) = (f64::from_bits(a ^ swapped), f64::from_bits(b ^ swapped));
     // Dekker's two-sum: what the sum has of the smaller summand, exact for finite numbers.
-    // Where a sum is infinite, it is no number, or so large that the step outward is made.
+    // Where a sum is infinite, it is not a number, or so large that the step outward is made.
     if small >= sum - large { sum } else { below(sum) }
 }
 

@@ -43,7 +43,7 @@ pub struct Discarded {
     pub too_long: u32,
     /// The checksum is another one.
     pub checksum: u32,
-    /// Arrived as it was sent, and is no message of this protocol.
+    /// Arrived as it was sent, and is not a message of this protocol.
     pub unknown: u32,
 }
 

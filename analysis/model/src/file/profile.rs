@@ -186,7 +186,7 @@ fn cells(section: &mut Section<'_>) -> Read<Option<usize>> {
         return Ok(Some(cells));
     }
     let below = cells.next_power_of_two() / 2;
-    let reason = format!("is no power of two; next to it are {below} and {}", 2 * below);
+    let reason = format!("is not a power of two; next to it are {below} and {}", 2 * below);
     Err(section.conflict(&key::CELLS, span, reason))
 }
 

@@ -57,7 +57,7 @@ impl Places {
             let nearest = latency.nearest_update(timing.period);
             let delay = latency.delay_at_update(nearest, timing.period);
             let reason = format!(
-                "is no whole number of updates, of which there are `{}` = {} in a period; the nearest is \
+                "is not a whole number of updates, of which there are `{}` = {} in a period; the nearest is \
                  {nearest}: {delay} s",
                 own.path, latency.actuator_updates
             );

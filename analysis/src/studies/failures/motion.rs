@@ -36,7 +36,7 @@ impl Outcome {
 pub struct Motion {
     /// Largest less smallest position in the first tenth of the samples, in rad.
     pub first: f64,
-    /// The same in the last tenth; infinite, which is no number in JSON, where it has left the range
+    /// The same in the last tenth; infinite, which is not a number in JSON, where it has left the range
     /// of numbers.
     pub last: f64,
 }

@@ -72,7 +72,7 @@ impl TickParts {
     /// [injected damping](Part::Injection), as far as the two have nothing in common.
     ///
     /// # Errors
-    /// Where the file is no program for the board, or has no line tables.
+    /// Where the file is not a program for the board, or has no line tables.
     pub fn of_elf(elf: &[u8]) -> Result<Self, ListingError> {
         let mut parts = Self::default();
         listing(elf, |Instruction { functions, bytes, multiplies }| {

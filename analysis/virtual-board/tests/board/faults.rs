@@ -132,7 +132,7 @@ const CASES: &[Case] = &[
     },
     Case {
         fault: "not-a-number",
-        cause: "a coefficient in memory is no number",
+        cause: "a coefficient in memory is not a number",
         program: "damper_wall",
         bound: 1.0,
         provoke: |bench| {

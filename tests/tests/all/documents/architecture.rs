@@ -29,7 +29,7 @@ fn module(path: &str) -> String {
 /// The paths of a tree of imports.
 fn expanded(tree: &str) -> Vec<String> {
     let Some((head, rest)) = tree.split_once('{') else { return vec![tree.to_owned()] };
-    // A sentence that begins with the word is no import.
+    // A sentence that begins with the word is not an import.
     let Some((inner, _)) = rest.rsplit_once('}') else { return Vec::new() };
     let (mut parts, mut depth) = (vec![String::new()], 0);
     for letter in inner.chars() {

@@ -107,7 +107,7 @@ fn the_host_measures_the_device_and_how_late_its_torque_is() {
     let Estimate { value, lo, .. } = found.mean_delay;
     assert!(
         (value - mean).abs() < 0.15 * mean && lo > 0.5 * mean,
-        "{value} is no measurement of {mean}"
+        "{value} is not a measurement of {mean}"
     );
     let passivity = found.passivity().expect("it can be certified with");
     assert!(passivity < DEVICE.damping - CURRENT_LOOP.motion_loss());
