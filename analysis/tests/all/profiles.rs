@@ -489,7 +489,7 @@ fn every_command_answers_or_says_why_not() {
     std::fs::write(&wall, crate::common::WALL).unwrap();
     let drawn = program(&["chart", "profile"]).arg(&wall).args(["-o", "x.svg"]).output().unwrap();
     assert_eq!(drawn.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&drawn.stderr).contains("no torque profile"), "{drawn:?}");
+    assert!(String::from_utf8_lossy(&drawn.stderr).contains("not a torque profile"), "{drawn:?}");
     let count = program(&["design", "largest", "count"]).arg(&wall).output().unwrap();
     assert_eq!(count.status.code(), Some(2));
 }

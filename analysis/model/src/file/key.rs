@@ -193,9 +193,9 @@ keys! {
     /// Viscous damping of a rigid device.
     DEVICE_DAMPING = of(Parameter::DeviceDamping),
         Needed, "0.022";
-    /// Passivity `delta` of the device from torque to velocity, where less of it is to be counted on.
+    /// Passivity `delta` of the device from torque to velocity, if a smaller value is to be used.
     PASSIVITY = Key { bound: NOT_NEGATIVE, ..of(Parameter::Passivity) },
-        Optional("the device's damping; of a chain, its computed damping"), "0.0219";
+        Optional("the device's damping; of a chain, its computed passivity"), "0.0219";
     /// Dry (Coulomb) friction at the motor.
     DEVICE_FRICTION = other("device.friction", "N m", NOT_NEGATIVE),
         Optional("none that is counted on: the verdict does not say whether the device comes to rest"), "0.003";
@@ -258,7 +258,7 @@ keys! {
     OUTPUT_JITTER = of(Parameter::OutputJitter),
         Default(0.0), "0.0";
 
-    /// What connects device and environment.
+    /// Coupling of device and environment.
     COUPLING = other("coupling", "", TABLE),
         Optional("the connection is rigid"), "";
     /// A spring, or the coupling that absorbs delays and lags: its numbers follow from period,
@@ -270,7 +270,7 @@ keys! {
     COUPLING_STIFFNESS = of(Parameter::CouplingStiffness),
         Optional("an error with a spring"), "44.0";
 
-    /// What the hand shall feel.
+    /// The environment that the hand feels.
     ENVIRONMENT = other("environment", "", TABLE),
         Needed, "";
     /// Which environment.
@@ -320,10 +320,10 @@ keys! {
         Optional("the knots do not repeat, and end stops hold the angle within their range"), "0.4";
     /// Largest torque of the profile: all torques in proportion, but not the end stops.
     PROFILE_TORQUE = of(Parameter::ProfileTorque),
-        Optional("what shapes and knots add up to"), "0.05";
+        Optional("the sum of shapes and knots"), "0.05";
     /// How often the profile repeats in a turn.
     COUNT = of(Parameter::Count),
-        Optional("what shapes and knots have in common"), "24";
+        Optional("the common count of shapes and knots"), "24";
     /// Angle at which the first repetition begins.
     CENTRE = of(Parameter::Centre),
         Optional("that of the first detents, or 0"), "0.0";
@@ -412,7 +412,7 @@ keys! {
     SHAPE_PERIOD = other("environment.shape.period", "rad", POSITIVE),
         Optional("they do not repeat"), "0.4";
 
-    /// What a simulation starts from, and the torque of the hand. `run` does not read it.
+    /// Start of a simulation, and torque of the hand. `run` does not read it.
     SIMULATION = other("simulation", "", TABLE),
         Optional("nothing that `simulate` could start from"), "";
     /// Number of samples.
@@ -469,7 +469,7 @@ keys! {
     /// Ticks in which the servo does not run: every so many, or by chance.
     MISSED = other("simulation.missed", "", TABLE),
         Optional("none is missed"), "{ fraction = 0.01, seed = 1 }";
-    /// Of so many ticks the last is missed.
+    /// Number of ticks of which the last is missed.
     MISSED_EVERY = other("simulation.missed.every", "ticks", whole(2, 1_000_000)),
         Optional("`simulation.missed.fraction` decides"), "2";
     /// Probability that a tick is missed.

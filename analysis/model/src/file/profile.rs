@@ -186,7 +186,7 @@ fn cells(section: &mut Section<'_>) -> Read<Option<usize>> {
         return Ok(Some(cells));
     }
     let below = cells.next_power_of_two() / 2;
-    let reason = format!("is not a power of two; next to it are {below} and {}", 2 * below);
+    let reason = format!("is not a power of two; the nearest are {below} and {}", 2 * below);
     Err(section.conflict(&key::CELLS, span, reason))
 }
 
@@ -393,8 +393,8 @@ fn narrowest_of(shapes: &Shapes, places: &[Place]) -> (String, Span) {
 }
 const SECOND_SNAP: &str = "this is the second shape with `snap`; a torque profile has one at most";
 
-const NEEDS_ENDS: &str = "repeats no whole number of times in a turn, so that it needs end stops, which hold the angle within \
-     its range: a shape of type \"end_stops\", or `from`, `to` and `stiffness`";
+const NEEDS_ENDS: &str = "does not repeat a whole number of times in a turn, so that it needs end stops, which hold the angle \
+     within its range: a shape of type \"end_stops\", or `from`, `to` and `stiffness`";
 
 impl ProfileTable {
     /// Checks that no torque of the profile is beyond the DAC's full scale in N m.

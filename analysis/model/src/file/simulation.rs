@@ -115,7 +115,8 @@ fn missed_of(mut table: Section<'_>) -> Read<Missed> {
     match (every, fraction) {
         (Some(Found { value, .. }), None) if seed.is_none() => Ok(Missed::Every(value as u32)),
         (Some(Found { span, .. }), _) => {
-            let reason = "stands beside what chance decides; it is one or the other".to_owned();
+            let reason =
+                "cannot stand beside `fraction` or `seed`: set one or the other".to_owned();
             Err(table.conflict(&key::MISSED_EVERY, span, reason))
         }
         (None, fraction) => Ok(Missed::Random {

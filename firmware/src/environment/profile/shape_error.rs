@@ -93,7 +93,7 @@ impl ShapeError {
                 t.push("shape ");
                 t.push_number(shape as f64);
                 t.push(
-                    " repeats no whole number of times in a turn, so that it needs end stops to keep \
+                    " does not repeat a whole number of times in a turn, so that it needs end stops to keep \
                      the angle within its range",
                 );
             }
