@@ -5,9 +5,9 @@ use std::env;
 use std::path::Path;
 
 fn main() {
-    // Not for every file of the package; cargo itself knows of this one, wherever it is.
+    // Without this line, the script would run after a change of any file of the package.
     println!("cargo:rerun-if-changed=Cargo.toml");
-    // The tests on a board ask for it, which is no mistake.
+    // Used by the tests on a board.
     println!("cargo:rustc-check-cfg=cfg(rust_analyzer)");
     if env::var_os("CARGO_CFG_TARGET_OS").is_none_or(|os| os != "none") {
         return;
@@ -18,13 +18,13 @@ fn main() {
     let mut roots = Path::new(&manifest).ancestors().skip(1).take(2);
     let Some(root) = roots.find(|root| root.join("firmware/memory.x").exists()) else { return };
     println!("cargo:rerun-if-changed={}", root.join("memory.x").display());
-    // Arguments of this package's own programs, so that a program that depends on the library
-    // finds its own map and not this one.
+    // Arguments only for this package's own programs, so that a program that depends on the library uses its
+    // own map.
     let any = |features: &[&str]| {
         features.iter().any(|name| env::var_os(format!("CARGO_FEATURE_{name}")).is_some())
     };
     let mut arguments = vec![format!("-L{}", root.display()), "--nmagic".into()];
-    // Before the script that would take its sections.
+    // Before the script that would otherwise take its sections.
     let measured = root.join("firmware/src/board/qemu/measured.x");
     println!("cargo:rerun-if-changed={}", measured.display());
     if any(&["LOG", "EMULATED"]) {
@@ -35,8 +35,8 @@ fn main() {
     if any(&["EMULATED"]) {
         arguments.push(format!("-T{}", harness.display()));
     }
-    // A server of the harness certifies any scene with all of its remedies, which no board does: its stack
-    // is in the RAM of the emulated board above that of the smallest.
+    // A server of the harness certifies any scene with all its remedies, unlike a board: its stack uses RAM
+    // that the emulated board has and the smallest board lacks.
     if any(&["EMULATED"]) {
         arguments.extend([
             "--defsym=_stack_end=0x20000000 + 22K".into(),
@@ -47,7 +47,7 @@ fn main() {
     if any(&["LOG", "STM32", "EMULATED"]) {
         arguments.push("-Tdefmt.x".into());
     }
-    // A package of tests has no other programs.
+    // A package of tests has only tests.
     let tests = any(&["EMBEDDED_TEST"]);
     if tests {
         arguments.push("-Tembedded-test.x".into());

@@ -1,4 +1,4 @@
-//! A certificate as a constant, and the refusal of a scene that has none.
+//! A certificate as a constant, and the refusal of a scene.
 
 use haptic_servo::certificate::Certified;
 use haptic_servo::environment::DelayedSpring;
@@ -14,7 +14,7 @@ const SCENE: Scene<DelayedSpring<1>> = Scene {
     torque_limit: None,
 };
 
-/// Proved while this compiles: a scene that could oscillate in a hand stops the compiler here.
+/// Proved while this compiles: a scene that could oscillate in a hand is a compile error here.
 const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
 
 fn main() {

@@ -1,4 +1,4 @@
-//! The servo that a board runs, on the host against a simulated device: the same type, and the same bits.
+//! The servo of a board on the host, with a simulated device: the same type, and the same bits.
 
 use core::f64::consts::TAU;
 

@@ -1,15 +1,15 @@
-//! Only the certificate, in a control loop of your own: the loop computes by itself, in its own units, and
-//! has its numbers from a constant that was certified.
+//! Only the certificate, for your own control loop: the loop computes in its own way, and takes its numbers
+//! from a certified constant.
 //!
-//! The certificate is about a law and not about code. What the loop computes must be that law: here a spring
-//! that is one sample late, behind a virtual coupling, with a limited torque, in `f32`.
+//! The certificate is about a law and not about code. The loop must compute this law: here a spring that is
+//! one sample late, behind a virtual coupling, with a limited torque, in `f32`.
 
 use haptic_servo::certificate::Certified;
 use haptic_servo::environment::DelayedSpring;
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-/// The loop's law, as the certificate has it.
+/// The loop's law for the certificate.
 pub const SPRING: Scene<DelayedSpring<1>> = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
@@ -19,8 +19,8 @@ pub const SPRING: Scene<DelayedSpring<1>> = Scene {
     torque_limit: Some(0.3),
 };
 
-/// Certified with the numbers as the loop's `f32` rounds it. The loop has its numbers from here and from
-/// nowhere else, so that none can be changed without a certificate.
+/// Certified with the numbers rounded to the loop's `f32`. The loop takes its numbers only from here, so that
+/// no number can change without a certificate.
 pub const CERTIFIED: Certified<Scene<DelayedSpring<1>>> =
     SPRING.certified().certified_in(Format::F32);
 
@@ -34,10 +34,10 @@ const LIMIT: f32 = match CERTIFIED.scene().torque_limit {
     None => f32::INFINITY,
 };
 
-/// A control loop of your own: nothing of the library is in it.
+/// Your own control loop, without any code of the library.
 #[derive(Default)]
 pub struct ControlLoop {
-    /// Where the spring's end behind the coupling was in the sample before, in rad.
+    /// Position of the spring's end behind the coupling in the previous sample, in rad.
     late: f32,
 }
 

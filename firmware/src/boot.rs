@@ -1,6 +1,6 @@
-//! From reset to a servo that may run, in an order in which nothing can move by surprise:
-//! amplifier off, DAC at mid-scale, self-check, encoder zeroed, watchdog. The amplifier stays off until
-//! the servo is armed, by default by the host: see [`Arming`].
+//! The start of a board from reset to a servo that may run, in an order in which the motor cannot move
+//! unexpectedly: amplifier off, DAC at mid-scale, self-check, encoder zeroed, watchdog. The amplifier stays
+//! off until the servo is armed, by default by the host: see [`Arming`].
 
 use core::hint::black_box;
 
@@ -21,13 +21,13 @@ use crate::tuning::{self, Prepared, Tunable};
 
 /// The hardware before the servo runs.
 pub trait Startup: Hardware {
-    /// Sets the encoder's counter to zero: where the device is now is its zero.
+    /// Sets the encoder's counter to zero: the present position is its zero.
     fn zero_encoder(&mut self);
     /// Starts the watchdog. From here on only the servo feeds it.
     fn start_watchdog(&mut self);
-    /// The words that outlived the reset; see [`FaultRecord`].
+    /// The words that survived the reset; see [`FaultRecord`].
     fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS];
-    /// Why the board was last reset. To be asked once: the chip forgets it then.
+    /// The cause of the last reset. Call it once: the chip clears it.
     fn reset_cause(&mut self) -> ResetCause;
     /// Timer counts in the servo's period.
     fn period(&self) -> u32;
@@ -36,19 +36,19 @@ pub trait Startup: Hardware {
 /// Data of a program.
 #[derive(Clone, Copy, Debug)]
 pub struct Program<E> {
-    /// The scene that was certified when the program was compiled.
+    /// The scene, certified at compile time.
     pub scene: Scene<E>,
     /// Sensor and motor.
     pub transducers: Transducers,
-    /// How the scene is rendered.
+    /// Options of the rendering.
     pub rendering: RenderingOptions,
-    /// Options of the cycle.
+    /// Options of the servo loop.
     pub options: Options,
 }
 
 impl<E: Copy> Program<E> {
-    /// Whether a board can run with these numbers in any number format. The scene's certificate is
-    /// not checked here.
+    /// Checks that a board can run with these numbers in some number format. The scene's certificate is not
+    /// checked here.
     ///
     /// # Errors
     /// The invalid number and its bound.
@@ -69,7 +69,7 @@ impl<E: Copy> Program<E> {
     /// For constants: the same program, or a compile error that names the invalid number.
     ///
     /// # Panics
-    /// Where [`Program::check`] fails; in a constant that is the compile error.
+    /// If [`Program::check`] fails; in a constant this is a compile error.
     #[track_caller]
     pub const fn checked(self) -> Self {
         match self.check() {
@@ -82,24 +82,24 @@ impl<E: Copy> Program<E> {
 /// A board whose servo may run.
 #[derive(Clone, Debug)]
 pub struct Booted<E: Discretize<N>, N: Number, M> {
-    /// What its interrupt runs.
+    /// The loop that its interrupt runs.
     pub servo_loop: ServoLoop<E, N, M>,
-    /// Damping in N m s/rad that the device may lose with this scene running.
+    /// Damping in N m s/rad that the device may lose while this scene runs.
     pub margin: Option<f64>,
-    /// Why the board was reset.
+    /// The cause of the reset.
     pub reset: ResetCause,
     /// Fault from before the reset.
     pub previous_fault: Option<FaultRecord>,
-    /// Why the servo arms itself in its first tick, if it does.
+    /// The reason if the servo arms itself in its first tick.
     pub arms_because: Option<Reason>,
 }
 
-/// Everything up to the first tick. The servo stays off until the host arms it, unless its program
-/// arms it at power-on, and this is one.
+/// Everything up to the first tick. The servo stays off until the host arms it, or this is a power-on and the
+/// program arms it then.
 ///
 /// # Errors
-/// Where the self-check fails: the step, whose reason [`tuning::explain`] has. The amplifier is then off
-/// and the DAC at mid-scale.
+/// If the self-check fails: the step that failed; [`tuning::explain`] returns the reason. The amplifier is
+/// then off and the DAC at mid-scale.
 pub fn boot<E, N, M>(
     program: &Program<E>,
     hardware: &mut impl Startup,
@@ -112,7 +112,7 @@ where
 {
     hardware.amplifier(false);
     hardware.write(DacCode::MID_SCALE);
-    // Hidden from the optimiser, which would otherwise judge a constant scene when it compiles.
+    // Hidden from the optimiser, which would otherwise certify a constant scene at compile time.
     let scene = black_box(program.scene);
     let Prepared { rendering, margin, .. } =
         tuning::prepare(&scene, &[], &program.transducers, &program.rendering)?;
@@ -129,8 +129,8 @@ where
     Ok(Booted { servo_loop, margin, reset, previous_fault, arms_because })
 }
 
-/// Why a servo may arm itself: only if its program permits it, and only where the supply was switched
-/// on. Any other reset may come while a hand is on the device.
+/// The reason if the servo may arm itself: only if its program permits it, and only after power-on. Any other
+/// reset may come while a hand is on the device.
 fn reason_to_arm(
     options: &Options,
     reset: ResetCause,

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::number::{Format, Number, OutOfRange};
 use crate::text::Sentence;
 
-/// Why a certified scene cannot run with these transducers in this number format.
+/// The reason why a certified scene cannot run with these transducers in this number format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BuildError {
     /// A scale, a period or a limit is zero, negative or not finite.
@@ -29,8 +29,8 @@ pub enum BuildError {
         /// Value, bound and format.
         reason: OutOfRange,
     },
-    /// The scene is certified as it was written, or in another number format, and its coefficients
-    /// as rounded to this one are not.
+    /// The scene is certified with unrounded coefficients or in another number format, but not with the
+    /// coefficients rounded to this format.
     Uncertified {
         /// This format.
         format: Format,
@@ -44,23 +44,23 @@ pub enum BuildError {
     },
     /// The environment is delayed by more samples than are stored.
     Delay {
-        /// The given delay.
+        /// The delay in samples.
         delay: usize,
-        /// The most that there is.
+        /// The largest number of stored samples.
         largest: usize,
     },
-    /// The law of an environment that is said to be late gives torques for the present position.
+    /// The law of an environment that is declared late computes a torque from the present position.
     NotLate,
-    /// The law of the environment does not remember the torques that the scene's coupling needs, or
-    /// remembers some for a coupling that needs none.
+    /// The law of the environment does not store the past torques that the scene's coupling needs, or stores
+    /// torques that the coupling does not use.
     CouplingMemory,
     /// There is no matched coupling for the scene's latency.
     NoMatchedCoupling,
-    /// A turn has no whole number of encoder counts, and the environment repeats in each of them.
+    /// The environment repeats in each turn, and a turn is not a whole number of encoder counts.
     Turn {
-        /// How many it has.
+        /// The counts per turn.
         counts: f64,
-        /// The most that it may have.
+        /// The largest allowed number.
         largest: f64,
     },
     /// The knob would snap there and back within a count of the encoder.
@@ -70,43 +70,43 @@ pub enum BuildError {
         /// Angle of a count in rad.
         count: f64,
     },
-    /// The environment is known by its bounds alone, and its law is in another crate.
+    /// The environment is only known by its bounds; its law is in another crate.
     LawElsewhere,
-    /// A numerator of higher degree than its denominator, or a denominator that is zero.
+    /// The numerator has a higher degree than the denominator, or the denominator is zero.
     Improper {
         /// Degree of the numerator.
         numerator: usize,
         /// Degree of the denominator.
         denominator: usize,
     },
-    /// The scene's certificate has no room for damping that is switched on and off.
+    /// The scene's certificate does not allow this much injected damping.
     Injection {
         /// The damping in N m s/rad.
         damping: f64,
         /// Its upper bound in N m s/rad.
         room: f64,
     },
-    /// The encoder's counter would wrap unseen at the largest speed.
+    /// The encoder's counter could wrap undetected at the largest speed.
     Speed {
         /// Counts between two ticks at the largest speed.
         counts: f64,
         /// Half the counter's range.
         half: f64,
     },
-    /// No board can pace the scene.
+    /// No board can pace the scene's period.
     Period {
-        /// Its period in s.
+        /// The period in s.
         period: f64,
-        /// The shortest that every board can pace.
+        /// The shortest period that every board can pace, in s.
         shortest: f64,
-        /// The longest.
+        /// The longest, in s.
         longest: f64,
     },
 }
 
 impl BuildError {
-    /// Rejects all but positive, finite values.
-    // Stands once on a board, as the two below: in line, it would be there for each number.
+    /// Rejects values that are not positive and finite. Not inlined, like the two functions below: a board
+    /// would have a copy for each number.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) const fn unless_positive(name: &'static str, value: f64) -> Result<(), Self> {
         if value > 0.0 && value.is_finite() {
@@ -119,7 +119,7 @@ impl BuildError {
     /// Rounds a coefficient; the error names it.
     ///
     /// # Errors
-    /// Where the number format does not hold it.
+    /// If the number format cannot represent it.
     #[cfg_attr(target_os = "none", inline(never))]
     pub fn coefficient<N: Number>(name: &'static str, value: f64) -> Result<N::Coefficient, Self> {
         N::coefficient(value).map_err(|reason| Self::Unrepresentable { name, reason })
@@ -128,7 +128,7 @@ impl BuildError {
     /// Rounds an angle or a torque; the error names it.
     ///
     /// # Errors
-    /// Where the number format does not hold it.
+    /// If the number format cannot represent it.
     #[cfg_attr(target_os = "none", inline(never))]
     pub fn number<N: Number>(name: &'static str, value: f64) -> Result<N, Self> {
         N::from_f64(value).map_err(|reason| Self::Unrepresentable { name, reason })
@@ -257,7 +257,7 @@ impl BuildError {
         t
     }
 
-    /// Stops the compiler with the sentence.
+    /// Panics with the error's text; in a constant this is a compile error.
     #[track_caller]
     pub(crate) const fn refuse(&self) -> ! {
         panic!("{}", self.sentence().as_str())

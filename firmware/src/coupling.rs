@@ -1,15 +1,15 @@
 //! The virtual coupling and the environment, solved together in every tick.
 //!
 //! With `x` the device's position and `K_vc` the coupling's stiffness, the environment is at
-//! `x_E = x - F / K_vc` and answers with `F` at `x_E`: an algebraic loop where the environment is
-//! not delayed (theory, section 2). A line with slope `f` that would give `v` at `x_E = x` gives
+//! `x_E = x - F / K_vc` and its torque there is `F`: an algebraic loop if the environment is not delayed
+//! (theory, section 2). A line with slope `f` and the torque `v` at `x_E = x` gives
 //!
 //! ```text
 //! F = v + f (x_E - x) = v - F f / K_vc,   so   F = v / (1 + f / K_vc),
 //! ```
 //!
-//! and that gain is known before the servo starts. The environment always returns the value at
-//! `x`, never an intercept: near its state of rest no large numbers cancel.
+//! and that gain is computed before the servo starts. The environment always returns the value at `x`, never
+//! an intercept, so that no large numbers cancel near its state of rest.
 
 use crate::build_error::BuildError;
 use crate::number::{Number, Rounding};
@@ -25,13 +25,13 @@ pub enum Coupling {
         /// Stiffness `K_vc` in N m/rad. The standard coupling is `2 delta / T`.
         stiffness: f64,
     },
-    /// The coupling that absorbs latency: the standard coupling where there is none, and as much more
-    /// compliance as delays and lags ask for, spread over the ticks that they take ([`crate::matched`]).
+    /// The coupling that absorbs latency: the standard coupling, plus the compliance that delays and lags
+    /// need, spread over the ticks that they take ([`crate::matched`]).
     Matched,
 }
 
 impl Coupling {
-    /// Compliance in rad/(N m) for the torque of the same tick, for a law that has this one of its
+    /// Compliance in rad/(N m) for the torque of the same tick, for a law with this compliance of its
     /// [own](crate::environment::Law::matched_compliance); `None`: rigid.
     ///
     /// # Errors
@@ -46,7 +46,7 @@ impl Coupling {
     }
 }
 
-/// What an environment offers to the coupling in one tick.
+/// The response of an environment to the coupling in one tick.
 #[derive(Clone, Copy, Debug)]
 pub enum Response<N> {
     /// A torque that does not depend on this tick's position, in N m.
@@ -55,7 +55,7 @@ pub enum Response<N> {
     Line(N),
     /// A wall that can only push.
     Wall(Contact<N>),
-    /// A line (its torque in N m at `x_E = x`) and a wall, added.
+    /// The sum of a line (its torque in N m at `x_E = x`) and a wall.
     LineAndWall(N, Contact<N>),
 }
 
@@ -75,32 +75,32 @@ impl<N: Number> Response<N> {
 /// A one-sided wall at `x_E = x`.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<N> {
-    /// Torque in N m of the wall's line, as if it could pull and had no face.
+    /// Torque in N m of the wall's line, without its face and with pulling.
     pub torque: N,
     /// Depth behind the face in rad.
     pub depth: N,
 }
 
-/// Slopes of an environment's lines, in N m/rad; they are the same in every tick.
+/// Slopes of an environment's lines in N m/rad, the same in every tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slopes {
-    /// Of the line.
+    /// The slope of the line.
     pub line: f64,
-    /// Of the wall that can only push; zero where there is none.
+    /// The slope of the one-sided wall; zero without a wall.
     pub wall: f64,
 }
 
-/// The coupling with everything computed that does not change from tick to tick.
+/// The coupling with all constants of a tick computed in advance.
 #[derive(Clone, Copy, Debug)]
 pub struct Solver<N: Number> {
     /// `1 / K_vc` in rad/(N m); zero for a rigid coupling.
     compliance: N::Coefficient,
-    /// `1 / (1 + f / K_vc)` with the slope of the line alone.
+    /// `1 / (1 + f / K_vc)` with only the slope of the line.
     line_gain: N::Coefficient,
-    /// The same with the slopes of line and wall together.
+    /// The same with the sum of the slopes of line and wall.
     contact_gain: N::Coefficient,
-    /// `K_vc` in N m/rad, the torque a depth that slides on the wall's face; zero for a rigid coupling, which
-    /// has no use for it.
+    /// `K_vc` in N m/rad, the torque per depth while sliding on the wall's face; zero for a rigid coupling,
+    /// which does not use it.
     stiffness: N::Coefficient,
     is_rigid: bool,
 }
@@ -110,19 +110,18 @@ impl<N: Number> Solver<N> {
     /// `None`: rigid.
     ///
     /// # Errors
-    /// Where a coefficient does not fit the number format, or the loop of coupling and environment
-    /// has no solution or more than one.
+    /// If a coefficient does not fit the number format, or the loop of coupling and environment has no
+    /// solution or more than one.
     pub fn new(compliance: Option<f64>, slopes: Slopes) -> Result<Self, BuildError> {
         let is_rigid = compliance.is_none();
         let compliance = N::FORMAT.coefficient(compliance.unwrap_or(0.0), Rounding::Outward);
         let compliance = BuildError::coefficient::<N>("1 / coupling stiffness", compliance)?;
-        // From here on with the compliance as rounded: the solution shall be that of the loop
-        // that runs.
+        // From here on with the rounded compliance, so that the solution is that of the running loop.
         let given = N::coefficient_to_f64(compliance);
         let line = 1.0 + slopes.line * given;
         let contact = line + slopes.wall * given;
-        // A line needs a solution. A wall needs one only, in contact and out of it, which the
-        // loop has as long as a deeper position of the device means a deeper environment.
+        // A line needs a solution. A wall needs exactly one, in contact and out of it: the loop has one if a
+        // deeper position of the device makes the environment deeper.
         let solvable = slopes.wall == 0.0 && line != 0.0 || line > 0.0 && contact > 0.0;
         if !solvable {
             return Err(BuildError::IllPosed { line, contact });
@@ -131,8 +130,8 @@ impl<N: Number> Solver<N> {
             compliance,
             line_gain: BuildError::coefficient::<N>("coupled gain", 1.0 / line)?,
             contact_gain: BuildError::coefficient::<N>("coupled gain in contact", 1.0 / contact)?,
-            // Not above that of the compliance as rounded: while the environment slides on the
-            // face, it must not come back out as the device goes in.
+            // Not above that of the rounded compliance: while the environment slides on the face, it must not
+            // move out as the device moves in.
             stiffness: BuildError::coefficient::<N>(
                 "coupling stiffness",
                 if is_rigid { 0.0 } else { N::FORMAT.coefficient(1.0 / given, Rounding::Inward) },
@@ -154,10 +153,10 @@ impl<N: Number> Solver<N> {
         }
     }
 
-    /// The torque with a wall that can only push: the free solution `free` outside the wall,
-    /// `K_vc depth` while the environment slides on the face (`x_E = face`, the wall giving any
-    /// torque between nothing and its own), and the solution with the wall's line inside. For
-    /// positive loop gains these cross once, and the order picks the right one.
+    /// The torque with a wall that can only push: the free solution `free` outside the wall, `K_vc depth`
+    /// while the environment slides on the face (`x_E = face`, with any torque of the wall between zero and
+    /// its line), and the solution with the wall's line inside. For positive loop gains these cross once, and
+    /// the order of comparison selects the right one.
     #[inline(always)]
     fn pushing(&self, free: N, both: N, depth: N) -> N {
         if !self.is_rigid {
@@ -169,7 +168,7 @@ impl<N: Number> Solver<N> {
         }
     }
 
-    /// The solution with the wall's line, or on the wall's face, for a coupling that is not rigid.
+    /// The solution with the wall's line or on the wall's face, for a coupling that is not rigid.
     #[inline(always)]
     pub(crate) fn wall_or_face(&self, both: N, depth: N) -> N {
         both.times(self.contact_gain).smaller(depth.times(self.stiffness))

@@ -2,14 +2,13 @@
 
 use core::fmt;
 
-/// Something that holds an output until the next one is written (zero-order hold).
+/// An output that holds each code until the next (zero-order hold).
 pub trait Dac {
-    /// Writes a code; it holds until the next one.
+    /// Writes a code; the output holds it until the next.
     fn write(&mut self, code: DacCode);
 }
 
-/// A code of a 12-bit DAC: mid-scale is no torque, one code up is one step of positive
-/// motor torque.
+/// A code of a 12-bit DAC: mid-scale is zero torque, one code more is one step of positive motor torque.
 ///
 /// ```
 /// use haptic_servo::dac::DacCode;
@@ -29,8 +28,8 @@ impl DacCode {
     pub const MID_SCALE: Self = Self(2048);
     /// The largest code.
     pub const MAX: Self = Self(4095);
-    /// Codes between mid-scale and full torque, both ways: what every board's output is linear over.
-    /// One number for all of them, the emulated board and the host, so that all compute the same
+    /// Codes between mid-scale and full torque in both directions, in the linear range of every board's
+    /// output. The same number for all boards, the emulated board and the host, so that all compute the same
     /// codes; a board whose [`OutputRange`] has fewer does not compile.
     pub const CODES_TO_FULL_SCALE: u16 = 1791;
 
@@ -39,13 +38,13 @@ impl DacCode {
         if code <= Self::MAX.0 { Ok(Self(code)) } else { Err(CodeOutOfRange { code }) }
     }
 
-    /// The low 12 bits of a number: for a computation that cannot give more.
+    /// The low 12 bits of a number, for a computation whose result has no more.
     #[inline(always)]
     pub(crate) const fn from_low_bits(bits: u16) -> Self {
         Self(bits & Self::MAX.0)
     }
 
-    /// The code as the DAC wants it.
+    /// The code as a number for the DAC.
     #[inline(always)]
     pub const fn get(self) -> u16 {
         self.0
@@ -57,18 +56,18 @@ impl DacCode {
     }
 }
 
-/// The usable range of a DAC's output: near its rails the output buffer saturates, and the torque
-/// is less than that of the code.
+/// The usable range of a DAC's output: near its rails the output buffer saturates, and the torque is smaller
+/// than the code's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputRange {
-    /// The least that the DAC's supply and reference can be, in V.
+    /// Lowest voltage of the DAC's supply and reference in V.
     pub supply: f64,
-    /// What the output cannot come nearer to either rail than, in V.
+    /// Smallest distance of the output from either rail in V.
     pub headroom: f64,
 }
 
 impl OutputRange {
-    /// Codes that are linear on both sides of mid-scale.
+    /// Number of linear codes on both sides of mid-scale.
     ///
     /// ```
     /// use haptic_servo::dac::OutputRange;
@@ -79,7 +78,7 @@ impl OutputRange {
         let lost = self.headroom / self.supply * 4096.0;
         // Above mid-scale there is one code less than below it.
         let above = DacCode::MAX.0 - DacCode::MID_SCALE.0;
-        // Written so that NaN leaves none.
+        // Written so that NaN gives none.
         if !(lost >= 0.0 && lost <= above as f64) {
             return 0;
         }

@@ -1,10 +1,10 @@
-//! From a counter that wraps to a position that does not.
+//! Extends a wrapping counter to a position that does not wrap.
 
 use core::hint::cold_path;
 
-/// Something that counts the steps of a quadrature encoder.
+/// A counter of the steps of a quadrature encoder.
 pub trait Encoder {
-    /// The counter now.
+    /// Reads the counter.
     fn read(&mut self) -> RawCount;
 }
 
@@ -67,8 +67,8 @@ impl From<i32> for RawCount {
 /// Extends a wrapping counter without loss, as long as it moves by less than half its range from
 /// one reading to the next.
 ///
-/// The position starts at zero with the counter at zero; a counter that is not zero at the first
-/// reading is taken as the nearest position to zero.
+/// The position starts at zero with the counter at zero; a counter that is not zero at the first reading
+/// gives the position nearest to zero.
 ///
 /// ```
 /// use haptic_servo::encoder::{CounterWidth, Position, RawCount};
@@ -82,8 +82,7 @@ impl From<i32> for RawCount {
 pub struct Position {
     /// The position less `laps` times 2^32; its low bits are the last reading.
     count: i32,
-    /// Kept apart, so that a tick only has to see that it is zero: 64-bit arithmetic would cost
-    /// two instructions more.
+    /// Separate, so that a tick only tests it for zero: 64-bit arithmetic would cost two instructions more.
     laps: i32,
     width: CounterWidth,
 }
@@ -91,15 +90,15 @@ pub struct Position {
 /// A position in the range in which the servo computes angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
-    /// The nearest position in counts that 32 bits hold: the position itself, except after tens
-    /// of thousands of turns one way.
+    /// The nearest position in counts within 32 bits: the position itself, except after tens of thousands of
+    /// turns in one direction.
     pub count: i32,
-    /// Whether it is not the position itself.
+    /// Whether `count` differs from the position.
     pub saturated: bool,
 }
 
 impl Position {
-    /// A position of zero, to be fed by a counter of this width.
+    /// A position of zero for a counter of this width.
     pub const fn new(width: CounterWidth) -> Self {
         Self { count: 0, laps: 0, width }
     }
@@ -111,10 +110,10 @@ impl Position {
         self.reading()
     }
 
-    /// The same without a look at where that is.
+    /// The same without a result.
     #[inline(always)]
     pub(crate) const fn follow(&mut self, raw: RawCount) {
-        // The difference to the last reading, taken at the counter's width, is the signed step.
+        // The signed step is the difference to the last reading at the counter's width.
         let shift = self.width as u32;
         let step = (raw.0.wrapping_sub(self.count.cast_unsigned()) << shift).cast_signed() >> shift;
         let (count, wrapped) = self.count.overflowing_add(step);
@@ -125,7 +124,7 @@ impl Position {
         }
     }
 
-    /// The position as it was last read.
+    /// The last reading.
     #[inline(always)]
     pub(crate) const fn reading(&self) -> Reading {
         if self.laps == 0 {
@@ -146,8 +145,8 @@ impl Position {
     }
 }
 
-/// The nearest to a position that 32 bits do not hold. Out of line: decided by a choice instead of
-/// a jump, it would cost every tick five instructions.
+/// The nearest 32-bit count to a position beyond 32 bits. Not inlined: a conditional selection in place of a
+/// branch would cost every tick five instructions.
 #[cold]
 #[inline(never)]
 const fn beyond(laps: i32) -> i32 {

@@ -1,10 +1,10 @@
-//! What lies between a count and its torque: delays of the output, and lags of amplifier and sensor.
+//! The latency between a count and its torque: delays of the output, and lags of amplifier and sensor.
 //!
-//! A lag is first order, with a gain of 1. That of a current loop may be one at the instants at which the loop
-//! is updated, a whole number of times a period. Of an amplifier that is not known to be a lag, the begin and
-//! the end of its step response may be stated in its place. All of it belongs to the controller's side of the device's
-//! port: the device's passivity is that from the motor's torque to the velocity at the encoder
-//! (theory, section 13).
+//! A lag is of first order, with a gain of 1. The lag of a current loop may apply only at the instants at
+//! which the loop is updated, a whole number of times per period. For an amplifier that is not known to be a
+//! lag, the beginning and the end of its step response may be stated instead. All of it is on the
+//! controller's side of the device's port: the device's passivity is that from the motor's torque to the
+//! velocity at the encoder (theory, section 13).
 
 use crate::passivity::interval::Interval;
 use crate::passivity::lagged::delay_of_updates;
@@ -12,19 +12,19 @@ use crate::passivity::lagged::delay_of_updates;
 /// Longest delay of the output, in periods.
 pub const LONGEST_DELAY: f64 = 8.0;
 
-/// Longest lag, in periods: a slower loop filters whatever a servo at this rate could add.
+/// Longest lag, in periods: a slower loop filters everything that a servo at this rate could add.
 pub const LONGEST_LAG: f64 = 100.0;
 
-/// How far a delay may be from a whole number of updates, relative to it: decimals of a third have to be cut off.
+/// Relative tolerance of a whole number of updates, because decimals of a third are rounded.
 const NEARLY_WHOLE: f64 = 1e-9;
 
 /// A time in s that is constant, and known to lie in a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct TimeRange {
-    /// The shortest that it may be.
+    /// The shortest time.
     pub least: f64,
-    /// The longest that it may be.
+    /// The longest time.
     pub most: f64,
 }
 
@@ -32,7 +32,7 @@ impl TimeRange {
     /// No time.
     pub const ZERO: Self = Self::exactly(0.0);
 
-    /// A time that is known.
+    /// An exactly known time.
     pub const fn exactly(time: f64) -> Self {
         Self { least: time, most: time }
     }
@@ -42,7 +42,7 @@ impl TimeRange {
         Self { least, most }
     }
 
-    /// The time that passes when one of another range follows.
+    /// The sum of this time and a following time of another range.
     pub const fn followed_by(self, next: Self) -> Self {
         if next.is_zero() {
             return self;
@@ -50,12 +50,12 @@ impl TimeRange {
         Self { least: self.least + next.least, most: self.most + next.most }
     }
 
-    /// Whether it is certainly no time.
+    /// Whether the time is certainly zero.
     pub const fn is_zero(self) -> bool {
         is_zero(self.least) && is_zero(self.most)
     }
 
-    /// Whether it is known.
+    /// Whether the time is exactly known.
     pub const fn is_exact(self) -> bool {
         self.least == self.most
     }
@@ -66,7 +66,8 @@ impl TimeRange {
     }
 }
 
-/// Whether a number is zero, by its bits: a board compares doubles in software, and asks this of every scene.
+/// Whether a number is zero, by its bits: a board compares doubles in software, and tests this for every
+/// scene.
 const fn is_zero(number: f64) -> bool {
     number.to_bits() << 1 == 0
 }
@@ -75,26 +76,26 @@ const fn is_zero(number: f64) -> bool {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Latency {
-    /// Time from the instant of a count to that of its torque, beside the environment's whole samples.
+    /// Time from a count to its torque, in addition to the environment's whole samples.
     pub output_delay: TimeRange,
-    /// Largest deviation in s from that delay, to either side, which may differ from tick to tick.
+    /// Largest deviation in s from that delay in either direction, which may differ from tick to tick.
     pub output_jitter: f64,
     /// Time constant of the amplifier.
     pub actuator_lag: TimeRange,
     /// Time constant of the filter between encoder and servo.
     pub sensor_lag: TimeRange,
-    /// Where the amplifier is not a lag: its step response rises or rests, begins after the least and has
-    /// ended before the most of this, which is a period at the most. Zero where the torque follows at once.
+    /// For an amplifier that is not a lag: its step response never falls, begins after the least and ends
+    /// before the most of this range, which is at most a period. Zero if the torque follows at once.
     pub actuator_response: TimeRange,
-    /// How often in a period the amplifier's current loop is updated; 0: its lag is continuous. Between two
-    /// updates the torque goes in a straight line, at each it is what the lag has there. The output delay is a
-    /// whole number of the times between updates, and no sensor lags.
+    /// Updates of the amplifier's current loop per period; 0: its lag is continuous. At each update the
+    /// torque is that of the lag, and between two updates it changes linearly. The output delay must be a
+    /// whole number of update intervals, and there must be no sensor lag.
     pub actuator_updates: u16,
 }
 
 impl Latency {
-    /// A torque at the instant of its count: what an environment's whole samples leave where torques
-    /// are latched by the next count, in front of an amplifier that is fast beyond all that counts.
+    /// A torque at the instant of its count. With latched torques and a very fast amplifier, the
+    /// environment's whole samples are the only delay.
     pub const NONE: Self = Self {
         output_delay: TimeRange::ZERO,
         output_jitter: 0.0,
@@ -104,32 +105,32 @@ impl Latency {
         actuator_updates: 0,
     };
 
-    /// A delay of the output in s that is known and constant.
+    /// A known and constant delay of the output in s.
     pub const fn delayed(output_delay: f64) -> Self {
         Self { output_delay: TimeRange::exactly(output_delay), ..Self::NONE }
     }
 
-    /// The same in front of an amplifier with this time constant in s.
+    /// The same with an amplifier with this time constant in s.
     pub const fn with_actuator_lag(self, lag: f64) -> Self {
         Self { actuator_lag: TimeRange::exactly(lag), ..self }
     }
 
-    /// The same in front of an amplifier whose step response rises from `begin` to `end`, in s.
+    /// The same with an amplifier whose step response rises from `begin` to `end`, in s.
     pub const fn with_actuator_response(self, begin: f64, end: f64) -> Self {
         Self { actuator_response: TimeRange::between(begin, end), ..self }
     }
 
-    /// A current loop that is updated so many times, at least once, in each `period`, with the time constant
-    /// `lag`, both in s: its torque begins one update after that which takes the code over.
+    /// A current loop with `updates` updates, at least one, in each `period`, and with the time constant
+    /// `lag`, both in s: its torque begins one update after the update that takes the code over.
     pub const fn sampled(updates: u16, lag: f64, period: f64) -> Self {
         let output_delay = TimeRange::exactly(period / updates as f64);
         let actuator_lag = TimeRange::exactly(lag);
         Self { output_delay, actuator_lag, actuator_updates: updates, ..Self::NONE }
     }
 
-    /// Time in s from a count to the instant at which its code is taken over, beside whole samples: what an
-    /// [`OutputTiming`](crate::output_timing::OutputTiming) is about. A current loop's torque begins an update
-    /// later.
+    /// Time in s from a count to the instant at which its code is taken over, in addition to whole samples,
+    /// as in an [`OutputTiming`](crate::output_timing::OutputTiming). A current loop's torque begins an
+    /// update later.
     pub const fn code_delay(&self, period: f64) -> f64 {
         let delay = self.output_delay.middle();
         match self.actuator_updates {
@@ -138,19 +139,20 @@ impl Latency {
         }
     }
 
-    /// The whole number of updates that is nearest to the output delay, at this period in s.
+    /// The whole number of updates nearest to the output delay, at this period in s.
     pub const fn nearest_update(&self, period: f64) -> u32 {
         (self.output_delay.most / period * self.actuator_updates as f64 + 0.5) as u32
     }
 
-    /// The output delay in s at so many updates.
+    /// The output delay in s of a number of updates.
     pub const fn delay_at_update(&self, update: u32, period: f64) -> f64 {
         update as f64 * period / self.actuator_updates as f64
     }
 
-    /// The output delay in periods of a current loop that is updated in them, exactly a whole number of updates.
+    /// The output delay in periods of an updated current loop, exactly a whole number of updates.
     ///
-    /// `None` where it is not that to a part in a billion, or where a time is stated that such a loop has not.
+    /// `None` if it differs from that by more than a part in a billion, or if a time is stated that such a
+    /// loop cannot have.
     #[inline(never)]
     pub const fn delay_in_updates(&self, period: f64) -> Option<Interval> {
         let is_lag_alone = self.sensor_lag.is_zero() && self.actuator_response.is_zero();
@@ -164,22 +166,23 @@ impl Latency {
         if is_whole { Some(delay_of_updates(update, self.actuator_updates)) } else { None }
     }
 
-    /// Largest jitter in s of a scene with this period whose environment is late by a sample or more, or is
-    /// not: no torque comes before its count.
+    /// Largest jitter in s of a scene with this period and an environment that is late by a sample or more
+    /// (`is_late`) or not: no torque comes before its count.
     ///
-    /// The sample counts where an amplifier lags. There the bound for jitter does not ask in which tick a
-    /// torque begins (theory, equation 42).
+    /// The sample also counts if an amplifier lags, because the bound for jitter does not depend on the tick
+    /// in which a torque begins (theory, equation 42).
     pub const fn largest_jitter(&self, is_late: bool, period: f64) -> f64 {
         let sample = if is_late && !self.actuator_lag.is_zero() { period } else { 0.0 };
         self.output_delay.least + sample
     }
 
-    /// From a count to the parts of its torque: the delay of the output, and the amplifier's response.
+    /// The time from a count to the parts of its torque: the delay of the output plus the amplifier's
+    /// response.
     pub const fn torque_delay(&self) -> TimeRange {
         self.output_delay.followed_by(self.actuator_response)
     }
 
-    /// Whether there is none of it.
+    /// Whether there is no latency.
     pub const fn is_none(&self) -> bool {
         self.output_delay.is_zero()
             && is_zero(self.output_jitter)

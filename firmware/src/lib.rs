@@ -27,24 +27,24 @@
 //! | what | begin with |
 //! |---|---|
 //! | the certificate alone, for a control loop of your own | [`certificate`], `examples/verify_only.rs` |
-//! | the servo, from a count to a code, on the host too | [`servo::Servo`], `examples/servo_on_host.rs` |
+//! | the servo, from a count to a code, also on the host | [`servo::Servo`], `examples/servo_on_host.rs` |
 //! | the interrupt, on a board of your own | [`servo_loop::Hardware`], [`boot::Startup`] |
 //! | the same with the host's link | `wire`, with the feature of that name |
 //! | an environment of your own | [`environment::StatedEnvironment`] |
-//! | a board that is there | [`scene_program!`], with the board's feature; `memory.x` for the linker |
+//! | a board of this package | [`scene_program!`], with the board's feature; `memory.x` for the linker |
 //!
 //! The modules are in the order of the data's path: counts come in at [`encoder`], leave at [`dac`];
-//! [`passivity`] and [`certificate`] judge what runs; [`scene`] and [`servo`] carry it.
+//! [`passivity`] and [`certificate`] certify it; [`scene`] and [`servo`] are the data and the loop.
 //!
 //! # Features
 //!
-//! None is on by default. Those of boards are for the bare-metal target `thumbv7em-none-eabihf`, and a program
-//! has one of them.
+//! No feature is on by default. The features of boards are for the bare-metal target `thumbv7em-none-eabihf`,
+//! and a program has exactly one of them.
 //! | feature | purpose |
 //! |---|---|
 //! | `wire` | parameters and telemetry over a serial line: messages, frames, the board's end |
 //! | `fixed-point` | programs compute in their scene's fixed-point format instead of `f32` |
-//! | `nucleo-g474re` | board: NUCLEO-G474RE, with a current amplifier outside |
+//! | `nucleo-g474re` | board: NUCLEO-G474RE, with an external current amplifier |
 //! | `b-g431b-esc1` | board: B-G431B-ESC1 |
 //! | `stm32f405` | board: STM32F405, as on a VESC 6 |
 //! | `bridge` | the board's own bridge drives the motor: B-G431B-ESC1 |
@@ -55,22 +55,22 @@
 //! # Stability
 //!
 //! Versions follow semantic versioning. Before 1.0 a minor version may break the interface, and a patch does
-//! not. A certificate may become less conservative in any version; where one would turn out to be wrong, a
-//! patch refuses scenes that it had accepted. Exempt are the texts of errors and reports, items hidden from
-//! this documentation, and all in [`board`] but [`scene_program!`] and [`sweep_program!`]. The messages of
-//! `wire` have a version of their own, which board and host compare.
+//! not. A certificate may become less conservative in any version. If a certificate turns out to be wrong, a
+//! patch refuses scenes that were accepted before. Exempt are the texts of errors and reports, items hidden
+//! from this documentation, and everything in [`board`] except [`scene_program!`] and [`sweep_program!`]. The
+//! messages of `wire` have their own version, which board and host compare.
 //!
 //! The minimum supported Rust version is 1.95. A minor version may raise it.
 //!
 //! # Where to read on
 //!
-//! `THEORY.md` in the package has definitions and proofs: "theory, section 4" and "equation 17" are its own,
-//! "the paper" is the paper that it names. `PROTOCOL.md` has the wire, `boards.md` the boards,
+//! `THEORY.md` in the package has definitions and proofs: "theory, section 4" and "equation 17" refer to it,
+//! and "the paper" is its source. `PROTOCOL.md` describes the wire, `boards.md` the boards,
 //! `TROUBLESHOOTING.md` the faults. In the repository, `firmware/own-board` is a board of another crate,
 //! `firmware/own-environment` an environment.
 #![cfg_attr(not(test), no_std)]
 #![deny(unsafe_code)]
-// A rejection carries all its numbers, and there is no heap to put them on.
+// A rejection contains all its numbers, and there is no heap for them.
 #![allow(clippy::result_large_err)]
 
 pub mod encoder;
@@ -94,7 +94,7 @@ pub mod transducers;
 // Measurement of a device, before certification.
 pub mod excitation;
 
-// What carries the servo on a board: one interrupt a period, from reset to fault.
+// The servo on a board: one interrupt per period, from reset to fault.
 pub mod boot;
 pub mod fault;
 pub mod reset;
@@ -123,12 +123,12 @@ pub mod wire;
 
 pub mod board;
 
-/// The page of the package, so that its example is tested.
+/// The package's page, so that its example is tested.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 mod readme {}
 
-/// What a program's macros name besides this crate, for programs of crates that depend on nothing else.
+/// Crates that the macros use, for programs of crates without further dependencies.
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[doc(hidden)]
 pub mod __private {

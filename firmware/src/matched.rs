@@ -1,21 +1,21 @@
 //! The coupling that absorbs latency (theory, section 13.3).
 //!
-//! A coupling `V` behind which any passive environment, nonlinear or not, is passive with a torque that
-//! lags: `V = (T z / (z - 1) - g) / (2 delta)` (equation 40), with `g` the sampled response of hold, delay and lags.
-//! Where nothing lags it is the standard coupling `T / (2 delta)`. A delay of `(n + e) T` adds a spring
-//! in series for each tick and part of a tick that a torque takes,
+//! A coupling `V` behind which any passive environment, linear or not, is passive with a lagging torque:
+//! `V = (T z / (z - 1) - g) / (2 delta)` (equation 40), with `g` the sampled response of hold, delay and
+//! lags. Without latency it is the standard coupling `T / (2 delta)`. A delay of `(n + e) T` adds a spring in
+//! series for each tick and part of a tick that a torque takes,
 //!
 //! ```text
 //! V = (T / (2 delta)) (1 + 1/z + ... + z^-n + e z^-(n+1)),
 //! ```
 //!
-//! and a lag a series of them that decays. All but the first depend on past torques alone: the servo
-//! takes their deflection off the device's position, and solves the rest as it does for a spring.
+//! and a lag a decaying series of them. All except the first depend only on past torques: the servo subtracts
+//! their deflection from the device's position, and solves the rest as for a spring.
 //!
-//! The coefficients are rounded, times are known in part, and a tick's count may be read late: for each
-//! of these the first spring is made a little softer than the formula has it, by as much as the proof
-//! asks for. [`MatchedCoupling::of`] computes both what the servo multiplies by and the limit that this
-//! leaves to the environment's index, so that they cannot differ.
+//! Coefficients are rounded, times may be ranges, and a tick's count may be read late: for each of these the
+//! first spring is a little softer than in the formula, as the proof requires. [`MatchedCoupling::of`]
+//! computes both the servo's coefficients and the resulting limit on the environment's index, so that they
+//! cannot disagree.
 
 use crate::latency::{Latency, TimeRange};
 use crate::number::{Format, Rounding};
@@ -24,22 +24,22 @@ use crate::passivity::interval::Interval;
 use crate::passivity::lagged::SampledLag;
 use crate::passivity::polynomial::Polynomial;
 
-/// How much softer the first spring is than the other deviations need, which costs the least index:
-/// the limit falls with `(k + s/3)^2 / (k - s)` of its excess `k` over their sum `s`.
+/// The ratio of the first spring's excess `k` to the sum `s` of the other deviations that leaves the largest
+/// limit: the loss is proportional to `(k + s/3)^2 / (k - s)`.
 const EXCESS: f64 = 7.0 / 3.0;
 
-/// What a lag leaves to later ticks: `gain` rad/(N m) of the torque before last, and `decay` of it in each
-/// tick after.
+/// The effect of a lag in later ticks: `gain` rad/(N m) of the torque before last, and the fraction `decay`
+/// of it in each following tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trail {
     /// Deflection in rad/(N m).
     pub gain: f64,
-    /// The part of it that remains a tick later.
+    /// The fraction of it that remains a tick later.
     pub decay: f64,
 }
 
 impl Trail {
-    /// `z - decay`, or 1 where there is none.
+    /// `z - decay`, or 1 without a lag.
     const fn pole(&self) -> Polynomial {
         if self.gain == 0.0 {
             return Polynomial::ascending(&[Interval::ONE]);
@@ -55,11 +55,11 @@ pub struct MatchedCoupling {
     pub compliance: f64,
     /// Whole samples that a torque takes.
     pub whole: usize,
-    /// Compliance for each of that many torques before.
+    /// Compliance for each of this many earlier torques.
     pub held: f64,
-    /// Compliance for the one before these.
+    /// Compliance for the torque before these.
     pub arriving: f64,
-    /// Of the lags; a gain of 0 where there is none.
+    /// The trails of the lags; with a gain of 0 without a lag.
     pub trails: [Trail; 2],
     /// Upper bound on the environment's index in N m s/rad.
     pub limit: Interval,
@@ -74,9 +74,9 @@ struct Taps {
 }
 
 impl MatchedCoupling {
-    /// For a device of this passivity (N m s/rad) at this period (s).
+    /// The coupling for a device of this passivity (N m s/rad) at this period (s).
     ///
-    /// `None` where a number is out of range, or where two lags are too much alike for their difference to be
+    /// `None` if a number is out of range, or if two lags are so nearly equal that their difference cannot be
     /// distinguished from zero.
     pub const fn of(
         period: f64,
@@ -87,8 +87,8 @@ impl MatchedCoupling {
         Self::of_kind::<true>(period, passivity, latency, format)
     }
 
-    /// The same; without `UPDATES` there is none for an amplifier that is updated some times in a period, and no
-    /// code for that.
+    /// The same; without `UPDATES` there is no coupling, and no code, for an amplifier that is updated
+    /// several times in a period.
     #[inline(never)]
     pub(crate) const fn of_kind<const UPDATES: bool>(
         period: f64,
@@ -119,14 +119,14 @@ impl MatchedCoupling {
         };
         let error = exact.rounding(standard, &taps).add(standard.mul(unknown));
         let least = standard.add(given_up).add(error.mul(Interval::exact(EXCESS)));
-        // Above the standard coupling also where nothing lags, by a last bit.
+        // Above the standard coupling even without latency, by a last bit.
         let compliance = format.coefficient(least.hi().next_up(), Rounding::Outward);
         let excess = Interval::exact(compliance).sub(standard).sub(given_up);
         let Some(limit) = limit(t, delta, excess, error) else { return None };
         Some(Self { compliance, limit, ..exact })
     }
 
-    /// Numerator and denominator of `V(z)` with the coefficients that run; `None` beyond the degrees of a
+    /// Numerator and denominator of `V(z)` with the rounded coefficients; `None` beyond the degrees of a
     /// polynomial.
     pub const fn transfer(&self) -> Option<(Polynomial, Polynomial)> {
         let mut taps = [Interval::ZERO; MAX_DELAY + 2];
@@ -155,14 +155,15 @@ impl MatchedCoupling {
         }
     }
 
-    /// Sum of the magnitudes of all compliances: the most deflection in rad for torques of up to 1 N m each.
+    /// Sum of the magnitudes of all compliances: the largest deflection in rad for torques of up to 1 N m
+    /// each.
     pub(crate) fn largest_deflection(&self) -> f64 {
         let lasts = |trail: &Trail| trail.gain.abs() / (1.0 - trail.decay);
         let held = self.held * self.whole as f64 + self.arriving.abs();
         self.compliance + held + self.trails.iter().map(lasts).sum::<f64>()
     }
 
-    /// Sum over the taps of `(2 m + 1)` times what rounding changed.
+    /// Sum over the taps of `(2 m + 1)` times the rounding error.
     const fn rounding(&self, standard: Interval, taps: &Taps) -> Interval {
         let n = self.whole as f64;
         let held = Interval::exact(self.held).sub(standard).abs();
@@ -206,7 +207,7 @@ const fn moments(n: f64, a: Interval, first: Interval, later: Interval) -> Inter
 }
 
 impl Taps {
-    /// Of the times at one place in their ranges.
+    /// The taps for the times at one place in their ranges.
     const fn of<const UPDATES: bool>(
         t: Interval,
         latency: &Latency,
@@ -245,7 +246,7 @@ impl Taps {
         if taps.arriving.is_finite() { Some(taps) } else { None }
     }
 
-    /// Sum of `(2 m + 1)` times each compliance but the first.
+    /// Sum of `(2 m + 1)` times each compliance except the first.
     const fn moment(&self) -> Interval {
         let n = self.whole as f64;
         let mut sum = Interval::exact(n * (n + 2.0));
@@ -262,7 +263,7 @@ impl Taps {
     }
 }
 
-/// The part of each lag in what both together hold back, `tau_1^2 / (tau_1 - tau_2)` and the like.
+/// The weight of each lag in the response of both, `tau_1^2 / (tau_1 - tau_2)` and the like.
 const fn weights(lags: [Interval; 2]) -> Option<[Interval; 2]> {
     let [a, b] = lags;
     if a.is_zero() || b.is_zero() {
@@ -293,8 +294,7 @@ impl Within {
     }
 }
 
-/// What the ends of the ranges leave unknown of [`Taps::moment`]: every compliance grows with every
-/// time.
+/// The uncertainty of [`Taps::moment`] by the ranges of the times: every compliance grows with every time.
 const fn unknown<const UPDATES: bool>(t: Interval, latency: &Latency) -> Option<Interval> {
     let shortest = Taps::of::<UPDATES>(t, latency, Within::Least);
     let longest = Taps::of::<UPDATES>(t, latency, Within::Most);
@@ -303,13 +303,13 @@ const fn unknown<const UPDATES: bool>(t: Interval, latency: &Latency) -> Option<
     Some(Interval::new(0.0, range.hi().max(0.0)))
 }
 
-/// The passivity that is left of a device whose torques or counts deviate in time from tick to tick by
-/// `h T`, and the compliance that this takes of the coupling.
+/// The remaining passivity of a device whose torques or counts deviate in time from tick to tick by `h T`,
+/// and the loss of the coupling's compliance.
 ///
 /// For any `s > 0` the work of the pulses by which such a torque differs is at most
 /// `(s / 2) integral v^2 + (h T / (2 s)) sum (F_k - F_(k-1))^2`, and so is that of a count read late
-/// (equation 42). The first comes off `delta`, the second off a spring: `s = 2 delta sqrt(h)` shares it
-/// about equally.
+/// (equation 42). The first is subtracted from `delta`, the second from a spring: `s = 2 delta sqrt(h)`
+/// divides the loss about equally.
 const fn after_jitter(
     t: Interval,
     delta: Interval,
@@ -336,9 +336,9 @@ const fn rounded(standard: Interval, trail: (Interval, Interval), format: Format
     }
 }
 
-/// What an index has to stay below behind a coupling with an `excess` of the first spring over the
-/// formula and deviations of the others whose `sum (2 m + 1) abs(e_m)` is `error`; `None` where that
-/// coupling is not known to be passive.
+/// The upper bound on an index behind a coupling with an `excess` of the first spring over the formula and
+/// deviations of the others with `sum (2 m + 1) abs(e_m)` equal to `error`; `None` if that coupling is not
+/// known to be passive.
 ///
 /// `Q = (1 - 1/z) (excess - sum e_m z^-m) / T` has `Re Q >= (1 - c) (excess - error) / T`, since
 /// `abs(cos(m x) - cos((m + 1) x)) <= (2 m + 1) (1 - cos x)`, and `abs(Q)^2 <= 2 (1 - c) (excess +
@@ -360,10 +360,10 @@ pub const fn limit(
     Some(delta.div(Interval::ONE.add(over)))
 }
 
-/// What an index has to stay below behind a coupling spring of this compliance, where torques lag;
-/// `None` where no passive environment is known to be allowed.
+/// The upper bound on an index behind a coupling spring of this compliance, if torques lag; `None` if no
+/// passive environment is known to be allowed.
 ///
-/// All of the [compliances](MatchedCoupling) that the spring does not have count as deviations.
+/// All [compliances](MatchedCoupling) that the spring lacks count as deviations.
 pub const fn limit_behind_spring<const UPDATES: bool>(
     t: Interval,
     delta: Interval,

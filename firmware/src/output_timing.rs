@@ -1,4 +1,4 @@
-//! When a count is read, and when the torque that it gives reaches the motor.
+//! The times at which a count is read and its torque reaches the motor.
 //!
 //! A force takes time from count to motor. A scene states the delay of its environment in whole
 //! samples, a board the instant at which its codes appear. The compiler checks that both agree, by
@@ -8,13 +8,13 @@ mod sealed {
     pub trait Sealed {}
 }
 
-/// When a code reaches the motor, by type.
+/// The time at which a code reaches the motor, as a type.
 pub trait OutputMode: sealed::Sealed + Copy + Send + core::fmt::Debug + 'static {
     /// The same as data.
     const TIMING: OutputTiming;
 }
 
-/// When a code reaches the motor, as data.
+/// The time at which a code reaches the motor, as data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum OutputTiming {
@@ -27,13 +27,13 @@ pub enum OutputTiming {
 }
 
 impl OutputTiming {
-    /// Whether a code is put out in the period of its count, at a time of its own.
+    /// Whether a code is put out at a phase of the period of its count.
     pub const fn is_at_phase(self) -> bool {
         matches!(self, Self::AtPhase(_))
     }
 
-    /// Time in s from the beginning of a period to that at which the code of its count is put out;
-    /// `None` where the timer does not do that within the period.
+    /// Time in s from the beginning of a period to the output of its code; `None` if the output is not within
+    /// the period.
     pub const fn phase(self) -> Option<f64> {
         match self {
             Self::AtPhase(nanoseconds) => Some(nanoseconds as f64 / 1e9),
@@ -41,9 +41,8 @@ impl OutputTiming {
         }
     }
 
-    /// When a board puts the torques of a scene out that has this output delay in s: at a phase, where
-    /// there is one, or by the latch. No phase is as long as what does not fit, and such a delay is no
-    /// board's.
+    /// The output timing of a board for a scene with this output delay in s: at a phase if there is a delay,
+    /// otherwise latched. A delay that is too long for a phase gives a phase that no board has.
     pub const fn of_delay(delay: f64) -> Self {
         if delay == 0.0 {
             return Self::Latched;
@@ -52,8 +51,8 @@ impl OutputTiming {
         Self::AtPhase((delay * 1e9 + 0.5) as u32)
     }
 
-    /// Whether a board with this period in s can do it: a phase is not too short to compute a code in,
-    /// and not so long that the next period's code could be put out in its place.
+    /// Whether a board with this period in s supports it: a phase must be long enough to compute a code, and
+    /// not so long that the next period's code could be put out in its place.
     pub const fn fits(self, period: f64) -> bool {
         match self.phase() {
             Some(phase) => phase >= SHORTEST_PHASE && phase <= longest_phase(period),
@@ -62,26 +61,25 @@ impl OutputTiming {
     }
 }
 
-/// Shortest phase in s. A count is read up to [`READ_WITHIN`] late, and from there to the code it is up to
-/// 150 instructions, of three cycles each on the slowest board, where they come from a flash memory with
-/// five wait states: less than 4 microseconds together. Whether a tick makes it shows in its slack.
+/// Shortest phase in s. A count is read up to [`READ_WITHIN`] late, and then the code takes up to 150
+/// instructions, of three cycles each on the slowest board, whose flash memory has five wait states: less
+/// than 4 microseconds together. The slack of a tick shows whether it is in time.
 pub const SHORTEST_PHASE: f64 = 5e-6;
 
 /// Longest phase in s in a period: the code of the next tick, which is not written before the next period
-/// begins, must not be there yet, also where the timer's counts round the phase up.
+/// begins, must not be there yet, even if the timer's counts round the phase up.
 pub const fn longest_phase(period: f64) -> f64 {
     period - READ_WITHIN
 }
 
-/// The timer that begins a period latches the code of the tick before: a torque appears exactly
-/// one sample after the count that it was computed from, without jitter, so that equation 35 has no
-/// part of a sample in it. The servo computes each
-/// torque one tick early, so that what the scene calls one sample late *is* that sample.
+/// The timer that begins a period latches the code of the tick before: a torque appears exactly one sample
+/// after its count, without jitter, so that equation 35 has no part of a sample. The servo computes each
+/// torque one tick early, so the scene's sample of delay *is* that sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Latched;
 
-/// Count and torque belong to the same instant: a simulation, or an emulated board in lockstep
-/// with one. No DAC can do this.
+/// Count and torque are at the same instant: in a simulation, or on an emulated board in lockstep with one.
+/// No DAC can do this.
 #[derive(Clone, Copy, Debug)]
 pub struct Simultaneous;
 
@@ -98,12 +96,12 @@ pub struct Simultaneous;
 /// at motor   x(k-1)      torque of x(k)                 torque of x(k+1)
 /// ```
 ///
-/// A code that is written later than that is a fault ([`LateTick`](crate::fault::Fault::LateTick)), and
+/// A code that is written later than its phase is a fault ([`LateTick`](crate::fault::Fault::LateTick)), and
 /// is never put out: until the next phase the motor keeps the torque of the tick before, if its amplifier
 /// were not switched off in the late tick itself, and then it is mid-scale that was written over it.
 ///
-/// The time belongs to the coupling ([`Coupling::Matched`](crate::coupling::Coupling)), so that an
-/// environment need not be late.
+/// The coupling absorbs this time ([`Coupling::Matched`](crate::coupling::Coupling)), so an environment need
+/// not be late.
 #[derive(Clone, Copy, Debug)]
 pub struct AtPhase<const NANOSECONDS: u32>;
 
@@ -129,8 +127,7 @@ impl OutputMode for Simultaneous {
     const TIMING: OutputTiming = OutputTiming::Simultaneous;
 }
 
-/// Time in s after the beginning of its period in which a tick reads its count, where torques are
-/// latched: the interrupt's own latency, and that by other instructions. The certificate of a board
-/// covers counts that are read as late as this; later ones set
-/// [`BEGAN_LATE`](crate::servo_loop::BEGAN_LATE).
+/// Time in s after the beginning of its period within which a tick reads its count, for latched torques: the
+/// latency of the interrupt, and that by other instructions. The certificate of a board covers counts that
+/// are read this late; later counts set [`BEGAN_LATE`](crate::servo_loop::BEGAN_LATE).
 pub const READ_WITHIN: f64 = 1e-6;

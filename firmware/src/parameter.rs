@@ -1,8 +1,8 @@
-//! The numbers of a scene by name: one table of their keys, names, units and ranges, and the traits
-//! that read and set a number.
+//! The parameters of a scene: one table of their keys, names, units and ranges, and the traits that read and
+//! set them.
 //!
-//! A parameter is added here, in the environment that has it ([`NamedParameters`]), and, if a scene
-//! file shall have it, as a row of the reference of scene files.
+//! A new parameter is added here, in its environment ([`NamedParameters`]), and, for scene files, as a row of
+//! their reference.
 
 /// Largest degree of a rational environment's numerator or denominator.
 pub const MAX_DEGREE: usize = 8;
@@ -26,10 +26,10 @@ pub enum Range {
 }
 
 impl Range {
-    /// Whether `value` is in the range. No range has a value that is not finite.
+    /// Whether `value` is in the range; every value in a range is finite.
     ///
-    /// Doubles of one sign are in the order of their bits, and a small board compares integers in a tenth
-    /// of the time.
+    /// The bits of doubles of one sign have the order of their values, and a small board compares integers in
+    /// a tenth of the time.
     pub const fn admits(self, value: f64) -> bool {
         const INFINITE: u64 = f64::INFINITY.to_bits();
         const MINUS_ZERO: u64 = (-0.0_f64).to_bits();
@@ -48,7 +48,7 @@ impl Range {
 
 macro_rules! parameters {
     ($($parameter:ident: $key:literal, $name:literal, $unit:literal, $range:expr;)*) => {
-        /// A number of a scene. The order is that of the wire.
+        /// A parameter of a scene. The order is that of the wire.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
         pub enum Parameter {
@@ -56,7 +56,7 @@ macro_rules! parameters {
         }
 
         impl Parameter {
-            /// All of them, in the order in which a scene is checked.
+            /// All parameters, in the order in which a scene is checked.
             pub const ALL: &[Self] = &[$(Self::$parameter),*];
 
             /// Full name in a scene file, such as `device.inertia`.
@@ -66,14 +66,14 @@ macro_rules! parameters {
                 }
             }
 
-            /// Name and unit for sentences; the unit of a bare number is empty.
+            /// Name and unit for messages; the unit of a pure number is empty.
             pub const fn name_and_unit(self) -> (&'static str, &'static str) {
                 match self {
                     $(Self::$parameter => ($name, $unit),)*
                 }
             }
 
-            /// The values that make sense; for polynomials those of each coefficient.
+            /// The valid values; for polynomials, those of each coefficient.
             pub const fn range(self) -> Range {
                 match self {
                     $(Self::$parameter => $range,)*
@@ -115,10 +115,9 @@ parameters! {
     Mode: "environment.mode", "mode", "", Range::Finite;
 }
 
-/// The parameters that may be changed while the servo runs, with the names that people type.
+/// The parameters that may be changed while the servo runs, with their names for users.
 ///
-/// No message can change the device; period and delay are fixed when the program is compiled and
-/// its board is set up.
+/// No message can change the device; period and delay are fixed at compile time and by the board's set-up.
 pub const TUNABLE: [(&str, Parameter); 11] = [
     ("stiffness", Parameter::Stiffness),
     ("damping", Parameter::Damping),
@@ -133,13 +132,13 @@ pub const TUNABLE: [(&str, Parameter); 11] = [
     ("mode", Parameter::Mode),
 ];
 
-/// Something with numbers that have names.
+/// A type with named parameters.
 pub trait NamedParameters {
-    /// The number of this name; `None` where there is none.
+    /// The value of this parameter; `None` if there is none.
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64>;
 }
 
-/// The named numbers of a type: its own fields, and those of the field that comes last.
+/// The named parameters of a type: its own fields, and the parameters of its last field.
 macro_rules! named_parameters {
     ($([$($generics:tt)*] $type:ty: $($parameter:ident => $field:ident),* $(; $inner:ident)?;)*) => {$(
         impl<$($generics)*> $crate::parameter::NamedParameters for $type {
@@ -159,12 +158,12 @@ macro_rules! named_parameters {
 }
 pub(crate) use named_parameters;
 
-/// The numbers of a type by name, from one table: to be read, to be changed, and all of them at once.
-/// A pattern binds the number.
+/// The parameters of a type from one table: functions to read one, to change one, and to list all. A pattern
+/// binds the value.
 macro_rules! numbers {
     ($number:ident, $number_mut:ident, $numbers:ident, $value:ident;
      $($parameter:ident: $pattern:pat,)*) => {
-        /// The number of this name; `None` where there is none.
+        /// The value of this parameter; `None` if there is none.
         const fn $number(
             &self,
             parameter: $crate::parameter::Parameter,
@@ -175,7 +174,7 @@ macro_rules! numbers {
             }
         }
 
-        /// The same, to be changed.
+        /// The same, mutable.
         const fn $number_mut(
             &mut self,
             parameter: $crate::parameter::Parameter,
@@ -186,7 +185,7 @@ macro_rules! numbers {
             }
         }
 
-        /// All of them; a check of every number costs less so than name by name.
+        /// All parameters; a check of all of them costs less in this way than by name.
         pub(crate) const fn $numbers(
             &self,
         ) -> [($crate::parameter::Parameter, Option<f64>);

@@ -2,14 +2,14 @@
 
 use crate::current::IndexOffset;
 
-/// The last reading of a power stage, in whole numbers of small units, as the wire has no fractions of them.
+/// The last reading of a power stage, in integers of small units, for the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct PowerReading {
     /// Current into the motor in mA, with the sign of its torque.
     pub current: i32,
-    /// The current in mA of the torque that the servo asked for last. Beside a current that was sampled a little
-    /// earlier: the two agree where the torque does not change.
+    /// The current in mA of the servo's last torque. `current` was sampled a little earlier: the two agree if
+    /// the torque does not change.
     pub reference: i32,
     /// Voltage of the supply in mV.
     pub voltage: u32,

@@ -1,35 +1,35 @@
-//! Why a board was last reset.
+//! The cause of a board's last reset.
 
 use core::fmt;
 
-/// Why a board was last reset, as its chip's reset flags say.
+/// The cause of a board's last reset, from its chip's reset flags.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum ResetCause {
-    /// The chip does not say.
+    /// Not reported by the chip.
     #[default]
     Unknown = 0,
     /// The supply was switched on.
     PowerOn = 1,
-    /// The supply was too low for a while, and not for long enough for RAM to lose its contents.
+    /// The supply was too low for a while, but not long enough for RAM to lose its contents.
     BrownOut = 2,
     /// The reset pin: a button, or a debug probe.
     Pin = 3,
     /// Requested by the program, or by a debug probe through a register.
     Software = 4,
-    /// The independent watchdog: the servo's interrupt stopped coming.
+    /// The independent watchdog: the servo's interrupt stopped.
     IndependentWatchdog = 5,
     /// The window watchdog, which no program here starts.
     WindowWatchdog = 6,
     /// A low-power mode that the option bytes forbid.
     LowPower = 7,
-    /// The option bytes were loaded anew.
+    /// The option bytes were reloaded.
     OptionBytes = 8,
 }
 
 impl ResetCause {
-    /// All of them, in the order of their numbers.
+    /// All causes, in the order of their numbers.
     pub const ALL: [Self; 9] = [
         Self::Unknown,
         Self::PowerOn,

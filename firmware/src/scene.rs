@@ -1,7 +1,7 @@
 //! A scene in SI units: a device, a period, a coupling, an environment.
 //!
-//! Nothing here is checked. [`crate::certificate`] turns a [`Scene`] into a `Certified<Scene>`,
-//! and only that can become a servo.
+//! Nothing is checked here. [`crate::certificate`] turns a [`Scene`] into a `Certified<Scene>`, and only that
+//! can become a servo.
 
 use crate::build_error::BuildError;
 use crate::environment::{Environment, LawContext};
@@ -10,22 +10,22 @@ pub use crate::coupling::Coupling;
 pub use crate::latency::{Latency, TimeRange};
 use crate::parameter::{NamedParameters, Parameter, numbers};
 
-/// A haptic scene: everything the certificate and the servo need to know.
+/// A haptic scene: all data for the certificate and the servo.
 ///
-/// `E` is the environment: one of the types of [`crate::environment`] where the scene is a
-/// constant of a program, or [`Environment`] where it comes from a file or over the wire.
+/// `E` is the environment: one of the types of [`crate::environment`] in a constant of a program, or
+/// [`Environment`] for a scene from a file or from the wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scene<E = Environment> {
-    /// The machine that the hand holds.
+    /// The device that the hand holds.
     pub device: Device,
-    /// When the servo runs.
+    /// The timing of the servo.
     pub timing: Timing,
-    /// What connects the device to the environment.
+    /// The coupling between device and environment.
     pub coupling: Coupling,
     /// The environment.
     pub environment: E,
-    /// What delays the torque beside the environment's whole samples.
+    /// The delays of the torque in addition to the environment's whole samples.
     pub latency: Latency,
     /// Largest coupling torque in N m, applied between environment and coupling so that
     /// saturation stays inside the certificate (theory, end of section 5). `None`: the scene is
@@ -39,10 +39,10 @@ pub struct Scene<E = Environment> {
 pub struct Device {
     /// Inertia `m` in kg m^2; used by simulation only, the certificate does not depend on it.
     pub inertia: f64,
-    /// Viscous damping `b` to the ground in N m s/rad, all of it; what a free-mode canceller takes away.
+    /// Total viscous damping `b` to the ground in N m s/rad; a free-mode canceller cancels it.
     pub damping: f64,
-    /// Output strict passivity `delta` in N m s/rad where it is not the damping: measured, or
-    /// computed for a device with internal modes. At most the damping.
+    /// Output strict passivity `delta` in N m s/rad if it differs from the damping: measured, or computed for
+    /// a device with internal modes. At most the damping.
     pub passivity: Option<f64>,
 }
 
@@ -52,12 +52,12 @@ pub struct Device {
 pub struct Timing {
     /// Nominal period `T` in s.
     pub period: f64,
-    /// Longest time in s between two force updates that is tolerated; `None`: the period.
+    /// Longest tolerated time in s between two updates of the torque; `None`: the period.
     pub worst_period: Option<f64>,
 }
 
 impl Device {
-    /// Output strict passivity `delta` in N m s/rad: the damping where no other was declared.
+    /// Output strict passivity `delta` in N m s/rad: the damping unless another value is declared.
     pub const fn passivity(&self) -> f64 {
         match self.passivity {
             Some(passivity) => passivity,
@@ -118,8 +118,8 @@ impl<E: NamedParameters> NamedParameters for Scene<E> {
 }
 
 impl Scene {
-    /// The value of a parameter; `None` where the scene has none, and for polynomials. Of a time that is
-    /// known to lie in a range it is the longest.
+    /// The value of a parameter; `None` if the scene does not have it, and for polynomials. For the range of
+    /// a time it is the longest time.
     ///
     /// ```
     /// use haptic_servo::certificate::Parameter;
@@ -149,8 +149,8 @@ impl Scene {
         self.latency.largest_jitter(self.environment.is_late(), self.timing.period)
     }
 
-    /// The scene with this value, also where it had none that could be left out: a passivity, a worst
-    /// period, a coupling, a torque limit. `None` where there is no place for it.
+    /// The scene with this value, including optional parameters that it did not have: a passivity, a worst
+    /// period, a coupling, a torque limit. `None` if the scene cannot have it.
     pub const fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
         let mut changed = *self;
         match parameter {

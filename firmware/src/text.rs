@@ -1,9 +1,9 @@
-//! Text built without allocation, also at compile time: the sentence that the compiler prints is
-//! the sentence that the board sends.
+//! Text built without allocation, also at compile time, so that the compiler prints the same text as the
+//! board.
 
 use core::fmt;
 
-/// A string of at most `N` bytes; what does not fit is cut off.
+/// A string of at most `N` bytes; longer text is cut off.
 #[derive(Clone, Copy)]
 pub struct Text<const N: usize> {
     bytes: [u8; N],
@@ -14,7 +14,7 @@ pub struct Text<const N: usize> {
 pub type Sentence = Text<800>;
 
 impl<const N: usize> Text<N> {
-    /// Bytes that fit.
+    /// Capacity in bytes.
     pub const CAPACITY: usize = N;
 
     /// The empty text.
@@ -39,7 +39,7 @@ impl<const N: usize> Text<N> {
     }
 
     /// Appends ASCII text; bytes beyond ASCII become `?`.
-    // Sentences are made of dozens of these: inlined, they took most of a board's room for them.
+    // Not inlined: messages are made of dozens of these calls, which would take most of a board's flash.
     #[inline(never)]
     pub const fn push(&mut self, text: &str) {
         let bytes = text.as_bytes();
@@ -60,10 +60,10 @@ impl<const N: usize> Text<N> {
     }
 }
 
-/// As many bytes as a number ever takes: `-1.234567891e-308` is of the longest kind.
+/// The largest number of bytes of a number: `-1.234567891e-308` is one of the longest.
 type Number = Text<24>;
 
-/// Numbers are written at one length of text only, so that there is one copy of it.
+/// Numbers are written into a text of one fixed length, so that there is one copy of this code.
 impl Number {
     /// Appends a number.
     const fn number(&mut self, value: f64) {
@@ -135,8 +135,8 @@ impl Number {
     }
 }
 
-/// A number as [`Text`] writes it. On a board it takes the place of the library's own way, which is
-/// exact to the last digit and 13 kB long.
+/// A number formatted as by [`Text`]. On a board it replaces the formatting of `core`, which is exact to the
+/// last digit and takes 13 kB.
 #[derive(Clone, Copy, Debug)]
 pub struct ShortF64(pub f64);
 
@@ -148,7 +148,7 @@ impl fmt::Display for ShortF64 {
     }
 }
 
-/// A number for people, rounded up to three digits, to a part in 10^12.
+/// A number for messages, rounded up to three digits, to a part in 10^12.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundUp3(pub f64);
 
@@ -176,7 +176,7 @@ impl<const N: usize> Default for Text<N> {
     }
 }
 
-/// Writes what formats itself; what does not fit is cut off, which is no error.
+/// Writes formatted values; longer text is cut off without an error.
 impl<const N: usize> core::fmt::Write for Text<N> {
     fn write_str(&mut self, text: &str) -> core::fmt::Result {
         self.push(text);

@@ -6,7 +6,7 @@ use core::hint::cold_path;
 
 use crate::number::Number;
 
-/// Why a tick's output is below the environment's torque. This is telemetry, not a fault.
+/// The reason why a tick's output is below the environment's torque. This is telemetry, not a fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
@@ -18,16 +18,16 @@ pub enum LimitReason {
     Torque = 1,
     /// The DAC's full scale; the scene has no limit of its own.
     DacRange = 2,
-    /// The position left the range of the number format; the angle stands still.
+    /// The position left the range of the number format; the angle stays at its end.
     Angle = 3,
-    /// The torque was not a number; no torque was given.
+    /// The torque was not a number; the output was zero.
     NotANumber = 4,
-    /// The clamp is still opening, closing or shut.
+    /// The clamp is opening, closing or shut.
     Ramp = 5,
 }
 
 impl LimitReason {
-    /// All of them, in the order of their numbers.
+    /// All reasons, in the order of their numbers.
     pub const ALL: [Self; 6] =
         [Self::None, Self::Torque, Self::DacRange, Self::Angle, Self::NotANumber, Self::Ramp];
 
@@ -52,11 +52,11 @@ impl fmt::Display for LimitReason {
 
 /// Clamps the coupling torque to `-level..=level`.
 ///
-/// The level is the scene's bound, except while the servo fades in or out: then it moves by a
-/// fixed step a tick. A scene is faded only if it passes with a torque limit at any level
-/// ([`TimingChecked`](crate::certificate::TimingChecked) asks for that, of linear scenes too): many that are certified
-/// without a limit oscillate with one. The ramp moves the clamp and never the stiffness, since a
-/// changing stiffness is outside of the certificate.
+/// The level is the scene's bound, except while the servo fades in or out: then it moves by a fixed step per
+/// tick. A scene is faded only if it passes with a torque limit at any level
+/// ([`TimingChecked`](crate::certificate::TimingChecked) requires this, also for linear scenes): many scenes
+/// that are certified without a limit oscillate with one. The ramp changes the clamp and never the stiffness,
+/// because a changing stiffness is outside the certificate.
 #[derive(Clone, Copy, Debug)]
 pub struct Limiter<N> {
     level: N,
@@ -64,18 +64,18 @@ pub struct Limiter<N> {
     step: N,
     /// The reason for the bound.
     reason: LimitReason,
-    /// The reason for the level: that, or the ramp.
+    /// The reason for the level: the bound, or the ramp.
     because: LimitReason,
 }
 
 impl<N: Number> Limiter<N> {
-    /// An open limiter with its bound in N m, and the reason that it reports; with an infinite
-    /// bound it limits NaN alone. It opens and closes in one step.
+    /// An open limiter with its bound in N m, and the reason that it reports; with an infinite bound it only
+    /// limits NaN. It opens and closes in one step.
     pub const fn new(bound: N, reason: LimitReason) -> Self {
         Self { level: bound, bound, step: bound, reason, because: reason }
     }
 
-    /// The same, opening and closing by `step` N m a tick.
+    /// The same, opening and closing by `step` N m per tick.
     pub(crate) const fn stepping(self, step: N) -> Self {
         Self { step, ..self }
     }
@@ -86,7 +86,7 @@ impl<N: Number> Limiter<N> {
         if wanted.within(self.level) {
             return (wanted, otherwise);
         }
-        // Rare: keeps the usual way through the tick free of jumps.
+        // Rare: keeps the usual path of the tick free of branches.
         cold_path();
         if wanted > N::ZERO {
             (self.level, self.because)
@@ -97,7 +97,7 @@ impl<N: Number> Limiter<N> {
         }
     }
 
-    /// The same of a one-sided torque: of its part above zero. One comparison covers its sign, the bound and
+    /// The same for a one-sided torque: for its positive part. One comparison covers the sign, the bound and
     /// NaN.
     #[inline(always)]
     pub(crate) fn limit_push(&self, wanted: N, otherwise: LimitReason) -> (N, LimitReason) {
@@ -111,8 +111,8 @@ impl<N: Number> Limiter<N> {
         (torque, *reason)
     }
 
-    /// The limited value of a push above the level, or of NaN. Out of line, so that a usual tick has nothing
-    /// of it in its registers, and with the reason where it is, so that the tick need not take it for a
+    /// The limited value of a push above the level, or of NaN. Not inlined, so that it needs no registers in
+    /// a usual tick. It returns the reason by reference, so that the tick does not extract it from a
     /// register's lowest byte.
     #[cold]
     #[inline(never)]
@@ -124,29 +124,29 @@ impl<N: Number> Limiter<N> {
         }
     }
 
-    /// Lets no torque through.
+    /// Shuts the limiter: no torque passes.
     pub(crate) fn shut(&mut self) {
         self.set(N::ZERO);
     }
 
-    /// Whether no torque gets through.
+    /// Whether the limiter is shut.
     pub(crate) fn is_shut(&self) -> bool {
         self.level <= N::ZERO
     }
 
-    /// Closes as far as `torque` (N m) needs, so that closing further acts at once.
+    /// Lowers the level to `torque` (N m), so that further closing acts at once.
     pub(crate) fn clamp_to_held_torque(&mut self, torque: N) {
         let magnitude = torque.larger(torque.negated());
         self.set(self.level.smaller(magnitude));
     }
 
-    /// Opens by a step; gives whether it is now open.
+    /// Opens by a step; returns whether it is now open.
     pub(crate) fn open(&mut self) -> bool {
         self.set(self.level.plus(self.step).smaller(self.bound));
         self.level >= self.bound
     }
 
-    /// Closes by a step; gives whether it is now shut.
+    /// Closes by a step; returns whether it is now shut.
     pub(crate) fn close(&mut self) -> bool {
         self.set(self.level.minus(self.step).positive_part());
         self.is_shut()

@@ -1,27 +1,26 @@
-//! What makes torque of a code: a DAC in front of an amplifier, or the bridge of a motor board.
+//! Converts codes to torque: a DAC with an amplifier, or the bridge of a motor board.
 //!
-//! The servo drives either through the same four calls and does not know which one it is; what differs is
-//! the time that a torque takes, which the scene states ([`Latency`](crate::scene::Latency)), and which the
-//! compiler compares with the output's own.
+//! The servo uses both through the same calls. They differ in the latency of a torque, which the scene states
+//! ([`Latency`](crate::scene::Latency)) and the compiler compares with the output's own.
 
 use crate::current::{AlignmentError, PowerFault};
 use crate::dac::DacCode;
 use crate::fault::Fault;
 
-/// What turns codes into torque; each method is an access or two to a register or to memory.
+/// A torque output; each method is one or two accesses to registers or memory.
 pub trait TorqueOutput {
-    /// Gives the code whose torque is due next: at the instant that the program's
-    /// [`OutputMode`](crate::servo::OutputMode) says.
+    /// Sets the code of the next torque, which is due at the time of the program's
+    /// [`OutputMode`](crate::servo::OutputMode).
     fn set(&mut self, code: DacCode);
 
-    /// Switches the motor on or off. Off takes the torque away at once; on may take until the next code, and
-    /// fails by a [fault](Self::fault).
+    /// Switches the motor on or off. Off removes the torque at once; on may take until the next code, and may
+    /// fail with a [fault](Self::fault).
     fn switch(&mut self, on: bool);
 
-    /// Begins to align a brushless motor, with the gates off until now.
+    /// Begins to align a brushless motor whose gates are off.
     ///
     /// # Errors
-    /// Where this output has no motor that is to be aligned.
+    /// If this output does not have a brushless motor.
     fn align(&mut self) -> Result<(), Fault> {
         Err(Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded)))
     }
@@ -31,6 +30,6 @@ pub trait TorqueOutput {
         false
     }
 
-    /// A fault of its own since this was last asked. The output has taken the torque away by itself.
+    /// A fault of the output since the last call. The output has already removed the torque.
     fn fault(&mut self) -> Option<Fault>;
 }

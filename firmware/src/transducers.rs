@@ -1,4 +1,4 @@
-//! The scales between the servo's numbers and the world's.
+//! The scales between the numbers of the servo and physical units.
 
 use core::f64::consts::TAU;
 
@@ -13,24 +13,24 @@ use crate::torque::{LimitReason, Limiter};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Transducers {
-    /// Encoder counts a turn of the device's axis, after quadrature and gearing.
+    /// Encoder counts per turn of the device's axis, after quadrature and gearing.
     pub counts_per_turn: f64,
-    /// Bits after which the counter wraps.
+    /// The width of the counter.
     pub counter: CounterWidth,
-    /// Torque of the motor on the device's axis in N m at the largest code that every board's DAC
-    /// outputs, [`DacCode::CODES_TO_FULL_SCALE`] from mid-scale.
+    /// Torque of the motor on the device's axis in N m at full scale, [`DacCode::CODES_TO_FULL_SCALE`] codes
+    /// from mid-scale.
     pub full_scale_torque: f64,
-    /// The fastest in rad/s that the device can turn in any hand: a count that needs more speed
-    /// than this is a broken encoder, and a fault.
+    /// Largest possible speed of the device in any hand in rad/s: a count that needs a larger speed shows a
+    /// broken encoder, and is a fault.
     pub largest_speed: f64,
 }
 
 impl Transducers {
     /// A speed in rad/s that no hand reaches at a paddle or a knob, 16 turns a second: for
-    /// [`Transducers::largest_speed`] where the device is not known better.
+    /// [`Transducers::largest_speed`] if nothing else is known about the device.
     pub const NO_HAND_IS_FASTER: f64 = 100.0;
 
-    /// Whether a servo can run with them, this timing and this torque limit.
+    /// Checks that a servo can run with them, this timing and this torque limit.
     ///
     /// # Errors
     /// The invalid number and its bound.
@@ -41,7 +41,7 @@ impl Transducers {
         if let Err(error) = self.bound(limit) {
             return Err(error);
         }
-        // The counter must not wrap unseen before missed ticks become a fault.
+        // The counter must not wrap undetected before missed ticks become a fault.
         let worst = match timing.worst_period {
             Some(worst) => worst,
             None => timing.period,
@@ -68,10 +68,10 @@ impl Transducers {
         }
     }
 
-    /// The most counts that the encoder can move in `time` s, and one for its edges.
+    /// The largest number of counts that the encoder can move in `time` s, plus one for its edges.
     ///
     /// # Errors
-    /// Where the counter would wrap unseen in that time.
+    /// If the counter could wrap undetected in that time.
     pub(crate) const fn largest_step(&self, time: f64) -> Result<u32, BuildError> {
         let speed = self.largest_speed;
         if let Err(error) = BuildError::unless_positive("largest speed", speed) {
@@ -96,7 +96,7 @@ impl Transducers {
             / f64::from(DacCode::CODES_TO_FULL_SCALE)
     }
 
-    /// The most torque in N m that a scene with this limit gives: the limit, or else full scale.
+    /// The largest torque in N m of a scene with this limit: the limit, or otherwise full scale.
     const fn bound(&self, limit: Option<f64>) -> Result<f64, BuildError> {
         let full_scale = self.full_scale_torque;
         let bound = match limit {
@@ -112,7 +112,7 @@ impl Transducers {
         Ok(bound)
     }
 
-    /// The limiter of a scene's torque limit, or else of the DAC's range.
+    /// The limiter of a scene's torque limit, or otherwise of the DAC's range.
     pub(crate) fn limiter<N: Number>(&self, limit: Option<f64>) -> Result<Limiter<N>, BuildError> {
         let reason = if limit.is_some() { LimitReason::Torque } else { LimitReason::DacRange };
         let bound = N::bound_from_f64(self.bound(limit)?)

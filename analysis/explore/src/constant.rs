@@ -81,12 +81,12 @@ fn of(file: &SceneFile) -> PageResult {
         "use haptic_servo::certificate::Certified;\n\
          {uses}\n\
          use haptic_servo::scene::{{Coupling, Device, Latency, Scene{time_range}, Timing}};\n\n\
-         /// What the hand feels.\n\
+         /// The environment that the hand feels.\n\
          pub type Environment = {name};\n\n\
          {knots}\
          /// The scene.\n\
          pub const SCENE: Scene<Environment> = {};\n\n\
-         /// Its certificate: a scene that could oscillate in a hand stops the compiler here.\n\
+         /// Its certificate: a scene that could oscillate in a hand is a compile error here.\n\
          pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();\n",
         constant.broken(0)
     ))

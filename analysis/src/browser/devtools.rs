@@ -1,4 +1,4 @@
-//! A page that a program drives over a socket, by the protocol of the browser's developer tools.
+//! Drives a page over a socket with the protocol of the browser's developer tools.
 
 use std::net::TcpStream;
 use std::path::Path;
@@ -88,7 +88,7 @@ impl Page {
         for domain in ["Page.enable", "Runtime.enable", "Log.enable"] {
             self.call(domain, json!({}))?;
         }
-        // Windows are no narrower than half of this, screens are.
+        // The browser has a smallest width of windows, but not of emulated screens.
         self.call(
             "Emulation.setDeviceMetricsOverride",
             json!({ "width": width, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": false }),
@@ -99,7 +99,7 @@ impl Page {
     /// Runs a script in each page that is opened from now on, before the page's own scripts.
     ///
     /// # Errors
-    /// Where the browser refuses it.
+    /// If the browser refuses it.
     pub fn run_first(&mut self, script: &str) -> Result<(), BrowserError> {
         let method = "Page.addScriptToEvaluateOnNewDocument";
         self.call(method, json!({ "source": script })).map(|_| ())
@@ -108,16 +108,16 @@ impl Page {
     /// Opens an address, and waits until the page reports that it is ready.
     ///
     /// # Errors
-    /// Where there is no such page.
+    /// If there is no such page.
     pub fn open(&mut self, address: &str) -> Result<(), BrowserError> {
         self.go_to(address)?;
         self.wait_for("document.documentElement?.dataset.verdict !== undefined")
     }
 
-    /// Opens an address, and waits for nothing.
+    /// Opens an address without waiting.
     ///
     /// # Errors
-    /// Where there is no such page.
+    /// If there is no such page.
     pub fn go_to(&mut self, address: &str) -> Result<(), BrowserError> {
         let mut opened = self.call("Page.navigate", json!({ "url": address }))?;
         match opened.get_mut("errorText") {
@@ -147,7 +147,7 @@ impl Page {
     /// The value of an expression that is a number, or the text of a number.
     ///
     /// # Errors
-    /// Where the value is of another type.
+    /// If the value has another type.
     pub fn number(&mut self, expression: &str) -> Result<f64, BrowserError> {
         let value = self.value(expression)?;
         let number = value.as_f64().or_else(|| value.as_str()?.parse().ok());
@@ -157,7 +157,7 @@ impl Page {
     /// The value of an expression that is a list of numbers.
     ///
     /// # Errors
-    /// Where the value is of another type.
+    /// If the value has another type.
     pub fn numbers(&mut self, expression: &str) -> Result<Vec<f64>, BrowserError> {
         let value = self.value(expression)?;
         let numbers = value.as_array().and_then(|list| list.iter().map(Value::as_f64).collect());
@@ -167,7 +167,7 @@ impl Page {
     /// Waits until an expression is true.
     ///
     /// # Errors
-    /// Where it throws, or does not become true in time.
+    /// If it throws, or does not become true in time.
     pub fn wait_for(&mut self, expression: &str) -> Result<(), BrowserError> {
         let start = Instant::now();
         while self.value(&format!("Boolean({expression})"))? != true {
@@ -184,7 +184,7 @@ impl Page {
     /// `mouseReleased`.
     ///
     /// # Errors
-    /// Where the browser does not answer.
+    /// If the browser does not answer.
     pub fn mouse(&mut self, what: &str, [x, y]: [f64; 2]) -> Result<(), BrowserError> {
         let event = json!({ "type": what, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
         self.call("Input.dispatchMouseEvent", event).map(|_| ())
@@ -193,7 +193,7 @@ impl Page {
     /// Presses and releases a key, by its name.
     ///
     /// # Errors
-    /// Where the browser does not answer.
+    /// If the browser does not answer.
     pub fn key(&mut self, key: &str) -> Result<(), BrowserError> {
         for what in ["keyDown", "keyUp"] {
             self.call("Input.dispatchKeyEvent", json!({ "type": what, "key": key, "code": key }))?;
@@ -205,7 +205,7 @@ impl Page {
     /// once the page has stopped moving it.
     ///
     /// # Errors
-    /// Where there is no such element.
+    /// If there is no such element.
     pub fn place(&mut self, selector: &str) -> Result<[f64; 4], BrowserError> {
         let expression = format!(
             "(async () => {{ const e = document.querySelector({selector:?}); \
@@ -223,7 +223,7 @@ impl Page {
     /// The middle of an element, in pixels of the window.
     ///
     /// # Errors
-    /// Where there is no such element.
+    /// If there is no such element.
     pub fn middle(&mut self, selector: &str) -> Result<[f64; 2], BrowserError> {
         let [left, top, width, height] = self.place(selector)?;
         Ok([left + width / 2.0, top + height / 2.0])
@@ -232,7 +232,7 @@ impl Page {
     /// Clicks on an element, and again if it has moved away from under the mouse.
     ///
     /// # Errors
-    /// Where there is no such element, or it takes no click.
+    /// If there is no such element, or it receives no click.
     pub fn click(&mut self, selector: &str) -> Result<(), BrowserError> {
         self.value(&format!(
             "document.querySelector({selector:?}).addEventListener('click', \
@@ -255,10 +255,10 @@ impl Page {
         Err(BrowserError::NotClicked { selector: selector.to_owned() })
     }
 
-    /// Calls a method of the protocol, and gives its result.
+    /// Calls a method of the protocol, and returns its result.
     ///
     /// # Errors
-    /// Where the browser refuses it, or does not answer.
+    /// If the browser refuses it, or does not answer.
     pub fn call(&mut self, method: &str, parameters: Value) -> Result<Value, BrowserError> {
         self.last += 1;
         let id = self.last;

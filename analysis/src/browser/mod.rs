@@ -1,5 +1,4 @@
-//! A headless browser, which shows pages as a reader's browser does: started, and driven by the protocol of
-//! its developer tools.
+//! A headless browser, driven by the protocol of its developer tools, to examine pages.
 
 mod devtools;
 mod site;
@@ -34,7 +33,7 @@ const ARGUMENTS: [&str; 9] = [
     "--disable-dev-shm-usage",
 ];
 
-/// Why a page could not be examined.
+/// The reason why a page could not be examined.
 #[derive(Debug, Error)]
 pub enum BrowserError {
     /// There is no browser.

@@ -1,4 +1,4 @@
-//! The axes of all charts: the room that they take, their grid, their names and numbers.
+//! The axes of all charts: their space, grid, names and numbers.
 
 use std::ops::Range;
 
@@ -20,20 +20,20 @@ pub fn chart<'a, 'b>(area: &'a Area<'b>) -> ChartBuilder<'a, 'static, SVGBackend
 /// Labels of the axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Axes<'n> {
-    /// Name of the horizontal axis, with its unit; none where it is that of the chart below.
+    /// Name of the horizontal axis, with its unit; `None` if it shares the axis of the chart below.
     pub x: Option<&'n str>,
     /// Name of the vertical axis, with its unit.
     pub y: &'n str,
-    /// The most numbers along the horizontal and along the vertical axis.
+    /// The largest number of labels along the horizontal and the vertical axis.
     pub most: (usize, usize),
     /// Size of the text.
     pub size: i32,
-    /// Whether all numbers have an exponent, so that several axes write them alike.
+    /// Whether all numbers have an exponent, so that several axes have the same format.
     pub exponents: bool,
 }
 
 impl<'n> Axes<'n> {
-    /// Axes of these names, as most charts have them.
+    /// Axes with these names, in the style of most charts.
     pub fn named(x: impl Into<Option<&'n str>>, y: &'n str) -> Self {
         Self { x: x.into(), y, most: (11, 11), size: LABEL, exponents: false }
     }
@@ -67,7 +67,7 @@ impl<'n> Axes<'n> {
 
 /// A kind of axis.
 pub trait Numbered: Ranged<ValueType = f64> + ValueFormatter<f64> {
-    /// How the numbers on one of this range are written.
+    /// The number format of an axis with this range.
     fn scale(range: &Range<f64>) -> Scale;
 }
 
@@ -83,11 +83,11 @@ impl Numbered for LogCoord<f64> {
     }
 }
 
-/// How the numbers on an axis are written: all with plain digits, or all with an exponent.
+/// The number format of an axis: all with plain digits, or all with an exponent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     digits: usize,
-    /// Below this a number is zero that rounding has missed.
+    /// A number with a smaller magnitude is a zero with a rounding error.
     zero: f64,
     is_plain: bool,
 }
@@ -96,7 +96,7 @@ impl Scale {
     /// Plain digits end here.
     const LONG: f64 = 1e7;
 
-    /// With as many digits as tell the numbers of a range apart.
+    /// With enough digits to distinguish the numbers of a range.
     pub fn linear(range: &Range<f64>) -> Self {
         let width = (range.end - range.start).abs();
         let largest = range.start.abs().max(range.end.abs());
@@ -105,7 +105,7 @@ impl Scale {
         Self { digits, zero: 1e-9 * width, is_plain }
     }
 
-    /// Of decades.
+    /// The format of a logarithmic axis.
     pub fn logarithmic(range: &Range<f64>) -> Self {
         let is_plain = range.start >= 1e-4 && range.end < Self::LONG;
         Self { digits: 4, zero: 0.0, is_plain }

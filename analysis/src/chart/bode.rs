@@ -17,7 +17,7 @@ const ROW: i32 = 20;
 const PANELS: [i32; 2] = [290, 270];
 /// Longest name in the legend, in letters.
 const LONGEST_NAME: usize = 40;
-/// Decades that are shown above and below a gain of 1 by default.
+/// Decades above and below a gain of 1 by default.
 const DECADES: f64 = 3.0;
 /// A margin's line.
 const MARK: Dash = Dash::new(&[3, 3]);
@@ -25,10 +25,10 @@ const MARK: Dash = Dash::new(&[3, 3]);
 type Gains<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 type Phases<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, RangedCoordf64>>;
 
-/// Draws the open loops of named scenes; `wanted` are frequencies in Hz and gains, above 0.
+/// Draws the open loops of named scenes; `wanted` are the ranges of frequency in Hz and of gain, above 0.
 ///
 /// # Errors
-/// Where there is none, or the drawing fails.
+/// If there is none, or the drawing fails.
 pub fn bode(
     title: &str,
     loops: &[(String, OpenLoop)],
@@ -42,7 +42,7 @@ pub fn bode(
     meets("horizontal", wanted.x.as_ref(), &all)?;
     meets("vertical", wanted.y.as_ref(), &span(points().map(|point| point.gain)))?;
     let x = wanted.x.clone().unwrap_or_else(|| interesting(loops, &all));
-    // The last one is at half the sample rate, where the phase falls fastest.
+    // The last point is at half the sample rate, where the phase falls fastest.
     let seen = || points().filter(|point| (x.start..=x.end).contains(&point.hertz));
     let far = 10_f64.powf(DECADES);
     let gains = seen().map(|point| point.gain.clamp(1.0 / far, far));
@@ -69,7 +69,7 @@ fn interesting(loops: &[(String, OpenLoop)], all: &Range<f64>) -> Range<f64> {
     (lowest / 30.0).clamp(all.start, all.end / 100.0)..all.end
 }
 
-/// The margins that are marked: those nearest to -1.
+/// The margins with marks: those nearest to -1.
 fn marked(found: &OpenLoop) -> impl Iterator<Item = Margin> {
     let all = [found.gain_margin(), found.gain_reduction(), found.phase_margin()];
     all.into_iter().flatten()
@@ -142,7 +142,7 @@ struct Logarithmic<'a, 'b, F> {
 }
 
 impl<'a, 'b, F: Fn(f64) -> f64> Logarithmic<'a, 'b, F> {
-    /// `up` gives the part of the height of a value.
+    /// `up` maps a value to a fraction of the height.
     fn of(area: &'a Area<'b>, x: &'a Range<f64>, up: F) -> Self {
         let (width, height) = area.dim_in_pixel();
         let (right, bottom) = (f64::from(width), f64::from(height));
@@ -186,7 +186,7 @@ impl<'a, 'b, F: Fn(f64) -> f64> Logarithmic<'a, 'b, F> {
     }
 }
 
-/// The margins of each loop, in a line each.
+/// The margins of the loops, one line for each loop.
 pub fn words(loops: &[(String, OpenLoop)]) -> Vec<String> {
     let of = |(name, found): &(String, OpenLoop)| {
         let at = |margin: Margin| format!("at {} Hz", significant(margin.hertz, 3));
@@ -222,7 +222,7 @@ fn write_legend(area: &Area<'_>, words: &[String]) -> Drawn<()> {
     Ok(())
 }
 
-/// The numbers of the picture.
+/// The numbers of the chart.
 pub fn data(loops: Vec<(String, OpenLoop)>) -> Data {
     let rows = loops.into_iter().flat_map(|(name, found)| {
         found.points.into_iter().map(move |point| {

@@ -6,8 +6,8 @@ pub type Polygon = Vec<(usize, usize)>;
 /// A run of cells in one column: from a row up to another.
 type Run = (usize, usize);
 
-/// Polygons that together cover the cells for which `inside(column, row)` holds. A region that
-/// parts or joins is cut into several there.
+/// Polygons that together cover the cells for which `inside(column, row)` holds. A region is divided where it
+/// branches or joins.
 pub fn polygons(
     columns: usize,
     rows: usize,
@@ -60,7 +60,7 @@ fn outline(first: usize, strip: &[Run]) -> Polygon {
     lower.into_iter().chain(upper.into_iter().rev()).collect()
 }
 
-/// A line of steps, without the points that lie on the way between others.
+/// A line of steps, without the points between others on the same line.
 fn side(first: usize, ends: impl Iterator<Item = usize>) -> Polygon {
     let mut line: Polygon = Vec::new();
     for (offset, end) in ends.enumerate() {

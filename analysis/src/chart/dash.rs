@@ -4,7 +4,7 @@ use plotters::prelude::*;
 
 use super::{UNITS, units};
 
-/// Ink and gap in pixels, one after the other; a solid line has none.
+/// Ink and gap in pixels, alternately; empty for a solid line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dash(&'static [i32]);
 
@@ -22,18 +22,18 @@ const PATTERNS: [Dash; 6] = [
 ];
 
 impl Dash {
-    /// A pattern of its own: pixels of ink, pixels of gap, and so on.
+    /// A pattern from pixels of ink, pixels of gap, and so on.
     pub(super) const fn new(pattern: &'static [i32]) -> Self {
         Self(pattern)
     }
 
-    /// The pattern of the curve of that number; after the last they begin again.
+    /// The pattern of the curve with this number; the patterns repeat.
     pub fn of(index: usize) -> Self {
         PATTERNS[index % PATTERNS.len()]
     }
 
-    /// The parts of a line that have ink, as lines of their own. The points are in units of the
-    /// drawing, so that the pattern is even however steep the line is.
+    /// The parts of a line with ink, as separate lines. The points are in units of the drawing, so that the
+    /// pattern is even at any slope.
     pub fn split(self, points: &[(i32, i32)]) -> Vec<Vec<(i32, i32)>> {
         if self.0.is_empty() {
             return vec![points.to_vec()];
@@ -72,7 +72,7 @@ impl Dash {
         parts
     }
 
-    /// Draws a line through points in units of the drawing, so many pixels wide.
+    /// Draws a line through points in units of the drawing, with a width in pixels.
     pub(super) fn draw(
         self,
         area: &super::Area<'_>,

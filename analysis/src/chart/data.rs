@@ -1,4 +1,4 @@
-//! The numbers of a picture, as CSV.
+//! The numbers of a chart as CSV.
 
 use std::io::Write;
 use std::path::Path;
@@ -9,7 +9,7 @@ use super::picture::Picture;
 /// A number or a word of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// A number, written with all of its digits; nothing where it is not finite.
+    /// A number with all its digits; empty if it is not finite.
     Number(f64),
     /// A word.
     Word(String),
@@ -61,7 +61,7 @@ impl Data {
     /// Writes it to a file.
     ///
     /// # Errors
-    /// Where that cannot be written.
+    /// If it cannot be written.
     pub fn write(self, path: &Path) -> Result<(), ChartError> {
         let unwritable = |source| ChartError::Data { path: path.to_owned(), source };
         let file = std::fs::File::create(path).map_err(unwritable)?;
@@ -78,7 +78,7 @@ impl Data {
     }
 }
 
-/// A picture with the numbers that are drawn in it.
+/// A picture with its numbers.
 pub struct Chart {
     /// The picture.
     pub picture: Picture,

@@ -11,14 +11,14 @@ use crate::profile_curve::DetentLimits;
 /// Height of a line of the legend in pixels.
 const ROW: i32 = 22;
 
-/// What a map is drawn with.
+/// The data of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DetentMap {
     /// Its title.
     pub title: String,
     /// The scene's own limit.
     pub own: DetentLimits,
-    /// Those of other delays.
+    /// The limits of other delays.
     pub others: Vec<DetentLimits>,
     /// Number of repetitions and torque of the scene itself.
     pub scene: (f64, f64),
@@ -28,10 +28,10 @@ pub struct DetentMap {
     pub torques: Range<f64>,
 }
 
-/// Draws a map: what certifies is white.
+/// Draws a map: the certified region is white.
 ///
 /// # Errors
-/// Where there is nothing to draw.
+/// If there is nothing to draw.
 pub fn detents(map: &DetentMap) -> Result<Picture, ChartError> {
     if map.own.points.len() < 2 {
         return Err(ChartError::TooFewPoints);
@@ -77,7 +77,7 @@ fn paint(area: &Area<'_>, map: &DetentMap) -> Drawn<()> {
     Ok(())
 }
 
-/// The part of a falling curve that is below a torque, from where it crosses that on.
+/// The part of a falling curve below a torque, from the crossing on.
 fn below(points: &[(f64, f64)], most: f64) -> Vec<(f64, f64)> {
     let first = points.iter().position(|point| point.1 <= most).unwrap_or(points.len());
     let crossing = first.checked_sub(1).zip(points.get(first)).map(|(before, &(x, y))| {

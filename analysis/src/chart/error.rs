@@ -1,4 +1,4 @@
-//! Why there is no picture.
+//! The errors of a chart.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::nyquist::NoTransfer;
 use crate::quantity::significant;
 
-/// Why a picture could not be drawn.
+/// The reason why a chart could not be drawn.
 #[derive(Debug, Error)]
 pub enum ChartError {
     /// The file could not be written.
@@ -27,7 +27,7 @@ pub enum ChartError {
         /// Why.
         source: std::io::Error,
     },
-    /// The file's name does not say what kind of picture it is.
+    /// The file's name does not give the kind of picture.
     #[error(
         "{path}: the name of a picture must end in .svg, .png or .pdf, that of its numbers in .csv"
     )]
@@ -41,7 +41,7 @@ pub enum ChartError {
         /// The file.
         path: PathBuf,
     },
-    /// Both files are to have the numbers.
+    /// Both files would contain the numbers.
     #[error("{output} has the numbers already; --csv {csv} needs a chart as output")]
     TwoTables {
         /// The file of the picture.
@@ -63,9 +63,9 @@ pub enum ChartError {
     NothingThere {
         /// Horizontal or vertical.
         axis: &'static str,
-        /// The request.
+        /// The requested range.
         wanted: Range<f64>,
-        /// What there is.
+        /// The range of the data.
         there: Range<f64>,
     },
     /// There is nothing to draw.

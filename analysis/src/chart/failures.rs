@@ -1,4 +1,4 @@
-//! Which springs methods of integration call stable, over the steps that they take in a tick.
+//! The springs that methods of integration show as stable, over their steps per tick.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -29,11 +29,11 @@ type LogPlane<'a, 'b> = ChartContext<
     >,
 >;
 
-/// Draws the devices beside each other: curves of each method's largest stable stiffness, grey
-/// where a method calls an unstable loop stable, hatched where it calls a stable one unstable.
+/// Draws the devices beside each other: curves of each method's largest stable stiffness, grey where a method
+/// shows an unstable loop as stable, hatched where it shows a stable loop as unstable.
 ///
 /// # Errors
-/// Where it cannot be drawn.
+/// If it cannot be drawn.
 pub fn failures(regions: &[Region]) -> Result<Picture, ChartError> {
     let size = (SIZE.0, (SIZE.1 as i32 + ROW * ROWS - 20) as u32);
     draw_sized(size, |area| {
@@ -92,7 +92,8 @@ fn line(chart: &LogPlane<'_, '_>, points: &[(f64, f64)], dash: Dash, width: u32)
     dash.draw(&plot.strip_coord_spec(), &points.iter().map(own).collect::<Vec<_>>(), width)
 }
 
-/// Grey above the truth and below what some method takes for it; lines below the truth and above.
+/// Grey between the true limit and a larger limit of a method; hatched between the true limit and a smaller
+/// one.
 fn shade(chart: &mut LogPlane<'_, '_>, region: &Region) -> Drawn<()> {
     let columns = (0..region.apparent[0].len()).map(|index| {
         let all = region.apparent.iter().map(|points| points[index].1);
@@ -123,7 +124,7 @@ fn shade(chart: &mut LogPlane<'_, '_>, region: &Region) -> Drawn<()> {
     Ok(())
 }
 
-/// Where a level line lies above a line through points (whose ordinates grow downwards).
+/// The intervals in which a level line lies above a line through points (with ordinates downwards).
 fn runs(line: &[(i32, i32)], level: i32) -> Vec<(i32, i32)> {
     let mut runs = Vec::new();
     for pair in line.windows(2) {

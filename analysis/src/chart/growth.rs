@@ -1,4 +1,4 @@
-//! How an oscillation grows that the certificate would have prevented.
+//! The growth of an oscillation that the certificate would have prevented.
 
 use plotters::prelude::*;
 
@@ -8,7 +8,7 @@ use super::*;
 /// Draws an angle over time that grows, with the time axis in s.
 ///
 /// # Errors
-/// Where there are fewer than two samples.
+/// If there are fewer than two samples.
 pub fn growth(title: &str, period: f64, position: &[f64]) -> Result<Picture, ChartError> {
     if position.len() < 2 {
         return Err(ChartError::TooFewPoints);

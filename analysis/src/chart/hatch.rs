@@ -8,10 +8,10 @@ use plotters::prelude::*;
 use super::{Area, Drawn, FORBIDDEN, UNITS, pen, units};
 use crate::simulation::tick_status::TickStatus;
 
-/// Units between two lines of a hatching; all fills of a kind share one grid of them, so that
-/// narrow ones beside each other show it too.
+/// Units between two lines of a hatching; all fills of a kind share one grid, so that adjacent narrow fills
+/// also show it.
 const SPACING: i32 = units(7);
-/// Lines that let a black curve be seen on them.
+/// Grey lines on which a black curve is visible.
 const INK: RGBColor = RGBColor(150, 150, 150);
 
 /// A fill pattern.

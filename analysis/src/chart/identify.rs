@@ -1,5 +1,5 @@
-//! Result of a measurement of a device: its responses in the disk of their passivity, and the
-//! damping and inertia that explain them (theory, section 3.3).
+//! The result of a measurement of a device: its responses in the disk of their passivity, and the fitted
+//! damping and inertia (theory, section 3.3).
 
 use std::f64::consts::TAU;
 
@@ -16,14 +16,13 @@ use crate::quantity::significant;
 /// Width and height of the picture in pixels.
 const SIZE: (u32, u32) = (1060, 580);
 
-/// Width in pixels of the left part, in which a unit is as long across as it is up, so that the
-/// disk is round.
+/// Width in pixels of the left part, with the same scale in both directions, so that the disk is round.
 const LEFT: i32 = 590;
 
 /// Points of a curve.
 const POINTS: usize = 400;
 
-/// Deviations that a bar reaches to both sides: a 95 % interval.
+/// Half-length of a bar in standard deviations: a 95 % interval.
 const BAR: f64 = 1.96;
 
 /// Over frequency in Hz.
@@ -34,7 +33,7 @@ type Spectrum<'a, 'b> =
 /// inverses, with the device that was fitted to them.
 ///
 /// # Errors
-/// Where there is but one response, or the drawing fails.
+/// If there is only one response, or the drawing fails.
 pub fn identify(title: &str, found: &Identification) -> Result<Picture, ChartError> {
     if found.responses.len() < 2 {
         return Err(ChartError::TooFewPoints);
@@ -49,12 +48,12 @@ pub fn identify(title: &str, found: &Identification) -> Result<Picture, ChartErr
     })
 }
 
-/// `1/J` of the fitted device with what makes its torque late.
+/// `1/J` of the fitted device with the delay of its torque.
 fn fitted(found: &Identification, omega: f64) -> Complex<f64> {
     found.model.impedance(omega)
 }
 
-/// Lag and delay together, where they are significant.
+/// The sum of lag and delay, if significant.
 fn late(found: &Identification) -> f64 {
     if found.mean_delay.is_significant() { found.mean_delay.value } else { 0.0 }
 }
@@ -65,7 +64,7 @@ fn nyquist(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     let far = dots.iter().map(|p| p.0.abs().max(2.0 * p.1.abs())).fold(2.0 * radius, f64::max);
     let left = dots.iter().map(|p| p.0).fold(-0.06 * far, f64::min);
     let x = left..1.06 * far;
-    // As long a unit as across.
+    // The same scale as across.
     let room = |labels: i32, other: i32| f64::from(labels + 2 * other);
     let (width, height) = area.dim_in_pixel();
     let part =
@@ -114,7 +113,7 @@ fn shown(found: &Identification) -> Range<f64> {
     range.start / 1.5..range.end * 1.5
 }
 
-/// Radius of the disk in rad/(N m s); `None` where no disk holds the responses.
+/// Radius of the disk in rad/(N m s); `None` if no disk contains the responses.
 fn disk(found: &Identification) -> Option<f64> {
     (found.disk.delta > 0.0).then(|| 0.5 / found.disk.delta)
 }
@@ -139,7 +138,7 @@ fn name_curves(chart: &mut Plane<'_, '_>, found: &Identification, far: f64) -> D
     Ok(())
 }
 
-/// The fitted one.
+/// The text on the fitted device.
 fn model(found: &Identification) -> String {
     match late(found) {
         0.0 => "1/(b + j w m) fitted".to_owned(),
@@ -147,7 +146,7 @@ fn model(found: &Identification) -> String {
     }
 }
 
-/// The real parts of `1/J` over frequency: all of them are the damping, but for lag and delay.
+/// The real parts of `1/J` over frequency: the damping, except for lag and delay.
 fn damping(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     let estimate = &found.damping;
     let real = |r: &FrequencyPoint| r.impedance().re;
@@ -221,7 +220,7 @@ fn bars(
     Ok(())
 }
 
-/// Words above a part of the picture, which nothing in it can be in the way of.
+/// Text above a part of the chart, where no curve is in the way.
 fn caption(area: &Area<'_>, words: String) -> Drawn<()> {
     let middle = (area.dim_in_pixel().0 as i32 + Y_LABELS) / 2;
     area.draw(&Text::new(words, (middle, MARGIN), anchored(HPos::Center, VPos::Center)))

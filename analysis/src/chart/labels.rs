@@ -1,31 +1,31 @@
-//! Names beside points and lines, none of them on another, on a point or on a line where there is room.
+//! Places names beside points and lines without overlaps, if there is room.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::chart::{Area, Drawn, FONT, UNITS, units};
 
-/// Width of a letter over the size of its font: more than the mean of the letters in use, so that
-/// a name is never longer than its block.
+/// Width of a letter relative to the size of its font: more than the mean of the used letters, so that a name
+/// is never longer than its block.
 const LETTER: f64 = 0.52;
-/// Between a point and its name.
+/// Distance between a point and its name.
 const GAP: i32 = units(7);
-/// Between a line and a name.
+/// Distance between a line and a name.
 const BESIDE: i32 = units(1);
-/// Points so near to each other are at one place.
+/// Points at this distance count as one place.
 const SAME: f64 = units(3) as f64;
-/// A name is its point's if others are so many times as far away from it.
+/// A name belongs to its point if other points are this many times farther away.
 const OWN: f64 = 1.5;
-/// A line to a name keeps so far from other points.
+/// Distance of a leader line from other points.
 const PAST: f64 = units(6) as f64;
 /// Points along a leader line at which collisions are tested.
 const STEPS: i32 = 20;
-/// Directions in which a place is looked for, first to the right and above.
+/// Directions of the search for a place, first to the right and above.
 const DIRECTIONS: usize = 32;
-/// Distances at which it is looked for, each one line further.
+/// Distances of the search, each one line further.
 const DISTANCES: i32 = 9;
 
-/// A rectangle that is taken, in units of the drawing.
+/// A used rectangle, in units of the drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Block {
     left: i32,
@@ -47,7 +47,7 @@ impl Block {
             && other.top < self.bottom
     }
 
-    /// How far a point is from it.
+    /// The distance of a point from it.
     fn distance(&self, (x, y): (i32, i32)) -> f64 {
         distance((x, y), self.nearest((x, y)))
     }
@@ -73,7 +73,7 @@ pub struct Labels {
     points: Vec<(i32, i32)>,
 }
 
-/// Where a name is written.
+/// The place of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Spot {
     block: Block,
@@ -87,7 +87,7 @@ impl Labels {
         Self { panel, taken: Vec::new(), names: Vec::new(), points: Vec::new() }
     }
 
-    /// Lets no name come so near a point, nor be taken for its name that is another one's.
+    /// Keeps other names away from a point, so that no other name is taken for its name.
     pub fn mark(&mut self, point: (i32, i32), reach: i32) {
         self.keep_clear(point, reach);
         self.points.push(point);
@@ -97,7 +97,7 @@ impl Labels {
         self.taken.push(Block::new((x - reach, y - reach), (x + reach, y + reach)));
     }
 
-    /// Lets no name come so near a line.
+    /// Keeps names away from a line.
     pub fn keep_clear_of(&mut self, line: &[(i32, i32)], reach: i32) {
         let steps = |from, to| (distance(from, to) / f64::from(reach)).ceil().max(1.0) as i32;
         for pair in line.windows(2) {
@@ -106,7 +106,7 @@ impl Labels {
         }
     }
 
-    /// Lets no name be across a line that is upright or level.
+    /// Keeps names off a vertical or horizontal line.
     pub fn keep_clear_along(&mut self, from: (i32, i32), to: (i32, i32)) {
         let (left, right) = (from.0.min(to.0), from.0.max(to.0));
         let (top, bottom) = (from.1.min(to.1), from.1.max(to.1));
@@ -114,8 +114,8 @@ impl Labels {
             .push(Block::new((left - BESIDE, top - BESIDE), (right + BESIDE, bottom + BESIDE)));
     }
 
-    /// The nearest place to a point where a name of that size fits and is the point's; else one from
-    /// where a line leads to the point. `None` where the panel is full.
+    /// The nearest place to a point where a name of this size fits and belongs to the point; otherwise a
+    /// place with a leader line to the point. `None` if the panel is full.
     fn place(&self, point: (i32, i32), (width, height): (i32, i32)) -> Option<Spot> {
         let (x, y) = point;
         let around = (0..DISTANCES).flat_map(|distance| {
@@ -129,7 +129,8 @@ impl Labels {
         });
         let block = |(distance, angle): (i32, f64)| {
             let reach = f64::from(GAP + distance * height);
-            // Across, its corner is the nearest to the point; upright and level, its middle is.
+            // In diagonal directions its corner is nearest to the point; in vertical and horizontal
+            // directions its middle.
             let away = |part: f64, size: i32| {
                 let side = (part * std::f64::consts::SQRT_2).clamp(-1.0, 1.0);
                 part * reach + 0.5 * side * f64::from(size)
@@ -176,7 +177,7 @@ impl Labels {
         self.panel.holds(block) && !self.taken.iter().any(|taken| taken.meets(block))
     }
 
-    /// Takes a block and writes in it, at the side that is towards a place.
+    /// Uses a block and writes in it, on the side towards a place.
     fn fill(
         &mut self,
         area: &Area<'_>,
@@ -200,8 +201,8 @@ impl Labels {
         self.names.push(block);
     }
 
-    /// Writes words, a line each, beside an upright line: on its left if there is room, else on its
-    /// right, the `highest` first or the lowest; where there is none, where they cover the least.
+    /// Writes lines of text beside a vertical line: on its left if there is room, otherwise on its right,
+    /// from the top (`highest`) or from the bottom; without room, where they cover least.
     pub fn write_along(
         &mut self,
         area: &Area<'_>,
@@ -236,7 +237,7 @@ impl Labels {
         Ok(())
     }
 
-    /// Writes a word beside a level line, above or below it, as far to the left as there is room.
+    /// Writes a word above or below a horizontal line, as far to the left as possible.
     pub fn write_beside(&mut self, area: &Area<'_>, y: i32, word: &str, size: i32) -> Drawn<()> {
         let (width, height) = (width_of(word, size), size);
         let column = |left: i32| [y - height - BESIDE, y + 2 * BESIDE].map(|top| (left, top));
@@ -250,8 +251,7 @@ impl Labels {
         }
     }
 
-    /// Writes a name beside a point, with a thin line to it where it had to go far, or is nearer to
-    /// another point.
+    /// Writes a name beside a point, with a thin leader line if it is far away or nearer to another point.
     pub fn write(
         &mut self,
         area: &Area<'_>,
@@ -272,14 +272,14 @@ fn distance(a: (i32, i32), b: (i32, i32)) -> f64 {
     f64::from(a.0 - b.0).hypot(f64::from(a.1 - b.1))
 }
 
-/// The place after so many of all steps from the first of two to the second.
+/// The point after a number of steps from the first of two points to the second.
 fn along(pair: &[(i32, i32)], (step, steps): (i32, i32)) -> (i32, i32) {
     let part = f64::from(step) / f64::from(steps);
     let mix = |a: i32, b: i32| a + (part * f64::from(b - a)).round() as i32;
     (mix(pair[0].0, pair[1].0), mix(pair[0].1, pair[1].1))
 }
 
-/// Width of a name, or a little more.
+/// Upper estimate of the width of a name.
 fn width_of(name: &str, size: i32) -> i32 {
     (name.chars().count() as f64 * LETTER * f64::from(size)) as i32
 }

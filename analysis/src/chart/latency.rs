@@ -1,5 +1,5 @@
-//! The stiffest certified spring over the servo's rate, one panel a current loop, beside the common
-//! assumptions about it.
+//! The stiffest certified spring over the servo's rate, one panel for each current loop, compared with the
+//! common assumptions.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -27,11 +27,11 @@ const CURVES: [Curve; 4] = [
     ("b/(T/2 + tau), which leaves the latch out", |point| Some(point.folklore)),
 ];
 
-/// Draws a panel for each current loop. A cross marks where a hand is known in which the last curve's
-/// spring oscillates on a board that latches its torques.
+/// Draws a panel for each current loop. A cross marks a rate at which a hand is known in which the last
+/// curve's spring oscillates on a board with latched torques.
 ///
 /// # Errors
-/// Where there are fewer than two points.
+/// If there are fewer than two points.
 pub fn latency(title: &str, loops: &[LatencyLimits]) -> Result<Picture, ChartError> {
     let points = || loops.iter().flat_map(|limits| &limits.points);
     let rates = span(points().map(|point| point.rate));

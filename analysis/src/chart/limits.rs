@@ -38,13 +38,13 @@ pub struct Own {
     pub delay: usize,
 }
 
-/// Draws largest stiffness (thick, left axis) and torque ripple (thin, right axis) for several
-/// delays. The axes are set against each other so that the two groups do not cross, unless
-/// `wanted` says what the left one shall show. The scene's own rate is an upright line, and its wall a
-/// cross. `note` says what the ripple was computed for.
+/// Draws largest stiffness (thick, left axis) and torque ripple (thin, right axis) for several delays. The
+/// axes are shifted so that the two groups do not cross, unless `wanted` gives the range of the left axis. A
+/// vertical line marks the scene's own rate, and a cross its wall. `note` states the conditions of the
+/// ripple.
 ///
 /// # Errors
-/// Where there are fewer than two points.
+/// If there are fewer than two points.
 pub fn limits(
     title: &str,
     note: &str,
@@ -80,7 +80,7 @@ fn paint(
     (rates, left, right): (Range<f64>, Range<f64>, Range<f64>),
     own: &Own,
 ) -> Drawn<()> {
-    // One kind of numbers on all axes.
+    // One number format on all axes.
     let exponents = [&rates, &left, &right].iter().any(|r| !Scale::logarithmic(r).is_plain());
     let numbers = Scale::logarithmic(&right);
     let numbers = if exponents { numbers.with_exponents() } else { numbers };

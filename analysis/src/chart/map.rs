@@ -13,18 +13,18 @@ use crate::stability_map::{Map, Region};
 /// Height of a line of the legend in pixels.
 const ROW: i32 = 22;
 
-/// What a map is drawn with.
+/// The additions to a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
     /// Its title.
     pub title: String,
-    /// The border that a closed form gives, where there is one.
+    /// The border by a closed form, if there is one.
     pub border: Option<Border>,
     /// Stiffness and damping of the scene itself.
     pub scene: (f64, f64),
 }
 
-/// Grey of a region: the better, the lighter. Hatches are on white.
+/// Grey of a region: the better, the lighter. Hatching is on white.
 fn grey(region: Region) -> RGBColor {
     match region {
         Region::Paper | Region::Undecided | Region::Wrong => WHITE,
@@ -34,7 +34,7 @@ fn grey(region: Region) -> RGBColor {
     }
 }
 
-/// The lines over the regions in which a verdict is missing or wrong.
+/// The hatching of regions in which a verdict is missing or wrong.
 fn hatching(region: Region) -> Option<Fill> {
     match region {
         Region::Undecided => Some(Fill::Rising),
@@ -59,7 +59,7 @@ fn legend(map: &Map, overlay: &Overlay) -> i32 {
 /// line, the scene as a cross.
 ///
 /// # Errors
-/// Where the drawing fails.
+/// If the drawing fails.
 pub fn map(map: &Map, overlay: &Overlay) -> Result<Picture, ChartError> {
     let size = (SIZE.0, SIZE.1 + legend(map, overlay) as u32);
     draw_sized(size, |area| {
@@ -79,12 +79,12 @@ fn regions(area: &Area<'_>, map: &Map, overlay: &Overlay) -> Drawn<()> {
         let column = column as f64 / map.columns as f64;
         (along(&x, column), along(&y, row as f64 / map.rows as f64))
     };
-    // Each region with all that are better, the better ones on top.
+    // Each region together with all better ones, the better ones on top.
     for region in Region::ALL {
         let cells = |column, row| map.at(column, row) >= region;
         for polygon in polygons(map.columns, map.rows, cells) {
             let corners: Vec<_> = polygon.iter().map(place).collect();
-            // A hair of the same grey around it closes the seams between parts of a region.
+            // A thin line of the same grey closes the seams between parts of a region.
             let seam = [&corners[..], &corners[..1]].concat();
             let seam = PathElement::new(seam, grey(region).stroke_width(UNITS / 2));
             chart.draw_series([Polygon::new(corners, grey(region))])?;

@@ -52,11 +52,11 @@ const TITLE: i32 = units(19);
 const LABEL: i32 = units(14);
 /// Room above a title, in pixels.
 const TOP: i32 = 10;
-/// What a title takes with the room above it, in pixels.
+/// Height of a title with the room above it, in pixels.
 const TITLE_ROOM: i32 = TOP + 26;
 /// Room around a picture.
 const MARGIN: i32 = units(14);
-/// Room to the right, where the last number of the time axis stands out.
+/// Room on the right, for the last number of the time axis.
 const MARGIN_RIGHT: i32 = units(24);
 /// Room for the numbers and the name of a horizontal axis.
 const X_LABELS: i32 = units(48);
@@ -64,7 +64,7 @@ const X_LABELS: i32 = units(48);
 const Y_LABELS: i32 = units(78);
 /// Grey of forbidden regions.
 const FORBIDDEN: RGBColor = RGBColor(225, 225, 225);
-/// Grey of a curve that is shown beside what counts.
+/// Grey of a secondary curve.
 const FAINT: RGBColor = RGBColor(150, 150, 150);
 /// Grey of grid lines.
 const GRID: RGBColor = RGBColor(235, 235, 235);
@@ -74,7 +74,7 @@ const fn units(pixels: i32) -> i32 {
     pixels * UNITS as i32
 }
 
-/// A black line so many pixels wide.
+/// A black line with a width in pixels.
 fn pen(width: u32) -> ShapeStyle {
     BLACK.stroke_width(width * UNITS)
 }
@@ -99,7 +99,7 @@ pub struct Window {
     pub y: Option<Range<f64>>,
 }
 
-/// Rejects a requested axis that shows nothing of this range.
+/// Rejects a requested axis that does not overlap this range.
 fn meets(
     axis: &'static str,
     wanted: Option<&Range<f64>>,
@@ -122,7 +122,7 @@ fn draw(picture: impl FnOnce(&Area<'_>) -> Drawn<()>) -> Result<Picture, ChartEr
     draw_sized(SIZE, picture)
 }
 
-/// Draws a picture of so many pixels.
+/// Draws a picture with a size in pixels.
 fn draw_sized(
     size: (u32, u32),
     picture: impl FnOnce(&Area<'_>) -> Drawn<()>,
@@ -144,7 +144,7 @@ fn text(size: i32) -> TextStyle<'static> {
     TextStyle::from((FONT, size)).color(&BLACK)
 }
 
-/// Text whose anchor is at the given side of it.
+/// Text with its anchor on the given side.
 fn anchored(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
     text(LABEL).pos(Pos::new(horizontal, vertical))
 }
@@ -154,7 +154,7 @@ fn padded(range: Range<f64>, part: f64) -> Range<f64> {
     let (middle, half) = (0.5 * (range.start + range.end), 0.5 * (range.end - range.start));
     let level = half <= middle.abs() * f64::EPSILON;
     let half = match level {
-        // A hundredth of a constant to both sides, and something around zero.
+        // A hundredth of a constant to both sides; around zero a fixed range.
         true if middle != 0.0 => 0.01 * middle.abs(),
         true => 1e-9,
         false => half * (1.0 + 2.0 * part),
@@ -167,7 +167,7 @@ fn is_drawable(value: f64) -> bool {
     value.abs() <= 1e300
 }
 
-/// Whether an axis can have this range: its ends drawable, and numbers to tell apart between them.
+/// Whether an axis can have this range: drawable ends, with distinguishable numbers between them.
 pub fn is_range(range: &Range<f64>) -> bool {
     let width = range.end - range.start;
     is_drawable(range.start) && is_drawable(range.end) && width >= f64::MIN_POSITIVE

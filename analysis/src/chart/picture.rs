@@ -23,7 +23,7 @@ pub struct Picture {
     svg: String,
 }
 
-/// A file that a picture goes to, with a name that says of which kind it is.
+/// The output file of a picture, with the kind given by its extension.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
     path: PathBuf,
@@ -41,7 +41,7 @@ impl Output {
     /// By the file's extension, `.svg`, `.png` or `.pdf` in any case.
     ///
     /// # Errors
-    /// Where it has another one or none.
+    /// If it has another extension or none.
     pub fn new(path: &Path) -> Result<Self, ChartError> {
         let extension = path.extension().map(|extension| extension.to_string_lossy());
         let format = match extension.as_deref().map(str::to_ascii_lowercase).as_deref() {
@@ -56,15 +56,15 @@ impl Output {
     /// Writes the picture.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn write(&self, picture: &Picture) -> Result<(), ChartError> {
         self.write_scaled(picture, SCALE)
     }
 
-    /// Writes the picture, with so many pixels of a PNG for each pixel of the drawing.
+    /// Writes the picture, a PNG with `scale` pixels for each pixel of the drawing.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn write_scaled(&self, picture: &Picture, scale: f32) -> Result<(), ChartError> {
         let bytes = match self.format {
             Format::Svg => picture.svg.clone().into_bytes(),
@@ -87,10 +87,10 @@ impl Picture {
         &self.svg
     }
 
-    /// As PNG, with the same letters on every machine, and so many pixels for each of the drawing.
+    /// As PNG, with the same font on every machine, and `scale` pixels for each pixel of the drawing.
     ///
     /// # Errors
-    /// Where it cannot be drawn.
+    /// If it cannot be drawn.
     pub fn png(&self, scale: f32) -> Result<Vec<u8>, ChartError> {
         let tree = self.tree()?;
         let size = tree.size().to_int_size();
@@ -102,16 +102,16 @@ impl Picture {
         encoded(&pixels).map_err(failed)
     }
 
-    /// As PDF: lines that stay sharp, text that can be searched, and its letters embedded.
+    /// As PDF: vector lines, searchable text, and embedded fonts.
     ///
     /// # Errors
-    /// Where it cannot be drawn.
+    /// If it cannot be drawn.
     pub fn pdf(&self) -> Result<Vec<u8>, ChartError> {
         let page = PageOptions { dpi: DOTS_PER_INCH };
         to_pdf(&self.tree()?, ConversionOptions::default(), page).map_err(failed)
     }
 
-    /// As the libraries that make files of it read it, with the same letters on every machine.
+    /// The parsed drawing for the output libraries, with the same font on every machine.
     fn tree(&self) -> Result<Tree, ChartError> {
         let mut fonts = Database::new();
         fonts.load_font_source(Source::Binary(Arc::new(dejavu::sans::regular())));
@@ -121,8 +121,8 @@ impl Picture {
     }
 }
 
-/// Pixels as a PNG. Drawings are opaque, so that colours are all there is; what the library writes by
-/// itself is twice as large and more.
+/// Pixels as a PNG. Drawings are opaque, so no alpha channel is needed; with it, files would be more than
+/// twice as large.
 fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, EncodingError> {
     let colours: Vec<u8> = pixels
         .pixels()
@@ -132,7 +132,7 @@ fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, EncodingError> {
     let mut file = Vec::new();
     let mut encoder = Encoder::new(&mut file, pixels.width(), pixels.height());
     encoder.set_color(ColorType::Rgb);
-    // Lines on white have no gradients for a filter to take out.
+    // Lines on white have no gradients, so filters do not help.
     encoder.set_filter(FilterType::NoFilter);
     encoder.set_compression(Compression::Best);
     encoder.write_header()?.write_image_data(&colours)?;

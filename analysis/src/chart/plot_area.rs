@@ -29,13 +29,13 @@ impl<'a> PlotArea<'a> {
         }
     }
 
-    /// Where a value is drawn.
+    /// The place of a value in the drawing.
     pub(super) fn place(&self, (re, im): (f64, f64)) -> DrawingPoint {
         let part = |value: f64, (from, to): (f64, f64)| (value - from) / (to - from);
         (part(re, self.x) * self.size.0, (1.0 - part(im, self.y)) * self.size.1)
     }
 
-    /// Where its conjugate is drawn.
+    /// The place of its conjugate.
     pub(super) fn mirrored(&self, (x, y): DrawingPoint) -> DrawingPoint {
         (x, 2.0 * self.place((0.0, 0.0)).1 - y)
     }
@@ -45,7 +45,7 @@ impl<'a> PlotArea<'a> {
         Frame { left: 0.0, top: 0.0, right: self.size.0, bottom: self.size.1 }
     }
 
-    /// Draws a line so many pixels wide.
+    /// Draws a line with a width in pixels.
     pub(super) fn line(&self, dash: Dash, places: &[DrawingPoint], width: u32) -> Drawn<()> {
         self.line_in(dash, places, pen(width))
     }
@@ -61,7 +61,7 @@ impl<'a> PlotArea<'a> {
         dash.draw_styled(&self.area, &points, style)
     }
 
-    /// Draws the head of an arrow in the middle of a line, or at another part of its length.
+    /// Draws an arrow head at a fraction of a line's length.
     pub(super) fn arrow(&self, line: &[DrawingPoint], part: f64) -> Drawn<()> {
         let lengths = line.windows(2).map(|pair| distance(pair[0], pair[1]));
         let mut left = part * lengths.clone().sum::<f64>();
@@ -112,12 +112,12 @@ impl Frame {
         self.left <= x && x <= self.right && self.top <= y && y <= self.bottom
     }
 
-    /// The place inside or on the border that is nearest to one.
+    /// The nearest place inside or on the border.
     pub(super) fn nearest(&self, (x, y): DrawingPoint) -> DrawingPoint {
         (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
     }
 
-    /// Where the line from an inner place to an outer one crosses the border.
+    /// The point in which the line from an inner to an outer place crosses the border.
     pub(super) fn crossing(&self, inner: DrawingPoint, outer: DrawingPoint) -> DrawingPoint {
         let part = |from: f64, to: f64, low: f64, high: f64| {
             let bound = if to > from { high } else { low };
@@ -131,7 +131,7 @@ impl Frame {
         self.nearest((x, y))
     }
 
-    /// Where a line leaves the frame for good; `None` where it ends inside, or never comes in.
+    /// The last point in which a line leaves the frame; `None` if it ends inside, or is never inside.
     pub(super) fn exit(
         &self,
         line: impl DoubleEndedIterator<Item = DrawingPoint>,
@@ -146,8 +146,7 @@ impl Frame {
         None
     }
 
-    /// The parts of a line inside, up to where it crosses the border; `frame` is that of each
-    /// place by its number.
+    /// The parts of a line inside, up to the border; `frame` gives the frame of each place by its number.
     pub(super) fn clip(
         line: &[DrawingPoint],
         frame: impl Fn(usize) -> Self,

@@ -1,4 +1,5 @@
-//! A torque profile: torque and potential over angle, the steepest pieces and what would still certify.
+//! A torque profile: torque and potential over angle, the steepest pieces, and the steepest slope that
+//! certifies.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -14,13 +15,13 @@ use crate::snap_branches::Branch;
 const PANELS: [i32; 2] = [330, 220];
 /// Height of a line of the legend in pixels.
 const ROW: i32 = 22;
-/// How much of the picture's width and height the line of the certified slope takes at most.
+/// Largest extent of the line of the certified slope, relative to the chart's width and height.
 const REACH: f64 = 0.2;
 
 /// Draws a profile. `limit`: the torque limit in N m.
 ///
 /// # Errors
-/// Where the drawing fails.
+/// If the drawing fails.
 pub fn profile(
     title: &str,
     curve: &ProfileCurve,
@@ -102,7 +103,7 @@ pub(super) fn draw_certified(
     Ok(())
 }
 
-/// A line of the certified slope through the middle of the steepest rise, inside of the picture.
+/// A line of the certified slope through the middle of the steepest rise, inside the chart.
 fn certified(rise: &Piece, slope: f64, x: &Range<f64>, y: &Range<f64>) -> [(f64, f64); 2] {
     let room = (y.end - rise.torque).min(rise.torque - y.start).max(0.0);
     let wide = (REACH * (x.end - x.start)).min(x.end - rise.angle).min(rise.angle - x.start);
@@ -124,7 +125,7 @@ fn potential(area: &Area<'_>, curve: &ProfileCurve) -> Drawn<()> {
 /// A line of the legend: its pattern, its width in pixels, its words.
 pub(super) type Row = (Dash, u32, String);
 
-/// What the slopes are, and the limit.
+/// The legend of the slopes and of the limit.
 pub(super) fn legend(curve: &ProfileCurve, limit: Option<f64>) -> Vec<Row> {
     let slope = |value: f64| significant(value, 4);
     let mut rows = vec![(

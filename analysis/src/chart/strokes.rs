@@ -1,10 +1,10 @@
-//! Smaller pictures: a broken line is drawn as hundreds of short ones, which are one path.
+//! Makes pictures smaller: a broken line is drawn as hundreds of short lines, which are joined to one path.
 
-/// Beginning of a stroke that hides others below it.
+/// Beginning of an opaque stroke.
 const OPAQUE: &str = "<polyline fill=\"none\" opacity=\"1\" ";
 
-/// The same picture with opaque strokes of one style that follow each other as one path. Where strokes of
-/// a path overlap, the path covers no more than they did; transparent ones would become lighter there.
+/// The same picture with consecutive opaque strokes of one style as one path. Overlapping strokes of a path
+/// look the same; transparent strokes would become lighter.
 pub fn join_strokes(svg: &str) -> String {
     let mut lines = svg.lines().peekable();
     let mut joined = String::with_capacity(svg.len());

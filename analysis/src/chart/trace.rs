@@ -12,12 +12,12 @@ use crate::quantity::{shortened, significant};
 use crate::simulation::tick_status::TickStatus;
 use crate::trace::{TimeUnit, Trace};
 
-/// Ends a run where a picture cannot show it any more.
+/// Ends a run where it exceeds the range of a chart.
 pub fn drawable(trace: Trace) -> Trace {
     trace.until(is_drawable)
 }
 
-/// The numbers of the picture.
+/// The numbers of the chart.
 pub fn data(trace: Trace) -> Data {
     let (velocity, time_unit) = (trace.velocities(), trace.time_unit);
     let rows = (0..trace.time.len()).map(move |i| {
@@ -37,7 +37,7 @@ pub fn data(trace: Trace) -> Data {
     }
 }
 
-/// What limited the torque, each once.
+/// The reasons for limited torques, each once.
 fn reasons(trace: &Trace) -> Vec<(TickStatus, Fill)> {
     let occurs = |status: &TickStatus| trace.limit.contains(status);
     let grounded = |status| Some((status, Fill::of(status)?));
@@ -52,15 +52,15 @@ const LINE: i32 = 20;
 const LETTERS: usize = 112;
 /// Heights of the panels, in pixels.
 const PANELS: [i32; 3] = [226, 186, 264];
-/// Which way is up.
+/// The sign convention.
 const SIGNS: &str = "signs: angle, velocity and the hand's torque are positive in one direction; \
                      the motor applies minus the coupling torque";
 
-/// Draws position above velocity and torque, over one time axis. The fill shows why the torque was
-/// limited or a tick was missed. `wanted` are times and angles to be shown in place of all.
+/// Draws position above velocity and torque, over one time axis. The fill shows why the torque was limited or
+/// a tick was missed. `wanted` has the ranges of time and angle to show.
 ///
 /// # Errors
-/// Where there are fewer than two samples.
+/// If there are fewer than two samples.
 pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
     let samples = trace.time.len();
     if samples < 2 || trace.position.len() != samples || trace.torque.len() != samples {
@@ -117,7 +117,7 @@ fn position(area: &Area<'_>, trace: &Trace, times: &Range<f64>, y: &Range<f64>) 
 
 fn velocity(area: &Area<'_>, trace: &Trace, times: &Range<f64>) -> Drawn<()> {
     let velocity = trace.velocities();
-    // One from angles has steps, which are small beside the velocity itself.
+    // A velocity from angles has steps, which are small compared with the velocity itself.
     let rest = trace.velocity.is_empty().then_some(0.0);
     let y = padded(span(seen(&velocity, trace, times).chain(rest)), 0.12);
     let name = match trace.time_unit {
@@ -187,11 +187,11 @@ fn seen<'v>(
     both.filter(|(time, _)| times.contains(*time)).map(|(_, value)| *value)
 }
 
-/// How the hand is drawn, and what the torque is limited to.
+/// The line styles of the hand and of the torque limit.
 const HAND: Dash = Dash::new(&[6, 4]);
 const LIMIT: Dash = Dash::new(&[12, 4, 2, 4]);
 
-/// What the lines are, above the picture, where no curve can come in the way.
+/// The explanation of the lines, above the chart, where no curve is in the way.
 fn words(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<String> {
     let mut words = vec!["solid: device".to_owned()];
     if let Some(face) = trace.face {
@@ -233,7 +233,7 @@ fn words(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<String> 
     words
 }
 
-/// The words in lines that fit the picture.
+/// The text in lines that fit the picture.
 fn wrapped(words: &[String]) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in words {
@@ -251,7 +251,7 @@ fn wrapped(words: &[String]) -> Vec<String> {
 fn write_fill_legend(area: &Area<'_>, reasons: &[(TickStatus, Fill)]) -> Drawn<()> {
     const SWATCH: i32 = 30;
     const GAP: i32 = 8;
-    // About as wide as letters are.
+    // An estimate of the text's width.
     let width = |name: &str| SWATCH + 3 * GAP + 7 * name.len() as i32;
     let all: i32 = reasons.iter().map(|(status, _)| width(name(*status))).sum();
     let mut x = (SIZE.0 as i32 - all) / 2;
@@ -279,11 +279,11 @@ fn name(status: TickStatus) -> &'static str {
     }
 }
 
-/// The axis of the torque, and the limits that are drawn along it.
+/// The axis of the torque, and the drawn limits.
 fn torque_axis(trace: &Trace, times: &Range<f64>) -> (Range<f64>, Vec<f64>) {
     let torques = seen(&trace.torque, trace, times).chain(seen(&trace.hand_torque, trace, times));
     let range = span(torques);
-    // The limit on the side that the torque is on, and on the other if that is used, too.
+    // The limit on the side of the torque, and on the other side if that is also used.
     let limits = trace.torque_limit.into_iter().flat_map(|limit| [limit, -limit]);
     let near = |limit: &f64| {
         let reached = if *limit > 0.0 { range.end } else { -range.start };
@@ -330,7 +330,7 @@ fn shade(chart: &Plane<'_, '_>, trace: &Trace, status: TickStatus, fill: Fill) -
     let area = plot.strip_coord_spec();
     let (width, height) = area.dim_in_pixel();
     let (left, bottom) = (plot.get_base_pixel().0, plot.get_y_range().start);
-    // A picture may show a part of the run.
+    // A chart may show a part of the run.
     let times = plot.get_x_range();
     let place = |sample| {
         let time = trace.begin(sample).clamp(times.start, times.end);
@@ -344,8 +344,8 @@ fn shade(chart: &Plane<'_, '_>, trace: &Trace, status: TickStatus, fill: Fill) -
     Ok(())
 }
 
-/// Where samples that were served so are, in units of the drawing: at least a pixel each, and one
-/// where they are less than a pixel apart; those before the `first` left out.
+/// The intervals of samples with this status, in units of the drawing: at least a pixel each, joined if they
+/// are less than a pixel apart; without those before `first`.
 fn runs(
     limit: &[TickStatus],
     first: usize,
@@ -382,10 +382,10 @@ fn release(
     Ok(())
 }
 
-/// Most parts of a curve that a picture can show.
+/// Largest number of visible parts of a curve.
 const PARTS: usize = 2000;
 
-/// The samples as points. Of more than a picture can show, each part's ends, least and largest.
+/// The samples as points. If there are too many, each part's ends, minimum and maximum.
 fn sampled(values: &[f64], trace: &Trace) -> Vec<(f64, f64)> {
     let points: Vec<_> = trace.time.iter().copied().zip(values.iter().copied()).collect();
     if points.len() <= 4 * PARTS {

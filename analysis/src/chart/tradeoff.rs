@@ -28,7 +28,7 @@ const SMALL: i32 = units(13);
 type Logarithmic<'a, 'b> =
     ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
-/// The most columns of panels beside each other that are readable at the width of a page.
+/// Largest number of readable columns of panels at the width of a page.
 const COLUMNS: usize = 2;
 
 /// The panels of a picture.
@@ -36,13 +36,13 @@ const COLUMNS: usize = 2;
 pub struct Panels {
     /// The cases.
     pub cases: Vec<String>,
-    /// Numbers of the errors among those of the subject.
+    /// Indices of the errors.
     pub errors: Vec<usize>,
 }
 
 impl Panels {
-    /// All panels of a table, in as many pictures as it takes for them to be legible: one, or one for
-    /// each error, with a word for its name.
+    /// All panels of a table in one or more legible charts: one, or one for each error, with a word for its
+    /// name.
     pub fn all(table: &Tradeoff) -> Vec<(Option<&'static str>, Self)> {
         let cases: Vec<_> = table.cases().into_iter().map(str::to_owned).collect();
         let errors = table.comparison.errors;
@@ -54,7 +54,7 @@ impl Panels {
         (0..errors.len()).map(|error| (word(error), of(error))).collect()
     }
 
-    /// Columns and rows: a row for each case, or for two where there is but one error.
+    /// Columns and rows: a row for each case, or for two cases if there is only one error.
     fn columns(&self) -> usize {
         match self.errors.len() {
             1 => self.cases.len().clamp(1, COLUMNS),
@@ -71,7 +71,7 @@ impl Panels {
 /// Draws panels of a table.
 ///
 /// # Errors
-/// Where no method has a cost and an error, or the drawing fails.
+/// If no method has a cost and an error, or the drawing fails.
 pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError> {
     let columns = panels.columns();
     let rows_of_panels = panels.each().count().div_ceil(columns);
@@ -79,7 +79,7 @@ pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError
     let Some(costs) = costs else { return Err(ChartError::TooFewPoints) };
     let width = (PANEL.0 * columns as u32).max(SIZE.0);
     let per_row = (width as i32 / ENTRY).max(1);
-    // The families, and what a front is.
+    // The families, and the explanation of a front.
     let rows = rows(table, per_row) + 1;
     let height = (PANEL.1 * rows_of_panels as u32) as i32;
     let size = (width, (TITLE_ROOM + height + ROW * rows + 10) as u32);
@@ -94,7 +94,7 @@ pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError
     })
 }
 
-/// Decades that hold all values of a column; `None` where there is nothing to draw.
+/// Decades that contain all values of a column; `None` if there is nothing to draw.
 fn range(
     table: &Tradeoff,
     axis: &Axis,
@@ -118,7 +118,7 @@ impl Panel<'_> {
         &self.table.comparison.errors[self.error]
     }
 
-    /// The methods that have a place in the picture, with their families' numbers.
+    /// The methods with a place in the chart, and the numbers of their families.
     fn places(&self, top: f64) -> Vec<(usize, (f64, f64))> {
         let families = self.table.families();
         let place = |method: &Method| {
@@ -197,7 +197,7 @@ impl Panel<'_> {
     }
 }
 
-/// From the cheapest to the best: across until the next method can be paid, then to its error.
+/// From the cheapest to the best: across to the cost of the next method, then down to its error.
 fn stairs(front: impl Iterator<Item = (i32, i32)>) -> Vec<(i32, i32)> {
     let mut line: Vec<(i32, i32)> = Vec::new();
     for place in front {

@@ -1,4 +1,4 @@
-//! What a hand feels that turns a torque profile: torque over angle, and angle and torque over time.
+//! The torque on a hand that turns a torque profile: over angle, and with the angle over time.
 
 use std::collections::HashSet;
 
@@ -15,7 +15,7 @@ use crate::felt_turn::FeltTurn;
 const PANELS: [i32; 3] = [290, 170, 190];
 /// Height of a line of the legend in pixels.
 const ROW: i32 = 22;
-/// How the hand's set-point is drawn.
+/// The line style of the hand's set-point.
 const HAND: Dash = Dash::new(&[6, 4]);
 /// Radius in pixels of a tick's torque.
 const DOT: i32 = 2;
@@ -23,7 +23,7 @@ const DOT: i32 = 2;
 /// Draws a turn.
 ///
 /// # Errors
-/// Where the drawing fails.
+/// If the drawing fails.
 pub fn turn(title: &str, turn: &FeltTurn) -> Result<Picture, ChartError> {
     let slopes = legend(&turn.curve, None);
     let rows = slopes.len() as i32 + 2;
@@ -86,7 +86,7 @@ fn over_angle(area: &Area<'_>, turn: &FeltTurn) -> Drawn<()> {
     draw_certified(&mut chart, curve, &x, &y)
 }
 
-/// The torque of each tick; of those that are in the same pixel one, as no more are seen.
+/// The torque of each tick, with one dot per pixel.
 fn draw_dots(chart: &Plane<'_, '_>, turn: &FeltTurn) -> Drawn<()> {
     let (plane, area) = (chart.plotting_area(), chart.plotting_area().strip_coord_spec());
     let (base, shown) = (plane.get_base_pixel(), plane.get_x_range());
@@ -101,7 +101,7 @@ fn draw_dots(chart: &Plane<'_, '_>, turn: &FeltTurn) -> Drawn<()> {
     Ok(())
 }
 
-/// A quantity over time, and beside it what the hand wants.
+/// A quantity over time, with the hand's set-point.
 fn over_time(
     area: &Area<'_>,
     turn: &FeltTurn,

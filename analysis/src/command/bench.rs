@@ -1,4 +1,4 @@
-//! `haptic bench`: what a certificate, a tick and a page cost.
+//! `haptic bench`: the cost of a certificate, a tick and a page.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -54,49 +54,49 @@ impl Arguments {
     }
 }
 
-/// Most time in microseconds that a verdict may take on one core.
+/// Largest time of a verdict on one core in microseconds.
 const VERDICT_BUDGET: f64 = 20.0;
-/// The same where a torque lags.
+/// The same with a lagging torque.
 const LAGGING_BUDGET: f64 = 15.0;
 /// The same for a torque profile of 64 knots.
 const PROFILE_BUDGET: f64 = 5.0;
-/// Published times in microseconds for one verdict by other means.
+/// Published times in microseconds of one verdict by other methods.
 const OTHERS: [(&str, f64, &str); 3] = [
     ("slicot", 390.0, "a SLICOT-based test"),
     ("roots", 360.0, "companion roots in numpy"),
     ("lmi", 4000.0, "an LMI solver"),
 ];
-/// Most nanoseconds that a step of the exact simulation may take on one core.
+/// Largest time of a step of the exact simulation on one core in nanoseconds.
 const STEP_BUDGET: f64 = 10.0;
 /// Published times in nanoseconds for such a step elsewhere.
 const STEPS_ELSEWHERE: [(&str, f64, &str); 2] = [
     ("C", 5.38, "plain C at -O2, 186 M steps/s"),
     ("dlsim", 4000.0, "scipy's dlsim, 0.25 M steps/s"),
 ];
-/// Fewest walls a second that a map may judge.
+/// Smallest number of walls per second in a map.
 const MAP_BUDGET: f64 = 1e5;
-/// Most milliseconds that a certificate may add to a compilation.
+/// Largest time that a certificate may add to a compilation in milliseconds.
 const COMPILE_BUDGET: f64 = 50.0;
-/// Most instructions that a certificate may take on the target: 20 ms at 170 MHz.
+/// Largest number of instructions of a certificate on the target: 20 ms at 170 MHz.
 const CERTIFY_BUDGET: f64 = 3.4e6;
-/// Most instructions that the servo's whole interrupt may take, with the accesses to encoder and
-/// DAC.
+/// Largest number of instructions of the servo's whole interrupt, including the accesses to encoder and DAC.
 const INTERRUPT_BUDGET: f64 = 150.0;
-/// Most per cent of a core that the servo may take.
+/// Largest share of a core for the servo in per cent.
 const CORE_BUDGET: f64 = 15.0;
-/// Ticks a second for the share of the CPU.
+/// Ticks per second for the share of the CPU.
 const TICK_RATE: f64 = 20e3;
-/// Instructions of a tick of the damper wall in contact and free: plain C at -O3 on the same core,
-/// for the same job without a coupling.
+/// Instructions of a tick of the damper wall in contact and free: plain C at -O3 on the same core, for the
+/// same task without a coupling.
 const C_CONTACT: f64 = 53.0;
 const C_FREE: f64 = 42.0;
 
-/// Most instructions of a tick of the damper wall behind the matched coupling, in contact.
+/// Largest number of instructions of a tick of the damper wall behind the matched coupling, in contact.
 const MATCHED_BUDGET: f64 = 50.0;
 
-/// Most instructions of an instant of a bridge's current loop, of a brushed motor and of a brushless one.
+/// Largest numbers of instructions of an instant of a bridge's current loop, for a brushed and a brushless
+/// motor.
 const INSTANT_BUDGETS: [(&str, f64); 2] = [("brushed", 250.0), ("brushless", 450.0)];
-/// Least bytes of a motor board's flash that a wall on its bridge has to leave.
+/// Smallest number of free bytes of a motor board's flash with a wall on its bridge.
 const FLASH_LEFT: f64 = 40.0 * 1024.0;
 
 /// Ticks of each run in the emulator.
@@ -139,9 +139,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(CommandStatus::Success)
 }
 
-/// What the page of `haptic explore` costs in a browser.
+/// The cost of the page of `haptic explore` in a browser.
 fn about_pages(repetitions: Repetitions) -> Result<Vec<Figure>, CommandError> {
-    // A browser that is missing is known before anything is built for it.
+    // A missing browser is reported before anything is built for it.
     let browser = page::watching_browser()?;
     let module = explore::module()?;
     let page = |scene: PageScene| -> Result<ScenePage, CommandError> {
@@ -156,7 +156,7 @@ fn about_pages(repetitions: Repetitions) -> Result<Vec<Figure>, CommandError> {
     Ok(figures)
 }
 
-/// Ticks behind the matched coupling, of which no program is of a wall alone.
+/// Ticks behind the matched coupling; no program has only a wall behind it.
 fn behind_matched(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
     let most = matched::contact_instructions(&toolchain.build_bench_programs()?)?;
     for (what, most) in ["", " and one lag"].into_iter().zip(most) {
@@ -171,7 +171,7 @@ fn behind_matched(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
     Ok(())
 }
 
-/// Verdicts about torque profiles of more knots than a program's.
+/// Verdicts on torque profiles with more knots than those of the programs.
 fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
     let most = profile::verdict_instructions(&toolchain.build_certify_server()?)?;
     for (what, most) in ["", " with its message"].into_iter().zip(most) {
@@ -186,7 +186,7 @@ fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
     Ok(())
 }
 
-/// The additional work and memory of a board with a bridge of its own.
+/// The additional work and memory of a board with its own bridge.
 fn about_bridges(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
     let servo = most_of_interrupts(figures);
     let most = current::instant_instructions(&toolchain.build_bench_programs()?)?;
@@ -229,14 +229,14 @@ fn about_bridges(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(),
     Ok(())
 }
 
-/// The most instructions of any program's whole interrupt that were measured so far.
+/// The largest measured number of instructions of a program's whole interrupt.
 fn most_of_interrupts(figures: &[Figure]) -> f64 {
     let interrupts =
         figures.iter().filter(|figure| figure.name.ends_with("f32: whole interrupt, most"));
     interrupts.map(|figure| figure.value).fold(0.0, f64::max)
 }
 
-/// What every program has.
+/// The inventory of every program.
 fn inventories(toolchain: &Toolchain) -> Result<Vec<Inventory>, CommandError> {
     let spinner = progress::spinner("building programs");
     let built = toolchain.build_bare(program::NAMES)?;
@@ -282,7 +282,7 @@ fn on_host() -> Vec<Figure> {
     figures
 }
 
-/// What a torque that lags costs a verdict, and what the verdict about it is worth.
+/// The cost of a verdict with a lagging torque, and the tightness of this verdict.
 fn lagging() -> [Figure; 3] {
     let time = bench::middle_verdict_time(&bench::lagging_scenes());
     let (lagging, whole_samples) = bench::lagging_springs();
@@ -311,8 +311,8 @@ fn lagging() -> [Figure; 3] {
     ]
 }
 
-/// Walls a second of a map: behind the standard coupling, and two samples late behind a coupling that makes
-/// `E'` differ from `E`.
+/// Walls per second in a map: behind the standard coupling, and two samples late behind a coupling with `E'`
+/// different from `E`.
 fn maps() -> Vec<Figure> {
     let name = "a map's walls judged, all cores";
     let scenes = [("standard coupling, delay 1", 44.0, 1), ("softer coupling, delay 2", 30.0, 2)];
@@ -334,7 +334,7 @@ fn maps() -> Vec<Figure> {
     scenes.into_iter().filter_map(figure).collect()
 }
 
-/// Builds the library once and measures what a certified constant adds to a program that uses it.
+/// Builds the library once and measures the time that a certified constant adds to a program that uses it.
 fn compile_time(latency: &str) -> io::Result<f64> {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -411,8 +411,8 @@ fn on_target(
     Ok(())
 }
 
-/// The servo's interrupt and its parts. The parts are measured by themselves, outside of the
-/// interrupt, where the compiler can share less between them.
+/// The servo's interrupt and its parts. The parts are measured separately, outside the interrupt, where the
+/// compiler can share less between them.
 fn interrupt(name: &str, board: &EmulatorReport, has_budget: bool, figures: &mut Vec<Figure>) {
     let budget = has_budget.then_some(INTERRUPT_BUDGET);
     let whole = board.interrupt_instructions.max as f64;

@@ -41,7 +41,7 @@ pub struct Arguments {
     pub duration: Option<Duration>,
 }
 
-/// The hand's trajectory is repeated for so many seconds: an hour.
+/// Duration in s for which the hand's trajectory is repeated: an hour.
 const HAND_DURATION: f64 = 3600.0;
 
 /// Longest time between two polls for the end.
@@ -94,7 +94,7 @@ fn listening(
     Ok(SimulatedBoard::from_virtual_board(board, address, Pacing::RealTime, period))
 }
 
-/// Why there is no simulated board of that name: a scene file may have been meant.
+/// The error if there is no simulated board of this name, which may be a scene file.
 fn no_program(name: &str) -> CommandError {
     let (name, programs) = (name.to_owned(), rebuild_with_scene::scenes());
     match Path::new(&name).is_file() {

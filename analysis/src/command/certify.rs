@@ -1,4 +1,4 @@
-//! `haptic certify`: is a scene safe in every hand, and by how much?
+//! `haptic certify`: whether a scene is passive in every hand, and with what margin.
 
 use std::io;
 
@@ -30,8 +30,8 @@ pub struct Arguments {
     pub batch: bool,
 }
 
-/// Answers for a file or for a batch of scenes. A batch is answered with yes if it could be read:
-/// each of its lines has an answer of its own.
+/// Certifies a file or a batch of scenes. The status of a batch is success if it could be read: each of its
+/// lines has its own result.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if arguments.batch {
         let format = arguments.arithmetic.format;

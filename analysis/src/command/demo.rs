@@ -1,4 +1,4 @@
-//! `haptic demo`: the whole of it from one command.
+//! `haptic demo`: set-up, certificates, runs and charts with one command.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ pub struct Arguments {
     pub ticks: usize,
 }
 
-/// Free mode as the paper draws it (figure 9): damping 1, residual 0.05, the standard coupling.
+/// Free mode as in the paper's figure 9: damping 1, residual 0.05, the standard coupling.
 const FIGURE_9: Scene = Scene {
     device: Device { inertia: 1e-3, damping: 1.0, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
@@ -52,7 +52,7 @@ const FIGURE_9: Scene = Scene {
     torque_limit: None,
 };
 
-/// The delayed wall as the paper draws it (its last figure, equations 24 to 27).
+/// The delayed wall as in the paper's last figure (equations 24 to 27).
 const DELAYED_WALL: Scene = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
@@ -69,7 +69,7 @@ const DELAYED_WALL: Scene = Scene {
     torque_limit: None,
 };
 
-/// The same wall with one more sample of delay: past the line.
+/// The same wall with one more sample of delay: beyond the critical line.
 const PAST_THE_LINE: Scene = Scene {
     environment: Environment::DamperWall(Wall {
         stiffness: 22.0,
@@ -82,8 +82,8 @@ const PAST_THE_LINE: Scene = Scene {
     ..DELAYED_WALL
 };
 
-/// Sets up, builds, certifies, runs and draws. The answer is no where a scene is not certified or
-/// a code of the emulated board differs from the host's.
+/// Sets up, builds, certifies, runs and draws. The status is negative if a scene is not certified or a code
+/// of the emulated board differs from the host's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let mut out = io::stdout().lock();
     let toolchain =
@@ -158,12 +158,12 @@ fn write(folder: &Path, name: &str, picture: &Picture) -> Result<(), ChartError>
     Output::new(&folder.join(name))?.write(picture)
 }
 
-/// Where a one-sided wall begins, in rad.
+/// The face of a one-sided wall in rad.
 fn face(environment: &Environment) -> Option<f64> {
     environment.wall().filter(|wall| wall.one_sided).map(|wall| wall.face)
 }
 
-/// Ticks in which the motion grows by a factor.
+/// The number of ticks in which the motion grows by a factor.
 fn ticks_to(factor: f64, held: &HandCase) -> f64 {
     factor.ln() / held.spectral_radius.ln()
 }

@@ -1,4 +1,4 @@
-//! `haptic design`: how far may one go, and what does it take?
+//! `haptic design`: the largest or smallest value of a quantity that certifies.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -86,7 +86,7 @@ pub enum DesignGoal {
     },
 }
 
-/// A number of which less is sought.
+/// A quantity to minimise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Lowest {
     /// Sample rate in Hz: the inverse of the longest period.
@@ -100,12 +100,12 @@ fn part(text: &str) -> Result<f64, String> {
     }
 }
 
-/// An answer as JSON.
+/// A result as JSON.
 #[derive(Serialize)]
 struct Report {
     quantity: &'static str,
     unit: &'static str,
-    /// The last value that certifies; null where every value does, or none.
+    /// The last value that certifies; null if every value certifies, or none.
     value: Option<f64>,
     limited: bool,
     possible: bool,
@@ -115,7 +115,7 @@ struct Report {
     scenes: Vec<String>,
 }
 
-/// The sought number: which end of it, its name, its unit.
+/// The sought quantity: largest or smallest, its name, its unit.
 struct SoughtQuantity {
     which: &'static str,
     name: &'static str,
@@ -123,7 +123,7 @@ struct SoughtQuantity {
     note: Option<&'static str>,
 }
 
-/// Answers: no where nothing passes.
+/// Runs the command; the status is negative if no value passes.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let coupling = if arguments.keep_coupling { Choice::Kept } else { Choice::Standard };
     let terms = Terms { safety: arguments.safety, coupling };
@@ -220,7 +220,7 @@ fn border(
 }
 
 impl SoughtQuantity {
-    /// The answer as a comment of TOML.
+    /// The result as a comment of TOML.
     fn comment(&self, found: &design::DesignLimit<Vec<SceneFile>>) -> String {
         let Self { which, name, unit, note } = self;
         let answer = match found {
@@ -238,10 +238,10 @@ impl SoughtQuantity {
     }
 }
 
-/// Digits of an answer for a person.
+/// Digits of a printed result.
 const DIGITS: usize = 6;
 
-/// A limit in few digits, and, where those are beyond it, the number itself.
+/// A limit with few digits, and, if these are beyond it, the exact number.
 fn last_that_certifies(value: f64, unit: &str) -> String {
     let short = significant(value, DIGITS);
     if short.parse() == Ok(value) {
@@ -251,7 +251,7 @@ fn last_that_certifies(value: f64, unit: &str) -> String {
     }
 }
 
-/// A design's changes of a scene besides the sought number, as sentences.
+/// A design's other changes of a scene, as text.
 fn changed(file: &SceneFile, designed: &SceneFile) -> Vec<String> {
     let stiffness = |file: &SceneFile| match file.scene.coupling {
         Coupling::Rigid | Coupling::Matched => None,
@@ -279,8 +279,8 @@ fn changed(file: &SceneFile, designed: &SceneFile) -> Vec<String> {
     notes
 }
 
-/// Prints the answer, and the scenes as files that can be certified as they are: the answer is a
-/// comment in them. Several scenes are no one file, and go into a folder.
+/// Prints the result, and the scenes as files that can be certified unchanged, with the result as a comment.
+/// Several scenes go into a folder.
 fn answer(
     arguments: &Arguments,
     sought: &SoughtQuantity,

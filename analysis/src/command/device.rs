@@ -1,4 +1,4 @@
-//! `haptic device`: how much passivity does a device have?
+//! `haptic device`: the passivity of a device.
 
 use clap::Args;
 use serde::Serialize;
@@ -24,7 +24,7 @@ pub struct Arguments {
 /// The data of a device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// What the person calls it.
+    /// The name in the file.
     pub name: Option<String>,
     /// Output strict passivity in N m s/rad, to the last digit; `None` if the device is not passive.
     pub delta: Option<f64>,
@@ -32,10 +32,10 @@ pub struct Report {
     pub delta_lo: Option<f64>,
     /// Upper end of the enclosure.
     pub delta_hi: Option<f64>,
-    /// Angular frequency in rad/s at which it is reached; 0 in the limit at rest, or where it does
-    /// not depend on the frequency; `None` in the limit of infinite frequency.
+    /// Angular frequency in rad/s at which it is reached; 0 in the limit at rest, or if it does not depend on
+    /// the frequency; `None` in the limit of infinite frequency.
     pub omega: Option<f64>,
-    /// `everywhere`, `rest`, `omega` or `infinity`; `None` where there is no `delta`.
+    /// `everywhere`, `rest`, `omega` or `infinity`; `None` without a `delta`.
     pub reached: Option<&'static str>,
     /// Whether encoder and motor are on the same mass.
     pub collocated: bool,
@@ -43,17 +43,17 @@ pub struct Report {
     pub masses: usize,
     /// Inertia in kg m^2 of all masses together.
     pub inertia: f64,
-    /// Damping in N m s/rad of all masses together against the ground.
+    /// Damping in N m s/rad of all masses together to the ground.
     pub damping: f64,
     /// Time constant of the amplifier in s.
     pub actuator_lag: f64,
-    /// The paper's construction held against `delta`; `None` where there is no `delta` above 0.
+    /// The paper's construction compared with `delta`; `None` without a `delta` above 0.
     pub mu: Option<Check>,
-    /// The answer as a sentence.
+    /// The result as text.
     pub message: String,
 }
 
-/// Answers for a device; no if it has no passivity.
+/// Runs the command; the status is negative if the device has no passivity.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let report = report(&file::load_device(&arguments.file)?);
     arguments.answer.print(&report, text)?;
@@ -117,7 +117,7 @@ fn message(chain: &Chain, found: &Result<ExcessPassivity, NoPassivity>) -> Strin
     }
 }
 
-/// What a certificate takes of a device whose amplifier lags.
+/// The text on the certificate of a device whose amplifier lags.
 fn without_lag(chain: &Chain) -> String {
     match chain.clone().without_lag().excess_passivity() {
         Ok(found) if chain.actuator_lag() > 0.0 => format!(
@@ -129,7 +129,7 @@ fn without_lag(chain: &Chain) -> String {
     }
 }
 
-/// The report for a person.
+/// The report as text.
 pub fn text(report: &Report) -> String {
     let mut rows = Vec::new();
     if let Some(name) = &report.name {

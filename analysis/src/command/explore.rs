@@ -1,4 +1,4 @@
-//! `haptic explore`: a scene in a browser, to change, to see, to hold, and to send on.
+//! `haptic explore`: a scene in a browser, to change, watch, hold and send.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ pub struct Arguments {
     pub open: bool,
 }
 
-/// The scene of a page that no file was named for.
+/// The scene of a page without a file.
 const START: &str = include_str!("../../pictures/wall.toml");
 
 /// Writes the page.
@@ -68,7 +68,7 @@ pub(super) fn module() -> Result<Vec<u8>, CommandError> {
     Ok(module)
 }
 
-/// Opens the page with what the system opens pages with.
+/// Opens the page with the system's default program.
 fn open(page: &PathBuf) -> Result<(), CommandError> {
     let opener = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
     let status = Command::new(opener).arg(page).status();

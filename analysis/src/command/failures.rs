@@ -1,4 +1,4 @@
-//! `haptic failures`: where do methods fail, and what did the certificate say before?
+//! `haptic failures`: loops that other methods judge wrongly, with the verdict of the certificate.
 
 use std::fmt::Write as _;
 use std::io;
@@ -49,7 +49,7 @@ struct Found {
     walls: Vec<WallReport>,
 }
 
-/// Asks and runs: the answer is no where something was not as it should be.
+/// Judges and runs the loops: the status is negative if a result is not as expected.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let wanted = |name: &str| arguments.case.as_deref().is_none_or(|case| case == name);
     let mut player = match arguments.emulate {
@@ -104,7 +104,7 @@ fn line(text: &mut String, method: &str, result: &MethodResult, failure: Option<
         Some(Failure::Needless) => "wrong",
         None => "",
     };
-    // What would make it pass is for `haptic certify` to say.
+    // `haptic certify` prints the remedies.
     let reason = result.reason.split("; it would pass").next().unwrap_or_default();
     let _ = writeln!(text, "  {method:<38} {:<9} {mark:<5}  {reason}", result.verdict.as_str());
 }
@@ -135,7 +135,7 @@ fn wall(wall: &WallReport) -> String {
     text
 }
 
-/// One row a verdict, the certificate's and the truth among them.
+/// One row per verdict, including the certificate's and the truth.
 fn csv(cases: &[CaseReport]) -> Result<(), CommandError> {
     let mut table = csv::Writer::from_writer(io::stdout().lock());
     let failed = |error: csv::Error| CommandError::Output(error.into());

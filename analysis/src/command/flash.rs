@@ -1,4 +1,4 @@
-//! `haptic flash`: a scene's program onto a board.
+//! `haptic flash`: builds a scene's program for a board and flashes it.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -36,7 +36,7 @@ pub struct Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// Where the program cannot be built, or probe-rs or the probe is missing or fails.
+/// If the program cannot be built, or probe-rs or the probe is missing or fails.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let toolchain = toolchain::prepare(Tools::Compiler, |step| eprintln!("set-up: {step}"))?;
     let (board, name) = (arguments.board, arguments.program.as_str());
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(CommandStatus::Success)
 }
 
-/// What the linker's map leaves of a board's flash, since one map fits every board.
+/// The part of a board's flash that the linker's map does not use, because one map fits every board.
 fn spared(board: BoardModel, memory: Memory) -> String {
     match memory.flash < board.flash() {
         true => format!("; the linker's map, which fits every board, allows {}", memory.flash),

@@ -48,15 +48,15 @@ pub struct Arguments {
     pub command: Command,
 }
 
-/// What every help ends with.
+/// The end of every help text.
 const EXIT_STATUS: &str = "\
 Exit status: 0 success; 1 negative verdict: rejected, undecided, unstable, different, or not possible; \
 2 invalid input or failure";
 
 impl Arguments {
-    /// The arguments of the program; reports a fault in them and ends it.
+    /// The arguments of the program; an error in them ends the program with a message.
     pub fn of_program() -> Self {
-        // One rule for all output: clap's own one colours a terminal without colours where `CI` is set.
+        // One rule for all output: clap's own rule colours a terminal without colours if `CI` is set.
         let colour = match terminal::has_colour(io::stdout().is_terminal()) {
             true => clap::ColorChoice::Always,
             false => clap::ColorChoice::Never,
@@ -81,7 +81,7 @@ fn refuse(error: &clap::Error) -> ! {
         std::process::exit(status(said.map_err(CommandError::Output)).into());
     }
     let text = text(io::stderr().is_terminal());
-    // No output is left if this fails.
+    // If this fails, no other output is possible.
     let _ = write!(io::stderr(), "{}", text_width::wrapped(&text, terminal::error_width(), 2));
     std::process::exit(error.exit_code())
 }
@@ -152,7 +152,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// The name by which it may want a scene's program.
+    /// The name of a scene whose program the command may need.
     fn program(&self) -> Option<&str> {
         match self {
             Self::Run(arguments) => Some(&arguments.scene),
@@ -163,7 +163,7 @@ impl Command {
     }
 }
 
-/// Runs one command and turns its answer into the exit status.
+/// Runs one command and turns its result into the exit status.
 pub fn execute(arguments: Arguments) -> ExitCode {
     let answer = match arguments.command {
         ref command
@@ -198,7 +198,7 @@ pub fn execute(arguments: Arguments) -> ExitCode {
     status(answer).into()
 }
 
-/// The exit status of an answer, all of which must have been written.
+/// The exit status of a result whose output is completely written.
 fn status(answer: Result<CommandStatus, CommandError>) -> u8 {
     let written = || io::stdout().flush().map_err(CommandError::Output);
     match answer.and_then(|answer| written().map(|()| answer)) {
@@ -220,6 +220,6 @@ fn print_error(error: &CommandError) {
         CommandError::File(error) => error.report_within(colour, width),
         other => text_width::wrapped(&format!("error: {other}"), width, 7),
     };
-    // No output is left if this fails.
+    // If this fails, no other output is possible.
     let _ = writeln!(stderr.lock(), "{text}");
 }

@@ -1,4 +1,4 @@
-//! `haptic new`: a scene of one's own.
+//! `haptic new`: copies a scene's program.
 
 use std::io::{self, Write};
 
@@ -21,7 +21,7 @@ pub struct Arguments {
 /// Writes the scene's file, and prints its path and the next steps.
 ///
 /// # Errors
-/// Where there can be no scene of that name, or there is one.
+/// If the name is invalid for a scene, or the scene exists.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let Arguments { name, from } = arguments;
     let path = Sources::find()?.begin(name, from)?;

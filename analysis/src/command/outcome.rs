@@ -1,4 +1,4 @@
-//! What a run gave, for a person.
+//! The result of a run as text.
 
 use haptic_servo::dac::DacCode;
 use haptic_servo::text::RoundUp3;
@@ -9,7 +9,7 @@ use crate::quantity::significant;
 use crate::studies::bench::at_rest::friction_to_rest;
 use crate::verdict::VerdictReport;
 
-/// What a run gave, for a person.
+/// The result of a run as text.
 pub fn text(outcome: &RunOutcome) -> String {
     let run = &outcome.run;
     let mut rows = vec![
@@ -60,8 +60,8 @@ pub fn section(program: &Program, report: &VerdictReport, outcome: &RunOutcome) 
 /// Speed in rad/s above which a device counts as turning: above half a turn in an hour.
 const AT_REST: f64 = 1e-3;
 
-/// Why a released device keeps turning: the DAC rounds, or the current's converter does, where it is on a spring its encoder has edges, and
-/// the simulated device has no friction at all. In the linear theory it stops.
+/// The text on a released device that keeps turning: the DAC or the converter of the current rounds, on a
+/// spring the encoder rounds, too, and the simulated device has no friction. In the linear theory it stops.
 fn coasting(program: &Program, outcome: &RunOutcome) -> String {
     let speed = outcome.final_speed.unwrap_or(0.0);
     let ended = outcome.run.ticks.len() as f64 * program.scene.timing.period;
@@ -84,7 +84,7 @@ fn coasting(program: &Program, outcome: &RunOutcome) -> String {
     format!("  still turning at the end: {speed} rad/s; friction {friction} stops it\n")
 }
 
-/// Whether a released device is on a spring, wherever it is.
+/// Whether a released device is on a spring at every position.
 fn is_held_by_a_spring(program: &Program) -> bool {
     program.scene.environment.wall().is_some_and(|wall| !wall.one_sided && wall.stiffness > 0.0)
 }

@@ -1,6 +1,5 @@
-//! Scenes that this program was not built with: it builds itself once more, with the scene's file, and
-//! hands over to that. What runs on this machine is then compiled from the file that a board's program
-//! is compiled from.
+//! Scenes that this program was built without: it builds itself again with the scene's file, and executes the
+//! new program. The code on this machine is then compiled from the same file as a board's program.
 
 use std::os::unix::process::CommandExt;
 use std::process;
@@ -10,9 +9,9 @@ use crate::program::Program;
 use crate::progress;
 use crate::toolchain::{Sources, build_haptic_with};
 
-/// Whether a name is that of a scene that this program was built without.
+/// Whether this program was built without the scene of this name.
 pub fn needs_rebuild(name: &str) -> bool {
-    // Without its source this program has the scenes that it was built with.
+    // Without its source, this program only has the scenes that it was built with.
     let is_there = || Sources::find().and_then(|sources| sources.scenes()).unwrap_or_default();
     Program::find(name).is_none() && is_there().iter().any(|scene| scene == name)
 }
@@ -26,7 +25,7 @@ pub fn rebuild_and_exec(scene: &str) -> Result<CommandStatus, CommandError> {
     Err(CommandError::Output(error))
 }
 
-/// The scenes that there are, for a sentence: those with a file, or else those in this program.
+/// The available scenes as text: those with a file, or otherwise those in this program.
 pub fn scenes() -> String {
     let built_in = || crate::program::NAMES.iter().map(|name| (*name).to_owned()).collect();
     let there = Sources::find().and_then(|sources| sources.scenes());

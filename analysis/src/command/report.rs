@@ -34,10 +34,10 @@ pub struct Arguments {
     pub output: PathBuf,
 }
 
-/// Cells of the map in each direction: as fine as a page shows, and judged in a moment.
+/// Cells of the map in each direction: as fine as a page shows, and fast to judge.
 const SIDE: usize = 400;
 
-/// Writes the page, and says the verdict, which is the answer as it is that of `haptic certify`.
+/// Writes the page and prints the verdict; the status is that of `haptic certify`.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let extension = arguments.output.extension().map(|e| e.to_string_lossy().to_lowercase());
     if !matches!(extension.as_deref(), Some("html" | "htm")) {
@@ -100,7 +100,7 @@ fn missing(why: &str) -> Figure {
     Figure::Missing(why.to_owned())
 }
 
-/// The picture of a run, or why there is none.
+/// The chart of a run, or the reason why there is none.
 fn motion(moved: &Trace) -> Result<Figure, ChartError> {
     match (trace(moved, &Window::default()), moved.lost) {
         (Err(ChartError::TooFewPoints), Some(_)) => {

@@ -1,4 +1,4 @@
-//! `haptic run`: a scene, tick by tick, on the host, on the emulated board or on a virtual one.
+//! `haptic run`: runs a scene tick by tick on the host, on the emulated board or on a virtual board.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -30,27 +30,27 @@ use crate::shaft::{HandHeldShaft, RecordedShaft};
 use crate::toolchain::{self, BoardModel, NumberFormat, Tools, UnknownBoard};
 use crate::{counts_csv, lockstep, verdict};
 
-/// Where a scene runs.
+/// The target of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// On this machine.
     Host,
-    /// On the emulated board, and on this machine beside it: every code is compared.
+    /// On the emulated board and on this machine: every code is compared.
     Qemu,
-    /// The flashed program on a virtual board, and on this machine beside it.
+    /// The flashed program on a virtual board, and on this machine.
     Board(BoardModel),
 }
 
-/// How a virtual board is named: this and the board's name.
+/// The prefix of a virtual board's name.
 const BOARD: &str = "board:";
 
-/// There is no such target.
+/// The error for an unknown target.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnknownTarget {
-    /// Neither of the words.
+    /// Not a known word.
     #[error("there is no target {0}; there are host, qemu and board:NAME, as board:nucleo-g474re")]
     Word(String),
-    /// No such board.
+    /// An unknown board.
     #[error(transparent)]
     Board(#[from] UnknownBoard),
 }
@@ -127,11 +127,11 @@ struct RunSetup {
     transducers: Transducers,
     trajectory: HandTrajectory,
     controller: Box<dyn Controller>,
-    /// The program for the board, where there is one.
+    /// The program for the board, if there is one.
     program: Option<&'static Program>,
 }
 
-/// The answer as JSON.
+/// The result as JSON.
 #[derive(Serialize)]
 struct Summary<'a> {
     scene: &'a str,
@@ -145,7 +145,7 @@ struct Summary<'a> {
     instructions: Option<Instructions>,
 }
 
-/// Instructions a tick on the board.
+/// Instructions per tick on the board.
 #[derive(Serialize)]
 struct Instructions {
     compute_mean: Option<f64>,
@@ -154,8 +154,7 @@ struct Instructions {
     interrupt_max: u64,
 }
 
-/// Runs a scene and prints what came of it. The answer is no where a code of the board differs from
-/// the host's.
+/// Runs a scene and prints the result. The status is negative if a code of the board differs from the host's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let counts = arguments.replay.as_deref().map(counts_csv::load).transpose()?;
     let mut setup = setup(arguments)?;
@@ -260,8 +259,8 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
     Ok(RunSetup { name, scene, transducers, trajectory, controller, program: None })
 }
 
-/// What a run does not use of a scene file, as sentences: the servo runs on a rigid device that a
-/// hand takes through its script, or on recorded counts.
+/// The parts of a scene file that a run does not use, as text: the servo runs on a rigid device in a hand's
+/// trajectory, or on recorded counts.
 fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
     let mut notes = Vec::new();
     if is_replay {

@@ -1,4 +1,4 @@
-//! `haptic schema`: what a scene file may say, for editors, for readers, and to start from.
+//! `haptic schema`: the format of scene files as a JSON schema, a reference, and an example.
 
 use std::io::{self, Write};
 
@@ -22,7 +22,7 @@ pub struct Arguments {
 /// Prints the JSON schema, or the requested alternative.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let text = match &arguments.example {
-        // The command line takes no other name.
+        // The command line accepts no other name.
         Some(name) => example::toml(name).unwrap_or_default(),
         None if arguments.reference => reference::markdown(),
         None => format!("{:#}\n", schema::json()),

@@ -1,4 +1,4 @@
-//! `haptic scope`: a board as it runs, on a terminal or as a table.
+//! `haptic scope`: a running board on a terminal or as a table.
 
 use std::fs::File;
 use std::io::{self, IsTerminal, Write};
@@ -43,14 +43,14 @@ pub struct Arguments {
     pub window: Duration,
 }
 
-/// Time between two pictures.
+/// Time between two frames.
 const PICTURE: Duration = Duration::from_millis(33);
 
 /// Shows or records a board's telemetry until the time is up or the user quits.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let to_output = match &arguments.csv {
         Some(path) => path == Path::new("-"),
-        // Rows are what a pipe or a file can use.
+        // A pipe or a file gets rows.
         None => !io::stdout().is_terminal() || terminal::is_dumb(),
     };
     let mut recorder = match (&arguments.csv, to_output) {
@@ -99,7 +99,7 @@ impl Session {
         self.end.is_some_and(|end| Instant::now() >= end)
     }
 
-    /// Takes messages until then.
+    /// Receives messages until then.
     fn listen(&mut self, until: Instant, mut recorder: Option<&mut Recorder>) -> io::Result<()> {
         loop {
             let timeout = until.saturating_duration_since(Instant::now());
@@ -112,7 +112,7 @@ impl Session {
         recorder.map_or(Ok(()), Recorder::flush)
     }
 
-    /// Without a view.
+    /// Records without a view.
     fn record(&mut self, mut recorder: Option<&mut Recorder>) -> Result<(), CommandError> {
         let interrupted = Arc::new(AtomicBool::new(false));
         let flag = interrupted.clone();
@@ -130,7 +130,7 @@ impl Session {
         Ok(())
     }
 
-    /// With a view.
+    /// Shows a view.
     fn show(
         &mut self,
         screen: &mut DefaultTerminal,

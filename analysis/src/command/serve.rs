@@ -1,4 +1,4 @@
-//! `haptic serve`: a board for a page in a browser that cannot open its port.
+//! `haptic serve`: serves a board to a page in a browser, which cannot open the board's port.
 
 use std::io::{self, Write};
 use std::net::SocketAddr;
@@ -30,7 +30,7 @@ pub struct Arguments {
     pub listen: SocketAddr,
 }
 
-/// Longest time between two looks at whether it is over.
+/// Longest time between two polls for the end.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 fn address(text: &str) -> Result<SocketAddr, String> {
@@ -45,11 +45,11 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         signal_hook::flag::register(signal, over.clone())?;
     }
     Server::check(arguments.listen)?;
-    // First, for a port that is not there is known at once, and a page takes a while.
+    // First, because a missing port is reported at once, and building a page takes a while.
     let port = Port::open(&arguments.port).map_err(CommandError::Link)?;
     let page = explore::page(arguments.scene.as_deref())?;
     let report = |sentence: &str| {
-        // A terminal that is gone needs to know nothing.
+        // If the terminal is gone, the message is lost.
         let _ = writeln!(io::stderr(), "{sentence}");
     };
     let server = Server::start(port, arguments.listen, page, Box::new(report))?;

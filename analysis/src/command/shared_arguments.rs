@@ -1,5 +1,5 @@
-//! What several commands have in common: a scene as their argument, a method and its steps, a
-//! number format and so many ticks, and an answer that is text for a person or one JSON object for a program.
+//! Arguments of several commands: a scene, a method and its steps, a number format, a number of ticks, and
+//! output as text or as one JSON object.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -15,7 +15,7 @@ use crate::simulation::Integration;
 use crate::simulation::method::Method;
 use crate::verdict::{VerdictReport, judge_in};
 
-/// The scene that a command is about.
+/// The scene of a command.
 #[derive(Debug, Args)]
 pub struct SceneArgument {
     /// Scene file, TOML or JSON; `-` is standard input
@@ -24,23 +24,23 @@ pub struct SceneArgument {
 }
 
 impl SceneArgument {
-    /// Reads it, to certify.
+    /// Reads it for a certificate.
     pub fn load(&self) -> Result<SceneFile, CommandError> {
         Ok(file::load(&self.file)?)
     }
 
-    /// Reads it, to simulate it.
+    /// Reads it for a simulation.
     pub fn load_to_simulate(&self) -> Result<SceneFile, CommandError> {
         Ok(file::load_for(Purpose::Simulate, &self.file)?)
     }
 
-    /// Where the files that it names are looked for.
+    /// The folder of the files that it names.
     pub fn folder(&self) -> &Path {
         folder(&self.file)
     }
 }
 
-/// The folder of a file; that of a program itself for standard input.
+/// The folder of a file; the current folder for standard input.
 pub fn folder(file: &str) -> &Path {
     Path::new(file).parent().unwrap_or(Path::new(""))
 }
@@ -81,13 +81,14 @@ impl CoefficientFormat {
     }
 }
 
-/// Ticks of a run that nothing else limits: the trajectory of the hand and some time to come to rest.
+/// Default number of ticks of a run: the trajectory of the hand and some time to come to rest.
 pub const DEFAULT_TICKS: usize = 5000;
 
-/// Most ticks of a run, which keeps all of them until its end: hours at a kilohertz, and half a gigabyte.
+/// Largest number of ticks of a run, which keeps all of them until its end: hours at a kilohertz, and half a
+/// gigabyte.
 pub const MAX_TICKS: u64 = 10_000_000;
 
-/// Whether an answer is printed as JSON.
+/// Whether a result is printed as JSON.
 #[derive(Debug, Args)]
 pub struct JsonOption {
     /// Print JSON
@@ -96,7 +97,7 @@ pub struct JsonOption {
 }
 
 impl JsonOption {
-    /// Prints the answer as JSON, or as the text that is made of it.
+    /// Prints the result as JSON or as text.
     pub fn print<A: Serialize>(
         &self,
         answer: &A,
@@ -112,7 +113,7 @@ impl JsonOption {
     }
 }
 
-/// Writes an answer as one JSON object on a line.
+/// Writes a result as one JSON object on a line.
 pub fn json(mut out: impl Write, answer: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer(&mut out, answer)?;
     writeln!(out)

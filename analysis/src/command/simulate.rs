@@ -1,4 +1,4 @@
-//! `haptic simulate`: what would a scene do?
+//! `haptic simulate`: simulates a scene sample by sample.
 
 use std::io::{self, Write};
 
@@ -13,7 +13,7 @@ use crate::quantity::{rounded, significant};
 use crate::simulation::tick_status::TickStatus;
 use crate::simulation::{Experiment, Integration, Simulator, Trajectory, simulate};
 
-/// Samples that are computed before they are written, where they are written one by one.
+/// Samples that are computed before they are written, if each is written.
 const CHUNK: usize = 4096;
 
 /// Arguments of `haptic simulate`; the scene needs a table `simulation`.
@@ -49,7 +49,7 @@ struct Row {
 struct Answer<'t> {
     #[serde(flatten)]
     trajectory: &'t Trajectory,
-    /// What of the scene's latency is not simulated.
+    /// The part of the scene's latency that is not simulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     left_out: Option<&'static str>,
 }
@@ -57,8 +57,8 @@ struct Answer<'t> {
 /// Angle in rad from zero beyond which a motion counts as divergent: 160 000 turns.
 const FARTHEST: f64 = 1e6;
 
-/// Simulates the scene, certified or not. Of a motion that grows beyond the range of numbers, what
-/// comes before is printed; the answer is no then, and where the device runs away.
+/// Simulates the scene, certified or not. If a motion grows beyond the range of numbers, the part before is
+/// printed. The status is negative then, and if the device runs away.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let experiment = Experiment::of(&file, arguments.scene.folder())?;
@@ -92,8 +92,8 @@ fn far(trajectory: &Trajectory) -> Option<usize> {
     trajectory.position.iter().position(|position| position.abs() > FARTHEST)
 }
 
-/// Writes the samples as they come, in constant memory; how many there were, and at which the device
-/// has run away.
+/// Writes the samples in constant memory; returns their number, and the sample at which the device has run
+/// away.
 fn rows(
     experiment: &Experiment,
     integration: Integration,
@@ -107,7 +107,7 @@ fn rows(
         let mut chunk = Trajectory::of_length(wanted);
         simulator.fill(&mut chunk);
         for (i, &position) in chunk.position.iter().enumerate() {
-            // Without the last digits, which are the product's rounding.
+            // Without the last digits, which come from the product's rounding.
             let time = rounded((done + i) as f64 * experiment.scene.timing.period, 15);
             let (velocity, torque, limit) = (chunk.velocity[i], chunk.torque[i], chunk.limit[i]);
             writer.serialize(Row { time, position, velocity, torque, limit }).map_err(written)?;
@@ -122,7 +122,7 @@ fn rows(
     Ok((done, ran_away))
 }
 
-/// Numbers always fit a line of CSV: what fails is the writing.
+/// Numbers always fit a line of CSV: only writing can fail.
 fn written(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => error,
@@ -130,7 +130,7 @@ fn written(error: csv::Error) -> io::Error {
     }
 }
 
-/// The motion in a few lines, for a person.
+/// The motion in a few lines of text.
 fn text(name: &str, scene: &Scene, trajectory: &Trajectory) -> String {
     let period = scene.timing.period;
     let simplified =

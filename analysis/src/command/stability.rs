@@ -1,4 +1,4 @@
-//! `haptic stability`: does the motion of this device in this hand die away?
+//! `haptic stability`: the spectral radius of the loop of device, hand and servo.
 
 use clap::Args;
 
@@ -24,7 +24,7 @@ pub struct Arguments {
     pub answer: JsonOption,
 }
 
-/// Judges the linear loop: the answer is no where it is unstable.
+/// Judges the linear loop: the status is negative if it is unstable.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let stability = judge(&Experiment::at_rest(&file), arguments.steps.integration())?;

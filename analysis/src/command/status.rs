@@ -1,4 +1,4 @@
-//! Status of a command: its verdict, or the error that kept it from one.
+//! Status of a command: its verdict, or an error.
 
 use std::io;
 use std::path::PathBuf;
@@ -33,32 +33,32 @@ pub enum CommandStatus {
     NegativeVerdict,
 }
 
-/// Why a command has no answer; exit status 2.
+/// The error of a command; exit status 2.
 #[derive(Debug, Error)]
 pub enum CommandError {
-    /// A bad scene file.
+    /// An invalid scene file.
     #[error(transparent)]
     File(#[from] FileError),
     /// A record that identifies nothing.
     #[error(transparent)]
     Identify(#[from] IdentifyError),
-    /// A board whose sweep gives no record.
+    /// A board's sweep gives no record.
     #[error(transparent)]
     Sweep(#[from] PortError),
     /// No program and no file of that name.
     #[error("there is no scene {name}: the programs are {programs}, and there is no such file")]
     NoScene {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// The programs that there are.
+        /// The available programs.
         programs: String,
     },
-    /// No program of that name, where only a program will do.
+    /// No program of that name, and the command needs a program.
     #[error("there is no scene {name}: the programs are {programs}")]
     NoProgram {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// The programs that there are.
+        /// The available programs.
         programs: String,
     },
     /// A scene file has no program for a simulated board.
@@ -69,7 +69,7 @@ pub enum CommandError {
     FileOnSimulatedBoard {
         /// The file.
         file: String,
-        /// The programs that there are.
+        /// The available programs.
         programs: String,
     },
     /// A scene file has no program for the board.
@@ -94,31 +94,31 @@ pub enum CommandError {
         /// Its motor's torque at full scale in N m.
         full_scale: f64,
     },
-    /// The certificate refuses the scene; exit status 1, for the question was good.
+    /// The certificate rejects the scene; exit status 1, because the input was valid.
     #[error("{0}")]
     Refused(Box<Rejection>),
-    /// The servo cannot be built of the certified scene.
+    /// The servo of the certified scene cannot be built.
     #[error(transparent)]
     Servo(#[from] haptic_servo::servo::BuildError),
     /// A number of the scene does not fit the number format.
     #[error(transparent)]
     Number(#[from] crate::number::DoesNotFit),
-    /// A bad recording.
+    /// An invalid recording.
     #[error(transparent)]
     CountsCsv(#[from] TableError),
-    /// A bad record of a run.
+    /// An invalid record of a run.
     #[error(transparent)]
     RunCsv(#[from] RunCsvError),
     /// The machine cannot build or run programs for the board.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// A scene cannot be begun.
+    /// A new scene cannot be created.
     #[error(transparent)]
     Sources(#[from] SourcesError),
     /// A program does not build.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// A program could not be taken apart.
+    /// The parts of a program could not be measured.
     #[error(transparent)]
     TickParts(#[from] crate::studies::tick_parts::TickPartsError),
     /// A program could not be flashed.
@@ -176,20 +176,20 @@ pub enum CommandError {
     NoTopic {
         /// The file.
         picture: PathBuf,
-        /// What there is.
+        /// The available names.
         topics: String,
     },
-    /// A table has no such panel.
+    /// A table does not have the panel.
     #[error("there is no {what} `{word}`; there are {there}")]
     NoPanel {
         /// Case or error.
         what: &'static str,
-        /// What was asked for.
+        /// The requested name.
         word: String,
-        /// What there is.
+        /// The available names.
         there: String,
     },
-    /// A table that is to be drawn has not been measured.
+    /// A table to be drawn has not been measured.
     #[error(
         "{}: there is no such table; --draw-only reads the tables from the folder of -o, or the kept \
          ones without -o", table.display()
@@ -198,7 +198,7 @@ pub enum CommandError {
         /// The table's file.
         table: PathBuf,
     },
-    /// A picture that does not show all of a run; exit status 1, for it shows the rest.
+    /// A chart that does not show all of a run; exit status 1, because it shows the rest.
     #[error(
         "the motion exceeds the range of a chart: sample {sample} and all after it are not drawn"
     )]
@@ -209,7 +209,7 @@ pub enum CommandError {
     /// The date of a page is invalid.
     #[error(transparent)]
     Date(#[from] crate::date::InvalidDate),
-    /// A page's file must be called one.
+    /// A page's file must have the extension of a page.
     #[error("{path}: the name of a page must end in .html")]
     NoPage {
         /// The file.
@@ -232,18 +232,18 @@ pub enum CommandError {
     /// A scene that cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    /// A simulated device that leaves; exit status 1, since that is the answer.
+    /// A simulated device runs away; exit status 1, because that is the result.
     #[error(
         "the motion diverges: from sample {sample} on, at {} s, the device is more than {} rad \
          from its zero; the loop is probably unstable (`haptic stability`)",
         significant(*.time, 6), significant(*.farthest, 6)
     )]
     RanAway {
-        /// The angle in rad that it has left behind.
+        /// The angle in rad that it has exceeded.
         farthest: f64,
         /// The first sample, counted from 0, that is farther.
         sample: usize,
-        /// When that is in s.
+        /// Its time in s.
         time: f64,
     },
     /// A case of failure could not be shown.
@@ -252,18 +252,18 @@ pub enum CommandError {
     /// Models of a device that cannot be compared.
     #[error(transparent)]
     Model(#[from] crate::studies::model::ModelError),
-    /// A design asks for what the environment does not have.
+    /// A design for a quantity that the environment does not have.
     #[error("the environment of {scene} has no {quantity}")]
     NoSuchQuantity {
         /// Name of the scene.
         scene: String,
-        /// What was asked for.
+        /// The requested name.
         quantity: &'static str,
     },
     /// A parameter was given two values.
     #[error(transparent)]
     DuplicateParameter(#[from] crate::link::change::DuplicateParameter),
-    /// A board cannot be talked to.
+    /// The connection to a board failed.
     #[error(transparent)]
     Link(#[from] LinkError),
     /// A board cannot be served.
@@ -277,13 +277,13 @@ pub enum CommandError {
         /// Why.
         source: io::Error,
     },
-    /// A board without hardware has ended by itself.
+    /// A simulated board has ended by itself.
     #[error(transparent)]
     SimulatedBoard(#[from] SimulatedBoardError),
     /// A virtual board that did not start.
     #[error(transparent)]
     VirtualBoard(#[from] VirtualBoardError),
-    /// The answer could not be written.
+    /// The output could not be written.
     #[error("cannot write the answer: {0}")]
     Output(#[from] io::Error),
 }
@@ -319,7 +319,7 @@ impl From<BatchError> for CommandError {
 }
 
 impl CommandError {
-    /// Whether the question was good and this is its answer.
+    /// Whether the input was valid and this is its result.
     pub(super) fn is_negative_verdict(&self) -> bool {
         matches!(
             self,

@@ -46,24 +46,24 @@ pub struct Arguments {
     pub answer: JsonOption,
 }
 
-/// Time between two questions whether an alignment has ended.
+/// Time between two polls for the end of an alignment.
 const POLL: Duration = Duration::from_millis(200);
 
-/// The answer as JSON.
+/// The result as JSON.
 #[derive(Serialize)]
 struct Report<'a> {
     program: &'a str,
-    /// Why the board refused, where it did.
+    /// The reason if the board refused.
     refused: Option<&'a str>,
     sets: u32,
     margin: Option<f64>,
-    /// The longest time in s for which a change takes the torque away.
+    /// The longest time in s for which a change reduces the torque.
     longest_gap: f64,
     parameters: serde_json::Map<String, serde_json::Value>,
     state: &'static str,
     fault: Option<String>,
     remembered: Option<String>,
-    /// Why the board was last reset, in one word.
+    /// The cause of the board's last reset, in one word.
     reset: &'static str,
     missed: u32,
     worst_slack: Option<f64>,
@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(if refused.is_none() { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
-/// Each step only if the one before it was done.
+/// Each step only if the previous step was done.
 fn request(
     link: &mut Link,
     arguments: &Arguments,

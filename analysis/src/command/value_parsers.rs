@@ -39,7 +39,7 @@ pub fn number(text: &str) -> Result<f64, String> {
 
 /// Two numbers with `..` between them, or with a colon.
 pub fn range(text: &str) -> Result<Range<f64>, String> {
-    /// The least width over the larger end: numbers along an axis must differ.
+    /// The smallest width relative to the larger end: numbers along an axis must differ.
     const NARROWEST: f64 = 1e-9;
     let between = || text.split_once("..").or_else(|| text.split_once(':'));
     let (from, to) = between().ok_or("it must be two numbers with .. between")?;

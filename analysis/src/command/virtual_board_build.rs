@@ -1,4 +1,4 @@
-//! Builds a virtual board and the program that goes to its flash.
+//! Builds a virtual board and the program in its flash.
 
 use std::path::PathBuf;
 
@@ -39,12 +39,12 @@ impl VirtualBoardBuild {
         Ok(Self { executable, board, elf, program })
     }
 
-    /// Switches on one whose program drives a DAC.
+    /// Boots a board whose program drives a DAC.
     pub fn boot(&self) -> Result<VirtualBoard, VirtualBoardError> {
         VirtualBoard::boot(&self.executable, self.board, &self.elf, None)
     }
 
-    /// Switches it on with a motor, where its program drives the board's own bridge.
+    /// Boots the board with a motor, if its program drives the board's own bridge.
     pub fn boot_bridge(
         &self,
     ) -> Result<Option<(BridgeBoard, &'static CurrentLoop)>, VirtualBoardError> {
@@ -55,7 +55,7 @@ impl VirtualBoardBuild {
         Ok(Some((board, current_loop)))
     }
 
-    /// It as what runs beside the host; `period` is that of its servo in s.
+    /// The board as the backend of a comparison with the host; `period` is its servo's in s.
     pub fn backend(&self, period: f64) -> Backend<'_> {
         let program = &self.executable;
         Backend::VirtualBoard { program, board: self.board, elf: &self.elf, period }

@@ -1,4 +1,4 @@
-//! `haptic worst-hand`: in which hand does a scene oscillate?
+//! `haptic worst-hand`: searches for a passive hand in which a scene oscillates.
 
 use clap::Args;
 
@@ -18,7 +18,7 @@ pub struct Arguments {
     pub answer: JsonOption,
 }
 
-/// Searches: the answer is no where a hand was found.
+/// Searches: the status is negative if a hand was found.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let search = search(&file.scene, &file.chain)?;
@@ -27,7 +27,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(if search.oscillates { CommandStatus::NegativeVerdict } else { CommandStatus::Success })
 }
 
-/// How a motion grows, over the time in which that is a number to read.
+/// The growth of a motion, over a time that gives a readable number.
 fn growth(spectral_radius: f64, period: f64) -> String {
     let in_a_second = spectral_radius.powf(1.0 / period);
     match in_a_second < 1e6 {

@@ -1,4 +1,4 @@
-//! Torques and sines as the emulated board computes them, with the instructions of each.
+//! Torques and sines computed by the emulated board, with the instructions of each.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use firmware_harness::bench_request::{
 
 use super::{EmulatorError, Guest, Transport};
 
-/// An emulated board that measures computations that the host chooses.
+/// An emulated board that measures computations for the host.
 pub struct BenchClient {
     guest: Box<dyn Transport>,
 }
@@ -17,20 +17,21 @@ impl BenchClient {
     /// Starts the program; see [`build_bench_programs`](crate::toolchain::Toolchain::build_bench_programs).
     ///
     /// # Errors
-    /// Where the emulator cannot be started.
+    /// If the emulator cannot be started.
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
         Ok(Self::with_transport(Guest::boot(elf, &[])?))
     }
 
-    /// A client of a program that runs already.
+    /// A client of a running program.
     pub fn with_transport(guest: impl Transport + 'static) -> Self {
         Self { guest: Box::new(guest) }
     }
 
-    /// Has the board compute all of these: counts of an encoder, or the bits of parts of a turn.
+    /// Lets the board compute the results of all inputs: counts of an encoder, or the bits of parts of a
+    /// turn.
     ///
     /// # Errors
-    /// Where the board has ended, does not answer, or has no program for this.
+    /// If the board has ended, does not answer, or has no program for this.
     pub fn compute(
         &mut self,
         request: &BenchRequest,
@@ -64,7 +65,7 @@ impl BenchClient {
     /// Ends the board.
     ///
     /// # Errors
-    /// Where it does not end, or ends with a failure.
+    /// If it does not end, or ends with a failure.
     pub fn finish(self) -> Result<(), EmulatorError> {
         self.guest.finish()
     }

@@ -1,4 +1,4 @@
-//! The certificate as the emulated board computes it, for scenes that the host chooses.
+//! Certificates computed by the emulated board, for scenes from the host.
 
 use std::path::Path;
 
@@ -16,20 +16,20 @@ impl CertifyClient {
     /// Starts the certify server; see [`build_certify_server`](crate::toolchain::Toolchain::build_certify_server).
     ///
     /// # Errors
-    /// Where the emulator cannot be started.
+    /// If the emulator cannot be started.
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
         Ok(Self::with_transport(Guest::boot(elf, &[])?))
     }
 
-    /// A client of a program that runs already.
+    /// A client of a running program.
     pub fn with_transport(guest: impl Transport + 'static) -> Self {
         Self { guest: Box::new(guest) }
     }
 
-    /// Has the board certify a scene.
+    /// Lets the board certify a scene.
     ///
     /// # Errors
-    /// Where the board has ended or does not answer.
+    /// If the board has ended or does not answer.
     pub fn certify(&mut self, scene: &Scene) -> Result<CertifyReply, EmulatorError> {
         let mut words = [[0; 8]; size_of::<ReplyWords>() / 8];
         self.guest.ask(&encode(scene), words.as_flattened_mut())?;
@@ -39,7 +39,7 @@ impl CertifyClient {
     /// Ends the board.
     ///
     /// # Errors
-    /// Where it does not end, or ends with a failure.
+    /// If it does not end, or ends with a failure.
     pub fn finish(self) -> Result<(), EmulatorError> {
         self.guest.finish()
     }

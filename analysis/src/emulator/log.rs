@@ -10,7 +10,7 @@ pub struct LogReader {
     lines: JoinHandle<Vec<String>>,
 }
 
-/// Turns a program's log into lines, with the strings that are in the program's file.
+/// Turns a program's log into lines, with the strings in the program's file.
 pub struct LogDecoder {
     table: Option<Table>,
 }
@@ -28,20 +28,20 @@ impl LogDecoder {
         Self { table: Table::parse(elf).ok().flatten() }
     }
 
-    /// Reads until the program ends. It has to be read while the program runs: a full pipe would
+    /// Reads until the program ends. The log must be read while the program runs, because a full pipe would
     /// stop the board.
     pub fn follow(self, mut output: impl Read + Send + 'static) -> LogReader {
         LogReader {
             lines: std::thread::spawn(move || {
                 let mut bytes = Vec::new();
-                // What came before an error of the pipe is still a log.
+                // Bytes before an error of the pipe are still a log.
                 let _ = output.read_to_end(&mut bytes);
                 self.decode(&bytes)
             }),
         }
     }
 
-    /// The lines in these bytes, which begin with a frame; a frame that is not whole is left out.
+    /// The lines in these bytes, which begin with a frame; an incomplete frame is omitted.
     pub fn decode(&self, bytes: &[u8]) -> Vec<String> {
         let Some(table) = &self.table else { return Vec::new() };
         let mut decoder = table.new_stream_decoder();

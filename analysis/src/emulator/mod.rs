@@ -1,8 +1,8 @@
 //! A scene's program on the emulated board, in lockstep with this process.
 //!
-//! For each tick the board takes one count and gives one DAC code, through two pipes in a folder of
-//! the emulator's own; the board's log comes by the emulator's standard output. A guest that does
-//! not answer within [`TIMEOUT`] is an error, and an emulator is never left behind.
+//! For each tick the board takes one count and returns one DAC code, through two pipes in the emulator's own
+//! folder; the board's log comes through the emulator's standard output. A guest that does not answer within
+//! [`TIMEOUT`] is an error, and the emulator is always ended.
 
 mod bench_client;
 mod certify_client;
@@ -38,8 +38,8 @@ use pipes::Pipes;
 /// The emulator's program.
 pub const QEMU: &str = "qemu-system-arm";
 
-/// How the emulated board is started. With `icount` each instruction takes 32 ns of the board's
-/// time, whatever the host does meanwhile.
+/// The arguments of the emulated board. With `icount` each instruction takes 32 ns of the board's time,
+/// independently of the host's load.
 const BOARD: [&str; 12] = [
     "-machine",
     "netduinoplus2",
@@ -55,11 +55,11 @@ const BOARD: [&str; 12] = [
     "enable=on,target=native",
 ];
 
-/// Default timeout of the board for one answer. Its start takes a second at most; the rest is for a
-/// busy host.
+/// Default timeout of the board for one answer. Its start takes at most a second; the rest is for a busy
+/// host.
 pub const TIMEOUT: Duration = Duration::from_secs(60);
 
-/// Ticks within which a servo must have opened its clamp: more than any scene's fading takes.
+/// Ticks within which a servo must have opened its clamp: more than the fading of any scene.
 const LONGEST_FADING: usize = 100_000;
 
 /// A running emulator.
@@ -89,21 +89,21 @@ pub enum EmulatorError {
     /// The board did not answer in time.
     #[error("the emulated board has not answered for {} s, {what}; its log: {log}", .after.as_secs())]
     Silent {
-        /// What was waited for.
+        /// The expected event.
         what: &'static str,
-        /// How long.
+        /// The waiting time.
         after: Duration,
-        /// What the board had logged.
+        /// The board's log so far.
         log: String,
     },
-    /// The emulator ended before it was asked to, or with a failure.
+    /// The emulator ended too early, or with a failure.
     #[error("the emulator ended with {status}, {what}; its log: {log}")]
     Ended {
         /// Its exit status.
         status: ExitStatus,
-        /// What was waited for.
+        /// The expected event.
         what: &'static str,
-        /// What the board and the emulator had said.
+        /// The output of board and emulator so far.
         log: String,
     },
     /// The servo did not begin to run.
@@ -118,7 +118,7 @@ pub enum EmulatorError {
     /// The board gave an invalid answer.
     #[error("malformed reply from the emulated board: its program has another version")]
     NoReply,
-    /// A board that is not QEMU's gave no answer.
+    /// A board other than QEMU's did not answer.
     #[error("no reply from the board: {0}")]
     Transport(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// The board cannot compute the request.
@@ -128,7 +128,7 @@ pub enum EmulatorError {
          sample late"
     )]
     NoBenchProgram,
-    /// The log does not say what a report needs.
+    /// The log lacks a value of a report.
     #[error(transparent)]
     EmulatorReport(#[from] ReportError),
 }
@@ -137,13 +137,13 @@ impl Emulator {
     /// Starts a scene's program.
     ///
     /// # Errors
-    /// Where the emulator cannot be started; a program that refuses to run is noticed at the first
+    /// If the emulator cannot be started; a program that refuses to run is detected at the first
     /// [`exchange`](Self::exchange).
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
         Ok(Self { guest: Guest::boot(elf, &[])?, number: 0 })
     }
 
-    /// The same, with a socket for a debugger beside the serial port: `debugger` in its folder.
+    /// The same, with a socket for a debugger in addition to the serial port: `debugger` in its folder.
     ///
     /// # Errors
     /// As of [`boot`](Self::boot).
@@ -159,20 +159,20 @@ impl Emulator {
         self
     }
 
-    /// One tick, in time: the board gets the encoder's raw count and gives its DAC code.
+    /// One tick, in time: the board gets the encoder's raw count and returns its DAC code.
     ///
     /// # Errors
-    /// Where the board has ended or does not answer.
+    /// If the board has ended or does not answer.
     pub fn exchange(&mut self, raw_count: i32) -> Result<u16, EmulatorError> {
         Ok(self.tick(TickInput { count: raw_count.cast_unsigned(), missed: 0 })?.code)
     }
 
-    /// One tick: the board gets its input and gives its output.
+    /// One tick: the board gets its input and returns its output.
     ///
     /// # Errors
-    /// Where the board has ended or does not answer.
+    /// If the board has ended or does not answer.
     pub fn tick(&mut self, input: TickInput) -> Result<TickOutput, EmulatorError> {
-        // Never 0, which a board has before the first input.
+        // Never 0, which is a board's number before the first input.
         self.number = self.number.checked_add(1).unwrap_or(1);
         let mut request = &input.to_bytes(self.number)[..];
         loop {
@@ -180,7 +180,7 @@ impl Emulator {
             self.guest.exchange(request, &mut answer)?;
             match TickOutput::from_bytes(answer) {
                 Some((output, number)) if number == self.number => return Ok(output),
-                // A board that faulted shows it again.
+                // A board that faulted reports the tick again.
                 Some(_) => request = &[],
                 None => return Err(EmulatorError::NoReply),
             }
@@ -192,10 +192,10 @@ impl Emulator {
         self.guest.folder.path().join("serial")
     }
 
-    /// Has the servo armed and holds the device still at zero until its clamp is open.
+    /// Arms the servo and holds the device still at zero until its clamp is open.
     ///
     /// # Errors
-    /// Where the board has ended or does not answer, or is not armed.
+    /// If the board has ended or does not answer, or is not armed.
     pub fn arm_and_wait(&mut self) -> Result<(), EmulatorError> {
         self.arm_and_observe(|_| ())
     }
@@ -209,9 +209,9 @@ impl Emulator {
         mut see: impl FnMut(TickOutput),
     ) -> Result<(), EmulatorError> {
         const AT_REST: TickInput = TickInput { count: 0, missed: 0 };
-        // With the first tick the port is open.
+        // The port is open after the first tick.
         see(self.tick(AT_REST)?);
-        // Kept until the board has answered, so that nothing of the answer waits for the next client.
+        // Kept until the board has answered, so that the next client does not read this answer.
         let _port = self.arm().map_err(EmulatorError::Serial)?;
         for _ in 0..LONGEST_FADING {
             let output = self.tick(AT_REST)?;
@@ -223,7 +223,7 @@ impl Emulator {
         Err(EmulatorError::NotArmed)
     }
 
-    /// Asks the board to arm its servo, over its serial port as any host does.
+    /// Requests arming over the board's serial port, like any host.
     fn arm(&self) -> io::Result<UnixStream> {
         let mut port = UnixStream::connect(self.port())?;
         let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
@@ -231,24 +231,24 @@ impl Emulator {
         Ok(port)
     }
 
-    /// Ends the run and gives what the board measured and logged.
+    /// Ends the run and returns the board's measurements and log.
     ///
     /// # Errors
-    /// Where the board does not end, ends with a failure, or its log is not understood.
+    /// If the board does not end, ends with a failure, or its log is invalid.
     pub fn finish(self) -> Result<EmulatorReport, EmulatorError> {
         Ok(EmulatorReport::read(self.guest.finish()?)?)
     }
 
-    /// Ends a program that has no scene to report of, and gives its log.
+    /// Ends a program without a scene, and returns its log.
     ///
     /// # Errors
-    /// Where the board does not end, or ends with a failure.
+    /// If the board does not end, or ends with a failure.
     pub fn end(self) -> Result<Vec<String>, EmulatorError> {
         self.guest.finish()
     }
 }
 
-/// The emulator's process with what belongs to it; ends it when dropped.
+/// The emulator's process with its pipes and folder; ends it when dropped.
 struct Guest {
     process: Child,
     pipes: Option<Pipes>,
@@ -280,7 +280,7 @@ impl Guest {
         Ok(Self { process, pipes: Some(pipes), log, folder, timeout: TIMEOUT })
     }
 
-    /// Gives bytes to the board and waits until it has filled `answer`.
+    /// Sends bytes to the board and waits until it has filled `answer`.
     fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
         const WHAT: &str = "in the middle of a run";
         let pipes = self.pipes.as_mut().expect("the pipes are open until the run is finished");
@@ -294,7 +294,7 @@ impl Guest {
         }
     }
 
-    /// Closes the pipe of questions, which ends the program, and gives its log.
+    /// Closes the pipe of requests, which ends the program, and returns its log.
     fn finish(mut self) -> Result<Vec<String>, EmulatorError> {
         const WHAT: &str = "at the end of a run";
         self.pipes = None;
@@ -305,7 +305,7 @@ impl Guest {
         }
     }
 
-    /// Waits for the process, but not for ever.
+    /// Waits for the process for a limited time.
     fn wait(&mut self) -> io::Result<Option<ExitStatus>> {
         let deadline = Instant::now() + self.timeout;
         loop {
@@ -337,22 +337,22 @@ impl Guest {
         self.log.take().map(LogReader::lines).unwrap_or_default()
     }
 
-    /// What the board and the emulator have said, for an error's sentence.
+    /// The output of board and emulator for an error's text.
     fn last_words(&mut self) -> String {
         let mut words = self.take_log();
         let errors = std::fs::read_to_string(self.folder.path().join(ERRORS)).unwrap_or_default();
-        // The emulator's complaint; what follows it are the contents of all registers.
+        // The emulator's message, without the contents of all registers after it.
         words.extend(errors.lines().take(2).map(str::to_owned));
         if words.is_empty() { "empty".into() } else { words.join(" | ") }
     }
 }
 
-/// File of the emulator's own complaints, in its folder.
+/// File of the emulator's own messages, in its folder.
 const ERRORS: &str = "errors";
 
 impl Drop for Guest {
     fn drop(&mut self) {
-        // Both fail only where the process has ended already.
+        // Both fail only if the process has already ended.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

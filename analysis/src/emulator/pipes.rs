@@ -28,8 +28,8 @@ impl Pipes {
         Ok(Self {
             // Opened for both directions, because opening for writing alone waits for a reader.
             counts: OpenOptions::new().read(true).write(true).open(counts)?,
-            // For reading alone, so that a guest that has gone away is an end of file; not
-            // blocking, because opening would wait for it to come.
+            // Only for reading, so that the end of the guest is an end of file; not blocking, because opening
+            // would wait for the guest.
             codes: OpenOptions::new()
                 .read(true)
                 .custom_flags(OFlag::O_NONBLOCK.bits())
@@ -37,11 +37,11 @@ impl Pipes {
         })
     }
 
-    /// Writes a question and reads an answer of known length. `ended` returns whether the guest has ended; it
+    /// Writes a request and reads an answer of known length. `ended` returns whether the guest has ended; it
     /// is polled, because a guest that never opened the pipe cannot close it.
     ///
     /// # Errors
-    /// `TimedOut` after the patience, `UnexpectedEof` where the guest has ended.
+    /// `TimedOut` after the timeout, `UnexpectedEof` if the guest has ended.
     pub fn exchange(
         &mut self,
         request: &[u8],
@@ -70,7 +70,7 @@ impl Pipes {
         Ok(())
     }
 
-    /// Waits a little until there is something to read, or the guest has closed its end.
+    /// Waits a little for bytes to read, or for the guest to close its end.
     fn has_something(&self) -> io::Result<bool> {
         let mut codes = [PollFd::new(self.codes.as_fd(), PollFlags::POLLIN)];
         match poll(&mut codes, PollTimeout::from(BETWEEN_LOOKS)) {
@@ -81,5 +81,5 @@ impl Pipes {
     }
 }
 
-/// Time in ms between two looks at whether the guest has ended.
+/// Time in ms between two polls for the end of the guest.
 const BETWEEN_LOOKS: u8 = 50;

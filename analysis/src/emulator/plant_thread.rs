@@ -1,5 +1,5 @@
-//! A plant around an emulated board that runs in a thread of its own, so that a client can talk to the
-//! board meanwhile.
+//! A plant around an emulated board in its own thread, so that a client can communicate with the board
+//! meanwhile.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,7 +18,7 @@ pub struct PlantThread {
 }
 
 impl PlantThread {
-    /// Starts the thread: in each tick the plant gives the board's input and observes its output.
+    /// Starts the thread: in each tick the plant provides the board's input and observes its output.
     pub fn start(mut emulator: Emulator, mut plant: impl PlantModel + Send + 'static) -> Self {
         let (port, over) = (emulator.port(), Arc::<AtomicBool>::default());
         let is_over = over.clone();
@@ -37,10 +37,10 @@ impl PlantThread {
         &self.port
     }
 
-    /// Ends the thread and gives the board back.
+    /// Ends the thread and returns the board.
     ///
     /// # Errors
-    /// What ended it before.
+    /// The error that ended it before.
     pub fn end(mut self) -> Result<Emulator, EmulatorError> {
         self.over.store(true, Ordering::Relaxed);
         let thread = self.thread.take().expect("the thread ends once");
@@ -50,7 +50,7 @@ impl PlantThread {
 
 impl Drop for PlantThread {
     fn drop(&mut self) {
-        // The thread notices within a tick; with it goes the emulator.
+        // The thread ends within a tick, and with it the emulator.
         self.over.store(true, Ordering::Relaxed);
     }
 }

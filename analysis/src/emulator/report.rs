@@ -1,62 +1,61 @@
-//! What a run on the emulated board measured, read from its log's `key=value` lines.
+//! The measurements of a run on the emulated board, from the `key=value` lines of its log.
 
 use std::collections::HashMap;
 use std::str::FromStr;
 
-/// What a run on the emulated board measured.
+/// The measurements of a run on the emulated board.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EmulatorReport {
-    /// Ticks that the servo ran, those apart in which it was armed or swapped its set.
+    /// Ticks of the running servo, without those in which it was armed or swapped its set.
     pub ticks: u64,
     /// Frames that the log missed because its queue was full.
     pub dropped: u64,
     /// Periods that began while the servo was still busy with one before.
     pub overruns: u64,
-    /// How instructions were counted.
+    /// The calibration of the instruction counts.
     pub calibration: Calibration,
-    /// Instructions of a tick from raw count to DAC code, over all ticks; the measurement's own
-    /// are subtracted.
+    /// Instructions of a tick from raw count to DAC code, over all ticks, without those of the measurement.
     pub compute_instructions: InstructionStats,
-    /// The same over the ticks that gave torque, then or in the next tick (the torque of a delayed wall is
-    /// felt a tick later); `None` where there were none.
+    /// The same over the ticks with torque, in this or in the next tick (the torque of a delayed wall comes a
+    /// tick later); `None` without such ticks.
     pub contact_instructions: Option<InstructionStats>,
     /// The same over the other ticks.
     pub free_instructions: Option<InstructionStats>,
-    /// Instructions of the servo's whole interrupt, from its first to its last.
+    /// Instructions of the servo's whole interrupt.
     pub interrupt_instructions: InstructionStats,
-    /// Instructions of a round of work below the interrupt; a set of parameters is certified in
-    /// one round.
+    /// Instructions of one call of the work below the interrupt; a set of parameters is certified in one
+    /// call.
     pub below_instructions: InstructionStats,
-    /// Instructions of the energy monitor in it.
+    /// Instructions of the energy monitor in a tick.
     pub energy_instructions: InstructionStats,
-    /// Instructions that its frame takes into the queue.
+    /// Instructions for putting a tick's frame into the queue.
     pub frame_instructions: InstructionStats,
-    /// Instructions of the lockstep around it, with the exchange of count and code.
+    /// Instructions of the lockstep around a tick, with the exchange of count and code.
     pub lockstep_instructions: InstructionStats,
-    /// Instructions that judging the scene took on the board.
+    /// Instructions for certifying the scene on the board.
     pub certify_instructions: u64,
-    /// Bytes of stack used from reset until the scene was judged, which needs the most of it.
+    /// Bytes of stack used from reset until the scene was certified, which needs most of it.
     pub stack_used: u64,
-    /// Bytes of stack that there are.
+    /// Size of the stack in bytes.
     pub stack_size: u64,
-    /// The certificate's enclosures as the board found them.
+    /// The certificate's enclosures by the board.
     pub board: CertificateBits,
-    /// The same as the compiler found them.
+    /// The certificate's enclosures by the compiler.
     pub compiler: CertificateBits,
     /// All lines of the log.
     pub log: Vec<String>,
 }
 
-/// How instructions were counted.
+/// The calibration of the instruction counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Calibration {
-    /// Counts of the board's timer that an instruction takes.
+    /// Counts of the board's timer per instruction.
     pub per_instruction: u64,
     /// Instructions of an empty measurement, subtracted from each.
     pub overhead: u64,
 }
 
-/// Enclosures as bits, `(lo, hi)`; `None` where an index does not exist.
+/// Enclosures as bits, `(lo, hi)`; `None` if an index does not exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CertificateBits {
     /// Index of the environment alone.
@@ -68,7 +67,7 @@ pub struct CertificateBits {
 /// Numbers of instructions over a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InstructionStats {
-    /// How many there were.
+    /// The number of values.
     pub count: u64,
     /// The smallest.
     pub min: u64,
@@ -78,13 +77,13 @@ pub struct InstructionStats {
     pub mean: f64,
 }
 
-/// The log does not say what a report needs.
+/// The log lacks a value of a report.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the board's log has no number {key} in a line of {line}; the log: {log}")]
 pub struct ReportError {
-    /// What the line should begin with.
+    /// The expected beginning of the line.
     pub line: String,
-    /// The key in it.
+    /// The key in the line.
     pub key: String,
     /// The whole log.
     pub log: String,
@@ -126,7 +125,7 @@ impl EmulatorReport {
 }
 
 impl InstructionStats {
-    /// The numbers of two groups together; of none, all is zero.
+    /// The statistics of two groups together; all zero without values.
     fn joined(a: Option<Self>, b: Option<Self>) -> Self {
         match (a, b) {
             (None, None) => Self { count: 0, min: 0, max: 0, mean: 0.0 },

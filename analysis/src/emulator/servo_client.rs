@@ -1,4 +1,4 @@
-//! The servo of scenes that the host chooses, on the emulated board.
+//! Servos on the emulated board, for scenes from the host.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use firmware_harness::loop_request::{LoopRequest, StartReply};
 use super::{EmulatorError, Guest, Transport};
 use crate::lockstep::RemoteServo;
 
-/// An emulated board that runs the servo of one scene after the other.
+/// An emulated board that runs the servos of several scenes, one after the other.
 pub struct ServoClient {
     guest: Box<dyn Transport>,
     /// Ticks of the request that have not been run.
@@ -19,21 +19,21 @@ impl ServoClient {
     /// [`build_servo_server`](crate::toolchain::Toolchain::build_servo_server).
     ///
     /// # Errors
-    /// Where the emulator cannot be started.
+    /// If the emulator cannot be started.
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
         Ok(Self::with_transport(Guest::boot(elf, &[])?))
     }
 
-    /// A client of a program that runs already.
+    /// A client of a running program.
     pub fn with_transport(guest: impl Transport + 'static) -> Self {
         Self { guest: Box::new(guest), ticks_left: 0 }
     }
 
-    /// Has the board certify a scene and, if that passes, run its servo from rest. The remaining ticks
-    /// of the request before are run first, with the device at zero.
+    /// Lets the board certify a scene and, if it passes, run its servo from rest. The remaining ticks of the
+    /// previous request run first, with the device at zero.
     ///
     /// # Errors
-    /// Where the board has ended or does not answer.
+    /// If the board has ended or does not answer.
     pub fn start(&mut self, request: &LoopRequest) -> Result<StartReply, EmulatorError> {
         while self.ticks_left > 0 {
             self.exchange(0)?;
@@ -50,7 +50,7 @@ impl ServoClient {
     /// Ends the board.
     ///
     /// # Errors
-    /// Where it does not end, or ends with a failure.
+    /// If it does not end, or ends with a failure.
     pub fn finish(mut self) -> Result<(), EmulatorError> {
         while self.ticks_left > 0 {
             self.exchange(0)?;

@@ -1,16 +1,16 @@
-//! How questions get to a program that measures, and its answers back.
+//! The transport of requests to a measuring program, and of its answers.
 
 use super::{EmulatorError, Guest};
 
-/// A board with a program that answers bytes by bytes.
+/// A board with a program that answers requests in bytes.
 pub trait Transport {
-    /// Gives bytes to the board and waits until it has filled `answer`.
+    /// Sends bytes to the board and waits until it has filled `answer`.
     ///
     /// # Errors
-    /// Where it does not.
+    /// If it does not answer.
     fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError>;
 
-    /// The same with a question of words.
+    /// The same with a request in words.
     ///
     /// # Errors
     /// As of [`exchange`](Self::exchange).
@@ -19,10 +19,10 @@ pub trait Transport {
         self.exchange(&bytes, answer)
     }
 
-    /// Tells the program that there is no more, and waits for its end.
+    /// Ends the requests, and waits for the program's end.
     ///
     /// # Errors
-    /// Where it does not end, or ends with a failure.
+    /// If it does not end, or ends with a failure.
     fn finish(self: Box<Self>) -> Result<(), EmulatorError>;
 }
 

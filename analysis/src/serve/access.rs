@@ -7,7 +7,7 @@ use std::net::SocketAddr;
 use super::http::{Head, HttpResponse};
 use super::refusal::PageRefusal;
 
-/// Bytes of a token: nobody guesses 128 bit.
+/// Bytes of a token: 128 bits cannot be guessed.
 const BYTES: usize = 16;
 
 /// A secret of one run of the server.
@@ -18,14 +18,14 @@ impl Token {
     /// A new token, from the system's random numbers.
     ///
     /// # Errors
-    /// Where the system has none.
+    /// If the system has none.
     pub fn random() -> Result<Self, getrandom::Error> {
         let mut bytes = [0; BYTES];
         getrandom::fill(&mut bytes)?;
         Ok(Self(bytes.iter().map(|byte| format!("{byte:02x}")).collect()))
     }
 
-    /// Whether it equals this token, in a time that does not depend on how much of it is right.
+    /// Whether it equals this token, in a time that does not depend on the number of equal bytes.
     fn is(&self, given: &str) -> bool {
         let (ours, given) = (self.0.as_bytes(), given.as_bytes());
         let differences = ours.iter().zip(given).fold(0, |all, (a, b)| black_box(all | (a ^ b)));
@@ -47,7 +47,7 @@ pub struct Access {
 }
 
 impl Access {
-    /// Of a server at this address.
+    /// The requirements of a server at this address.
     pub fn new(address: SocketAddr, token: Token) -> Self {
         let hosts = vec![address.to_string(), format!("localhost:{}", address.port())];
         Self { token, hosts }

@@ -23,10 +23,10 @@ use crate::link::is_timeout;
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 /// Longest message of a page, in bytes: more than a page sends at a time.
 const LONGEST: usize = 4096;
-/// Most bytes that wait in the socket of a page; with more of them it is too slow.
+/// Largest number of bytes waiting in the socket of a page; with more, the page is too slow.
 const WAITING: usize = 1 << 20;
-/// Time after which a second page is refused. Until then the first may turn out to have left: a page that is
-/// reloaded.
+/// Time after which a second page is refused. During this time the first page may leave, for instance if it
+/// is reloaded.
 const QUEUE_TIMEOUT: Duration = Duration::from_millis(500);
 /// Time in which a refused page may confirm that the socket is closed.
 const GOODBYE: Duration = Duration::from_secs(1);
@@ -55,7 +55,7 @@ pub fn check_upgrade(head: &Head) -> Result<String, HttpResponse> {
     }
 }
 
-/// Carries the wire of a page until one of both ends it.
+/// Carries the wire of a page until the page or the server ends it.
 pub(super) fn carry(mut stream: &TcpStream, rest: Vec<u8>, key: &str, shared: &Shared) {
     let accepted = format!(
         "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
@@ -82,7 +82,7 @@ pub(super) fn carry(mut stream: &TcpStream, rest: Vec<u8>, key: &str, shared: &S
     }
 }
 
-/// The port, as soon as no other page has it.
+/// Takes the port as soon as no other page has it.
 fn seat(shared: &Shared) -> Option<Seat> {
     let end = Instant::now() + QUEUE_TIMEOUT;
     loop {
@@ -101,7 +101,7 @@ struct Page<'p, 's> {
     shared: &'s Shared,
 }
 
-/// Why a page is sent away.
+/// The reason for closing a page's socket.
 type End = Option<CloseFrame>;
 
 impl From<PageRefusal> for CloseFrame {
@@ -128,7 +128,7 @@ impl Page<'_, '_> {
                 waiting = self.seat.send(bytes).err();
             }
             if waiting.is_some() {
-                // A page that sends more than the port takes is read at the port's rate.
+                // If a page sends more than the port takes, it is read at the port's rate.
                 thread::sleep(POLL_INTERVAL);
                 continue;
             }

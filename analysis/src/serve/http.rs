@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use crate::link::is_timeout;
 
-/// Longest head of a request, in bytes: a browser's has one.
+/// Longest head of a request in bytes: much longer than that of a browser.
 const LONGEST: usize = 16_384;
-/// Most lines of it.
+/// Largest number of header lines.
 const HEADERS: usize = 100;
 /// Longest time that a request or its answer may take.
 pub const TIMEOUT: Duration = Duration::from_secs(5);
@@ -23,7 +23,7 @@ pub struct Head {
     pub method: String,
     target: String,
     headers: Vec<(String, String)>,
-    /// Bytes that were received behind it.
+    /// Bytes received after the head.
     pub rest: Vec<u8>,
 }
 
@@ -99,7 +99,7 @@ impl Head {
     /// A header by its name in small letters.
     ///
     /// # Errors
-    /// The response if it occurs twice: one reader may take the first, and another one the last.
+    /// The response if it occurs twice, because readers differ in whether the first or the last counts.
     pub fn header(&self, name: &str) -> Result<Option<&str>, HttpResponse> {
         let mut all = self.headers.iter().filter(|(given, _)| given == name);
         match (all.next(), all.next()) {
@@ -121,7 +121,7 @@ pub struct HttpResponse {
 }
 
 impl HttpResponse {
-    /// A refusal, as a sentence.
+    /// A refusal as text.
     pub fn refusal(status: u16, sentence: String) -> Self {
         let (headers, kind) = (Vec::new(), "text/plain; charset=utf-8");
         Self { status, headers, kind, body: sentence + "\n" }
@@ -146,7 +146,7 @@ impl HttpResponse {
         self
     }
 
-    /// Sends it. A client that does not take it has gone.
+    /// Sends the response. If a client does not take it, it has gone.
     pub fn send(&self, mut stream: &TcpStream) {
         let Self { status, headers, kind, body } = self;
         let mut text = format!("HTTP/1.1 {status} {}\r\n", reason(*status));

@@ -1,5 +1,5 @@
-//! A board's wire for a page in a browser: a server on this machine alone, which gives out the page and
-//! carries the bytes of the port to it and back, unchanged.
+//! A board's wire for a page in a browser: a server that is reachable only from this machine, sends the page,
+//! and carries the bytes of the port to it and back, unchanged.
 //!
 //! Any page of any site can ask a server of this machine, and a name can be made to point at it. So a client
 //! must know the token, which only the user who started the server has seen; must address this machine by its
@@ -29,12 +29,12 @@ pub use self::refusal::PageRefusal;
 pub use self::report::Report;
 use self::shared::Shared;
 
-/// Connections at a time: a page takes two, and a browser opens some in advance.
+/// Largest number of connections: a page uses two, and a browser opens some in advance.
 const CONNECTIONS: usize = 16;
 /// Longest time between two checks whether the server ends.
 const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
-/// Why there is no server.
+/// The reason why there is no server.
 #[derive(Debug, Error)]
 pub enum ServeError {
     /// Other machines could reach the motor.
@@ -69,10 +69,10 @@ pub struct Server {
 }
 
 impl Server {
-    /// Checks that an address is of this machine alone.
+    /// Checks that an address is reachable only from this machine.
     ///
     /// # Errors
-    /// Where it is not.
+    /// If it is not.
     pub fn check(listen: SocketAddr) -> Result<(), ServeError> {
         if listen.ip().is_loopback() {
             Ok(())
@@ -84,7 +84,7 @@ impl Server {
     /// Listens at an address of this machine, for a page and its socket to this port.
     ///
     /// # Errors
-    /// Where the address is not of this machine alone, or taken, or there are no random numbers.
+    /// If the address is reachable from other machines, or taken, or if there are no random numbers.
     pub fn start(
         port: Port,
         listen: SocketAddr,
@@ -156,9 +156,9 @@ fn listen_at(listener: &TcpListener, shared: &Arc<Shared>) {
     }
 }
 
-/// Serves a connection on a thread of its own, where there are not too many.
+/// Serves a connection in its own thread, if there are not too many.
 fn connection(stream: TcpStream, shared: &Arc<Shared>) -> Option<JoinHandle<()>> {
-    // A client that does not read is not waited for.
+    // The server does not wait for a client that does not read.
     let is_ready = stream.set_nonblocking(false).is_ok()
         && stream.set_write_timeout(Some(http::TIMEOUT)).is_ok()
         && stream.set_nodelay(true).is_ok();

@@ -1,4 +1,4 @@
-//! The port of a board, which is always read, and the page that has it.
+//! The port of a board, which is always read, and the page that uses it.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,9 +16,9 @@ use crate::link::{Address, LinkError, Transport, is_timeout, open};
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 /// Bytes that are read at a time.
 const BYTES: usize = 4096;
-/// Reads that wait for a page; with more of them it is too slow.
+/// Largest number of reads waiting for a page; with more, the page is too slow.
 const READS: usize = 256;
-/// Messages of a page that wait for the port.
+/// Largest number of a page's messages waiting for the port.
 const MESSAGES: usize = 64;
 
 /// The port of a board.
@@ -32,7 +32,7 @@ pub struct Port {
 pub enum News {
     /// The board has sent bytes.
     Bytes(Vec<u8>),
-    /// The port is lost, and is tried again.
+    /// The port is lost, and is being opened again.
     Lost(String),
     /// The port is open.
     Open,
@@ -48,13 +48,13 @@ pub struct Seats {
 struct State {
     /// The number of a seat, and the channel to its page.
     client: Option<(u64, SyncSender<News>)>,
-    /// Seats that were taken so far.
+    /// Number of seats taken so far.
     taken: u64,
-    /// Why the port is not open.
+    /// The reason if the port is not open.
     lost: Option<String>,
 }
 
-/// The page that has the port; gives it back when dropped.
+/// The page that uses the port; releases it when dropped.
 pub struct Seat {
     seats: Seats,
     number: u64,
@@ -85,7 +85,7 @@ impl Seats {
         })
     }
 
-    /// Sends to the page that has the port. A page that is too slow loses it; the port does not wait.
+    /// Sends to the page that uses the port. A page that is too slow loses the port; the port does not wait.
     fn tell(&self, news: News) {
         self.with(|state| {
             if let Some((_, client)) = &state.client
@@ -103,10 +103,10 @@ impl Seats {
 }
 
 impl Seat {
-    /// The next news; `Disconnected` where the page has lost the port.
+    /// The next news; `Disconnected` if the page has lost the port.
     ///
     /// # Errors
-    /// Where nothing is new.
+    /// If there is no news.
     pub fn news(&self) -> Result<News, TryRecvError> {
         self.news.try_recv()
     }
@@ -114,7 +114,7 @@ impl Seat {
     /// Sends to the board.
     ///
     /// # Errors
-    /// The bytes, where too many wait already.
+    /// The bytes, if too many are waiting.
     pub fn send(&self, bytes: Vec<u8>) -> Result<(), Vec<u8>> {
         match self.seats.to_board.try_send(bytes) {
             Err(TrySendError::Full(bytes)) => Err(bytes),
@@ -137,7 +137,7 @@ impl Port {
     /// Opens the port.
     ///
     /// # Errors
-    /// Where it cannot be opened.
+    /// If it cannot be opened.
     pub fn open(address: &Address) -> Result<Self, LinkError> {
         let address = address.clone();
         match open(&address) {
@@ -146,7 +146,7 @@ impl Port {
         }
     }
 
-    /// Carries bytes until it is over, and opens the port again where it is lost.
+    /// Carries bytes until the end of the server, and opens the port again if it is lost.
     pub(super) fn carry(
         self,
         seats: &Seats,
@@ -184,7 +184,7 @@ impl Port {
     }
 }
 
-/// Waits before the next try. Bytes that a page sends meanwhile are lost, as on a line without a board.
+/// Waits before the next try. Bytes from a page meanwhile are lost, as on a line without a board.
 fn wait(wire: &Receiver<Vec<u8>>, over: &AtomicBool) {
     let end = Instant::now() + RETRY;
     while !over.load(Ordering::Relaxed) && Instant::now() < end {
@@ -193,7 +193,7 @@ fn wait(wire: &Receiver<Vec<u8>>, over: &AtomicBool) {
     }
 }
 
-/// Carries bytes both ways until it is over, or the port is lost.
+/// Carries bytes in both directions until the end of the server, or until the port is lost.
 fn carry(
     transport: &mut dyn Transport,
     seats: &Seats,

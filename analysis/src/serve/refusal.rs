@@ -1,11 +1,11 @@
-//! Why a page does not get the wire of a board.
+//! The reasons why a page does not get the wire of a board.
 
 use thiserror::Error;
 
-/// Why a page does not get the wire.
+/// The reason why a page does not get the wire.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum PageRefusal {
-    /// The request is for another host, whose name leads here.
+    /// The request is for another host, whose name points to this machine.
     #[error(
         "the host is `{host}`, but this server is {own}: open the address that `haptic serve` has printed"
     )]

@@ -1,4 +1,4 @@
 //! Messages while a server runs.
 
-/// Reports events in sentences, for the user who started the server.
+/// Reports events as text to the user who started the server.
 pub type Report = Box<dyn Fn(&str) + Send + Sync>;

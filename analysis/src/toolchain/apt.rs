@@ -8,24 +8,24 @@ use std::process::{Command, ExitStatus, Output, Stdio};
 
 use super::output::last_lines;
 
-/// What an installation would change, each package by its name.
+/// The changes of an installation, by the packages' names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
-    /// New ones.
+    /// New packages.
     pub installed: Vec<String>,
-    /// Those that are replaced by another version.
+    /// Packages that are replaced by another version.
     pub replaced: Vec<String>,
-    /// Those that would be gone.
+    /// Packages that would be removed.
     pub removed: Vec<String>,
 }
 
-/// Why packages were not installed.
+/// The reason why packages were not installed.
 #[derive(Debug, thiserror::Error)]
 pub enum AptError {
-    /// It could not be started.
+    /// `apt-get` could not be started.
     #[error("apt-get could not be run: {0}")]
     Unrunnable(#[source] io::Error),
-    /// It failed.
+    /// `apt-get` failed.
     #[error("`{command}` ended with {status}:\n{output}")]
     Failed {
         /// The command.
@@ -41,16 +41,16 @@ pub enum AptError {
          {changes}\ncheck these changes; if they are right, run this yourself:\n  {command}"
     )]
     Removes {
-        /// The packages that are wanted.
+        /// The requested packages.
         wanted: String,
-        /// What installing them would change.
+        /// The changes that installing them would make.
         changes: Changes,
-        /// What does it, after asking.
+        /// The command that installs them after asking.
         command: String,
     },
 }
 
-/// The program that installs; `apt-get` where nothing else is said.
+/// The program that installs; by default `apt-get`.
 #[derive(Clone, Debug)]
 pub struct Apt {
     program: PathBuf,
@@ -62,7 +62,7 @@ impl Default for Apt {
     }
 }
 
-/// The command by which a person installs packages, as root; it asks by itself.
+/// The command for the user to install packages as root, which asks for consent itself.
 pub fn by_hand(packages: &[&str]) -> String {
     format!("apt-get install --no-install-recommends {}", packages.join(" "))
 }
@@ -71,7 +71,7 @@ impl Apt {
     /// Fetches the lists of packages.
     ///
     /// # Errors
-    /// Where that fails.
+    /// If that fails.
     pub fn update(&self) -> Result<(), AptError> {
         self.run(&["update"], &[]).map(drop)
     }
@@ -80,7 +80,7 @@ impl Apt {
     /// first.
     ///
     /// # Errors
-    /// It fails, or consent is refused: then nothing has changed.
+    /// If it fails, or if consent is refused, which changes nothing.
     pub fn install(
         &self,
         packages: &[&str],
@@ -94,7 +94,7 @@ impl Apt {
         progress(&format!("{command}: {changes}"));
         let mut arguments = vec!["install", "--yes", "--no-install-recommends"];
         if changes.removed.is_empty() {
-            // Whatever has happened to the machine since the simulation.
+            // In case the machine has changed since the simulation.
             arguments.push("--no-remove");
         } else if !agrees(&changes) {
             return Err(AptError::Removes { wanted: packages.join(" "), changes, command });
@@ -102,7 +102,7 @@ impl Apt {
         self.run(&arguments, packages).map(drop)
     }
 
-    /// `apt-get` that asks nothing and waits for another one to finish.
+    /// Runs `apt-get` without questions; it waits for another one to finish.
     fn run(&self, arguments: &[&str], packages: &[&str]) -> Result<Output, AptError> {
         let mut command = Command::new(&self.program);
         command
@@ -127,8 +127,8 @@ impl Apt {
 }
 
 impl Changes {
-    /// Of the output of `apt-get install --simulate`: a line for each package that is unpacked
-    /// (`Inst NAME [old version] (new version ...)`, the old one only where there is one), removed
+    /// The changes in the output of `apt-get install --simulate`: a line for each package that is unpacked
+    /// (`Inst NAME [old version] (new version ...)`, the old version only if there is one), removed
     /// (`Remv NAME ...`) or removed with its settings (`Purg NAME ...`).
     fn of_simulation(text: &str) -> Self {
         let mut changes = Self::default();

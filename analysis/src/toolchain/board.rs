@@ -13,17 +13,17 @@ pub enum BoardModel {
     Stm32f405,
 }
 
-/// What makes a board's torque.
+/// The torque output of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum TorqueOutput {
-    /// Its DAC, with a current amplifier outside.
+    /// Its DAC, with an external current amplifier.
     Dac,
     /// Its own bridge.
     Bridge,
 }
 
 impl TorqueOutput {
-    /// The features of the firmware's package that it takes beside the board's.
+    /// The features of the firmware's package in addition to the board's.
     pub(super) const fn features(self) -> &'static str {
         match self {
             Self::Dac => "",
@@ -49,7 +49,7 @@ impl fmt::Display for TorqueOutput {
     }
 }
 
-/// There is no such board.
+/// The error for an unknown board.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no board {name}; there are {}", BoardModel::ALL.map(BoardModel::name).join(", "))]
 pub struct UnknownBoard {
@@ -58,7 +58,7 @@ pub struct UnknownBoard {
 }
 
 impl BoardModel {
-    /// All of them.
+    /// All boards.
     pub const ALL: [Self; 3] = [Self::NucleoG474re, Self::BG431bEsc1, Self::Stm32f405];
 
     /// Its name, which is also the feature's.
@@ -75,7 +75,7 @@ impl BoardModel {
         matches!(self, Self::BG431bEsc1)
     }
 
-    /// Bytes of its chip's flash, by the chip's data sheet.
+    /// Size of its chip's flash in bytes, from the chip's data sheet.
     pub const fn flash(self) -> u64 {
         let kibibytes = match self {
             Self::NucleoG474re => 512,
@@ -88,7 +88,7 @@ impl BoardModel {
     /// The board of that name.
     ///
     /// # Errors
-    /// Where there is none; the error names those that there are.
+    /// If there is none; the error lists the boards.
     pub fn find(name: &str) -> Result<Self, UnknownBoard> {
         let found = Self::ALL.into_iter().find(|board| board.name() == name);
         found.ok_or_else(|| UnknownBoard { name: name.into() })

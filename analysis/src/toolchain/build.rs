@@ -13,7 +13,7 @@ use super::size::{SizeError, Sizes};
 use super::sources::{Sources, SourcesError, workspace_root};
 use super::{BoardModel, TARGET, Target, TorqueOutput};
 
-/// The format that a scene's program computes in.
+/// The number format of a scene's program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum NumberFormat {
     /// Single-precision floating point.
@@ -23,7 +23,7 @@ pub enum NumberFormat {
 }
 
 impl NumberFormat {
-    /// Both.
+    /// Both formats.
     pub const ALL: [Self; 2] = [Self::F32, Self::Fixed];
 
     /// Its name on the command line.
@@ -41,7 +41,7 @@ impl fmt::Display for NumberFormat {
     }
 }
 
-/// Why a program could not be built.
+/// The reason why a program could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum BuildError {
     /// The sources are invalid.
@@ -55,7 +55,7 @@ pub enum BuildError {
         /// Why.
         source: io::Error,
     },
-    /// The board cannot make torque like that.
+    /// The board does not have this torque output.
     #[error(
         "the board {board} has no bridge that this firmware drives; {} has",
         BoardModel::BG431bEsc1
@@ -72,7 +72,7 @@ pub enum BuildError {
     Compile {
         /// The program.
         program: String,
-        /// What the compiler said.
+        /// The output of the compiler.
         output: String,
     },
     /// The linker's map could not be read.
@@ -96,20 +96,20 @@ pub enum BuildError {
 /// The compiler that builds for the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compiler {
-    /// The toolchain that builds everything else here.
+    /// The toolchain of the rest of the workspace.
     Own,
-    /// Debian's, which builds `core` from source as well.
+    /// Debian's toolchain, which also builds `core` from source.
     Debian,
 }
 
-/// What builds programs for the board; [`prepare`](super::prepare()) gives it.
+/// A toolchain that builds programs for the board, made by [`prepare`](super::prepare()).
 #[derive(Clone, Debug)]
 pub struct Toolchain {
     compiler: Compiler,
     workspace: Workspace,
 }
 
-/// A program that was built.
+/// A built program.
 #[derive(Clone, Debug)]
 pub struct Program {
     /// Its file.
@@ -122,7 +122,7 @@ pub struct Program {
 #[derive(Clone, Debug)]
 pub(super) struct Workspace {
     root: PathBuf,
-    /// Cargo's folder for this machine's programs, and the one for the boards' in it.
+    /// Cargo's folder for this machine's programs, and the folder for the boards' programs in it.
     target: PathBuf,
     output: PathBuf,
 }
@@ -130,7 +130,7 @@ pub(super) struct Workspace {
 /// The package of the scenes' programs.
 const SCENES: &str = "haptic-servo";
 
-/// Which build of a program: its features, and the addition to its name for the file.
+/// A build variant of a program: its features, and the suffix of its file's name.
 struct Variant {
     features: String,
     suffix: String,
@@ -152,37 +152,37 @@ impl Toolchain {
         Self { compiler, workspace }
     }
 
-    /// Names of the programs, in the alphabet's order.
+    /// Names of the programs in alphabetical order.
     ///
     /// # Errors
-    /// Where the source cannot be read.
+    /// If the source cannot be read.
     pub fn scenes(&self) -> Result<Vec<String>, BuildError> {
         Ok(Sources::of(&self.workspace.root).programs()?)
     }
 
-    /// What a program's torque is made by, where nothing else is said: the board's bridge, if its scene is
-    /// certified with the bridge's latency.
+    /// The default torque output of a program: the board's bridge, if its scene is certified with the
+    /// bridge's latency.
     ///
     /// # Errors
-    /// Where its source cannot be read.
+    /// If its source cannot be read.
     pub fn output_of(&self, name: &str) -> Result<TorqueOutput, BuildError> {
         let bridge = Sources::of(&self.workspace.root).is_for_bridge(name)?;
         Ok(if bridge { TorqueOutput::Bridge } else { TorqueOutput::Dac })
     }
 
-    /// Builds a scene's program for the emulated board, with its log, and gives its file.
+    /// Builds a scene's program for the emulated board, with its log, and returns its file.
     ///
     /// # Errors
-    /// Where there is no such scene, or it does not compile.
+    /// If there is no such scene, or it does not compile.
     pub fn build_scene(&self, name: &str, format: NumberFormat) -> Result<PathBuf, BuildError> {
         Ok(self.build_scenes(&[name], format)?.swap_remove(0))
     }
 
-    /// Builds several as [`build_scene`](Self::build_scene) does, at the same time, and gives their
-    /// files in the same order.
+    /// Builds several scenes' programs at the same time like [`build_scene`](Self::build_scene), and returns
+    /// their files in the same order.
     ///
     /// # Errors
-    /// Where one of them does not exist or does not compile.
+    /// If one of them does not exist or does not compile.
     pub fn build_scenes(
         &self,
         names: &[&str],
@@ -194,17 +194,16 @@ impl Toolchain {
     /// Builds scenes' programs for the emulated board in `f32`, without log and measurements.
     ///
     /// # Errors
-    /// Where one of them does not exist or does not compile.
+    /// If one of them does not exist or does not compile.
     pub fn build_bare(&self, names: &[&str]) -> Result<Vec<Program>, BuildError> {
         let bare = Variant::scene("board-qemu", NumberFormat::F32, "-bare");
         self.scenes_programs(names, &bare)?.into_iter().map(Program::at).collect()
     }
 
-    /// Builds programs for a board that can be flashed, and for what makes its torque.
+    /// Builds programs to be flashed, for a board and its torque output.
     ///
     /// # Errors
-    /// Where one of them does not exist, does not compile or does not fit, and where the board has no such
-    /// output.
+    /// If one of them does not exist, does not compile or does not fit, or if the board has no such output.
     pub fn build_for(
         &self,
         board: BoardModel,
@@ -220,11 +219,11 @@ impl Toolchain {
         self.scenes_programs(names, &variant)?.into_iter().map(Program::at).collect()
     }
 
-    /// Builds a program for a board with a plain `cargo build --release`, to check that it
-    /// compiles and fits; keeps no output.
+    /// Builds a program for a board with a plain `cargo build --release`, to check that it compiles and fits;
+    /// discards the output.
     ///
     /// # Errors
-    /// Where it does not.
+    /// If it does not compile or fit.
     pub fn try_release(&self, board: BoardModel, name: &str) -> Result<(), BuildError> {
         let build = ["--release", "--package", SCENES, "--features", board.name()];
         let program = ["--bin", name, "--target", TARGET];
@@ -232,11 +231,11 @@ impl Toolchain {
         self.compile(name, &[&build[..], &program].concat())
     }
 
-    /// Builds the tests that run on a board as a user does, and gives their file: those of a board's own bridge
-    /// are others than those of its DAC.
+    /// Builds the tests that run on a board, like a user, and returns their file: a board's own bridge has
+    /// other tests than its DAC.
     ///
     /// # Errors
-    /// Where they do not compile or do not fit, and where the board has no such output.
+    /// If they do not compile or do not fit, or if the board has no such output.
     pub fn build_tests(
         &self,
         board: BoardModel,
@@ -254,7 +253,7 @@ impl Toolchain {
         let tests = ["--features", &features, "--test", name];
         let _lock = self.workspace.lock("build")?;
         let mut cargo = self.cargo();
-        // Cargo names the file of a test as it likes, and says how.
+        // Cargo chooses the name of a test's file, and prints it.
         let printed = output_of(
             name,
             cargo.args(build).args(tests).arg("--message-format=json-render-diagnostics"),
@@ -267,11 +266,11 @@ impl Toolchain {
         self.workspace.keep(&built, &format!("{name}-{board}{}", output.suffix()))
     }
 
-    /// Builds a foreign package, in a folder outside of the workspace, for the boards, like programs
-    /// to be flashed, and returns the program of that name.
+    /// Builds a foreign package, in a folder outside the workspace, for the boards, like programs to be
+    /// flashed, and returns the program of this name.
     ///
     /// # Errors
-    /// Where it does not compile.
+    /// If it does not compile.
     pub fn build_foreign(&self, folder: &Path, name: &str) -> Result<Program, BuildError> {
         let _lock = self.workspace.lock("build")?;
         let mut cargo = self.cargo();
@@ -281,10 +280,10 @@ impl Toolchain {
         Program::at(self.workspace.keep(&built, &format!("foreign-{name}"))?)
     }
 
-    /// What a board's program may take of its memory.
+    /// The memory that a board's program may use.
     ///
     /// # Errors
-    /// Where the linker's map cannot be read.
+    /// If the linker's map cannot be read.
     pub fn memory(&self) -> Result<Memory, BuildError> {
         let path = self.workspace.root.join("memory.x");
         match fs::read_to_string(&path) {
@@ -296,7 +295,7 @@ impl Toolchain {
     /// Builds the server that certifies scenes for [`CertifyClient`](crate::emulator::CertifyClient).
     ///
     /// # Errors
-    /// Where it does not compile.
+    /// If it does not compile.
     pub fn build_certify_server(&self) -> Result<PathBuf, BuildError> {
         self.build_harness("certify_server")
     }
@@ -304,7 +303,7 @@ impl Toolchain {
     /// Builds the server that runs scenes for [`ServoClient`](crate::emulator::ServoClient).
     ///
     /// # Errors
-    /// Where it does not compile.
+    /// If it does not compile.
     pub fn build_servo_server(&self) -> Result<PathBuf, BuildError> {
         self.build_harness("servo_server")
     }
@@ -312,7 +311,7 @@ impl Toolchain {
     /// Builds the benchmark server for [`BenchClient`](crate::emulator::BenchClient).
     ///
     /// # Errors
-    /// Where it does not compile.
+    /// If it does not compile.
     pub fn build_bench_programs(&self) -> Result<PathBuf, BuildError> {
         self.build_harness("bench_programs")
     }
@@ -320,25 +319,24 @@ impl Toolchain {
     /// Builds the benchmark server that has every type of scene.
     ///
     /// # Errors
-    /// Where it does not compile.
+    /// If it does not compile.
     pub fn build_bench_all(&self) -> Result<PathBuf, BuildError> {
         self.build_harness("bench_all")
     }
 
-    /// Builds the program of an environment that is not in the firmware, for the emulated board with its
-    /// log.
+    /// Builds the program of the foreign environment for the emulated board, with its log.
     ///
     /// # Errors
-    /// Where it does not compile.
+    /// If it does not compile.
     pub fn build_own_environment(&self, format: NumberFormat) -> Result<PathBuf, BuildError> {
         let variant = Variant::scene("board-qemu,log", format, "");
         Ok(self.build("own-environment", &["pedal"], &variant)?.swap_remove(0))
     }
 
-    /// Builds the program of a board that is not in the firmware, for that board.
+    /// Builds the program of the foreign board, for that board.
     ///
     /// # Errors
-    /// Where it does not compile.
+    /// If it does not compile.
     pub fn build_own_board(&self) -> Result<Program, BuildError> {
         const NAME: &str = "own-board";
         let _lock = self.workspace.lock("build")?;
@@ -347,10 +345,10 @@ impl Toolchain {
         Program::at(self.workspace.keep(&built, NAME)?)
     }
 
-    /// Builds the virtual board: a program for this machine, beside this one and not a part of it.
+    /// Builds the virtual board: a separate program for this machine.
     ///
     /// # Errors
-    /// Where it does not compile.
+    /// If it does not compile.
     pub fn build_virtual_board(&self) -> Result<PathBuf, BuildError> {
         const NAME: &str = "virtual-board";
         let mut cargo = Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into()));
@@ -363,10 +361,10 @@ impl Toolchain {
         Ok(target.join("debug").join(NAME))
     }
 
-    /// Builds what the page of `haptic explore` runs: WebAssembly.
+    /// Builds the WebAssembly module of the page of `haptic explore`.
     ///
     /// # Errors
-    /// Where it does not compile.
+    /// If it does not compile.
     pub fn build_browser_module(&self) -> Result<PathBuf, BuildError> {
         const PACKAGE: &str = "haptic-explore";
         let _lock = self.workspace.lock("build")?;
@@ -397,8 +395,8 @@ impl Toolchain {
         }
     }
 
-    /// One call of cargo for all programs of a package: it links on all cores. Without the package, what the
-    /// programs depend on would have features that others of the workspace ask for, and be built once more for
+    /// One call of cargo for all programs of a package: it links on all cores. Without the package's name,
+    /// the dependencies would have the features of other packages of the workspace, and be built again for
     /// them.
     fn build(
         &self,
@@ -406,8 +404,8 @@ impl Toolchain {
         names: &[&str],
         variant: &Variant,
     ) -> Result<Vec<PathBuf>, BuildError> {
-        // Cargo puts each build of a program, however it is built, in the same place; the lock keeps
-        // it there until it is copied.
+        // Cargo puts every variant of a program in the same place; the lock keeps it there until it is
+        // copied.
         let _lock = self.workspace.lock("build")?;
         let release = ["--release", "--package", package, "--target", TARGET];
         let programs = names.iter().flat_map(|name| ["--bin", name]);
@@ -427,8 +425,7 @@ impl Toolchain {
         ran(program, self.cargo().args(arguments))
     }
 
-    /// Each compiler has a folder of its own: in a common one each would rebuild what the other
-    /// has built.
+    /// Each compiler has its own folder: in a common folder each would rebuild the other's output.
     fn target_folder(&self) -> PathBuf {
         self.workspace.output.join(match self.compiler {
             Compiler::Own => "own",
@@ -436,7 +433,7 @@ impl Toolchain {
         })
     }
 
-    /// Cargo, with nothing of the command that may have started this program.
+    /// Cargo, without the environment of a command that may have started this program.
     fn cargo(&self) -> Command {
         self.cargo_for(Target::Board)
     }
@@ -452,8 +449,8 @@ impl Toolchain {
         }
         command.env("CARGO_TARGET_DIR", self.target_folder()).arg("build");
         if self.compiler == Compiler::Debian {
-            // Debian has no `core` for these targets; its source is built with the program, which needs
-            // unstable features of cargo.
+            // Debian has no compiled `core` for these targets; its source is built with the program, which
+            // needs unstable features of cargo.
             command.env_remove("RUSTUP_TOOLCHAIN");
             command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1");
             let (variable, linker) = target.linker();
@@ -464,18 +461,18 @@ impl Toolchain {
     }
 }
 
-/// Builds the program `haptic` with one scene more, and gives its file. It is built as this program was, for
-/// this machine: their common parts are there.
+/// Builds the program `haptic` with one more scene, and returns its file. It is built like this program, for
+/// this machine, so that their common parts are reused.
 ///
 /// # Errors
-/// Where the scene does not compile.
+/// If the scene does not compile.
 pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
     const NAME: &str = "haptic-scene";
     let workspace = Workspace::find()?;
     let _lock = workspace.lock("scene")?;
     let mut cargo = Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(&workspace.root).args(["build", "--package", NAME]);
-    // Cargo's folder of the profile `dev` has another name.
+    // Cargo's folder of the profile `dev` has a different name.
     let (profile, folder) =
         if cfg!(debug_assertions) { ("dev", "debug") } else { ("host", "host") };
     cargo.args(["--profile", profile]);
@@ -484,19 +481,19 @@ pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
     workspace.keep(&workspace.target.join(folder).join(NAME), &format!("haptic-{scene}"))
 }
 
-/// The file of a test, where a line of cargo's messages says that it was built.
+/// The file of a test, if a line of cargo's messages reports that it was built.
 fn executable(message: &str, name: &str) -> Option<PathBuf> {
     let message: serde_json::Value = serde_json::from_str(message).ok()?;
     let is_it = message["target"]["name"] == name && message["target"]["kind"][0] == "test";
     is_it.then(|| message["executable"].as_str().map(PathBuf::from)).flatten()
 }
 
-/// Has cargo build a program.
+/// Builds a program with cargo.
 fn ran(program: &str, cargo: &mut Command) -> Result<(), BuildError> {
     output_of(program, cargo).map(drop)
 }
 
-/// The same; gives what cargo has printed.
+/// The same; returns the output of cargo.
 fn output_of(program: &str, cargo: &mut Command) -> Result<String, BuildError> {
     let output = cargo.output().map_err(BuildError::NoCargo)?;
     if output.status.success() {
@@ -541,7 +538,7 @@ impl Workspace {
         Ok(Self { output: target.join("thumb"), target, root })
     }
 
-    /// Waits for, and takes, a lock that other programs respect; it ends with the file.
+    /// Waits for and takes a lock that other programs respect; closing the file releases it.
     pub(super) fn lock(&self, name: &str) -> Result<File, BuildError> {
         let path = self.output.join(name).with_extension("lock");
         let locked = fs::create_dir_all(&self.output).and_then(|()| {
@@ -552,8 +549,8 @@ impl Workspace {
         locked.map_err(|source| BuildError::File { path, source })
     }
 
-    /// Copies a program to a name of its own. A running emulator may have the last one open, so
-    /// that is replaced and not overwritten.
+    /// Copies a program to its own name. A running emulator may have the old file open, so it is replaced and
+    /// not overwritten.
     fn keep(&self, built: &Path, name: &str) -> Result<PathBuf, BuildError> {
         let folder = self.output.join("programs");
         let kept = folder.join(name);

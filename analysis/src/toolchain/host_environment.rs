@@ -7,13 +7,13 @@ use super::Version;
 pub struct HostEnvironment {
     /// The compiler that `cargo` runs here.
     pub rust: Option<Rust>,
-    /// Whether there is a rustup to add a target with.
+    /// Whether there is a rustup, to add a target.
     pub rustup: bool,
-    /// Whether the machine's owner forbids toolchains to be fetched.
+    /// Whether the machine's owner forbids fetching toolchains.
     pub fetching_forbidden: bool,
     /// Version of the emulator.
     pub qemu: Option<Version>,
-    /// Whether there is what the virtual board's processor is built with.
+    /// The tools that build the virtual board's processor.
     pub native: NativeBuildTools,
     /// The packages, on a system that has Debian's.
     pub debian: Option<Debian>,
@@ -26,7 +26,7 @@ pub struct HostEnvironment {
 pub struct Rust {
     /// Its version.
     pub version: Version,
-    /// Whether it has `core` for the target that programs are built for.
+    /// Whether it has `core` for the target of the programs.
     pub has_target: bool,
 }
 
@@ -37,7 +37,7 @@ pub struct NativeBuildTools {
     pub cmake: bool,
     /// Whether there is make.
     pub make: bool,
-    /// Whether there is a C++ compiler, which cmake asks for.
+    /// Whether there is a C++ compiler, which cmake requires.
     pub cxx: bool,
     /// Whether there is pkg-config, without which the library's own configuration fails.
     pub pkg_config: bool,
@@ -48,10 +48,9 @@ pub struct NativeBuildTools {
 /// Debian's packages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Debian {
-    /// Whether the lists of packages have just been fetched, so that what they lack is not to be
-    /// had.
+    /// Whether the lists of packages have just been fetched, so that missing packages are not available.
     pub lists_are_fresh: bool,
-    /// Of each of [`Package::ALL`], in that order.
+    /// The state of each package of [`Package::ALL`], in that order.
     pub packages: [PackageState; Package::ALL.len()],
 }
 
@@ -62,14 +61,14 @@ impl Debian {
     }
 }
 
-/// Knowledge about a package.
+/// The state of a package.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PackageState {
     /// It is installed.
     Installed(Version),
     /// It could be installed.
     Available(Version),
-    /// The lists do not have it.
+    /// The lists do not contain it.
     Unknown,
 }
 
@@ -88,9 +87,9 @@ pub enum Package {
     Qemu,
     /// Builds the virtual board's processor.
     Cmake,
-    /// Runs what cmake writes.
+    /// Runs the output of cmake.
     Make,
-    /// The compiler that cmake asks for.
+    /// The compiler that cmake requires.
     Cxx,
     /// Finds libraries for the library's own configuration.
     PkgConfig,
@@ -99,7 +98,7 @@ pub enum Package {
 }
 
 impl Package {
-    /// All of them.
+    /// All packages.
     pub const ALL: [Self; 10] = [
         Self::Rustc,
         Self::Cargo,
@@ -112,7 +111,7 @@ impl Package {
         Self::PkgConfig,
         Self::Libclang,
     ];
-    /// Those that make a compiler for the target.
+    /// The packages of a compiler for the target.
     pub(super) const COMPILER: [Self; 4] = [Self::Rustc, Self::Cargo, Self::RustSource, Self::Lld];
 
     /// Its name.
@@ -131,7 +130,7 @@ impl Package {
         }
     }
 
-    /// Its oldest version that serves.
+    /// Its oldest sufficient version.
     const fn oldest(self) -> Option<Version> {
         match self {
             Self::Rustc | Self::Cargo | Self::RustSource => Some(Version::RUST),

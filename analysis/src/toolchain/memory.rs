@@ -1,4 +1,4 @@
-//! How much memory a program for a board may take: the linker's map, read.
+//! The memory that a program for a board may use, from the linker's map.
 
 /// Bytes of the linker's map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,11 +9,11 @@ pub struct Memory {
     pub ram: u64,
     /// RAM for the stack.
     pub stack: u64,
-    /// Memory beside the RAM, for those chips that have it.
+    /// Memory in addition to the RAM, on chips that have it.
     pub fast: u64,
 }
 
-/// The map does not say how long a region is.
+/// The map does not contain the length of a region.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("it does not say the length of {region}")]
 pub struct NoLength {
@@ -25,7 +25,7 @@ impl Memory {
     /// Reads a linker's map.
     ///
     /// # Errors
-    /// Where a region or its length is missing.
+    /// If a region or its length is missing.
     pub fn of_map(map: &str) -> Result<Self, NoLength> {
         let length = |region| {
             let mut lengths = map.lines().filter_map(|line| length(line, region));
@@ -36,7 +36,7 @@ impl Memory {
     }
 }
 
-/// The length in a line like `RAM : ORIGIN = 0x20000000, LENGTH = 2K`, if it is that region's.
+/// The length in a line like `RAM : ORIGIN = 0x20000000, LENGTH = 2K`, if it is a line of that region.
 fn length(line: &str, region: &str) -> Option<u64> {
     let (name, rest) = line.split_once(':')?;
     let (_, length) = rest.split_once("LENGTH = ").filter(|_| name.trim() == region)?;

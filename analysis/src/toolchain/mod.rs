@@ -1,7 +1,7 @@
-//! How programs for the board are built: the one place that knows.
+//! Builds programs for the board; no other module knows how.
 //!
-//! [`prepare`] looks at the machine ([`observe`]), chooses a route ([`plan`], a pure function), takes
-//! it, and gives a [`Toolchain`]; everything else asks that.
+//! [`prepare`] observes the machine ([`observe`]), makes a plan ([`plan`], a pure function), executes it, and
+//! returns a [`Toolchain`], which everything else uses.
 
 mod apt;
 mod board;
@@ -29,5 +29,5 @@ pub use sources::{Sources, SourcesError};
 pub use target::Target;
 pub use version::Version;
 
-/// The target that the boards' programs are built for: Cortex-M4 with its single-precision unit.
+/// The target of the boards' programs: Cortex-M4 with its single-precision unit.
 pub const TARGET: &str = "thumbv7em-none-eabihf";

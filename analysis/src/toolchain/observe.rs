@@ -1,4 +1,4 @@
-//! Looks at this machine: what there is on it.
+//! Observes the tools on this machine.
 
 use std::ffi::OsStr;
 use std::fs::DirEntry;
@@ -11,7 +11,7 @@ use super::host_environment::{
 use super::{Target, Version};
 use crate::emulator::QEMU;
 
-/// Looks at the machine, on which programs are to be built for `target`. `lists_are_fresh`: the lists of
+/// Observes the tools on this machine for building programs for `target`. `lists_are_fresh`: the lists of
 /// packages have just been fetched.
 pub fn observe(target: Target, lists_are_fresh: bool) -> HostEnvironment {
     HostEnvironment {
@@ -39,8 +39,8 @@ fn rust(target: Target) -> Option<Rust> {
     Some(Rust { version, has_target })
 }
 
-/// Whether the library is where the build of bindings looks for it: where it was told to, among the
-/// system's libraries, or in an LLVM's folder.
+/// Whether the library is where the build of bindings looks for it: in the configured folder, among the
+/// system's libraries, or in LLVM's folder.
 fn has_libclang() -> bool {
     let listed = |libraries: String| {
         libraries.lines().filter_map(|line| line.split_whitespace().next()).any(is_libclang)
@@ -50,8 +50,8 @@ fn has_libclang() -> bool {
         || llvm_has_libclang()
 }
 
-/// Whether a file is the library, by its name: `libclang.so`, `libclang-14.so`, and these with a
-/// version behind them. `libclang-cpp.so.14` is another one.
+/// Whether a file is the library, by its name: `libclang.so`, `libclang-14.so`, and these with a version
+/// behind them. `libclang-cpp.so.14` is a different library.
 fn is_libclang(file: &str) -> bool {
     let Some((name, version)) = file.split_once(".so") else { return false };
     let numbered = |text: &str| text.chars().all(|c| c.is_ascii_digit() || c == '.');
@@ -59,7 +59,7 @@ fn is_libclang(file: &str) -> bool {
     is_named && (version.is_empty() || version.starts_with('.'))
 }
 
-/// Debian keeps each version of LLVM in a folder of its own.
+/// Debian keeps each version of LLVM in its own folder.
 fn llvm_has_libclang() -> bool {
     let named = |entry: &DirEntry, start| entry.file_name().to_string_lossy().starts_with(start);
     let entries = |folder: &Path| folder.read_dir().into_iter().flatten().flatten();
@@ -97,7 +97,7 @@ fn package(package: Package) -> PackageState {
     candidate.map_or(PackageState::Unknown, PackageState::Available)
 }
 
-/// What a program prints, if it is there and content.
+/// The output of a program, if it exists and succeeds.
 fn output_of(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program)
         .args(arguments)

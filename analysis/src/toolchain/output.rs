@@ -1,4 +1,4 @@
-//! What a program that was started here said.
+//! The output of a program that was started here.
 
 /// The end of a long text.
 pub(super) fn last_lines(text: &str, count: usize) -> String {

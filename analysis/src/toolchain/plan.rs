@@ -1,10 +1,9 @@
-//! Which compiler builds for the board, and the steps before that: a pure function of what was seen on the
-//! machine.
+//! The choice of the compiler for the board, and the steps before: a pure function of the machine's observed
+//! state.
 //!
-//! The toolchain that built this program serves where it has the target, or may have it added.
-//! Where the machine's owner has said that toolchains are not to be fetched
-//! (`RUSTUP_AUTO_INSTALL=0`), or there is no rustup, Debian's packages serve: a compiler, and the
-//! source of `core` to build for the target.
+//! The toolchain that built this program is used if it has the target, or if the target may be added. If the
+//! machine's owner forbids fetching toolchains (`RUSTUP_AUTO_INSTALL=0`), or there is no rustup, Debian's
+//! packages are used: a compiler, and the source of `core` to build for the target.
 
 use std::fmt;
 
@@ -27,7 +26,7 @@ pub enum Tools {
 }
 
 impl Tools {
-    /// What programs are built for.
+    /// The target of the programs.
     pub const fn target(self) -> Target {
         match self {
             Self::Compiler | Self::CompilerAndEmulator | Self::CompilerAndVirtualBoard => {
@@ -38,14 +37,14 @@ impl Tools {
     }
 }
 
-/// What to do.
+/// The next action.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Plan {
-    /// Nothing: this compiler builds.
+    /// None: this compiler is ready.
     Ready(Compiler),
-    /// One step, and then to look again.
+    /// One step, and then observe again.
     Do(Step),
-    /// The person has to install something.
+    /// The user must install something.
     Ask(Vec<ManualStep>),
 }
 
@@ -60,16 +59,16 @@ pub enum Step {
     Install(Vec<Package>),
 }
 
-/// A step that the person has to take.
+/// A step that the user must take.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ManualStep {
     /// Install packages as root.
     Packages(Vec<Package>),
     /// Get a compiler with the target.
     Compiler {
-        /// The compiler that is there.
+        /// The installed compiler.
         found: Option<Version>,
-        /// Whether it may be had by rustup.
+        /// Whether rustup can provide it.
         rustup: bool,
         /// Its target.
         target: Target,
@@ -79,11 +78,11 @@ pub enum ManualStep {
         /// The installed version, which is too old.
         found: Option<Version>,
     },
-    /// Get what builds the virtual board's processor.
+    /// Get the tools that build the virtual board's processor.
     NativeBuildTools(NativeBuildTools),
 }
 
-/// How one of the two tools is to be had.
+/// How to get one of the two tools.
 enum Need {
     Nothing,
     AddTarget,
@@ -91,7 +90,7 @@ enum Need {
     Person(ManualStep),
 }
 
-/// Chooses the route.
+/// Makes the plan.
 pub fn plan(host: &HostEnvironment, tools: Tools) -> Plan {
     let target = tools.target();
     let (compiler, compiler_need) = compiler(host, target);
@@ -163,8 +162,7 @@ fn native(host: &HostEnvironment) -> Need {
 }
 
 impl HostEnvironment {
-    /// Packages that serve: those of them that are missing, or the request that stands in for them
-    /// where they are not to be had.
+    /// The missing packages of a tool, or a manual step if they are not available.
     fn packages(&self, wanted: &[Package], otherwise: ManualStep) -> Need {
         let Some(debian) = &self.debian else { return Need::Person(otherwise) };
         let mut missing = Vec::new();

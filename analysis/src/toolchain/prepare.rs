@@ -1,4 +1,4 @@
-//! Makes this machine able to build for the board, or states the steps for its owner.
+//! Prepares this machine to build for the board, or states the steps for the user.
 
 use std::io;
 use std::process::{Command, ExitStatus, Stdio};
@@ -10,13 +10,13 @@ use super::output::last_lines;
 use super::plan::{ManualStep, Plan, Step, Tools, plan};
 use super::{BuildError, Target};
 
-/// Why programs for the board cannot be built here.
+/// The reason why programs for the board cannot be built here.
 #[derive(Debug, thiserror::Error)]
 pub enum SetupError {
-    /// The person has to do something first.
+    /// The user must do something first.
     #[error("tools to build and run the programs for boards are missing:{}", bullets(.0))]
     Missing(Vec<ManualStep>),
-    /// A step could not be begun.
+    /// A step could not be started.
     #[error("`{step}` could not be run: {source}")]
     Unrunnable {
         /// The step.
@@ -37,7 +37,7 @@ pub enum SetupError {
     /// Packages were not installed.
     #[error(transparent)]
     Apt(#[from] AptError),
-    /// A step was taken and has not helped.
+    /// A step was taken without effect.
     #[error("`{0}` succeeded, but the package that it should install is still not found")]
     InVain(Step),
     /// The workspace cannot be found or written to.
@@ -49,18 +49,17 @@ fn bullets(requests: &[ManualStep]) -> String {
     requests.iter().map(|request| format!("\n  - {request}")).collect()
 }
 
-/// Makes sure that programs for the board can be built, and run where that is wanted; gives what
-/// builds them.
+/// Ensures that programs for the board can be built and, if requested, run; returns the toolchain.
 ///
 /// As root on Debian it installs missing packages; with rustup it adds the target, unless the machine's owner
-/// forbids that. `progress` receives each step before it is taken. A package is removed only after a yes at
-/// the terminal.
+/// forbids it. `progress` receives each step before it is taken. A package is removed only after a yes at the
+/// terminal.
 ///
 /// # Errors
-/// Elsewhere, [`SetupError::Missing`] says exactly what to install.
+/// Otherwise, [`SetupError::Missing`] states exactly what to install.
 pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, SetupError> {
     let workspace = Workspace::find()?;
-    // Two programs that install at the same time would find each other's half-done work.
+    // Two programs that install at the same time would disturb each other.
     let _lock = workspace.lock("setup")?;
     let mut taken = Vec::new();
     loop {
@@ -122,11 +121,11 @@ fn add_target(step: &Step, target: Target) -> Result<(), SetupError> {
     })
 }
 
-/// Installs packages of Debian's that are for the tests alone, where that is this machine's way: as root,
-/// and with nothing removed.
+/// Installs Debian packages that only the tests need, if this machine allows it: as root, and without
+/// removing packages.
 ///
 /// # Errors
-/// Where it is not, or fails.
+/// If it does not allow it, or if it fails.
 pub fn install(packages: &[&str], progress: impl Fn(&str)) -> Result<(), AptError> {
     let apt = Apt::default();
     let root = nix::unistd::geteuid().is_root();

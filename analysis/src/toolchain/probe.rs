@@ -1,4 +1,4 @@
-//! Handing a program over to probe-rs, which flashes it through a debug probe and shows its log.
+//! Passes a program to probe-rs, which flashes it through a debug probe and shows its log.
 
 use std::io;
 use std::path::Path;
@@ -6,16 +6,16 @@ use std::process::{Command, ExitStatus, Stdio};
 
 use object::{Object, ObjectSection};
 
-/// The program that speaks to debug probes.
+/// The program for debug probes.
 pub const PROBE_RS: &str = "probe-rs";
 
-/// Section in which a program says which chip it is for.
+/// Section of a program that contains the name of its chip.
 const CHIP: &str = ".probe-rs.chip";
 
-/// Why a program could not be flashed.
+/// The reason why a program could not be flashed.
 #[derive(Debug, thiserror::Error)]
 pub enum ProbeError {
-    /// probe-rs is not there.
+    /// probe-rs is not installed.
     #[error(
         "{PROBE_RS} is not installed: cargo install --locked probe-rs-tools, or see \
          https://probe.rs/docs/getting-started/installation"
@@ -30,18 +30,18 @@ pub enum ProbeError {
          udev rules of https://probe.rs/docs/getting-started/probe-setup)"
     )]
     NoProbe,
-    /// The program does not say which chip it is for.
+    /// The program does not contain the name of its chip.
     #[error("the program does not say which chip it is for: {0}")]
     NoChip(String),
-    /// probe-rs failed; it has said why.
+    /// probe-rs failed and has printed the reason.
     #[error("{PROBE_RS} ended with {0}")]
     Failed(ExitStatus),
 }
 
-/// The chip that a program says it is for.
+/// The name of a program's chip.
 ///
 /// # Errors
-/// Where it says nothing.
+/// If the program does not contain it.
 pub fn chip(elf: &[u8]) -> Result<String, ProbeError> {
     let file = object::File::parse(elf).map_err(|error| ProbeError::NoChip(error.to_string()))?;
     let section = file.section_by_name(CHIP);
@@ -52,12 +52,12 @@ pub fn chip(elf: &[u8]) -> Result<String, ProbeError> {
     }
 }
 
-/// Flashes a program and shows its log until it or the person ends that.
+/// Flashes a program and shows its log until the program or the user ends it.
 ///
-/// `probe` is the one to use where there are several, as probe-rs takes it.
+/// `probe` selects one of several probes, in the format of probe-rs.
 ///
 /// # Errors
-/// Where probe-rs or the probe is missing, or probe-rs fails.
+/// If probe-rs or the probe is missing, or probe-rs fails.
 pub fn run(elf: &Path, chip: &str, probe: Option<&str>) -> Result<(), ProbeError> {
     if !any_probe()? {
         return Err(ProbeError::NoProbe);
@@ -71,7 +71,7 @@ pub fn run(elf: &Path, chip: &str, probe: Option<&str>) -> Result<(), ProbeError
     if status.success() { Ok(()) } else { Err(ProbeError::Failed(status)) }
 }
 
-/// Whether probe-rs sees any probe. Where it cannot say, it is left to say so when it flashes.
+/// Whether probe-rs finds a probe. If it cannot list probes, it will report this when it flashes.
 fn any_probe() -> Result<bool, ProbeError> {
     let listing = Command::new(PROBE_RS).arg("list").stdin(Stdio::null()).output();
     let listing = listing.map_err(unstarted)?;

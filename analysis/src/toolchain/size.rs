@@ -1,24 +1,24 @@
-//! How much of a board's memory a program takes.
+//! The size of a program in a board's memory.
 
 use object::{Object, ObjectSection, SectionKind};
 
-/// Bytes that a program takes.
+/// The size of a program in bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sizes {
     /// Code, in flash.
     pub text: u64,
     /// Constants and the vector table, in flash.
     pub rodata: u64,
-    /// Variables with a first value, in flash and RAM.
+    /// Variables with an initial value, in flash and RAM.
     pub data: u64,
-    /// Variables that begin at zero or at nothing, in RAM.
+    /// Variables that begin at zero or uninitialised, in RAM.
     pub bss: u64,
-    /// Content of the fast memory of the chips that have one: code, which is in flash too, and the values
-    /// that a debug probe reads.
+    /// Content of the fast memory of chips that have one: code, which is also in flash, and the values for a
+    /// debug probe.
     pub fast: u64,
 }
 
-/// How the names begin of the sections in the fast memory.
+/// Prefix of the names of sections in the fast memory.
 const FAST: &str = ".fast";
 
 /// A file that is not a program for the board.
@@ -32,7 +32,7 @@ impl Sizes {
         self.text + self.rodata + self.data
     }
 
-    /// Bytes of RAM, the stack not included.
+    /// Bytes of RAM without the stack.
     pub fn ram(&self) -> u64 {
         self.data + self.bss
     }

@@ -1,12 +1,12 @@
-//! The programs' source: one file each in `firmware/src/bin`.
+//! The programs' sources: one file each in `firmware/src/bin`.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// The call that makes a scene's file a program; a file without it is another program.
+/// The call in the file of a scene's program; a file without it is another kind of program.
 const SCENE: &str = "scene_program!";
-/// The macro that makes a program of a sweep.
+/// The call in the file of a sweep's program.
 const SWEEP: &str = "sweep_program!";
 
 /// The folder of the programs' files.
@@ -15,10 +15,10 @@ pub struct Sources {
     folder: PathBuf,
 }
 
-/// Errors in the programs' source.
+/// Errors of the programs' sources.
 #[derive(Debug, thiserror::Error)]
 pub enum SourcesError {
-    /// The source is not where it was when this program was built.
+    /// The sources are not where they were when this program was built.
     #[error("the workspace is no longer at {0}: run `cargo haptic` in the workspace")]
     NoWorkspace(PathBuf),
     /// A file could not be read or written.
@@ -32,9 +32,9 @@ pub enum SourcesError {
     /// There is no such scene.
     #[error("there is no scene {name}; there are {}", .scenes.join(", "))]
     NoScene {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The available scenes.
         scenes: Vec<String>,
     },
     /// A new scene cannot have this name.
@@ -42,15 +42,15 @@ pub enum SourcesError {
     Name {
         /// The name.
         name: String,
-        /// Why not.
+        /// The reason.
         why: BadName,
     },
-    /// A new scene's file is there.
+    /// The file of the new scene exists.
     #[error("{} exists already; nothing was changed", .0.display())]
     Exists(PathBuf),
 }
 
-/// Why a name cannot be a new scene's.
+/// The reason why a name is invalid for a new scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BadName {
     /// It is not a name of a module.
@@ -62,16 +62,16 @@ pub enum BadName {
     /// It is too long for a board's messages.
     #[error("it has {0} bytes, and at most {LONGEST} are allowed")]
     Long(usize),
-    /// It means something else to Rust or to cargo.
+    /// It has another meaning for Rust or cargo.
     #[error("the name is reserved by the compiler or the firmware")]
     Taken,
 }
 
-/// Longest name of a scene in bytes: a board says its scene's name in one message.
+/// Longest name of a scene in bytes: a board sends its scene's name in one message.
 const LONGEST: usize = 32;
 
-/// What else a scene's module or program could be mistaken for: words of the language, crates that a
-/// scene's file uses, the programs and tests of the workspace, and cargo's own folders.
+/// Names that a scene's module or program must not have: words of the language, crates that a scene's file
+/// uses, the programs and tests of the workspace, and cargo's own folders.
 const TAKEN: &[&str] = &[
     "abstract",
     "adversary",
@@ -163,29 +163,29 @@ pub(super) fn workspace_root() -> Result<PathBuf, SourcesError> {
 }
 
 impl Sources {
-    /// Those of the workspace that this program was built from.
+    /// The sources of the workspace that this program was built from.
     ///
     /// # Errors
-    /// Where it is no longer there.
+    /// If it no longer exists.
     pub fn find() -> Result<Self, SourcesError> {
         Ok(Self::of(&workspace_root()?))
     }
 
-    /// Those of a workspace.
+    /// The sources of a workspace.
     pub(super) fn of(root: &Path) -> Self {
         Self { folder: root.join("firmware/src/bin") }
     }
 
-    /// The file of the program of that name, whether there is one or not.
+    /// The file of the program of this name, which need not exist.
     pub fn file(&self, name: &str) -> PathBuf {
         self.folder.join(format!("{name}.rs"))
     }
 
-    /// Whether the program of that name is for a board's bridge: the call that makes it a program then names its
-    /// current loop. No program of that name is for none.
+    /// Whether the program of this name is for a board's bridge: its call then has a current loop. False if
+    /// there is no such program.
     ///
     /// # Errors
-    /// Where its file cannot be read.
+    /// If its file cannot be read.
     pub fn is_for_bridge(&self, name: &str) -> Result<bool, SourcesError> {
         let path = self.file(name);
         match fs::read_to_string(&path) {
@@ -197,10 +197,10 @@ impl Sources {
         }
     }
 
-    /// Names of all programs, in the alphabet's order.
+    /// Names of all programs in alphabetical order.
     ///
     /// # Errors
-    /// Where the folder cannot be read.
+    /// If the folder cannot be read.
     pub fn programs(&self) -> Result<Vec<String>, SourcesError> {
         let failed = |source| SourcesError::File { path: self.folder.clone(), source };
         let mut programs = Vec::new();
@@ -219,7 +219,7 @@ impl Sources {
     /// Names of the programs that render a scene, in the same order.
     ///
     /// # Errors
-    /// Where the folder cannot be read.
+    /// If the folder cannot be read.
     pub fn scenes(&self) -> Result<Vec<String>, SourcesError> {
         let mut programs = self.programs()?;
         programs.retain(|name| {
@@ -228,11 +228,11 @@ impl Sources {
         Ok(programs)
     }
 
-    /// Begins a scene as a copy of another one, and gives its file. What the other one's file says of
-    /// itself at its head is left out.
+    /// Creates a scene as a copy of another, and returns its file. The comment at the top of the copied file
+    /// is omitted.
     ///
     /// # Errors
-    /// Where the name is no good or taken, or there is no such other one.
+    /// If the name is invalid or in use, or the scene to copy does not exist.
     pub fn begin(&self, name: &str, from: &str) -> Result<PathBuf, SourcesError> {
         check(name).map_err(|why| SourcesError::Name { name: name.into(), why })?;
         let scenes = self.scenes()?;
@@ -247,7 +247,7 @@ impl Sources {
         let text: String =
             std::iter::once(head.as_str()).chain(rest).flat_map(|line| [line, "\n"]).collect();
         let text = on_own_device(&text);
-        // Never over a file that is there, however it got there meanwhile.
+        // Never overwrites a file, even one created meanwhile.
         match File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes())) {
             Ok(()) => Ok(path),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
@@ -264,7 +264,7 @@ fn on_own_device(text: &str) -> String {
     text.replace("mod paddle;", "mod device;").replace("paddle::", "device::")
 }
 
-/// Whether a scene may be called that.
+/// Checks the name of a new scene.
 fn check(name: &str) -> Result<(), BadName> {
     let begins_well = name.starts_with(|c: char| c.is_ascii_lowercase());
     let is_of = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';

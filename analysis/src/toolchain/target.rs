@@ -1,8 +1,8 @@
-//! What programs are built for besides this machine.
+//! The targets of programs other than this machine.
 
 use std::fmt;
 
-/// What a program is built for.
+/// The target of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// The boards: Cortex-M4 with its single-precision unit.
@@ -20,7 +20,7 @@ impl Target {
         }
     }
 
-    /// What of Rust's own libraries is built with a program where the compiler has none for the target.
+    /// The libraries of Rust that are built with a program if the compiler has none for the target.
     pub(super) const fn libraries(self) -> [&'static str; 2] {
         match self {
             Self::Board => ["-Zbuild-std=core", "-Zbuild-std-features=compiler-builtins-mem"],
@@ -30,8 +30,8 @@ impl Target {
         }
     }
 
-    /// The variable of the compiler's flags, and what they are where these libraries are built, too: a page has no
-    /// words for a panic.
+    /// The variable of the compiler's flags, and their value if these libraries are also built: a page needs
+    /// no text for a panic.
     pub(super) const fn flags(self) -> Option<(&'static str, &'static str)> {
         match self {
             Self::Board => None,
@@ -42,7 +42,7 @@ impl Target {
         }
     }
 
-    /// The variable that names cargo the linker, and the one of Debian's.
+    /// The variable with the linker for cargo, and its value for Debian's toolchain.
     pub(super) const fn linker(self) -> (&'static str, &'static str) {
         match self {
             Self::Board => ("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", "ld.lld"),

@@ -1,4 +1,4 @@
-//! Versions as far as they matter here.
+//! Versions by their first two numbers.
 
 use std::fmt;
 
@@ -7,14 +7,14 @@ use std::fmt;
 pub struct Version {
     /// The first number.
     pub major: u32,
-    /// The second number; 0 where there is none.
+    /// The second number; 0 if there is none.
     pub minor: u32,
 }
 
 impl Version {
     /// The oldest compiler that builds the workspace (`rust-version` in its Cargo.toml).
     pub const RUST: Self = Self { major: 1, minor: 95 };
-    /// The oldest emulator that the board was seen to run on.
+    /// The oldest emulator with which the board was tested.
     pub const QEMU: Self = Self { major: 7, minor: 2 };
 
     /// The version in a line such as `rustc 1.96.0 (ac68faa20 2026-05-25)`, or of a package such as

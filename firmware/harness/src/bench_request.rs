@@ -1,8 +1,9 @@
 //! Instruction benchmarks: a request to compute torques, sines or compare values, and the results with the
 //! instructions of each.
 //!
-//! A [`BenchRequest`] goes to the board as [`BenchRequestWords`], which are answered by one byte: whether it can be
-//! done. Then come [`Inputs`], any number of times, and each is answered by [`Outputs`].
+//! A [`BenchRequest`] goes to the board as [`BenchRequestWords`]; the board answers with one byte, whether it
+//! can compute it. Then the host sends [`Inputs`], any number of times, and the board answers each with
+//! [`Outputs`].
 
 use haptic_servo::number::Arithmetic;
 use haptic_servo::scene::Scene;
@@ -24,7 +25,7 @@ pub enum BenchRequest {
         scene: Scene,
         /// Its sensor and its motor.
         transducers: Transducers,
-        /// The format to compute in.
+        /// The number format.
         arithmetic: Arithmetic,
     },
     /// The sine of each part of a turn, which is the bits of an `f32`.
@@ -36,21 +37,21 @@ pub enum BenchRequest {
     Current(CurrentBench),
 }
 
-/// Inputs at a time: as many as fit a pipe's buffer, so that asking never waits for the board.
+/// Inputs in a block: as many as fit a pipe's buffer, so that sending never waits for the board.
 pub const BLOCK: usize = 64;
 /// Counts, or the bits of parts of a turn.
 pub type Inputs = [u32; BLOCK];
-/// What came of them.
+/// The results of a block.
 pub type Outputs = [Output; BLOCK];
 
-/// What came of an input.
+/// The result of an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Output {
     /// Torque in N m, sine, or compare value of U.
     pub value: f64,
-    /// The DAC code, or compare value of V; of a sine none.
+    /// The DAC code, or the compare value of V; zero for a sine.
     pub code: u16,
-    /// Instructions that it took.
+    /// Instructions of the computation.
     pub instructions: u32,
 }
 
@@ -76,7 +77,7 @@ impl Output {
 
 /// The board's first answer: it will compute.
 pub const READY: u8 = 1;
-/// The board's first answer: its program has no scene of this type, or none can be built.
+/// The board's first answer: its program has no scene of this type, or its servo cannot be built.
 pub const REFUSED: u8 = 0;
 
 /// Words in front of the scene: a sine, or [`SERVO`], and the transducers.
@@ -125,7 +126,7 @@ impl BenchRequest {
     }
 }
 
-/// Stand where a sine would.
+/// Marks a request for a servo in the place of a sine.
 const SERVO: u64 = u64::MAX;
 const CURRENT: u64 = u64::MAX - 1;
 const ROTATION: u64 = u64::MAX - 2;

@@ -91,8 +91,8 @@ impl Input {
         Self(counts | u32::from(code.cast_unsigned()) << 24)
     }
 
-    /// Steps of the code, with currents of the phases U and V that follow it for a while, and then do not:
-    /// voltage and circle are at their limits.
+    /// Steps of the code, with currents of the phases U and V that first follow the code and then do not, so
+    /// that voltage and circle are at their limits.
     pub fn of_steps(instant: u32) -> Self {
         let code = if (instant / 100).is_multiple_of(2) { 1700 } else { -1700 };
         let noise = (instant.wrapping_mul(2_654_435_761) >> 27) as u16;

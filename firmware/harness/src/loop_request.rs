@@ -1,8 +1,8 @@
 //! A scene with its transducers, sent to a board by the bits of its numbers: the board certifies it
 //! and then runs its servo for a number of ticks.
 //!
-//! The programs for the board have one scene each, with a delay that is a type; with these requests a test
-//! has a board run many scenes, whatever their delays.
+//! The programs for the board have one scene each, with a delay in its type; with these requests a test runs
+//! many scenes on a board, with any delay.
 
 use haptic_servo::number::Arithmetic;
 use haptic_servo::scene::Scene;
@@ -14,17 +14,17 @@ use crate::transducer_codec::{self, TransducerWords};
 /// A request to run a closed loop on the board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopRequest {
-    /// The scene, which is certified before anything of it runs.
+    /// The scene, which the board certifies before it runs.
     pub scene: Scene,
     /// The encoder and the motor.
     pub transducers: Transducers,
-    /// What the servo computes in: `f32` or `I16F16`, for which a program has room.
+    /// The servo's number format: `f32` or `I16F16`, for which a program has room.
     pub arithmetic: Arithmetic,
     /// Number of ticks, for each of which the host gives a count and takes a code.
     pub ticks: u32,
 }
 
-/// The board's reply before the first tick; only [`StartReply::Ready`] is followed by any.
+/// The board's reply before the first tick; ticks follow only after [`StartReply::Ready`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum StartReply {
@@ -47,7 +47,7 @@ impl StartReply {
         (self as u64).to_le_bytes()
     }
 
-    /// From bytes; `None` for what [`StartReply::to_bytes`] did not write.
+    /// From bytes; `None` if [`StartReply::to_bytes`] cannot have written them.
     pub fn from_bytes(bytes: [u8; 8]) -> Option<Self> {
         let all = [Self::Ready, Self::Rejected, Self::BuildFailed];
         all.into_iter().find(|reply| reply.to_bytes() == bytes)

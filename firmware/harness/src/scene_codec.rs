@@ -1,7 +1,7 @@
 //! Codec of a scene by the bits of its numbers, and of the board's certify reply.
 //!
-//! The compiler, the host and the board compute the same certificate; with this codec a test asks a
-//! board, so that the three can be compared bit for bit. Scenes do not get to a servo this way.
+//! The compiler, the host and the board compute the same certificate; with this codec a test gets the
+//! board's, to compare the three bit for bit. It is not a way to change the scene of a servo.
 
 use haptic_servo::certificate::{Assessment, Parameter, PassivityProblem, RuleAnswer, assess};
 use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
@@ -16,11 +16,11 @@ const TERMS: usize = MAX_DEGREE + 1;
 /// A scene as 64-bit words; an `f64` is its bits.
 pub type SceneWords = [u64; WORDS];
 
-/// Words of a scene: the type of its environment, whether its coupling is matched, the updates of its amplifier,
-/// each number with whether it is there, the side of a wall, and two polynomials.
+/// Words of a scene: the type of its environment, whether its coupling is matched, the updates of its
+/// amplifier, each number with a flag for its presence, the side of a wall, and two polynomials.
 const WORDS: usize = 3 + 2 * Parameter::ALL.len() + 1 + 2 * (1 + TERMS);
 
-/// An enclosure's ends as bits; `None` where the index does not exist.
+/// An enclosure's ends as bits; `None` if the index does not exist.
 pub type IntervalBits = Option<(u64, u64)>;
 
 /// Certificate that the board computed.
@@ -36,18 +36,19 @@ pub struct CertifyReply {
     pub paper: RuleAnswer,
     /// Theory, section 4.1.
     pub exact: RuleAnswer,
-    /// Instructions that certifying took; 0 where nothing counts them.
+    /// Instructions for certifying; 0 if they are not counted.
     pub instructions: u64,
-    /// Whether the scene is certified, without the numbers behind the verdict.
+    /// Whether the scene is certified, computed without the numbers of the verdict.
     pub is_certified: bool,
-    /// Instructions of that.
+    /// Instructions for that verdict.
     pub verdict_instructions: u64,
 }
 
 /// A [`CertifyReply`] as words.
 pub type ReplyWords = [u64; 14];
 
-/// The word of an environment that no board here has a law of: a type of another crate, an unknown table or a sum.
+/// The word of an environment without a law on these boards: a type of another crate, an unknown table, or a
+/// sum.
 const STATED: u64 = 5;
 /// The word of the first table of a torque profile.
 const TABLE: u64 = 6;
@@ -78,13 +79,13 @@ pub fn encode(scene: &Scene) -> SceneWords {
     words.words
 }
 
-/// A polynomial that says nothing.
+/// A placeholder for a polynomial.
 const NOTHING: Coefficients = match Coefficients::new(&[1.0]) {
     Some(one) => one,
     None => panic!("one coefficient fits"),
 };
 
-/// Stands in where an environment is not a rational function.
+/// A placeholder for environments that are not rational.
 const NO_RATIONAL: Rational =
     Rational { numerator: NOTHING, denominator: NOTHING, delay: 0, unit_zeros: 0 };
 
@@ -98,8 +99,8 @@ const BLANK: Scene = Scene {
     torque_limit: None,
 };
 
-/// The scene of the words; `None` if they are invalid. Of what a type of environment only states, no board
-/// here knows a law, and of tables of knots only [`tables`].
+/// The scene of the words; `None` if they are invalid. These boards have no law for stated environments, and
+/// only the tables of knots in [`tables`].
 pub fn decode(words: &SceneWords) -> Option<Scene> {
     let mut words = Cursor { words: *words, next: 0 };
     let kind = words.take();

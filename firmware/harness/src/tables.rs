@@ -1,12 +1,12 @@
-//! Tables of torque profiles that board and host both have: a table of knots does not go with the words of a
-//! scene, but its place among these does.
+//! Tables of torque profiles that board and host both have: the words of a scene do not contain a table of
+//! knots, but its index among these.
 
 use haptic_servo::environment::{AnyProfile, Ends, Knots, Profile, Shape};
 
 /// Detents without ends, of any torque and number.
 pub static DETENTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.05)]);
 
-/// Detents between end stops, as the program `knob` has them: without ends rounding is evened out.
+/// Detents between end stops, as in the program `knob`: without ends, the knots' sum would be made zero.
 pub static STOPPED: Knots<16> =
     Knots::of(&[Shape::detents(24, 0.05), Shape::end_stops(-2.618, 2.618, 15.0)]);
 
@@ -19,14 +19,14 @@ const TABLES: [AnyProfile; 3] = [
     Profile::<64, 1>::of(&MAGNET).as_any(),
 ];
 
-/// The place of a profile's table, and whether it has ends; `None` for another table.
+/// The index of a profile's table, including whether it has ends; `None` for another table.
 pub fn index_of(profile: &AnyProfile) -> Option<usize> {
     let is_same = |table: &AnyProfile| table.units() == profile.units();
     let index = TABLES.iter().position(is_same)?;
     Some(2 * index + usize::from(profile.ends.is_some()))
 }
 
-/// The profile of such a place, whose numbers are still to be set.
+/// The profile of such an index; its numbers are still to be set.
 pub fn from_index(index: usize) -> Option<AnyProfile> {
     let mut profile = *TABLES.get(index / 2)?;
     profile.ends = (index % 2 == 1).then_some(Ends { from: 0.0, to: 0.0, stiffness: 0.0 });

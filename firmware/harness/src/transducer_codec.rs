@@ -4,10 +4,10 @@ use haptic_servo::encoder::CounterWidth;
 use haptic_servo::number::Arithmetic;
 use haptic_servo::servo::Transducers;
 
-/// Words of a sensor and a motor with the format to compute in.
+/// Words of a sensor and a motor with the number format.
 pub type TransducerWords = [u64; 5];
 
-/// A sensor and a motor with the format to compute in.
+/// Encodes a sensor and a motor with the number format.
 pub fn encode(transducers: &Transducers, arithmetic: Arithmetic) -> TransducerWords {
     let Transducers { counts_per_turn, counter, full_scale_torque, largest_speed } = *transducers;
     [
@@ -19,7 +19,7 @@ pub fn encode(transducers: &Transducers, arithmetic: Arithmetic) -> TransducerWo
     ]
 }
 
-/// Those of the words; `None` if they are malformed.
+/// Decodes the words; `None` if they are malformed.
 pub fn decode(
     [counts, narrow, torque, speed, arithmetic]: TransducerWords,
 ) -> Option<(Transducers, Arithmetic)> {

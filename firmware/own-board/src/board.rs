@@ -1,6 +1,6 @@
-//! A board: its registers as the servo's interrupt sees them, and its interrupts by
-//! [RTIC](https://rtic.rs). To take the servo to another chip or framework, write this file anew. "Yours" marks
-//! what the firmware's promises need of it.
+//! A board: its registers for the servo's interrupt, and its interrupts by [RTIC](https://rtic.rs). To use
+//! the servo with another chip or framework, write this file again. "Yours" marks the requirements of the
+//! firmware's guarantees.
 
 use core::panic::PanicInfo;
 
@@ -24,15 +24,15 @@ impl Hardware for Board {
     fn count(&mut self) -> RawCount {
         RawCount::from(TIM3.cnt().read().cnt())
     }
-    /// Yours: the motor has it at the next period's beginning, by hardware, and no sooner.
+    /// Yours: the motor gets the torque at the next period's beginning, by hardware, and not earlier.
     fn write(&mut self, code: DacCode) {
         DAC1.dhr12r(0).write(|w| w.set_dhr(code.get()));
     }
-    /// Yours: off by this one access, and off where the pin floats, by a pull-down resistor.
+    /// Yours: off by this one access, and off while the pin floats, by a pull-down resistor.
     fn amplifier(&mut self, on: bool) {
         GPIOB.bsrr().write(|w| if on { w.set_bs(6, true) } else { w.set_br(6, true) });
     }
-    /// Yours: by a clock that goes on while the interrupt is held up; lateness is not seen without.
+    /// Yours: by a clock that runs while the interrupt is delayed; without it lateness is not detected.
     fn periods_since_last(&mut self) -> u32 {
         TIM6.sr().write(|w| w.set_uif(false));
         self.0.begun_by(TIM5.cnt().read())
@@ -40,7 +40,7 @@ impl Hardware for Board {
     fn time_in_period(&mut self) -> u32 {
         self.0.elapsed_at(TIM5.cnt().read())
     }
-    /// Yours: fed here and nowhere else.
+    /// Yours: fed only here.
     fn feed_watchdog(&mut self) {
         IWDG.kr().write(|w| w.set_key(Key::RESET));
     }
@@ -53,7 +53,7 @@ impl Startup for Board {
     fn zero_encoder(&mut self) {
         TIM3.cnt().write(|w| w.set_cnt(0));
     }
-    /// Yours: of a clock of its own, and not halted by a debugger.
+    /// Yours: with its own clock, and not halted by a debugger.
     fn start_watchdog(&mut self) {
         DBGMCU.apb1fzr().modify(|w| w.set_iwdg(false));
         IWDG.kr().write(|w| w.set_key(Key::START));
@@ -64,7 +64,7 @@ impl Startup for Board {
     fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
         fault_memory::stored()
     }
-    /// Yours: no other reset is a power-on, at which a program may arm itself.
+    /// Yours: no other reset may count as a power-on, at which a program may arm itself.
     fn reset_cause(&mut self) -> ResetCause {
         let watchdog = RCC.csr().read().wdgrstf();
         RCC.csr().modify(|w| w.set_rmvf(true));
@@ -99,14 +99,14 @@ mod app {
         let (received, bytes) = context.local.bytes.split();
         let board = Board(PeriodClock::new(PERIOD, (TIMER_CLOCK * READ_WITHIN) as u32));
         let endpoints = servo::Endpoints::of(context.local.mailbox, context.local.queue);
-        // Certifies once more, on this processor. The servo is armed by the host.
+        // Certifies the scene again, on this processor. The host arms the servo.
         let (isr, link) = wire::bring_up("own-board", PROGRAM, board, Serial(bytes), endpoints)
             .unwrap_or_else(|step| panic!("refused by {}", step.as_str()));
         chip::start();
         (Shared {}, Local { isr, link, received })
     }
 
-    /// Yours: above all else, and it shares nothing that a lock could hold it up for.
+    /// Yours: the highest priority, and no shared data behind a lock that could delay it.
     #[task(binds = TIM6_DAC, priority = 16, local = [isr])]
     fn tick(context: tick::Context) {
         context.local.isr.tick();
@@ -125,7 +125,7 @@ mod app {
     }
 }
 
-/// Yours: what ends the program takes the torque away, and feeds no watchdog.
+/// Yours: the end of the program removes the torque, and does not feed the watchdog.
 fn end(fault: Fault) -> ! {
     cortex_m::interrupt::disable();
     GPIOB.bsrr().write(|w| w.set_br(6, true));

@@ -1,4 +1,4 @@
-//! Clocks, pins and timers of an STM32F405 with an 8 MHz crystal (RM0090): what a HAL does elsewhere.
+//! Clocks, pins and timers of an STM32F405 with an 8 MHz crystal (RM0090), in place of a HAL.
 //!
 //! | pin | what |
 //! |---|---|
@@ -20,25 +20,25 @@ use stm32_metapac::{DAC1, FLASH, GPIOA, GPIOB, GPIOC, RCC, TIM3, TIM5, TIM6, USA
 
 use crate::scene::PROGRAM;
 
-/// Counts a second of the timers.
+/// The timers' clock in Hz.
 pub const TIMER_CLOCK: f64 = 84e6;
-/// Counts a second of the slow bus, which the port divides.
+/// The clock of the slow bus in Hz, which the port divides.
 const SLOW_BUS: u32 = 42_000_000;
 /// TIM6 has 16 bits, too few for the counts of a thousandth of a second.
 const PRESCALER: u32 = 2;
 
-/// The scene's period in counts of TIM5, and a whole number of those of TIM6.
+/// The scene's period in counts of TIM5, a whole number of counts of TIM6.
 pub const PERIOD: NonZeroU32 = {
-    // Rounded down, but for the rounding of the product: no longer than was certified.
+    // Rounded down, except for the rounding of the product: not longer than certified.
     let seconds = PROGRAM.scene.timing.period;
     let counts = (seconds * TIMER_CLOCK / PRESCALER as f64 + 1e-6) as u32;
     assert!(counts > 0 && counts <= 0x10000, "TIM6 counts periods of up to 1.56 ms");
     NonZeroU32::new(PRESCALER * counts).unwrap()
 };
-/// Where the encoder's edges can come too fast for this clock, this does not compile.
+/// If the encoder's edges can be too fast for this clock, this does not compile.
 const FILTER: InputFilter = InputFilter::of_encoder(&PROGRAM.transducers, TIMER_CLOCK);
 
-/// Everything up to where the servo may start: the amplifier is off, and the DAC at no torque.
+/// Sets everything up for the start of the servo: the amplifier is off, and the DAC at zero torque.
 pub fn init() {
     pins();
     clocks();
@@ -80,7 +80,7 @@ fn clocks() {
     });
 }
 
-/// The amplifier off before all else, and each pin for its purpose.
+/// Switches the amplifier off first, and configures each pin.
 fn pins() {
     RCC.ahb1enr().modify(|w| {
         w.set_gpioaen(true);
@@ -115,14 +115,14 @@ fn encoder() {
     TIM3.cr1().modify(|w| w.set_cen(true));
 }
 
-/// The DAC drives its pin, at no torque. Out of reset its code is full torque.
+/// The DAC drives its pin at zero torque. Its reset code is full torque.
 fn dac() {
     DAC1.dhr12r(0).write(|w| w.set_dhr(DacCode::MID_SCALE.get()));
     DAC1.cr().modify(|w| w.set_en(0, true));
     GPIOA.moder().modify(|w| w.set_moder(4, Moder::ANALOG));
 }
 
-/// The port, with an interrupt for each byte that comes.
+/// The port, with an interrupt for each received byte.
 fn serial() {
     USART3.brr().write(|w| w.set_brr(((SLOW_BUS + BAUD / 2) / BAUD) as u16));
     USART3.cr1().write(|w| {
@@ -133,13 +133,13 @@ fn serial() {
     });
 }
 
-/// Has TIM6 start an interrupt and latch the DAC once a period, and TIM5 count beside it.
+/// Starts TIM6, which starts an interrupt and latches the DAC once per period, and the clock TIM5.
 pub fn start() {
     TIM5.arr().write_value(u32::MAX);
     TIM6.psc().write_value((PRESCALER - 1) as u16);
     TIM6.arr().write(|w| w.set_arr((PERIOD.get() / PRESCALER - 1) as u16));
     TIM6.cr2().write(|w| w.set_mms(Mms::UPDATE));
-    // Prescaler and period are taken over at an update; this one shall be no tick.
+    // Prescaler and period take effect at an update; this update must not cause a tick.
     TIM6.cr1().write(|w| w.set_urs(Urs::COUNTER_ONLY));
     TIM6.egr().write(|w| w.set_ug(true));
     TIM6.dier().write(|w| w.set_uie(true));

@@ -1,8 +1,8 @@
 //! A program for a board that is not in the firmware. On the host it prints the certificate of its scene.
 //!
-//! - `board.rs` is the board as the servo sees it, and its interrupts.
-//! - `chip.rs` sets the chip up, and `serial.rs` is its port to the host.
-//! - `scene.rs` is the scene, which does not know the board.
+//! - `board.rs` is the servo's interface to the board, and its interrupts.
+//! - `chip.rs` sets up the chip, and `serial.rs` is its port to the host.
+//! - `scene.rs` is the scene, which is independent of the board.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -1,4 +1,4 @@
-//! What the hand feels, and on which device: a wall of spring and damper at 1 kHz.
+//! The scene and its device: a wall of spring and damper at 1 kHz.
 
 use haptic_servo::boot::Program;
 use haptic_servo::certificate::{Certified, TimingChecked};
@@ -9,7 +9,7 @@ use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
 use haptic_servo::servo_loop::Options;
 
-/// What the hand feels.
+/// The environment that the hand feels.
 pub type Environment = OneSided<DamperWall<1>>;
 
 /// The scene.
@@ -22,14 +22,14 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate, of the coefficients as `f32` rounds them: a scene that could oscillate in a hand stops
-/// the compiler here.
+/// Its certificate, with coefficients rounded to `f32`: a scene that could oscillate in a hand is a compile
+/// error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified().certified_in(Format::F32);
 
-/// The scene is as late as a DAC that a timer latches: where it is not, this does not compile.
+/// The scene's delay must be that of a DAC latched by a timer; otherwise this does not compile.
 pub const TIMED: TimingChecked<Scene<Environment>, Latched> = CERTIFIED.timing_checked::<Latched>();
 
-/// What the board runs. Numbers that no board could run with do not compile.
+/// The board's program. Numbers that no board can run do not compile.
 pub const PROGRAM: Program<Environment> = Program {
     scene: *TIMED.scene(),
     transducers: Transducers {

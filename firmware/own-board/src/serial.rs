@@ -1,5 +1,5 @@
-//! The serial port to the host, by which the servo is armed, tuned and watched. Nothing here waits, and what
-//! comes while there is no room is lost with its frame, which the host sends again.
+//! The serial port to the host, which arms, tunes and monitors the servo. Nothing here waits. Bytes without
+//! room are lost with their frame, which the host sends again.
 
 use haptic_servo::wire::Port;
 use heapless::spsc::{Consumer, Producer};
@@ -8,9 +8,9 @@ use stm32_metapac::USART3;
 /// The port's end below all interrupts.
 pub struct Serial(pub Consumer<'static, u8>);
 
-/// A byte has come: called by the port's interrupt.
+/// Stores a received byte; called by the port's interrupt.
 pub fn receive(received: &mut Producer<'static, u8>) {
-    // In this order, which also ends an overrun.
+    // This order also ends an overrun.
     let (status, data) = (USART3.sr().read(), USART3.dr().read());
     if status.rxne() {
         let _ = received.enqueue(data.dr() as u8);

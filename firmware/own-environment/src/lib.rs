@@ -1,13 +1,13 @@
-//! An environment that is not in the [`haptic_servo`]: a spring that gets stiffer beyond a knee, as a pedal
-//! does. It shows what such a type consists of; to make one of your own, copy this package.
+//! An environment in a crate other than [`haptic_servo`]: a spring that gets stiffer beyond a knee, like a
+//! pedal. It shows the parts of such a type; to make your own, copy this package.
 //!
-//! 1. The type, with the numbers that a person gives.
-//! 2. Its law: what the servo computes each tick, [`Discretize`] and [`Law`].
+//! 1. The type, with the numbers of a scene.
+//! 2. Its law: the servo's computation in each tick, [`Discretize`] and [`Law`].
 //! 3. Its statement to the certificate, [`StatedEnvironment`], with a proof in the comment. The test of
 //!    this package tries to disprove it.
 //! 4. The numbers that may be changed while it runs, [`NamedParameters`].
 //!
-//! A program of it is `src/bin/pedal.rs`.
+//! `src/bin/pedal.rs` is a program with it.
 #![cfg_attr(not(test), no_std)]
 
 use haptic_servo::coupling::{Response, Slopes};
@@ -31,18 +31,18 @@ pub struct ProgressiveSpring<const DELAY: usize> {
     pub knee: f64,
 }
 
-/// What a coefficient that is rounded is off by at most: half a unit of the last place of `I16F16`, the
-/// coarsest of the fixed-point formats, or of `f32`, relative to its magnitude.
+/// Largest error of a rounded coefficient: half a unit of the last place of `I16F16`, the coarsest of the
+/// fixed-point formats, or of `f32` relative to its magnitude.
 const ROUNDING: f64 = 1.0 / 131_072.0;
 const ROUNDING_F32: f64 = f32::EPSILON as f64;
 
 impl<const DELAY: usize> ProgressiveSpring<DELAY> {
     /// Its model for the certificate at this period in s, for constants.
     ///
-    /// The torque depends on one position and never falls as that rises, as long as neither stiffness is
-    /// negative, and it is zero at zero, as long as the knee is not negative: it is a monotone spring, no
-    /// steeper than the larger of the two. Of any other nothing is claimed. The servo multiplies by two
-    /// coefficients, each rounded, which add up to the steepest slope.
+    /// The torque depends on one position. If neither stiffness is negative, it never falls with rising
+    /// position; if the knee is not negative, it is zero at zero. It is then a monotone spring with at most
+    /// the larger of the two slopes. For other numbers nothing is claimed. The servo multiplies by two
+    /// rounded coefficients, which add up to the steepest slope.
     pub const fn stated_at(&self, period: f64) -> StatedModel {
         let is_spring = self.soft >= 0.0 && self.stiff >= 0.0 && self.knee >= 0.0;
         let coefficients = self.soft + (self.stiff - self.soft).abs();
@@ -59,7 +59,7 @@ impl<const DELAY: usize> StatedEnvironment for ProgressiveSpring<DELAY> {
     }
 }
 
-// All of it is late by at least one sample.
+// Every torque is late by at least one sample.
 impl Delayed for ProgressiveSpring<1> {}
 impl Delayed for ProgressiveSpring<2> {}
 

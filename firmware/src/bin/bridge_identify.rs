@@ -1,5 +1,6 @@
-//! Drives a paddle with sines of torque by the bridge of a motor board, open loop, so that the host can measure
-//! its inertia, its damping, its passivity, and how late the current loop's torque is (theory, section 3.3).
+//! Drives a paddle with sines of torque by the bridge of a motor board, open loop, so that the host can
+//! measure its inertia, its damping, its passivity, and the delay of the current loop's torque (theory,
+//! section 3.3).
 //!
 //! Do not hold the device meanwhile: it turns back and forth by up to a fifth of a radian, or
 //! twice that to one side.
@@ -10,8 +11,8 @@ mod bridge_paddle;
 pub use bridge_paddle::{CURRENT_LOOP, PERIOD, TRANSDUCERS};
 use haptic_servo::excitation::{MotionLimits, Sweep, Tone};
 
-/// How far and how fast the device may move, beyond which the sweep ends and the amplifier goes off:
-/// half as far again as the tones below move the device that they are made for, and faster by a fifth.
+/// Limits of the device's motion, beyond which the sweep ends and the amplifier goes off: 1.5 times the angle
+/// and 1.2 times the speed that the tones below cause in the device that they are made for.
 pub const LIMITS: MotionLimits =
     MotionLimits { travel: 0.7, speed: 0.85 * TRANSDUCERS.largest_speed };
 
@@ -20,8 +21,8 @@ const fn part(part: f64) -> f64 {
     part * TRANSDUCERS.full_scale_torque
 }
 
-/// The tones, up to a quarter of the sampling rate: at low frequencies as much torque as makes a fifth of a radian,
-/// at high ones as much as stays below the largest speed that the drive has the voltage for.
+/// The tones, up to a quarter of the sampling rate: at low frequencies the torque for a fifth of a radian, at
+/// high frequencies the torque that stays below the largest speed that the drive's voltage allows.
 ///
 /// A torque outside the DAC range, or a part of a tone that is not a whole number of samples, is a
 /// compile error here.

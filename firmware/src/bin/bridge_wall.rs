@@ -10,7 +10,7 @@ use haptic_servo::environment::{DamperWall, Matched, OneSided};
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::{Coupling, Scene, Timing};
 
-/// What the hand feels, behind a coupling that remembers the current loop's lag.
+/// The environment that the hand feels, behind a coupling that absorbs the current loop's lag.
 pub type Environment = Matched<OneSided<DamperWall<1>>, 0, 1, true>;
 
 /// The scene.
@@ -25,7 +25,7 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.

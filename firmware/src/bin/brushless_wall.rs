@@ -1,5 +1,5 @@
-//! A wall on a motor board with a brushless motor, on whose shaft the handle is. The motor is aligned after each
-//! reset, on request: `haptic tune --align --arm`.
+//! A wall on a motor board with a brushless motor; the handle is on the motor's shaft. The motor is aligned
+//! after each reset, on request: `haptic tune --align --arm`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod brushless_shaft;
@@ -8,7 +8,7 @@ pub use brushless_shaft::{CURRENT_LOOP, DRIVE, Environment, Fixed, SCENE, TRANSD
 use haptic_servo::certificate::Certified;
 use haptic_servo::scene::Scene;
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
 haptic_servo::scene_program! {

@@ -1,5 +1,5 @@
-//! A spring that answers one sample late, at the paper's numbers: its first example (equations 20
-//! and 21).
+//! A spring with one sample of delay: the paper's first example (equations 20 and 21), with the paper's
+//! numbers.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod paddle;
@@ -9,7 +9,7 @@ use haptic_servo::environment::DelayedSpring;
 use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 pub use paddle::TRANSDUCERS;
 
-/// What the hand feels.
+/// The environment that the hand feels.
 pub type Environment = DelayedSpring<1>;
 
 /// The scene.
@@ -22,7 +22,7 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.

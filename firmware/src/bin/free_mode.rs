@@ -1,5 +1,5 @@
-//! Free motion: the device's own damping, cancelled but for a residual, at the paper's numbers
-//! (equations 22 and 23).
+//! Free motion: cancels the device's own damping except for a residual, with the paper's numbers (equations
+//! 22 and 23).
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod paddle;
@@ -9,8 +9,8 @@ use haptic_servo::environment::FreeMode;
 use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 use haptic_servo::servo::Transducers;
 
-/// What the hand feels: the paper's canceller, as late as a board's torque. It needs as much of the
-/// device's damping with and without a sample of delay.
+/// The environment that the hand feels: the paper's canceller with the delay of a board's torque. It needs
+/// the same damping of the device with and without a sample of delay.
 pub type Environment = FreeMode<1>;
 
 /// The scene.
@@ -19,21 +19,21 @@ pub const SCENE: Scene<Environment> = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: FreeMode { residual: 0.001 },
-    // The DAC range is the only limit. The certificate covers it: any part of the canceller's
-    // torque takes no more than 0.021 N m s/rad.
+    // The DAC range is the only limit. The certificate covers it: a limited torque of the canceller needs at
+    // most 0.021 N m s/rad.
     latency: Latency::NONE,
     torque_limit: None,
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
-/// The device's, with another amplifier gain. Full scale is the torque at 12 rad/s: half a DAC step
-/// keeps a device without friction turning, at the speed of that torque over the residual. A finer
+/// The device's transducers with another amplifier gain. Full scale is the torque at 12 rad/s. Half a DAC
+/// step keeps a device without friction turning, at the speed of that torque divided by the residual; a finer
 /// step makes it slower.
 pub const TRANSDUCERS: Transducers = Transducers { full_scale_torque: 0.25, ..paddle::TRANSDUCERS };
 
-/// Angles to 2048 rad, since what moves freely may turn on and on; in steps of 1e-6.
+/// Angles to 2048 rad in steps of 1e-6, because a freely moving device may turn many times.
 pub type Fixed = fixed::types::I12F20;
 
 haptic_servo::scene_program! {

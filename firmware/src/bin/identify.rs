@@ -10,11 +10,11 @@ mod device;
 pub use device::TRANSDUCERS;
 use haptic_servo::excitation::{MotionLimits, Sweep, Tone};
 
-/// Sampling period in s: that of the scenes which the device is to be certified for.
+/// Sampling period in s: that of the device's later scenes.
 pub const PERIOD: f64 = 0.001;
 
-/// How far and how fast the device may move, beyond which the sweep ends and the amplifier goes off:
-/// half as far again as the tones below move the device that they are made for, and faster by a fifth.
+/// Limits of the device's motion, beyond which the sweep ends and the amplifier goes off: 1.5 times the angle
+/// and 1.2 times the speed that the tones below cause in the device that they are made for.
 pub const LIMITS: MotionLimits =
     MotionLimits { travel: 0.7, speed: 0.85 * TRANSDUCERS.largest_speed };
 
@@ -23,11 +23,10 @@ const fn part(part: f64) -> f64 {
     part * TRANSDUCERS.full_scale_torque
 }
 
-/// The tones, up to a quarter of the sampling rate, for a device with 2e-5 kg m^2, 0.02 N m s/rad and
-/// 2 N m or so: at low frequencies as much torque as makes a fifth of a radian, at high ones as much as
-/// the motor has to spare, since the damping is told from a skew only where inertia outweighs it. A
-/// heavier device needs more torque or lower frequencies; the host says so where the motion is lost
-/// in counts.
+/// The tones, up to a quarter of the sampling rate, for a device with about 2e-5 kg m^2, 0.02 N m s/rad and 2
+/// N m: at low frequencies the torque for a fifth of a radian, at high frequencies as much as the motor
+/// allows, because damping and skew can be distinguished only where inertia dominates. A heavier device needs
+/// more torque or lower frequencies; the host reports motion that is too small for the encoder.
 ///
 /// A torque outside the DAC range, or a part of a tone that is not a whole number of samples, is a
 /// compile error here.

@@ -1,4 +1,4 @@
-//! A knob of 24 detents a turn between two end stops, one sample late.
+//! A knob with 24 detents per turn between two end stops, one sample late.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod paddle;
@@ -8,10 +8,10 @@ use haptic_servo::environment::{Knots, Profile, Shape};
 use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 pub use paddle::TRANSDUCERS;
 
-/// What the hand feels.
+/// The environment that the hand feels.
 pub type Environment = Profile<16, 1>;
 
-/// Ten detents either way, and the end stops: a table of one detent, which stays in flash.
+/// Ten detents in each direction, and the end stops: a table of one detent, in flash.
 static KNOTS: Knots<16> =
     Knots::of(&[Shape::detents(24, 0.05), Shape::end_stops(-2.618, 2.618, 15.0)]);
 
@@ -25,7 +25,7 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.

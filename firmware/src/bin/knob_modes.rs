@@ -1,4 +1,4 @@
-//! A knob whose way to feel is selected while it runs: eleven modes, one sample late.
+//! A knob with eleven modes that are selected while it runs, one sample late.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod paddle;
@@ -8,10 +8,10 @@ use haptic_servo::environment::{KNOB_MODES, ProfileModes};
 use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 pub use paddle::TRANSDUCERS;
 
-/// What the hand feels.
+/// The environment that the hand feels.
 pub type Environment = ProfileModes<1>;
 
-/// The scene, which starts with a knob that turns freely. Each mode is certified, not this one alone.
+/// The scene, which starts with a freely turning knob. Every mode is certified.
 pub const SCENE: Scene<Environment> = Scene {
     device: paddle::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
@@ -21,7 +21,7 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate: a mode that could oscillate in a hand stops the compiler here.
+/// Its certificate: a mode that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.

@@ -1,5 +1,5 @@
-//! A spring that pushes only while its host looks on, and that takes back what its lateness gives: the
-//! options of a program, on top of a scene.
+//! A spring that pushes only while its host sends messages, and that injects damping against the energy of
+//! its delay: an example of a program's options.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod paddle;
@@ -11,10 +11,10 @@ use haptic_servo::servo::RenderingOptions;
 use haptic_servo::servo_loop::{LinkPolicy, Options};
 pub use paddle::TRANSDUCERS;
 
-/// What the hand feels.
+/// The environment that the hand feels.
 pub type Environment = DelayedSpring<1>;
 
-/// The scene: half as stiff as the device allows, which leaves room for damping.
+/// The scene: half as stiff as the device allows, so that injected damping is possible.
 pub const SCENE: Scene<Environment> = Scene {
     device: paddle::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
@@ -24,7 +24,7 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
@@ -36,9 +36,9 @@ haptic_servo::scene_program! {
     transducers: TRANSDUCERS,
     float: f32,
     fixed: Fixed,
-    // Damping while the motor has put more energy into the hand than came back. More than the scene
-    // leaves room for does not compile.
+    // Damping while the net energy into the hand is positive. More damping than the scene allows does not
+    // compile.
     rendering: RenderingOptions { injection: Some(0.004), ..RenderingOptions::DEFAULT },
-    // A second without a word from the host, and the torque fades out.
+    // After a second without a message from the host the torque fades out.
     options: Options { link: LinkPolicy::Release, ..Options::DEFAULT },
 }

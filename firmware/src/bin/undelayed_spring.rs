@@ -1,9 +1,8 @@
-//! The stiffest spring of the paddle at 1 kHz: a spring without delay that is much stiffer than the
-//! coupling in front of it, whose torque is put out 5 microseconds after its count, through a current loop
-//! of 3 kHz.
+//! The stiffest spring of the paddle at 1 kHz: a spring without delay, much stiffer than its coupling. Its
+//! torque is put out 5 microseconds after its count, through a current loop of 3 kHz.
 //!
-//! At rest both are springs in a row, `1 / (1/K + (T + d + tau) / (2 delta))` with what the certificate
-//! takes off `delta` for counts that are read late: 38.5 N m/rad, of which the coupling has 39.1.
+//! At rest both are springs in series, `1 / (1/K + (T + d + tau) / (2 delta))`, with the certificate's
+//! reduction of `delta` for late counts: 38.5 N m/rad, with 39.1 for the coupling alone.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod paddle;
@@ -15,10 +14,10 @@ use haptic_servo::servo::AtPhase;
 use haptic_servo::servo_loop::READ_WITHIN;
 pub use paddle::TRANSDUCERS;
 
-/// What the hand feels, behind a coupling that remembers the amplifier's lag.
+/// The environment that the hand feels, behind a coupling that absorbs the amplifier's lag.
 pub type Environment = Matched<DelayedSpring<0>, 0, 1>;
 
-/// When a torque is put out: the shortest phase that there is.
+/// The time of the output: the shortest possible phase.
 pub type Output = AtPhase<5_000>;
 
 /// The scene.
@@ -28,7 +27,7 @@ pub const SCENE: Scene<Environment> = Scene {
     coupling: Coupling::Matched,
     environment: Matched { environment: DelayedSpring { stiffness: 2400.0 } },
     latency: Latency {
-        // A count may be read that late, and is so much nearer to its torque.
+        // A count may be read this late, and is then nearer to its torque by the same time.
         output_jitter: READ_WITHIN,
         ..Latency::delayed(Output::DELAY)
     }
@@ -37,7 +36,7 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.

@@ -1,6 +1,6 @@
-//! Free motion that ends at a wall, both without delay: the device's own damping is cancelled but for a
+//! Free motion that ends at a wall, both without delay: the device's own damping is cancelled except for a
 //! residual, and beyond a face there are a spring and a damper. The torque of a count is put out 10
-//! microseconds after it; the coupling absorbs that together with the lag of the amplifier.
+//! microseconds after it; the coupling absorbs this delay and the lag of the amplifier.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod paddle;
@@ -12,10 +12,10 @@ use haptic_servo::servo::AtPhase;
 use haptic_servo::servo_loop::READ_WITHIN;
 pub use paddle::TRANSDUCERS;
 
-/// What the hand feels, behind a coupling that remembers the amplifier's lag.
+/// The environment that the hand feels, behind a coupling that absorbs the amplifier's lag.
 pub type Environment = Matched<FreeModeWall<OneSided<DamperWall<0>>>, 0, 1>;
 
-/// When a torque is put out: 1680 cycles of the slowest board, for about 150 instructions.
+/// The time of the output: 1680 cycles of the slowest board, for about 150 instructions.
 pub type Output = AtPhase<10_000>;
 
 /// The scene.
@@ -30,7 +30,7 @@ pub const SCENE: Scene<Environment> = Scene {
         },
     },
     latency: Latency {
-        // A count may be read that late, and is so much nearer to its torque.
+        // A count may be read this late, and is then nearer to its torque by the same time.
         output_jitter: READ_WITHIN,
         ..Latency::delayed(Output::DELAY)
     }
@@ -39,7 +39,7 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.

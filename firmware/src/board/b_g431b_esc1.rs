@@ -3,9 +3,9 @@
 //! Facts of the chip are from its datasheet (DS12589) and reference manual (RM0440), facts of the
 //! board from its user manual (UM2516, table 4) and the schematic of MB1419.
 //!
-//! With the feature `bridge` the board's own power stage drives the motor. Without it that stays off, with
-//! all six inputs of its gate drivers driven low, and the torque is the DAC's, for a current amplifier
-//! outside, although both pins of the DAC have other purposes on this board (see [`DAC`]).
+//! With the feature `bridge` the board's own power stage drives the motor. Without the feature the power
+//! stage stays off, with all six inputs of its gate drivers driven low, and the DAC commands an external
+//! current amplifier, although both pins of the DAC have other purposes on this board (see [`DAC`]).
 
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::peripherals::USART2;
@@ -25,33 +25,33 @@ use super::stm32::output::pin::OutputPin;
 use super::stm32::{BoardPeripherals, clock_170, quadrature, serial};
 use crate::dac::OutputRange;
 
-/// Its name as a feature and for `haptic flash`.
+/// The board's name as a feature and for `haptic flash`.
 pub const NAME: &str = "b-g431b-esc1";
-/// Its chip, as debug probes call it.
+/// The chip's name for debug probes.
 pub const CHIP: &[u8; 13] = b"STM32G431CBUx";
 
 /// The encoder: TIM4, the timer of PB6 and PB7, which are the pads A+ and B+ of J8. It has 16 bits;
 /// the chip's only quadrature timer with 32, TIM2, has no pad with both its inputs.
 pub const ENCODER: pac::timer::TimGp16 = pac::TIM4;
-/// What TIM4 counts and samples its inputs with, in Hz.
+/// TIM4's clock for counting and sampling, in Hz.
 pub const ENCODER_CLOCK: f64 = 170e6;
-/// The pads bear 5 V where the chip does not pull (DS12589), and the board pulls them up by 10 kΩ.
+/// The pads tolerate 5 V without the chip's own pull (DS12589), and the board pulls them up by 10 kΩ.
 pub const ENCODER_PULL: Pull = Pull::None;
-/// The clock that measures how late the servo is: TIM2, which has 32 bits.
+/// The clock that measures the lateness of the servo: TIM2, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM2;
 /// The DAC: DAC1's channel 1 on PA4. The board uses PA4 to sense the back-EMF of its phase 1,
 /// so there is no pad: the wire to the amplifier is soldered to the pin's side of that divider, and
 /// nothing is connected to the board's motor output 1. Channel 2's pin PA5 is in the middle of a
 /// current sense amplifier.
 pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
-/// What the output buffer drives: 0.2 V from either rail (DS12589), at the lowest that the
-/// board's 3.3 V can be, three per cent below.
+/// The range of the output buffer: 0.2 V from either rail (DS12589), with the board's 3.3 V at its lowest,
+/// three per cent below nominal.
 pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
 /// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
 pub const TIMER_TRIGGER: u8 = 7;
 /// The amplifier: PA15, which is the pad PWM of J3, the only pad that neither the encoder nor the serial port
-/// uses. In reset it belongs to the debug port, and the chip pulls it up by 25 to 55 kΩ: the resistor to
-/// ground at the amplifier's input has to be 2.2 kΩ, which leaves 0.3 V at most.
+/// uses. In reset it belongs to the debug port, and the chip pulls it up by 25 to 55 kΩ: the resistor from
+/// the amplifier's input to ground must be 2.2 kΩ, which leaves 0.3 V at most.
 pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOA, pin: 15 };
 
 /// The power stage.
@@ -68,7 +68,7 @@ pub const GATES: Gates = Gates([
 ]);
 
 /// The encoder's index: TIM4_CH3 on PB8, which is the pad Z+ of J8 (alternate function by DS12589). The board
-/// pulls it up like the other two.
+/// pulls it up like A+ and B+.
 #[cfg(feature = "bridge")]
 pub const INDEX: IndexPin = IndexPin { port: pac::GPIOB, pin: 8, function: 2 };
 
@@ -81,10 +81,10 @@ pub fn clocks() -> Config {
     clock_170::from_crystal(Hertz(8_000_000), PllPreDiv::DIV2)
 }
 
-/// Gives each pin its purpose; the amplifier is off.
+/// Configures each pin; the amplifier is off.
 pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
-    // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
-    // works with the registers.
+    // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
+    // registers.
     core::mem::forget((
         Output::new(chip.PA15, Level::Low, Speed::Low),
         // The gate drivers, high sides and low sides of the phases U, V and W (L6387, UM2516): low is
@@ -105,8 +105,7 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     #[cfg(not(feature = "bridge"))]
     DAC.connect(chip.DAC1, chip.PA4);
     BoardPeripherals {
-        // The virtual serial port of the debug probe that the board comes with; without the probe,
-        // the pads TX and RX of J3.
+        // The virtual serial port of the board's debug probe; without the probe, the pads TX and RX of J3.
         serial: serial::open(chip.USART2, chip.PB4, chip.PB3, Interrupts),
     }
 }

@@ -1,5 +1,4 @@
-//! What a panic and a fault of the processor become: a [`Fault`], with which the board ends its
-//! program.
+//! Turns a panic and a fault of the processor into a [`Fault`], with which the board ends its program.
 
 use core::arch::naked_asm;
 use core::panic::PanicInfo;
@@ -11,21 +10,21 @@ use super::stack;
 use super::stm32::stop::{end, end_non_maskable};
 use crate::fault::Fault;
 
-/// None is reachable by input; this is for mistakes.
+/// No input causes a panic; this handler is for programming errors.
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
     end(Fault::of_panic(info))
 }
 
-/// The processor's handler of the non-maskable interrupt, which is a fault of the chip.
+/// The handler of the non-maskable interrupt, which reports a fault of the chip.
 #[cfg(feature = "stm32")]
 #[unsafe(export_name = "NonMaskableInt")]
 unsafe extern "C" fn non_maskable() -> ! {
     end_non_maskable()
 }
 
-/// The processor's handler of faults, first part: a stack that has run over cannot serve the second
-/// part, so that gets a fresh one, and the old one's address to look at.
+/// The first part of the processor's fault handler. A stack that has overflowed cannot serve the second part,
+/// so the second part gets a fresh stack and the address of the old one.
 #[unsafe(export_name = "HardFault")]
 #[unsafe(naked)]
 unsafe extern "C" fn hard_fault() -> ! {
@@ -39,16 +38,16 @@ unsafe extern "C" fn hard_fault() -> ! {
     )
 }
 
-/// Where the processor stacks the address of the instruction that faulted, behind r0 to r3, r12 and
-/// the return address; and the bytes that it stacks without the floating-point registers.
+/// Offset of the address of the faulting instruction in the frame that the processor stacks, after r0 to r3,
+/// r12 and the return address; and the size of that frame in bytes without the floating-point registers.
 const STACKED_PC: u32 = 24;
 const STACKED: u32 = 32;
 
-/// The handler's second part, with the stack pointer as it was.
+/// The second part of the handler, with the stack pointer from before.
 extern "C" fn faulted(stacked: u32) -> ! {
     let address = if stacked.is_multiple_of(4) && stack::holds(stacked, STACKED) {
-        // SAFETY: a word of the stack, where the processor has just put it, above the frames that
-        // have taken the stack's top again.
+        // SAFETY: a word of the stack that the processor has just written, above the frames that reuse the
+        // top of the stack.
         unsafe { ((stacked + STACKED_PC) as *const u32).read_volatile() }
     } else {
         0

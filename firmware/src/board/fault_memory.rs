@@ -6,13 +6,12 @@ use core::mem::MaybeUninit;
 
 use crate::fault::{Fault, FaultRecord};
 
-/// Words which start-up leaves as they are. After power was off they are noise, which
-/// [`FaultRecord::decode`] tells from a record.
+/// Words that start-up does not initialise. After a power-off they are noise; [`FaultRecord::decode`]
+/// distinguishes noise from a record.
 struct Memory<const N: usize>(UnsafeCell<MaybeUninit<[u32; N]>>);
 
-// SAFETY: its words are read and written one by one and volatile. Who writes them holds off or is
-// about to stop everything that could interleave; and a record that was mixed with another one has
-// a wrong check sum.
+// SAFETY: its words are read and written one by one and volatile. A writer masks, or is about to stop,
+// everything that could interleave; a mixture of two records has a wrong checksum.
 unsafe impl<const N: usize> Sync for Memory<N> {}
 
 #[unsafe(link_section = ".uninit.retained")]
@@ -21,11 +20,11 @@ static MEMORY: Memory<{ FaultRecord::WORDS }> = Memory::noise();
 #[unsafe(link_section = ".uninit.retained")]
 static MARK: Memory<2> = Memory::noise();
 
-/// What [`MARK`] holds once the supply is on, whose digits noise has once in 2^64 times.
+/// The content of [`MARK`] once the supply is on; noise equals it once in 2^64 times.
 const IS_ON: [u32; 2] = [0x504F_5745, 0x5220_4F4E];
 
 impl<const N: usize> Memory<N> {
-    /// As it is at power-on.
+    /// The content at power-on.
     const fn noise() -> Self {
         Self(UnsafeCell::new(MaybeUninit::uninit()))
     }
@@ -33,8 +32,7 @@ impl<const N: usize> Memory<N> {
     fn write(&self, words: &[u32; N]) {
         let first = self.0.get().cast::<u32>();
         for (i, word) in words.iter().enumerate() {
-            // SAFETY: inside of the memory, which has as many words; see `Memory` for who else may be
-            // at it.
+            // SAFETY: inside the memory, which has as many words; see `Memory` for other accesses.
             unsafe { first.add(i).write_volatile(*word) };
         }
     }
@@ -42,14 +40,14 @@ impl<const N: usize> Memory<N> {
     fn read(&self) -> [u32; N] {
         let first = self.0.get().cast::<u32>();
         core::array::from_fn(|i| {
-            // SAFETY: inside of the memory. It is RAM, whose every content is a number: what the last
-            // run wrote, or noise.
+            // SAFETY: inside the memory. Every content of RAM is a valid number: the words of the last run,
+            // or noise.
             unsafe { first.add(i).read_volatile() }
         })
     }
 }
 
-/// Stores these words through resets.
+/// Stores these words; they survive resets.
 pub fn store(words: &[u32; FaultRecord::WORDS]) {
     MEMORY.write(words);
 }
@@ -59,13 +57,13 @@ pub fn stored() -> [u32; FaultRecord::WORDS] {
     MEMORY.read()
 }
 
-/// Stores a fault that occurs outside of the servo, where the tick is not known.
+/// Stores a fault that occurs outside the servo, where the tick is unknown.
 pub fn store_fault(fault: Fault) {
     store(&FaultRecord { fault, tick: 0, count: 0 }.encode());
 }
 
-/// Whether the supply has stayed on since this was last asked, as far as RAM can tell: it forgets once
-/// the supply is gone. To be asked once a boot.
+/// Whether the supply has stayed on since the last call, judged by RAM, which loses its content without
+/// supply. Call it once per boot.
 pub fn power_stayed() -> bool {
     let stayed = MARK.read() == IS_ON;
     MARK.write(&IS_ON);

@@ -1,4 +1,4 @@
-//! The filter of an encoder's inputs: as much of it as the encoder's fastest edges allow.
+//! The filter of an encoder's inputs: the longest that the encoder's fastest edges allow.
 
 use core::f64::consts::TAU;
 
@@ -26,8 +26,8 @@ use crate::text::Text;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InputFilter(u8);
 
-/// Timer clocks that a level has to last, by the setting ICxF (RM0440, 31.5.8; RM0090, 18.4.7), with
-/// the timer's clock as it is for sampling.
+/// Timer clocks that a level must last, by the setting ICxF (RM0440, 31.5.8; RM0090, 18.4.7), with the
+/// undivided timer clock for sampling.
 const CLOCKS: [u16; 16] = [0, 2, 4, 8, 12, 16, 24, 32, 48, 64, 80, 96, 128, 160, 192, 256];
 
 /// The part of a count's time that a filter may take: the edges of good encoders are off by up to half a
@@ -38,13 +38,13 @@ impl InputFilter {
     /// The longest filter that passes every edge of an encoder, in a timer whose clock is in Hz.
     ///
     /// # Errors
-    /// Where edges can come too fast for the shortest.
+    /// If edges can be too fast for the shortest filter.
     pub const fn new(transducers: &Transducers, clock: f64) -> Result<Self, TooFast> {
         let rate = transducers.counts_per_turn / TAU * transducers.largest_speed;
         let most = PART * clock / rate;
         let mut bits = CLOCKS.len() - 1;
         while bits > 0 {
-            // Written so that NaN fits nowhere.
+            // Written so that NaN satisfies no condition.
             if CLOCKS[bits] as f64 <= most {
                 return Ok(Self(bits as u8));
             }
@@ -53,7 +53,7 @@ impl InputFilter {
         Err(TooFast { rate, largest: PART * clock / CLOCKS[1] as f64 })
     }
 
-    /// The same for a constant: an encoder that is too fast stops the compiler, with a sentence.
+    /// The same for a constant: an encoder that is too fast is a compile error.
     #[track_caller]
     pub const fn of_encoder(transducers: &Transducers, clock: f64) -> Self {
         match Self::new(transducers, clock) {
@@ -67,18 +67,18 @@ impl InputFilter {
         self.0
     }
 
-    /// Timer clocks that a level has to last.
+    /// Timer clocks that a level must last.
     pub const fn clocks(self) -> u16 {
         CLOCKS[self.0 as usize]
     }
 }
 
-/// An encoder whose edges no filter passes.
+/// An encoder with edges too fast for every filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TooFast {
-    /// Counts a second at the largest speed.
+    /// Counts per second at the largest speed.
     pub rate: f64,
-    /// The most that the shortest filter passes.
+    /// The largest rate that the shortest filter passes, in counts per second.
     pub largest: f64,
 }
 

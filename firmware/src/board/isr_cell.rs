@@ -1,11 +1,11 @@
-//! State that belongs to one interrupt.
+//! A cell for the state of one interrupt.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 
-/// Holds what belongs to one interrupt. The main program fills it before it enables the interrupt,
-/// and leaves it alone from then on; so the interrupt needs no critical section to get at it, and
-/// no test whether it is there.
+/// Holds the state of one interrupt. The main program fills the cell before it enables the interrupt, and
+/// does not access it afterwards. So the interrupt needs no critical section for it, and no test whether it
+/// is filled.
 pub struct IsrCell<T>(UnsafeCell<MaybeUninit<T>>);
 
 // SAFETY: both functions require of their callers that one owner at a time uses the cell; the value
@@ -36,7 +36,7 @@ impl<T> IsrCell<T> {
     #[inline(always)]
     #[expect(clippy::mut_from_ref, reason = "the caller is the only one, as it promises")]
     pub unsafe fn borrow_mut(&'static self) -> &'static mut T {
-        // SAFETY: filled and not shared, as the caller promises.
+        // SAFETY: the caller guarantees a filled cell and exclusive access.
         unsafe { (*self.0.get()).assume_init_mut() }
     }
 

@@ -1,8 +1,8 @@
 //! Lockstep protocol between an emulated board and the host that simulates its plant: the input and
 //! the output of a tick, as bytes.
 //!
-//! Each tick has a number, which the board repeats: a board that faults may report the same tick twice rather
-//! than not at all.
+//! Each tick has a number, which the board repeats. A board that faults may report the same tick twice, but
+//! never omits it.
 
 use crate::servo_loop::State;
 
@@ -11,7 +11,7 @@ use crate::servo_loop::State;
 pub struct TickInput {
     /// The encoder's counter.
     pub count: u32,
-    /// Whole periods that went by without a tick: 0 in time.
+    /// Whole periods without a tick before this tick: 0 if it is in time.
     pub missed: u16,
 }
 
@@ -53,7 +53,7 @@ impl TickOutput {
         [a, b, self.amplifier as u8, self.state as u8, c, d]
     }
 
-    /// From bytes, with the tick's number; `None` for what [`TickOutput::to_bytes`] did not write.
+    /// From bytes, with the tick's number; `None` if [`TickOutput::to_bytes`] cannot have written them.
     pub fn from_bytes([a, b, amplifier, state, c, d]: [u8; Self::BYTES]) -> Option<(Self, u16)> {
         let (code, number) = (u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]));
         let state = State::ALL.into_iter().find(|known| *known as u8 == state)?;

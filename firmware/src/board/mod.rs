@@ -1,8 +1,8 @@
-//! Where a scene runs: one of the STM32 boards, the board that QEMU emulates, or the host, where it
+//! The platforms of a scene: the STM32 boards, the board that QEMU emulates, and the host, where a program
 //! prints its certificate.
 //!
-//! A scene's program is its numbers and one call of [`scene_program!`](crate::scene_program); what
-//! that call becomes is chosen here, by the target that the program is built for.
+//! A scene's program is its numbers and one call of [`scene_program!`](crate::scene_program); this module
+//! selects the expansion of that call by the target of the build.
 //!
 //! All `unsafe` of the library is in the modules of the boards.
 
@@ -45,8 +45,8 @@ pub mod stm32;
 #[allow(unsafe_code)]
 pub mod stm32f405;
 
-/// Bits a second on a board's serial port to the host, 8N1: the fastest of the usual rates that all
-/// boards' clocks divide into within a quarter of a per cent.
+/// Bits per second on a board's serial port to the host, 8N1: the fastest usual rate that the clocks of all
+/// boards reach within a quarter of a per cent.
 pub const BAUD: u32 = 460_800;
 
 /// Makes a program of a certified scene.
@@ -73,8 +73,8 @@ pub const BAUD: u32 = 460_800;
 ///   the supply is switched on, and after no other reset. Without words in the reason, which the board
 ///   logs, the program does not compile.
 ///
-/// All of it together is the program's constant `PROGRAM`. Numbers that no board could run with do not
-/// compile either.
+/// All of it together is the program's constant `PROGRAM`. Numbers that no board can run do not compile
+/// either.
 ///
 /// A board's program is linked with the map `memory.x` of this package, which fits every board. In a crate of
 /// your own copy it beside `Cargo.toml`, and let a build script name the folder and the linker's scripts:
@@ -108,7 +108,7 @@ macro_rules! scene_program {
             options: $crate::or_default!($crate::servo_loop::Options $(, $options)?),
         };
 
-        // Not in `PROGRAM` itself, which is used elsewhere: the error then appears once.
+        // Not in `PROGRAM` itself, which is used elsewhere, so that the error appears once.
         const _: $crate::boot::Program<$environment> = PROGRAM.checked();
 
         // A board that refuses the scene itself reports more.
@@ -117,26 +117,26 @@ macro_rules! scene_program {
             Err(_) => (),
         };
 
-        /// The certificate of the coefficients that the program multiplies by: where rounding
-        /// them to its number format took it away, this does not compile.
+        /// The certificate of the rounded coefficients of the program's number format. If the scene does not
+        /// certify with them, this does not compile.
         pub const CERTIFIED_AS_IT_RUNS: $crate::certificate::Certified<
             $crate::scene::Scene<$environment>,
         > = $certified.certified_in(
             <$crate::chosen_number!($float, $fixed) as $crate::number::Number>::FORMAT,
         );
 
-        // On every target, where a board would say the same.
+        // On every target, because a board would refuse the scene as well.
         $(const _: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
             CERTIFIED_AS_IT_RUNS.timing_checked::<$mode>();)?
 
         $crate::bridge_checked!([$($current_loop)?] [$($mode)?] $scene, $transducers);
 
-        /// The current loop that makes its torques; none where a DAC and an amplifier outside do.
+        /// The current loop of the board's bridge; `None` with a DAC and an external amplifier.
         #[cfg(not(target_os = "none"))]
         pub const BRIDGE: Option<$crate::current::CurrentLoop> =
             $crate::current_loop_of!($($current_loop)?);
 
-        // On the host both formats are judged, whichever a board will be built for.
+        // The host judges both formats, because the board's format is unknown here.
         #[cfg(not(target_os = "none"))]
         const _: () = {
             let _ = $certified.certified_in(<$float as $crate::number::Number>::FORMAT);
@@ -220,13 +220,13 @@ macro_rules! or_default {
     };
 }
 
-/// Makes a program of a sweep, of the transducers that it was planned for, and of the motion's
-/// limits: on a board it plays the sweep within them, on the host it prints the plan. With the
-/// [`CurrentLoop`](crate::current::CurrentLoop) of a motor it serves boards with a bridge, too.
+/// Makes a program of a sweep, its transducers and the limits of the motion: on a board it plays the sweep
+/// within the limits, on the host it prints the plan. With the [`CurrentLoop`](crate::current::CurrentLoop)
+/// of a motor it also runs on boards with a bridge.
 #[macro_export]
 macro_rules! sweep_program {
     ($sweep:ident, $transducers:ident, $limits:ident $(, bridge: $current_loop:ident)?) => {
-        /// The limits in counts: those that stop nothing do not compile.
+        /// The limits in counts. Limits that would not stop any motion do not compile.
         pub const GUARD: $crate::excitation::Guard =
             $crate::excitation::Guard::planned(&$limits, &$transducers, $sweep.period());
 
@@ -267,7 +267,7 @@ macro_rules! chosen_number {
     };
 }
 
-/// The program of a scene on a board that was not named.
+/// The program of a scene without a named board.
 #[cfg(all(target_os = "none", not(any(feature = "board-qemu", feature = "stm32"))))]
 #[doc(hidden)]
 #[macro_export]
@@ -280,7 +280,7 @@ macro_rules! board_program {
     };
 }
 
-/// The program of a sweep on a board that was not named.
+/// The program of a sweep without a named board.
 #[cfg(all(target_os = "none", not(any(feature = "board-qemu", feature = "stm32"))))]
 #[doc(hidden)]
 #[macro_export]

@@ -17,25 +17,25 @@ use super::stm32::output::pin::OutputPin;
 use super::stm32::{BoardPeripherals, clock_170, quadrature, serial};
 use crate::dac::OutputRange;
 
-/// Its name as a feature and for `haptic flash`.
+/// The board's name as a feature and for `haptic flash`.
 pub const NAME: &str = "nucleo-g474re";
-/// Its chip, as debug probes call it.
+/// The chip's name for debug probes.
 pub const CHIP: &[u8; 13] = b"STM32G474RETx";
 
 /// The encoder: TIM2, one of the chip's two timers with 32 bits and quadrature inputs.
 pub const ENCODER: pac::timer::TimGp32 = pac::TIM2;
-/// What TIM2 counts and samples its inputs with, in Hz.
+/// TIM2's clock for counting and sampling, in Hz.
 pub const ENCODER_CLOCK: f64 = 170e6;
-/// PA0 and PA1 bear no more than 3.6 V (DS12288), so that no encoder with 5 V can be there: pulled up, for
-/// open collectors, and so that an encoder that is not plugged in counts no noise.
+/// PA0 and PA1 tolerate at most 3.6 V (DS12288), so the encoder must not have 5 V outputs. The inputs are
+/// pulled up for open collectors, and so that an unplugged encoder counts no noise.
 pub const ENCODER_PULL: Pull = Pull::Up;
-/// The clock that measures how late the servo is: TIM5, the other one with 32 bits.
+/// The clock that measures the lateness of the servo: TIM5, the other timer with 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
 /// The DAC: DAC1's channel 1, whose pin PA4 is A2 on the Arduino header. Channel 2's pin PA5
 /// drives the board's LED.
 pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
-/// What the output buffer drives: 0.2 V from either rail (DS12288), at the lowest that the
-/// board's 3.3 V can be, three per cent below.
+/// The range of the output buffer: 0.2 V from either rail (DS12288), with the board's 3.3 V at its lowest,
+/// three per cent below nominal.
 pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
 /// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
 pub const TIMER_TRIGGER: u8 = 7;
@@ -47,15 +47,15 @@ bind_interrupts!(struct Interrupts {
     USART2 => BufferedInterruptHandler<USART2>;
 });
 
-/// 170 MHz from the 24 MHz crystal X3 that the board comes with.
+/// 170 MHz from the board's 24 MHz crystal X3.
 pub fn clocks() -> Config {
     clock_170::from_crystal(Hertz(24_000_000), PllPreDiv::DIV6)
 }
 
-/// Gives each pin its purpose; the amplifier is off.
+/// Configures each pin; the amplifier is off.
 pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
-    // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
-    // works with the registers.
+    // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
+    // registers.
     core::mem::forget((
         Output::new(chip.PB10, Level::Low, Speed::Low),
         // A0 and A1 on the Arduino header.

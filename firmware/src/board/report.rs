@@ -1,4 +1,4 @@
-//! The output of a scene's program on the host: its certificate.
+//! The certificate as the output of a program on the host.
 
 use core::fmt;
 
@@ -20,7 +20,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Of a certified scene, of the machine, and of the damping in N m s/rad that is injected.
+    /// The report of a certified scene, its options, and the injected damping in N m s/rad.
     pub fn new<E>(
         certified: &Certified<Scene<E>>,
         steps: &Resolution,
@@ -55,7 +55,7 @@ impl fmt::Display for Report {
             writeln!(f, "injects        up to {injection} N m s/rad where there is a deficit")?;
         }
         match self.margin {
-            // The coupling was made for this passivity.
+            // The coupling was designed for this passivity.
             Some(_) if self.lags => writeln!(f, "margin         none is known where torques lag")?,
             Some(margin) => writeln!(f, "margin         {margin:.9} N m s/rad")?,
             None => {}

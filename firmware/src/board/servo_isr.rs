@@ -1,4 +1,4 @@
-//! The static places of the servo's interrupt and of the task below it.
+//! The statics that the servo's interrupt and the task below it share.
 
 use static_cell::StaticCell;
 
@@ -8,11 +8,11 @@ use crate::servo::{OutputMode, PreparedServo};
 pub use crate::servo_loop::{Endpoints, FRAMES, ServoIsr};
 use crate::servo_loop::{FrameQueue, Mailbox};
 
-/// Where the servo's interrupt and the task below it meet. A program has one, in a static place of
-/// its own, since the types are its scene's.
+/// The static for the mailbox between the servo's interrupt and the task below it. Each program has its own,
+/// because the types depend on its scene.
 pub type MailboxCell<E, N, M> = StaticCell<Mailbox<PreparedServo<E, N, M>>>;
 
-/// Makes the mailbox and the queue of frames. To be called once.
+/// Makes the mailbox and the queue of frames. Call it once.
 pub fn endpoints<E: Discretize<N>, N: Number, M: OutputMode>(
     mailbox: &'static MailboxCell<E, N, M>,
 ) -> Endpoints<E, N, M> {

@@ -1,4 +1,4 @@
-//! Simulated boards: their program is always in time.
+//! The hardware of simulated boards, whose ticks are always in time.
 
 use crate::boot::Startup;
 use crate::dac::DacCode;
@@ -7,17 +7,17 @@ use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
 
-/// Inputs of a simulated board's program.
+/// Inputs and outputs of a simulated board's program.
 pub trait SimIo {
     /// The encoder's counter.
     fn count(&mut self) -> RawCount;
-    /// The DAC is given a code.
+    /// Writes a code to the DAC.
     fn write(&mut self, code: DacCode);
-    /// The amplifier is switched.
+    /// Switches the amplifier.
     fn amplifier(&mut self, _on: bool) {}
 }
 
-/// A board whose ticks take no time, which is fresh from power-on and needs no watchdog.
+/// A board after power-on, without a watchdog, whose ticks take no time.
 #[derive(Clone, Debug)]
 pub struct SimHardware<L> {
     /// Encoder, DAC and amplifier.
@@ -27,7 +27,7 @@ pub struct SimHardware<L> {
 }
 
 impl<L> SimHardware<L> {
-    /// A board with so many timer counts in a period.
+    /// A board with `period` timer counts in a period.
     pub const fn new(lines: L, period: u32) -> Self {
         Self { lines, period }
     }

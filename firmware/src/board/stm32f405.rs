@@ -1,5 +1,5 @@
-//! VESC 6 MK3 and MK4: STM32F405RG at 168 MHz. No other VESC: on each of the others one of these pins
-//! is something else (`boards.md` says which).
+//! VESC 6 MK3 and MK4: STM32F405RG at 168 MHz. Not for other VESCs: on each of them one of these pins has
+//! another function (listed in `boards.md`).
 //!
 //! Facts of the chip are from its datasheet (DS8626) and reference manual (RM0090), facts of the
 //! board from the header of its published firmware: `hwconf/trampa/vesc6/hw_60_core.h` of
@@ -24,25 +24,25 @@ use super::stm32::output::pin::OutputPin;
 use super::stm32::{BoardPeripherals, quadrature, serial};
 use crate::dac::OutputRange;
 
-/// Its name as a feature and for `haptic flash`.
+/// The board's name as a feature and for `haptic flash`.
 pub const NAME: &str = "stm32f405";
-/// Its chip, as debug probes call it.
+/// The chip's name for debug probes.
 pub const CHIP: &[u8; 13] = b"STM32F405RGTx";
 
-/// The encoder: TIM3, the timer of PC6 and PC7, which are H1 and H2 of the hall sensors' connector.
-/// It has 16 bits; the inputs of the chip's timers with 32 are not on a connector.
+/// The encoder: TIM3, the timer of PC6 and PC7, which are H1 and H2 of the hall sensors' connector. It has 16
+/// bits; the inputs of the chip's 32-bit timers are not on a connector.
 pub const ENCODER: pac::timer::TimGp16 = pac::TIM3;
-/// What TIM3 counts and samples its inputs with, in Hz.
+/// TIM3's clock for counting and sampling, in Hz.
 pub const ENCODER_CLOCK: f64 = 84e6;
-/// PC6 and PC7 bear 5 V where the chip does not pull (DS8626), and the connector supplies 5 V.
+/// PC6 and PC7 tolerate 5 V without the chip's own pull (DS8626), and the connector supplies 5 V.
 pub const ENCODER_PULL: Pull = Pull::None;
-/// The clock that measures how late the servo is: TIM5, which has 32 bits.
+/// The clock that measures the lateness of the servo: TIM5, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
 /// The DAC: channel 1, whose pin PA4 is the chip select of the SPI header (HW_SPI_PIN_NSS).
 /// Channel 2's pin PA5 is an analogue input of the communication header.
 pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
-/// What the output buffer drives: 0.2 V from either rail (DS8626), at the lowest that the
-/// board's 3.3 V can be, three per cent below.
+/// The range of the output buffer: 0.2 V from either rail (DS8626), with the board's 3.3 V at its lowest,
+/// three per cent below nominal.
 pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
 /// TIM6's update among the triggers of the F4's DAC (RM0090, DAC external triggers).
 pub const TIMER_TRIGGER: u8 = 0;
@@ -54,13 +54,13 @@ bind_interrupts!(struct Interrupts {
     USART3 => BufferedInterruptHandler<USART3>;
 });
 
-/// 168 MHz, the chip's most, from the board's 8 MHz crystal. Timers on the slow bus count 84 MHz.
+/// 168 MHz, the chip's maximum, from the board's 8 MHz crystal. Timers on the slow bus count 84 MHz.
 pub fn clocks() -> Config {
     let mut config = Config::default();
     config.rcc.hse = Some(Hse { freq: Hertz(8_000_000), mode: HseMode::Oscillator });
     config.rcc.pll_src = PllSource::HSE;
     config.rcc.pll = Some(Pll {
-        // 2 MHz into the oscillator, which the manual recommends against jitter.
+        // 2 MHz into the PLL, which the manual recommends against jitter.
         prediv: PllPreDiv::DIV4,
         mul: PllMul::MUL168,
         divp: Some(PllPDiv::DIV2),
@@ -68,19 +68,19 @@ pub fn clocks() -> Config {
         divr: None,
     });
     config.rcc.sys = Sysclk::PLL1_P;
-    // 42 MHz and 84 MHz, the most for these buses.
+    // 42 MHz and 84 MHz, the maximum of these buses.
     (config.rcc.ahb_pre, config.rcc.apb1_pre) = (AHBPrescaler::DIV1, APBPrescaler::DIV4);
     config.rcc.apb2_pre = APBPrescaler::DIV2;
     config
 }
 
-/// Gives each pin its purpose; the amplifier is off.
+/// Configures each pin; the amplifier is off.
 pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
-    // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
-    // works with the registers.
+    // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
+    // registers.
     core::mem::forget((
-        // The board's power switch: high keeps the power on, once the button is let go
-        // (HW_SHUTDOWN_HOLD_ON). Before all else, as in the board's own firmware.
+        // The board's power switch: high keeps the power on after the button is released
+        // (HW_SHUTDOWN_HOLD_ON). First, as in the board's own firmware.
         Output::new(chip.PC5, Level::High, Speed::Low),
         // The gate driver's enable (ENABLE_GATE); low is off.
         Output::new(chip.PB5, Level::Low, Speed::Low),

@@ -1,4 +1,4 @@
-//! What both rules say of a scene, with the numbers behind the answers.
+//! The answers of both rules for a scene, with their numbers.
 
 use super::loop_intervals::LoopIntervals;
 use super::problem::PassivityProblem;
@@ -13,29 +13,29 @@ use crate::passivity::interval::Interval;
 use crate::passivity::poles::{IndexError, UndecidedReason};
 use crate::scene::Scene;
 
-/// Everything that is known about a scene after judging it. Indices in N m s/rad.
+/// The result of judging a scene. Indices in N m s/rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assessment {
-    /// Index `alpha` of the environment alone; `None` where it does not exist.
+    /// Index `alpha` of the environment alone; `None` if it does not exist.
     pub alpha: Option<Interval>,
-    /// Index of `E'`, the environment that behind the standard coupling gives the same controller.
+    /// Index of `E'`, the environment that gives the same controller behind the standard coupling.
     pub alpha_coupled: Option<Interval>,
-    /// Index at the device's port with delay, lag and sensor (equation 38): the least passivity of a
-    /// device that would be enough. `None` where the scene has none of them, where the index does not
-    /// exist, and where only the verdict was asked for.
+    /// Index at the device's port with delay, lag and sensor (equation 38): the least sufficient passivity of
+    /// a device. `None` if the scene has none of these times, if the index does not exist, or if only the
+    /// verdict was requested.
     pub alpha_port: Option<Interval>,
     /// Bound on the index that holds for one-sided and limited scenes; `None` for linear ones.
     pub bound: Option<Interval>,
     /// The device's passivity, scaled to the worst period.
     pub delta: Interval,
-    /// Around the `cos(theta)` at which the linear index is reached; `[-1, 1]` where that is
+    /// An enclosure of the `cos(theta)` at which the linear index is reached; `[-1, 1]` if it is reached
     /// everywhere.
     pub cos_theta: Option<Interval>,
     /// Answer of equations 17 to 19.
     pub paper: RuleAnswer,
     /// Answer of theory, section 4.1.
     pub exact: RuleAnswer,
-    /// Which of the two the verdict follows.
+    /// The rule that decides the verdict.
     pub rule: Rule,
     /// The number format whose coefficients were judged.
     pub format: Format,
@@ -56,24 +56,23 @@ impl Assessment {
     }
 }
 
-/// Judges a scene as it was written by both rules, without looking for remedies.
+/// Judges a scene with unrounded coefficients by both rules, without a search for remedies.
 pub const fn assess(scene: &Scene) -> Assessment {
     assess_in(scene, Format::F64)
 }
 
-/// Judges the coefficients that a servo in this number format multiplies by, without looking for
-/// remedies.
+/// Judges a scene with the coefficients rounded to this number format, without a search for remedies.
 pub const fn assess_in(scene: &Scene, format: Format) -> Assessment {
     assessed(scene, format, Extent::BothRules)
 }
 
-/// How much is found out about a scene.
+/// The extent of an assessment.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Extent {
     /// The answers of both rules.
     BothRules,
-    /// Of a rejected scene, and of one whose torques lag and are limited, only the result of its own rule;
-    /// of one whose torques lag, no more of the index than proves it.
+    /// For a rejected scene, and for one with lagging and limited torques, only the result of its own rule;
+    /// for one with lagging torques, the index only as precisely as the proof needs.
     OwnRule,
 }
 
@@ -99,7 +98,7 @@ pub(super) const fn assessed(scene: &Scene, format: Format, extent: Extent) -> A
     }
     let numbers = LoopIntervals::of(scene, format);
     out.delta = numbers.delta;
-    // By reference: moved out of the result, the scene would be on a small board's stack twice.
+    // By reference: if the scene were moved out of the result, a small board's stack would hold it twice.
     out.outcome = match &PassivityProblem::with(scene, numbers) {
         Ok(posed) => judge(posed, extent, &mut out),
         Err(rejection) => Err(*rejection),
@@ -124,7 +123,8 @@ const fn judge(
     if is_refused && matches!(extent, Extent::OwnRule) {
         return nonlinear_outcome(n, &alone, out);
     }
-    // What lags and is limited is certified by then, and the other rule takes the stack of a small board.
+    // A scene that lags and is limited is decided at this point, and the other rule would need more stack
+    // than a small board has.
     if is_lagging_and_limited(out, n) && matches!(extent, Extent::OwnRule) {
         out.exact = RuleAnswer::Undecided;
         return nonlinear_outcome(n, &alone, out);
@@ -170,8 +170,7 @@ const fn exact_outcome(
 ) -> Result<(), Rejection> {
     let n = &posed.numbers;
     let limit = exact_limit(n);
-    // An environment that would pass at the standard coupling: it is the coupling that fails, unless
-    // torques lag.
+    // If the environment would pass at the standard coupling, the coupling fails, unless torques lag.
     let blames_coupling = match alone {
         Ok(found) => n.latency.is_none() && found.minimum.is_below(n.delta),
         Err(_) => false,
@@ -190,7 +189,7 @@ const fn exact_outcome(
             }
             RuleAnswer::Fail if blames_coupling => Err(coupling_rejection(n, out)),
             RuleAnswer::Fail => Err(Rejection::Shortage {
-                // What the device lacks where torques lag, rather than what fails for this one.
+                // With lagging torques, the passivity that the device lacks, not the obstacle of this device.
                 alpha: match out.alpha_port {
                     Some(needed) => needed,
                     None if n.latency.is_some() => match posed.port_needed() {
@@ -268,7 +267,7 @@ const fn nonlinear_outcome(
     }
 }
 
-/// The rejection of an environment that has no such obstacle without its coupling.
+/// The rejection of an environment that does not have this obstacle without its coupling.
 const fn of_coupling(obstacle: IndexError) -> Rejection {
     let mut out = from_obstacle(obstacle);
     if let Rejection::UnstablePole { of_coupling, .. } = &mut out {

@@ -1,5 +1,5 @@
-//! Assumptions of a verdict: only those of the scene, each with its condition (theory, section 8)
-//! and with whether that holds.
+//! Assumptions of a verdict: only those that apply to the scene, each with its condition (theory, section 8)
+//! and the status of the condition.
 
 use core::f64::consts::PI;
 use core::fmt;
@@ -18,7 +18,7 @@ use crate::passivity::transfer::Transfer;
 use crate::scene::{Latency, Scene, TimeRange};
 use crate::text::{RoundUp3, ShortF64};
 
-/// One thing that a verdict takes for granted, or a condition of it that was checked.
+/// An assumption of a verdict, or a condition that was checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Assumption {
     /// A1 of theory, section 4.
@@ -28,12 +28,12 @@ pub enum Assumption {
     },
     /// A2 of theory, section 4.
     Hold {
-        /// Time in s between two updates, where none may be missed.
+        /// Time in s between two updates, if none may be missed.
         period: Option<f64>,
-        /// Whether a torque begins with its count, which [`Assumption::Latency`] says otherwise.
+        /// Whether a torque begins with its count; otherwise see [`Assumption::Latency`].
         at_once: bool,
     },
-    /// Delays and lags are those of the scene.
+    /// The delays and lags of the device are those of the scene.
     Latency(Latency),
     /// Updates may be missed.
     WorstPeriod {
@@ -41,10 +41,10 @@ pub enum Assumption {
         longest: f64,
         /// The remaining passivity of the device, in N m s/rad.
         delta: f64,
-        /// Whether the scene passes with that.
+        /// Whether the scene passes with this passivity.
         passes: bool,
     },
-    /// The delay is the scene's.
+    /// The delay of the device is that of the scene.
     Delay {
         /// Whole samples.
         samples: usize,
@@ -54,9 +54,9 @@ pub enum Assumption {
         /// The stated bound on its index in N m s/rad, if there is one.
         index: Option<f64>,
     },
-    /// The wall is felt on one side only.
+    /// The wall acts on one side only.
     OneSided {
-        /// The bound that it was judged by, in N m s/rad.
+        /// The deciding bound in N m s/rad.
         bound: Option<f64>,
     },
     /// The torque is limited between environment and coupling.
@@ -68,12 +68,12 @@ pub enum Assumption {
     },
     /// The scene has no torque limit, and the DAC has one.
     Saturates {
-        /// The bound in N m s/rad by which it would pass with a limit; `None` where it would not.
+        /// The bound in N m s/rad with which it would pass with a limit; `None` if it would not pass.
         bound: Option<f64>,
         /// The damping in N m s/rad that the device may then lose.
         margin: f64,
     },
-    /// The canceller removes damping that must be there.
+    /// The canceller removes damping, which the device must have.
     CancelledDamping {
         /// Declared device damping in N m s/rad.
         damping: f64,
@@ -82,13 +82,13 @@ pub enum Assumption {
     Quantisation(QuantizationBound),
     /// The same with unknown encoder and DAC.
     StepsNotStated,
-    /// The same where the controller's response does not end.
+    /// The same if the controller's response does not end.
     StepsUnbounded,
-    /// Without a certificate there is still the device's friction.
+    /// Without a certificate, the effect of the device's friction.
     FrictionOnly {
         /// Declared friction in N m.
         friction: f64,
-        /// Speed in rad/s below which it takes more than the controller puts in.
+        /// Speed in rad/s below which friction dissipates more than the controller adds.
         speed: f64,
     },
 }
@@ -96,18 +96,18 @@ pub enum Assumption {
 /// Whether an assumption holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AssumptionStatus {
-    /// It is about the machine: nothing in the scene can tell.
+    /// It is about the machine and cannot be checked with the scene.
     Assumed,
     /// Its condition was checked and holds.
     Holds,
-    /// Its condition could be checked, if more were stated.
+    /// Its condition could be checked if more numbers were stated.
     NotStated,
     /// Its condition was checked and does not hold.
     Fails,
 }
 
 impl Assumption {
-    /// Whether it holds.
+    /// The status of the assumption.
     pub fn standing(&self) -> AssumptionStatus {
         match self {
             Self::DevicePassivity { .. }
@@ -247,7 +247,7 @@ fn write_limit(f: &mut fmt::Formatter<'_>, torque: f64, full_scale: Option<f64>)
     }
 }
 
-/// Torque errors at rest, resolutions not stated, and whether friction is enough.
+/// Writes torque errors at rest, resolutions not stated, and whether friction is sufficient.
 fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Result {
     f.write_str("at rest the error of the torque is at most")?;
     let mut between = " ";
@@ -263,7 +263,7 @@ fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Resu
     write!(f, ": {rest}")
 }
 
-/// Each time that the scene has.
+/// Writes each time that the scene has.
 fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
     let Latency {
         output_delay,
@@ -363,8 +363,7 @@ impl Assumptions {
         self.all.iter().flatten()
     }
 
-    /// The bound on quantisation at rest, where the scene is certified and the resolution was
-    /// stated.
+    /// The bound on quantisation at rest, if the scene is certified and the resolution was stated.
     pub fn rest(&self) -> Option<&QuantizationBound> {
         self.iter().find_map(|assumption| match assumption {
             Assumption::Quantisation(rest) => Some(rest),
@@ -391,14 +390,14 @@ fn delay(environment: &Environment) -> Option<Assumption> {
     (samples > 0).then_some(Assumption::Delay { samples })
 }
 
-/// The scene's torque limit, or the DAC's: the servo limits in the same place, so that a linear
-/// scene stays passive if the nonlinear bound passes too.
+/// The scene's torque limit, or the DAC's: the servo limits the torque in the same place, so a linear scene
+/// stays passive if the nonlinear bound also passes.
 fn saturation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Option<Assumption> {
     if let Some(torque) = scene.torque_limit {
         return Some(Assumption::Limited { torque, full_scale: steps.full_scale });
     }
     if is_nonlinear(scene) {
-        // Judged by that bound already.
+        // Already judged by this bound.
         return None;
     }
     let passes = passes_limited(scene, assessment);
@@ -408,7 +407,7 @@ fn saturation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Opt
 
 /// The nonlinear bound of a scene that has an index, if it passes, and the margin then.
 fn passes_limited(scene: &Scene, assessment: &Assessment) -> Option<(Interval, f64)> {
-    // Without one its numbers may be out of range.
+    // Without an index its numbers may be out of range.
     assessment.alpha?;
     let numbers = LoopIntervals::of(scene, assessment.format);
     let bound = limited_bound(scene, assessment.rule, assessment.bound, &numbers)?;
@@ -426,13 +425,13 @@ fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> A
     }
 }
 
-/// Of a scene that has no certificate: how far its friction goes without one. A controller that
-/// needs `alpha` of damping where there is `delta` puts in `pi (alpha - delta) omega A^2` a cycle
-/// of amplitude `A`, of which friction takes `4 f_c A` (equation 33). The index is that of the whole
-/// controller one sample later, which is the condition without a coupling (theory, section 5).
+/// For a scene without a certificate, the effect of its friction. A controller that needs `alpha` of damping
+/// with only `delta` present adds `pi (alpha - delta) omega A^2` per cycle of amplitude `A`, and friction
+/// dissipates `4 f_c A` (equation 33). The index is that of the whole controller one sample later, which is
+/// the condition without a coupling (theory, section 5).
 fn friction_only(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Option<Assumption> {
     let friction = steps.friction.filter(|&friction| friction > 0.0)?;
-    // The energy of a cycle is not known where the torque lags.
+    // The energy of a cycle is unknown if the torque lags.
     if assessment.outcome.is_ok() || !scene.latency.is_none() {
         return None;
     }

@@ -1,11 +1,11 @@
-//! Where every value between two certified values of a number passes as well.
+//! Decides whether every value between two certified values of a parameter also passes.
 //!
-//! A remedy with a range is proved at its ends, and in between because the passing set is convex.
-//! Anywhere else a remedy names one value.
+//! A remedy with a range is proved at its ends by certificates, and between them by the convexity of the
+//! passing set. Otherwise a remedy names one value.
 //!
-//! **Exact rule** (theory, section 4.1). It asks that `p = delta + T C / (z - 1)` be positive real,
-//! with the whole controller `C = E / (1 + V E)`. Sums of positive real functions are, so what
-//! passes is convex in `T C`, and a greater `delta` takes nothing away. In `E` it is convex
+//! **Exact rule** (theory, section 4.1). It requires that `p = delta + T C / (z - 1)` is positive real, with
+//! the whole controller `C = E / (1 + V E)`. Sums of positive real functions are positive real, so the
+//! passing set is convex in `T C`, and a greater `delta` only enlarges it. In `E` it is convex
 //!
 //! - behind a rigid coupling, where `C = E`;
 //! - behind the standard coupling, where the rule is `delta + Re L > 0`, affine in `E`;
@@ -15,26 +15,26 @@
 //!   disks on the whole circle has `Re(1 + w e) > 1/2` there and so outside, where `D = e / (1 + w e)` then
 //!   has no pole.
 //!
-//! Behind a softer coupling those that pass are the outside of a disk, which is not convex.
+//! Behind a softer coupling the passing values are the outside of a disk, which is not convex.
 //!
-//! Where updates may be missed a linear scene has to pass two such rules at once, of which one is of
-//! a softer coupling: nothing is claimed there.
+//! If updates may be missed, a linear scene must pass two such rules at once, one of them with a softer
+//! coupling: then nothing is claimed.
 //!
 //! **Nonlinear rule** (theory, section 5): an index exists, the loop within a tick has a gain above 0,
 //! `bound < K_vc T / 2 <= delta` and `bound < delta`. The first is convex in `E`, the gain is affine, and the
 //! bound is affine in stiffness and damping of the wall and convex in the cancelled damping: `be`, and
-//! `K T be / (K T - 2 be)` in its magnitude where damping is added. All of them are convex in `T`, too, where
-//! nothing is added.
+//! `K T be / (K T - 2 be)` in its magnitude where damping is added. If no damping is added, all of them are
+//! also convex in `T`.
 //!
-//! **Torque profiles** (equations 46 to 48). The bound grows with each slope and with the damper's
-//! magnitude, and so do slopes with the torque of the table and with the stiffness of its end stops: with
-//! less of one of them what passes goes on passing, rounded or not, since rounding keeps the order. It is
-//! affine in the period, and without a damper in proportion to it, as is the coupling's limit.
+//! **Torque profiles** (equations 46 to 48). The bound grows with each slope and with the damper's magnitude,
+//! and the slopes grow with the torque of the table and with the stiffness of its end stops: with less of one
+//! of them a passing scene still passes, rounded or not, because rounding keeps the order. It is affine in
+//! the period, and without a damper in proportion to it, as is the coupling's limit.
 //!
-//! **Coefficients that are rounded.** Rounding does not turn the order around: of a number between
-//! two others the coefficient is between theirs, and a law that is affine in the coefficient passes
-//! there as well. That is so of a wall that is late, where the gain that solves a tick does not
-//! change with it. Anywhere else coefficients that are rounded each by itself can leave a hole.
+//! **Rounded coefficients.** Rounding keeps the order: the coefficient of a number between two others is
+//! between their coefficients, and a law that is affine in the coefficient also passes there. This applies to
+//! a late wall, where the gain that solves a tick does not depend on the number. Otherwise coefficients that
+//! are rounded separately can leave a hole.
 
 use super::loop_intervals::LoopIntervals;
 use super::rules::is_nonlinear;
@@ -43,20 +43,20 @@ use crate::number::Format;
 use crate::parameter::Parameter;
 use crate::scene::Scene;
 
-/// Verdict on the values between two that pass.
+/// The verdict on the values between two passing values.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Between {
-    /// Nothing.
+    /// Nothing is proved.
     Unknown,
     /// They pass.
     Passes,
-    /// They pass, and all that are smaller and positive.
+    /// They pass, and all smaller positive values pass.
     PassesDownToZero,
-    /// They pass, and all that are smaller and positive if a stiffness of zero does.
+    /// They pass, and all smaller positive values pass if the scene with zero stiffness passes.
     PassesDownToZeroWithoutStiffness,
 }
 
-/// Verdict on a number of the search, from stiffness to period, next to `value`.
+/// The verdict for a parameter of the search next to `value`.
 pub(super) const fn between(
     scene: &Scene,
     format: Format,
@@ -72,7 +72,7 @@ pub(super) const fn between(
     let passes = match parameter {
         Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, &n),
         Parameter::Residual => is_affine_in_residual(scene, &n),
-        // No longer than a period is what an amplifier may take.
+        // An amplifier's response may take at most a period.
         Parameter::Period if !scene.latency.actuator_response.is_zero() => false,
         Parameter::Period => return between_periods(scene, &n, value),
         _ => false,
@@ -86,7 +86,7 @@ const fn between_profiles(
     parameter: Parameter,
 ) -> Between {
     match parameter {
-        // What a line to a snap point takes from a fall is rounded by itself.
+        // The line to a snap point, which reduces a fall, is rounded separately.
         Parameter::ProfileTorque
             if profile.snap.is_some() && profile.delay == 0 && !matches!(n.format, Format::F64) =>
         {
@@ -102,8 +102,8 @@ const fn between_profiles(
     }
 }
 
-/// Every part of a sum has a bound of its own, which no number of another part changes. That of a wall that
-/// is late is affine in its stiffness and in the magnitude of its damping.
+/// Each part of a sum has its own bound, independent of the other parts. The bound of a late wall is affine
+/// in its stiffness and in the magnitude of its damping.
 const fn between_sums(composed: &Composed, parameter: Parameter) -> Between {
     let is_late = match &composed.wall {
         Some(wall) => wall.delay > 0,
@@ -122,7 +122,7 @@ const fn is_affine_in_wall(scene: &Scene, n: &LoopIntervals) -> bool {
     (is_late || matches!(n.format, Format::F64)) && (is_nonlinear(scene) || !is_soft)
 }
 
-/// Only an undelayed free mode has `T C = -be (z - 1) / z` with any coupling.
+/// Only an undelayed free mode has `T C = -be (z - 1) / z` for every coupling.
 const fn is_affine_in_residual(scene: &Scene, n: &LoopIntervals) -> bool {
     let is_undelayed_alone = matches!(scene.environment, Environment::FreeMode { delay: 0, .. });
     let is_affine = n.missed.is_none() && (n.coupling.is_none() || is_undelayed_alone);
@@ -169,8 +169,8 @@ const fn between_periods(scene: &Scene, n: &LoopIntervals, longest: f64) -> Betw
     }
 }
 
-/// Whether the coupling, rounded, is stiffer than the standard one up to this period. At the standard one it
-/// is judged as if it were exactly that, which rejects slightly more.
+/// Whether the rounded coupling is stiffer than the standard coupling up to this period. At the standard
+/// coupling the verdict is that of the exact standard coupling, which rejects slightly more.
 const fn is_never_standard(n: &LoopIntervals, longest: f64) -> bool {
     match n.coupling {
         None => true,
@@ -178,8 +178,8 @@ const fn is_never_standard(n: &LoopIntervals, longest: f64) -> bool {
     }
 }
 
-/// Whether every passivity from this one on passes if it does. With coefficients that are rounded
-/// the exact rule is a little stricter at the standard coupling than beside it.
+/// Whether all larger passivities pass if this one passes. With rounded coefficients the exact rule is a
+/// little stricter at the standard coupling than next to it.
 pub(super) const fn passes_upwards(scene: &Scene, n: &LoopIntervals, passivity: f64) -> bool {
     if n.missed.is_some() && !is_nonlinear(scene) {
         return false;

@@ -8,7 +8,7 @@ use crate::environment::{Composed, Environment, Wall};
 use crate::passivity::interval::Interval;
 
 /// Upper bound on the index at the device's port, without a coupling: equation 48 with the slopes of the
-/// wall's spring added. `None` where none is known: beside a canceller or a damper, and where none is for the
+/// wall's spring added. `None` if none is known: with a canceller or a damper, or if there is none for the
 /// profile alone.
 pub(super) const fn composed_bound_at_port(
     composed: &Composed,
@@ -27,14 +27,14 @@ pub(super) const fn composed_bound_at_port(
     let Some(slopes) = ExtremeSlopes::of::<Environment>(&composed.profile, n) else { return None };
     let spring = n.coefficient(Interval::decimal(wall.stiffness)).mul(n.period);
     let samples = Interval::exact(wall.delay as f64 + 0.5).add(late);
-    // The ripple is that of both slopes together, less that of the profile, which is in its own bound.
+    // The ripple of both slopes together, less the ripple of the profile, which is in the profile's own
+    // bound.
     let both = slopes.steepest().mul(n.period).double().add(spring);
     let ripple = part_of_sample(late).mul(spring).mul(both).div(n.delta.double().double());
     Some(alone.add(spring.mul(samples)).add(ripple))
 }
 
-/// The most by which the torque of wall and canceller is off, in N m, for positions that are off by up to
-/// 1 rad each.
+/// Largest error of the torque of wall and canceller in N m, for errors of up to 1 rad in each position.
 pub(super) fn peak_gain_beside(composed: &Composed, n: &LoopIntervals) -> f64 {
     let of_washout = |washout: Washout| {
         let decays = Interval::ONE.sub(washout.pole.abs());
@@ -50,8 +50,8 @@ pub(super) fn peak_gain_beside(composed: &Composed, n: &LoopIntervals) -> f64 {
     wall.add(cancelled).hi()
 }
 
-/// The most by which the gains that solve a tick differ in contact and out of it, as rounded: a face then
-/// changes the torque of the other parts by that fraction.
+/// Largest relative difference between the rounded gains that solve a tick in contact and out of it: a face
+/// changes the torque of the other parts by this fraction.
 pub(super) fn jump_at_face(composed: &Composed, n: &LoopIntervals) -> f64 {
     match &composed.wall {
         Some(wall) if wall.one_sided && wall.delay == 0 => {

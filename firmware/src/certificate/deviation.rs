@@ -1,22 +1,22 @@
-//! What a delay that deviates from tick to tick takes of the passivity.
+//! The loss of passivity by a delay that deviates from tick to tick.
 
 use super::loop_intervals::{Lagging, LoopIntervals};
 use crate::passivity::interval::Interval;
 
-/// What a delay that deviates from tick to tick takes: passivity, and ripple over `T^2`
-/// (theory, section 13.5).
+/// The loss by a delay that deviates from tick to tick: passivity, and ripple over `T^2` (theory, section
+/// 13.5).
 #[derive(Clone, Copy)]
 pub(super) struct Deviation {
-    /// What `D / 4` is divided by.
+    /// The divisor of `D / 4`.
     pub divisor: Interval,
-    /// What the index has to stay below.
+    /// The upper bound on the index.
     pub limit: Interval,
     /// Ripple over `T^2`.
     pub ripple: Interval,
 }
 
 impl Deviation {
-    /// `None` where nothing is known of it.
+    /// `None` if no bound is known.
     pub const fn of(lagging: &Lagging, n: &LoopIntervals) -> Option<Self> {
         let latency = &lagging.latency;
         let none = Self { divisor: n.delta, limit: n.delta, ripple: Interval::ZERO };
@@ -41,7 +41,7 @@ impl Deviation {
     }
 }
 
-/// What the index at the port of a scene whose torque lags has to stay below.
+/// The upper bound on the index at the port of a scene whose torque lags.
 pub(super) const fn port_limit(lagging: &Lagging, n: &LoopIntervals) -> Interval {
     match Deviation::of(lagging, n) {
         Some(deviation) => deviation.limit,

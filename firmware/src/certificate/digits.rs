@@ -1,17 +1,17 @@
 //! Numbers of few significant digits, for remedies.
 
-/// How far off a digit a number may be, as a part of it, to count as having no more: what scaling it
-/// by tens rounds.
+/// Relative deviation at which a number still counts as having no more digits: the rounding of scaling by
+/// powers of ten.
 const ROUNDED: f64 = 1e-12;
 /// The largest power of ten that is a double: a whole number times it, or over it, is rounded once.
 const LARGEST_POWER: f64 = 1e22;
 
-/// On which side of a value a scene passes.
+/// The side of a value on which a scene passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
-    /// It passes with less.
+    /// It passes with smaller values.
     Below,
-    /// It passes with more.
+    /// It passes with larger values.
     Above,
 }
 
@@ -33,16 +33,17 @@ pub(super) struct Digits {
 }
 
 impl Digits {
-    /// The most that [`Text`](crate::text::Text) writes so that they read back as the same number.
+    /// The largest number of digits that [`Text`](crate::text::Text) writes so that they read back as the
+    /// same number.
     pub const MOST: u32 = 9;
 
-    /// Three digits of a value, rounded to the side that passes; instead of a value that is not
-    /// positive and finite the nearest one.
+    /// Three digits of a value, rounded to the side that passes; for a value that is not positive and finite,
+    /// the nearest such value.
     pub const fn of(value: f64, side: Side) -> Self {
         Self::so_many(3, value, side)
     }
 
-    /// So many of a value, rounded likewise.
+    /// `count` digits of a value, rounded in the same way.
     pub const fn so_many(count: u32, value: f64, side: Side) -> Self {
         let end = 10_u64.pow(count) as f64;
         let (mut power, mut scaled) = (1.0, value.max(f64::MIN_POSITIVE).min(f64::MAX));
@@ -73,12 +74,12 @@ impl Digits {
         self.power <= LARGEST_POWER && self.divisor <= LARGEST_POWER
     }
 
-    /// The next one on the side of the values that fail.
+    /// The next number on the side of the failing values.
     pub const fn nearer(self, side: Side) -> Self {
         self.further(side.other())
     }
 
-    /// The next one on the other side.
+    /// The next number on the side of the passing values.
     pub const fn further(self, side: Side) -> Self {
         let whole = match side {
             Side::Below => self.whole - 1,

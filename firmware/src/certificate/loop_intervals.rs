@@ -1,4 +1,4 @@
-//! The numbers of a scene as the certificate computes with them: enclosed, and rounded as a number format does.
+//! The numbers of a scene as the certificate computes with them: enclosed, and rounded to a number format.
 
 use crate::environment::{Environment, EnvironmentModel, Memory};
 use crate::latency::Latency;
@@ -16,22 +16,22 @@ pub(super) struct LoopIntervals {
     /// Device passivity, scaled to the worst period: all indices are per tick, so a longest
     /// period of `k T` leaves `delta / k` (theory, section 8).
     pub delta: Interval,
-    /// Missed updates, where a torque may be latched a period after its count.
+    /// Missed updates, if a torque may be latched a period after its count.
     pub missed: Option<Missed>,
-    /// Damping that a canceller takes away, `be = b - epsilon`; zero without a canceller.
+    /// Damping removed by a canceller, `be = b - epsilon`; zero without a canceller.
     pub cancelled: Interval,
-    /// Coupling stiffness as it was written; `None`: rigid.
+    /// Unrounded coupling stiffness; `None`: rigid.
     pub coupling: Option<Interval>,
     /// Compliance `V` of the coupling in rad/(N m).
     pub compliance: Interval,
-    /// Whether the coupling is the standard one, `V = T / (2 delta)`, to the digits that were
-    /// written. The compliance as rounded is then that or a little more.
+    /// Whether the coupling is the standard one, `V = T / (2 delta)`, within the precision of its digits. The
+    /// rounded compliance is then equal or slightly larger.
     pub is_standard: bool,
     /// The number format of the servo's coefficients.
     pub format: Format,
-    /// Whether the worst period is another one than the period.
+    /// Whether the worst period differs from the period.
     pub misses_updates: bool,
-    /// Whether the index is that at the device's port: of a torque profile without a coupling.
+    /// Whether the index is that at the device's port, for a torque profile without a coupling.
     pub is_at_port: bool,
     /// Whether the coupling is the matched one.
     pub is_matched: bool,
@@ -44,18 +44,18 @@ pub(super) const fn has_latency(scene: &Scene) -> bool {
     !scene.latency.is_none() || matches!(scene.coupling, Coupling::Matched)
 }
 
-/// What a scene with latency needs besides.
+/// The additional numbers of a scene with latency.
 #[derive(Clone, Copy)]
 pub(super) struct Lagging {
     /// The times.
     pub latency: Latency,
-    /// The coupling where it is matched.
+    /// The coupling, if it is matched.
     pub matched: Option<MatchedCoupling>,
-    /// Upper bound on the index by the paper's rule; `None` where none is known.
+    /// Upper bound on the index by the paper's rule; `None` if none is known.
     pub limit: Option<Interval>,
 }
 
-/// Updates that may be missed by a scene whose torques may be latched one period after their counts.
+/// The missed updates of a scene whose torques may be latched one period after their counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Missed {
     /// Longest time between two counts over the period, `T_max / T`.
@@ -65,8 +65,8 @@ pub(super) struct Missed {
 }
 
 impl Missed {
-    /// The same, with counts that are read up to a part `late` of a period after its beginning: then
-    /// the time between two counts may be longer, and that to the latch shorter, by as much.
+    /// The same, with counts that are read up to a part `late` of a period after its beginning: the time
+    /// between two counts may then be longer, and the time to the latch shorter, by this part.
     pub const fn read_late(n: &LoopIntervals, late: Interval) -> Self {
         let slowest = Interval::ONE.add(late).div(Interval::ONE.sub(late));
         match n.missed {
@@ -75,8 +75,8 @@ impl Missed {
         }
     }
 
-    /// What an index has to stay below behind a coupling spring of damping `k = K_vc T / 2`, where
-    /// torques are latched: `1 / ((T_max / T - 1) / delta + 1 / k)`, for `k <= delta` (equation 36).
+    /// The upper bound on an index behind a coupling spring of damping `k = K_vc T / 2`, with latched
+    /// torques: `1 / ((T_max / T - 1) / delta + 1 / k)`, for `k <= delta` (equation 36).
     ///
     /// Let the counts be `x_j`, `T_j <= T_max` apart, with the torque `u_j` at `x_j` and
     /// `u_{j+1}` from one period later on, `x_E,j = x_j - V u_j`, `d = x_{j+1} - x_j`,
@@ -87,10 +87,10 @@ impl Missed {
     /// s delta d^2 / T - s w d + (V / 2 - (1 - s) T / (4 delta)) w^2 - alpha e^2 / T,
     /// ```
     ///
-    /// from which only differences of the coupling's and the environment's energy were taken. For
-    /// `nu = 2 delta V / T` and `a = alpha / delta` its determinant has the sign of
-    /// `(nu - 1) (s - a - s a (nu - 1))`: it is not negative for `nu >= 1` and
-    /// `1 / a >= 1 / s + nu - 1`, whatever the pattern of misses, and `s = T / T_max` is the worst.
+    /// apart from differences of the coupling's and the environment's energy. For `nu = 2 delta V / T` and
+    /// `a = alpha / delta` its determinant has the sign of `(nu - 1) (s - a - s a (nu - 1))`: it is not
+    /// negative for `nu >= 1` and `1 / a >= 1 / s + nu - 1`, whatever the pattern of misses, and
+    /// `s = T / T_max` is the worst.
     pub const fn limit(&self, k: Interval) -> Interval {
         let delta = self.declared;
         let product = delta.mul(k);
@@ -108,11 +108,11 @@ impl LoopIntervals {
         out
     }
 
-    /// The same where it is known whether the environment [is late](Environment::is_late), for the paper's
-    /// rule, which does not ask whether the coupling is the standard one.
+    /// The same if it is known whether the environment [is late](Environment::is_late), for the paper's rule,
+    /// which does not depend on whether the coupling is the standard one.
     ///
-    /// Only a type that [remembers](EnvironmentModel::MEMORY) torques for its coupling has latency on a
-    /// board: the program of any other omits the code.
+    /// Only a type that [stores](EnvironmentModel::MEMORY) torques for its coupling has latency on a board:
+    /// the program of any other type omits the code.
     pub const fn of_late<E: EnvironmentModel>(
         scene: &Scene,
         is_late: bool,
@@ -121,8 +121,8 @@ impl LoopIntervals {
         Self::with_compliance::<E>(scene, is_late, format).0
     }
 
-    /// The same, with the coupling's compliance before it is rounded.
-    // A part of either caller: a result as large as this would be copied.
+    /// The same, with the coupling's unrounded compliance. Inlined into both callers, because a result of
+    /// this size would be copied.
     #[inline(always)]
     const fn with_compliance<E: EnvironmentModel>(
         scene: &Scene,
@@ -154,7 +154,7 @@ impl LoopIntervals {
                 let stiffness = Interval::decimal(stiffness);
                 (Some(stiffness), Interval::ONE.div(stiffness))
             }
-            // The part of it that answers in the same tick.
+            // The compliance for the torque of the same tick.
             Coupling::Matched => {
                 let standard = standard(period, delta);
                 (Some(Interval::ONE.div(standard)), standard)
@@ -190,13 +190,13 @@ impl LoopIntervals {
         (out, written)
     }
 
-    // In a frame of its own, which no scene without latency needs.
+    // Not inlined: scenes without latency do not need its frame.
     #[inline(never)]
     const fn add_latency<const UPDATES: bool>(&mut self, scene: &Scene) {
         let latency = scene.latency;
         let mut lagging = Lagging { latency, matched: None, limit: None };
         if self.misses_updates {
-            // No proof covers both.
+            // No proof covers missed updates and latency together.
         } else if self.is_matched {
             let passivity = scene.device.passivity();
             let period = scene.timing.period;
@@ -214,7 +214,7 @@ impl LoopIntervals {
         self.latency = Some(lagging);
     }
 
-    /// The coefficient that a servo makes of a value.
+    /// The servo's coefficient for a value.
     pub(super) const fn coefficient(&self, value: Interval) -> Interval {
         rounded(value, self.format, Rounding::Nearest)
     }
@@ -235,7 +235,7 @@ impl LoopIntervals {
         }
     }
 
-    /// `K_vc T / 2`, the damping that the coupling stands for; `None`: rigid.
+    /// `K_vc T / 2`, the damping equivalent to the coupling; `None`: rigid.
     pub const fn coupling_damping(&self) -> Option<Interval> {
         match (self.coupling, self.format) {
             (None, _) => None,
@@ -249,13 +249,12 @@ impl LoopIntervals {
         self.delta.double().div(self.period)
     }
 
-    /// `V - T / (2 delta)`: what the coupling has over the standard one.
+    /// `V - T / (2 delta)`: the excess of the coupling over the standard one.
     pub const fn excess_compliance(&self) -> Interval {
         self.compliance.sub(standard(self.period, self.delta))
     }
 
-    /// The same for the declared passivity, which is what counts where torques are latched and
-    /// updates are missed.
+    /// The same for the declared passivity, which applies if torques are latched and updates are missed.
     pub const fn excess_where_latched(&self) -> Option<Interval> {
         match &self.missed {
             Some(missed) => Some(self.compliance.sub(standard(self.period, missed.declared))),
@@ -263,12 +262,11 @@ impl LoopIntervals {
         }
     }
 
-    /// What the servo's gains make of an environment with this feedthrough.
+    /// The factor by which the servo's rounded gains scale an environment with this feedthrough.
     ///
-    /// It solves the loop of coupling and environment by a gain `g`, which is `1 / (1 + f V)`
-    /// rounded. The torque `g v`, with `v` the one for the device's own position, is that of the
-    /// environment times `k = g / (1 - f V g)` behind the same coupling: exactly 1 for the exact
-    /// gain, and where nothing is fed through.
+    /// It solves the loop of coupling and environment by a gain `g`, which is `1 / (1 + f V)` rounded. The
+    /// torque `g v`, with `v` the one for the device's own position, is that of the environment times
+    /// `k = g / (1 - f V g)` behind the same coupling: exactly 1 for the exact gain, and without feedthrough.
     pub const fn solved(&self, feedthrough: Interval) -> Interval {
         if feedthrough.is_zero() || matches!(self.format, Format::F64) {
             return Interval::ONE;
@@ -284,7 +282,7 @@ const fn standard(period: Interval, delta: Interval) -> Interval {
     period.div(delta.double())
 }
 
-/// All coefficients that a format makes of the values of an interval.
+/// An interval of all coefficients of a format for the values of an interval.
 #[cfg_attr(target_os = "none", inline(never))]
 pub(super) const fn rounded(value: Interval, format: Format, rounding: Rounding) -> Interval {
     match format {

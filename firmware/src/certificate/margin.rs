@@ -1,7 +1,7 @@
-//! How much of its damping the device may lose while everything else stays unchanged.
+//! The margin: the damping that the device may lose while everything else stays unchanged.
 //!
-//! The coupling was designed for the declared passivity. For a device with less, the comparison of
-//! index and `delta` does not apply. So the margin is not `delta` less the index.
+//! The coupling was designed for the declared passivity. For a device with less, the comparison of index and
+//! `delta` does not apply, so the margin is not `delta` less the index.
 
 use super::assessment::Assessment;
 use super::loop_intervals::{LoopIntervals, Missed};
@@ -14,10 +14,10 @@ use crate::passivity::interval::Interval;
 use crate::scene::{Device, Scene};
 
 impl Assessment {
-    /// Damping in N m s/rad that the device may certainly lose while coupling, environment and timing
-    /// stay what they are; at most `delta`.
+    /// Damping in N m s/rad that the device may certainly lose while coupling, environment and timing stay
+    /// unchanged; at most `delta`.
     ///
-    /// Of a rejected linear scene, the damping that the device lacks, as a negative number. `None` for an
+    /// For a rejected linear scene, the damping that the device lacks, as a negative number. `None` for an
     /// undecided scene and for a rejected one-sided or limited scene, which have no such number.
     ///
     /// `scene` is the assessed scene.
@@ -44,7 +44,7 @@ impl Assessment {
         }
     }
 
-    /// Of a linear scene: `delta` less the index at the port.
+    /// For a linear scene: `delta` less the index at the port.
     const fn linear(&self, scene: &Scene) -> Option<f64> {
         let n = LoopIntervals::of(scene, self.format);
         if n.missed.is_some() {
@@ -58,11 +58,11 @@ impl Assessment {
     }
 }
 
-/// Halvings of a margin that is searched for.
+/// Halvings in the search for a margin.
 const HALVINGS: u32 = 24;
 
-/// The margin of a linear scene whose updates may be missed: the largest loss with which the same
-/// scene was found to be certified.
+/// The margin of a linear scene whose updates may be missed: the largest loss found with which the scene
+/// certifies.
 const fn searched(scene: &Scene, assessment: &Assessment) -> Option<f64> {
     let declared = match scene.device.passivity {
         Some(passivity) => passivity,
@@ -103,14 +103,14 @@ pub(super) struct Limited {
     missed: Option<Missed>,
     /// Whether torques lag.
     lags: bool,
-    /// Whether its torque jumps where a knob snaps, so that [`Limited::gain`] is that between two snaps.
+    /// Whether its torque jumps when a knob snaps, so that [`Limited::gain`] is the gain between two snaps.
     snaps: bool,
-    /// Whether it takes torques beside its own; an environment that is solved in front of its coupling does
-    /// not.
+    /// Whether other torques may be added to its own; not for an environment that is solved in front of its
+    /// coupling.
     takes_more: bool,
 }
 
-/// Whether it is a torque profile without delay, which knows nothing of torques that are added to its own.
+/// Whether it is a torque profile without delay, whose solution does not include added torques.
 const fn is_solved_in_front(environment: &Environment) -> bool {
     match environment.profile() {
         Some(profile) => profile.delay == 0,
@@ -119,8 +119,8 @@ const fn is_solved_in_front(environment: &Environment) -> bool {
 }
 
 impl Limited {
-    /// Of a scene with this bound on its index. `None` where that is not below the limit, or none is
-    /// known.
+    /// The limits of a scene with this bound on its index. `None` if the bound is not below the limit, or no
+    /// limit is known.
     pub const fn of(scene: &Scene, n: &LoopIntervals, bound: Interval) -> Option<Self> {
         match largest_solved::<Environment>(&scene.environment, n) {
             Some(solved) => Self::of_solved::<Environment>(scene, n, bound, solved),
@@ -128,7 +128,7 @@ impl Limited {
         }
     }
 
-    /// The same where [`largest_solved`] is known.
+    /// The same if [`largest_solved`] is known.
     pub const fn of_solved<E: EnvironmentModel>(
         scene: &Scene,
         n: &LoopIntervals,
@@ -162,19 +162,19 @@ impl Limited {
         if self.takes_more { self.limit.sub(self.bound).lo() } else { 0.0 }
     }
 
-    /// The margin while a damper of `injected` N m s/rad may be switched on and off, one sample late,
-    /// beside the environment; not negative.
+    /// The margin while a damper of `injected` N m s/rad may be switched on and off, one sample late, in
+    /// addition to the environment; not negative.
     ///
-    /// Down to `k = K_vc T / 2` conditions 17 and 18 go on to hold. For a device that has only
+    /// Down to `k = K_vc T / 2` conditions 17 and 18 continue to hold. For a device that has only
     /// `delta' < k` the sum over the ticks that theory, section 4, step 5, has is, in the notation of
-    /// [`Missed::limit`] and for `delta = k`, `(k - alpha) sum e^2 / T` less
-    /// `(k - delta') sum d^2 / T`. With `d = e + V w` and a torque that changes by no more than
-    /// `norm(w) <= g norm(e)`, that stays positive while `k - delta' < (k - alpha) / (1 + V g)^2`
-    /// (equation 37).
+    /// [`Missed::limit`] and for `delta = k`, `(k - alpha) sum e^2 / T` less `(k - delta') sum d^2 / T`. With
+    /// `d = e + V w` and a torque that changes by no more than `norm(w) <= g norm(e)`, that stays positive
+    /// while `k - delta' < (k - alpha) / (1 + V g)^2` (equation 37).
     pub const fn margin(&self, injected: f64) -> f64 {
         let injected = Interval::exact(injected);
         let bound = self.bound.add(injected);
-        // Where torques lag no loss is known to be allowed: the coupling was made for this passivity.
+        // With lagging torques no loss is known to be allowed, because the coupling is designed for this
+        // passivity.
         if !bound.is_below(self.limit) || self.lags {
             return 0.0;
         }
@@ -194,7 +194,7 @@ impl Limited {
         (margin * (1.0 - f64::EPSILON)).max(0.0).min(self.delta.lo())
     }
 
-    /// The margin where torques jump, and no `g` bounds them: down to `k` alone.
+    /// The margin if torques jump and no `g` bounds them: only down to `k`.
     const fn margin_between_branches(&self) -> f64 {
         match &self.missed {
             None => self.delta.sub(self.coupling).lo().max(0.0),
@@ -203,7 +203,7 @@ impl Limited {
     }
 }
 
-/// The same where torques are latched and updates missed. As long as the index is below `s k` the form of
+/// The same if torques are latched and updates are missed. As long as the index is below `s k` the form of
 /// [`Missed::limit`] for `delta = k` leaves `(s k - alpha) e^2 / T`; of that a device with `delta' >= k / 2`
 /// takes `(k - delta') (s d^2 + 2 (1 - s) (V w)^2) / T`. The rest grows with `s` for such a device, so that a
 /// pattern of longer and shorter intervals leaves no less.
@@ -222,7 +222,7 @@ const fn where_latched(
         let taken = taken.add(Interval::ONE.sub(s).double().mul(echo).mul(echo));
         return above.lo().max(0.0) + left.div(taken).lo().min(k.half().lo());
     }
-    // Solved for the passivity at which the limit is the bound.
+    // Solved for the passivity at which the limit equals the bound.
     let needed = missed.stretch.sub(Interval::ONE).mul(bound).mul(k).div(k.sub(bound));
     above.lo().min(missed.declared.sub(needed).lo())
 }

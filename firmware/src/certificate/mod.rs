@@ -1,8 +1,8 @@
-//! From a [`Scene`] to a [`Certified`] scene, or to a [`Rejection`] with the reason.
+//! Turns a [`Scene`] into a [`Certified`] scene, or into a [`Rejection`] with the reason.
 //!
-//! At compile time and on the host all of it is known: the index, what stands against it, and what would
-//! pass. A board limits every torque, and asks when it starts, and for every change that arrives over the
-//! wire, for the part that decides then ([`timing_checked`]), by the same functions.
+//! At compile time and on the host the whole result is computed: the index, the obstacle, and the remedies. A
+//! board limits every torque. At its start, and for every change that arrives over the wire, it only computes
+//! the verdict ([`timing_checked`]), with the same functions.
 //!
 //! ```
 //! use haptic_servo::certificate::Certified;
@@ -78,8 +78,7 @@ use modes::tightest_mode;
 
 /// A scene that was proved passive.
 ///
-/// There is no way to make one but `certify`, and a servo is built from nothing else: unchecked
-/// parameters cannot drive the motor.
+/// Only `certify` makes one, and a servo is only built from one: unchecked parameters cannot drive the motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certified<S> {
     scene: S,
@@ -94,24 +93,23 @@ impl<S> Certified<S> {
         &self.scene
     }
 
-    /// The same as data, as it was certified.
+    /// The certified scene as data.
     pub const fn as_data(&self) -> &Scene {
         &self.data
     }
 
-    /// The numbers that the certificate rests on.
+    /// The numbers of the certificate.
     pub const fn assessment(&self) -> &Assessment {
         &self.assessment
     }
 }
 
-/// Judges a scene given as data, as it was written: the certificate's numbers, or why there is no
-/// certificate.
+/// Judges a scene given as data, with unrounded coefficients: the certificate's numbers, or the rejection.
 pub const fn certify(scene: &Scene) -> Result<Assessment, Rejection> {
     certify_in(scene, Format::F64)
 }
 
-/// The same of the coefficients that a servo in this number format multiplies by.
+/// The same with the coefficients rounded to this number format.
 pub const fn certify_in(scene: &Scene, format: Format) -> Result<Assessment, Rejection> {
     let assessment = assessed(scene, format, Extent::OwnRule);
     match assessment.outcome {
@@ -120,13 +118,13 @@ pub const fn certify_in(scene: &Scene, format: Format) -> Result<Assessment, Rej
     }
 }
 
-/// Stops the compiler with the sentence, at the line of the scene that is refused.
+/// Panics with the text; in a constant this is a compile error at the line of the refused scene.
 #[track_caller]
 const fn refuse(sentence: &Sentence) -> ! {
     panic!("{}", sentence.as_str())
 }
 
-/// Stops the compiler with the rejection's sentence, which names the mode where another one is selected.
+/// Panics with the rejection's text, which names the mode if another mode is selected.
 #[track_caller]
 const fn refuse_scene(data: &Scene, rejection: &Rejection, format: Format) -> ! {
     match first_refused_mode(data, format) {
@@ -160,20 +158,20 @@ impl<E: Copy> Scene<E> {
 }
 
 impl<E: StatedEnvironment> Scene<E> {
-    /// Judges the scene of an environment of another crate as that states itself to be. For constants;
-    /// where the scene is a value, [`certify_scene`] asks the environment.
+    /// Judges the scene of an environment of another crate with this statement. For constants; for a scene at
+    /// run time, [`certify_scene`] calls the environment.
     ///
     /// # Errors
-    /// Why the scene is not certified.
+    /// The reason why the scene is not certified.
     pub const fn certify_as(self, stated: StatedModel) -> Result<Certified<Self>, Rejection> {
         self.judged(self.described_as(Environment::Stated(stated)), Format::F64)
     }
 
-    /// For constants: the certified scene of an environment of another crate, or a compile error that
-    /// says why not.
+    /// For constants: the certified scene of an environment of another crate, or a compile error with the
+    /// reason.
     ///
     /// # Panics
-    /// If the scene is not certified; in a constant that is the compile error.
+    /// If the scene is not certified; in a constant this is a compile error.
     #[track_caller]
     pub const fn certified_as(self, stated: StatedModel) -> Certified<Self> {
         match self.certify_as(stated) {
@@ -188,8 +186,7 @@ pub fn scene_data<E: EnvironmentModel>(scene: &Scene<E>) -> Scene {
     scene.described_as(scene.environment.as_data(&scene.context()))
 }
 
-/// Certifies the coefficients by which a servo in a number format multiplies, for any type of the
-/// environment.
+/// Certifies the coefficients rounded to a number format, for any type of environment.
 ///
 /// # Errors
 /// The reason for the rejection, and remedies.
@@ -205,33 +202,32 @@ pub fn certify_scene<E: EnvironmentModel>(
 /// board's host computes.
 ///
 /// # Errors
-/// [`Step::Certificate`] where it may not.
+/// [`Step::Certificate`] if no board may render it.
 pub fn timing_checked<E: EnvironmentModel + SupportsTiming<M>, M: OutputMode>(
     scene: Scene<E>,
     format: Format,
 ) -> Result<TimingChecked<Scene<E>, M>, Step> {
     let data = scene_data(&scene);
-    // Checked here, where the type is known.
+    // Checked here, because the type is known here.
     let is_late = data.environment.is_late();
     timed::judged::<E, M>(&data, is_late, format)
         .map(|limited| TimingChecked::new(scene, format, limited))
 }
 
 impl<E: EnvironmentModel> Certified<Scene<E>> {
-    /// Whether what was judged is what the environment states of itself: always, but for a constant of an
-    /// environment of another crate that was certified as something else.
+    /// Whether the certified statement equals the environment's present statement: always, except for a
+    /// constant of an environment of another crate that was certified with another statement.
     pub fn is_what_is_stated(&self) -> bool {
         scene_data(&self.scene) == self.data
     }
 }
 
 impl<E: Copy> Certified<Scene<E>> {
-    /// For constants: the same scene's certificate in the number format that it runs in,
-    /// or a compile error that says why it has none there.
+    /// For constants: the same scene's certificate in the number format in which it runs, or a compile error
+    /// with the reason.
     ///
     /// # Panics
-    /// If the coefficients as rounded to the format are not certified; in a constant that
-    /// is the compile error.
+    /// If the coefficients rounded to the format are not certified; in a constant this is a compile error.
     #[track_caller]
     pub const fn certified_in(self, format: Format) -> Self {
         match self.scene.judged(self.data, format) {
@@ -243,7 +239,7 @@ impl<E: Copy> Certified<Scene<E>> {
     /// Pairs the scene with the mode in which a board puts its torques out.
     ///
     /// # Errors
-    /// Where they do not agree; see [`TimingError`].
+    /// If they do not agree; see [`TimingError`].
     pub const fn time<M: OutputMode>(self) -> Result<TimingChecked<Scene<E>, M>, TimingError>
     where
         E: SupportsTiming<M>,
@@ -265,11 +261,11 @@ impl<E: Copy> Certified<Scene<E>> {
         }
     }
 
-    /// For constants: the timed scene, or a compile error that says why not, which is at
-    /// its clearest where the mode is named: `timed::<Latched>()`.
+    /// For constants: the timed scene, or a compile error with the reason, which is clearest with an explicit
+    /// mode: `timing_checked::<Latched>()`.
     ///
     /// # Panics
-    /// If scene and mode do not agree; in a constant that is the compile error.
+    /// If scene and mode do not agree; in a constant this is a compile error.
     #[track_caller]
     pub const fn timing_checked<M: OutputMode>(self) -> TimingChecked<Scene<E>, M>
     where
@@ -303,13 +299,13 @@ macro_rules! certify_for {
                 self.described_as(self.environment.as_data())
             }
 
-            /// Certifies the scene as it was written; only a scene proved passive becomes
+            /// Certifies the scene with unrounded coefficients; only a scene proved passive becomes
             /// [`Certified`].
             pub const fn certify(self) -> Result<Certified<Self>, Rejection> {
                 self.certify_in(Format::F64)
             }
 
-            /// Judges the coefficients that a servo in this number format multiplies by.
+            /// Certifies the scene with the coefficients rounded to this number format.
             pub const fn certify_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
                 let memory = <$environment as EnvironmentModel>::MEMORY;
                 if !memory.serves(&self.coupling, &self.latency, self.timing.period) {
@@ -318,10 +314,10 @@ macro_rules! certify_for {
                 self.judged(self.as_data(), format)
             }
 
-            /// For constants: the certified scene, or a compile error that says why not.
+            /// For constants: the certified scene, or a compile error with the reason.
             ///
             /// # Panics
-            /// If the scene is not certified; in a constant that is the compile error.
+            /// If the scene is not certified; in a constant this is a compile error.
             #[track_caller]
             pub const fn certified(self) -> Certified<Self> {
                 match self.certify() {

@@ -1,9 +1,9 @@
-//! The environments as transfer functions with interval coefficients (theory, section 5), and the
-//! bound on their index when they are one-sided or limited.
+//! The environments as transfer functions with interval coefficients (theory, section 5), and the bounds on
+//! their index if they are one-sided or limited.
 //!
-//! The certificate is about the numbers by which a servo multiplies: each coefficient is rounded as
-//! in the number format, and the transfer function is built from these. For [`Format::F64`] the
-//! coefficients are the scene's, as doubles.
+//! The certificate is about the servo's coefficients: each is rounded to the number format, and the transfer
+//! function is built from the rounded values. For [`Format::F64`] the coefficients are the scene's, as
+//! doubles.
 
 use super::loop_intervals::LoopIntervals;
 use super::profile::{profile_bound, profile_gain};
@@ -37,7 +37,7 @@ pub(super) const fn transfer(
         }
         (_, Some(w), _) => Some(wall(&w, n)),
         (_, _, Some(r)) => rational(r, n),
-        // Stated by its bound alone, and late: nothing is fed through.
+        // Stated only by its bound, and late: without feedthrough.
         _ => {
             Some(Transfer::new(Polynomial::ascending(&[]), Polynomial::ascending(&[Interval::ONE])))
         }
@@ -61,8 +61,7 @@ const fn wall(w: &Wall, n: &LoopIntervals) -> Transfer {
     let denominator = Polynomial::ascending(&[a.neg().mul(n.period), n.period]);
     let shift = -(w.delay as i32);
     if k.is_zero() {
-        // A pure damper keeps its exact zero at z = 1, and so does one whose stiffness is rounded to
-        // nothing.
+        // A pure damper keeps its exact zero at z = 1; so does a wall whose stiffness is rounded to zero.
         let numerator = Polynomial::ascending(&[b]);
         return Transfer { shift, ones: 1, ..Transfer::new(numerator, denominator) };
     }
@@ -79,7 +78,7 @@ pub(super) struct Washout {
 }
 
 impl Washout {
-    /// From the gain over the period and the rate as they were before rounding.
+    /// From the unrounded gain over the period and the unrounded rate.
     const fn rounded(gain: Interval, rate: Interval, n: &LoopIntervals) -> Self {
         let gain = n.coefficient(gain).mul(n.period);
         Self { gain, pole: Interval::ONE.sub(n.coefficient(rate)) }
@@ -151,7 +150,7 @@ const fn rational(written: &Rational, n: &LoopIntervals) -> Option<Transfer> {
     if matches!(n.format, Format::F64) || denominator.is_zero() {
         return Some(transfer);
     }
-    // A servo has the zeros multiplied out and the leading coefficient divided out.
+    // A servo multiplies the zeros out and divides by the leading coefficient.
     let Some(numerator) = numerator.times_unit_root(UnitRoot::Plus, r.unit_zeros) else {
         return None;
     };
@@ -164,7 +163,7 @@ const fn rational(written: &Rational, n: &LoopIntervals) -> Option<Transfer> {
     })
 }
 
-/// The coefficients that a servo makes of those of a polynomial over `leading`.
+/// The servo's coefficients of a polynomial over `leading`.
 const fn divided(p: &Polynomial, leading: Interval, n: &LoopIntervals) -> Polynomial {
     let mut coefficients = [Interval::ZERO; 2 * MAX_DEGREE + 1];
     let mut i = 0;
@@ -175,11 +174,11 @@ const fn divided(p: &Polynomial, leading: Interval, n: &LoopIntervals) -> Polyno
     Polynomial::ascending(&coefficients)
 }
 
-/// Upper bound on `alpha` that holds for one-sided walls, switching and a torque limit between
-/// environment and coupling (equation 31); `None` where none is known.
+/// Upper bound on `alpha` that holds for one-sided walls, switching and a torque limit between environment
+/// and coupling (equation 31); `None` if none is known.
 ///
-/// - Wall, `n >= 1`: `K T (n - 1/2) + abs(B)`; a velocity filter has the l1 norm 1 and changes
-///   nothing in `sum abs(v(k)) abs(v(k - i))`.
+/// - Wall, `n >= 1`: `K T (n - 1/2) + abs(B)`; a velocity filter has the l1 norm 1 and does not change
+///   `sum abs(v(k)) abs(v(k - i))`.
 /// - Wall, undelayed: 0 for `B >= 0` without a filter, otherwise `abs(B)`.
 /// - A torque profile: [`profile_bound`]. A sum: the sum of the bounds (theory, section 14.3).
 /// - Canceller: the clipped torque is `g(k) (h * v)(k)` with `g` in `[0, 1]`, so by Young's
@@ -200,11 +199,10 @@ pub(super) const fn nonlinear_bound<E: EnvironmentModel>(
     }
 }
 
-/// What the servo's gains make of the torque where the loop is solved in the tick: the larger of
-/// [`LoopIntervals::solved`] out of contact and in contact. Exactly 1 where the environment is late.
+/// The factor of the servo's rounded gains on the torque if the loop is solved in the tick: the larger of
+/// [`LoopIntervals::solved`] out of contact and in contact. Exactly 1 for a late environment.
 ///
-/// `None` where it cannot be had.
-// In a frame of its own, which the caller would otherwise have for what it calls later, too.
+/// `None` if it is unknown. Not inlined, so that its frame is not on the stack during later calls.
 #[inline(never)]
 pub(super) const fn largest_solved<E: EnvironmentModel>(
     environment: &Environment,
@@ -214,7 +212,7 @@ pub(super) const fn largest_solved<E: EnvironmentModel>(
         return Some(Interval::ONE);
     }
     if E::PROFILE.exists && matches!(environment, Environment::Profile(_)) {
-        // It is solved in front of the coupling, without a gain.
+        // The profile is solved in front of the coupling, without a gain.
         return Some(Interval::ONE);
     }
     let Some(contact) = scale::<E>(environment, n) else { return None };
@@ -229,9 +227,8 @@ pub(super) const fn largest_solved<E: EnvironmentModel>(
     })
 }
 
-/// What the servo's gains make of an environment out of its [feedthrough](Transfer::feedthrough): that of
-/// a wall and a canceller is the sum of theirs. `None` for a rational environment, for which no bound
-/// asks.
+/// The factor of the servo's rounded gains, from an environment's [feedthrough](Transfer::feedthrough): for a
+/// wall and a canceller the sum of both. `None` for a rational environment, where no bound needs it.
 const fn scale<E: EnvironmentModel>(
     environment: &Environment,
     n: &LoopIntervals,
@@ -263,7 +260,7 @@ const fn scale<E: EnvironmentModel>(
     if scale.is_finite() { Some(scale) } else { None }
 }
 
-/// The torque of a position in the same tick that a canceller gives, in N m/rad.
+/// The feedthrough of a canceller in N m/rad.
 pub(super) const fn feedthrough_of_canceller(n: &LoopIntervals) -> Interval {
     free_mode(n).feedthrough()
 }
@@ -273,7 +270,7 @@ const fn exactly_solved_bound<E: EnvironmentModel>(
     n: &LoopIntervals,
 ) -> Option<Interval> {
     let wall = match environment.wall() {
-        // A spring that pulls away is not a monotone law.
+        // A negative spring is not a monotone law.
         Some(w) if w.stiffness < 0.0 => return None,
         Some(w) => wall_bound(&w, n),
         None => Interval::ZERO,
@@ -299,7 +296,7 @@ const fn exactly_solved_bound<E: EnvironmentModel>(
     }
 }
 
-/// What a wall and a torque profile have together, and so many times what the canceller beside them cancels,
+/// The sum of a quantity of a wall and of a torque profile, plus `cancelled` times the bound of a canceller,
 /// if there is one.
 const fn sum_of<E: EnvironmentModel>(
     composed: &Composed,
@@ -322,13 +319,13 @@ const fn sum_of<E: EnvironmentModel>(
     }
 }
 
-/// The most by which an environment's torque changes for a change of its position, in the l2 norm
-/// and times the period, in N m s/rad: one-sided and limited ones included, with `solved` as for
-/// [`nonlinear_bound`]. `None` where none is known.
+/// The gain of an environment from changes of position to changes of torque, in the l2 norm and times the
+/// period, in N m s/rad, including one-sided and limited environments, with `solved` as for
+/// [`nonlinear_bound`]. `None` if no bound is known.
 ///
-/// A wall's torque is `K p + B(k) v(k)` with a damper that is switched between nothing and `B`, a
-/// canceller's the sum of past velocities by weights: two neighbours differ by at most twice the sum
-/// of their magnitudes.
+/// A wall's torque is `K p + B(k) v(k)` with a damper that is switched between zero and `B`; a canceller's
+/// torque is a weighted sum of past velocities: two consecutive torques differ by at most twice the sum of
+/// the weights' magnitudes.
 pub(super) const fn largest_gain<E: EnvironmentModel>(
     environment: &Environment,
     solved: Interval,
@@ -405,7 +402,7 @@ const fn canceller_bound(n: &LoopIntervals) -> Option<Interval> {
     }
 }
 
-/// The numbers of a scene and its environment alone, where none of the numbers is out of range.
+/// The numbers of a scene and its environment, if all numbers are in range.
 const fn valid_environment(
     scene: &Scene,
     format: Format,
@@ -431,22 +428,21 @@ pub struct LoopTransfers {
     pub environment: Transfer,
     /// The total controller `C = E / (1 + V E)` (theory, section 2).
     pub controller: Transfer,
-    /// `E'`, which behind the standard coupling is the same controller (equation 29).
+    /// `E'`, which gives the same controller behind the standard coupling (equation 29).
     pub equivalent: Transfer,
 }
 
 impl LoopTransfers {
-    /// The transfer functions of a scene as it was written, one-sidedness and torque limit left
-    /// out.
+    /// The transfer functions of a scene with unrounded coefficients, without one-sidedness and torque limit.
     ///
     /// # Errors
-    /// Where the environment is not causal, the loop of coupling and environment has no solution,
-    /// or a number is out of range.
+    /// If the environment is not causal, the loop of coupling and environment has no solution, or a number is
+    /// out of range.
     pub const fn of(scene: &Scene) -> Result<Self, Unbuildable> {
         Self::in_format(scene, Format::F64)
     }
 
-    /// The same of the coefficients that a servo in a number format multiplies by.
+    /// The same with the coefficients rounded to a number format.
     ///
     /// # Errors
     /// As [`LoopTransfers::of`].
@@ -470,9 +466,8 @@ impl LoopTransfers {
         Ok(Self { environment, controller, equivalent })
     }
 
-    /// `E'` where torques are latched and updates may be missed, which is judged beside
-    /// [`LoopTransfers::equivalent`]: behind the coupling that is standard for the declared passivity. `None`
-    /// where no update is missed.
+    /// `E'` for latched torques with missed updates, behind the coupling that is standard for the declared
+    /// passivity; judged in addition to [`LoopTransfers::equivalent`]. `None` if no update may be missed.
     ///
     /// # Errors
     /// As [`LoopTransfers::of`].

@@ -1,4 +1,4 @@
-//! A scene of several modes: each of them is judged, so that none is refused when it is selected.
+//! Judges every mode of a scene, so that no mode is refused when it is selected.
 
 use super::certify_in;
 use super::margin::Limited;
@@ -11,19 +11,19 @@ use crate::parameter::Parameter;
 use crate::scene::Scene;
 use crate::text::Sentence;
 
-/// A mode of a scene that cannot be had, though another one is selected.
+/// A refused mode of a scene, which is not the selected one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RefusedMode<R> {
     /// Its number, from 0.
     pub mode: usize,
     /// Its name.
     pub name: &'static str,
-    /// Why not.
+    /// The reason.
     pub reason: R,
 }
 
 impl<R: Copy> RefusedMode<R> {
-    /// The mode in words, and then why it cannot be had.
+    /// The name of the mode, and the reason.
     const fn sentence_of(&self, reason: &Sentence) -> Sentence {
         let mut t = Sentence::new();
         t.push("mode ");
@@ -50,8 +50,8 @@ impl RefusedMode<TimingError> {
     }
 }
 
-/// The first mode of a scene with which it is not certified in a number format. `None`: each of them is, or
-/// the scene has no others to select.
+/// The first mode with which a scene is not certified in a number format. `None`: all modes are certified, or
+/// the scene has no other modes.
 pub const fn first_refused_mode(scene: &Scene, format: Format) -> Option<RefusedMode<Rejection>> {
     let mut mode = 0;
     while let Some((name, selecting)) = nth(scene, mode) {
@@ -63,11 +63,11 @@ pub const fn first_refused_mode(scene: &Scene, format: Format) -> Option<Refused
     None
 }
 
-/// The limits of a certified scene's modes on a board: of all modes those that leave the least damping to be
-/// injected, since any of them may be selected. `None` where there are no others to select.
+/// The limits of a certified scene's modes on a board: those of the mode with the least injectable damping,
+/// because any mode may be selected. `None` if there are no other modes.
 ///
 /// # Errors
-/// The first mode that a board cannot render so.
+/// The first mode that a board cannot render.
 pub(super) const fn tightest_mode(
     scene: &Scene,
     format: Format,
@@ -92,7 +92,7 @@ pub(super) const fn tightest_mode(
     Ok(tightest)
 }
 
-/// The name of a mode of a scene, and the scene with that one selected.
+/// The name of a mode of a scene, and the scene with this mode selected.
 const fn nth(scene: &Scene, mode: usize) -> Option<(&'static str, Scene)> {
     let Some(modes) = modes(scene) else { return None };
     if mode >= modes.modes().len() {

@@ -12,23 +12,23 @@ use crate::passivity::lagged::{LagIntervals, Port, SampledResponse, ripple_of_mi
 use crate::passivity::poles::{IndexError, UndecidedReason, cancelled};
 use crate::passivity::transfer::Transfer;
 
-/// Parts into which the range of a time is cut that is not known exactly: the enclosure of each is
-/// tighter than one of all together.
+/// The number of parts into which the range of a time is divided: the enclosure of each part is tighter than
+/// one of the whole range.
 const PARTS: usize = 8;
 
-/// The range of each time cut into parts.
+/// The ranges of all times, divided into parts.
 #[derive(Clone, Copy)]
 struct Cells {
     delay: TimeRange,
     actuator: TimeRange,
     sensor: TimeRange,
-    /// Updates of the current loop in a period, and the delay that they give; 0 where it is continuous.
+    /// Updates of the current loop in a period, and the delay in updates; 0 if the loop is continuous.
     updates: u16,
     delay_in_updates: Interval,
 }
 
 impl Cells {
-    /// `None` where a current loop is updated and its delay is not a whole number of updates.
+    /// `None` if a current loop is updated and its delay is not a whole number of updates.
     const fn of(lagging: &Lagging, period: Interval) -> Option<Self> {
         let latency = &lagging.latency;
         let mut delay_in_updates = Interval::ZERO;
@@ -68,11 +68,11 @@ impl Cells {
     }
 }
 
-/// An amplifier of which only is known when its step response begins and ends: where the sampled response
-/// has its corners, and the ripple that it has at the most (theory, section 13.7).
+/// An amplifier that is only known by the beginning and the end of its step response: the corners of the
+/// sampled response, and its largest ripple (theory, section 13.7).
 #[derive(Clone, Copy)]
 struct Corners {
-    /// Of the delay, in periods.
+    /// The ends of the delay's range, in periods.
     ends: [Interval; 2],
     /// The first whole sample above the lower end.
     first_whole: i32,
@@ -141,10 +141,11 @@ const fn larger(a: (RealPart, Interval), b: (RealPart, Interval)) -> (RealPart, 
     (index, a.1.max(b.1))
 }
 
-/// The sampled responses of a scene's delays and lags over all of their ranges, kept in a `V` such as a vector.
+/// The sampled responses of a scene's delays and lags over all their ranges, stored in a `V` such as a
+/// vector.
 ///
-/// Scenes that differ in their environment have them in common, and they take longer to compute than the rest
-/// of an answer: see [`PassivityProblem::answer_with`].
+/// Scenes that differ only in their environment share them, and they take longer to compute than the rest of
+/// an answer: see [`PassivityProblem::answer_with`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeptResponses<V> {
     latency: Latency,
@@ -165,8 +166,8 @@ impl PassivityProblem {
         }
     }
 
-    /// Index at the port with delay, lag and sensor, in N m s/rad: the least passivity of a device that
-    /// would be enough. A delay that deviates from tick to tick counts with its ripple.
+    /// Index at the port with delay, lag and sensor, in N m s/rad: the least sufficient passivity of a
+    /// device. A delay that deviates from tick to tick counts with its ripple.
     #[inline(never)]
     pub(super) const fn port_needed(&self) -> Result<Interval, IndexError> {
         match self.over_cells(&Precision::TIGHT, true) {
@@ -175,7 +176,7 @@ impl PassivityProblem {
         }
     }
 
-    /// The largest of both over all times in their ranges; the second only where it is asked for.
+    /// The largest of both over all times in their ranges; the second only on request.
     pub(super) const fn over_cells(
         &self,
         closeness: &Precision,
@@ -219,8 +220,8 @@ impl PassivityProblem {
         }
     }
 
-    /// The sampled responses of this scene's times, to be kept; `None` where it has no latency, or one whose
-    /// responses are not all known.
+    /// The sampled responses of this scene's times, for storage; `None` if it has no latency, or if a
+    /// response is unknown.
     pub fn kept_responses<V: FromIterator<SampledResponse>>(&self) -> Option<KeptResponses<V>> {
         let (lagging, period) = (self.numbers.latency?, self.numbers.period);
         let cells = Cells::of(&lagging, period)?;
@@ -242,7 +243,7 @@ impl PassivityProblem {
         Some(KeptResponses { latency: lagging.latency, period, responses })
     }
 
-    /// [`PassivityProblem::answer`] with responses that were kept. Those of other times are not used.
+    /// [`PassivityProblem::answer`] with stored responses, which are ignored if they are for other times.
     pub fn answer_with<V: AsRef<[SampledResponse]>>(&self, kept: &KeptResponses<V>) -> RuleAnswer {
         let is_same = |lagging: &Lagging| {
             lagging.latency == kept.latency && self.numbers.period == kept.period
@@ -268,7 +269,7 @@ impl PassivityProblem {
         all.map(|(found, _)| found).ok_or(UNKNOWN)
     }
 
-    // In a frame of its own, which the caller would otherwise have beside its cells.
+    // Not inlined, so that the caller's frame is smaller.
     #[inline(never)]
     const fn piece(
         &self,
@@ -296,7 +297,7 @@ impl PassivityProblem {
         }
     }
 
-    /// The index of `E'` without latency, where the coupling has no memory.
+    /// The index of `E'` without latency, if the coupling has no memory.
     #[inline(never)]
     pub(super) const fn coupled_without_latency(&self) -> Option<Interval> {
         if self.numbers.is_matched {

@@ -1,4 +1,4 @@
-//! A scene that can be judged, and the answers of the two rules without the numbers behind them.
+//! A scene that can be judged, and the answers of the two rules without their numbers.
 
 use super::composed::composed_bound_at_port;
 use super::loop_intervals::LoopIntervals;
@@ -17,16 +17,14 @@ use crate::passivity::poles::{IndexError, Reduced, UndecidedReason, cancelled, h
 use crate::passivity::transfer::{Transfer, Unbuildable};
 use crate::scene::Scene;
 
-/// Width of an index, relative to its magnitude, that a search follows: it shifts the place of its
-/// zero by a tenth of the last of three digits.
+/// Relative width of an index in a search: it moves the root by a tenth of the last of three digits.
 const ROUGHLY: f64 = 1e-4;
 
-/// A scene whose numbers are valid, whose device is passive, and whose coupling and environment
-/// have one solution every tick.
+/// A scene whose numbers are valid, whose device is passive, and whose coupling and environment have exactly
+/// one solution in every tick.
 ///
-/// It answers yes or no as [`super::assess`] does, at a fraction of the cost: an index is looked at
-/// only until it is clear on which side of its limit it is. For searches and maps, which ask about
-/// thousands of scenes.
+/// It gives the same verdict as [`super::assess`] at a fraction of the cost: an index is only enclosed until
+/// it is clear on which side of its limit it is. For searches and maps with thousands of scenes.
 ///
 /// ```
 /// use haptic_servo::certificate::PassivityProblem;
@@ -55,9 +53,9 @@ const ROUGHLY: f64 = 1e-4;
 pub struct PassivityProblem {
     pub(super) numbers: LoopIntervals,
     pub(super) environment: Transfer,
-    /// The index that is stated where there is no transfer function.
+    /// The stated index, if there is no transfer function.
     stated: Option<Interval>,
-    /// Why nothing linear can be said of it, where there is no transfer function.
+    /// The reason if there is no transfer function.
     no_transfer: Option<UndecidedReason>,
     pub(super) rule: Rule,
     /// Bound on the index of a one-sided or limited scene.
@@ -65,16 +63,16 @@ pub struct PassivityProblem {
 }
 
 impl PassivityProblem {
-    /// Poses a scene as it was written.
+    /// Poses a scene with unrounded coefficients.
     ///
     /// # Errors
-    /// What stands against judging it: an invalid number, a device without passivity, an
-    /// environment that is not causal, or a loop without one solution.
+    /// The reason why it cannot be judged: an invalid number, a device without passivity, an environment that
+    /// is not causal, or a loop without one solution.
     pub const fn of(scene: &Scene) -> Result<Self, Rejection> {
         Self::in_format(scene, Format::F64)
     }
 
-    /// The same with the coefficients that a servo in a number format multiplies by.
+    /// The same with the coefficients rounded to a number format.
     ///
     /// # Errors
     /// As [`PassivityProblem::of`].
@@ -95,7 +93,7 @@ impl PassivityProblem {
         {
             return Err(rejection);
         }
-        // No bound says so of it beside a profile.
+        // Its bound in a sum with a profile does not detect this.
         if let Environment::Composed(Composed { wall: Some(Wall { stiffness, .. }), .. }) =
             scene.environment
             && stiffness < 0.0
@@ -145,8 +143,8 @@ impl PassivityProblem {
         Ok(Self { numbers, environment, stated, no_transfer, rule, bound })
     }
 
-    /// The verdict: whether the rule that it follows proves the scene, that is, whether
-    /// [`super::assess`] comes to the outcome `Ok`.
+    /// The verdict: whether the deciding rule proves the scene, that is, whether the outcome of
+    /// [`super::assess`] is `Ok`.
     pub const fn is_certified(&self) -> bool {
         match self.rule {
             Rule::Exact => self.passes_exact(),
@@ -154,8 +152,8 @@ impl PassivityProblem {
         }
     }
 
-    /// The answer of the rule that the verdict follows, as in [`super::assess`]: a scene that is
-    /// not certified is either rejected or undecided.
+    /// The answer of the deciding rule, as in [`super::assess`]: a scene that is not certified is either
+    /// rejected or undecided.
     pub const fn answer(&self) -> RuleAnswer {
         match self.rule {
             // "Rejected" may need more precision than "not certified".
@@ -166,7 +164,7 @@ impl PassivityProblem {
                 }
             }
             Rule::Nonlinear => {
-                // The index only has to exist, however large.
+                // The index must exist, with any value.
                 let alone = self.alone(&near(Interval::exact(f64::MAX)));
                 match (&alone, self.bound) {
                     (Ok(_), None) => RuleAnswer::Undecided,
@@ -176,7 +174,7 @@ impl PassivityProblem {
         }
     }
 
-    /// [`Self::answer`] of a scene with latency, by another way to its index at the port.
+    /// [`Self::answer`] of a scene with latency, by another method for its index at the port.
     pub(super) fn answer_by(
         &self,
         index: impl Fn(&Precision) -> Result<RealPart, IndexError>,
@@ -190,13 +188,13 @@ impl PassivityProblem {
         }
     }
 
-    /// Bound on the index of a one-sided or limited scene, in N m s/rad; `None` where
-    /// none is known, and for linear scenes.
+    /// Bound on the index of a one-sided or limited scene, in N m s/rad; `None` for linear scenes, or if none
+    /// is known.
     pub const fn bound(&self) -> Option<Interval> {
         self.bound
     }
 
-    /// Upper bound on the deciding index, in N m s/rad; `None` where the rule passes none.
+    /// Upper bound on the deciding index, in N m s/rad; `None` if no index passes the rule.
     pub const fn limit(&self) -> Option<Interval> {
         match self.rule {
             Rule::Exact => Some(exact_limit(&self.numbers)),
@@ -204,8 +202,8 @@ impl PassivityProblem {
         }
     }
 
-    /// Upper bound on the index of the environment alone for equations 17 to 19, in
-    /// N m s/rad; `None` where they pass none: without compliance, and above the standard coupling.
+    /// Upper bound on the index of the environment alone for equations 17 to 19, in N m s/rad; `None` if no
+    /// index passes: without compliance, and above the standard coupling.
     pub const fn paper_limit(&self) -> Option<Interval> {
         paper_limit(&self.numbers)
     }
@@ -215,7 +213,7 @@ impl PassivityProblem {
         let Some(limit) = paper_limit(&self.numbers) else { return false };
         let index = match (self.rule, self.bound) {
             (Rule::Exact, _) => self.alone(&near(limit)),
-            // The bound decides; the index only has to exist, however large.
+            // The bound decides; the index must exist, with any value.
             (Rule::Nonlinear, Some(bound)) if matches!(compare(bound, limit), RuleAnswer::Pass) => {
                 self.alone(&near(Interval::exact(f64::MAX)))
             }
@@ -224,8 +222,7 @@ impl PassivityProblem {
         matches!(self.paper(&index), RuleAnswer::Pass)
     }
 
-    /// Whether the rule of theory, section 4.1, proves the scene, one-sidedness and torque limit
-    /// left out.
+    /// Whether the rule of theory, section 4.1, proves the scene without one-sidedness and torque limit.
     pub const fn passes_exact(&self) -> bool {
         let index = self.coupled(None, &near(exact_limit(&self.numbers)));
         matches!(self.exact(&index), RuleAnswer::Pass)
@@ -252,9 +249,9 @@ impl PassivityProblem {
         }
     }
 
-    /// About how much more damping the rule asks for than the device has, as a part of `delta`:
-    /// negative where [`PassivityProblem::is_certified`], except that it does not tell closely next to zero.
-    /// `None` where there is no index. For searches, which follow it to where it is zero.
+    /// An estimate of the missing damping, relative to `delta`: negative if
+    /// [`PassivityProblem::is_certified`], but imprecise near zero. `None` if there is no index. Searches
+    /// find its root.
     pub(super) const fn shortage(&self) -> Option<f64> {
         let shortage = match self.rule {
             Rule::Exact => self.exact_shortage(),
@@ -292,7 +289,7 @@ impl PassivityProblem {
             Some(limit) => limit,
             None => delta.min(coupling),
         });
-        // A coupling that is stiffer than the standard one lacks its excess over `delta`.
+        // With a coupling stiffer than the standard one, its excess over `delta` is missing.
         Some(if delta.is_below(coupling) {
             over_the_limit.max(coupling.sub(delta))
         } else {
@@ -300,18 +297,18 @@ impl PassivityProblem {
         })
     }
 
-    /// About the passivity that this law asks of a device, scaled to the worst period; `None` where
-    /// it passes on none.
+    /// An estimate of the passivity that this law needs, scaled to the worst period; `None` if no passivity
+    /// suffices.
     ///
-    /// By the exact rule that is [`PassivityProblem::at_port`]. A one-sided or limited scene passes on
-    /// what its coupling stands for, if its own bound is less.
+    /// By the exact rule this is [`PassivityProblem::at_port`]. A one-sided or limited scene needs the
+    /// damping equivalent to its coupling, if its own bound is less.
     pub(super) const fn needed_passivity(&self) -> Option<f64> {
         match self.rule {
             Rule::Exact => match self.at_port(&Precision::within(ROUGHLY)) {
                 Ok(found) => Some(found.minimum.midpoint()),
                 Err(_) => None,
             },
-            // Where a part of a sample is late, a greater passivity lowers the bound.
+            // With a delay of a part of a sample, a greater passivity lowers the bound.
             Rule::Nonlinear if self.numbers.is_at_port => match self.bound {
                 Some(bound) => Some(bound.hi()),
                 None => None,
@@ -323,8 +320,8 @@ impl PassivityProblem {
         }
     }
 
-    /// Index at the device's port, which knows nothing of `delta`: that of the whole controller, a
-    /// sample late. The loop is passive while `delta + Re(T C / (z - 1)) > 0` (equation 30).
+    /// Index at the device's port, independent of `delta`: that of the whole controller, a sample late. The
+    /// loop is passive while `delta + Re(T C / (z - 1)) > 0` (equation 30).
     pub(super) const fn at_port(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
         if self.numbers.latency.is_some() {
             return match self.port_needed() {
@@ -338,9 +335,9 @@ impl PassivityProblem {
         }
     }
 
-    /// Whether the coupling is the standard one to the digits that were written, so that `E'` is
-    /// the environment itself. Where the compliance was rounded, the coupling is a little softer,
-    /// and [`exact_limit`] is what the paper's rule asks for then (theory, section 6).
+    /// Whether the coupling is the standard one within the precision of its digits, so that `E'` is the
+    /// environment itself. With a rounded compliance the coupling is a little softer, and [`exact_limit`] is
+    /// then the limit of the paper's rule (theory, section 6).
     pub(super) const fn is_standard(&self) -> bool {
         self.numbers.is_standard
     }
@@ -356,12 +353,12 @@ impl PassivityProblem {
         index_looked_at(&self.environment, self.numbers.period, true, closeness)
     }
 
-    /// Index of `E'`; that of the environment alone is not asked for again where it is known.
+    /// Index of `E'`; a known index of the environment alone is not computed again.
     ///
-    /// The larger of the index where each torque belongs to the instant of its count, and of that
-    /// where torques are latched, if updates may be missed there: then the coupling's excess is over
-    /// the standard one of the declared passivity, and the limit is the same (see
-    /// [`super::loop_intervals::Missed::limit`] with `nu = 1`).
+    /// The larger of the index for torques at the instant of their counts, and of the index for latched
+    /// torques, if updates may be missed: there the coupling's excess is over the standard coupling of the
+    /// declared passivity, and the limit is the same (see [`super::loop_intervals::Missed::limit`] with
+    /// `nu = 1`).
     pub(super) const fn coupled(
         &self,
         alone: Option<Result<RealPart, IndexError>>,
@@ -388,8 +385,7 @@ impl PassivityProblem {
         }
     }
 
-    /// Index of `E'`: no tighter than it takes to prove it below its limit, and tight where it is not, for the
-    /// rejection.
+    /// Index of `E'`: only tight enough to prove it below its limit; if it is not, tight for the rejection.
     pub(super) const fn coupled_unless_clear(&self) -> Result<RealPart, IndexError> {
         let roughly = self.coupled(None, &near(exact_limit(&self.numbers)));
         match self.exact(&roughly) {
@@ -416,10 +412,9 @@ impl PassivityProblem {
         }
     }
 
-    /// The velocity-to-torque function of the environment behind a coupling of this compliance, a
-    /// sample late or as it is.
-    // In a frame of its own: a small board's stack has no room for what it takes beside the search for
-    // the minimum.
+    /// The velocity-to-torque function of the environment behind a coupling of this compliance, with or
+    /// without an additional sample of delay. Not inlined: a small board's stack has no room for its frame
+    /// during the search for the minimum.
     #[inline(never)]
     const fn behind_reduced(
         &self,
@@ -444,7 +439,7 @@ impl PassivityProblem {
     }
 }
 
-/// What stands against a torque profile, whatever its device.
+/// The obstacle of a torque profile for any device.
 const fn profile_rejection(
     profile: &AnyProfile,
     scene: &Scene,
@@ -465,7 +460,7 @@ const fn profile_rejection(
     Some(Rejection::Steep { coupling, remedies: Remedies::NONE })
 }
 
-/// Enough to decide on which side of `limit` an index is.
+/// The precision that decides on which side of `limit` an index is.
 const fn near(limit: Interval) -> Precision {
     Precision::around(limit.neg())
 }

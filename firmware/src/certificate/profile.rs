@@ -1,22 +1,22 @@
-//! The index of a torque profile: by its extreme slopes alone (theory, section 14).
+//! The index of a torque profile, which depends only on its extreme slopes (theory, section 14).
 
 use super::loop_intervals::LoopIntervals;
 use crate::environment::{AnyProfile, Ends, Environment, EnvironmentModel, SnapPoint};
 use crate::latency::{Latency, TimeRange};
 use crate::passivity::interval::Interval;
 
-/// The steepest slopes of a profile as a servo has them, in N m/rad, neither of them negative. Of a
-/// profile that is not late they are those behind the coupling.
+/// The steepest slopes of a profile with rounded coefficients, in N m/rad, both not negative. For an
+/// undelayed profile they are those behind the coupling.
 #[derive(Clone, Copy)]
 pub(super) struct ExtremeSlopes {
-    /// Of a rising torque, which pushes back.
+    /// The slope of a rising torque, which pushes back.
     pub rise: Interval,
-    /// Of a falling torque, which pulls on.
+    /// The slope of a falling torque, which pulls on.
     pub fall: Interval,
 }
 
 impl ExtremeSlopes {
-    /// `None` where there is none: a torque in front of the coupling that rises faster than the coupling's
+    /// `None` if there is none, because a torque in front of the coupling rises faster than the coupling's
     /// own.
     #[cfg_attr(target_os = "none", inline(never))]
     pub const fn of<E: EnvironmentModel>(profile: &AnyProfile, n: &LoopIntervals) -> Option<Self> {
@@ -32,8 +32,8 @@ impl ExtremeSlopes {
         Some(Self { rise: rise.div(left), fall: fall.div(fed_back) })
     }
 
-    /// Those of the table, its end stops and the line to a snap point, wherever the coupling is: all
-    /// branches have the same.
+    /// The slopes of the table, its end stops and the line to a snap point, independently of the coupling:
+    /// all branches have the same slopes.
     pub const fn of_table<E: EnvironmentModel>(profile: &AnyProfile, n: &LoopIntervals) -> Self {
         let outline = profile.outline();
         let unit = around(n.format.torque_of_part(profile.scale().torque_of_part));
@@ -59,7 +59,7 @@ impl ExtremeSlopes {
     }
 }
 
-/// Slope in N m/rad of the line to a snap point, as a law has it.
+/// Slope in N m/rad of the line to a snap point, with the law's rounding.
 const fn line(snap: &SnapPoint, profile: &AnyProfile, n: &LoopIntervals) -> Interval {
     let part = snap.torque_of_part(profile.torque, profile.outline().knots);
     around(n.format.torque_of_part(part)).mul(parts_per_rad(profile, n))
@@ -75,7 +75,7 @@ const fn snaps_unproved(profile: &AnyProfile, n: &LoopIntervals) -> bool {
 /// `T M` for each sample more, where `M` is the steepest slope (equation 46). An undelayed profile has `T/2`
 /// times the steepest fall (equation 47).
 ///
-/// A limit on the torque takes from slopes, and adds none.
+/// A limit on the torque reduces slopes and adds none.
 pub(super) const fn profile_bound<E: EnvironmentModel>(
     profile: &AnyProfile,
     n: &LoopIntervals,
@@ -94,8 +94,8 @@ pub(super) const fn profile_bound<E: EnvironmentModel>(
     Some(half.mul(slopes.rise).add(late).add(damping))
 }
 
-/// The most by which the torque changes for a change of position, times the period:
-/// [`super::model::largest_gain`]. That of a branch, where there are some.
+/// The gain from changes of position to changes of torque, times the period: [`super::model::largest_gain`].
+/// With snap points, that of a branch.
 pub(super) const fn profile_gain<E: EnvironmentModel>(
     profile: &AnyProfile,
     n: &LoopIntervals,
@@ -105,10 +105,10 @@ pub(super) const fn profile_gain<E: EnvironmentModel>(
     Some(slopes.steepest().mul(n.period).add(damping.double()))
 }
 
-/// The most by which the torque of the whole controller is off, in N m, for positions that are off by up to 1
-/// rad each: the sum of the steepest slope `M`, twice the damper's `B / T`, and `beside` for the other parts.
-/// Torques of ticks before are fed back through a coupling whose compliances add up to `V`, and add up to
-/// `M / (1 - M V)`. `None` where that does not end.
+/// Largest error of the whole controller's torque in N m, for errors of up to 1 rad in each position: the sum
+/// of the steepest slope `M`, twice the damper's `B / T`, and `beside` for the other parts. Earlier torques
+/// are fed back through a coupling whose compliances add up to `V`, and the sum is `M / (1 - M V)`. `None` if
+/// the sum diverges.
 pub(super) const fn peak_gain(
     profile: &AnyProfile,
     beside: f64,
@@ -126,7 +126,7 @@ pub(super) const fn peak_gain(
     if left.is_positive() { Some(gain.div(left).hi()) } else { None }
 }
 
-/// Torque in N m over a part of a cell of the table, the smallest step of a place, at most.
+/// Largest torque in N m over a part of a cell, which is the smallest step of a place.
 pub(super) const fn step_of_part(profile: &AnyProfile, n: &LoopIntervals) -> f64 {
     ExtremeSlopes::of_table::<Environment>(profile, n)
         .steepest()
@@ -134,18 +134,18 @@ pub(super) const fn step_of_part(profile: &AnyProfile, n: &LoopIntervals) -> f64
         .hi()
 }
 
-/// Whether a torque that is not zero in the mean would turn the device for ever.
+/// Whether a nonzero mean torque would turn the device without end.
 pub(super) const fn is_motor(profile: &AnyProfile) -> bool {
     let outline = profile.outline();
     match profile.ends {
-        // Nothing but springs that push back beyond them keeps the device within its ends.
+        // Only springs that push back keep the device within its ends.
         Some(Ends { stiffness, .. }) => stiffness.is_nan() || stiffness <= 0.0,
         None => outline.sum != 0 || !outline.wraps,
     }
 }
 
-/// Whether a torque limit may make a motor of it: where it repeats for ever, and its torque is clipped on one
-/// side more than on the other.
+/// Whether a torque limit may make it a motor: if it repeats without end and its torque is clipped more on
+/// one side than on the other.
 pub(super) const fn is_motor_where_limited<E: EnvironmentModel>(profile: &AnyProfile) -> bool {
     let is_odd = profile.outline().is_odd
         && match &profile.snap {
@@ -155,7 +155,7 @@ pub(super) const fn is_motor_where_limited<E: EnvironmentModel>(profile: &AnyPro
     profile.ends.is_none() && !is_odd
 }
 
-/// `B / T` in N m/rad of the damper beside it.
+/// `B / T` in N m/rad of its damper.
 const fn damper<E: EnvironmentModel>(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
     if !E::PROFILE.is_damped {
         return Interval::ZERO;
@@ -163,19 +163,19 @@ const fn damper<E: EnvironmentModel>(profile: &AnyProfile, n: &LoopIntervals) ->
     n.coefficient(Interval::decimal(profile.damping).div(n.period))
 }
 
-/// Parts of a cell in a rad, as a law multiplies by them.
+/// Parts of a cell per rad, with the law's rounding.
 const fn parts_per_rad(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
     around(n.format.parts_per_rad(profile.scale().parts_per_rad))
 }
 
-/// Around a number that was computed in a few roundings.
+/// An interval around a number that was computed with a few roundings.
 const fn around(value: f64) -> Interval {
     Interval::exact(value).mul(Interval::new(1.0 - 4.0 * f64::EPSILON, 1.0 + 4.0 * f64::EPSILON))
 }
 
-/// Upper bound on the index at the device's port, without a coupling (equation 48): for a torque that is
-/// late by `n + eps` samples `T (L/2 + (n + eps) M) + eps (1 - eps) T^2 M^2 / (4 delta)`, to be below
-/// `delta`. `None` where none is known: beside a damper or a lag, and where updates are missed.
+/// Upper bound on the index at the device's port, without a coupling (equation 48): for a torque that is late
+/// by `n + eps` samples `T (L/2 + (n + eps) M) + eps (1 - eps) T^2 M^2 / (4 delta)`, to be below `delta`.
+/// `None` if none is known: with a damper, a lag, or missed updates.
 pub(super) const fn profile_bound_at_port(
     profile: &AnyProfile,
     n: &LoopIntervals,
@@ -191,7 +191,7 @@ pub(super) const fn profile_bound_at_port(
     Some(rise.half().add(late.mul(steepest)).add(ripple))
 }
 
-/// The output delay in samples; `None` where there is more latency than that.
+/// The output delay in samples; `None` if there is other latency.
 pub(super) const fn delay_at_port(n: &LoopIntervals) -> Option<Interval> {
     let Some(lagging) = &n.latency else { return Some(Interval::ZERO) };
     let TimeRange { least, most } = lagging.latency.output_delay;
@@ -202,7 +202,7 @@ pub(super) const fn delay_at_port(n: &LoopIntervals) -> Option<Interval> {
     Some(delay.div(n.period))
 }
 
-/// `eps (1 - eps)` of the part `eps` beside the whole samples of a delay.
+/// `eps (1 - eps)` for the fractional part `eps` of a delay in samples.
 pub(super) const fn part_of_sample(delay: Interval) -> Interval {
     let quarter = Interval::new(0.0, 0.25);
     let whole = delay.lo() as u32 as f64;

@@ -1,16 +1,16 @@
-//! Whether a device comes to rest: the torque of everything that is not linear, held against the
-//! friction that the device has (theory, sections 6, 8 and 9).
+//! Whether a device comes to rest: compares the torque errors of quantisation with the friction of the device
+//! (theory, sections 6, 8 and 9).
 //!
-//! The certificate is about a controller without quantisation. Encoder, DAC and the rounding of
-//! numbers change its torque by at most some `e`. Coulomb friction of `e` or more dissipates the
-//! energy of that error, `f_c abs(v) >= e v`, so that the device is as passive as certified. With
-//! less friction a limit cycle at rest is possible.
+//! The certificate is about a controller without quantisation. Encoder, DAC and the rounding of numbers
+//! change its torque by at most some `e`. Coulomb friction of `e` or more dissipates the energy of that
+//! error, `f_c abs(v) >= e v`, so the device is as passive as certified. With less friction a limit cycle at
+//! rest is possible.
 //!
-//! For a linear scene, and for a spring that is one-sided or limited, `e` holds for any motion. A
-//! damper behind a face does not have such an `e`: a count more or less moves the tick in which it
-//! switches on or off, and the torque then differs by damping times speed. Its `e` is that of motions
-//! on one side of the face, as at rest. So is that of a limited scene whose response may grow with
-//! each change between limited and not.
+//! For a linear scene, and for a spring that is one-sided or limited, `e` holds for any motion. A damper
+//! behind a face does not have such an `e`: a count more or less changes the tick in which it switches, and
+//! the torque then differs by damping times speed. Its `e` holds for motions on one side of the face, as at
+//! rest. The same applies to a limited scene whose response may grow with each change between limited and not
+//! limited.
 
 use core::f64::consts::TAU;
 use core::fmt;
@@ -31,7 +31,7 @@ use crate::scene::Scene;
 use crate::text::{RoundUp3, ShortF64};
 use crate::transducers::Transducers;
 
-/// Data of the device that no scene has, as far as stated.
+/// Data of the device that a scene does not contain, as far as stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Resolution {
     /// Angle of one encoder count in rad.
@@ -40,16 +40,16 @@ pub struct Resolution {
     pub full_scale: Option<f64>,
     /// Coulomb friction of the device in N m, at the motor.
     pub friction: Option<f64>,
-    /// Most by which the torque of a current loop is off its model, in N m; none where an amplifier outside has
-    /// no such steps.
+    /// Largest deviation of a current loop's torque from its model, in N m; `None` for an external amplifier
+    /// without such steps.
     pub current: Option<f64>,
-    /// What a current loop is off beside that where the torque changes its sign, in N m, until its feedback has
-    /// corrected an instant in which the dead time is given back with the wrong sign.
+    /// Additional deviation of a current loop in N m when the torque changes its sign, until its feedback has
+    /// corrected an instant in which the dead time is compensated with the wrong sign.
     pub crossing: Option<f64>,
 }
 
 impl Resolution {
-    /// Those of a program's transducers, and the friction of its device.
+    /// The resolution of a program's transducers, with the friction of its device.
     pub fn of(transducers: &Transducers, friction: Option<f64>) -> Self {
         Self {
             encoder: Some(TAU / transducers.counts_per_turn),
@@ -60,8 +60,8 @@ impl Resolution {
         }
     }
 
-    /// The same in front of a current loop of this resolution: what counts and compare values leave of a settled
-    /// current, with half of its ripple, and what a change of its sign adds.
+    /// The same with a current loop of this resolution: the deviation of a settled current with half of its
+    /// ripple, and the addition at a change of its sign.
     pub fn with_current_loop(self, loop_resolution: &CurrentResolution) -> Self {
         let CurrentResolution { deviation, zero_crossing, ripple, .. } = *loop_resolution;
         Self { current: Some(deviation + 0.5 * ripple), crossing: Some(zero_crossing), ..self }
@@ -73,11 +73,11 @@ impl Resolution {
     }
 }
 
-/// The most that each step moves the torque, in N m, and the friction against it.
+/// The largest torque error of each kind of step in N m, and the friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuantizationBound {
-    /// Of the encoder: half a count times the controller's peak torque a position. `K Delta / 2 +
-    /// B Delta / T` for a wall without a coupling.
+    /// Of the encoder: half a count times the controller's peak torque per position.
+    /// `K Delta / 2 + B Delta / T` for a wall without a coupling.
     pub encoder: Option<f64>,
     /// Of the servo's numbers, within a turn of its zero.
     pub numbers: f64,
@@ -85,7 +85,7 @@ pub struct QuantizationBound {
     pub converter: Option<f64>,
     /// Of the current loop: see [`Resolution::with_current_loop`].
     pub current: Option<f64>,
-    /// The addition where the torque changes its sign: see [`Resolution::crossing`].
+    /// The addition when the torque changes its sign: see [`Resolution::crossing`].
     pub crossing: Option<f64>,
     /// Declared friction of the device.
     pub friction: Option<f64>,
@@ -95,8 +95,8 @@ pub struct QuantizationBound {
 }
 
 impl QuantizationBound {
-    /// Of a scene that runs in a number format. `None` where the controller has no finite peak
-    /// torque a position: where it is not stable, or so nearly that its response does not end.
+    /// The bound of a scene that runs in a number format. `None` if the controller has no finite peak torque
+    /// per position: if it is unstable, or so near to instability that its response does not end.
     pub fn of(scene: &Scene, format: Format, steps: &Resolution) -> Option<Self> {
         let Peak { norm: peak, in_any_motion } = peak(scene, format)?;
         let found = Self {
@@ -113,21 +113,21 @@ impl QuantizationBound {
         hysteresis(scene).is_none_or(is_safe).then_some(found)
     }
 
-    /// The most by which the environment's position is off, in rad: half a count, what numbers make of it, and
-    /// the coupling's deflection by a torque that is off.
+    /// Largest error of the environment's position in rad: half a count, the rounding of numbers, and the
+    /// coupling's deflection by a torque error.
     fn position_error(&self, scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> f64 {
         let torque = self.encoder.unwrap_or(0.0) + self.numbers;
         let counted = 0.5 * steps.encoder.unwrap_or(0.0) + self.numbers / peak;
         counted + compliance(scene, format) * torque
     }
 
-    /// Bound on the torque error of all stated steps together, in N m: the friction with which the
-    /// device comes to rest. With less, a limit cycle may move the torque by more than that.
+    /// Bound on the torque error of all stated steps together, in N m: with this friction the device comes to
+    /// rest. With less, a limit cycle may exceed this torque.
     pub fn hum(&self) -> f64 {
         self.parts().iter().filter_map(|(_, part)| *part).sum()
     }
 
-    /// Its parts by name, as far as they were stated.
+    /// The parts by name, as far as stated.
     pub fn parts(&self) -> [(&'static str, Option<f64>); 4] {
         let Self { encoder, numbers, converter, current, .. } = *self;
         [
@@ -138,13 +138,13 @@ impl QuantizationBound {
         ]
     }
 
-    /// The parts that every scene has and that were not stated. A current loop is stated where there is one.
+    /// The parts of every scene that were not stated. A current loop is always stated if there is one.
     pub(crate) fn not_stated(&self) -> impl Iterator<Item = &'static str> {
         let parts = [("encoder", self.encoder), ("DAC", self.converter)];
         parts.into_iter().filter(|(_, part)| part.is_none()).map(|(name, _)| name)
     }
 
-    /// Whether the declared friction is enough; `None` where that cannot be said.
+    /// Whether the declared friction is sufficient; `None` if that is unknown.
     pub fn comes_to_rest(&self) -> Option<bool> {
         let enough = self.friction? >= self.hum();
         let all_stated = self.encoder.is_some() && self.converter.is_some();
@@ -194,17 +194,17 @@ impl fmt::Display for QuantizationBound {
     }
 }
 
-/// Angle in rad from where a scene snaps to where it snaps back; `None` where it does not. Positions that
-/// are off by less than half of it move each snap to where it loses less energy, and none to where it would
-/// add some (equation 50).
+/// Angle in rad from a snap point to the point where the scene snaps back; `None` without snap points.
+/// Position errors of less than half of it move a snap to a point where it loses less energy, but never to a
+/// point where it adds energy (equation 50).
 fn hysteresis(scene: &Scene) -> Option<f64> {
     let profile = scene.environment.profile()?;
     Some(profile.snap?.hysteresis(&profile.layout()))
 }
 
-/// What positions that are off do to the torque.
+/// The effect of position errors on the torque.
 struct Peak {
-    /// Largest torque in N m for positions that are off by up to 1 rad each.
+    /// Largest torque error in N m for errors of up to 1 rad in each position.
     norm: f64,
     /// Whether it holds for any motion.
     in_any_motion: bool,
@@ -212,10 +212,10 @@ struct Peak {
 
 /// The l1 norm of the controller's impulse response (theory, section 6).
 ///
-/// A wall in and out of contact and a torque limit make the response vary. Then, for an
-/// environment of norm `e` behind a coupling whose compliances add up to `V`, no torque is more than `e`
-/// times a position and `V e` times the largest torque before, which for `V e < 1` adds up to
-/// `e / (1 - V e)`; where that is not so, the norm is the one in contact.
+/// A wall in and out of contact and a torque limit make the response vary. Then, for an environment of norm
+/// `e` behind a coupling whose compliances add up to `V`, no torque is more than `e` times a position plus
+/// `V e` times the largest earlier torque; for `V e < 1` the sum is `e / (1 - V e)`. Otherwise the norm is
+/// that in contact.
 ///
 /// A torque profile has no impulse response and is bounded by its steepest slope; the other parts are bounded
 /// by the norm of their impulse response.
@@ -245,13 +245,13 @@ fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     })
 }
 
-/// Most deflection of the coupling in rad for torques of up to 1 N m each.
+/// Largest deflection of the coupling in rad for torques of up to 1 N m each.
 fn compliance(scene: &Scene, format: Format) -> f64 {
     let n = LoopIntervals::of(scene, format);
     matched(&n).map_or_else(|| n.compliance.hi(), |coupling| coupling.largest_deflection())
 }
 
-/// The matched coupling, where a scene has that.
+/// The matched coupling, if the scene has one.
 fn matched(n: &LoopIntervals) -> Option<MatchedCoupling> {
     n.latency.and_then(|lagging| lagging.matched)
 }
@@ -264,19 +264,19 @@ fn roundings(format: Format, products: f64, sums: f64) -> f64 {
     }
 }
 
-/// The most by which the servo's arithmetic moves the torque: each rounding in a tick times the
-/// norm from where it happens to the torque.
+/// Largest torque error of the servo's arithmetic: each rounding in a tick times the norm from its place to
+/// the torque.
 ///
 /// Positions are rounded as the count becomes an angle and behind the coupling and its
 /// [memory](deflection), and differ from a face and from a state; torques by stiffness, damper and the
 /// two gains of the coupling. These come out through `1 / (1 + V E)`, whose norm is at most `1 + V` times
 /// the controller's.
 fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Option<f64> {
-    // Torques where none is stated are small beside the positions that they come from.
+    // If no limit is stated, torques are small compared with their positions.
     let limit = scene.torque_limit.or(steps.full_scale).unwrap_or(0.0);
     let (angle, torque) = (format.rounding_error(TAU), format.rounding_error(limit));
     let at_torque = match scene.environment.rational() {
-        // Its sums may cancel: they are as large as the torque of a turn.
+        // Its sums may cancel, so they count with the torque of a turn.
         Some(rational) => {
             let sum = format.rounding_error(peak * TAU);
             sum * roundings(format, 2.0, 2.0) * sections(rational)?
@@ -285,11 +285,10 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
     };
     let at_position = angle * roundings(format, 2.0, 3.0) + deflection(scene, format, limit);
     let (at_torque, at_position) = match scene.environment.profile() {
-        // Places in its table, and those of its end stops, are whole parts of a cell; a product and a sum
-        // more lead to them.
+        // Places in its table and its end stops are whole parts of a cell, with one more product and sum.
         Some(profile) => {
             let part = step_of_part(profile, &LoopIntervals::of(scene, format));
-            // The line to a snap point is a product and a sum more, from a centre that is whole parts away.
+            // The line to a snap point is one more product and sum, from a centre at whole parts.
             let snaps = if profile.snap.is_some() { 1.0 } else { 0.0 };
             let line = snaps * torque * roundings(format, 1.0, 1.0);
             let parts = (2.0 + snaps) * part;
@@ -309,11 +308,11 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
     Some(peak * at_position + (1.0 + peak * compliance(scene, format)) * at_torque)
 }
 
-/// Position error in rad by which a matched coupling rounds the deflection that past torques leave, and the
-/// device's position less that deflection, for torques of up to `limit` N m.
+/// Position error in rad of a matched coupling, by rounding the deflection of past torques and the device's
+/// position less this deflection, for torques of up to `limit` N m.
 ///
-/// It multiplies and adds a torque for the part of a sample, the sum of those that are on their way, and a
-/// state for each lag. Such a state decays, and keeps a part of its own rounding.
+/// It multiplies and adds a torque for the part of a sample, the sum of the torques in transit, and a state
+/// for each lag. Such a state decays and keeps a part of its own rounding.
 fn deflection(scene: &Scene, format: Format, limit: f64) -> f64 {
     let Some(coupling) = matched(&LoopIntervals::of(scene, format)) else { return 0.0 };
     let whole = coupling.whole as f64;
@@ -330,8 +329,8 @@ fn deflection(scene: &Scene, format: Format, limit: f64) -> f64 {
     at_position + at_sum + lags.map(at_state).sum::<f64>()
 }
 
-/// Torque error in N m of the states of filter and canceller: each moves by a share of its
-/// remaining way, and stops where that share is rounded away.
+/// Torque error in N m of the states of filter and canceller: each moves by a fraction of its remaining
+/// distance, and stops when this fraction is rounded to zero.
 fn states(scene: &Scene, format: Format, angle: f64) -> f64 {
     let n = LoopIntervals::of(scene, format);
     let stops = |state: Washout| {
@@ -344,8 +343,8 @@ fn states(scene: &Scene, format: Format, angle: f64) -> f64 {
         + if cancels { stops(canceller(&n)) } else { 0.0 }
 }
 
-/// The norm from a rational environment's sums to its torque, for all of them: a sum a degree, and
-/// `1 / denominator` from each.
+/// The norm from all sums of a rational environment to its torque: one sum per degree, and `1 / denominator`
+/// from each.
 fn sections(written: &Rational) -> Option<f64> {
     let rational = written.cancelled();
     let denominator = Polynomial::descending(rational.denominator.as_slice(), false);
@@ -354,17 +353,17 @@ fn sections(written: &Rational) -> Option<f64> {
     Some(norm * (1.0 + denominator.degree() as f64))
 }
 
-/// Powers of `1/z` that a controller has at most: degree 8, 8 samples of delay, 8 zeros at 1.
+/// Largest number of powers of `1/z` in a controller: degree 8, 8 samples of delay, 8 zeros at 1.
 const TAPS: usize = 40;
-/// Samples after which a response is said not to end: that of a pole at `1 - 1e-3` does.
+/// Samples after which a response counts as not ending; the response of a pole at `1 - 1e-3` ends before.
 const LONGEST: u32 = 1 << 16;
 
-/// Sum of the magnitudes of an impulse response, to twelve digits; `None` where it does not end.
+/// Sum of the magnitudes of an impulse response, to twelve digits; `None` if it does not end.
 fn l1_norm(g: &Transfer) -> Option<f64> {
     let ones = usize::try_from(g.ones).ok()?;
     let numerator = g.numerator.times_unit_root(UnitRoot::Plus, ones)?;
     let scale = g.scale.midpoint() / g.denominator.leading().midpoint();
-    // In powers of 1/z from the first that is there: a delay changes nothing.
+    // In powers of 1/z from the first nonzero one: a delay changes nothing.
     let taps = |p: &Polynomial, factor: f64| {
         let mut taps = [0.0; TAPS];
         for (i, tap) in taps.iter_mut().enumerate().take(p.len()) {

@@ -1,4 +1,4 @@
-//! Why a scene was not certified, as numbers and as a sentence.
+//! The reason why a scene is not certified, as numbers and as text.
 
 use core::fmt;
 
@@ -9,7 +9,7 @@ use crate::passivity::interval::Interval;
 use crate::passivity::poles::UndecidedReason;
 use crate::text::Sentence;
 
-/// Why a scene was not certified. Indices in N m s/rad.
+/// The reason why a scene is not certified. Indices in N m s/rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rejection {
     /// A number that is invalid in any scene.
@@ -21,37 +21,37 @@ pub enum Rejection {
         /// `1 + E(inf) V`; 0 where the environment's own denominator degenerates.
         loop_gain: Interval,
     },
-    /// The law of the environment's type does not remember the torques that the coupling needs.
+    /// The law of the environment's type does not store the past torques that the coupling needs.
     CouplingMemory,
-    /// The device has no passivity to spend.
+    /// The device has no passivity.
     NoPassivity {
         /// Its output strict passivity.
         delta: Interval,
     },
-    /// A torque profile that is not zero in the mean, or that nothing keeps within its ends.
+    /// The mean of a torque profile is not zero, or no springs keep the device within its ends.
     Motor {
         /// Its mean torque in N m.
         mean: f64,
     },
-    /// A torque profile that a torque limit would make a motor of.
+    /// A torque limit would make the torque profile a motor.
     Uneven,
-    /// A torque profile without delay that is steeper than its coupling.
+    /// A torque profile without delay is steeper than its coupling.
     Steep {
         /// Stiffness of the coupling in N m/rad, for the torque of the same tick.
         coupling: Interval,
-        /// Changes of one number that would pass.
+        /// Changes of one number with which the scene would pass.
         remedies: Remedies,
     },
     /// A pole outside the unit circle.
     UnstablePole {
         /// Schur-Cohn reflection coefficient that shows it: at least 1.
         reflection: Interval,
-        /// Whether the environment alone has none: then the coupling makes it.
+        /// Whether the environment alone does not have the pole: then the coupling causes it.
         of_coupling: bool,
-        /// Changes of one number that would pass, where the coupling makes it.
+        /// Changes of one number with which the scene would pass, if the coupling causes the pole.
         remedies: Remedies,
-        /// The same for the stiffness behind the standard coupling in N m/rad, where that does not do
-        /// by itself.
+        /// The standard coupling in N m/rad with the passing change of the stiffness behind it, if the
+        /// standard coupling alone is not sufficient.
         behind_standard: Option<(f64, Remedy)>,
     },
     /// A repeated pole on the unit circle, counting the integrator from velocity to position.
@@ -59,13 +59,13 @@ pub enum Rejection {
         /// Cosine of its angle.
         cos_theta: Interval,
     },
-    /// A pole on the unit circle whose residue does not point its way (equation 4).
+    /// A pole on the unit circle whose residue does not have the pole's direction (equation 4).
     ResidueAngle {
         /// Cosine of its angle.
         cos_theta: Interval,
     },
-    /// A mode on the unit circle that numerator and denominator have in common: it cancels in the
-    /// transfer function, but not in what runs, where each rounding drives it.
+    /// A common mode of numerator and denominator on the unit circle: it cancels in the transfer function,
+    /// but not in the running law, where rounding excites it.
     HiddenMode {
         /// Cosine of its angle.
         cos_theta: Interval,
@@ -81,26 +81,25 @@ pub enum Rejection {
         alpha: Interval,
         /// Its upper bound.
         delta: Interval,
-        /// Where on the unit circle the linear index is reached.
+        /// Cosine of the angle at which the linear index is reached.
         cos_theta: Interval,
-        /// Changes of one number that would pass.
+        /// Changes of one number with which the scene would pass.
         remedies: Remedies,
     },
-    /// The environment would pass if no update were missed, or if torques were not latched.
+    /// The environment would pass without missed updates, or without latched torques.
     Missed {
         /// The index that was compared: of `E'` for linear scenes, the bound otherwise.
         alpha: Interval,
         /// Its upper bound with this coupling.
         limit: Interval,
-        /// Changes of one number that would pass.
+        /// Changes of one number with which the scene would pass.
         remedies: Remedies,
     },
-    /// The environment would pass behind the standard coupling; this coupling does not suit it
-    /// (equation 18).
+    /// The environment would pass behind the standard coupling, but not behind this coupling (equation 18).
     Coupling {
         /// Index of the environment alone (its bound, for one-sided and limited scenes).
         alpha: Option<Interval>,
-        /// Index with this coupling folded in, where it exists and was compared.
+        /// Index including this coupling, if it exists and was compared.
         alpha_coupled: Option<Interval>,
         /// Passivity of the device.
         delta: Interval,
@@ -108,18 +107,18 @@ pub enum Rejection {
         stiffness: Option<Interval>,
         /// Stiffness of the standard coupling, `2 delta / T`, in N m/rad.
         standard: Interval,
-        /// Changes of one number that would pass.
+        /// Changes of one number with which the scene would pass.
         remedies: Remedies,
     },
-    /// Neither proved nor disproved: never a yes.
+    /// Neither proved nor disproved; never counts as certified.
     Undecided {
-        /// What stood in the way.
+        /// The reason.
         doubt: UndecidedReason,
-        /// The index, where it was enclosed.
+        /// The index, if it was enclosed.
         index: Option<Interval>,
         /// Its upper bound.
         limit: Option<Interval>,
-        /// Changes of one number that would pass.
+        /// Changes of one number with which the scene would pass.
         remedies: Remedies,
     },
 }
@@ -145,7 +144,7 @@ impl Rejection {
         matches!(self, Self::Undecided { .. })
     }
 
-    /// Changes of one number that would make the scene pass, each of them tried.
+    /// Changes of one number with which the scene passes; each is certified.
     pub const fn remedies(&self) -> Remedies {
         match self {
             Self::UnstablePole { remedies, .. }
@@ -158,12 +157,12 @@ impl Rejection {
         }
     }
 
-    /// The rejection as a sentence, the same at compile time, on the host and on the board.
+    /// The rejection as text, the same at compile time, on the host and on the board.
     pub const fn sentence(&self) -> Sentence {
         self.sentence_in(Format::F64)
     }
 
-    /// The same, saying first which rounding the numbers had.
+    /// The same, beginning with the rounding of the numbers.
     pub const fn sentence_in(&self, format: Format) -> Sentence {
         let mut t = Sentence::new();
         if !matches!(format, Format::F64) {

@@ -1,4 +1,4 @@
-//! What would pass instead of a scene that is rejected.
+//! Remedies: changes with which a rejected scene would pass.
 
 use core::fmt;
 
@@ -7,18 +7,17 @@ use crate::text::Text;
 
 /// One number that, changed to any value from `lowest` to `highest`, makes the scene pass.
 ///
-/// The ends are certified as they are written, and all values between them are proved to pass.
-/// Without a proof both ends are the same.
+/// The ends are certified with their printed digits, and all values between them are proved to pass. Without
+/// such a proof both ends are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remedy {
     /// Which number.
     pub parameter: Parameter,
-    /// The least value. `None`: the scene passes down to 0; with a period, and with torque, end stops and
-    /// number of repetitions of a torque profile, with all that are greater than 0.
+    /// The least value. `None`: the scene passes down to 0; for a period, and for torque, end stops and
+    /// number of repetitions of a torque profile, with all values greater than 0.
     pub lowest: Option<f64>,
-    /// The greatest value. `None`: the scene passes with any larger value, up to the device's
-    /// damping where that bounds it: no device has more passivity, and a residual above it adds
-    /// damping.
+    /// The greatest value. `None`: the scene passes with any larger value, up to the device's damping if that
+    /// is a bound: no device has more passivity than damping, and a larger residual adds damping.
     pub highest: Option<f64>,
 }
 
@@ -70,10 +69,9 @@ impl fmt::Display for Remedy {
 
 pub(super) const CANDIDATES: usize = 10;
 
-/// The numbers that are looked at, in the order in which they are printed. What more of a device would help
-/// is the damping where its passivity is not declared. In the place of a residual, which a torque profile
-/// does not have, is its torque; in the place of a damping, where an environment cancels damping beside a
-/// profile, the residual damping.
+/// The parameters of the search, in the order of printing. For the device it is the damping, if the passivity
+/// is not declared. A torque profile, which has no residual, has its torque in that place; an environment
+/// that cancels damping in a sum with a profile has the residual damping in the place of the damping.
 pub(super) const ORDER: [Parameter; CANDIDATES] = [
     Parameter::Stiffness,
     Parameter::Damping,
@@ -87,7 +85,7 @@ pub(super) const ORDER: [Parameter; CANDIDATES] = [
     Parameter::SensorLag,
 ];
 
-/// The values of one number, infinite where a [`Remedy`] has no end.
+/// The values of one number, infinite if a [`Remedy`] has no end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Range {
     lowest: f64,
@@ -98,8 +96,8 @@ impl Range {
     const EMPTY: Self = Self { lowest: f64::INFINITY, highest: f64::NEG_INFINITY };
 }
 
-/// The remedies of a rejection, at most one a parameter.
-// As small as it gets: a rejection is handed up through the deepest stack of a small board.
+/// The remedies of a rejection, at most one per parameter. As small as possible, because a rejection is
+/// returned through the deepest stack of a small board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remedies {
     ranges: [Range; CANDIDATES],
@@ -109,7 +107,7 @@ pub struct Remedies {
     is_matched: bool,
 }
 
-/// What passes behind the coupling that absorbs latency.
+/// The text for a scene that passes behind the matched coupling.
 const MATCHED: &str = "behind the matched coupling";
 
 impl Remedies {
@@ -130,7 +128,7 @@ impl Remedies {
         all
     }
 
-    /// The matched coupling in place of the scene's, in words, where the scene passes with it.
+    /// The matched coupling as text, if the scene passes with it in place of its own coupling.
     pub const fn matched(&self) -> Option<&'static str> {
         if self.is_matched { Some(MATCHED) } else { None }
     }
@@ -139,7 +137,7 @@ impl Remedies {
         self.is_matched = true;
     }
 
-    /// The remedies in order that change a number.
+    /// The remedies that change a number, in order.
     pub fn iter(&self) -> impl Iterator<Item = Remedy> {
         (0..CANDIDATES).filter_map(|i| self.get(i))
     }
@@ -183,7 +181,7 @@ impl Remedies {
         }
     }
 
-    /// Appends the remedies; gives their number.
+    /// Appends the remedies; returns their number.
     pub(super) const fn write<const N: usize>(&self, t: &mut Text<N>) -> usize {
         let mut written = 0;
         if let Some(matched) = self.matched() {

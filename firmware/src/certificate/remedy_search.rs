@@ -1,4 +1,4 @@
-//! The search for what would pass: each rejection's condition inverted for one number at a time.
+//! The search for remedies: inverts the condition of a rejection for one number at a time.
 
 use super::between::passes_upwards;
 use super::digits::{Digits, Side};
@@ -12,7 +12,7 @@ use crate::number::Format;
 use crate::parameter::Parameter;
 use crate::scene::{Coupling, Scene};
 
-/// The rejection with the remedies that there are, where a remedy makes sense.
+/// The rejection with its remedies, if a remedy makes sense.
 pub(super) const fn with_remedies(
     rejection: Rejection,
     scene: &Scene,
@@ -35,7 +35,7 @@ pub(super) const fn with_remedies(
 }
 
 const fn search(scene: &Scene, format: Format) -> Remedies {
-    // What another crate states may change with any number of the scene.
+    // The statement of another crate's environment may change with any number of the scene.
     if matches!(scene.environment, Environment::Stated(_)) {
         return Remedies::NONE;
     }
@@ -60,7 +60,7 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
         };
         let varied = Varied { scene, format, parameter };
         let remedy = match ORDER[i] {
-            // With another one alone, the delay is not a whole number of updates.
+            // If only this number changes, the delay is no longer a whole number of updates.
             Parameter::Period | Parameter::OutputDelay if scene.latency.actuator_updates != 0 => {
                 None
             }
@@ -75,7 +75,7 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
     found
 }
 
-/// Whether a scene whose torques lag passes behind the coupling that absorbs that, where it has another.
+/// Whether a scene whose torques lag passes behind the matched coupling, if it has another coupling.
 #[inline(never)]
 const fn passes_behind_matched(scene: &Scene, format: Format) -> bool {
     if scene.latency.is_none() || matches!(scene.coupling, Coupling::Matched) {
@@ -88,8 +88,8 @@ const fn passes_behind_matched(scene: &Scene, format: Format) -> bool {
     }
 }
 
-/// The stiffness with which the scene passes behind the standard coupling to three digits, on the soft
-/// side, where that coupling alone is not enough. In a frame of its own, for the second scene.
+/// The stiffness, to three digits on the soft side, with which the scene passes behind the standard coupling,
+/// if that coupling alone is not sufficient. Not inlined, because of the frame of the second scene.
 #[inline(never)]
 const fn softer_behind_standard(scene: &Scene, format: Format) -> Option<(f64, Remedy)> {
     let numbers = LoopIntervals::of(scene, format);
@@ -116,8 +116,8 @@ const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
     }
 }
 
-/// The standard coupling, `2 delta / T`, if that passes and is not what the scene has: in as few
-/// digits as pass, on the soft side.
+/// The standard coupling, `2 delta / T`, if the scene passes with it and has another: with as few digits as
+/// pass, on the soft side.
 const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
     let numbers = LoopIntervals::of(varied.scene, varied.format);
     if numbers.is_standard {
@@ -141,8 +141,8 @@ const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
     }
 }
 
-/// A device with more damping; where its passivity was declared, with more of that, up to the
-/// damping. What a canceller leaves of the damping goes with it, so that there is no such remedy.
+/// A device with more damping or, if its passivity is declared, with more passivity, up to the damping. With
+/// a canceller there is no such remedy, because the residual damping depends on it.
 const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
     let cancels = scene.environment.residual().is_some();
     let parameter = match scene.device.passivity {
@@ -152,7 +152,7 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
     };
     let numbers = LoopIntervals::of(scene, format);
     let Some(needed) = needed_passivity(scene, format) else { return None };
-    // A device gives only so much of its passivity as its longest period leaves.
+    // A longer worst period reduces the usable passivity.
     let scale = match scene.timing.worst_period {
         Some(worst) => worst / scene.timing.period,
         None => 1.0,
@@ -170,7 +170,7 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
     }
 }
 
-/// In a frame of its own, as the function that it calls.
+/// Not inlined, like the function that it calls.
 #[inline(never)]
 const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
     match PassivityProblem::in_format(scene, format) {

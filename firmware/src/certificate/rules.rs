@@ -14,11 +14,11 @@ pub enum RuleAnswer {
     Pass,
     /// Disproved, or not covered by the rule.
     Fail,
-    /// Neither; never means yes.
+    /// Neither; never counts as a pass.
     Undecided,
 }
 
-/// Which rule the verdict follows.
+/// The rule that decides the verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     /// Theory, section 4.1: linear scenes.
@@ -27,9 +27,9 @@ pub enum Rule {
     Nonlinear,
 }
 
-/// Output strict passivity `gamma` of `Q` (equation 19) for a spring coupling:
-/// `delta k / (delta - k)` with `k = K_vc T / 2`, for `k < delta`. At `k = delta` `Q` is zero and
-/// `gamma` infinite; above, `Q` has none (`None`).
+/// Output strict passivity `gamma` of `Q` (equation 19) for a spring coupling: `delta k / (delta - k)` with
+/// `k = K_vc T / 2`, for `k < delta`. At `k = delta` `Q` is zero and `gamma` infinite; above, `Q` is not
+/// passive (`None`).
 pub const fn gamma(stiffness: Interval, period: Interval, delta: Interval) -> Option<Interval> {
     let k = stiffness.mul(period).half();
     if delta.is_below(k) {
@@ -46,16 +46,15 @@ pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
         || !scene.environment.has_transfer()
 }
 
-/// Upper bound on the index by the paper's rule: `K_vc T / 2`, for the coupling spring to
-/// be output strictly passive enough (condition 18), and `delta`. At the standard coupling both are
-/// `delta`; a stiffness that equals it to the digits that were written, which may be a few units of
-/// the last place above it, counts as standard. `None` where the rule does not hold: above the
-/// standard coupling, and without compliance, `Q` is not passive (equation 19).
+/// Upper bound on the index by the paper's rule: `K_vc T / 2`, for the coupling spring to be output strictly
+/// passive enough (condition 18), and `delta`. At the standard coupling both are `delta`; a stiffness equal
+/// to it within the precision of its digits, which may be a few units of the last place above it, counts as
+/// standard. `None` if the rule does not hold: above the standard coupling, and without compliance, `Q` is
+/// not passive (equation 19).
 ///
-/// Where updates may be missed and torques latched, [`Missed::limit`] has to hold as well.
+/// If updates may be missed and torques are latched, [`Missed::limit`] must also hold.
 ///
-/// Where torques lag, condition 18 is that of the coupling's excess over the matched one
-/// ([`crate::matched`]).
+/// If torques lag, condition 18 applies to the coupling's excess over the matched one ([`crate::matched`]).
 pub(super) const fn paper_limit(n: &LoopIntervals) -> Option<Interval> {
     if n.is_at_port {
         return Some(n.delta);
@@ -81,10 +80,10 @@ pub(super) const fn compare(index: Interval, limit: Interval) -> RuleAnswer {
     }
 }
 
-/// What `alpha_coupled` has to stay below: `delta`; at the standard coupling also the `K_vc T / 2`
-/// that equals it to the digits that were written and to the rounding of the compliance.
+/// The upper bound on `alpha_coupled`: `delta`; at the standard coupling also `K_vc T / 2`, which equals
+/// `delta` within the precision of its digits and the rounding of the compliance.
 ///
-/// Where torques lag, it is the index at the port that has to stay below the passivity.
+/// If torques lag, the index at the port must be below the passivity.
 pub(super) const fn exact_limit(n: &LoopIntervals) -> Interval {
     if let Some(lagging) = &n.latency {
         return port_limit(lagging, n);

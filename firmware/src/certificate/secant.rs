@@ -2,18 +2,18 @@
 
 use super::digits::{Digits, Side};
 
-/// Looks inside of a bracket. A secant takes two or three; halving, as where there is no index to
-/// draw one by, takes ten to the three digits that are reported.
+/// The largest number of evaluations inside a bracket. A secant needs two or three; halving, if there is no
+/// index for a secant, needs ten for the three reported digits.
 const MAX_LOOKS: u32 = 14;
-/// Two looks this near to each other, relative to the value, draw a secant that needs no proof that
-/// the next digit fails.
+/// If two evaluations are this near, relative to the value, their secant needs no proof that the next digit
+/// fails.
 const NEAR: f64 = 0.03;
 
 /// A value of the number in question, and the shortage with it.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     pub value: f64,
-    /// [`super::PassivityProblem::shortage`]; `None` where the scene cannot be posed, or has none.
+    /// [`super::PassivityProblem::shortage`]; `None` if the scene cannot be posed, or has no shortage.
     pub shortage: Option<f64>,
 }
 
@@ -22,7 +22,7 @@ impl Look {
         matches!(self.shortage, Some(shortage) if shortage < 0.0)
     }
 
-    /// Whether the scene lacks exactly as much with another value: the number has no part in it.
+    /// Whether the shortage with another value is exactly equal: it does not depend on this number.
     pub const fn is_as_good_as(&self, other: &Self) -> bool {
         match (self.shortage, other.shortage) {
             (Some(own), Some(others)) => own == others,
@@ -44,12 +44,12 @@ impl Bracket {
     }
 
     const fn middle(&self) -> f64 {
-        // Each halved by itself: the sum of the largest numbers is infinite.
+        // Each halved separately: the sum of the largest numbers is infinite.
         0.5 * self.fails.value + 0.5 * self.passes.value
     }
 
-    /// Where the straight line through two looks is zero, if the scene lacks more along it towards
-    /// the value that fails: next to where it has no index, it can lack ever less.
+    /// The root of the straight line through two evaluations, if the shortage grows towards the failing
+    /// value: close to values without an index, it may decrease.
     const fn zero_of_secant(&self, a: &Look, b: &Look) -> Option<f64> {
         let (Some(at_a), Some(at_b)) = (a.shortage, b.shortage) else { return None };
         let grows_upwards = (at_b > at_a) == (b.value > a.value);
@@ -59,7 +59,7 @@ impl Bracket {
         Some(b.value - at_b * (b.value - a.value) / (at_b - at_a))
     }
 
-    /// Whether a value outside is on the side that passes.
+    /// Whether a value outside the bracket is on the passing side.
     const fn is_behind(&self, value: f64) -> bool {
         (value <= self.passes.value) == (self.passes.value < self.fails.value)
     }
@@ -72,20 +72,19 @@ impl Bracket {
 
 /// Narrows a bracket down to neighbours of three digits.
 ///
-/// What a scene lacks is nearly straight over most of its numbers: the secant of the last two looks
-/// meets zero next to where it is. Where two looks have not halved the bracket, it is halved from
-/// then on.
+/// The shortage is nearly linear in most numbers, so the root of the secant through the last two evaluations
+/// is close. If two evaluations have not halved the bracket, it is halved from then on.
 pub(super) struct Search {
     side: Side,
     bracket: Bracket,
     last: Look,
     previous: Look,
-    /// The best value that passes, rounded to three digits.
+    /// The best passing value, rounded to three digits.
     nearest: Digits,
-    /// Whether what passes was looked at with these digits: not so before the first look passes.
+    /// Whether the passing value was evaluated with these digits; false before the first evaluation passes.
     has_digits: bool,
     bisects: bool,
-    /// Of the bracket, two looks ago at most.
+    /// The width of the bracket at most two evaluations ago.
     width: f64,
     looks: u32,
 }
@@ -105,12 +104,12 @@ impl Search {
         }
     }
 
-    /// The value that passes, to three digits.
+    /// The passing value, to three digits.
     pub const fn nearest(&self) -> Digits {
         self.nearest
     }
 
-    /// The next value to look at; `None` at the end.
+    /// The next value to evaluate; `None` at the end.
     pub const fn next(&self) -> Option<Digits> {
         if self.looks == MAX_LOOKS {
             return None;
@@ -129,7 +128,7 @@ impl Search {
         if self.bracket.contains(inside.value()) { Some(inside) } else { None }
     }
 
-    /// Where the secant is zero, or the middle.
+    /// The root of the secant, or the middle.
     const fn guess(&self) -> Digits {
         let zero = if self.bisects {
             None

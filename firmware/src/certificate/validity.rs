@@ -1,4 +1,4 @@
-//! The range in which each number of a scene makes sense at all.
+//! The valid range of each number of a scene.
 
 use crate::environment::{AnyProfile, Composed, Environment, ProfileUse, StatedModel};
 use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
@@ -15,7 +15,8 @@ pub struct InvalidParameter {
     pub value: f64,
     /// Its valid range.
     pub bound: &'static str,
-    /// The number of the scene that `bound` ends in, in the same unit; `None` where it says all.
+    /// The number of the scene at the end of the text of `bound`, in the same unit; `None` if `bound` is
+    /// complete.
     pub limit: Option<f64>,
 }
 
@@ -44,7 +45,7 @@ impl InvalidParameter {
     }
 }
 
-/// In a free hand, the slower the device moves, the nearer `Re(1/J)` comes to its damping.
+/// Without a hand, `Re(1/J)` approaches the device's damping at low speed.
 const NO_MORE_THAN_DAMPING: &str =
     "finite and at most the device damping, which no device's passivity exceeds:";
 
@@ -86,8 +87,8 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
 }
 
 /// The same without polynomials, on which no bound for a board depends. A program omits the code for the
-/// parts of torque profiles that its environment does not have, and the sentences if it only asks whether a
-/// problem exists.
+/// parts of torque profiles that its environment does not have, and the text if it only needs to know whether
+/// a problem exists.
 #[inline(always)]
 pub(super) const fn first_invalid_number(
     scene: &Scene,
@@ -153,7 +154,7 @@ const fn invalid(
     None
 }
 
-/// A number in its range that conflicts with another one of the scene.
+/// A number in its range that conflicts with another number of the scene.
 #[inline(always)]
 const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<InvalidParameter> {
     let (bound, limit) = match parameter {
@@ -178,8 +179,7 @@ const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<Inv
     Some(InvalidParameter { parameter, value, bound, limit })
 }
 
-/// The torque profile whose number that is: of a sum with a wall, the wall has a stiffness and a damping of
-/// its own.
+/// The torque profile that has the number: in a sum with a wall, stiffness and damping are the wall's.
 const fn profile_of(environment: &Environment, parameter: Parameter) -> Option<&AnyProfile> {
     match (environment, parameter) {
         (
@@ -226,7 +226,7 @@ const fn sum_conflict(composed: &Composed) -> Option<InvalidParameter> {
     None
 }
 
-/// Where a profile has no ends, angles are those within a turn.
+/// Without ends, a profile's angles are within a turn.
 const BESIDE_ENDS: &str = "beside a torque profile with end stops: one without them repeats in every turn, \
                            and a wall stands in one of them";
 
@@ -298,12 +298,12 @@ const fn holds_nothing(profile: &AnyProfile) -> bool {
     }
 }
 
-/// Knots that a place of a profile may be away from its centre.
+/// Largest distance of a place of a profile from its centre, in knots.
 const MOST_KNOTS: f64 = 65536.0;
-/// In rad: beyond a few turns, a centre is another one of the same profile.
+/// In rad: beyond a few turns, a centre is equivalent to another centre of the same profile.
 const LARGEST_ANGLE: f64 = 100.0;
 
-/// The same of a time between count and torque.
+/// The same for a time between count and torque.
 #[inline(always)]
 const fn latency_conflict(
     scene: &Scene,
@@ -356,8 +356,8 @@ const fn latency_conflict(
     Some(InvalidParameter { parameter, value, bound, limit: Some(limit) })
 }
 
-/// A number of the scene that an amplifier whose current loop is updated in every period does not allow. A
-/// board does not ask: where one of them is out of place, its coupling has no coefficients.
+/// A number of the scene that conflicts with an updated current loop. A board does not check this: with an
+/// invalid number its coupling has no coefficients.
 const fn updates_conflict(scene: &Scene) -> Option<InvalidParameter> {
     let (period, latency) = (scene.timing.period, &scene.latency);
     let worst = scene.timing.worst_period;

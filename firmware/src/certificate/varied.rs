@@ -1,4 +1,4 @@
-//! The scenes that differ in one number, and those of them that pass.
+//! Scenes that differ in one number, and the search for the passing ones.
 
 use super::between::{Between, between};
 use super::digits::{Digits, Side};
@@ -11,18 +11,18 @@ use crate::scene::Scene;
 
 /// The factor by which a number is moved at most in the search for a value that passes.
 pub(super) const FARTHEST: f64 = 64.0;
-/// How much farther than in proportion to the missing passivity the first step goes: the missing passivity is
-/// about in proportion to its numbers, and a step past zero is worth more than one before it.
+/// Factor on the first step, which is proportional to the missing passivity: the shortage is about linear in
+/// the numbers, and a step beyond the root is more useful than one before it.
 const FIRST_STEP: f64 = 1.25;
-/// The factor of a step where next to nothing is lacking.
+/// The factor of a step if almost no passivity is missing.
 const LEAST_STEP: f64 = 1.01;
-/// More than any turn has.
+/// More repetitions than any turn has.
 const MOST_REPETITIONS: f64 = 1e6;
-/// Values that are certified in the end: the one found, then one more of its last digit each, as
-/// next to a limit only the certificate decides.
+/// Number of values to certify at the end: the value found, and then with its last digit changed by one each
+/// time, because close to a limit only the certificate decides.
 const CANDIDATES: u32 = 3;
 
-/// A scene with one of its numbers open.
+/// A scene with one variable number.
 pub(super) struct Varied<'a> {
     pub scene: &'a Scene,
     pub format: Format,
@@ -30,8 +30,7 @@ pub(super) struct Varied<'a> {
 }
 
 impl Varied<'_> {
-    /// The values that pass, from the nearest on: to three digits on the side that passes, and
-    /// certified.
+    /// The passing values, from the nearest on: to three digits on the passing side, and certified.
     ///
     /// `own` is the scene's shortage.
     pub const fn remedy(&self, own: Option<f64>) -> Option<Remedy> {
@@ -49,7 +48,7 @@ impl Varied<'_> {
         })
     }
 
-    /// The other end of the range proved to pass with the nearest value; `None` if the range has
+    /// The other end of the range that is proved to pass, from the nearest value on; `None` if the range has
     /// no other end, and the same value if nothing else is proved.
     const fn other_end(&self, nearest: f64) -> Option<f64> {
         let last = match (between(self.scene, self.format, self.parameter, nearest), self.parameter)
@@ -64,7 +63,7 @@ impl Varied<'_> {
                 nearest / FARTHEST
             }
             (Between::Passes, Parameter::Period) => nearest / FARTHEST,
-            // More than the device's damping is damping added, which is another thing.
+            // A residual above the device's damping would add damping.
             (Between::Passes, Parameter::Residual) if nearest >= self.scene.device.damping => {
                 return Some(nearest);
             }
@@ -90,8 +89,8 @@ impl Varied<'_> {
         }
     }
 
-    /// The most repetitions in a turn that pass, a whole number. With fewer a profile is less steep, so that
-    /// it passes with all of them.
+    /// The largest passing number of repetitions in a turn. With fewer a profile is less steep, so it passes
+    /// with all smaller numbers.
     pub const fn fewer_repetitions(&self) -> Option<Remedy> {
         let Some(profile) = self.scene.environment.profile() else { return None };
         if !profile.outline().wraps || profile.count > MOST_REPETITIONS {
@@ -115,7 +114,7 @@ impl Varied<'_> {
         Some(Remedy { parameter: self.parameter, lowest: None, highest: Some(passes as f64) })
     }
 
-    /// The value in a bracket next to those that fail, to three digits and certified.
+    /// The passing value in a bracket that is nearest to the failing values, to three digits and certified.
     const fn searched(&self, bracket: Bracket, side: Side) -> Option<f64> {
         let mut search = Search::new(bracket, side);
         while let Some(value) = search.next() {
@@ -124,7 +123,7 @@ impl Varied<'_> {
         self.certified(search.nearest(), side)
     }
 
-    /// The first of these digits and those further on with which the scene is certified.
+    /// The first certified value from these digits on, moving to the passing side.
     pub const fn certified(&self, digits: Digits, side: Side) -> Option<f64> {
         let mut digits = digits;
         let mut i = 0;
@@ -138,8 +137,8 @@ impl Varied<'_> {
         None
     }
 
-    /// Moves the number by a step, then by octaves, until the scene passes. Both ends are the same
-    /// where the first value passes, as that of a residual does that was none before.
+    /// Moves the number by a step, then by octaves, until the scene passes. Both ends are equal if the first
+    /// value passes, like that of a new residual.
     const fn bracket(&self, own: Option<f64>, side: Side) -> Option<Bracket> {
         let mut passes = match (get(self.scene, self.parameter), self.parameter) {
             (Some(value), _) if value > 0.0 => Look { value, shortage: own },
@@ -161,7 +160,7 @@ impl Varied<'_> {
                 Side::Below => start.value / factor,
                 Side::Above => start.value * factor,
             };
-            // The smallest numbers are divided to zero, which has no digits to round to.
+            // The smallest numbers are divided down to zero, which has no digits.
             if value == 0.0 {
                 return None;
             }
@@ -171,7 +170,7 @@ impl Varied<'_> {
         Some(Bracket { fails, passes })
     }
 
-    /// In a frame of its own, as what follows: a small board's stack has no room for two of them.
+    /// Not inlined, like the next functions: a small board's stack has no room for two such frames.
     #[inline(never)]
     const fn shortage(&self, value: f64) -> Option<f64> {
         match &self.posed(value) {
@@ -203,8 +202,8 @@ impl Varied<'_> {
     }
 }
 
-/// The value that a search starts from; `None` where a change of the number does not leave everything
-/// else as it is, as of a period that has a worst one.
+/// The starting value of a search; `None` if a change of the number would change other numbers, like a period
+/// with a worst period.
 const fn get(scene: &Scene, parameter: Parameter) -> Option<f64> {
     match (parameter, scene.timing.worst_period) {
         (Parameter::Period, Some(_)) => None,

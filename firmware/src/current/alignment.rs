@@ -1,15 +1,16 @@
-//! How the phase of a brushless motor is found: a field turns slowly, and the magnets follow it.
+//! The alignment of a brushless motor: a field turns slowly, the magnets follow it, and the counts give the
+//! phase.
 //!
 //! ```text
 //! current  /-----------------------------------------------------\
 //! angle    0   0  90  180  270  360  450  360  270  180  90   0
 //! ```
 //!
-//! At each stop the handle settles, and its count is taken. Both from 90 to 450 degrees and from 360 back to 0
-//! are a whole electrical turn between two stops that are approached from the same side, so that neither
-//! friction nor cogging is in the number of counts between them. The phase is the mean over all stops but the
-//! first, to which the magnets need not have come: with friction of the same size on both ways, the
-//! mean has none of it.
+//! At each stop the handle settles, and its count is stored. From 90 to 450 degrees and from 360 back to 0
+//! there is a whole electrical turn between two stops that are approached from the same side, so that neither
+//! friction nor cogging changes the number of counts between them. The phase is the mean over all stops
+//! except the first, which the magnets may not have reached. With equal friction in both directions, friction
+//! cancels in the mean.
 
 use core::fmt;
 
@@ -18,47 +19,47 @@ use super::motor::Winding;
 use super::phase::{PhaseAlignment, Turn};
 use super::sample::Duties;
 
-/// Current of the field, as a part of that of full-scale torque.
+/// Current of the field, relative to the current of full-scale torque.
 const PART: f32 = 0.25;
 
-/// Times in s: of a ramp of the current, of a quarter of a turn, and of a stop.
+/// Durations in s: a ramp of the current, a quarter of a turn, and a stop.
 const RAMP: f64 = 0.3;
 const QUARTER: f64 = 0.3;
 const STOP: f64 = 0.25;
 
-/// Stops, and those after which the field turns back.
+/// The number of stops, and the stop after which the field turns back.
 const STOPS: usize = 11;
 const FORTH: usize = 5;
 
-/// What the handle may be off from what turns by a whole electrical turn, at the most.
+/// Largest deviation of the handle's motion from an electrical turn, as a part of it.
 const TOLERANCE: f32 = 0.125;
 
-/// How far the stops may be from their mean, in parts of a turn of 2^32: a twelfth of a turn, at which 13 per cent
-/// of the torque would be lost.
+/// Largest distance of a stop from the mean, in parts of a turn of 2^32: a twelfth of a turn, at which 13 per
+/// cent of the torque would be lost.
 const SPREAD: u32 = u32::MAX / 12;
 
-/// The field that an alignment wants.
+/// The field that an alignment requests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Field {
     /// Electrical angle in parts of a turn of 2^32.
     pub angle: u32,
-    /// Current as a part of that of full-scale torque.
+    /// Current relative to the current of full-scale torque.
     pub current: f32,
 }
 
-/// What an instant of an alignment brings.
+/// The result of an instant of an alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AlignmentStep {
-    /// It goes on: compare values for the next instant.
+    /// The alignment continues: compare values for the next instant.
     Turning(Duties),
-    /// It has ended: the gates are to be switched off, and here is its result.
+    /// The alignment has ended with this result; switch the gates off.
     Ended(Result<PhaseAlignment, AlignmentError>),
 }
 
-/// Why a motor could not be aligned. Counts are those of an electrical turn.
+/// The reason why a motor could not be aligned. Counts are per electrical turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AlignmentError {
-    /// No motor whose field this board turns: a brushed one, or that of an amplifier outside.
+    /// The board cannot turn the motor's field: the motor is brushed, or behind an external amplifier.
     NotNeeded,
     /// The handle did not move.
     Blocked {
@@ -74,18 +75,18 @@ pub enum AlignmentError {
         /// Counts of an electrical turn.
         expected: i32,
     },
-    /// The handle did not come back as it went.
+    /// The handle did not return by the same number of counts.
     NotReturned {
         /// Counts that it moved.
         moved: i32,
         /// Counts that it moved back.
         returned: i32,
     },
-    /// The stops are not where a field would bring the magnets.
+    /// The positions of the stops do not fit a turning field.
     Uneven {
-        /// The worst of them, in degrees of an electrical turn.
+        /// The largest deviation in degrees of an electrical turn.
         degrees: i32,
-        /// The most that is allowed.
+        /// The largest allowed deviation.
         largest: i32,
     },
 }
@@ -102,7 +103,7 @@ impl AlignmentError {
         }
     }
 
-    /// The error as a code and its two numbers, beside those of [`Fault`](crate::fault::Fault).
+    /// The error as a code and two numbers, distinct from the codes of [`Fault`](crate::fault::Fault).
     pub(super) const fn encode(self) -> (u32, [u32; 2]) {
         let (code, [a, b]) = match self {
             Self::NotNeeded => (24, [0; 2]),
@@ -160,10 +161,10 @@ impl fmt::Display for AlignmentError {
 
 impl core::error::Error for AlignmentError {}
 
-/// An alignment that runs.
+/// A running alignment.
 #[derive(Clone, Copy, Debug)]
 pub struct Alignment {
-    /// Instants of a ramp, of a quarter, of a stop.
+    /// Instants of a ramp, of a quarter turn, and of a stop.
     ramp: u32,
     quarter: u32,
     stop: u32,
@@ -171,10 +172,10 @@ pub struct Alignment {
     state: State,
     /// Instants in this state.
     time: u32,
-    /// Counts since the begin, and their sum over the second half of a stop.
+    /// Counts since the beginning, and their sum over the second half of a stop.
     moved: i32,
     sum: i64,
-    /// Where the handle was in its turn at the begin.
+    /// The handle's position in its turn at the beginning.
     begin: Turn,
     stops: [i32; STOPS],
 }
@@ -190,7 +191,7 @@ enum State {
     Ended,
 }
 
-/// Quarters of a turn at which a stop is.
+/// The position of a stop in quarters of a turn.
 const fn quarters(stop: usize) -> u32 {
     (if stop <= FORTH { stop } else { 2 * FORTH - stop }) as u32
 }
@@ -213,8 +214,8 @@ impl Alignment {
         }
     }
 
-    /// An instant, in which the handle moved by so many counts; gives the field for the next one, and none after
-    /// the end.
+    /// An instant in which the handle moved by `moved` counts; returns the field for the next instant, and
+    /// `None` after the end.
     pub(super) const fn step(&mut self, moved: i32) -> Option<Field> {
         self.moved = self.moved.wrapping_add(moved);
         self.time += 1;
@@ -262,7 +263,7 @@ impl Alignment {
     /// The result, after the end.
     ///
     /// # Errors
-    /// Where the handle did not follow the field as the magnets of such a motor do.
+    /// If the handle did not follow the field like the magnets of such a motor.
     pub(super) fn result(&self) -> Result<PhaseAlignment, AlignmentError> {
         if self.is_brushed {
             return Err(AlignmentError::NotNeeded);
@@ -274,7 +275,7 @@ impl Alignment {
         if moved.unsigned_abs() < expected.unsigned_abs() / 8 {
             return Err(AlignmentError::Blocked { moved, expected });
         }
-        // A pole pair more or less is twice as much.
+        // One pole pair more or less differs by twice as much.
         let tolerance = TOLERANCE.min(0.5 / (1.0 + self.begin.pole_pairs() as f32));
         if (moved.abs() as f32 - turn).abs() > tolerance * turn {
             return Err(AlignmentError::PolePairs { moved, expected });
@@ -285,7 +286,7 @@ impl Alignment {
         self.offset(moved < 0)
     }
 
-    /// The mean of all stops but the first.
+    /// The mean of all stops except the first.
     fn offset(&self, is_reversed: bool) -> Result<PhaseAlignment, AlignmentError> {
         let at = |stop: usize| {
             let mut turn = self.begin;

@@ -1,4 +1,4 @@
-//! What runs at each instant: from a sample and a code to compare values.
+//! The current controller at run time: in each instant, from a sample and a code to compare values.
 
 use core::hint::cold_path;
 
@@ -19,16 +19,16 @@ use super::vector::{Rotation, Vector, larger};
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 
-/// A current loop that runs.
+/// A running current loop.
 #[derive(Clone, Copy, Debug)]
 pub struct CurrentController {
     design: CurrentLoop,
     offsets: Offsets,
     /// Supply and temperature before the gates are switched on.
     last: Option<Sample>,
-    /// Of the phases U and V, in counts, as the last start took them over.
+    /// The offsets of the phases U and V in counts, stored at the last start.
     offset: [f32; 2],
-    /// The current that makes torque, and of a brushless motor the one along its magnets.
+    /// The current that makes torque; for a brushless motor also the current along its magnets.
     follower: Follower,
     along: Follower,
     turn: Turn,
@@ -37,7 +37,7 @@ pub struct CurrentController {
     speed: Speed,
     supervision: Supervision,
     surroundings: Surroundings,
-    /// In A, of the last sample; zero while the gates are off.
+    /// Current in A of the last sample; zero while the gates are off.
     current: f32,
 }
 
@@ -74,12 +74,12 @@ impl CurrentController {
         self.current
     }
 
-    /// Takes the count at which the encoder's index came, after the sample that is nearest to it. Where no phase
-    /// is known, and the program states that of the index, the motor is aligned from here on.
+    /// Takes the count of the encoder's index, after the nearest sample. If the phase is unknown and the
+    /// program states the phase at the index, the motor is aligned from here on.
     ///
     /// # Errors
-    /// Where the index came elsewhere before, so that counts are lost: the gates are to be switched off. The phase
-    /// is not known any more, and the next index is a first one.
+    /// If the index is at another count than before, so that counts were lost: switch the gates off. The
+    /// phase is then unknown, and the next index is a new reference.
     #[cold]
     pub fn observe_index(&mut self, captured: RawCount) -> Result<(), PowerFault> {
         let mut at = self.turn;
@@ -94,22 +94,22 @@ impl CurrentController {
         Ok(())
     }
 
-    /// The phase of the motor at the index, once it is known and the index has come: what a program may state.
+    /// The phase of the motor at the index, once both are known; a program may state it.
     pub fn index_offset(&self) -> Option<IndexOffset> {
         Some(IndexOffset::of(self.phase?, self.index.reference()?))
     }
 
-    /// Takes over what an alignment has found.
+    /// Stores the result of an alignment.
     pub const fn set_phase(&mut self, phase: PhaseAlignment) {
         self.phase = Some(phase);
     }
 
-    /// Gets ready for gates that are switched on before the next instant: no current and no voltage. The code
-    /// has to be that of no torque.
+    /// Prepares for gates that are switched on before the next instant, with no current and no voltage. The
+    /// code must be that of zero torque.
     ///
     /// # Errors
-    /// Where the offsets, the supply or the temperature of the last sample are out of range, or a brushless
-    /// motor has not been aligned.
+    /// If the offsets, the supply or the temperature of the last sample are out of range, or a brushless
+    /// motor is not aligned.
     pub fn start(&mut self) -> Result<(), PowerFault> {
         if matches!(self.design.winding, Winding::Brushless { .. }) && self.phase.is_none() {
             return Err(self.not_aligned());
@@ -117,14 +117,14 @@ impl CurrentController {
         self.start_at_rest()
     }
 
-    /// The same for an alignment, which is to be done for a motor whose phase is not known: on request only, as
-    /// it moves the handle.
+    /// The same for an alignment of a motor whose phase is unknown; only on request, because it moves the
+    /// handle.
     ///
     /// # Errors
-    /// Where the offsets, the supply or the temperature of the last sample are out of range.
+    /// If the offsets, the supply or the temperature of the last sample are out of range.
     pub fn start_alignment(&mut self) -> Result<Alignment, PowerFault> {
         self.start_at_rest()?;
-        // Counts that were lost before do not belong to this alignment.
+        // Counts lost before do not affect this alignment.
         self.index = IndexCheck::NOT_SEEN;
         Ok(Alignment::new(&self.design, self.turn))
     }
@@ -145,8 +145,8 @@ impl CurrentController {
         Ok(())
     }
 
-    /// One instant: the compare values to be loaded at the next one, for a code as
-    /// [`DacCode::offset`](crate::dac::DacCode::offset) gives it.
+    /// One instant: returns the compare values for the next instant, for a code given by
+    /// [`DacCode::offset`](crate::dac::DacCode::offset).
     ///
     /// # Errors
     /// Faults, after which the gates are to be switched off.
@@ -158,7 +158,7 @@ impl CurrentController {
         }
     }
 
-    /// The same where the type says whether the motor is brushless, so that there is no code for the other.
+    /// The same with the kind of motor in the type, so that the program has no code for the other kind.
     ///
     /// # Errors
     /// As for [`CurrentController::step`].
@@ -175,14 +175,14 @@ impl CurrentController {
         }
     }
 
-    /// Counts of the phases U and V without a current, as the last start took them over.
+    /// Counts of the phases U and V without a current, stored at the last start.
     pub const fn offsets(&self) -> [u16; 2] {
         // The casts round positive numbers down.
         [self.offset[0] as u16, self.offset[1] as u16]
     }
 
-    /// The fault of a comparator that has taken the gates away: with the larger of the two currents of the instant
-    /// after it, and at least that at which an instant would have.
+    /// The fault of a comparator that has turned the gates off, with the larger of the two currents of the
+    /// next instant, and at least the limit of the current interrupt.
     #[cold]
     pub fn over_current(&self, sample: &Sample) -> PowerFault {
         let counts = |phase: usize| (f32::from(sample.currents[phase]) - self.offset[phase]).abs();
@@ -190,7 +190,7 @@ impl CurrentController {
         self.design.limits.over_current(counts(0).max(counts(1)).max(tripped))
     }
 
-    /// One instant of an alignment. At its end the phase is taken over, if there is one.
+    /// One instant of an alignment. At its end the phase is stored, if one was found.
     ///
     /// # Errors
     /// Faults, after which the gates are to be switched off.
@@ -218,7 +218,7 @@ impl CurrentController {
         step
     }
 
-    /// The same of a brushed motor.
+    /// The instant of a brushed motor.
     #[inline(always)]
     fn step_brushed(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
         let CurrentLoop { law, output, limits, timing, .. } = &self.design;
@@ -244,7 +244,8 @@ impl CurrentController {
         Ok(timing.between_two(limited))
     }
 
-    /// The same of a brushless motor: the current across the magnets, as long as none is along them.
+    /// The instant of a brushless motor: the current across the magnets follows the code, the current along
+    /// them zero.
     #[inline(always)]
     fn step_brushless(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
         let Some(phase) = self.phase else {
@@ -260,7 +261,7 @@ impl CurrentController {
         duties
     }
 
-    /// The currents along and across an angle, which turns by so many counts in an instant.
+    /// Controls the currents along and across an angle that turns by `turned` in an instant.
     #[inline(always)]
     fn step_vector(
         &mut self,

@@ -16,35 +16,36 @@ use crate::encoder::CounterWidth;
 use crate::passivity::interval::Interval;
 use crate::transducers::Transducers;
 
-/// Over-current, as a multiple of the current of full-scale torque: what a step in a motor overshoots whose
-/// resistance and inductance are off by a third stays below.
+/// Over-current, as a multiple of the current of full-scale torque: a step stays below it in a motor whose
+/// resistance and inductance differ by a third.
 pub const OVER_CURRENT: f64 = 1.25;
 
-/// Deviation from the model that is a fault when it lasts, as a part of the current of full-scale torque.
+/// A longer deviation from the model above this is a fault; relative to the current of full-scale torque.
 const LARGEST_DEVIATION: f64 = 0.25;
 
-/// Time constants of the feedback in which a deviation has to end, and a voltage to be enough again.
+/// Time constants of the feedback within which a deviation, or a lack of voltage, must end.
 const SETTLING: f64 = 8.0;
 
-/// Encoder counts in an electrical turn: half of one of 64 is 0.05 rad, which takes 0.1 per cent of the torque.
+/// Smallest number of encoder counts in an electrical turn: half a count of 64 is 0.05 rad, which reduces the
+/// torque by 0.1 per cent.
 const LEAST_ELECTRICAL_COUNTS: f64 = 64.0;
 
-/// Counts a turn of a brushless motor's encoder, so that those of a turn fit 24 bits.
+/// Largest number of counts per turn of a brushless motor's encoder, so that a turn fits 24 bits.
 const LARGEST_COUNTS: f64 = (1 << 24) as f64;
 
-/// Instants in an electrical turn, at the least: the phase moves by 0.3 rad from a sample to the middle of its
-/// voltage, for which two terms of its sine and its cosine are enough.
+/// Smallest number of instants in an electrical turn: the phase then moves by at most 0.3 rad from a sample
+/// to the middle of its voltage, where two terms of its sine and cosine are enough.
 const INSTANTS_PER_TURN: f64 = 32.0;
 
-/// By how much sine and cosine of a phase may make a vector longer.
+/// Largest relative increase of a vector's length by the errors of sine and cosine.
 const SINE_ERROR: f64 = 2e-4;
 
 const ROOT_3: f64 = 1.732_050_807_568_877_2;
 
-/// When a code's torque comes: what a certificate has to know of a current loop.
+/// The time response of a current loop for the certificate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorqueResponse {
-    /// Time in s from the code to the begin of its torque: `Latency::output_delay`.
+    /// Time in s from the code to the beginning of its torque: `Latency::output_delay`.
     pub delay: f64,
     /// Time constant in s of the lag behind it: `Latency::actuator_lag`.
     pub lag: f64,
@@ -72,7 +73,7 @@ pub struct CurrentLoop {
     response: TorqueResponse,
     resolution: CurrentResolution,
     torque_source: TorqueSource,
-    /// A board has no use for it, and each of its controllers a copy of all of this.
+    /// Not in the program of a board, which does not use it: each controller has a copy of this structure.
     #[cfg(not(target_os = "none"))]
     drive: Drive,
 }
@@ -94,28 +95,28 @@ pub(super) struct Law {
     pub proportional: f32,
     /// `K (1 - a)/b` in V/A.
     pub integral: f32,
-    /// Electrical rad of a count; none of a brushed motor.
+    /// Electrical rad of a count; zero for a brushed motor.
     pub radians: f32,
 }
 
 /// From a voltage to compare values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Output {
-    /// Compare value in counts of a volt, of a supply that reads 1.
+    /// Compare value in counts per volt, for a supply that reads 1.
     pub counts_per_volt: f32,
     /// Largest difference of two compare values.
     pub span: u16,
-    /// Largest amplitude of a phase in counts: the circle in the hexagon of the difference without the dead
-    /// time.
+    /// Largest amplitude of a phase in counts: the circle inside the hexagon of the available voltages, less
+    /// the dead time.
     pub circle: f32,
-    /// Loss by the dead time, in counts: of the difference of a brushed motor's two compare values, of
-    /// each of a brushless one's three.
+    /// Loss by the dead time in counts: of the difference of a brushed motor's two compare values, or of each
+    /// of a brushless motor's three.
     pub dead: f32,
 }
 
 impl Law {
-    /// Current in A of a brushed motor, of the difference of the counts of U and V above their offsets: both
-    /// shunts see the current, with opposite signs; half the difference has half the step.
+    /// Current in A of a brushed motor, from the difference of the counts of U and V above their offsets:
+    /// both shunts measure the current, with opposite signs; half the difference has half the step.
     #[inline(always)]
     pub(super) const fn between_two(&self, difference: f32) -> f32 {
         0.5 * self.amps_per_count * difference
@@ -123,24 +124,24 @@ impl Law {
 }
 
 impl Output {
-    /// What the dead time takes from a brushed motor with this current, in counts of the difference: so that it
-    /// is added (theory, section 15.9).
+    /// The loss by the dead time in a brushed motor with this current, in counts of the difference, for its
+    /// compensation (theory, section 15.9).
     #[inline(always)]
     pub(super) const fn dead_time(&self, current: f32) -> f32 {
         if current == 0.0 { 0.0 } else { self.dead.copysign(current) }
     }
 }
 
-/// Bounds in counts, and what makes numbers for people of them.
+/// Bounds in counts, and the factors that convert counts to physical units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
     pub over_current: u16,
     pub bus: (u16, u16),
     pub temperature: u16,
     pub offsets: (u16, u16),
-    /// Largest deviation in A that may last.
+    /// Largest deviation in A that may persist.
     pub deviation: f32,
-    /// Instants that it, or a voltage that is not enough, may last.
+    /// Instants that a larger deviation, or a lack of voltage, may last.
     pub instants: u16,
     pub milliamps_per_count: f32,
     pub millivolts_per_count: f32,
@@ -151,7 +152,7 @@ impl CurrentLoop {
     /// Designs the loop of a drive on a power stage, for a servo with these transducers and this period in s.
     ///
     /// # Errors
-    /// Where the drive cannot run there: the value and its bound.
+    /// If the drive cannot run there: the value and its bound.
     pub const fn design(
         drive: &Drive,
         stage: &PowerStage,
@@ -164,10 +165,10 @@ impl CurrentLoop {
         }
     }
 
-    /// For constants: a compile error where the drive cannot run.
+    /// For constants: a compile error if the drive cannot run.
     ///
     /// # Panics
-    /// If it cannot; in a constant that is the compile error.
+    /// If the drive cannot run; in a constant this is a compile error.
     #[track_caller]
     pub const fn checked(
         drive: &Drive,
@@ -181,13 +182,13 @@ impl CurrentLoop {
         }
     }
 
-    /// Its design: the motor and the supply that a simulation needs.
+    /// The motor and the supply, which a simulation needs.
     #[cfg(not(target_os = "none"))]
     pub const fn drive(&self) -> &Drive {
         &self.drive
     }
 
-    /// How many phases the motor has.
+    /// The kind of the motor's winding.
     pub const fn winding(&self) -> Winding {
         self.winding
     }
@@ -202,29 +203,29 @@ impl CurrentLoop {
         self.timing.updates
     }
 
-    /// When a code's torque comes.
+    /// The time response for the certificate.
     pub const fn response(&self) -> TorqueResponse {
         self.response
     }
 
-    /// How fine the torque is.
+    /// The resolution of the torque.
     pub const fn resolution(&self) -> CurrentResolution {
         self.resolution
     }
 
-    /// Damping of the device in N m s/rad that motion takes through this loop, rounded up: what the device's
-    /// passivity has to be below its damping. Infinite where no bound is known: of a winding whose time constant
-    /// is far below an instant.
+    /// Damping in N m s/rad that motion takes from the device through this loop, rounded up: the device's
+    /// passivity must be lower than its damping by this. Infinite if no bound is known, for a winding whose
+    /// time constant is far below an instant.
     pub const fn motion_loss(&self) -> f64 {
         self.torque_source.loss
     }
 
-    /// What a measurement of the device finds beside it.
+    /// The effect of the loop on a measurement of the device.
     pub const fn torque_source(&self) -> &TorqueSource {
         &self.torque_source
     }
 
-    /// Torque in N m of an ampere.
+    /// Torque per current in N m/A.
     pub const fn torque_per_amp(&self) -> f64 {
         self.torque_constant
     }
@@ -234,7 +235,7 @@ impl CurrentLoop {
         self.amps_per_code * DacCode::CODES_TO_FULL_SCALE as f64
     }
 
-    /// Counts from its offset at which a phase's current is a fault, to either side.
+    /// Counts above or below its offset at which a phase's current is a fault.
     pub const fn over_current_counts(&self) -> u16 {
         self.limits.over_current
     }
@@ -244,7 +245,7 @@ impl CurrentLoop {
         self.limits.bus
     }
 
-    /// Compare values that are no voltage: all phases at half.
+    /// Compare values of zero voltage: all phases at half.
     pub const fn no_voltage(&self) -> Duties {
         self.timing.no_voltage()
     }
@@ -317,7 +318,8 @@ impl<'a> Design<'a> {
         }
     }
 
-    /// Whether the encoder is fine enough for the motor's phase, and its phase slow enough for the modulation.
+    /// Checks that the encoder is fine enough for the motor's phase, and the phase slow enough for the
+    /// modulation.
     const fn check_winding(&self) -> Result<(), DriveError> {
         let Winding::Brushless { pole_pairs } = self.drive.motor.winding else {
             return Ok(());
@@ -338,7 +340,7 @@ impl<'a> Design<'a> {
         Ok(())
     }
 
-    /// None of a brushed motor.
+    /// Zero for a brushed motor.
     const fn pole_pairs(&self) -> u16 {
         match self.drive.motor.winding {
             Winding::Brushed => 0,
@@ -346,12 +348,12 @@ impl<'a> Design<'a> {
         }
     }
 
-    /// Electrical rad/s at the largest speed; none of a brushed motor.
+    /// Electrical rad/s at the largest speed; zero for a brushed motor.
     const fn electrical_speed(&self) -> f64 {
         self.pole_pairs() as f64 * self.transducers.largest_speed
     }
 
-    /// Whether the current can be measured, and the board bears it.
+    /// Checks that the current can be measured, and that the board tolerates it.
     const fn check_current(&self) -> Result<(), DriveError> {
         let (lowest, highest) = self.stage.offset_counts;
         let above = PowerStage::LARGEST_COUNT.saturating_sub(highest);
@@ -369,7 +371,7 @@ impl<'a> Design<'a> {
         Ok(())
     }
 
-    /// Whether the board bears the supply, and its voltage is enough.
+    /// Checks that the board tolerates the supply, and that its voltage is sufficient.
     const fn check_supply(&self) -> Result<(), DriveError> {
         let (supply, board) = (self.drive.supply, self.stage.supply);
         let is_ordered = supply.lowest <= supply.highest;
@@ -385,8 +387,8 @@ impl<'a> Design<'a> {
         }
     }
 
-    /// Largest voltage in V that the motor takes: the model's step from one end of the torque to the other, at
-    /// the largest speed, which none of them has to have at once.
+    /// Largest voltage in V that the motor needs: the model's step over the whole range of torque, at the
+    /// largest speed. Both need not occur together.
     const fn needed_voltage(&self) -> f64 {
         let motor = &self.drive.motor;
         let along = self.plant.largest_voltage(self.current)
@@ -405,8 +407,8 @@ impl<'a> Design<'a> {
         }
     }
 
-    /// Largest difference of two compare values, which are the same way from half: above, the low side of the
-    /// one would not conduct for long enough.
+    /// Largest difference of two compare values that are symmetric about half: with more, one low side would
+    /// not conduct for long enough.
     const fn span(&self) -> u16 {
         let low = (self.stage.shortest_low + self.stage.dead_time) * self.stage.clock / 2.0;
         let low = rounded_up(low.min(self.timing.counts as f64 / 2.0 - 1.0));
@@ -481,7 +483,7 @@ impl<'a> Design<'a> {
     const fn output(&self) -> Output {
         let counts = self.timing.counts as f64 / self.stage.volts_per_count;
         let span = self.span();
-        // The timer counts up and down: a compare value moves both edges.
+        // The timer counts up and down, so a compare value moves both edges.
         let dead = self.stage.dead_time * self.stage.clock;
         let circle = (span as f64 - dead) / ROOT_3 * (1.0 - SINE_ERROR);
         let dead = match self.drive.motor.winding {
@@ -498,11 +500,11 @@ impl<'a> Design<'a> {
 
     const fn limits(&self) -> Limits {
         let Self { drive, stage, .. } = *self;
-        // All casts round positive numbers down; of the lowest supply up.
+        // All casts round positive numbers down; the count of the lowest supply is rounded up.
         let lowest = rounded_up(drive.supply.lowest / stage.volts_per_count);
         Limits {
             over_current: (self.current * OVER_CURRENT / stage.amps_per_count) as u16,
-            // A supply that reads 0 is below every range: there is a division by it.
+            // A supply that reads 0 is below every range, because there is a division by it.
             bus: (
                 if lowest == 0 { 1 } else { lowest },
                 (drive.supply.highest / stage.volts_per_count) as u16,
@@ -541,7 +543,7 @@ const fn check_positive(drive: &Drive, transducers: &Transducers) -> Result<(), 
     Ok(())
 }
 
-/// The least whole number that a positive one is not above.
+/// A positive number, rounded up to a whole number.
 const fn rounded_up(number: f64) -> u16 {
     let below = number as u16;
     if (below as f64) < number { below.saturating_add(1) } else { below }

@@ -1,5 +1,5 @@
-//! The current of a duty that stands still, in a load of known resistance and inductance: what has to be read
-//! before the power stage drives a motor (theory, section 15.9).
+//! The current of a constant duty in a load of known resistance and inductance, for the test of a power stage
+//! before it drives a motor (theory, section 15.9).
 
 use core::fmt;
 
@@ -10,7 +10,7 @@ use super::power_stage::PowerStage;
 use super::sample::Duties;
 use crate::text::Text;
 
-/// By how much more or less than its time the dead time may take, relatively: switches take time too.
+/// Relative tolerance of the dead time: switching takes time, too.
 const DEAD_TIME_TOLERANCE: f64 = 0.5;
 
 /// Time constants after which a current counts as settled: the rest is below a count.
@@ -19,15 +19,15 @@ const SETTLING: f64 = 10.0;
 /// The current that settles at a duty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DutyCurrent {
-    /// The least in A that it may be.
+    /// The lower bound in A.
     pub least: f64,
-    /// The most in A.
+    /// The upper bound in A.
     pub most: f64,
     /// Instants until it has settled.
     pub settling: u32,
 }
 
-/// Why there is no such current.
+/// The reason why there is no such current.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DutyError {
     /// A number is zero, negative or not finite.
@@ -36,33 +36,34 @@ pub enum DutyError {
     Brushless,
     /// The tolerance is not between 0 and 1.
     Tolerance(f64),
-    /// The dead time takes all of the duty, or the low sides are given no time.
+    /// The dead time takes all of the duty, or the low sides have no time.
     Duty {
         /// The duty.
         duty: f64,
-        /// Its lower bound.
+        /// The lower bound of the duty.
         least: f64,
-        /// The most that it may be.
+        /// The upper bound of the duty.
         most: f64,
     },
-    /// The board does not bear it.
+    /// The board does not tolerate the current.
     Current {
-        /// The current in A that it may be.
+        /// The largest current in A at this duty.
         current: f64,
-        /// The most in A that the board bears.
+        /// The largest current in A that the board tolerates.
         largest: f64,
     },
 }
 
 impl Drive {
-    /// The current in A at a duty, the part of the supply that is between the terminals U and V, with a winding
-    /// that stands still or a load in its place. Resistance and inductance may be off by this `tolerance`.
+    /// The current in A at a duty, which is the part of the supply between the terminals U and V, with a
+    /// winding at rest or a load in its place. `tolerance` is the relative tolerance of resistance and
+    /// inductance.
     ///
-    /// In each period of the modulation the dead time takes twice its part of the supply away. Of the ripple
-    /// nothing is seen in the middle of the low sides.
+    /// In each period of the modulation the dead time takes away twice its part of the supply. In the middle
+    /// of the low sides' time the ripple is zero.
     ///
     /// # Errors
-    /// If a number is NaN, or out of its bound.
+    /// If a number is NaN or out of its bounds.
     pub const fn current_at_duty(
         &self,
         stage: &PowerStage,
@@ -125,7 +126,7 @@ impl Drive {
     /// The same for constants.
     ///
     /// # Panics
-    /// Where there is no such current; in a constant that is a compile error with the sentence.
+    /// If there is no such current; in a constant this is a compile error.
     #[track_caller]
     pub const fn checked_current_at_duty(
         &self,
@@ -142,15 +143,16 @@ impl Drive {
 }
 
 impl CurrentLoop {
-    /// Compare values of a duty, the part of the supply from U to V, from -1 to 1: the nearest that leave the low
-    /// sides their time.
+    /// Compare values of a duty, which is the part of the supply from U to V, from -1 to 1: the nearest
+    /// values that leave the low sides their time.
     pub const fn duties_at(&self, duty: f64) -> Duties {
         let span = self.output.span as f32;
         let difference = duty as f32 * self.timing.counts as f32;
         self.timing.between_two(difference.clamp(-span, span))
     }
 
-    /// Current in A between U and V, of the difference of the two phases' counts above those without a current.
+    /// Current in A between U and V, from the difference of the two phases' counts above those without a
+    /// current.
     pub const fn current_between_two(&self, difference: f32) -> f32 {
         self.law.between_two(difference)
     }

@@ -1,11 +1,11 @@
-//! Why a drive cannot run on a power stage.
+//! Reasons why a drive cannot run on a power stage.
 
 use core::fmt;
 
 use super::motor::Supply;
 use crate::text::Text;
 
-/// Why there is no current loop, with the value and its bound.
+/// The reason why there is no current loop, with the value and its bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DriveError {
     /// A number is zero, negative or not finite.
@@ -19,17 +19,17 @@ pub enum DriveError {
     PolePairs {
         /// Pole pairs.
         pole_pairs: u16,
-        /// The most that the encoder allows.
+        /// The largest number that the encoder allows.
         largest: u16,
     },
-    /// A brushless motor, whose phase turns with the handle, needs a whole number of counts a turn.
+    /// A brushless motor needs a whole number of counts per turn.
     Counts {
         /// How many there are.
         counts: f64,
         /// The most that there may be.
         largest: f64,
     },
-    /// The index of a brushed motor's encoder, which has no phase to be found.
+    /// An index was given for a brushed motor, which has no phase.
     IndexNotNeeded,
     /// An electrical turn has too few counts for its phase to come from the index.
     IndexCounts {
@@ -47,12 +47,12 @@ pub enum DriveError {
     },
     /// The phase of a brushless motor turns too far in an instant.
     ElectricalSpeed {
-        /// Electrical turns a second at the largest speed.
+        /// Electrical turns per second at the largest speed.
         turns: f64,
-        /// The most that the modulation allows.
+        /// The largest number that the modulation allows.
         largest: f64,
     },
-    /// The current is to follow faster than the modulation allows.
+    /// The bandwidth is larger than the modulation allows.
     Bandwidth {
         /// The bandwidth in Hz.
         bandwidth: f64,
@@ -67,14 +67,14 @@ pub enum DriveError {
         lowest: f64,
         /// The highest.
         highest: f64,
-        /// A period in s that is filled.
+        /// The nearest possible period in s.
         nearest: f64,
     },
-    /// Full-scale torque needs more current than the power stage can give.
+    /// Full-scale torque needs more current than the power stage can deliver.
     Current {
         /// Full-scale torque in N m.
         torque: f64,
-        /// The current in A, with its distance from over-current.
+        /// The current in A, including the margin to over-current.
         current: f64,
         /// The largest in A.
         largest: f64,
@@ -86,13 +86,13 @@ pub enum DriveError {
         /// The board's.
         board: Supply,
     },
-    /// The voltage is not enough for the largest step at the largest speed.
+    /// The voltage is insufficient for the largest step at the largest speed.
     Voltage {
         /// The voltage needed, in V.
         needed: f64,
-        /// What the lowest supply gives in V.
+        /// The voltage available at the lowest supply, in V.
         available: f64,
-        /// The lowest supply in V that would be enough.
+        /// The lowest sufficient supply in V.
         enough: f64,
     },
     /// The largest temperature cannot be measured.
@@ -240,7 +240,7 @@ impl DriveError {
         t
     }
 
-    /// Rejects all but positive, finite values.
+    /// Rejects values that are not positive and finite.
     pub(super) const fn unless_positive(name: &'static str, value: f64) -> Result<(), Self> {
         if value > 0.0 && value.is_finite() {
             Ok(())
@@ -249,7 +249,7 @@ impl DriveError {
         }
     }
 
-    /// Stops the compiler with the sentence.
+    /// Panics with the error's text; in a constant this is a compile error.
     #[track_caller]
     pub(super) const fn refuse(&self) -> ! {
         panic!("{}", self.sentence().as_str())

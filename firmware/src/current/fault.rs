@@ -4,10 +4,10 @@ use core::fmt;
 
 use super::alignment::AlignmentError;
 
-/// What switched a power stage off, with the numbers to it.
+/// The fault that switched a power stage off, with its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerFault {
-    /// The current of a phase was above what the drive allows.
+    /// The current of a phase was above the drive's limit.
     OverCurrent {
         /// The current in mA, without its sign.
         current: u32,
@@ -35,35 +35,35 @@ pub enum PowerFault {
         /// The largest, in tenths of a degree Celsius.
         largest: i32,
     },
-    /// The count of a phase's current without a current is one of a broken amplifier, or was not measured.
+    /// The count of a phase without a current is that of a broken amplifier, or was not measured.
     CurrentOffset {
         /// The phase: 0 is U, 1 is V.
         phase: u32,
         /// Its count, 0 if there are not enough samples.
         count: u32,
     },
-    /// The current was not that of the certified model for too long.
+    /// The current deviated from the certified model for too long.
     CurrentNotFollowing {
-        /// How far off it was, in mA.
+        /// The deviation in mA.
         deviation: u32,
-        /// The most that is allowed, in mA.
+        /// The largest allowed deviation in mA.
         largest: u32,
     },
-    /// The supply's voltage was not enough for too long.
+    /// The supply's voltage was insufficient for too long.
     SaturatedDuty {
-        /// Instants in a row at which it was not.
+        /// Consecutive instants with insufficient voltage.
         instants: u32,
-        /// The most that are allowed.
+        /// The largest allowed number.
         allowed: u32,
     },
-    /// The index of the encoder was at another count than when the motor was aligned.
+    /// The index of the encoder was at a count other than at the alignment.
     IndexMismatch {
         /// The count, within a turn.
         count: u32,
-        /// That of the alignment.
+        /// The count at the alignment.
         aligned: u32,
     },
-    /// The interrupt of the currents did not end before its compare values were loaded.
+    /// The current interrupt did not end before its compare values were loaded.
     CurrentInterruptLate {
         /// Timer counts after the beginning of its period.
         late: u32,
@@ -72,7 +72,7 @@ pub enum PowerFault {
     },
     /// A brushless motor has not been aligned.
     NotAligned {
-        /// Whether the index of its encoder aligns it.
+        /// Whether the index of its encoder can align it.
         by_index: bool,
     },
     /// The motor could not be aligned.
@@ -97,7 +97,7 @@ impl PowerFault {
         }
     }
 
-    /// The fault as a code and its two numbers, beside those of [`Fault`](crate::fault::Fault).
+    /// The fault as a code and two numbers, distinct from the codes of [`Fault`](crate::fault::Fault).
     pub const fn encode(self) -> (u32, [u32; 2]) {
         match self {
             Self::OverCurrent { current, largest } => (14, [current, largest]),
@@ -138,7 +138,7 @@ impl PowerFault {
     }
 }
 
-/// What happened, the value, the bound, and how it is cleared.
+/// The event, the value, the bound, and the remedy.
 impl fmt::Display for PowerFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -1,15 +1,15 @@
-//! The index of an encoder, which has to come where it came before.
+//! Checks that the index of an encoder always comes at the same count.
 
 use super::fault::PowerFault;
 use super::phase::Turn;
 
-/// Counts by which the index may be off: its pulse is as wide, and is met from both sides.
+/// Tolerance of the index in counts: its pulse has up to this width, and comes from both sides.
 pub(super) const WIDTH: u32 = 4;
 
-/// Compares the counts at which the index comes. The first one since it was last forgotten is the reference.
+/// Compares the counts of the index. The first index after a restart is the reference.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IndexCheck {
-    /// Where the index came first.
+    /// The position of the first index.
     reference: Option<Turn>,
 }
 
@@ -17,15 +17,15 @@ impl IndexCheck {
     /// No index has come.
     pub(super) const NOT_SEEN: Self = Self { reference: None };
 
-    /// Where the handle is in its turn at the index.
+    /// The handle's position in its turn at the index.
     pub(super) const fn reference(&self) -> Option<Turn> {
         self.reference
     }
 
-    /// Takes where the handle was in its turn when an index came.
+    /// Takes the handle's position in its turn at an index.
     ///
     /// # Errors
-    /// Where that is another place.
+    /// If the position differs from the reference.
     pub(super) const fn observe(&mut self, at: Turn) -> Result<(), PowerFault> {
         let Some(reference) = self.reference else {
             self.reference = Some(at);
@@ -33,7 +33,7 @@ impl IndexCheck {
         };
         let (count, aligned) = (at.count().cast_unsigned(), reference.count().cast_unsigned());
         let apart = count.abs_diff(aligned);
-        // Either way round the turn.
+        // The distance in either direction around the turn.
         let other_way = at.counts().saturating_sub(apart);
         if apart <= WIDTH || other_way <= WIDTH {
             Ok(())

@@ -1,13 +1,13 @@
-//! A current loop whose motor's phase comes from its encoder's index.
+//! A current loop with the phase of its motor from the encoder's index.
 
 use super::current_loop::CurrentLoop;
 use super::encoder_index::{EncoderIndex, IndexOffset};
 use super::error::DriveError;
 use super::motor::Winding;
 
-/// Encoder counts in an electrical turn, at the least, where the phase comes from the index: its pulse is up to
-/// [`WIDTH`](super::index_check::WIDTH) counts wide and is met from either side, and the offset is rounded by
-/// half a one. Of 256 counts that is 0.11 rad, which takes 0.6 per cent of the torque.
+/// Smallest number of encoder counts in an electrical turn with the phase from the index: its pulse is up to
+/// [`WIDTH`](super::index_check::WIDTH) counts wide and comes from either side, and the offset is rounded by
+/// up to half a count. With 256 counts the error is 0.11 rad, which reduces the torque by 0.6 per cent.
 const LEAST_ELECTRICAL_COUNTS: f64 = 256.0;
 
 impl CurrentLoop {
@@ -39,7 +39,7 @@ impl CurrentLoop {
     /// For constants: a compile error if the index does not fit this motor's encoder.
     ///
     /// # Panics
-    /// If it does not fit; in a constant that is the compile error.
+    /// If it does not fit; in a constant this is a compile error.
     #[must_use]
     #[track_caller]
     pub const fn with_index(self, index: EncoderIndex) -> Self {
@@ -54,7 +54,7 @@ impl CurrentLoop {
         self.index.is_some()
     }
 
-    /// The phase of the motor at the index, where the program states it.
+    /// The phase of the motor at the index, if the program states it.
     pub const fn index_offset(&self) -> Option<IndexOffset> {
         match self.index {
             Some(index) => index.offset,

@@ -1,8 +1,8 @@
 //! The current controller of an on-board power stage: from a code to the compare values of a timer.
 //!
 //! A [`Drive`] and the [`PowerStage`] of a board become a [`CurrentLoop`] at compile time, or do not compile.
-//! A [`CurrentController`] runs it, one call an instant of the pulse-width modulation. It does not depend on
-//! hardware: the flashed code is the tested code (theory, section 15).
+//! A [`CurrentController`] runs it, with one call per instant of the pulse-width modulation. It does not
+//! depend on hardware: the flashed code is the tested code (theory, section 15).
 //!
 //! ```text
 //! instant    k                        k+1                      k+2
@@ -12,8 +12,8 @@
 //! at motor   v(k-1)                   v(k)                     v(k+1)
 //! ```
 //!
-//! The current follows a reference model, which is the amplifier that the certificate knows: a lag with a gain
-//! of 1 behind a delay of one instant ([`TorqueResponse`]).
+//! The current follows a reference model, which is the amplifier in the certificate: a lag with a gain of 1
+//! after a delay of one instant ([`TorqueResponse`]).
 
 mod alignment;
 mod controller;

@@ -1,17 +1,18 @@
-//! What motion costs of the device's passivity through a current loop (theory, section 15.8).
+//! The loss of the device's passivity by motion through a current loop (theory, section 15.8).
 //!
-//! Motion induces a voltage, and the feedback takes its current away an instant late. Between velocity and the
-//! torque of that current there is no more than a small lack of passivity, which comes off the device's damping.
+//! Motion induces a voltage, and the feedback removes its current one instant late. The map from velocity to
+//! the torque of that current lacks a small passivity, which is subtracted from the device's damping.
 
 use super::motor::{Motor, Winding};
 use super::plant::Plant;
 use super::resolution::CurrentResolution;
 use crate::passivity::interval::Interval;
 
-/// What a measurement of a device has to know of the current loop that its torque comes from.
+/// The data of a current loop that a measurement of the device needs.
 ///
-/// The feedback leaves a path from the velocity to the torque that its back-EMF moves: a device that is measured
-/// through the loop has it beside its own inertia and damping. And the torque is as fine as the current.
+/// The feedback leaves a path from the velocity through the back-EMF to the torque: a device measured through
+/// the loop has this path in addition to its own inertia and damping. The resolution of the torque is that of
+/// the current.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize))]
 pub struct TorqueSource {
@@ -25,17 +26,17 @@ pub struct TorqueSource {
     pub feedback: f64,
     /// `h`, time in s between two instants.
     pub instant: f64,
-    /// Damping in N m s/rad that it takes, rounded up (equation 52); infinite where no bound is known.
+    /// Damping in N m s/rad that the loop takes, rounded up (equation 52); infinite if no bound is known.
     pub loss: f64,
     /// Torque in N m of a count of the current: [`CurrentResolution::step`].
     pub step: f64,
-    /// Torque in N m that it may be off by after the current has changed its sign:
+    /// Deviation of the torque in N m after the current has changed its sign:
     /// [`CurrentResolution::zero_crossing`].
     pub zero_crossing: f64,
 }
 
 impl TorqueSource {
-    /// Of a motor and the feedback of its current, with so fine a torque.
+    /// The data for a motor, the feedback of its current, and the resolution of its torque.
     pub(super) const fn of(
         motor: &Motor,
         plant: &Plant,
@@ -56,8 +57,8 @@ impl TorqueSource {
 }
 
 /// The most power that the current of the back-EMF gives to a motion on average, over the mean square of its
-/// velocity, in N m s/rad: `Kt Ke h/(4 sqrt(3) L)`, rounded up (equation 52). Infinite where equation 53 does not
-/// hold, so that no bound is known.
+/// velocity, in N m s/rad: `Kt Ke h/(4 sqrt(3) L)`, rounded up (equation 52). Infinite if equation 53 does
+/// not hold, so that no bound is known.
 const fn motion_loss(motor: &Motor, plant: &Plant, instant: f64) -> f64 {
     let (resistance, inductance) =
         (Interval::decimal(motor.resistance), Interval::decimal(motor.inductance));

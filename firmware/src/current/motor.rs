@@ -1,6 +1,6 @@
-//! A motor, its supply, and how fast its current is to follow: what a program states.
+//! A motor, its supply, and the bandwidth of its current loop, as a program states them.
 
-/// How many phases a motor has.
+/// The kind of a motor's winding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Winding {
     /// One winding and a commutator, between the phases U and V.
@@ -12,10 +12,10 @@ pub enum Winding {
     },
 }
 
-/// A motor as its current loop has to know it.
+/// The data of a motor for its current loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor {
-    /// How many phases it has.
+    /// The kind of its winding.
     pub winding: Winding,
     /// Resistance in ohm: between the terminals of a brushed motor, of one phase of a brushless motor, which
     /// is half of the resistance between two of its terminals.
@@ -27,8 +27,8 @@ pub struct Motor {
 }
 
 impl Motor {
-    /// Voltage in V that a rad/s of the handle induces: between the terminals of a brushed motor, the amplitude
-    /// in a phase of a brushless one, where each phase has 2/3 of a direct current's power.
+    /// Induced voltage in V s/rad of the handle's speed: between the terminals of a brushed motor; for a
+    /// brushless motor the amplitude in a phase, where each phase has 2/3 of a direct current's power.
     pub const fn back_emf(&self) -> f64 {
         match self.winding {
             Winding::Brushed => self.torque_constant,
@@ -37,7 +37,7 @@ impl Motor {
     }
 }
 
-/// Voltages in V between which a supply stays, under load and when the motor feeds it.
+/// The range of a supply's voltage in V, under load and when the motor feeds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Supply {
     /// The lowest.

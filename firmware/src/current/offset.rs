@@ -4,7 +4,7 @@ use super::current_loop::Limits;
 use super::fault::PowerFault;
 use super::sample::Sample;
 
-/// Samples of which the mean is taken: their noise is a sixteenth of that of one.
+/// The number of samples in a mean, whose noise is a sixteenth of that of a sample.
 const SAMPLES: u32 = 256;
 
 /// The mean of the last whole block of samples, taken while the gates are off.
@@ -17,7 +17,7 @@ pub(super) struct Offsets {
 }
 
 impl Offsets {
-    /// None yet.
+    /// No block yet.
     pub(super) const NONE: Self = Self { sums: [0; 2], samples: 0, blocks: None };
 
     /// Takes a sample.
@@ -34,7 +34,7 @@ impl Offsets {
     /// The means in counts, which `f32` holds exactly.
     ///
     /// # Errors
-    /// Where one is not that of a working amplifier, or there is none yet.
+    /// If one is not that of a working amplifier, or no block is complete.
     pub(super) fn checked(&self, limits: &Limits) -> Result<[f32; 2], PowerFault> {
         let sums = self.blocks.unwrap_or_default();
         let (lowest, highest) = (u32::from(limits.offsets.0), u32::from(limits.offsets.1));

@@ -1,21 +1,22 @@
-//! The phase of a brushless motor, from the counts of an encoder.
+//! The phase of a brushless motor from the counts of an encoder.
 //!
 //! Angles are parts of an electrical turn in 32 bits, which wrap as turns do.
 
-/// Where the handle is in its turn: in whole counts, so that nothing is lost after any number of turns.
+/// The position of the handle in its turn, in whole counts, so that no error accumulates over any number of
+/// turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turn {
-    /// From zero to one below the counts of a turn.
+    /// From zero to the counts of a turn less one.
     count: i32,
     counts: i32,
-    /// Electrical turns in a count, times 2^64: over the counts of a turn its rounding adds up to less than a
-    /// part in 2^40 of a turn.
+    /// Electrical turns in a count, times 2^64: over a turn its rounding adds up to less than 2^-40 of a
+    /// turn.
     scale: u64,
     pole_pairs: u16,
 }
 
 impl Turn {
-    /// At the count 0 of an encoder with so many of them a turn.
+    /// The position at the count 0 of an encoder with `counts` counts per turn.
     pub(super) const fn new(counts: u32, pole_pairs: u16) -> Self {
         let whole = (pole_pairs as u128) << 64;
         // The quotient is below 2^59: no electrical turn has fewer than 64 counts.
@@ -23,7 +24,7 @@ impl Turn {
         Self { count: 0, counts: counts.cast_signed(), scale, pole_pairs }
     }
 
-    /// Goes on by a step.
+    /// Moves by a step.
     #[inline(always)]
     pub(super) const fn move_by(&mut self, step: i32) {
         let mut count = self.count.wrapping_add(step);
@@ -35,7 +36,7 @@ impl Turn {
         self.count = if 0 <= count && count < self.counts { count } else { self.far(step) };
     }
 
-    /// After a step of more than a turn, which no handle makes.
+    /// The position after a step of more than a turn, which no handle makes.
     #[cold]
     #[inline(never)]
     const fn far(&self, step: i32) -> i32 {
@@ -53,13 +54,13 @@ impl Turn {
         self.angle_of(self.count.cast_unsigned())
     }
 
-    /// Electrical angle of so many counts.
+    /// Electrical angle of a number of counts.
     #[inline(always)]
     pub(super) const fn angle_of(&self, counts: u32) -> u32 {
         ((counts as u64).wrapping_mul(self.scale) >> 32) as u32
     }
 
-    /// The counts nearest to an electrical angle, below those of an electrical turn.
+    /// The number of counts nearest to an electrical angle, less than an electrical turn.
     pub(super) const fn electrical_counts(&self, angle: u32) -> u32 {
         let turns = angle as u128 * self.counts.cast_unsigned() as u128;
         let one = (self.pole_pairs as u128) << 32;
@@ -85,24 +86,25 @@ impl Turn {
     }
 }
 
-/// How the phase of a motor belongs to the counts of its encoder: the result of an [`Alignment`](super::Alignment).
+/// The relation between the phase of a motor and the counts of its encoder: the result of an
+/// [`Alignment`](super::Alignment).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhaseAlignment {
     /// Electrical angle at the count 0, in parts of a turn of 2^32.
     pub offset: u32,
-    /// Whether it falls while the count rises: the encoder, or two of the motor's wires, are the other way round.
+    /// Whether the angle falls while the count rises: the encoder, or two of the motor's wires, are reversed.
     pub is_reversed: bool,
 }
 
 impl PhaseAlignment {
-    /// The angle of the motor's magnets, for their angle since the count 0 as the encoder has it.
+    /// The angle of the motor's magnets, from the encoder's angle since the count 0.
     #[inline(always)]
     pub(super) const fn angle(&self, since_zero: u32) -> u32 {
         let angle = if self.is_reversed { since_zero.wrapping_neg() } else { since_zero };
         self.offset.wrapping_add(angle)
     }
 
-    /// The sign of a current, or a speed, that is positive in the direction in which the count rises.
+    /// The sign of a current or a speed in the direction of rising counts.
     #[inline(always)]
     pub(super) const fn sign(&self) -> f32 {
         if self.is_reversed { -1.0 } else { 1.0 }

@@ -1,4 +1,4 @@
-//! A current loop and the program that it makes torque for.
+//! Checks a current loop against its program.
 
 use super::current_loop::CurrentLoop;
 use super::motor::Winding;
@@ -9,14 +9,14 @@ use crate::scene::Device;
 use crate::text::Sentence;
 use crate::transducers::Transducers;
 
-/// How far times may be from each other that are meant to be the same, relatively.
+/// Relative tolerance of times that should be equal.
 const SAME: f64 = 1e-9;
 
 impl CurrentLoop {
-    /// The latency of a scene whose torques this loop makes, by when its program puts codes out.
+    /// The latency of a scene with this current loop, for a program's output timing.
     ///
     /// # Panics
-    /// In a constant, as a compile error, where a phase is not a whole number of instants.
+    /// If a phase is not a whole number of instants; in a constant this is a compile error.
     #[track_caller]
     pub const fn latency(&self, timing: OutputTiming) -> Latency {
         let response = self.response();
@@ -27,11 +27,11 @@ impl CurrentLoop {
         Latency { output_delay, ..latency }
     }
 
-    /// Instants from the begin of a period to the one at which its code is taken over: none where a code is put
+    /// Instants from the beginning of a period to the instant that takes its code over: zero if a code is put
     /// out at the next count.
     ///
     /// # Panics
-    /// In a constant, as a compile error, where a phase is not a whole number of instants.
+    /// If a phase is not a whole number of instants; in a constant this is a compile error.
     #[track_caller]
     pub const fn instants_in(&self, timing: OutputTiming) -> u32 {
         let Some(phase) = timing.phase() else { return 0 };
@@ -46,11 +46,11 @@ impl CurrentLoop {
         instants
     }
 
-    /// For constants: whether this loop is that of a program with a scene of this latency and this period in s,
-    /// with these transducers and this device, which puts codes out like this.
+    /// For constants: checks that this loop fits a program with this latency, period in s, transducers,
+    /// device and output timing.
     ///
     /// # Panics
-    /// If it is not; in a constant that is a compile error with the numbers.
+    /// If it does not fit; in a constant this is a compile error with the numbers.
     #[track_caller]
     pub const fn check_serves(
         &self,
@@ -82,7 +82,7 @@ impl CurrentLoop {
         let mut i = 0;
         while i < pairs.len() {
             let (name, stated, own) = pairs[i];
-            // NaN is not the same as anything.
+            // NaN equals nothing.
             let is_same = (stated - own).abs() <= SAME * own.abs();
             if !is_same {
                 let mut t = Sentence::new();
@@ -99,7 +99,7 @@ impl CurrentLoop {
         self.check_device(device);
     }
 
-    /// Whether the device's damping is enough for its passivity and for what motion takes through this loop.
+    /// Checks that the device's damping covers its passivity and the loss by motion through this loop.
     #[track_caller]
     const fn check_device(&self, device: &Device) {
         let (passivity, loss) = (device.passivity(), self.motion_loss());

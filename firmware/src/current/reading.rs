@@ -1,12 +1,12 @@
-//! What a power stage measures, from counts to the units of its [`PowerReading`].
+//! Converts the counts of a power stage to the units of its [`PowerReading`].
 
 use super::current_loop::CurrentLoop;
 use crate::power_reading::PowerReading;
 
 impl CurrentLoop {
-    /// The reading, without an index, of a current in A, of the code that the servo gave last, as
-    /// [`DacCode::offset`](crate::dac::DacCode::offset) gives it, and of the counts of supply and temperature.
-    /// For the host: not for the interrupt of the currents.
+    /// The reading, without an index, from a current in A, the servo's last code by
+    /// [`DacCode::offset`](crate::dac::DacCode::offset), and the counts of supply and temperature. For the
+    /// host; the current interrupt does not use it.
     pub fn power_reading(
         &self,
         current: f32,

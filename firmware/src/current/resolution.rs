@@ -1,25 +1,25 @@
-//! The difference between the current and its model that converter and timer leave by their resolution.
+//! The deviation of the current from its model by the resolution of converter and timer.
 
 use super::motor::Winding;
 use super::plant::Plant;
 
-/// How fine the torque of a current loop is, in N m (theory, section 15.4).
+/// The resolution of the torque of a current loop in N m (theory, section 15.4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurrentResolution {
     /// Torque of a count of the current.
     pub step: f64,
-    /// Largest deviation of the settled torque from the model's, of counts and compare values that are whole
-    /// numbers, and of offsets that are.
+    /// Largest deviation of the settled torque from the model's, because counts, compare values and offsets
+    /// are whole numbers.
     pub deviation: f64,
-    /// Largest deviation after the current has changed its sign, and with it the side on which the dead time
-    /// takes voltage away: beside the other, from an instant in which the voltage for it has the wrong sign.
+    /// Largest additional deviation after the current has changed its sign, from an instant in which the
+    /// compensation of the dead time has the wrong sign.
     pub zero_crossing: f64,
     /// Largest ripple of the modulation, from peak to peak, at the highest supply. At the instants of the
-    /// samples there is none of it.
+    /// samples the ripple is zero.
     pub ripple: f64,
 }
 
-/// What the resolution comes from, in SI units.
+/// The quantities that determine the resolution, in SI units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quanta {
     pub plant: Plant,
@@ -39,21 +39,20 @@ pub(super) struct Quanta {
 impl Quanta {
     /// The resolution of a motor with this winding.
     pub(super) const fn resolution(&self, winding: Winding) -> CurrentResolution {
-        // Of the errors of two phases, the part in the current; of the errors of the phases' compare values
-        // and dead times, the part in its voltage; of the supply, the ripple in the middle of its range.
+        // The factors from the errors of two phases to the current, from the errors of compare values and
+        // dead times to the voltage, and from the supply to the ripple in the middle of the range.
         let (current, voltage, dead, swing) = match winding {
             // Half the difference of two counts; the compare values differ by the rounded number.
             Winding::Brushed => (1.0, 0.5, 2.0, 1.0 / 8.0),
-            // Of `i_u` and `(i_u + 2 i_v)/sqrt 3` the vector is at most twice a phase's; of the three phases'
-            // voltages it is at most 4/3 of one's.
+            // The vector of `i_u` and `(i_u + 2 i_v)/sqrt 3` is at most twice a phase's error; the vector of
+            // the three phases' voltages is at most 4/3 of one phase's.
             Winding::Brushless { .. } => (2.0, 4.0 / 3.0 * 0.5, 4.0 / 3.0, 1.0 / 12.0),
         };
-        // Half a count of the sample, and half a one of the offset.
+        // Half a count of the sample, and half a count of the offset.
         let counts = current * self.amps_per_count;
         let compare = voltage * self.supply / self.counts as f64;
-        // A side that switches on later than the other switches off takes its voltage for that time in each
-        // period, and another sign of the current gives it: where it is given back with the wrong sign, the
-        // voltage is off by twice as much. That is so in one instant, of whose current no more comes later.
+        // During the dead time the current's sign decides whether the phase loses or gains voltage. A
+        // compensation with the wrong sign makes the voltage wrong by twice as much, in one instant only.
         let crossing = 2.0 * dead * self.supply * self.dead_time / self.instant;
         CurrentResolution {
             step: self.torque_constant * self.amps_per_count
@@ -64,7 +63,7 @@ impl Quanta {
         }
     }
 
-    /// Largest current in A of a voltage that is off by up to a volt, in any way: the sum of its impulse response
+    /// Largest current in A caused by any voltage error of up to one volt: the sum of the impulse response
     /// (theory, section 15.3).
     const fn admittance(&self) -> f64 {
         let part = (1.0 - self.plant.decay) / self.plant.feedback;

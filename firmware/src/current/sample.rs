@@ -27,8 +27,8 @@ impl PwmTiming {
         Duties([self.counts / 2; 3])
     }
 
-    /// A voltage from U to V, as the difference of their compare values, to either side of half: the nearest
-    /// whole number.
+    /// A voltage from U to V, as the difference of their compare values, symmetric about half, rounded to the
+    /// nearest.
     #[inline(always)]
     pub(super) const fn between_two(self, difference: f32) -> Duties {
         // The cast rounds a positive number down.

@@ -1,13 +1,13 @@
-//! Sine and cosine of a phase, by a table: the cheapest means whose error no code shows
-//! (`analysis/src/studies/tradeoff/sine.rs` has what each takes).
+//! Sine and cosine of a phase by a table: the cheapest method whose error is invisible in a code
+//! (`analysis/src/studies/tradeoff/sine.rs` compares the methods).
 
 use core::f64::consts::TAU;
 
-/// Entries for a turn. Straight lines between them are off by 7.5e-5, and the rounded entries by 1.5e-5 more:
-/// together a third of what half a code is at full scale.
+/// Entries per turn. The error of linear interpolation is 7.5e-5, and of the rounded entries another 1.5e-5:
+/// together a third of half a code at full scale.
 const ENTRIES: usize = 256;
 
-/// Sines of 15 bits, and the first one again behind the last.
+/// Sines of 15 bits; the last entry repeats the first.
 static TABLE: [i16; ENTRIES + 1] = {
     let (mut table, mut i) = ([0; ENTRIES + 1], 0);
     while i <= ENTRIES {
@@ -39,7 +39,7 @@ pub fn sine_and_cosine(angle: u32) -> [f32; 2] {
     [sine(angle), sine(angle.wrapping_add(1 << 30))]
 }
 
-/// In whole numbers up to the last product.
+/// Integer arithmetic up to the last product.
 #[inline(always)]
 fn sine(angle: u32) -> f32 {
     let (entry, part) = ((angle >> 24) as usize, (angle >> 8 & 0xffff).cast_signed());

@@ -1,10 +1,10 @@
-//! The speed of the handle, from the encoder's counts in each instant: how far a brushless motor's phase turns
-//! until its voltage acts.
+//! The speed of the handle from the encoder's counts in each instant, for the angle by which a brushless
+//! motor's phase turns until its voltage acts.
 
 use crate::encoder::{CounterWidth, RawCount};
 
-/// Part of the last instant's counts in the mean: a time constant of 32 instants, behind which a count of
-/// a coarse encoder is a small step of the phase.
+/// Weight of the last instant's counts in the mean: a time constant of 32 instants, which makes a count of a
+/// coarse encoder a small step of the phase.
 const NEWEST: f32 = 1.0 / 32.0;
 
 /// Mean of the counts in an instant.
@@ -20,13 +20,13 @@ impl Speed {
         Self { last: 0, width, mean: 0.0 }
     }
 
-    /// Goes on with the mean from zero.
+    /// Restarts the mean from zero.
     pub(super) const fn restart(&mut self) {
         self.mean = 0.0;
     }
 
-    /// Counts since the last reading, which are fewer than half the counter's range. The first one is since the
-    /// zero that is nearest.
+    /// Counts since the last reading, less than half the counter's range. The first reading counts from the
+    /// nearest zero.
     #[inline(always)]
     pub(super) const fn step(&mut self, position: RawCount) -> i32 {
         let step = self.since_last(position);
@@ -41,7 +41,7 @@ impl Speed {
         (position.bits().wrapping_sub(self.last) << shift).cast_signed() >> shift
     }
 
-    /// Takes a step; gives the mean of the counts in an instant.
+    /// Takes a step; returns the mean of the counts per instant.
     #[inline(always)]
     pub(super) const fn update(&mut self, step: i32) -> f32 {
         self.mean += NEWEST * (step as f32 - self.mean);

@@ -6,7 +6,7 @@ use super::current_loop::Limits;
 use super::fault::PowerFault;
 use super::sample::Sample;
 
-/// How long a deviation or a limited voltage has lasted.
+/// The duration of a deviation or of a limited voltage.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Supervision {
     deviating: u16,
@@ -14,13 +14,13 @@ pub(super) struct Supervision {
 }
 
 impl Supervision {
-    /// Nothing has lasted.
+    /// No deviation and no limited voltage.
     pub(super) const NONE: Self = Self { deviating: 0, limited: 0 };
 
     /// Takes an instant's deviation in A, without its sign, and whether its voltage was limited.
     ///
     /// # Errors
-    /// Where one of them has lasted too long.
+    /// If one of them has lasted too long.
     #[inline(always)]
     pub(super) fn observe(
         &mut self,
@@ -48,7 +48,7 @@ impl Supervision {
 }
 
 impl Limits {
-    /// Whether no phase has an over-current, with these offsets in counts.
+    /// Checks that no phase has an over-current, with these offsets in counts.
     #[inline(always)]
     pub(super) fn check_currents(
         &self,
@@ -66,7 +66,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Whether the supply and the temperature are in their range.
+    /// Checks that the supply and the temperature are in their range.
     #[inline(always)]
     pub(super) fn check_surroundings(&self, sample: &Sample) -> Result<(), PowerFault> {
         let is_good = sample.bus >= self.bus.0

@@ -14,16 +14,16 @@ const ZERO_CELSIUS: f64 = 273.15;
 pub struct Thermistor {
     /// Its resistance in ohm at 25 degrees Celsius.
     pub resistance: f64,
-    /// Its constant B in K.
+    /// The thermistor's constant B in K.
     pub beta: f64,
     /// The resistor in ohm.
     pub to_ground: f64,
 }
 
 impl Thermistor {
-    /// Least temperature in degrees Celsius for which there is a count.
+    /// Lowest temperature in degrees Celsius in the table.
     pub const LOWEST: i16 = -20;
-    /// Largest one.
+    /// Highest temperature in degrees Celsius in the table.
     pub const HIGHEST: i16 = 140;
     const STEP: i16 = 10;
     /// Temperatures of a [`ThermistorTable`].
@@ -55,8 +55,8 @@ impl Thermistor {
 pub(super) struct ThermistorTable([u16; Thermistor::STEPS]);
 
 impl ThermistorTable {
-    /// The temperature of a count in tenths of a degree Celsius, by straight lines; at the ends of the table
-    /// the end.
+    /// The temperature of a count in tenths of a degree Celsius, by linear interpolation, clamped to the ends
+    /// of the table.
     pub(super) const fn tenths(&self, count: u16) -> i32 {
         let (mut tenths, mut i) = (Thermistor::LOWEST as i32 * 10, 1);
         while i < self.0.len() {

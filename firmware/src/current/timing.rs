@@ -1,20 +1,20 @@
-//! How many periods of the pulse-width modulation a period of the servo has.
+//! The number of periods of the pulse-width modulation in a period of the servo.
 
 use super::error::DriveError;
 
-/// Lowest and highest frequency in Hz of the modulation: below, the ripple grows and ears hear it when it beats;
+/// Lowest and highest frequency in Hz of the modulation: below, the ripple grows and beats become audible;
 /// above, the interrupts take too much of the processor, and the dead time too much of the voltage.
 const FREQUENCIES: (f64, f64) = (30e3, 40e3);
 
-/// How far a number of counts may be from a whole one, relatively: what rounding leaves.
+/// Relative tolerance of a whole number of counts, for rounding.
 const WHOLE: f64 = 1e-9;
 
 /// The modulation's timer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PwmTiming {
-    /// Its reload value: it counts up to it and down to zero in a period.
+    /// The reload value: the timer counts up to it and down to zero in a period.
     pub counts: u16,
-    /// Periods of the modulation in one of the servo.
+    /// Periods of the modulation in a period of the servo.
     pub updates: u16,
 }
 
@@ -23,10 +23,10 @@ impl PwmTiming {
     /// clock in Hz.
     ///
     /// # Errors
-    /// Where there is none.
+    /// If there is no such frequency.
     pub const fn of(period: f64, clock: f64) -> Result<Self, DriveError> {
         let wanted = period * clock / 2.0;
-        // All casts round positive numbers down; NaN, or a number that is too large, is not whole.
+        // All casts round positive numbers down; NaN and numbers that are too large do not count as whole.
         let halves = (wanted + 0.5) as u32;
         let is_whole = (wanted - halves as f64).abs() <= WHOLE * wanted;
         let mut updates = (period * FREQUENCIES.1 * (1.0 + WHOLE)) as u16;
@@ -51,7 +51,8 @@ impl PwmTiming {
     }
 }
 
-/// The longest period that a timer can fill and that is not longer than this one; at least one of the modulation.
+/// The longest possible period that a timer can fill, at most `period` and at least one period of the
+/// modulation.
 const fn nearest(period: f64, clock: f64) -> f64 {
     let updates = whole(period * FREQUENCIES.1 * (1.0 + WHOLE)).max(1.0);
     let least = whole(clock / 2.0 / FREQUENCIES.1) + 1.0;

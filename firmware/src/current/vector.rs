@@ -1,6 +1,6 @@
 //! Currents and voltages of three phases as vectors: at rest, and turning with the magnets.
 //!
-//! Clarke's transformation keeps the amplitude: the vector of three phases has that of one of them.
+//! Clarke's transformation keeps the amplitude: the vector of three phases has the amplitude of one phase.
 
 use core::hint::cold_path;
 
@@ -10,7 +10,7 @@ use super::timing::PwmTiming;
 
 const ROOT_3: f32 = 1.732_050_8;
 
-/// A vector: along the magnets and across them where it turns with them, or along U and across it.
+/// A vector: along and across the magnets in the turning frame, or along and across U in the frame at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Vector {
     pub along: f32,
@@ -25,18 +25,18 @@ pub(super) struct Rotation {
 }
 
 impl Rotation {
-    /// Of parts of a turn of 2^32.
+    /// The rotation by an angle in parts of a turn of 2^32.
     #[inline(always)]
     pub(super) fn of(angle: u32) -> Self {
         let [sine, cosine] = sine_and_cosine(angle);
         Self { cosine, sine }
     }
 
-    /// The same, further by a small angle in rad, of up to a half. The two terms of each series make no vector
-    /// longer.
+    /// The same rotation, advanced by a small angle in rad, up to a half. The two terms of each series never
+    /// make a vector longer.
     #[inline(always)]
     pub(super) const fn ahead(self, angle: f32) -> Self {
-        // More is not a speed of a handle, but a jump of its count.
+        // A larger angle is a jump of the count and not a speed of the handle.
         let angle = angle.clamp(-0.5, 0.5);
         let square = angle * angle;
         let (cosine, sine) = (1.0 - 0.5 * square, angle * (1.0 - square * (1.0 / 6.0)));
@@ -48,13 +48,13 @@ impl Rotation {
 }
 
 impl Vector {
-    /// Of the currents in U and V; that of W makes the sum zero.
+    /// The vector of the currents in U and V; the current in W makes the sum zero.
     #[inline(always)]
     pub(super) const fn of_two_phases(u: f32, v: f32) -> Self {
         Self { along: u, across: (u + 2.0 * v) * (1.0 / ROOT_3) }
     }
 
-    /// The vector in a frame that is turned by that angle.
+    /// The vector in a frame turned by that angle.
     #[inline(always)]
     pub(super) const fn seen_from(self, rotation: Rotation) -> Self {
         let Rotation { cosine, sine } = rotation;
@@ -64,7 +64,7 @@ impl Vector {
         }
     }
 
-    /// Turned by that angle.
+    /// The vector turned by that angle.
     #[inline(always)]
     pub(super) const fn turned(self, rotation: Rotation) -> Self {
         let Rotation { cosine, sine } = rotation;
@@ -79,7 +79,7 @@ impl Vector {
         Self { along: self.along * factor, across: self.across * factor }
     }
 
-    /// The same direction, and no more than this length; and whether it is shorter now.
+    /// The vector limited to this length, in the same direction; and whether it was limited.
     #[inline(always)]
     pub(super) fn within(self, length: f32) -> (Self, bool) {
         let square = self.along * self.along + self.across * self.across;
@@ -90,7 +90,7 @@ impl Vector {
         (self.times(length * one_over_root(square)), true)
     }
 
-    /// Of the phases U, V and W.
+    /// The components of the phases U, V and W.
     #[inline(always)]
     const fn phases(self) -> [f32; 3] {
         let (u, half) = (self.along, -0.5 * self.along);
@@ -98,8 +98,8 @@ impl Vector {
         [u, half + part, half - part]
     }
 
-    /// What the dead time takes from each phase's compare value with these currents: so many counts with the
-    /// current's sign, and nothing where there is no current (theory, section 15.9).
+    /// The loss by the dead time of each phase's compare value with these currents: `counts` with the
+    /// current's sign, and zero without a current (theory, section 15.9).
     #[inline(always)]
     pub(super) const fn dead_time(self, counts: f32) -> [f32; 3] {
         let [u, v, w] = self.phases();
@@ -107,8 +107,8 @@ impl Vector {
         [counts.copysign(u), counts.copysign(v), counts.copysign(w)]
     }
 
-    /// Compare values of a voltage in counts, with what the dead time takes from each of them. What all three
-    /// have in common is chosen so that the highest and the lowest are as far from half.
+    /// Compare values of a voltage in counts, with the compensation of the dead time. Their common part is
+    /// chosen so that the highest and the lowest are equally far from half.
     #[inline(always)]
     pub(super) const fn duties(self, dead_time: [f32; 3], timing: PwmTiming) -> Duties {
         let [u, v, w] = self.phases();
@@ -122,19 +122,20 @@ impl Vector {
     }
 }
 
-/// The larger of two numbers. `f32::max`, which sees to NaN as well, is a function call on these chips.
+/// The larger of two numbers. `f32::max`, which also handles NaN, is a function call on these chips.
 #[inline(always)]
 pub(super) const fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// The smaller one.
+/// The smaller of two numbers.
 #[inline(always)]
 const fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// One over the root of a positive number, from below: by halving its exponent, and Newton's iteration.
+/// The reciprocal square root of a positive number, from below: by halving its exponent, and Newton's
+/// iteration.
 #[cold]
 #[inline(never)]
 fn one_over_root(square: f32) -> f32 {

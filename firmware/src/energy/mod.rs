@@ -1,9 +1,9 @@
-//! The energy that goes into the hand, observed from counts and codes, and a damper against it.
+//! Observes the energy into the hand from counts and codes, and injects damping against it.
 //!
-//! Over a period the DAC holds a code and the device moves by some counts: their product is the work
-//! of the motor, in the unit of [`Transducers::energy_unit`], exactly and without drift. A passive
-//! environment returns at most the energy that was put in; the excess is a *deficit*. On a Cortex-M4
-//! that costs 11 instructions a tick, and the test for a damper 3.
+//! Over a period the DAC holds a code and the device moves by some counts: their product is the work of the
+//! motor, in the unit of [`Transducers::energy_unit`], exactly and without drift. A passive environment
+//! returns at most the energy that was put in; the excess is a *deficit*. On a Cortex-M4 this costs 11
+//! instructions per tick, and the test for a damper 3.
 //!
 //! [`Transducers::energy_unit`]: crate::servo::Transducers::energy_unit
 
@@ -15,31 +15,30 @@ use crate::dac::DacCode;
 use crate::number::Number;
 use crate::output_timing::{OutputMode, OutputTiming};
 
-/// Parts of a period, as a power of two: where a code changes within a period, energies are kept in these
-/// parts of their unit, so that weighting the two codes rounds nothing.
+/// Parts of a period, as a power of two: if codes change within a period, energies are kept in these parts of
+/// their unit, so that the weighted sum of two codes is exact.
 const PARTS: u32 = 8;
 
-/// Observes passivity, one tick at a time. It observes the work of the DAC's codes. An amplifier that lags,
-/// which a scene may state, does that work later.
+/// Observes passivity, one tick at a time. It observes the work of the DAC's codes. An amplifier with a lag
+/// does that work later.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnergyMonitor {
     /// Codes above mid-scale that the DAC holds until the next count is read.
     held: i32,
-    /// Those that it holds after that, where it is latched; where codes are put out at a phase, those of
-    /// the last tick, which it holds up to the next one's phase.
+    /// If it is latched, the codes that it holds after that; with a fixed phase, those of the last tick,
+    /// which it holds up to the next tick's phase.
     next: i32,
     /// The part of a period up to that phase, in [`PARTS`].
     phase: i32,
-    /// The worst deficit less the net energy: kept rather than the net energy, since all that a
-    /// tick has to see then is a sign.
+    /// The worst deficit less the net energy. With this in place of the net energy, a tick only tests a sign.
     below: i64,
     worst: i64,
 }
 
 impl EnergyMonitor {
-    /// At zero energy, for codes that change this part of a period after their count.
+    /// A monitor at zero energy, for codes that change this part of a period after their count.
     pub fn with_phase(part: f64) -> Self {
-        // The cast saturates. Never zero: that is for other modes.
+        // The cast saturates. Never zero, which stands for other modes.
         let phase = ((part * f64::from(1 << PARTS) + 0.5) as i32).max(1);
         Self { phase, ..Self::default() }
     }
@@ -47,7 +46,7 @@ impl EnergyMonitor {
     /// Ends a tick: the encoder moved by `step` counts since the last one, and `code` was written.
     #[inline(always)]
     pub fn observe<M: OutputMode>(&mut self, step: i32, code: DacCode) {
-        // Below 2^11 times some thousand counts a tick: years until 2^63.
+        // Below 2^11 times some thousand counts per tick: years until 2^63.
         self.below = self.below.wrapping_sub(i64::from(self.held) * i64::from(step));
         if self.below < 0 {
             cold_path();
@@ -58,8 +57,8 @@ impl EnergyMonitor {
         match M::TIMING {
             OutputTiming::Latched => self.held = core::mem::replace(&mut self.next, offset),
             OutputTiming::Simultaneous => self.held = offset,
-            // As much of a period with the code before as passes until the phase: exact for a movement
-            // at a constant speed.
+            // The previous code counts for the part of the period before the phase: exact for motion at a
+            // constant speed.
             OutputTiming::AtPhase(_) => {
                 let before = core::mem::replace(&mut self.next, offset);
                 self.held = (offset << PARTS) - (offset - before) * self.phase;
@@ -67,13 +66,13 @@ impl EnergyMonitor {
         }
     }
 
-    /// To be called before [`EnergyMonitor::observe`] when updates were missed since the last
-    /// tick: where in the encoder's `step` the code changed is not known, and the worse is taken.
+    /// Call it before [`EnergyMonitor::observe`] if updates were missed since the last tick: the code changed
+    /// at an unknown place in the encoder's `step`, and the worse case is taken.
     pub fn missed<M: OutputMode>(&mut self, step: i32) {
         let held = match M::TIMING {
             OutputTiming::Simultaneous => return,
             OutputTiming::Latched => self.next,
-            // All but the beginning of so long a time is the newer code's.
+            // Most of such a long time has the newer code.
             OutputTiming::AtPhase(_) => self.next << PARTS,
         };
         let more = i64::from(held - self.held) * i64::from(step);
@@ -85,18 +84,18 @@ impl EnergyMonitor {
         *self = Self { phase: self.phase, ..Self::default() };
     }
 
-    /// Net energy that the motor has put into the hand and the device, in counts times codes;
-    /// negative where they have put in more.
+    /// Net energy that the motor has put into the hand and the device, in counts times codes; negative if
+    /// they have put in more.
     pub const fn net(&self) -> i64 {
         self.worst.wrapping_sub(self.below) >> self.scale()
     }
 
-    /// Binary digits of the energies that are parts of their unit.
+    /// The number of binary digits of the energies below their unit.
     const fn scale(&self) -> u32 {
         if self.phase == 0 { 0 } else { PARTS }
     }
 
-    /// The largest that [`EnergyMonitor::net`] has been: the worst deficit. Never negative.
+    /// The largest value of [`EnergyMonitor::net`] so far: the worst deficit. Never negative.
     pub const fn worst(&self) -> i64 {
         self.worst >> self.scale()
     }
@@ -108,13 +107,13 @@ impl EnergyMonitor {
     }
 }
 
-/// Something that adds a torque beside the environment, within the limit.
+/// Adds a torque to the environment's, within the limit.
 pub(crate) trait Action<N: Number> {
-    /// The environment's offer with this tick's torque added.
+    /// The environment's response with this tick's torque added.
     fn add_to(&self, offer: Response<N>) -> Response<N>;
     /// Ends the tick with the environment at `x_e` (rad).
     fn update(&mut self, x_e: N);
-    /// Moves the positions that it remembers by so many rad.
+    /// Moves its stored positions by `by` rad.
     fn shift(&mut self, by: N);
 }
 
@@ -134,8 +133,8 @@ impl<N: Number> Action<N> for NoAction {
     fn shift(&mut self, _: N) {}
 }
 
-/// A damper on the environment's velocity of the previous two samples, switched on and off at
-/// will: any switching adds at most its damping to the index (theory, section 5).
+/// A switched damper on the environment's velocity of the previous two samples: any switching adds at most
+/// its damping to the index (theory, section 5).
 #[derive(Clone, Debug)]
 pub(crate) struct Injector<N: Number> {
     /// Damping over the period, in N m/rad.
@@ -148,14 +147,14 @@ pub(crate) struct Injector<N: Number> {
 }
 
 impl<N: Number> Injector<N> {
-    /// From the damping in N m s/rad and the period in s, at rest at zero and off.
+    /// An injector from the damping in N m s/rad and the period in s, at rest at zero and off.
     pub(crate) fn new(damping: f64, period: f64) -> Result<Self, BuildError> {
         BuildError::unless_positive("injected damping", damping)?;
         let gain = BuildError::coefficient::<N>("injected damping / period", damping / period)?;
         Ok(Self { gain, last: N::ZERO, movement: N::ZERO, on: false })
     }
 
-    /// Its damping in N m s/rad as it was rounded, and not less than that.
+    /// Its rounded damping in N m s/rad, or more.
     pub(crate) fn damping(&self, period: f64) -> f64 {
         (N::coefficient_to_f64(self.gain) * period).next_up()
     }

@@ -25,19 +25,19 @@ pub enum Environment {
     DamperWall(Wall),
     /// [`FreeMode`](super::FreeMode).
     FreeMode {
-        /// Damping `epsilon` in N m s/rad that is left.
+        /// Residual damping `epsilon` in N m s/rad.
         residual: f64,
         /// Delay in whole samples.
         delay: usize,
     },
     /// [`FreeModeWall`](super::FreeModeWall).
     FreeModeWall {
-        /// Damping `epsilon` in N m s/rad that is left.
+        /// Residual damping `epsilon` in N m s/rad.
         residual: f64,
         /// The wall that ends the free motion.
         wall: Wall,
     },
-    /// One of another crate.
+    /// An environment of another crate.
     Stated(StatedModel),
     /// [`Profile`](super::Profile), [`DampedProfile`](super::DampedProfile) or
     /// [`SnapProfile`](super::SnapProfile).
@@ -52,7 +52,7 @@ pub enum Environment {
 }
 
 impl Environment {
-    /// The wall, if it has one. A spring ignores its wall's damping.
+    /// The wall, if the environment has one. A spring ignores its wall's damping.
     pub const fn wall(&self) -> Option<Wall> {
         match self {
             Self::DelayedSpring(wall) => Some(Wall { damping: 0.0, filter: None, ..*wall }),
@@ -62,7 +62,7 @@ impl Environment {
         }
     }
 
-    /// The same, to be changed.
+    /// The wall, mutable.
     pub const fn wall_mut(&mut self) -> Option<&mut Wall> {
         match self {
             Self::DelayedSpring(wall)
@@ -73,7 +73,7 @@ impl Environment {
         }
     }
 
-    /// The torque profile, if it is one or has one.
+    /// The torque profile, if the environment is one or contains one.
     pub const fn profile(&self) -> Option<&AnyProfile> {
         match self {
             Self::Profile(profile) => Some(profile),
@@ -82,7 +82,7 @@ impl Environment {
         }
     }
 
-    /// Whether its torque jumps where a knob snaps from one detent to the next.
+    /// Whether its torque jumps when a knob snaps from one detent to the next.
     pub(crate) const fn snaps(&self) -> bool {
         match self.profile() {
             Some(profile) => profile.snap.is_some(),
@@ -90,7 +90,7 @@ impl Environment {
         }
     }
 
-    /// Damping in N m s/rad that its canceller leaves; `None` where it has no canceller.
+    /// Residual damping of its canceller in N m s/rad; `None` without a canceller.
     pub const fn residual(&self) -> Option<f64> {
         match self {
             Self::FreeMode { residual, .. } | Self::FreeModeWall { residual, .. } => {
@@ -101,7 +101,7 @@ impl Environment {
         }
     }
 
-    /// The rational function that it is, or is stated to be.
+    /// The rational function of the environment, or of its statement.
     pub const fn rational(&self) -> Option<&Rational> {
         match self {
             Self::Rational(rational) => Some(rational),
@@ -110,7 +110,7 @@ impl Environment {
         }
     }
 
-    /// Whether it is linear with neither face nor torque limit counted.
+    /// Whether it is linear apart from a face and a torque limit.
     pub const fn has_transfer(&self) -> bool {
         !matches!(
             self,
@@ -118,8 +118,8 @@ impl Environment {
         )
     }
 
-    /// Whether all of it is late by at least one sample, so that its torque is known a tick early:
-    /// only such an environment can be rendered where a torque is latched by the next count.
+    /// Whether all its parts are late by at least one sample, so that its torque is known a tick early: only
+    /// such an environment can be rendered with latched torques.
     pub const fn is_late(&self) -> bool {
         match self {
             Self::Composed(composed) => composed.is_late(),
@@ -129,7 +129,7 @@ impl Environment {
         }
     }
 
-    /// Its delay in whole samples; of a sum, that of the torque profile.
+    /// Its delay in whole samples; for a sum, the delay of the torque profile.
     pub const fn delay(&self) -> usize {
         match self {
             Self::DelayedSpring(wall)
@@ -146,7 +146,7 @@ impl Environment {
         }
     }
 
-    /// The delay in whole samples as it was written.
+    /// The delay in whole samples, mutable.
     pub(crate) const fn delay_mut(&mut self) -> &mut usize {
         match self {
             Self::DelayedSpring(wall)
@@ -164,7 +164,7 @@ impl Environment {
     }
 }
 
-/// The law of any [`Environment`] alone.
+/// The law of any [`Environment`] without the coupling's memory.
 #[derive(Clone, Debug)]
 pub enum EnvironmentLaw<N: Number> {
     /// Of a spring or a wall.
@@ -339,7 +339,7 @@ impl Environment {
                 EnvironmentLaw::Wall(Wall { damping: 0.0, filter: None, ..*wall }.law(setting)?)
             }
             Self::DamperWall(wall) => EnvironmentLaw::Wall(wall.law(setting)?),
-            // Its statement does not match its behaviour.
+            // Its statement does not contain its law.
             Self::Stated(_) => return Err(BuildError::LawElsewhere),
             Self::FreeMode { residual, delay } => EnvironmentLaw::FreeMode(FreeModeLaw {
                 canceller: canceller(*residual, setting)?,

@@ -21,7 +21,7 @@ pub struct Wall {
     pub delay: usize,
     /// Rest position, or position of the face, in rad.
     pub face: f64,
-    /// Whether the wall is felt only above `face`.
+    /// Whether the wall acts only above `face`.
     pub one_sided: bool,
 }
 
@@ -32,8 +32,7 @@ impl Wall {
     }
 }
 
-/// The law of any wall. It is put together from the parts of the typed walls, and so gives the
-/// same torques to the bit.
+/// The law of any wall. It is composed of the parts of the typed walls, so its torques are the same bits.
 pub(super) type AnyWallLaw<N> = WallLaw<N, AnyVelocity<N>, AnySide<N>, VariableDelay<N>>;
 
 impl<N: Number> Discretize<N> for Wall {

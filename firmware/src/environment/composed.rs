@@ -1,13 +1,13 @@
-//! Environments that are sums: a torque profile with a wall, with a free-mode canceller, or with both beside
-//! it, all at the same position `x_E`.
+//! Environments that are sums: a torque profile with a wall, with a free-mode canceller, or with both, all at
+//! the same position `x_E`.
 //!
 //! Their passivity indices add, with a torque limit on the sum as well (theory, section 14.3). The profile of
-//! a sum is late by at least one sample, since an undelayed profile is solved in front of the coupling. A
-//! wall stands at one angle of many turns, so that the profile beside it has end stops.
+//! a sum is late by at least one sample, because an undelayed profile is solved in front of the coupling. A
+//! wall is at one angle of many turns, so the profile of such a sum must have end stops.
 //!
-//! Where parts have a number of the same name, `stiffness`, `damping` and `face` are the wall's; `torque`,
+//! If parts have parameters of the same name, `stiffness`, `damping` and `face` are the wall's; `torque`,
 //! `count`, `centre`, `from`, `to` and `delay` the profile's; `residual` the canceller's. Without a wall,
-//! `stiffness` is that beyond the end stops.
+//! `stiffness` is that of the end stops.
 
 use super::any_wall::{AnyWallLaw, Wall};
 use super::free_mode::{FreeModeWallLaw, beside, canceller};
@@ -20,8 +20,8 @@ use crate::coupling::{Response, Slopes};
 use crate::number::Number;
 use crate::parameter::{NamedParameters, Parameter};
 
-/// A torque profile in motion that an undelayed [`FreeMode`](super::FreeMode) makes free: detents on a device
-/// whose own damping is cancelled.
+/// A torque profile with an undelayed [`FreeMode`](super::FreeMode): detents on a device whose own damping is
+/// cancelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeModeProfile<P> {
     /// Damping `epsilon` in N m s/rad that the hand still feels.
@@ -74,7 +74,7 @@ impl<W: NamedParameters, P: NamedParameters> NamedParameters for FreeModeWallAnd
     }
 }
 
-/// The wall's number where it has one of that name.
+/// The wall's parameter if it has one of this name, otherwise the profile's.
 fn of_wall_or_profile<'n, W: NamedParameters, P: NamedParameters>(
     wall: &'n mut W,
     profile: &'n mut P,
@@ -121,7 +121,7 @@ impl<N: Number, L: Law<N>, P: Law<N>> Law<N> for WallAndProfileLaw<L, P> {
     }
 
     fn slopes(&self) -> Slopes {
-        // A late profile has none.
+        // A late profile has no slopes.
         self.wall.slopes()
     }
 }
@@ -131,7 +131,7 @@ impl<N: Number, L: Law<N>, P: Law<N>> Law<N> for WallAndProfileLaw<L, P> {
 fn sum<N: Number>(wall: Response<N>, profile: Response<N>) -> Response<N> {
     match profile {
         Response::Held(torque) => wall.plus(torque),
-        // No late profile gives another response.
+        // A late profile has no other response.
         _ => profile,
     }
 }
@@ -163,20 +163,20 @@ impl<N: Number, W: Discretize<N>, P: Discretize<N>> Discretize<N> for FreeModeWa
     }
 }
 
-/// Any of these sums as data.
+/// Any of the sums in this module as data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Composed {
-    /// Damping `epsilon` in N m s/rad that a canceller leaves; `None`: no canceller.
+    /// Residual damping `epsilon` of a canceller in N m s/rad; `None`: no canceller.
     pub residual: Option<f64>,
-    /// The wall beside the profile; `None`: no wall.
+    /// The wall; `None`: no wall.
     pub wall: Option<Wall>,
     /// The profile.
     pub profile: AnyProfile,
 }
 
 impl Composed {
-    /// Whether all of it is late by at least one sample.
+    /// Whether all its parts are late by at least one sample.
     pub const fn is_late(&self) -> bool {
         let is_wall_late = match &self.wall {
             Some(wall) => wall.delay > 0,
@@ -186,8 +186,8 @@ impl Composed {
     }
 }
 
-/// The law of any [`Composed`] environment. It adds in the order of the typed ones, and so gives the same
-/// torques to the bit.
+/// The law of any [`Composed`] environment. It adds in the order of the typed sums, so its torques are the
+/// same bits.
 #[derive(Clone, Debug)]
 pub struct ComposedLaw<N: Number> {
     canceller: Option<Washout<N>>,

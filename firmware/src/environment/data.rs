@@ -1,9 +1,9 @@
-//! Each environment type as data, for the certificate, which is one function for all of them.
+//! Converts each environment type to data for the certificate, which is one function for all environments.
 
 use super::*;
 
 impl<const N: usize> DelayedSpring<N> {
-    /// As a wall without damping.
+    /// The spring as a wall without damping.
     pub const fn as_wall(&self) -> Wall {
         wall::<N>(self.stiffness, 0.0, None)
     }

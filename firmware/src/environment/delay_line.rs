@@ -4,20 +4,20 @@ use super::MAX_DELAY;
 use crate::build_error::BuildError;
 use crate::number::Number;
 
-/// The torques of the last ticks, not yet felt.
+/// The torques of the last ticks that are not due yet.
 pub trait DelayLine<N>: Clone + core::fmt::Debug {
-    /// The torque that is due in this tick; `None` where there is no delay.
+    /// The torque that is due in this tick; `None` without a delay.
     fn due(&self) -> Option<N>;
     /// The sum of the torques.
     fn sum(&self) -> N;
-    /// Stores this tick's torque and drops the oldest one.
+    /// Stores this tick's torque and drops the oldest.
     fn push(&mut self, torque: N);
     /// Fills it with one torque.
     fn fill(&mut self, torque: N);
 }
 
-/// A delay that the scene's type knows. Moving a few samples along is cheaper than an index that
-/// wraps, and for a delay of one, the usual case, it is a single store.
+/// A delay in the scene's type. Moving a few samples is cheaper than a wrapping index, and for the usual
+/// delay of one it is a single store.
 #[derive(Clone, Debug)]
 pub struct FixedDelay<N, const DELAY: usize> {
     oldest_first: [N; DELAY],
@@ -51,7 +51,7 @@ impl<N: Number, const DELAY: usize> DelayLine<N> for FixedDelay<N, DELAY> {
     }
 }
 
-/// A delay that is known at run time, up to [`MAX_DELAY`].
+/// A delay that is set at run time, up to [`MAX_DELAY`].
 #[derive(Clone, Debug)]
 pub struct VariableDelay<N> {
     oldest_first: [N; MAX_DELAY],

@@ -1,4 +1,4 @@
-//! Free mode: the device's own damping cancelled, so that the hand feels almost nothing.
+//! Free mode: cancels the device's own damping, so that the hand feels almost nothing.
 
 use super::delay_line::{DelayLine, FixedDelay};
 use super::law::{Discretize, Law, LawContext};
@@ -32,10 +32,10 @@ named_parameters! {
 
 /// The canceller's high-pass.
 ///
-/// Wanted is the controller `C = -be s` with `be = b - epsilon`; behind the coupling it is the
-/// environment `E = C / (1 - C / K_vc)`, by backward differences
-/// `E(z) = -g (z - 1) / (z - rho)` with `g = be K_vc / (K_vc T + be)` and
-/// `rho = be / (K_vc T + be)` (equation 23 at `K_vc = 2 b / T`); rigid: `g = be / T`, `rho = 0`.
+/// The wanted controller is `C = -be s` with `be = b - epsilon`; behind the coupling this is the environment
+/// `E = C / (1 - C / K_vc)`, by backward differences `E(z) = -g (z - 1) / (z - rho)` with
+/// `g = be K_vc / (K_vc T + be)` and `rho = be / (K_vc T + be)` (equation 23 at `K_vc = 2 b / T`); rigid:
+/// `g = be / T`, `rho = 0`.
 pub(crate) fn canceller<N: Number>(
     residual: f64,
     setting: &LawContext,

@@ -1,4 +1,4 @@
-//! What an environment must be to stand the time that a torque takes to the motor.
+//! The delay that an environment needs for an output mode.
 
 use super::{
     DampedProfile, DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, Matched,
@@ -8,8 +8,8 @@ use crate::output_timing::{AtPhase, Latched, OutputMode, Simultaneous};
 
 /// An environment that is late by at least one sample, so that its torque is known one tick early.
 ///
-/// Of [`Environment`] and [`Rational`] only the numbers tell; they are looked at when the scene
-/// is [timed](crate::certificate::TimingChecked).
+/// For [`Environment`] and [`Rational`] the numbers decide; they are checked with the
+/// [timing](crate::certificate::TimingChecked) of the scene.
 ///
 /// The law of such an environment answers [`Response::Held`](crate::coupling::Response::Held).
 pub trait Delayed {}
@@ -31,13 +31,13 @@ macro_rules! delayed {
 }
 
 delayed!(1 2 3 4 5 6 7 8);
-// What snaps is certified up to one sample late.
+// An environment with snap points is certified up to one sample late.
 impl<const KNOTS: usize> Delayed for SnapProfile<KNOTS, 1> {}
 
 delayed!(@ Environment, Rational,);
 
-/// An environment that can be rendered in the mode `M`: any environment where count and torque
-/// are simultaneous, a [`Delayed`] one where a torque takes time.
+/// An environment that can be rendered in the mode `M`: any environment if count and torque are simultaneous,
+/// a [`Delayed`] one if a torque takes time.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not late by a whole sample, but on this board a torque takes one",
     label = "this environment needs a delay of 1 to 8 samples",

@@ -1,4 +1,4 @@
-//! What every environment is to the servo: an affine law, whose state advances once a tick.
+//! The servo's interface to every environment: an affine law, whose state advances once per tick.
 
 use super::turn::Turn;
 use crate::build_error::BuildError;
@@ -7,70 +7,71 @@ use crate::latency::Latency;
 use crate::matched::MatchedCoupling;
 use crate::number::{Format, Number};
 
-/// The difference equation of an environment, at rest at zero to begin with.
+/// The difference equation of an environment, initially at rest at zero.
 pub trait Law<N: Number> {
-    /// Whether it is behind a compliant coupling, whatever the scene says.
+    /// Whether it is always behind a compliant coupling, independently of the scene.
     const IS_COMPLIANT: bool = false;
     /// The torque in this tick as a function of `x_E`, given by its value at `x_E = x` (rad); the
     /// slopes are those of [`Law::slopes`].
     fn evaluate(&self, x: N) -> Response<N>;
     /// Ends the tick with the environment at `x_E` (rad).
     fn update(&mut self, x_e: N);
-    /// Starts anew, as if the environment had always been at `x_e` (rad). Between two ticks.
+    /// Resets the state as if the environment had always been at `x_e` (rad). Call it between two ticks.
     fn rest_at(&mut self, x_e: N);
-    /// Deflection in rad that the coupling has in this tick of the torques of earlier ticks, the last of
-    /// which is given in N m: none, but behind a coupling with memory. Once a tick, before anything else.
+    /// Deflection in rad of the coupling in this tick by the torques of earlier ticks; the argument is the
+    /// last of them in N m. Zero except behind a coupling with memory. Call it once per tick, before anything
+    /// else.
     #[inline(always)]
     fn deflection_after(&mut self, _torque: N) -> N {
         N::ZERO
     }
-    /// The same where a tick begins with its own torque known: of the torques that
-    /// [`remember`](Law::remember) was told.
+    /// The same for ticks that begin with a known torque: by the torques passed to
+    /// [`remember`](Law::remember).
     #[inline(always)]
     fn lasting_deflection(&self) -> N {
         N::ZERO
     }
-    /// Compliance in rad/(N m) for the torque of the same tick of a coupling whose torques it remembers;
-    /// `None` where it remembers none.
+    /// Compliance in rad/(N m), for the torque of the same tick, of a coupling whose torques it stores;
+    /// `None` if it stores none.
     fn matched_compliance(&self) -> Option<f64> {
         None
     }
-    /// Ends such a tick for the coupling, with this torque in N m.
+    /// Ends such a tick for the coupling, and stores this torque in N m.
     #[inline(always)]
     fn remember(&mut self, _torque: N) {}
-    /// The turn within which its angles are, for a law that repeats for ever.
+    /// The turn of its angles, for a law that repeats without end.
     #[inline(always)]
     fn turn(&mut self) -> Option<&mut Turn<N>> {
         None
     }
-    /// Moves all positions that it remembers by so many rad.
+    /// Moves all its stored positions by `by` rad.
     fn shift(&mut self, _by: N) {}
-    /// Angle in rad by which the device goes back before a law that snaps from one branch to another snaps
-    /// back: more than an encoder's count. Infinite for a law with one branch.
+    /// Angle in rad by which the device must go back before a law with snap points snaps back: more than an
+    /// encoder's count. Infinite for a law without snap points.
     fn hysteresis(&self) -> f64 {
         f64::INFINITY
     }
-    /// Slopes of the lines that are offered, in N m/rad, of the coefficients as rounded.
+    /// Slopes of the responses in N m/rad, with the rounded coefficients.
     fn slopes(&self) -> Slopes;
 }
 
 /// An environment that can run in the number format `N`.
 pub trait Discretize<N: Number> {
-    /// Its difference equation: state and coefficients, and nothing that it does not use.
+    /// Its difference equation: only the state and the coefficients that it uses.
     type Law: Law<N> + Clone + core::fmt::Debug;
     /// Computes the coefficients.
     ///
     /// # Errors
-    /// Where a coefficient does not fit the format or does not exist.
+    /// If a coefficient does not fit the format or does not exist.
     fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError>;
 }
 
 impl LawContext {
-    /// The matched coupling in a number format; without `UPDATES` of an amplifier that is not updated in the
-    /// period.
+    /// The matched coupling in a number format; without `UPDATES` for an amplifier that is not updated within
+    /// the period.
     ///
     /// # Errors
-    /// Where it does not exist.
+    /// If it does not exist.
     pub(crate) fn matched<const UPDATES: bool>(
         &self,
         format: Format,
@@ -80,7 +81,7 @@ impl LawContext {
     }
 }
 
-/// What an environment's coefficients depend on besides the environment.
+/// The scene's other quantities that an environment's coefficients depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LawContext {
     /// Sample period `T` in s.
@@ -91,6 +92,6 @@ pub struct LawContext {
     pub passivity: f64,
     /// The coupling.
     pub coupling: Coupling,
-    /// What delays the torque beside the environment's whole samples.
+    /// The delays of the torque in addition to the environment's whole samples.
     pub latency: Latency,
 }

@@ -12,8 +12,8 @@ use crate::parameter::{NamedParameters, Parameter};
 /// An environment behind [`Coupling::Matched`]: the coupling's memory is part of the type, so that a scene
 /// without latency has none.
 ///
-/// `WHOLE` is the whole samples in the scene's output delay, `LAGS` how many of amplifier and sensor lag,
-/// `UPDATES` whether the amplifier is updated some times in a period.
+/// `WHOLE` is the number of whole samples in the scene's output delay, `LAGS` the number of lags (of
+/// amplifier and sensor), `UPDATES` whether the amplifier is updated several times in a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matched<E, const WHOLE: usize = 0, const LAGS: usize = 0, const UPDATES: bool = false> {
     /// The environment.
@@ -28,14 +28,14 @@ impl<E: NamedParameters, const WHOLE: usize, const LAGS: usize, const UPDATES: b
     }
 }
 
-/// What a coupling remembers of past torques.
+/// A coupling's memory of past torques.
 #[derive(Clone, Debug)]
 pub struct CouplingMemory<N: Number, D, const LAGS: usize> {
     held: N::Coefficient,
     arriving: N::Coefficient,
     trails: [Fading<N>; LAGS],
     torques: D,
-    /// Where a tick begins with its own torque known.
+    /// Used if a tick begins with a known torque.
     deflection: N,
     compliance: f64,
 }
@@ -58,10 +58,10 @@ impl<N: Number> Fading<N> {
 }
 
 impl<N: Number, D: DelayLine<N>, const LAGS: usize> CouplingMemory<N, D, LAGS> {
-    /// Of a matched coupling, with a line as long as its whole samples, full of zeros.
+    /// The memory of a matched coupling, with a line of zeros as long as its whole samples.
     ///
     /// # Errors
-    /// Where a coefficient does not fit the number format, or there are more lags than it can hold.
+    /// If a coefficient does not fit the number format, or there are more lags than it can hold.
     pub(crate) fn new(coupling: &MatchedCoupling, torques: D) -> Result<Self, BuildError> {
         let lags = coupling.trails.iter().filter(|trail| trail.gain != 0.0);
         if lags.clone().count() > LAGS {
@@ -87,8 +87,8 @@ impl<N: Number, D: DelayLine<N>, const LAGS: usize> CouplingMemory<N, D, LAGS> {
         self.compliance
     }
 
-    /// Takes the torque of a tick in N m, and gives the deflection in rad that this one and those before it
-    /// leave to the next tick.
+    /// Takes the torque of a tick in N m, and returns the deflection in rad that this torque and the earlier
+    /// ones cause in the next tick.
     #[inline(always)]
     pub(crate) fn deflection_after(&mut self, torque: N) -> N {
         let arriving = match self.torques.due() {
@@ -109,13 +109,13 @@ impl<N: Number, D: DelayLine<N>, const LAGS: usize> CouplingMemory<N, D, LAGS> {
         deflection
     }
 
-    /// The deflection in rad that [`CouplingMemory::remember`] has kept.
+    /// The deflection in rad stored by [`CouplingMemory::remember`].
     #[inline(always)]
     pub(crate) fn deflection(&self) -> N {
         self.deflection
     }
 
-    /// [`CouplingMemory::deflection_after`] a torque in N m, kept.
+    /// Stores the [`CouplingMemory::deflection_after`] a torque in N m.
     #[inline(always)]
     pub(crate) fn remember(&mut self, torque: N) {
         self.deflection = self.deflection_after(torque);

@@ -3,14 +3,13 @@
 //! Sign: `F` is the torque that the environment exerts *on the coupling* against positive
 //! deflection, so the motor applies `-F` to the device. A spring is `F = stiffness * x_E`.
 //!
-//! Each environment is a type of its own, so that a program contains only what its scene uses.
-//! [`Environment`] is the same as data, for scenes that are read from a file or from the wire.
-//! Each is data first; [`Discretize`] turns it into its [`Law`], which the servo runs. A
-//! [`StatedEnvironment`] of another crate runs beside them.
+//! Each environment has its own type, so that a program only contains the code of its scene. [`Environment`]
+//! represents them all as data, for scenes from a file or from the wire. [`Discretize`] turns an environment
+//! into its [`Law`], which the servo runs. Another crate can define a [`StatedEnvironment`].
 
-/// Gives a macro all environments, each with its generic parameters, with whether it may cancel the device's
-/// damping, with the torques that its law stores for a coupling, and with its possible torque profile: the
-/// one list of them. Each is there as [`Matched`], too.
+/// The only list of all environments. It calls a macro with each of them: its generic parameters, whether it
+/// may cancel the device's damping, the torques that its law stores for a coupling, and its possible torque
+/// profile. Each is also listed as [`Matched`].
 macro_rules! for_every_environment {
     ($apply:ident) => {
         $apply! {

@@ -1,14 +1,13 @@
-//! Models of environments for the certificate: those of this crate as data, those of other crates by a
-//! statement of their properties, so that they are certified and rendered like this crate's.
+//! Models of environments for the certificate: environments of this crate as data, environments of other
+//! crates by a statement of their properties, so that all are certified and rendered in the same way.
 //!
-//! A type of another crate has a difference equation ([`Discretize`](super::Discretize)), named
-//! numbers ([`NamedParameters`]), and a statement for the certificate ([`StatedEnvironment`]). The
-//! certificate relies on that statement as it relies on the declared passivity of the device: it
-//! lists it among its assumptions.
+//! A type of another crate has a difference equation ([`Discretize`](super::Discretize)), named numbers
+//! ([`NamedParameters`]), and a statement for the certificate ([`StatedEnvironment`]). The certificate relies
+//! on that statement like on the declared passivity of the device, and lists it among its assumptions.
 //!
-//! A constant is certified with the statement as a value, since a trait's methods are not called at
-//! compile time ([`Scene::certified_as`](crate::scene::Scene::certified_as)); a board asks the trait
-//! again when it starts and for each change, and does not run a scene that passes only by the value.
+//! A constant is certified with the statement as a value, because a trait's methods cannot be called at
+//! compile time ([`Scene::certified_as`](crate::scene::Scene::certified_as)). A board calls the trait's
+//! method at its start and for each change, and does not run a scene that passes only with the value.
 
 use super::*;
 use crate::coupling::Coupling;
@@ -17,33 +16,33 @@ use crate::parameter::NamedParameters;
 
 /// An environment of another crate.
 ///
-/// To run on a board it is [`Delayed`](super::Delayed) as well.
+/// To run on a board it must also be [`Delayed`](super::Delayed).
 pub trait StatedEnvironment: NamedParameters + Copy + 'static {
     /// Its model for the certificate, in a scene with this period, damping and coupling. These may be any
-    /// numbers: they are looked at later.
+    /// numbers; they are checked later.
     fn stated(&self, context: &LawContext) -> StatedModel;
 }
 
-/// What the law of a type of environment remembers of past torques, for its coupling.
+/// The past torques that the law of a type of environment stores for its coupling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Memory {
-    /// Nothing: it is behind no coupling, or behind a spring.
+    /// None: it has no coupling, or a spring.
     None,
-    /// What [`Matched`] says of its scene's latency.
+    /// Those for the latency in the parameters of [`Matched`].
     Of {
         /// Whole samples of the output delay.
         whole: usize,
-        /// How many of amplifier and sensor lag.
+        /// The number of lags, of amplifier and sensor.
         lags: usize,
-        /// Whether the amplifier is updated some times in a period.
+        /// Whether the amplifier is updated several times in a period.
         updates: bool,
     },
-    /// Whatever the scene asks for.
+    /// Those that the scene requires.
     Any,
 }
 
 impl Memory {
-    /// Whether it is what a scene with this coupling and latency needs.
+    /// Whether it is sufficient for a scene with this coupling and latency.
     pub const fn serves(self, coupling: &Coupling, latency: &Latency, period: f64) -> bool {
         let is_matched = matches!(coupling, Coupling::Matched);
         match self {
@@ -62,28 +61,28 @@ impl Memory {
         }
     }
 
-    /// Whether the amplifier may be updated some times in a period. If not, the program omits the code that
-    /// such a coupling is computed by.
+    /// Whether the amplifier may be updated several times in a period. If not, the program omits the code for
+    /// such a coupling.
     pub const fn has_updates(self) -> bool {
         matches!(self, Self::Any | Self::Of { updates: true, .. })
     }
 }
 
-/// What a type of environment may have of a torque profile. Its program omits the code that certifies
-/// anything else.
+/// The possible torque profiles of a type of environment. Its program omits the certificate's code for all
+/// others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProfileUse {
-    /// Whether it may be one, alone or in a sum.
+    /// Whether it may have a torque profile, alone or in a sum.
     pub exists: bool,
-    /// Whether that may be an undelayed profile.
+    /// Whether the profile may be undelayed.
     pub is_prompt: bool,
-    /// Whether it may have a damper of its own.
+    /// Whether the profile may have its own damper.
     pub is_damped: bool,
-    /// Whether it may have a snap point.
+    /// Whether the profile may have a snap point.
     pub snaps: bool,
-    /// Whether it may be one of several modes.
+    /// Whether the profile may be one of several modes.
     pub has_modes: bool,
-    /// Whether something may be beside it.
+    /// Whether the profile may be part of a sum.
     pub is_composed: bool,
 }
 
@@ -97,7 +96,7 @@ impl ProfileUse {
         has_modes: false,
         is_composed: false,
     };
-    /// Whatever there is.
+    /// Any profile.
     pub const ANY: Self = Self {
         exists: true,
         is_prompt: true,
@@ -107,7 +106,7 @@ impl ProfileUse {
         is_composed: true,
     };
 
-    /// A table, late by so many samples.
+    /// A table, late by `delay` samples.
     pub const fn table(delay: usize) -> Self {
         Self { exists: true, is_prompt: delay == 0, ..Self::NONE }
     }
@@ -122,18 +121,18 @@ impl ProfileUse {
         Self { snaps: true, ..Self::table(delay) }
     }
 
-    /// Tables of which one is selected.
+    /// Tables, one of which is selected.
     pub const fn modes(delay: usize) -> Self {
         Self { has_modes: true, ..Self::snap(delay) }
     }
 
-    /// A table with something beside it.
+    /// A table in a sum.
     pub const fn sum(delay: usize) -> Self {
         Self { is_composed: true, ..Self::table(delay) }
     }
 }
 
-/// An environment that the certificate knows: one of this crate's, or a [`StatedEnvironment`].
+/// An environment for the certificate: one of this crate, or a [`StatedEnvironment`].
 pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
     /// Whether it may cancel the device's damping. If not, the program of the environment omits the
     /// code that certifies cancelled damping.
@@ -142,7 +141,7 @@ pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
     /// Its possible use of a torque profile.
     const PROFILE: ProfileUse;
 
-    /// What its law remembers for a coupling.
+    /// The past torques that its law stores for a coupling.
     const MEMORY: Memory;
 
     /// As data, for the certificate.

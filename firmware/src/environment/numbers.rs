@@ -8,7 +8,7 @@ use super::stated::{StatedBound, StatedModel};
 use crate::parameter::{NamedParameters, Parameter, numbers};
 
 impl Environment {
-    /// The value of a parameter, whole numbers included; `None` where it has none.
+    /// The value of a parameter, including whole numbers; `None` if the environment does not have it.
     pub const fn get(&self, parameter: Parameter) -> Option<f64> {
         match (parameter, self.rational()) {
             (Parameter::Delay, Some(rational)) => Some(rational.delay as f64),
@@ -21,8 +21,8 @@ impl Environment {
         }
     }
 
-    /// The environment with this value; `None` where there is no place for it, and for a delay or a number of
-    /// zeros that is not a whole number in its range.
+    /// The environment with this value; `None` if it does not have the parameter, or if a delay or a number
+    /// of zeros is not a whole number in its range.
     pub const fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
         let mut changed = *self;
         let is_whole = parameter.range().admits(value);

@@ -8,11 +8,11 @@ use crate::coupling::{Response, Slopes};
 use crate::number::Number;
 use crate::parameter::named_parameters;
 
-/// Any proper rational `E(z)` up to degree 8, with up to 8 samples of delay on top:
+/// Any proper rational `E(z)` up to degree 8, with up to 8 additional samples of delay:
 /// `E(z) = z^-delay (z - 1)^unit_zeros numerator(z) / denominator(z)`.
 ///
-/// Zeros at the end of the denominator are delay, too, and count as such where the numerator has as
-/// many degrees less.
+/// Zeros at the end of the denominator are also delay, and count as delay if the degree of the numerator is
+/// lower by as many.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rational {
     /// Numerator, descending powers of z.
@@ -21,8 +21,8 @@ pub struct Rational {
     pub denominator: Coefficients,
     /// Delay in whole samples.
     pub delay: usize,
-    /// Zeros at `z = 1` that multiply the numerator. Declaring them keeps them exact where the
-    /// coefficients of the product would not sum to zero in binary.
+    /// Zeros at `z = 1` that multiply the numerator. Declared zeros are exact, even if the coefficients of
+    /// the product would not sum to zero in binary.
     pub unit_zeros: usize,
 }
 
@@ -58,8 +58,8 @@ impl Coefficients {
         self.values.split_at(self.len).0
     }
 
-    /// The quotient by `z - root`, `root` being 1 or -1; `None` unless it and its remainder of zero
-    /// come out without any rounding.
+    /// The quotient by `z - root`, with `root` 1 or -1; `None` unless the remainder is zero and nothing was
+    /// rounded.
     const fn over_unit_root(&self, root: f64) -> Option<Self> {
         let mut quotient = Self { values: [0.0; MAX_DEGREE + 1], len: self.len - 1 };
         let mut carry = 0.0;
@@ -103,7 +103,7 @@ impl Coefficients {
     }
 }
 
-/// `a + b`; `None` where that has to be rounded.
+/// `a + b`; `None` if the sum needs rounding.
 const fn exact_sum(a: f64, b: f64) -> Option<f64> {
     let sum = a + b;
     let b_seen = sum - a;
@@ -111,7 +111,7 @@ const fn exact_sum(a: f64, b: f64) -> Option<f64> {
     if error == 0.0 { Some(sum) } else { None }
 }
 
-/// The law of a [`Rational`]: direct form II transposed, whose state is one sum a degree.
+/// The law of a [`Rational`]: direct form II transposed, whose state is one sum per degree.
 ///
 /// With the denominator's leading coefficient divided out and both polynomials in powers of
 /// `1/z`: `y = b_0 x + s_1`, then `s_i = b_i x - a_i y + s_(i+1)`.
@@ -162,9 +162,9 @@ impl<N: Number> Law<N> for RationalLaw<N> {
         self.delay.push(torque);
     }
 
-    /// At rest at zero, wherever the device is: for other places it would take the gain at rest, a
-    /// division that no tick has. No board renders a rational environment, since no bound is known
-    /// that covers its fading in.
+    /// At rest at zero for any position of the device: another position would need the gain at rest, a
+    /// division that a tick does not have. Boards do not render rational environments, because no known bound
+    /// covers their fading in.
     fn rest_at(&mut self, _: N) {
         for section in &mut self.sections {
             section.sum = N::ZERO;
@@ -221,11 +221,11 @@ impl<N: Number> Discretize<N> for Rational {
 }
 
 impl Rational {
-    /// The same transfer function without common factors `z - 1` and `z + 1` of numerator and
-    /// denominator, and with its delay apart: this form is certified and runs.
+    /// The same transfer function without common factors `z - 1` and `z + 1` of numerator and denominator,
+    /// and with its delay separate: this form is certified and runs.
     ///
-    /// A common factor does not show in the transfer function, but in a difference equation it is
-    /// an undamped mode that each rounding drives further.
+    /// A common factor is invisible in the transfer function, but in the difference equation it is an
+    /// undamped mode that rounding excites.
     pub(crate) const fn cancelled(&self) -> Self {
         let mut out = *self;
         out.cancel(1.0);
@@ -234,20 +234,21 @@ impl Rational {
         out
     }
 
-    /// Its delay in whole samples, in the denominator or beside it: that of [`Rational::cancelled`],
-    /// since cancelled factors add no delay.
+    /// Its total delay in whole samples, in the denominator and declared: the same as of
+    /// [`Rational::cancelled`], because cancelled factors add no delay.
     pub(crate) const fn whole_delay(&self) -> usize {
         self.delay + self.poles_at_zero()
     }
 
-    /// Takes poles at `z = 0` out of the denominator, each a sample of delay.
+    /// Moves poles at `z = 0` from the denominator to the delay, one sample each.
     const fn move_delay(&mut self) {
         let poles = self.poles_at_zero();
         self.denominator.len -= poles;
         self.delay += poles;
     }
 
-    /// Poles at `z = 0` that are delay: without them the rest is proper, and the delay can be stored.
+    /// The number of poles at `z = 0` that are delay: without them the rest is proper, and the delay can be
+    /// stored.
     const fn poles_at_zero(&self) -> usize {
         let zeros = if self.numerator.is_zero() { 0 } else { self.unit_zeros };
         let above =

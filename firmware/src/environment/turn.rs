@@ -1,4 +1,5 @@
-//! Angles within a turn, for what repeats for ever: nothing is lost after any number of turns.
+//! Angles within a turn, for laws that repeat without end, so that no error accumulates over any number of
+//! turns.
 
 use core::f64::consts::TAU;
 use core::hint::cold_path;
@@ -6,39 +7,39 @@ use core::hint::cold_path;
 use crate::build_error::BuildError;
 use crate::number::Number;
 
-/// A turn within which counts are counted, or from which, or none.
+/// The range of counts: within a turn, from a turn, or unlimited.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<N> {
-    /// Counts of it; without a turn more than any encoder has.
+    /// Counts of a turn; without a turn, more than any encoder has.
     counts: i32,
-    /// The count from which it counts, a whole number of turns, in its low 32 bits.
+    /// The low 32 bits of its origin, which is a whole number of turns.
     origin: i32,
     angle: N,
     extent: Extent,
 }
 
-/// How far angles go.
+/// The range of angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Extent {
-    /// As far as the device.
+    /// That of the device.
     Device,
-    /// A turn, after which they begin anew.
+    /// A turn, after which they wrap.
     Turn,
-    /// As far as the device, from the turn in which it starts nearest to a range, in rad.
+    /// That of the device, from the turn in which it starts nearest to this range in rad.
     Range([f64; 2]),
     /// The same in counts.
     Counted {
         /// Counts of a turn.
         turn: i32,
-        /// The lower end.
+        /// The lower end of the range.
         from: i32,
-        /// The upper end.
+        /// The upper end of the range.
         to: i32,
     },
 }
 
 impl<N: Number> Turn<N> {
-    /// The most counts of a turn: so that two of them are below half of the counter.
+    /// The largest number of counts in a turn, so that two turns are below half of the counter.
     const MOST_COUNTS: i32 = 1 << 28;
 
     /// No turn: positions are not wrapped.
@@ -46,23 +47,23 @@ impl<N: Number> Turn<N> {
         Self { counts: Self::MOST_COUNTS, origin: 0, angle: N::ZERO, extent: Extent::Device }
     }
 
-    /// A turn that is counted anew with each start; the position is then the nearest to a range in rad.
+    /// A turn whose count restarts with each start; the position is then the nearest to a range in rad.
     pub(crate) fn nearest_to(range: [f64; 2]) -> Self {
         Self { extent: Extent::Range(range), ..Self::none() }
     }
 
-    /// One of an encoder that is not known yet.
+    /// A turn of an encoder that is not known yet.
     ///
     /// # Errors
-    /// Where the number format has no room for a turn.
+    /// If the number format cannot represent a turn.
     pub(crate) fn endless() -> Result<Self, BuildError> {
         Ok(Self { angle: BuildError::number("a turn", TAU)?, extent: Extent::Turn, ..Self::none() })
     }
 
-    /// Takes the encoder's counts a turn.
+    /// Sets the encoder's counts per turn.
     ///
     /// # Errors
-    /// Where a turn has no whole number of them, or too many.
+    /// If a turn does not have a whole number of counts, or has too many.
     pub(crate) fn set_counts(&mut self, counts_per_turn: f64) -> Result<(), BuildError> {
         if self.extent == Extent::Device {
             return Ok(());
@@ -92,13 +93,13 @@ impl<N: Number> Turn<N> {
             }
             Extent::Device | Extent::Range(_) => return,
         };
-        // Its low bits are all that is compared.
+        // Only its low bits are compared.
         self.origin = origin as i32;
     }
 
-    /// The position within a turn, from its low 32 bits, and the whole turns, if any, by which it left the
-    /// one before: positions are from a turn below zero to one above, so that none is left for a step
-    /// back and forth. `None`: far away, and no turn to be within.
+    /// The position within a turn, from its low 32 bits, and the number of whole turns by which it has left
+    /// the previous turn. Positions range from a turn below zero to a turn above, so that small steps back
+    /// and forth do not leave the turn. `None`: far away, without a turn.
     #[inline(always)]
     pub(crate) fn within(&mut self, count: i32) -> Option<(i32, i32)> {
         let within = count.wrapping_sub(self.origin);
@@ -108,7 +109,7 @@ impl<N: Number> Turn<N> {
         cold_path();
         match self.extent {
             Extent::Turn => {}
-            // Beyond any range, and no position without the turns that were left out: the side is what counts.
+            // Beyond any range. Without the omitted turns the position is unknown; only the side matters.
             Extent::Counted { .. } => {
                 return Some((within.clamp(-Self::MOST_COUNTS, Self::MOST_COUNTS), 0));
             }
@@ -119,9 +120,9 @@ impl<N: Number> Turn<N> {
         Some((within % self.counts, turns))
     }
 
-    /// The angle in rad by which positions move when these turns are left.
+    /// The angle in rad by which positions move when this number of turns is left.
     pub(crate) fn left(&self, turns: i32) -> N {
-        /// What moves by more in a tick is a fault.
+        /// A larger motion in a tick is a fault.
         const MOST: u32 = 16;
         let mut angle = N::ZERO;
         for _ in 0..turns.unsigned_abs().min(MOST) {
@@ -130,24 +131,26 @@ impl<N: Number> Turn<N> {
         angle
     }
 
-    /// An angle in rad within a turn; the angle itself where there is none.
+    /// An angle in rad within a turn; without a turn, the angle itself.
     pub(crate) fn wrapped(&self, angle: f64) -> f64 {
         if self.extent == Extent::Turn { angle % TAU } else { angle }
     }
 }
 
-/// The position whole turns from `count` that is nearest to a range, and of these the nearest to `count`.
+/// The position nearest to a range among those a whole number of turns from `count`; of several, the nearest
+/// to `count`.
 fn nearest(count: i64, turn: i32, [from, to]: [i64; 2]) -> i64 {
     let away = |count: i64| (from - count).max(count - to).max(0);
     let sign = if count < from { 1 } else { -1 };
-    // The last one on this side of the range, or at its end; the next one may be within it or nearer.
+    // The last position on this side of the range, or at its end; the next position may be within the range
+    // or nearer.
     let here = count + sign * whole_turns(away(count), turn);
     let next = here + sign * i64::from(turn);
     if away(next) < away(here) { next } else { here }
 }
 
-/// A count modulo whole turns, toward zero. By digits, once in a start: a division of numbers as wide would
-/// take more of a board's flash than all the rest of this.
+/// A count modulo whole turns, toward zero. Digit by digit, once per start: a 64-bit division would take more
+/// of a board's flash than the rest of this module.
 #[cold]
 #[inline(never)]
 fn whole_turns(count: i64, turn: i32) -> i64 {
@@ -156,7 +159,7 @@ fn whole_turns(count: i64, turn: i32) -> i64 {
     let mut rest = 0;
     for _ in 0..u64::BITS / DIGIT {
         digits = digits.rotate_left(DIGIT);
-        // A turn has at most 2^28 counts, so that a digit more fits 32 bits.
+        // A turn has at most 2^28 counts, so one more digit fits 32 bits.
         rest = ((rest << DIGIT) | (digits as u32 % (1 << DIGIT))) % turn;
     }
     count - i64::from(rest) * count.signum()

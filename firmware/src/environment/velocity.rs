@@ -1,23 +1,23 @@
-//! The part of an environment that answers to velocity.
+//! The velocity-dependent part of an environment.
 //!
-//! All of it is one high-pass: with gain `g` and pole `a`,
-//! `g (z - 1) / (z - a)`, which is `g (x - s)` with the state `s += (1 - a) (x - s)`. A backward
-//! difference is the case `a = 0`, where the state is the last position.
+//! Every variant is a high-pass: with gain `g` and pole `a`, `g (z - 1) / (z - a)`, which is `g (x - s)` with
+//! the state `s += (1 - a) (x - s)`. A backward difference is the case `a = 0`, where the state is the last
+//! position.
 
 use crate::build_error::BuildError;
 use crate::number::Number;
 
-/// Something that adds a torque for velocity to a torque for position.
+/// Adds a torque for the velocity to a torque for the position.
 pub trait Velocity<N: Number>: Clone + core::fmt::Debug {
-    /// `torque` plus that for the velocity, in N m, with the environment at `x` (rad).
+    /// `torque` plus the torque for the velocity in N m, with the environment at `x` (rad).
     fn add_to(&self, torque: N, x: N) -> N;
     /// Ends the tick with the environment at `x_e` (rad).
     fn update(&mut self, x_e: N);
-    /// As if the environment had always been at `x_e` (rad).
+    /// Resets the state as if the environment had always been at `x_e` (rad).
     fn rest_at(&mut self, x_e: N);
-    /// Moves the positions that it remembers by so many rad.
+    /// Moves its stored positions by `by` rad.
     fn shift(&mut self, by: N);
-    /// Torque a position in this tick, in N m/rad.
+    /// Derivative of the torque with respect to this tick's position, in N m/rad.
     fn slope(&self) -> f64;
 }
 
@@ -51,7 +51,7 @@ pub struct Difference<N: Number> {
 }
 
 impl<N: Number> Difference<N> {
-    /// From `B` in N m s/rad and the period in s.
+    /// A damper from `B` in N m s/rad and the period in s.
     pub(crate) fn new(damping: f64, period: f64) -> Result<Self, BuildError> {
         let gain = BuildError::coefficient::<N>("wall damping / period", damping / period)?;
         Ok(Self { gain, previous: N::ZERO })
@@ -91,7 +91,7 @@ pub struct Washout<N: Number> {
 }
 
 impl<N: Number> Washout<N> {
-    /// From `g` in N m/rad and `1 - a`.
+    /// A high-pass from `g` in N m/rad and `1 - a`.
     pub(crate) fn new(gain: f64, rate: f64) -> Result<Self, BuildError> {
         Ok(Self {
             gain: BuildError::coefficient::<N>("high-pass gain", gain)?,
@@ -136,7 +136,7 @@ impl<N: Number> Velocity<N> for Washout<N> {
     }
 }
 
-/// Any of them, where the scene is data.
+/// Any of these, for scenes as data.
 #[derive(Clone, Copy, Debug)]
 pub enum AnyVelocity<N: Number> {
     /// A spring only.

@@ -1,4 +1,4 @@
-//! The law of every wall: a spring, perhaps a damper, perhaps a face, perhaps a delay.
+//! The law of every wall: a spring with an optional damper, face and delay.
 
 use super::delay_line::DelayLine;
 use super::law::Law;
@@ -7,11 +7,11 @@ use crate::build_error::BuildError;
 use crate::coupling::{Contact, Response, Slopes};
 use crate::number::Number;
 
-/// Where a wall is, and whether it can pull.
+/// The position of a wall, and whether it can pull.
 pub trait Side<N>: Clone + core::fmt::Debug {
     /// Depth in rad of the position `x` (rad) behind the wall's rest position.
     fn depth(&self, x: N) -> N;
-    /// Whether the wall is felt only at positive depths and only pushes.
+    /// Whether the wall acts only at positive depths and only pushes.
     fn one_sided(&self) -> bool;
 }
 
@@ -63,7 +63,7 @@ impl<N: Number> Side<N> for Face<N> {
     }
 }
 
-/// Any of them, where the scene is data.
+/// Any of these, for scenes as data.
 #[derive(Clone, Copy, Debug)]
 pub struct AnySide<N> {
     pub(crate) face: N,
@@ -90,7 +90,7 @@ pub struct WallLaw<N: Number, V, S, D> {
 }
 
 impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> WallLaw<N, V, S, D> {
-    /// From `K` in N m/rad and the parts.
+    /// A wall from `K` in N m/rad and its parts.
     pub(crate) fn new(stiffness: f64, velocity: V, side: S, delay: D) -> Result<Self, BuildError> {
         let stiffness = BuildError::coefficient::<N>("wall stiffness", stiffness)?;
         Ok(Self { stiffness, velocity, side, delay })
@@ -111,12 +111,12 @@ impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> WallLaw<N, V, S, D>
         } else if depth <= N::ZERO {
             N::ZERO
         } else {
-            // Where the depth is not a number the torque shall be none, either, which is a fault.
+            // If the depth is NaN, the torque must be NaN, too, which is a fault.
             self.line(x, depth).positive_part()
         }
     }
 
-    /// The undelayed offer.
+    /// The undelayed response.
     #[inline(always)]
     fn immediate(&self, x: N) -> Response<N> {
         let depth = self.side.depth(x);

@@ -1,4 +1,4 @@
-//! Springs and damper walls: their numbers in a scene, and the law from these.
+//! Springs and damper walls: their numbers in a scene, and their laws.
 
 use super::delay_line::{DelayLine, FixedDelay};
 use super::law::{Discretize, LawContext};
@@ -21,7 +21,7 @@ pub struct DelayedSpring<const DELAY: usize> {
 pub struct DamperWall<const DELAY: usize> {
     /// Stiffness `K` in N m/rad.
     pub stiffness: f64,
-    /// Damping `B` in N m s/rad; may be negative, which is for the certificate to judge.
+    /// Damping `B` in N m s/rad; may be negative: the certificate decides.
     pub damping: f64,
 }
 
@@ -45,7 +45,7 @@ pub struct Placed<W> {
     pub wall: W,
 }
 
-/// A wall that is felt only beyond `face` and never pulls.
+/// A wall that acts only beyond `face` and never pulls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OneSided<W> {
     /// Position of the face in rad; the wall occupies the angles above it.
@@ -65,16 +65,16 @@ named_parameters! {
 
 /// A wall at rest at zero that pushes and pulls; it may be [`Placed`] or [`OneSided`].
 pub trait Spring<N: Number> {
-    /// What answers to velocity.
+    /// The velocity-dependent part.
     type Velocity: Velocity<N>;
     /// The stored samples.
     type Delay: DelayLine<N>;
     /// Stiffness `K` in N m/rad.
     fn stiffness(&self) -> f64;
-    /// The part that answers to velocity.
+    /// The velocity-dependent part.
     ///
     /// # Errors
-    /// Where a coefficient does not fit the number format.
+    /// If a coefficient does not fit the number format.
     fn velocity(&self, setting: &LawContext) -> Result<Self::Velocity, BuildError>;
     /// The stored samples, at rest.
     fn delay(&self) -> Self::Delay;

@@ -1,50 +1,50 @@
-//! How a sweep ended: the last word of the record on the wire.
+//! The end of a sweep, which is the last word of the record on the wire.
 
 /// Version of the protocol of a board that plays a sweep.
 pub const SWEEP_PROTOCOL: u32 = 2;
 
 /// Bytes that the host sends.
 pub mod byte {
-    /// Requests the description: `identify,PROTOCOL,period,counts per turn,ticks,travel,speed`, and of a board
-    /// whose own bridge drives the motor `,gain,resistance,inductance,feedback,instant,loss,step,crossing` of its
+    /// Requests the description: `identify,PROTOCOL,period,counts per turn,ticks,travel,speed`, and, with the
+    /// board's own bridge, `,gain,resistance,inductance,feedback,instant,loss,step,crossing` of its
     /// [`TorqueSource`](crate::current::TorqueSource).
     pub const DESCRIBE: u8 = b'?';
-    /// Begins the sweep. The record follows, and behind it `end,WORD,count`.
+    /// Begins the sweep. The record follows, and after it `end,WORD,count`.
     pub const BEGIN: u8 = b'g';
-    /// Keep-alive of the host; any byte but these three ends the sweep.
+    /// Keep-alive of the host; any byte except these three ends the sweep.
     pub const LISTENING: u8 = b'k';
-    /// A byte that ends it.
+    /// A byte that ends the sweep.
     pub const STOP: u8 = b'x';
 }
 
-/// Time in s without a byte from the host after which a sweep ends, as it is not supervised.
+/// Time in s without a byte from the host after which an unsupervised sweep ends.
 pub const SILENCE: f64 = 0.5;
 
-/// How a sweep ended.
+/// The end of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SweepEnd {
-    /// To its last sample.
+    /// The sweep is complete.
     Done,
-    /// The host wanted it to.
+    /// The host stopped it.
     Stopped,
-    /// The host was not heard any more.
+    /// The host has sent no byte for [`SILENCE`].
     Silent,
     /// A tick came late or not at all, so that a torque was held for too long.
     MissedTick,
-    /// A row found no room on the line to the host.
+    /// A row was lost because the queue to the host was full.
     LostRow,
     /// The device left the limits of its travel.
     Travel,
     /// The device was faster than its limit.
     Speed,
-    /// The encoder moved as no device can.
+    /// The encoder moved further than a device can.
     Jump,
-    /// The board's bridge took the torque away.
+    /// The board's bridge removed the torque.
     OutputFault,
 }
 
 impl SweepEnd {
-    /// All of them.
+    /// All ends.
     pub const ALL: [Self; 9] = [
         Self::Done,
         Self::Stopped,
@@ -79,7 +79,7 @@ impl SweepEnd {
         }
     }
 
-    /// The end of this word.
+    /// The end with this word.
     pub fn find(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|end| end.as_str() == word)
     }

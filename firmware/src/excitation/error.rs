@@ -1,11 +1,11 @@
-//! Why tones are no sweep.
+//! Errors of a sweep.
 
 use core::fmt;
 
 use super::LEAST_PERIODS;
 use crate::text::Text;
 
-/// Errors in a sweep. Tones are counted from 0.
+/// An error of a sweep. Tones are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SweepError {
     /// The period or the motor's torque is zero, negative or not finite.
@@ -21,10 +21,10 @@ pub enum SweepError {
         tone: usize,
         /// Its frequency in Hz.
         frequency: f64,
-        /// Half the sampling rate in Hz, which it must be below.
+        /// Half the sampling rate in Hz, the upper bound.
         largest: f64,
     },
-    /// An amplitude that the DAC cannot give.
+    /// An amplitude outside the DAC's range.
     Amplitude {
         /// Which tone.
         tone: usize,
@@ -39,18 +39,18 @@ pub enum SweepError {
     Periods {
         /// Which tone.
         tone: usize,
-        /// How many are to be measured.
+        /// The number of measured periods.
         measured: u32,
     },
-    /// Periods that take no whole number of samples, or too many.
+    /// Periods that do not take a whole number of samples, or take too many.
     Samples {
         /// Which tone.
         tone: usize,
-        /// How many periods.
+        /// The number of periods.
         periods: u32,
-        /// How many samples they take.
+        /// The number of samples.
         samples: f64,
-        /// The most that there may be.
+        /// The largest number of samples.
         most: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! A sweep's codes, one a sample.
+//! The codes of a sweep, one per sample.
 
 use super::sine::{QUINTIC, sine};
 use super::{Step, Sweep};
@@ -9,26 +9,26 @@ use crate::dac::DacCode;
 pub struct Excitation {
     /// Code for the DAC.
     pub code: DacCode,
-    /// The tone that this sample belongs to the measured part of; `None` while the device settles
-    /// and after the sweep.
+    /// The tone whose measured part contains this sample; `None` while the device settles and after the
+    /// sweep.
     pub measured: Option<usize>,
 }
 
 /// Plays a sweep.
 ///
-/// The sine is a polynomial whose error is below that of the nearest code, at full scale too. It is
-/// the cheapest that is: each of the others takes more instructions, or is off by codes.
+/// The sine is a polynomial whose error is below that of the nearest code, even at full scale. It is the
+/// cheapest such method: all others take more instructions or have errors of codes.
 #[derive(Clone, Debug)]
 pub struct Exciter<'a> {
     steps: &'a [Step],
     step: usize,
     sample: u32,
-    /// In parts of a turn, of which there are as many as the step has measured samples.
+    /// Phase in parts of a turn, with as many parts as the step has measured samples.
     phase: u32,
 }
 
 impl<'a> Exciter<'a> {
-    /// At the sweep's beginning.
+    /// An exciter at the beginning of the sweep.
     pub const fn new<const N: usize>(sweep: &'a Sweep<N>) -> Self {
         Self { steps: &sweep.steps, step: 0, sample: 0, phase: 0 }
     }
@@ -58,7 +58,7 @@ impl<'a> Exciter<'a> {
     }
 }
 
-/// The nearest code to so many codes of torque.
+/// The nearest code to a torque in codes.
 fn code(codes: f32) -> DacCode {
     const MOST: i16 = DacCode::CODES_TO_FULL_SCALE.cast_signed();
     let half = if codes < 0.0 { -0.5 } else { 0.5 };

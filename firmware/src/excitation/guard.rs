@@ -1,4 +1,4 @@
-//! How far and how fast a device may move while it is driven open loop, with nothing that holds it.
+//! Limits of a device's motion while it is driven open loop.
 
 use core::f64::consts::TAU;
 
@@ -8,28 +8,28 @@ use crate::transducers::Transducers;
 /// Limits of the motion. Beyond any of them the sweep ends and the amplifier goes off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionLimits {
-    /// Farthest from where the sweep began, in rad, either way.
+    /// Largest distance in rad from the beginning of the sweep, in either direction.
     pub travel: f64,
-    /// Fastest in rad/s. Below the transducers' largest speed, beyond which the encoder is not
-    /// believed: that is a jump.
+    /// Largest speed in rad/s. It must be below the transducers' largest speed, above which a motion counts
+    /// as a jump of the encoder.
     pub speed: f64,
 }
 
 /// The same limits in counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Guard {
-    /// Counts from where the sweep began.
+    /// Largest distance from the beginning of the sweep in counts.
     travel: u32,
-    /// Counts in a period.
+    /// Largest motion within a period in counts.
     speed: u32,
-    /// Counts in a period that no device moves by.
+    /// Motion within a period in counts that no device makes.
     jump: u32,
 }
 
 impl Guard {
     /// The limits for an encoder that is read every `period` s.
     ///
-    /// Stops the compiler, where it is a constant, if a limit is not positive or the speed's is not
+    /// Panics, in a constant as a compile error, if a limit is not positive or the limit of the speed is not
     /// below the largest speed.
     #[track_caller]
     pub const fn planned(limits: &MotionLimits, transducers: &Transducers, period: f64) -> Self {
@@ -43,7 +43,7 @@ impl Guard {
         );
         let counts = counts_per_turn / TAU;
         let (speed, jump) = (speed * period * counts, largest_speed * period * counts);
-        // The casts round down; a count more is the encoder's step.
+        // The casts round down; one count more is for the encoder's step.
         Self {
             travel: (travel * counts) as u32 + 1,
             speed: speed as u32 + 1,
@@ -51,7 +51,7 @@ impl Guard {
         }
     }
 
-    /// Why a motion ends the sweep: so many counts from its beginning, `step` of them in the last
+    /// The reason if a motion ends the sweep: `travel` counts from its beginning, `step` of them in the last
     /// period.
     pub const fn check(&self, travel: i32, step: i32) -> Option<SweepEnd> {
         let step = step.unsigned_abs();

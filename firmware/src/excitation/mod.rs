@@ -1,10 +1,10 @@
-//! Sines of torque that a device is measured with (theory, section 3.3).
+//! Sines of torque for the measurement of a device (theory, section 3.3).
 //!
-//! A [`Sweep`] is made of tones in plain SI numbers and checked as a whole, at compile time where
-//! it is a constant; an [`Exciter`] gives its codes, the same ones on a board and on the host.
+//! A [`Sweep`] is made of tones in plain SI numbers and checked as a whole, for constants at compile time; an
+//! [`Exciter`] computes its codes, the same on a board and on the host.
 //!
-//! Each tone lasts a whole number of samples, the part that is measured as well as the part in which
-//! the device settles, so that one bin of a Fourier sum is the response, and nothing leaks into it.
+//! Each tone lasts a whole number of samples, both the settling part and the measured part, so that one bin
+//! of a Fourier sum is the response without leakage.
 //!
 //! ```
 //! use haptic_servo::encoder::CounterWidth;
@@ -48,13 +48,13 @@ pub use guard::{Guard, MotionLimits};
 use crate::dac::DacCode;
 use crate::transducers::Transducers;
 
-/// Fewest periods that are measured of a tone.
+/// The smallest number of measured periods of a tone.
 pub const LEAST_PERIODS: u32 = 4;
 
-/// Most samples of a part of a tone: all whole numbers up to here have exact phases in `f32`.
+/// The largest number of samples of a part of a tone: up to this number phases are exact in `f32`.
 const MOST_SAMPLES: f64 = (1 << 20) as f64;
 
-/// How far a number of samples may be from a whole one, relatively: what rounding leaves.
+/// Relative tolerance of a whole number of samples, for rounding.
 const WHOLE: f64 = 1e-9;
 
 /// One sine.
@@ -70,8 +70,7 @@ pub struct Tone {
     pub measured: u32,
 }
 
-/// Tones one after the other, checked: every one within the DAC's range and a whole number
-/// of samples long.
+/// A checked sequence of tones: each within the DAC's range and a whole number of samples long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep<const N: usize> {
     period: f64,
@@ -87,7 +86,7 @@ struct Step {
     settle: u32,
     /// Samples that are measured.
     measured: u32,
-    /// Periods in the measured samples: the sine turns by `cycles / measured` a sample.
+    /// Periods in the measured samples: the sine turns by `cycles / measured` per sample.
     cycles: u32,
     /// Amplitude in codes.
     codes: f32,
@@ -97,7 +96,7 @@ impl<const N: usize> Sweep<N> {
     /// Checks tones for a period in s and a motor.
     ///
     /// # Errors
-    /// For the first tone that is out of the range of DAC or sampling, or whose parts are no whole
+    /// For the first tone that is out of the range of DAC or sampling, or whose parts do not take a whole
     /// number of samples.
     pub const fn new(
         period: f64,
@@ -124,7 +123,7 @@ impl<const N: usize> Sweep<N> {
         Ok(Self { period, full_scale_torque, tones, steps })
     }
 
-    /// The same for a constant: tones that are refused stop the compiler, with a sentence.
+    /// The same for a constant: refused tones are a compile error.
     #[track_caller]
     pub const fn planned(period: f64, transducers: &Transducers, tones: [Tone; N]) -> Self {
         match Self::new(period, transducers, tones) {
@@ -148,7 +147,7 @@ impl<const N: usize> Sweep<N> {
         &self.tones
     }
 
-    /// Samples of the whole.
+    /// Number of samples of the sweep.
     pub const fn ticks(&self) -> u64 {
         let (mut ticks, mut i) = (0, 0);
         while i < N {
@@ -187,7 +186,7 @@ const fn step(
     }
 }
 
-/// The samples of so many periods.
+/// The number of samples of a number of periods.
 const fn whole(tone: usize, periods: u32, frequency: f64, period: f64) -> Result<u32, SweepError> {
     let samples = periods as f64 / (frequency * period);
     let nearest = (samples + 0.5) as u32;
@@ -199,7 +198,7 @@ const fn whole(tone: usize, periods: u32, frequency: f64, period: f64) -> Result
     }
 }
 
-/// The plan: a line a tone, and how long it takes.
+/// The plan: one line per tone, and the duration.
 impl<const N: usize> fmt::Display for Sweep<N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{:>10} {:>14} {:>12} {:>12}", "frequency", "amplitude", "settle", "measured")?;

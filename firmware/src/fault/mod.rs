@@ -12,32 +12,32 @@ use core::panic::PanicInfo;
 
 use crate::current::PowerFault;
 
-/// What stopped the servo, with the numbers to it.
+/// A fault with its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// More updates were missed than the certificate tolerates: a tick came late, or ended after
     /// its update.
     MissedTick {
-        /// Updates that were missed in a row.
+        /// Consecutive missed updates.
         missed: u32,
-        /// Updates in a row that the certificate's worst period allows to miss.
+        /// Consecutive updates that may be missed under the certificate's worst period.
         tolerated: u32,
     },
-    /// The encoder moved further than the device can.
+    /// The encoder moved further than the device can move.
     EncoderJump {
-        /// Counts that it moved, without their sign.
+        /// The motion in counts, without its sign.
         counts: u32,
-        /// The most that the device's largest speed allows in the time.
+        /// The largest motion in counts in this time at the device's largest speed.
         largest: u32,
     },
     /// The torque was not a number.
     NotANumber,
-    /// The host has not been heard for too long.
+    /// The host has been silent for too long.
     LinkLost {
-        /// Ticks without a message that are allowed.
+        /// Allowed ticks without a message.
         allowed: u32,
     },
-    /// The servo's interrupt stopped coming, and the watchdog reset the chip.
+    /// The servo's interrupt stopped, and the watchdog reset the chip.
     Watchdog,
     /// The program panicked.
     Panic {
@@ -53,33 +53,33 @@ pub enum Fault {
         /// The processor's configurable fault status.
         status: u32,
     },
-    /// A tick began later in its period than the certificate allows for its count, or had no code before
-    /// the time at which it is put out.
+    /// A tick began later in its period than the certificate allows for its count, or its code was not ready
+    /// at the time of the output.
     LateTick {
         /// Timer counts after the beginning of its period.
         late: u32,
-        /// The most that is allowed.
+        /// The largest allowed value.
         allowed: u32,
     },
-    /// The crystal that the core's clock comes from has stopped.
+    /// The crystal of the core's clock has stopped.
     ClockLost,
-    /// A word of the flash memory has more wrong bits than its error correction can restore.
+    /// A word of the flash memory has more wrong bits than the error correction can repair.
     FlashEcc {
         /// The word's place in its bank of the flash memory, in bytes.
         address: u32,
-        /// The memory's whole register of errors.
+        /// The content of the memory's error register.
         status: u32,
     },
     /// A word of RAM has a wrong parity.
     RamParity,
-    /// A non-maskable interrupt of which the chip does not say the cause.
+    /// A non-maskable interrupt without a cause in the chip's registers.
     NonMaskable,
-    /// The board's bridge, or the motor on it.
+    /// A fault of the board's bridge, or of its motor.
     Power(PowerFault),
 }
 
 impl Fault {
-    /// The fault that a panic is, for a panic handler.
+    /// The fault of a panic, for a panic handler.
     pub fn of_panic(info: &PanicInfo<'_>) -> Self {
         let (line, column) = info.location().map_or((0, 0), |at| (at.line(), at.column()));
         Self::Panic { line, column }
@@ -104,8 +104,8 @@ impl Fault {
         }
     }
 
-    /// The fault as a code, never zero, and its two numbers. Codes stay what they are, so that a host
-    /// and a board of different ages understand each other; 4 was of a fault that no board can have.
+    /// The fault as a code, never zero, and two numbers. Codes never change, so that hosts and boards of
+    /// different versions understand each other; 4 was the code of a fault that no longer exists.
     pub const fn encode(self) -> (u32, [u32; 2]) {
         match self {
             Self::MissedTick { missed, tolerated } => (1, [missed, tolerated]),
@@ -148,7 +148,7 @@ impl Fault {
     }
 }
 
-/// What happened, the value, the bound, and how it is cleared.
+/// The event, the value, the bound, and the remedy.
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

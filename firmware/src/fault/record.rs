@@ -1,4 +1,4 @@
-//! The record of a fault in memory that outlives a reset.
+//! The record of a fault in memory that survives a reset.
 
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
@@ -7,24 +7,24 @@ use super::Fault;
 /// Marks the words as a record of this layout.
 const MAGIC: u32 = 0x4841_5031;
 
-/// Without a table: a record is written once, and a table would take a kilobyte.
+/// Without a table, which would take a kilobyte: a record is rarely written.
 const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
-/// A fault, and when and where it happened.
+/// A fault with its tick and position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultRecord {
-    /// What happened.
+    /// The fault.
     pub fault: Fault,
-    /// The tick in which it happened; 0 where that is not known.
+    /// The tick of the fault; 0 if unknown.
     pub tick: u32,
-    /// The position's low 32 bits in counts; 0 where that is not known.
+    /// The position's low 32 bits in counts; 0 if unknown.
     pub count: i32,
 }
 
 impl FaultRecord {
     /// Length of a record in words.
     pub const WORDS: usize = 7;
-    /// Words that are no record.
+    /// Words that are not a record.
     pub const NOTHING: [u32; Self::WORDS] = [0; Self::WORDS];
 
     /// The record as words.
@@ -34,7 +34,7 @@ impl FaultRecord {
         sealed(words)
     }
 
-    /// The record in these words; `None` for anything that [`FaultRecord::encode`] did not write.
+    /// The record in these words; `None` if [`FaultRecord::encode`] cannot have written them.
     pub fn decode(words: &[u32; Self::WORDS]) -> Option<Self> {
         let [magic, code, a, b, tick, count, _] = *words;
         if magic != MAGIC || sealed(*words) != *words {
@@ -45,7 +45,7 @@ impl FaultRecord {
     }
 }
 
-/// The words with their check sum in the last place.
+/// The words with their checksum in the last word.
 fn sealed(words: [u32; FaultRecord::WORDS]) -> [u32; FaultRecord::WORDS] {
     let [magic, code, a, b, tick, count, _] = words;
     let mut digest = CRC.digest();

@@ -1,40 +1,40 @@
-//! The number formats that are compared with each other, as data.
+//! The number formats as data, for comparisons.
 
 use fixed::types::{I1F31, I8F24, I16F16};
 
 use super::{Format, Number, Truncated};
 
-/// A number format that a servo may compute in.
+/// A number format for a servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Arithmetic {
-    /// IEEE binary32, of which the boards' cores have a unit.
+    /// IEEE binary32, in the floating-point unit of the boards' cores.
     F32,
-    /// IEEE binary64, which they do in software.
+    /// IEEE binary64, in software on these cores.
     F64,
-    /// To 32768 rad or N m, in steps of 1.5e-5.
+    /// Up to 32768 rad or N m, in steps of 1.5e-5.
     I16F16,
-    /// The same, cut off.
+    /// The same, truncated.
     I16F16Truncated,
-    /// To 128 rad or N m, in steps of 6e-8.
+    /// Up to 128 rad or N m, in steps of 6e-8.
     I8F24,
-    /// The same, cut off.
+    /// The same, truncated.
     I8F24Truncated,
-    /// To 1, in the units to which the scene is scaled, by 5e-10.
+    /// Up to 1 in the units of a scaled scene, in steps of 5e-10.
     I1F31,
-    /// The same, cut off.
+    /// The same, truncated.
     I1F31Truncated,
 }
 
-/// Something to be done in a number format that is known at run time.
+/// A computation in a number format that is selected at run time.
 pub trait InEach {
     /// The result.
     type Output;
-    /// Does it in the format `N`.
+    /// Computes in the format `N`.
     fn with<N: Number>(self) -> Self::Output;
 }
 
 impl Arithmetic {
-    /// All of them.
+    /// All formats.
     pub const ALL: [Self; 8] = [
         Self::F32,
         Self::F64,
@@ -65,12 +65,12 @@ impl Arithmetic {
         self.choose(OfNumber)
     }
 
-    /// Whether a scene has to be scaled for it: neither a turn nor a torque of 1 N m fits.
+    /// Whether a scene must be scaled for it, because neither a turn nor a torque of 1 N m fits.
     pub const fn is_scaled(self) -> bool {
         matches!(self, Self::I1F31 | Self::I1F31Truncated)
     }
 
-    /// Does something in this format.
+    /// Computes in this format.
     pub fn choose<W: InEach>(self, what: W) -> W::Output {
         match self {
             Self::F32 => what.with::<f32>(),

@@ -1,13 +1,13 @@
-//! What a format makes of a coefficient, by a function that the compiler can run: the certificate
-//! judges the coefficients that the servo multiplies by, not those that a person wrote.
+//! The rounding of a coefficient by a number format, as a `const fn`: the certificate judges the rounded
+//! coefficients of the servo, not the written numbers.
 
 use super::fixed_point::{self, Scaled};
 use super::rounding::Rounding;
 use super::{Format, float};
 
 impl Format {
-    /// The value of the coefficient that this format makes of `value`. What the format does not
-    /// hold is given back as it is: it is refused by name where the servo is built.
+    /// The value of the coefficient after rounding to this format. A value that the format cannot represent
+    /// is returned unchanged; building the servo refuses it with its name.
     #[cfg_attr(target_os = "none", inline(never))]
     pub const fn coefficient(self, value: f64, rounding: Rounding) -> f64 {
         match self {
@@ -19,19 +19,19 @@ impl Format {
         }
     }
 
-    /// What [`Number::parts_scale`](super::Number::parts_scale) makes of parts in a rad.
+    /// Parts per rad as rounded by [`Number::parts_scale`](super::Number::parts_scale).
     pub(crate) const fn parts_per_rad(self, value: f64) -> f64 {
         let steps = self.steps_per_unit();
         self.coefficient(value / steps, Rounding::Nearest) * steps
     }
 
-    /// What [`Number::part_scale`](super::Number::part_scale) makes of the torque in N m of a part.
+    /// The torque in N m of a part as rounded by [`Number::part_scale`](super::Number::part_scale).
     pub(crate) const fn torque_of_part(self, value: f64) -> f64 {
         let steps = self.steps_per_unit();
         self.coefficient(value * steps, Rounding::Nearest) / steps
     }
 
-    /// Steps of a fixed-point format in a rad or a N m, a power of two; 1 in floating point.
+    /// Steps of a fixed-point format per rad or N m, a power of two; 1 in floating point.
     const fn steps_per_unit(self) -> f64 {
         match self {
             Self::Fixed { fraction_bits } | Self::Truncated { fraction_bits } => {
@@ -41,8 +41,7 @@ impl Format {
         }
     }
 
-    /// The most by which a number of this magnitude is off when it is rounded, half a step, or cut
-    /// off, a whole one.
+    /// The largest error of a number of this magnitude: half a step if rounded, a whole step if truncated.
     pub fn rounding_error(self, magnitude: f64) -> f64 {
         match self {
             Self::F32 => 0.5 * f64::from(f32::EPSILON) * magnitude,
@@ -56,7 +55,7 @@ impl Format {
 const fn to_f32(value: f64, rounding: Rounding) -> f32 {
     let nearest = value as f32;
     let (found, wanted) = ((nearest as f64).abs(), value.abs());
-    // The bits of a float are in the order of its magnitude.
+    // The bits of floats have the order of their magnitudes.
     match rounding {
         Rounding::Inward if found > wanted => f32::from_bits(nearest.to_bits() - 1),
         Rounding::Outward if found < wanted => f32::from_bits(nearest.to_bits() + 1),

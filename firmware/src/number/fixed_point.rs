@@ -12,10 +12,10 @@ pub(super) const LARGEST: f64 = i32::MAX as f64;
 
 /// A coefficient of the fixed-point formats: `mantissa / 2^shift`.
 ///
-/// Each coefficient has its own binary point. In the format of the angles and torques the paper's
-/// coupling compliance 1/44 would be off by 3e-4, the encoder's step of 1e-4 rad by a third
-/// (theory, section 9). Here a coefficient is off by at most 2^-32, so that the product with the
-/// largest number is off by half a step of the format, at the same cost in the tick.
+/// Each coefficient has its own binary point. In the format of the angles and torques the paper's coupling
+/// compliance 1/44 would have a relative error of 3e-4, and the encoder's step of 1e-4 rad of a third
+/// (theory, section 9). Here the relative error of a coefficient is at most 2^-32, so that the error of the
+/// product with the largest number is half a step of the format, at the same cost in the tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scaled {
     mantissa: i32,
@@ -27,25 +27,25 @@ impl Scaled {
     /// in place of eight.
     const LARGEST_SHIFT: u32 = 31;
 
-    /// The nearest to `value`; an error from 2^31 on. Once a coefficient and never in a tick, so
-    /// that it is in a program once.
+    /// The nearest coefficient to `value`; an error from 2^31 on. Not inlined: it runs once per coefficient
+    /// and never in a tick.
     #[inline(never)]
     pub(super) fn new(value: f64, format: Format) -> Result<Self, OutOfRange> {
         bounded(value, LARGEST, format).map(|value| Self::of(value, Rounding::Nearest))
     }
 
-    /// The nearest to `value` that is not farther from zero.
+    /// The nearest coefficient to `value` that is not farther from zero.
     fn inward(value: f64, format: Format) -> Result<Self, OutOfRange> {
         bounded(value, LARGEST, format).map(|value| Self::of(value, Rounding::Inward))
     }
 
-    /// Rounds a value of magnitude up to [`LARGEST`]. The binary point moves with the value's
-    /// power of two alone, so that of two values the larger never gives the smaller coefficient.
+    /// Rounds a value of magnitude up to [`LARGEST`]. The binary point only depends on the value's power of
+    /// two, so rounding never reverses the order of two values.
     pub(super) const fn of(value: f64, rounding: Rounding) -> Self {
         let magnitude = value.abs();
         let exponent = (magnitude.to_bits() >> 52) as i32 - 1023;
         let mut shift = if exponent < 0 { Self::LARGEST_SHIFT } else { (30 - exponent) as u32 };
-        // Both the product and what its whole part leaves are exact.
+        // Both the product and its fractional part are exact.
         let scaled = magnitude * (1_u32 << shift) as f64;
         let whole = scaled as u32;
         let rest = scaled - whole as f64;
@@ -78,8 +78,8 @@ impl Scaled {
         nearest(product.wrapping_add(half) >> shift)
     }
 
-    /// `bits * self` cut off: the nearest `i32` to the largest whole number that is not above it, and
-    /// whether it is that number.
+    /// `bits * self` truncated: the nearest `i32` to the largest whole number that is not above the product,
+    /// and whether they are equal.
     #[inline(always)]
     pub(super) fn scale_down(self, bits: i32) -> (i32, bool) {
         let product = i64::from(bits) * i64::from(self.mantissa);

@@ -62,15 +62,15 @@ macro_rules! floating_point {
 
             #[inline(always)]
             fn is_from_zero_to(self, bound: Self) -> bool {
-                // The bits of a float are in the order of its magnitude, and above those of all numbers
-                // that are not negative come a NaN's and whatever has a sign.
+                // The bits of floats have the order of their magnitudes; NaNs and numbers with a sign bit are
+                // above all non-negative numbers.
                 self.to_bits() <= bound.to_bits()
             }
 
             #[inline(always)]
             fn positive_part(self) -> Self {
-                // Clears all bits where the sign is set: three integer instructions in place of
-                // five for a comparison and a choice.
+                // Clears all bits if the sign is set: three integer instructions in place of five for a
+                // comparison and a choice.
                 let bits = self.to_bits().cast_signed();
                 Self::from_bits((bits & !(bits >> ($bits - 1))).cast_unsigned())
             }
@@ -108,9 +108,9 @@ macro_rules! floating_point {
 
             #[inline(always)]
             fn codes_below(self, centre: u16, scale: Self) -> u16 {
-                // Around 1.5 * 2^(mantissa bits) neighbouring floats are 1 apart, so that the
-                // subtraction itself rounds to the nearest code, which is then found in the low
-                // bits. A cast would add the instructions of its saturation.
+                // Around 1.5 * 2^(mantissa bits) neighbouring floats are 1 apart, so the subtraction itself
+                // rounds to the nearest code, which is then in the low bits. A cast would add the
+                // instructions of its saturation.
                 let centre = $integers_from + $float::from(centre);
                 ((centre - self * scale).to_bits() & 0xfff) as u16
             }

@@ -1,8 +1,8 @@
-//! Number formats that the servo can compute in, and no more of them than a tick needs.
+//! Number formats of the servo, with only the operations that a tick needs.
 //!
-//! A [`Number`] holds angles (rad) and torques (N m). What multiplies them is a
-//! [`Number::Coefficient`], computed once from plain SI values. All operations of the tick give
-//! the same bits on every machine: no fused multiply-add, no library function, no division.
+//! A [`Number`] holds angles (rad) and torques (N m). Their factors are of type [`Number::Coefficient`],
+//! computed once from plain SI values. All operations of the tick give the same bits on every machine: no
+//! fused multiply-add, no library function, no division.
 
 mod arithmetic;
 mod coefficient;
@@ -13,7 +13,7 @@ mod rounding;
 mod tests;
 mod truncated;
 
-/// The crate of the fixed-point formats, in the version that is meant.
+/// The crate of the fixed-point formats, in the version used here.
 pub use fixed;
 
 pub use arithmetic::{Arithmetic, InEach};
@@ -27,7 +27,7 @@ use crate::text::Text;
 
 /// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`], rounded or [`Truncated`].
 pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
-    /// What multiplies a number: a gain, a compliance, a scale.
+    /// A factor of a number: a gain, a compliance, a scale.
     type Coefficient: Copy + fmt::Debug;
     /// The format's name and resolution, for messages.
     const FORMAT: Format;
@@ -36,21 +36,21 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
 
     /// Rounds a value in SI units to the format; an error if it does not fit.
     fn from_f64(value: f64) -> Result<Self, OutOfRange>;
-    /// Rounds a positive bound towards zero, so that what keeps within it keeps within the value.
+    /// Rounds a positive bound towards zero, so that a number within the rounded bound is within the value.
     fn bound_from_f64(value: f64) -> Result<Self, OutOfRange>;
     /// The number in SI units, exactly.
     fn to_f64(self) -> f64;
     /// Rounds a factor to the format's coefficients; an error if it does not fit.
     fn coefficient(value: f64) -> Result<Self::Coefficient, OutOfRange>;
-    /// The value of a coefficient, exactly: what the servo really multiplies by.
+    /// The exact value of a coefficient, by which the servo multiplies.
     fn coefficient_to_f64(coefficient: Self::Coefficient) -> f64;
 
     /// Sum; saturates in fixed point.
     fn plus(self, other: Self) -> Self;
     /// Difference; saturates in fixed point.
     fn minus(self, other: Self) -> Self;
-    /// Product with a coefficient, rounded to nearest, or cut off in a [`Truncated`] format;
-    /// saturates in fixed point.
+    /// Product with a coefficient, rounded to nearest, or truncated in a [`Truncated`] format; saturates in
+    /// fixed point.
     fn times(self, coefficient: Self::Coefficient) -> Self;
     /// The number with the opposite sign; saturates in fixed point.
     fn negated(self) -> Self;
@@ -62,14 +62,14 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     fn is_from_zero_to(self, bound: Self) -> bool {
         self >= Self::ZERO && self <= bound
     }
-    /// The number where it is positive, else zero. Of a NaN: by its sign, itself or zero.
+    /// The number if it is positive, otherwise zero. For a NaN: by its sign, itself or zero.
     fn positive_part(self) -> Self;
-    /// The smaller of two; `self` where one is a NaN.
+    /// The smaller of two; `self` if one is a NaN.
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
-    /// The larger of two; `self` where one is a NaN.
+    /// The larger of two; `self` if one is a NaN.
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
         if self < other { other } else { self }
@@ -77,16 +77,16 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
 
     /// The factor for [`Number::angle`] from the encoder's step in rad, rounded [`Rounding::Inward`].
     fn angle_scale(radians_per_count: f64) -> Result<Self::Coefficient, OutOfRange>;
-    /// Angle of an encoder count in rad, and whether it fits the format; if not, it is the end of
-    /// the format's range.
+    /// Angle of an encoder count in rad, and whether it fits the format; if not, the angle is the end of the
+    /// format's range.
     fn angle(count: i32, scale: Self::Coefficient) -> (Self, bool);
-    /// The factor for [`Number::parts`] from parts in a rad.
+    /// The factor for [`Number::parts`] from parts per rad.
     fn parts_scale(parts_per_rad: f64) -> Result<Self::Coefficient, OutOfRange>;
-    /// The angle in whole parts, cut off or rounded; the nearest `i32` where it is out of range.
+    /// The angle in whole parts, truncated or rounded; the nearest `i32` if it is out of range.
     fn parts(self, scale: Self::Coefficient) -> i32;
     /// The factor for [`Number::of_parts`] from the torque in N m of a part.
     fn part_scale(torque: f64) -> Result<Self::Coefficient, OutOfRange>;
-    /// The torque in N m of so many parts.
+    /// The torque in N m of a number of parts.
     fn of_parts(parts: i32, scale: Self::Coefficient) -> Self;
     /// The factor for [`Number::codes_below`] from the DAC's codes per N m, rounded
     /// [`Rounding::Inward`].
@@ -108,7 +108,7 @@ pub enum Format {
         /// Number of fractional bits.
         fraction_bits: u32,
     },
-    /// The same, with products that are cut off.
+    /// The same, with truncated products.
     Truncated {
         /// Number of fractional bits.
         fraction_bits: u32,
@@ -142,10 +142,10 @@ impl fmt::Display for Format {
     }
 }
 
-/// A value that a number format cannot hold.
+/// A value that a number format cannot represent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutOfRange {
-    /// The value, in the unit that it was given in.
+    /// The value in its given unit.
     pub value: f64,
     /// The largest magnitude that fits.
     pub bound: f64,

@@ -1,16 +1,16 @@
-//! How a value is rounded to a format.
+//! The direction of rounding to a format.
 
-/// Which of its two neighbours in a format a value becomes, by magnitude: the same for both signs.
+/// Selects one of a value's two neighbours in a format by magnitude, in the same way for both signs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
-    /// The nearer one.
+    /// The nearer neighbour.
     Nearest,
-    /// The one nearer to zero, for the scales of encoder and DAC: a controller whose torque is
-    /// scaled down keeps its certificate. For `L` of the controller `C`, `Re L' > -delta` means
-    /// that `1/L` lies outside of a disk whose edge passes through zero (theory, section 4.1), and
-    /// a division by a scale below 1 moves it away from zero.
+    /// The neighbour nearer to zero, for the scales of encoder and DAC: a controller whose torque is scaled
+    /// down keeps its certificate. For `L` of the controller `C`, `Re L' > -delta` means that `1/L` lies
+    /// outside a disk whose edge passes through zero (theory, section 4.1), and a division by a scale below 1
+    /// moves it away from zero.
     Inward,
-    /// The one farther from zero, for the coupling's compliance: a coupling softer than written is
-    /// safe behind the same rule, a stiffer one is not (theory, section 4).
+    /// The neighbour farther from zero, for the coupling's compliance: a softer coupling satisfies the same
+    /// rule, a stiffer coupling may not (theory, section 4).
     Outward,
 }

@@ -1,14 +1,14 @@
-//! Fixed point whose products are cut off instead of rounded: two instructions less for each, and
-//! up to twice the error, all of it to one side.
+//! Fixed point with truncated instead of rounded products: two instructions less for each, and up to twice
+//! the error, always in the same direction.
 
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 
 use super::{Format, Number, OutOfRange, Scaled};
 
-/// A [`fixed::FixedI32`] whose angles and products are the largest numbers of the format that do
-/// not lie above the exact ones. Its coefficients are those of the rounded format, and DAC codes
-/// are the nearest ones in both.
+/// A [`fixed::FixedI32`] whose angles and products are the largest numbers of the format that are not above
+/// the exact values. Its coefficients are those of the rounded format, and DAC codes are rounded to nearest
+/// in both.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Truncated<F>(F);
 

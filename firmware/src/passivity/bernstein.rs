@@ -1,11 +1,10 @@
 //! Enclosure of the minimum of a rational function of `c = cos(theta)` over `[-1, 1]`.
 //!
-//! Numerator `p` and denominator `r` are brought to Bernstein form on a box. Where all
-//! coefficients `r_i` are positive, `p / r` is a convex mean of the `p_i / r_i`, so the smallest of
-//! these is a lower bound; the values at the box's ends are upper bounds of the minimum. Boxes
-//! are halved until both meet. The bounds close quadratically, and rounding is outward all the
-//! way, so the result encloses the minimum however early the halving ends. Who only has to know on
-//! which side of a border the minimum is gets an answer after a few boxes.
+//! Numerator `p` and denominator `r` are brought to Bernstein form on a box. Where all coefficients `r_i` are
+//! positive, `p / r` is a convex mean of the `p_i / r_i`, so the smallest of these is a lower bound; the
+//! values at the box's ends are upper bounds of the minimum. Boxes are halved until both meet. The bounds
+//! converge quadratically, and rounding is always outward, so the result encloses the minimum even if the
+//! halving ends early. To decide on which side of a border the minimum is, a few boxes are enough.
 
 use super::chebyshev::Series;
 use super::interval::Interval;
@@ -13,52 +12,52 @@ use super::polynomial::MAX_DEGREE;
 use super::rounding::{div_down, div_up};
 
 const SIZE: usize = MAX_DEGREE + 2;
-/// Boxes put aside share this pool: five of the largest degree, more of smaller ones. Few ever
-/// wait, because a half that cannot hold the minimum is settled at once; and the working memory
-/// has to fit a small target's stack.
+/// The pool of waiting boxes: five of the largest degree, more of smaller degrees. Few boxes wait, because a
+/// half that cannot contain the minimum is settled at once, and the working memory must fit a small target's
+/// stack.
 const POOL: usize = 2 * SIZE * 5;
 const MAX_WAITING: usize = 16;
 const MAX_BOXES: u32 = 600;
 const MAX_LEVEL: u32 = 30;
 /// Smallest requested width of an enclosure, relative to its magnitude.
 const TOLERANCE: f64 = 1e-13;
-/// Distance of a bound from a border, relative to the border, that decides on which side the
-/// minimum is: far beyond rounding, so that a finer search would not change the decision.
+/// Distance of a bound from a border, relative to the border, at which the side of the minimum is decided:
+/// far larger than rounding errors, so a finer search would not change the decision.
 const CLEARANCE: f64 = 1e-9;
 
-/// How closely a minimum is looked at.
+/// The required precision of a minimum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
-    /// The enclosure is as tight as it gets around this border, and no tighter than it takes where the
-    /// minimum is clearly on one side: with [`Interval::ENTIRE`] it is tight everywhere, with a limit it
-    /// decides on which side of the limit the minimum is.
+    /// The enclosure is as tight as possible near this border, and only as tight as necessary if the minimum
+    /// is clearly on one side: with [`Interval::ENTIRE`] it is tight everywhere, with a limit it decides on
+    /// which side of the limit the minimum is.
     pub border: Interval,
-    /// Width of the enclosure, relative to its magnitude, at which the search may end.
+    /// Relative width of the enclosure at which the search may end.
     pub tolerance: f64,
 }
 
 impl Precision {
-    /// As tight as it gets.
+    /// As tight as possible.
     pub const TIGHT: Self = Self { border: Interval::ENTIRE, tolerance: TOLERANCE };
 
-    /// Enough to decide on which side of a border the minimum is.
+    /// Sufficient to decide on which side of a border the minimum is.
     pub const fn around(border: Interval) -> Self {
         Self { border, ..Self::TIGHT }
     }
 
-    /// So tight, relative to the minimum's magnitude.
+    /// A width relative to the minimum's magnitude.
     pub const fn within(tolerance: f64) -> Self {
         Self { tolerance: tolerance.max(TOLERANCE), ..Self::TIGHT }
     }
 }
 
-/// Where and how small `p / r` gets.
+/// The minimum of `p / r`, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Minimum {
-    /// Encloses the minimum; the lower end is infinite where `r` could not be proved positive.
+    /// Encloses the minimum; the lower end is infinite if `r` could not be proved positive.
     pub value: Interval,
-    /// Around the `c` at which the smallest value was seen, to within a box; all of `[-1, 1]`
-    /// where both ends have it, as where `p / r` is constant.
+    /// An enclosure, the size of a box, of the `c` with the smallest value found; all of `[-1, 1]` if both
+    /// ends have it, for instance for a constant `p / r`.
     pub at: Interval,
 }
 
@@ -80,7 +79,7 @@ struct Waiting {
 #[derive(Clone, Copy)]
 struct Bound {
     lower: f64,
-    /// How much of it is rounding: halving cannot improve on that.
+    /// The part due to rounding, which halving cannot improve.
     rounding: f64,
 }
 
@@ -89,12 +88,12 @@ impl Waiting {
         Self { left: 0.0, level: 0, bound: Bound { lower: f64::INFINITY, rounding: 0.0 } };
 }
 
-/// Encloses the minimum of `p / r` over `c` in `[-1, 1]`; `r` must be positive there, which is
-/// proved on the way.
+/// Encloses the minimum of `p / r` over `c` in `[-1, 1]`; `r` must be positive there, which is proved as
+/// well.
 ///
-/// `ends` encloses `r` at -1 and at 1. As sums of the series the two lose all digits near a root,
-/// as squares of small numbers; a caller that has the roots of these squares encloses them better,
-/// and every box next to an end profits.
+/// `ends` encloses `r` at -1 and at 1. As sums of the series the two lose all digits near a root, because
+/// they are squares of small numbers. A caller with the roots of these squares has better enclosures, which
+/// improve every box next to an end.
 #[inline(never)]
 pub const fn minimum(
     p: &Series,
@@ -125,7 +124,7 @@ pub const fn minimum(
     Minimum { value: Interval::new(lower, search.upper), at }
 }
 
-/// Upper bound of `p / r`; infinite where `r` is not proved positive.
+/// Upper bound of `p / r`; infinite if `r` is not proved positive.
 const fn upper_bound(p: Interval, r: Interval) -> f64 {
     if r.is_positive() {
         div_up(p.hi(), if p.hi() >= 0.0 { r.lo() } else { r.hi() })
@@ -136,18 +135,18 @@ const fn upper_bound(p: Interval, r: Interval) -> f64 {
 
 struct Search {
     degree: usize,
-    /// A value below this one, or only boxes above that one: no closer look is wanted.
+    /// The search ends at a value below this bound, or if all boxes are above the other bound.
     clearly_below: f64,
     clearly_above: f64,
     tolerance: f64,
-    /// Smallest proved upper bound so far, and the `c` that it was seen at.
+    /// Smallest proved upper bound so far, and its `c`.
     upper: f64,
     at: Interval,
-    /// Smallest lower bound among the boxes that were given up.
+    /// Smallest lower bound of the settled boxes.
     lower: f64,
 }
 
-/// Boxes that wait to be looked at.
+/// Waiting boxes.
 struct Queue {
     pool: [Interval; POOL],
     waiting: [Waiting; MAX_WAITING],
@@ -155,7 +154,7 @@ struct Queue {
 }
 
 impl Search {
-    /// Searches from the whole interval on, in the memory of its pieces.
+    /// Searches, beginning with the whole interval, in the memory of `pieces`.
     const fn run(&mut self, pieces: &mut Pieces) {
         let whole = Waiting { left: -1.0, level: 0, bound: self.look(pieces, -1.0, 2.0) };
         if self.upper < self.clearly_below || self.is_settled(whole.bound) {
@@ -190,7 +189,7 @@ impl Search {
         }
     }
 
-    /// Ends the search with the boxes that are left as they are.
+    /// Ends the search, with the remaining boxes as they are.
     const fn give_up(&mut self, queue: &Queue, current: Bound) {
         self.lower = self.lower.min(current.lower);
         let mut i = 0;
@@ -232,15 +231,14 @@ impl Search {
         }
     }
 
-    /// Whether halving the box cannot move the result by more than is wanted, or than rounding
-    /// hides.
+    /// Whether halving the box cannot change the result by more than the precision, or than rounding.
     const fn is_settled(&self, bound: Bound) -> bool {
         let slack = (self.tolerance * self.upper.abs()).max(2.0 * bound.rounding);
         bound.lower > self.clearly_above || bound.lower >= self.upper - slack
     }
 
-    /// Halves the box. Returns the half with the smaller lower bound and queues the other one; a
-    /// half that cannot hold a smaller value is settled at once.
+    /// Halves the box. Returns the half with the smaller lower bound and queues the other half; a half that
+    /// cannot contain a smaller value is settled at once.
     #[inline(never)]
     const fn split(&mut self, queue: &mut Queue, pieces: &mut Pieces, parent: Waiting) -> Waiting {
         let n = self.degree;
@@ -275,7 +273,7 @@ impl Queue {
     const EMPTY: Self =
         Self { pool: [Interval::ZERO; POOL], waiting: [Waiting::NONE; MAX_WAITING], len: 0 };
 
-    /// Whether there was room.
+    /// Queues a box; returns whether there was room.
     #[inline(never)]
     const fn put(&mut self, pieces: &Pieces, degree: usize, waiting: Waiting) -> bool {
         let stride = 2 * (degree + 1);
@@ -317,7 +315,7 @@ const fn box_width(level: u32) -> f64 {
 
 /// De Casteljau at the middle: `left` becomes the left half, `right` (a copy) the right half.
 const fn halve(left: &mut [Interval; SIZE], right: &mut [Interval; SIZE], n: usize) {
-    // right[0..] is worked down in place: after step k, right[i] holds the mean of level k.
+    // right[0..] is reduced in place: after step k, right[i] holds the mean of level k.
     let mut k = 0;
     while k <= n {
         left[k] = right[0];
@@ -333,9 +331,9 @@ const fn halve(left: &mut [Interval; SIZE], right: &mut [Interval; SIZE], n: usi
 
 /// Bernstein coefficients on `[-1, 1]`, `c` growing with the index, of a Chebyshev series.
 ///
-/// Multiplied by the binomials, `T_k` has the whole coefficients `(-1)^(k-i) C(2k, 2i)` at degree
-/// `k`, and raising the degree by one adds neighbours; so the only roundings are those of the
-/// series' own coefficients, and of the division by the binomials at the end.
+/// Multiplied by the binomials, `T_k` has the whole coefficients `(-1)^(k-i) C(2k, 2i)` at degree `k`, and
+/// raising the degree by one adds neighbours; so only the series' own coefficients and the final division by
+/// the binomials are rounded.
 #[inline(never)]
 const fn from_chebyshev(series: &Series, degree: usize) -> [Interval; SIZE] {
     let mut scaled = [Interval::ZERO; SIZE];

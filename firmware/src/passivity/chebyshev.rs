@@ -1,9 +1,9 @@
 //! Real parts on the unit circle as Chebyshev series in `c = cos(theta)` (theory, section 7, equation 32).
 //!
-//! With `n(z)`, `d(z)` real polynomials, `2 Re(K(z) n(z) conj(d(z)))` is a sum over the lags
-//! `m = i - j` of the cross-correlation of their coefficients times `2 Re(K(z) z^m)`. For the
-//! kernels `K` that circle poles at 1 and -1 leave behind, that is a short sum of `T_k(c)` with
-//! whole coefficients, in which the pole itself has already cancelled.
+//! With `n(z)`, `d(z)` real polynomials, `2 Re(K(z) n(z) conj(d(z)))` is a sum over the lags `m = i - j` of
+//! the cross-correlation of their coefficients times `2 Re(K(z) z^m)`. For the kernels `K` of circle poles at
+//! 1 and -1 this is a short sum of `T_k(c)` with integer coefficients, in which the pole itself has already
+//! cancelled.
 
 use super::interval::Interval;
 use super::polynomial::{MAX_DEGREE, Polynomial};
@@ -34,7 +34,7 @@ impl Series {
     /// The zero series.
     pub const ZERO: Self = Self { coefficients: [Interval::ZERO; CAPACITY], len: 1 };
 
-    /// A number.
+    /// A constant series.
     pub const fn constant(value: Interval) -> Self {
         Self::linear(value, Interval::ZERO)
     }
@@ -115,7 +115,7 @@ impl Series {
         if k < self.len { self.coefficients[k] } else { Interval::ZERO }
     }
 
-    /// Highest `k` whose coefficient may be other than zero.
+    /// Highest `k` whose coefficient may be nonzero.
     pub const fn degree(&self) -> usize {
         self.len - 1
     }

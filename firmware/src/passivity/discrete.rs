@@ -1,4 +1,4 @@
-//! The discrete-time tests of theory, section 1: passive, output strictly, input strictly passive
+//! The discrete-time tests of theory, section 1: passive, output strictly passive, input strictly passive
 //! (equations 1 to 3).
 
 use super::bernstein::{Minimum, Precision, minimum};
@@ -8,13 +8,13 @@ use super::poles::{IndexError, Reduced, UndecidedReason, reduce};
 use super::polynomial::UnitRoot;
 use super::transfer::Transfer;
 
-/// Smallest real part on the unit circle of a function that meets the pole conditions.
+/// Smallest real part on the unit circle of a function that satisfies the pole conditions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RealPart {
     /// Encloses the infimum of `Re G` over the circle.
     pub minimum: Interval,
-    /// Around the `cos(theta)` at which the smallest value was seen; `[-1, 1]` where it is the same
-    /// at both ends, as for a constant real part.
+    /// An enclosure of the `cos(theta)` with the smallest value found; `[-1, 1]` if both ends have it, for
+    /// instance for a constant real part.
     pub cos_theta: Interval,
 }
 
@@ -31,8 +31,8 @@ pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, Index
     }
 }
 
-/// Output strict passivity: the largest `d` for which `<u, y> >= d ||y||^2` (equation 2), as
-/// `min Re (1/G)`. `G` must be stable; a pole on the circle leaves it an index of at most 0.
+/// Output strict passivity: the largest `d` for which `<u, y> >= d ||y||^2` (equation 2), as `min Re (1/G)`.
+/// `G` must be stable; with a pole on the circle the index is at most 0.
 pub const fn output_passivity(g: Transfer, widen: bool) -> Result<RealPart, IndexError> {
     match reduce(&g, widen) {
         Ok(_) => input_passivity(g.inverse(), widen),
@@ -50,9 +50,9 @@ pub const fn index(
     index_looked_at(&environment, period, widen, &Precision::TIGHT)
 }
 
-/// [`index`], as tight as it takes to tell on which side of `limit` it is: a sound enclosure at a
-/// fraction of the cost where the index is not near. What [`index`] proves to be below the limit
-/// is proved here, and nothing else.
+/// [`index`], only as tight as necessary to decide on which side of `limit` it is: a sound enclosure at a
+/// fraction of the cost if the index is not near. It proves an index to be below the limit if and only if
+/// [`index`] does.
 pub const fn index_near(
     environment: Transfer,
     period: Interval,
@@ -62,8 +62,8 @@ pub const fn index_near(
     index_looked_at(&environment, period, widen, &Precision::around(limit.neg()))
 }
 
-/// [`index`], its enclosure no tighter than `tolerance` times its magnitude: as sound, and
-/// shows the cost of the tighter one.
+/// [`index`] with an enclosure not tighter than `tolerance` times its magnitude: equally sound, to compare
+/// the costs.
 pub const fn index_within(
     environment: Transfer,
     period: Interval,
@@ -73,8 +73,8 @@ pub const fn index_within(
     index_looked_at(&environment, period, widen, &Precision::within(tolerance))
 }
 
-/// [`index`], looked at so closely. The border is one of the real part: the negative of a limit.
-// In a frame of its own, which the caller would otherwise have several times.
+/// [`index`] with this precision. The border is one of the real part: the negative of a limit. Not inlined,
+/// because the caller would otherwise have its frame several times.
 #[inline(never)]
 pub const fn index_looked_at(
     environment: &Transfer,
@@ -88,8 +88,8 @@ pub const fn index_looked_at(
     }
 }
 
-/// `(T z / (z - 1)) E` with its poles separated: the first half of [`index_looked_at`].
-// In a frame of its own: a small board's stack has no room for the function beside its result.
+/// `(T z / (z - 1)) E` with its poles separated: the first half of [`index_looked_at`]. Not inlined: a small
+/// board's stack has no room for both the function and its result.
 #[inline(never)]
 pub(crate) const fn velocity_reduced(
     environment: &Transfer,
@@ -126,7 +126,7 @@ const fn real_part(g: &Reduced, closeness: &Precision) -> Result<RealPart, Index
         };
     }
     let r = Series::squared_magnitude(&g.denominator);
-    // Where the scale's sign turns the sides around, the enclosure is tight everywhere.
+    // If the scale's sign exchanges the sides, the enclosure is tight everywhere.
     let border = if g.scale.is_positive() { closeness.border } else { Interval::ENTIRE };
     let left = g.denominator.at_unit_root(UnitRoot::Minus);
     let right = g.denominator.at_unit_root(UnitRoot::Plus);
@@ -141,7 +141,7 @@ const fn real_part(g: &Reduced, closeness: &Precision) -> Result<RealPart, Index
     }
 }
 
-/// The kernel of the poles at 1 and -1, and the power of `z` that is left beside it.
+/// The kernel of the poles at 1 and -1, and the remaining power of `z`.
 pub(super) const fn kernel_of(g: &Reduced) -> (Kernel, i32) {
     // 1 / (z^2 - 2 c0 z + 1) = z^-1 / (2 (c - c0)) on the circle.
     let shift = if g.pair.is_some() { g.shift - 1 } else { g.shift };

@@ -1,17 +1,17 @@
-//! The exponential function, enclosed; the compiler has none.
+//! An enclosure of the exponential function, which is not available in `const fn`.
 
 use super::interval::Interval;
 
 /// Terms of the series, whose last one is below `2^-60` for arguments of at most a half.
 const TERMS: u32 = 15;
-/// `exp(-x)` is nothing in doubles beyond this.
+/// `exp(-x)` is zero in doubles beyond this.
 const VANISHES: f64 = 746.0;
 
 impl Interval {
     /// `exp(-self)` of a number that is not negative; negative numbers count as 0.
     ///
-    /// The argument is halved until it is at most a half; there the alternating series lies between any
-    /// two partial sums in a row. The result is squared as often as the argument was halved.
+    /// The argument is halved until it is at most a half; there the alternating series lies between any two
+    /// consecutive partial sums. The result is squared as often as the argument was halved.
     #[inline(never)]
     pub const fn exp_of_negative(self) -> Self {
         let fastest = one_end(self.hi().max(0.0)).lo();

@@ -2,12 +2,12 @@
 //!
 //! Every operation returns an interval that contains the exact result of every choice of numbers from its
 //! operands. An operation whose result is exact in `f64` keeps it exact: sums by their rounding error
-//! (Dekker's two-sum), products and quotients by counting significant bits. That is which distinguishes a
-//! pole at exactly `z = 1` from a pole near it. Only IEEE additions, multiplications and divisions are used,
-//! so the end points are the same bits in the compiler, on the host and on the target.
+//! (Dekker's two-sum), products and quotients by counting significant bits. This distinguishes a pole at
+//! exactly `z = 1` from a pole near it. Only IEEE additions, multiplications and divisions are used, so the
+//! end points have the same bits in the compiler, on the host and on the target.
 //!
-//! On a board every operation stands once and is called: in line, with its emulated doubles, it
-//! would fill a tenth of the smallest flash.
+//! On a board no operation is inlined: with emulated doubles, inlining would fill a tenth of the smallest
+//! flash.
 
 use super::rounding::{
     add_down, div_down, div_up, half_down, is_not_negative, is_zero, mul_down, mul_up,
@@ -25,7 +25,7 @@ impl Interval {
     pub const ZERO: Self = Self { lo: 0.0, hi: 0.0 };
     /// The number 1.
     pub const ONE: Self = Self { lo: 1.0, hi: 1.0 };
-    /// Nothing is known.
+    /// All reals: nothing is known.
     pub const ENTIRE: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
 
     /// The interval from `lo` to `hi`; [`Interval::ENTIRE`] if these are not in order or NaN.
@@ -38,7 +38,7 @@ impl Interval {
         if value.is_finite() { Self { lo: value, hi: value } } else { Self::ENTIRE }
     }
 
-    /// Every decimal number that a person can have meant by this double.
+    /// All decimal numbers that this double may stand for.
     ///
     /// `0.001` has no binary representation; the double nearest to it stands for all decimals that
     /// round to it. Whole numbers below 2^53 are exact in both notations.
@@ -124,7 +124,7 @@ impl Interval {
     #[cfg_attr(target_os = "none", inline(never))]
     pub const fn mul(self, other: Self) -> Self {
         let (a, b, c, d) = (self.lo, self.hi, other.lo, other.hi);
-        // Which end points give the smallest and the largest product.
+        // The end points that give the smallest and the largest product.
         let (p, q, r, s) = if is_not_negative(a) {
             if is_not_negative(c) {
                 (a, c, b, d)
@@ -202,7 +202,7 @@ impl Interval {
         Self { lo: self.lo.max(other.lo), hi: self.hi.max(other.hi) }
     }
 
-    /// What both intervals of the same number leave of it.
+    /// The intersection of two enclosures of the same number.
     #[cfg_attr(target_os = "none", inline(never))]
     pub const fn and(self, other: Self) -> Self {
         Self::new(self.lo.max(other.lo), self.hi.min(other.hi))

@@ -1,13 +1,12 @@
 //! The passivity mathematics, all of it `const fn` and outward rounded.
 //!
-//! [`interval`], rounded in `rounding`, and [`polynomial`] are the numbers; [`transfer`] is a
-//! function of `z`; [`poles`] settles its poles; [`chebyshev`] turns its real part on the circle
-//! into a series, [`bernstein`] encloses the minimum; [`discrete`] has the tests of
-//! theory, section 1.
+//! [`interval`] with `rounding` and [`polynomial`] have the numbers; [`transfer`] has functions of `z`;
+//! [`poles`] classifies their poles; [`chebyshev`] turns the real part on the circle into a series, and
+//! [`bernstein`] encloses its minimum; [`discrete`] has the tests of theory, section 1.
 //!
-//! The larger functions are never inlined: each works on hundreds of bytes, and inlined into one
-//! another they would all be on a small board's stack at once. Nor are the interval operations on
-//! the target, where each is a call of several software floating-point routines anyway.
+//! The larger functions are never inlined: each uses hundreds of bytes, and inlined into one another they
+//! would all be on a small board's stack at once. On the target, interval operations are not inlined either,
+//! because each calls several software floating-point routines anyway.
 
 pub mod bernstein;
 pub mod chebyshev;

@@ -1,10 +1,10 @@
-//! Where the poles are: exactly on the unit circle, certainly inside, certainly outside.
+//! Classifies poles: exactly on the unit circle, certainly inside, certainly outside.
 
 use super::interval::Interval;
 use super::polynomial::{Polynomial, UnitRoot};
 use super::transfer::Transfer;
 
-/// A transfer function whose circle poles are named and whose other poles are proved inside:
+/// A transfer function with separated circle poles, whose other poles are proved inside:
 ///
 /// `G = scale z^shift numerator / (denominator (z-1)^at_one (z+1)^at_minus_one pair)` with
 /// `pair = z^2 - 2 cos(theta_0) z + 1` if present.
@@ -14,7 +14,7 @@ pub struct Reduced {
     pub scale: Interval,
     /// Power of `z`.
     pub shift: i32,
-    /// Whether there is a pole at `z = 1`; simple, or this value would not exist.
+    /// Whether there is a pole at `z = 1`; always simple.
     pub at_one: bool,
     /// Whether there is a pole at `z = -1`.
     pub at_minus_one: bool,
@@ -26,8 +26,8 @@ pub struct Reduced {
     pub denominator: Polynomial,
 }
 
-/// What stands against a passivity index before the real part is even looked at (conditions of
-/// equation 4), or what could not be decided.
+/// An obstacle to a passivity index other than the real part (conditions of equation 4), or an undecided
+/// condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IndexError {
     /// A pole outside the unit circle; the reflection coefficient that shows it is at least 1.
@@ -50,22 +50,22 @@ pub enum IndexError {
         /// The residue, N m s/rad for a velocity-to-torque function.
         residue: Interval,
     },
-    /// Not decided, never to be taken as a yes.
+    /// Not decided; never counts as passive.
     Undecided(UndecidedReason),
 }
 
-/// Why something could not be decided.
+/// The reason why a condition could not be decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UndecidedReason {
-    /// A pole is so near the unit circle that rounding hides on which side it is.
+    /// A pole is so near the unit circle that its side is lost in rounding.
     PoleNearCircle,
     /// Several complex pole pairs on the unit circle.
     SeveralPolePairs,
-    /// The sign of a residue on the unit circle is hidden by rounding.
+    /// The sign of a residue on the unit circle is lost in rounding.
     ResidueSign,
     /// A number overflowed or a degree is out of range.
     OutOfRange,
-    /// The index and the limit enclose a common number.
+    /// The enclosures of index and limit overlap.
     TooClose,
     /// No bound is known for this environment with one-sidedness or a torque limit.
     NoNonlinearBound,
@@ -79,11 +79,10 @@ pub enum UndecidedReason {
     NoSnapBound,
 }
 
-/// Names the circle poles of `G`, cancels what cancels exactly, and proves the rest inside.
+/// Separates the circle poles of `G`, cancels exact common factors, and proves the other poles inside.
 ///
-/// Structure (which factors are there) is read from the doubles as they are; the enclosure that
-/// follows takes them as the decimals they stand for, unless a circle pole at `z != 1` makes the
-/// result depend on them being exact.
+/// The structure (the factors) is read from the exact doubles; the subsequent enclosure takes them as the
+/// decimals they stand for, unless a circle pole at `z != 1` makes the result depend on exact values.
 #[inline(never)]
 pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, IndexError> {
     if g.numerator.is_zero() {
@@ -119,14 +118,14 @@ pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, IndexError> {
     })
 }
 
-/// `G` with its exact common factors at 0, 1 and -1 cancelled and the others moved to the
-/// exponents; coefficients as the decimals they stand for.
+/// `G` with its exact common factors at 0, 1 and -1 cancelled and other such factors moved to the exponents;
+/// coefficients as the decimals they stand for.
 #[inline(never)]
 pub const fn cancelled(g: &Transfer) -> Transfer {
     if g.numerator.is_zero() { *g } else { Work::new(g, true).wide }
 }
 
-/// The same with the coefficients as they are.
+/// The same with the exact coefficients.
 #[inline(never)]
 pub const fn cancelled_exactly(g: &Transfer) -> Transfer {
     if g.numerator.is_zero() { *g } else { Work::new(g, false).exact }
@@ -162,7 +161,7 @@ const fn widened(p: &Polynomial) -> Polynomial {
     Polynomial::ascending(values.split_at(p.len()).0)
 }
 
-/// The same transfer function twice: as the doubles are, and as decimals.
+/// The same transfer function twice: with exact doubles, and with decimals.
 struct Work {
     exact: Transfer,
     wide: Transfer,
@@ -197,8 +196,8 @@ impl Work {
         self.wide.shift = self.exact.shift;
     }
 
-    /// Moves the exact factors `z - root` of the denominator, and, where poles are to be met, of
-    /// the numerator, into the exponents.
+    /// Moves the exact factors `z - root` of the denominator, and of the numerator if they cancel poles, into
+    /// the exponents.
     const fn strip_unit_root(&mut self, root: UnitRoot, declared_pole: bool) {
         let mut change = 0;
         while self.exact.denominator.vanishes_at(root) {
@@ -225,7 +224,7 @@ impl Work {
         }
     }
 
-    /// Finds the complex pair of circle poles that is left after cancellation.
+    /// Finds the complex pair of circle poles that remains after cancellation.
     const fn strip_pairs(&mut self) -> Result<Option<Interval>, IndexError> {
         let mut found: Option<Interval> = None;
         loop {
@@ -241,7 +240,7 @@ impl Work {
                 self.exact.numerator = reduced;
                 self.wide = self.exact;
             } else if let Some(before) = found {
-                // A second pair: the same one is a repeated pole, another one is not handled.
+                // A second pair: an equal pair is a repeated pole; a different pair is not supported.
                 let same = before.lo() == sum.lo() && before.hi() == sum.hi();
                 return Err(if same {
                     IndexError::RepeatedUnitPole { cos_theta: sum.half() }
@@ -255,8 +254,8 @@ impl Work {
     }
 }
 
-/// Cosine of the angle of a mode on the unit circle that the transfer function does not show, since
-/// its numerator has the same root: a difference equation with these polynomials has it.
+/// Cosine of the angle of a hidden mode on the unit circle: the numerator has the same root, so the transfer
+/// function does not have the pole, but a difference equation with these polynomials has the mode.
 #[inline(never)]
 pub const fn hidden_mode(g: &Transfer) -> Option<Interval> {
     let one = g.denominator.vanishes_at(UnitRoot::Plus);
@@ -278,13 +277,11 @@ pub const fn hidden_mode(g: &Transfer) -> Option<Interval> {
     None
 }
 
-/// `2 cos(theta_0)` of a factor `z^2 - 2 cos(theta_0) z + 1` that divides `p`, where the
-/// coefficients make it exact.
+/// `2 cos(theta_0)` of an exact factor `z^2 - 2 cos(theta_0) z + 1` of `p`.
 ///
-/// The greatest common divisor of `p` and its reverse holds exactly the circle roots and the
-/// mirrored pairs. It is found by the Schur-Cohn recursion without divisions, which stays exact
-/// while the coefficients are short enough; where it does not, no pair is found, and the pole is
-/// left for [`strictly_schur`] to doubt.
+/// The greatest common divisor of `p` and its reverse holds exactly the circle roots and the mirrored pairs.
+/// It is found by the Schur-Cohn recursion without divisions, which is exact while the coefficients are short
+/// enough; otherwise no pair is found, and [`strictly_schur`] reports the pole as undecided.
 #[inline(never)]
 const fn circle_pair(p: &Polynomial) -> Result<Option<Interval>, UndecidedReason> {
     let mut p = *p;
@@ -326,7 +323,7 @@ const fn is_palindrome(p: &Polynomial) -> bool {
     true
 }
 
-/// Schur-Cohn: proves that all roots are inside the unit circle, or that one is outside.
+/// Schur-Cohn recursion: proves that all roots are inside the unit circle, or that a root is outside.
 #[inline(never)]
 pub const fn strictly_schur(p: &Polynomial) -> Result<(), IndexError> {
     let mut p = *p;

@@ -1,4 +1,4 @@
-//! Polynomials with interval coefficients, of the degrees that a scene can have.
+//! Polynomials with interval coefficients, up to the degree of a scene.
 
 use super::interval::Interval;
 
@@ -30,7 +30,7 @@ impl Polynomial {
         out.trimmed()
     }
 
-    /// From descending doubles, taken as they are or as the decimals they stand for.
+    /// From descending doubles, exact or as the decimals they stand for.
     pub const fn descending(values: &[f64], decimal: bool) -> Self {
         let mut out = Self::ZERO;
         let mut i = 0;
@@ -81,7 +81,7 @@ impl Polynomial {
         self.coefficient(self.degree())
     }
 
-    /// How many of the lowest coefficients are exactly zero: the power of `z` that divides.
+    /// Number of lowest coefficients that are exactly zero: the power of `z` that divides the polynomial.
     pub const fn trailing_zeros(&self) -> usize {
         let mut n = 0;
         while n < self.len && self.coefficients[n].is_zero() {

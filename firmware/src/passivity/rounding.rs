@@ -1,15 +1,15 @@
 //! Sums, products and quotients of doubles rounded downward and upward, usable in `const fn`.
 //!
-//! The processor rounds to the nearest; the next double outward is taken where that is not exact. The needed
-//! properties of a number are read off its bits: emulated doubles are compared by a call, whole numbers are
-//! not, and the evaluation of a constant pays for every call.
+//! The processor rounds to nearest; if the result is not exact, the next double outward is used. The required
+//! properties of a number are read from its bits: emulated doubles are compared by a call and integers are
+//! not, and every call costs time in the evaluation of a constant.
 
-/// All bits of a double but its sign.
+/// All bits of a double except its sign.
 const MAGNITUDE: u64 = u64::MAX >> 1;
 const SIGN: u64 = !MAGNITUDE;
 /// The bits of the exponent, which are those of infinity; NaNs are above.
 const EXPONENT: u64 = f64::INFINITY.to_bits();
-/// The first bit of a normal number's mantissa, which is not written.
+/// The implicit first bit of a normal number's mantissa.
 const IMPLICIT: u64 = 1 << 52;
 
 /// Lower bound of a sum; minus infinity for NaN.
@@ -17,15 +17,15 @@ const IMPLICIT: u64 = 1 << 52;
 pub(super) const fn add_down(a: f64, b: f64) -> f64 {
     let sum = a + b;
     let (a, b) = (a.to_bits(), b.to_bits());
-    // Which is larger no branch foretells.
+    // Without a branch, which would not be predictable.
     let swapped = (a ^ b) & ((a & MAGNITUDE < b & MAGNITUDE) as u64).wrapping_neg();
     let (large, small) = (f64::from_bits(a ^ swapped), f64::from_bits(b ^ swapped));
-    // Dekker's two-sum: what the sum has of the smaller summand, exact for finite numbers.
-    // Where a sum is infinite, it is not a number, or so large that the step outward is made.
+    // Dekker's two-sum: the part of the smaller summand in the sum, exact for finite numbers. For an infinite
+    // sum it is NaN, or so large that the step outward is made.
     if small >= sum - large { sum } else { below(sum) }
 }
 
-/// Lower bound of a product, where zero times anything is zero.
+/// Lower bound of a product; zero times anything is zero.
 #[cfg_attr(target_os = "none", inline(never))]
 pub(super) const fn mul_down(a: f64, b: f64) -> f64 {
     if is_zero(a) || is_zero(b) {
@@ -67,7 +67,7 @@ pub(super) const fn half_down(value: f64) -> f64 {
 /// `value == 0.0`.
 pub(super) const fn is_zero(value: f64) -> bool {
     let bits = value.to_bits();
-    // Of the whole the compiler makes a comparison of doubles again, which a board calls.
+    // In one piece, the compiler would replace it by a comparison of doubles, which is a call on a board.
     if cfg!(target_os = "none") { is_zero_by_halves(bits) } else { bits & MAGNITUDE == 0 }
 }
 
@@ -80,7 +80,7 @@ pub(super) const fn is_not_negative(value: f64) -> bool {
     value.to_bits() <= 1 << 63
 }
 
-/// The next double below; minus infinity where there is none, or where the value is NaN.
+/// The next double below; minus infinity if there is none, or if the value is NaN.
 const fn below(value: f64) -> f64 {
     let bits = value.to_bits();
     let magnitude = bits & MAGNITUDE;
@@ -89,7 +89,8 @@ const fn below(value: f64) -> f64 {
     } else if magnitude > EXPONENT || bits == EXPONENT | SIGN {
         f64::NEG_INFINITY
     } else {
-        // One less, of a negative number one more; which of the two no branch foretells.
+        // The bits less one, or for a negative number plus one; without a branch, which would not be
+        // predictable.
         f64::from_bits((bits - 1) + (bits >> 63 << 1))
     }
 }
@@ -104,7 +105,7 @@ const fn is_normal(bits: u64) -> bool {
 /// bits of the factors fit a mantissa together.
 const fn fits_a_mantissa(a: f64, b: f64) -> bool {
     let (a, b) = (a.to_bits(), b.to_bits());
-    // Of the 53 bits of a mantissa, those after the last set bit.
+    // The number of mantissa bits, of 53, after the last set bit.
     let behind = (a | IMPLICIT).trailing_zeros() + (b | IMPLICIT).trailing_zeros();
     behind >= 53 && is_normal(a) && is_normal(b)
 }

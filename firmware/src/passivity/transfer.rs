@@ -1,5 +1,5 @@
-//! Transfer functions as the certificate sees them: polynomials with the factors that sit on the
-//! unit circle by construction kept apart, so that they stay exact.
+//! Transfer functions of the certificate: polynomials, with factors that are on the unit circle by
+//! construction kept separately, so that they stay exact.
 
 use super::interval::Interval;
 use super::polynomial::{Polynomial, UnitRoot};
@@ -24,7 +24,7 @@ pub struct Transfer {
     pub denominator: Polynomial,
 }
 
-/// Why a transfer function could not be built.
+/// The reason why a transfer function could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unbuildable {
     /// More zeros than poles: the output would need future input.
@@ -43,8 +43,8 @@ impl Transfer {
         Self { scale: Interval::ONE, shift: 0, ones: 0, minus_ones: 0, numerator, denominator }
     }
 
-    /// Degree of the numerator minus that of the denominator, all factors counted. A transfer
-    /// function is causal if this is not positive.
+    /// Degree of the numerator minus that of the denominator, including all factors. A transfer function is
+    /// causal if this is not positive.
     pub const fn relative_degree(&self) -> i32 {
         self.shift + self.ones + self.minus_ones + self.numerator.degree() as i32
             - self.denominator.degree() as i32
@@ -59,7 +59,7 @@ impl Transfer {
         }
     }
 
-    /// Whether the function is causal and its denominator certainly has the degree it shows.
+    /// Checks that the function is causal and that its denominator certainly has the apparent degree.
     pub const fn check(&self) -> Result<(), Unbuildable> {
         if self.denominator.is_zero() || self.denominator.leading().contains(0.0) {
             return Err(Unbuildable::IllPosed);

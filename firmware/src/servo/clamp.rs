@@ -1,4 +1,4 @@
-//! The servo's clamp from outside the tick: shut, opened and closed a step a tick.
+//! The servo's clamp: shut, and opened or closed by one step per tick.
 
 use super::Servo;
 use crate::build_error::BuildError;
@@ -6,10 +6,10 @@ use crate::environment::{Discretize, Law};
 use crate::number::Number;
 
 impl<E: Discretize<N>, N: Number> Servo<E, N> {
-    /// The same servo, whose clamp opens and closes within `ticks`.
+    /// The same servo with a clamp that opens and closes within `ticks`.
     ///
     /// # Errors
-    /// Where the step of a tick is nothing in the servo's number format.
+    /// If the step of one tick rounds to zero in the servo's number format.
     pub(crate) fn fading(self, bound: f64, ticks: f64) -> Result<Self, BuildError> {
         let name = "clamp's step in the servo's number format";
         let step = BuildError::number::<N>(name, bound / ticks)?;
@@ -17,27 +17,27 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         Ok(Self { limiter: self.limiter.stepping(step), ..self })
     }
 
-    /// Lets no torque through from the next tick on.
+    /// Shuts the clamp: no torque from the next tick on.
     pub(crate) fn shut(&mut self) {
         self.limiter.shut();
     }
 
-    /// Whether no torque gets through.
+    /// Whether the clamp is shut.
     pub(crate) fn is_shut(&self) -> bool {
         self.limiter.is_shut()
     }
 
-    /// Opens the clamp by a step; gives whether it is now open.
+    /// Opens the clamp by a step; returns whether it is now open.
     pub(crate) fn open(&mut self) -> bool {
         self.limiter.open()
     }
 
-    /// Closes the clamp by a step; gives whether it is now shut.
+    /// Closes the clamp by a step; returns whether it is now shut.
     pub(crate) fn close(&mut self) -> bool {
         self.limiter.close()
     }
 
-    /// Closes the clamp to the torque that is held, so that closing it further acts at once.
+    /// Lowers the clamp to the held torque, so that the next step reduces the torque at once.
     pub(crate) fn clamp_to_held_torque(&mut self) {
         self.limiter.clamp_to_held_torque(self.torque);
     }
@@ -48,12 +48,12 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         self.torque = torque;
     }
 
-    /// Lets the environment start anew: no torque is held, and it is at rest where the device is,
-    /// which is given in rad. The clamp has to be shut.
+    /// Resets the environment to rest at the device's present angle, without a held torque, and returns this
+    /// angle in rad. The clamp must be shut.
     ///
-    /// What an environment remembers from before then is a motion that it could have seen, so that
-    /// all energy in it is what its spring stores at this position; a state left at zero with the
-    /// device elsewhere would be none.
+    /// The state then corresponds to a possible motion, a device that has always been at rest here, so its
+    /// only energy is that of its spring at this position. A state of zero with the device elsewhere would
+    /// not correspond to a motion.
     pub(crate) fn rest_here(&mut self) -> N {
         let within = self.law.turn().and_then(|turn| {
             turn.start_at(self.position.count());

@@ -71,12 +71,12 @@ pub struct Servo<E: Discretize<N>, N: Number> {
 }
 
 impl<E: EnvironmentModel + Discretize<N>, N: Number> Servo<E, N> {
-    /// The servo of a certified scene, at rest at zero. A certificate of other coefficients than
-    /// this number format's, such as the scene's as it was written, is taken again, and so is one of
-    /// a statement that is not what the environment states now.
+    /// The servo of a certified scene, at rest at zero. The scene is certified again if its certificate is
+    /// for coefficients other than those of this number format, for instance the unrounded ones, or for a
+    /// statement that differs from the environment's present statement.
     ///
     /// # Errors
-    /// Where the scene or the transducers cannot be had in this number format; see [`BuildError`].
+    /// If this number format cannot represent the scene or the transducers; see [`BuildError`].
     pub fn new(scene: &Certified<Scene<E>>, transducers: &Transducers) -> Result<Self, BuildError> {
         let format = N::FORMAT;
         let is_of_this = scene.assessment().format == format && scene.is_what_is_stated();
@@ -143,7 +143,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         }
     }
 
-    /// The code that belongs to the same instant as the count.
+    /// The code of the same instant as the count.
     #[inline(always)]
     fn tick_zero_delay(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, standing_still) = self.angle(raw, action);
@@ -154,26 +154,25 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         output
     }
 
-    /// The code of the *next* tick, which does not depend on the next tick's count, since the
-    /// environment is late by at least one sample: to the bit the code that
-    /// [`Servo::tick_zero_delay`] would give in the tick after this one.
+    /// The code of the *next* tick, which does not depend on the next tick's count, since the environment is
+    /// late by at least one sample: the same bits as [`Servo::tick_zero_delay`] would return in the tick
+    /// after this one.
     #[inline(always)]
     fn tick_latched(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, standing_still) = self.angle(raw, action);
         let x = x.minus(self.law.lasting_deflection());
-        // The torque of this tick was computed in the one before.
+        // The previous tick computed the torque of this tick.
         self.law.remember(self.torque);
         self.update_environment(x, action);
         let offer = action.add_to(self.law.evaluate(x));
         self.solve_to_code(offer, standing_still)
     }
 
-    /// One tick at an angle in rad that no encoder has counted: what the number format alone does to
-    /// the torque in N m, which is given. For the host; no board knows its angle better than its
-    /// encoder.
+    /// One tick at an angle in rad without the encoder's rounding. Returns the torque in N m, with the error
+    /// of the number format alone. For the host.
     ///
     /// # Errors
-    /// Where the format does not hold the angle.
+    /// If the format cannot represent the angle.
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
         let angle = self.law.turn().map_or(angle, |turn| turn.wrapped(angle));
         let x = N::from_f64(angle)?;
@@ -191,7 +190,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         action.update(x_e);
     }
 
-    /// The device's angle in rad, and the reason if it stands still at the end of its range.
+    /// The device's angle in rad, and the reason if it is held at the end of its range.
     #[inline(always)]
     fn angle(&mut self, raw: RawCount, action: &mut impl Action<N>) -> (N, LimitReason) {
         self.position.follow(raw);
@@ -220,7 +219,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         (x, if fits { LimitReason::None } else { LimitReason::Angle })
     }
 
-    /// Solves coupling and environment with the limited torque, which is then that of this tick.
+    /// Solves coupling and environment with the limited torque, and keeps it as this tick's torque.
     #[inline(always)]
     fn solve_to_code(&mut self, offer: Response<N>, standing_still: LimitReason) -> Output {
         let (torque, limit) = self.limited(offer, standing_still);
@@ -243,7 +242,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         }
     }
 
-    /// One tick between an encoder and a DAC that are at hand.
+    /// One tick with this encoder and this DAC.
     #[inline(always)]
     pub fn update(&mut self, encoder: &mut impl Encoder, dac: &mut impl Dac) -> LimitReason {
         let output = self.tick(encoder.read());
@@ -256,13 +255,13 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         self.position.count()
     }
 
-    /// The position's low 32 bits: its differences are steps.
+    /// The position's low 32 bits; differences of it are steps.
     #[inline(always)]
     pub(crate) const fn low_count(&self) -> i32 {
         self.position.low()
     }
 
-    /// Counts from the position to that of the next reading.
+    /// Counts from the position to the position of the next reading.
     pub(crate) fn step_to(&self, raw: RawCount) -> i32 {
         let mut next = self.position;
         next.update(raw);

@@ -1,4 +1,4 @@
-//! A servo together with the mode that it was timed for, and what a cycle needs besides.
+//! A servo with its output mode and the other data of the servo loop.
 
 use core::hint::cold_path;
 use core::marker::PhantomData;
@@ -18,26 +18,25 @@ use crate::transducers::Transducers;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct RenderingOptions {
-    /// Time in s in which the clamp opens from nothing to the torque limit, and closes; for another set
-    /// of parameters a tenth of it ([`longest_gap`](crate::servo_loop::longest_gap)).
+    /// Time in s in which the clamp opens from zero to the torque limit, and closes; a swap of parameters
+    /// takes a tenth of it for each ([`longest_gap`](crate::servo_loop::longest_gap)).
     pub fade: f64,
-    /// Damping in N m s/rad that is injected while more energy has gone into the hand than came
-    /// out of it; `None`: the energy is only watched.
+    /// Damping in N m s/rad that is injected while the net energy into the hand is positive; `None`: the
+    /// energy is only monitored.
     pub injection: Option<f64>,
 }
 
 impl RenderingOptions {
-    /// Fades within a tenth of a second: too slow to feel as a step, and a short wait.
-    /// Injects nothing.
+    /// Fades within a tenth of a second: too slow to feel like a step, and a short wait. Injects no damping.
     pub const DEFAULT: Self = Self { fade: 0.1, injection: None };
 }
 
 impl RenderingOptions {
-    /// For constants: a compile error where the damping that is injected does not fit into the room
-    /// that a scene leaves; see [`TimingChecked::injectable_damping`].
+    /// For constants: a compile error if the injected damping is more than the scene allows; see
+    /// [`TimingChecked::injectable_damping`].
     ///
     /// # Panics
-    /// If it does not; in a constant that is the compile error.
+    /// If the damping is too large; in a constant this is a compile error.
     #[track_caller]
     pub const fn checked_beside(&self, room: f64) {
         if let Some(damping) = self.injection {
@@ -57,7 +56,7 @@ impl Default for RenderingOptions {
     }
 }
 
-/// The servo of a scene that was timed for the mode `M`, ready to be swapped in.
+/// The servo of a scene that was checked for the timing of mode `M`, ready to be swapped in.
 #[derive(Clone, Debug)]
 pub struct PreparedServo<E: Discretize<N>, N: Number, M> {
     servo: Servo<E, N>,
@@ -71,16 +70,15 @@ pub struct PreparedServo<E: Discretize<N>, N: Number, M> {
 pub struct TimingLimits {
     /// The period in s.
     pub period: f64,
-    /// Updates in a row that may be missed before the certificate is void.
+    /// Consecutive updates that may be missed under the certificate.
     pub tolerated: u32,
     /// The worst period in periods.
     stretch: f32,
-    /// The latest that a count may be read where its torque comes at a fixed phase, in periods after the
-    /// beginning of its own.
+    /// With a fixed phase, the latest time to read a count, in periods after the beginning of its period.
     read_within: f32,
-    /// The most counts that the encoder can move within a period.
+    /// The largest step of the encoder within a period, in counts.
     pub largest_step: u32,
-    /// Twice that.
+    /// Twice `largest_step`.
     span: u32,
 }
 
@@ -88,12 +86,12 @@ impl<E, N: Number, M: OutputMode> PreparedServo<E, N, M>
 where
     E: EnvironmentModel + Discretize<N> + SupportsTiming<M>,
 {
-    /// The servo of a timed scene, at rest at zero and with its clamp shut. The certificate is taken again
-    /// in this number format: it may be of other coefficients, such as the scene's as it was written, or of
-    /// a statement that is not what the environment states now.
+    /// The servo of a timed scene, at rest at zero and with its clamp shut. The scene is certified again in
+    /// this number format: its certificate may be for other coefficients, for instance the unrounded ones, or
+    /// for a statement that differs from the environment's present statement.
     ///
     /// # Errors
-    /// Where the scene, the transducers or the options cannot be had in this number format.
+    /// If this number format cannot represent the scene, the transducers or the options.
     pub fn new(
         timed: &TimingChecked<Scene<E>, M>,
         transducers: &Transducers,
@@ -108,7 +106,7 @@ where
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
     /// From a certificate in this number format.
-    // Not inlined: its frame is off the stack while a scene is certified.
+    // Not inlined, so that its frame is not on the stack while a scene is certified.
     #[inline(never)]
     pub(crate) fn build(
         timed: &TimingChecked<Scene<E>, M>,
@@ -130,7 +128,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
             None => None,
             Some(damping) if damping < room => {
                 let injector = Injector::new(damping, period)?;
-                // Its gain may have been rounded up.
+                // The gain may have been rounded up.
                 if injector.damping(period) >= room {
                     return Err(BuildError::Injection { damping, room });
                 }
@@ -142,8 +140,8 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
         Ok(Self { servo, injector, pace, mode: PhantomData })
     }
 
-    /// One tick: the code to be written now. A deficit of energy injects damping, if the
-    /// options have it.
+    /// One tick: returns the code to be written now. During a deficit of energy it injects damping if the
+    /// options request it.
     #[inline(always)]
     pub fn tick(&mut self, raw: RawCount, energy: &EnergyMonitor) -> Output {
         let Some(injector) = &mut self.injector else {
@@ -164,8 +162,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
         &mut self.servo
     }
 
-    /// Starts anew at the present position, with the clamp shut: as if the device had always been
-    /// there.
+    /// Resets the servo at the present position with the clamp shut, as if the device had always been there.
     pub(crate) fn rest_here(&mut self) {
         let x = self.servo.rest_here();
         if let Some(injector) = &mut self.injector {
@@ -180,7 +177,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
 }
 
 impl TimingLimits {
-    /// Ticks up to which a wrapping counter of them distinguishes future from past.
+    /// The longest interval in ticks for which a wrapping counter distinguishes future from past.
     pub(crate) const LONGEST: u32 = i32::MAX.cast_unsigned();
 
     /// Whole periods in `time` s, at least one and at most [`LONGEST`](Self::LONGEST).
@@ -189,43 +186,44 @@ impl TimingLimits {
         ((time / self.period) as u32).clamp(1, Self::LONGEST)
     }
 
-    /// The latest that a tick may begin, in periods after the beginning of its own, where torques are
-    /// latched: `periods` after a tick that began `before` periods late.
+    /// With latched torques, the latest beginning of a tick, in periods after the beginning of its period:
+    /// `periods` after a tick that began `before` periods late.
     ///
-    /// Between the two counts are `periods + late - before`, from the first of them to its latch
-    /// `1 - before`, and the certificate allows the one to be a worst period over the period times the
-    /// other. A tick in time counts as one at the beginning; half a period is late enough.
+    /// The time between the two counts is `periods + late - before`, and from the first count to its latch
+    /// `1 - before`. The certificate allows the first time to be at most the second times the worst period
+    /// over the period. A tick in time counts as if it began at the beginning; half a period late is the
+    /// limit.
     pub(crate) fn latest(&self, periods: u32, before: f32) -> f32 {
         let in_time = (READ_WITHIN / self.period) as f32;
         let before = if before <= in_time { 0.0 } else { before };
         let allowed = self.stretch * (1.0 - before) + before - periods as f32;
-        // A worst period of whole periods, but for rounding.
+        // A worst period of whole periods, except for rounding.
         if allowed < -1e-5 { 0.0 } else { allowed.max(in_time).min(0.5) }
     }
 
-    /// The latest that a tick may begin, in periods after the beginning of its own, where torques come at a
-    /// fixed phase: a count that is read late is nearer to its torque, by no more than the scene's jitter.
+    /// With a fixed phase, the latest beginning of a tick, in periods after the beginning of its period: a
+    /// late count is nearer to its torque, and the scene's jitter limits that.
     pub(crate) const fn latest_at_phase(&self) -> f32 {
         self.read_within
     }
 
-    /// Whether the encoder cannot have moved by `step` counts within a period.
+    /// Whether `step` counts are too many for one period.
     #[inline(always)]
     pub(crate) const fn is_too_far(&self, step: i32) -> bool {
-        // Shifted so that one comparison sees both ends.
+        // Shifted so that one comparison checks both bounds.
         step.cast_unsigned().wrapping_add(self.largest_step) > self.span
     }
 
     fn new<E>(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let timing = scene.timing;
         let worst = timing.worst_period.unwrap_or(timing.period);
-        // A worst period of two periods, to the digits that were written, is two.
+        // A worst period of two periods, within the precision of its digits, is two.
         let periods = worst / timing.period + 1e-9;
         let tolerated = (periods as u32).saturating_sub(1);
-        // The counter must not wrap unseen before the missed ticks become a fault.
+        // The counter must not wrap undetected before the missed ticks become a fault.
         transducers.largest_step(worst)?;
         let largest_step = transducers.largest_step(timing.period)?;
-        // Below half the counter's range, so that twice that fits.
+        // Below half the counter's range, so that twice the value fits.
         let stretch = (worst / timing.period) as f32;
         let span = 2 * largest_step;
         let read_within = (scene.latency.output_jitter.max(READ_WITHIN) / timing.period) as f32;

@@ -1,4 +1,4 @@
-//! What stops the servo, found in a tick. Kept out of line, like all that is rare.
+//! Detects faults in a tick and stops the servo. Not inlined, like all rare paths.
 
 use super::swap::ARMING;
 use super::*;
@@ -11,8 +11,7 @@ use crate::output_timing::OutputTiming;
 const FAULT_FREE_TICKS: u32 = MAX_DELAY as u32 + 2;
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
-    /// The code of a servo that is not simply running: without being armed there is no torque, in
-    /// any state of the program.
+    /// The code in a state other than running: mid-scale unless the servo is armed and renders.
     #[cold]
     #[inline(never)]
     pub(super) fn unless_disarmed(&self, code: DacCode) -> DacCode {
@@ -20,8 +19,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if renders { code } else { DacCode::MID_SCALE }
     }
 
-    /// A tick that is not the next one after the last, or that began late, and the encoder's counter
-    /// in it. Gives the number of the tick.
+    /// Handles missed updates and a tick that began late. Returns the number of the tick.
     #[cold]
     #[inline(never)]
     pub(super) fn check_tick_timing(
@@ -51,8 +49,8 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.tick
     }
 
-    /// Where torques come at a fixed phase, how long a count is before its torque: the scene's jitter is
-    /// what the certificate allows that to be shorter. Whether the code is written in time shows later.
+    /// With a fixed phase, checks the time from the count to its torque: the certificate allows it to be
+    /// shorter by the scene's jitter. Whether the code is written in time is checked later.
     fn unless_read_in_time(
         &mut self,
         hardware: &mut impl Hardware,
@@ -66,9 +64,8 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    /// Where torques are latched, it also matters how long a count is read before the next latch:
-    /// see `certificate::model::Missed`, where `T / T_j` becomes that time over the one between two
-    /// counts.
+    /// With latched torques, also checks the time from the count to the next latch: see
+    /// `certificate::model::Missed`, where `T / T_j` becomes that time over the time between two counts.
     fn unless_latched_in_time(
         &mut self,
         periods: u32,
@@ -86,7 +83,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    /// A step that is too far for one period; it may not be for those that passed.
+    /// Checks a step that is too far for one period against the periods that have passed.
     #[cold]
     #[inline(never)]
     pub(super) fn check_jump(
@@ -103,7 +100,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    /// A torque that is not a number.
+    /// Stops the servo at a torque that is not a number.
     #[cold]
     #[inline(never)]
     pub(super) fn stop_on_nan(
@@ -114,7 +111,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.fail(Fault::NotANumber, hardware, inbox);
     }
 
-    /// What makes the torque has taken it away.
+    /// Stops the servo after the torque output reported a fault and has taken the torque away.
     #[cold]
     #[inline(never)]
     pub(super) fn stop_by_output(
@@ -126,13 +123,12 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.fail(fault, hardware, inbox);
     }
 
-    /// A tick that took longer than any before; gives its slack. Without any the code was late
-    /// for the update that it was for, and the motor has a torque that the environment does not know
-    /// of: no worst period covers that.
+    /// Handles a tick that took longer than any before, and returns its slack. With a slack of zero the code
+    /// missed its update, and the motor has a torque that differs from the environment's state: no worst
+    /// period covers that.
     ///
-    /// Where torques come at a fixed phase that code has not been put out, and here mid-scale is written
-    /// over it: the motor goes on with the torque of the tick before, until the amplifier is off or the
-    /// next phase comes.
+    /// With a fixed phase that code is not yet at the output, and mid-scale is written over it: the motor
+    /// keeps the torque of the tick before until the amplifier is off or the next phase comes.
     #[cold]
     #[inline(never)]
     pub(super) fn check_longest_tick(
@@ -157,18 +153,18 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         0
     }
 
-    /// A message from the host has come.
+    /// Restarts the time after which the host counts as lost.
     pub(super) fn on_host_message(&mut self) {
         self.link_lost = false;
         self.link_deadline = self.tick.wrapping_add(self.link_timeout);
     }
 
-    /// Detects a host that is silent for too long, and fades the torque out if the policy is that.
+    /// Detects a host that is silent for too long, and fades the torque out under [`LinkPolicy::Release`].
     pub(super) fn check_link(&mut self) {
         if self.tick.wrapping_sub(self.link_deadline).cast_signed() < 0 {
             return;
         }
-        // Without a new deadline every later tick would come here, too.
+        // Without a new deadline every later tick would call this function, too.
         self.link_deadline = self.tick.wrapping_add(TimingLimits::LONGEST);
         if self.link == LinkPolicy::Ignore {
             return;
@@ -184,7 +180,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         Fault::LinkLost { allowed: self.link_timeout }
     }
 
-    /// Records a fault; where there is torque, it stops the servo.
+    /// Records a fault, and stops the servo if the amplifier is on.
     fn fail(
         &mut self,
         fault: Fault,
@@ -198,7 +194,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    /// Torque to zero and amplifier off, now, and a record of it.
+    /// Sets the torque to zero, switches the amplifier off, and records the fault.
     pub(super) fn stop(
         &mut self,
         fault: Fault,
@@ -215,7 +211,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         inbox.notify(Notice::Stopped(fault));
     }
 
-    /// The fault that would stop the servo again at once.
+    /// The present fault that would stop the servo immediately after arming.
     pub(super) fn persistent_fault(&self) -> Option<Fault> {
         if self.link == LinkPolicy::Release && self.link_lost {
             return Some(self.link_lost_fault());

@@ -13,16 +13,16 @@ pub struct Frame {
     pub count: i32,
     /// The code that was written.
     pub code: DacCode,
-    /// The reason if it is limited.
+    /// The reason if the torque is limited.
     pub limit: LimitReason,
     /// The servo's state.
     pub state: State,
-    /// Timer counts that were left of the period, or until the code was put out where that has a phase
-    /// of its own; 0 where the tick was late.
+    /// Timer counts left of the period, or with a fixed phase until the output of the code; 0 if the tick was
+    /// late.
     pub slack: u32,
 }
 
-/// Something that takes a frame a tick and never waits.
+/// A receiver of one frame per tick that never waits.
 pub trait FrameSink {
     /// Takes a frame, or drops it and counts that.
     fn push(&mut self, frame: Frame);
@@ -30,7 +30,7 @@ pub trait FrameSink {
     fn dropped(&self) -> u32;
 }
 
-/// A frame in the words of the queue.
+/// A frame as words of the queue.
 pub(super) type Words = [u32; 4];
 
 impl Frame {

@@ -7,9 +7,9 @@ use super::frame::{Frame, FrameSink, Words};
 
 /// A lock-free queue of `LENGTH` frames, a power of two, with one writer and one reader.
 ///
-/// Made of atomic words rather than taken from a crate: with a length that the compiler knows a push costs
-/// half of a push with a division by a run-time length, it cannot panic, and without slots that two sides may
-/// touch at once there is nothing `unsafe` about it.
+/// Made of atomic words, not taken from a crate. With a constant length a push costs half as much as with a
+/// division by a length at run time, and cannot panic. No slot is shared by reference, so no `unsafe` is
+/// needed.
 #[derive(Debug)]
 pub struct FrameQueue<const LENGTH: usize> {
     slots: [[AtomicU32; 4]; LENGTH],
@@ -36,7 +36,7 @@ impl<const LENGTH: usize> FrameQueue<LENGTH> {
         (Frames { queue, dropped: 0 }, FrameReader { queue })
     }
 
-    /// The place of a frame by its number; never out of range.
+    /// The slot of a frame by its number; never out of range.
     #[inline(always)]
     fn slot(&self, number: u32) -> &[AtomicU32; 4] {
         &self.slots[number as usize % LENGTH]
@@ -85,7 +85,7 @@ pub struct FrameReader<'a, const LENGTH: usize> {
 }
 
 impl<const LENGTH: usize> FrameReader<'_, LENGTH> {
-    /// Frames that wait.
+    /// The number of waiting frames.
     pub fn waiting(&self) -> usize {
         let taken = self.queue.taken.load(Ordering::Relaxed);
         self.queue.pushed.load(Ordering::Acquire).wrapping_sub(taken) as usize

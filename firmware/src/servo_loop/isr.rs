@@ -6,7 +6,7 @@ use crate::number::Number;
 use crate::output_timing::OutputMode;
 use crate::servo::PreparedServo;
 
-/// Frames that may wait for the task that sends them, a power of two: 1.6 ms at 20 kHz.
+/// Capacity of the queue of frames, a power of two: 1.6 ms at 20 kHz.
 pub const FRAMES: usize = 32;
 
 /// State of the servo's interrupt.
@@ -15,9 +15,9 @@ pub struct ServoIsr<H, E: Discretize<N> + 'static, N: Number, M: 'static> {
     pub servo_loop: ServoLoop<E, N, M>,
     /// The board's registers.
     pub hardware: H,
-    /// Requests from below.
+    /// Requests from the task.
     pub inbox: Inbox<'static, PreparedServo<E, N, M>>,
-    /// Frames to below.
+    /// Frames to the task.
     pub frames: Frames<'static, FRAMES>,
 }
 
@@ -33,16 +33,16 @@ impl<H: Hardware, E: Discretize<N>, N: Number, M: OutputMode> ServoIsr<H, E, N, 
 pub struct Endpoints<E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// The task's end of the mailbox.
     pub requests: Requests<'static, PreparedServo<E, N, M>>,
-    /// The interrupt's end of it.
+    /// The interrupt's end of the mailbox.
     pub inbox: Inbox<'static, PreparedServo<E, N, M>>,
     /// The interrupt's end of the queue of frames.
     pub frames: Frames<'static, FRAMES>,
-    /// The task's end of it.
+    /// The task's end of the queue of frames.
     pub frame_reader: FrameReader<'static, FRAMES>,
 }
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> Endpoints<E, N, M> {
-    /// The ends of a mailbox and of a queue of frames, which are in static places.
+    /// The ends of a mailbox and of a queue of frames in statics.
     pub fn of(
         mailbox: &'static mut Mailbox<PreparedServo<E, N, M>>,
         queue: &'static mut FrameQueue<FRAMES>,

@@ -1,5 +1,5 @@
-//! Between the servo's interrupt and the task below it: requests down, notices up, and neither
-//! ever waits for the other.
+//! Connects the servo's interrupt and the task below it: requests to the interrupt, notices to the task.
+//! Neither side ever waits for the other.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -15,9 +15,9 @@ const SET: u32 = 8;
 const HOST_ALIVE: u32 = 16;
 const ALIGN: u32 = 32;
 
-/// Sets that wait: one, and the place that a queue keeps free.
+/// Slots of the queue of sets: one set can wait, and a queue keeps one slot free.
 const SETS: usize = 2;
-/// Notices that wait, and that place.
+/// Slots of the queue of notices, one of them kept free.
 const NOTICES: usize = 6;
 
 /// Shared by both ends; `R` is the swapped servo, a [`PreparedServo`](crate::servo::PreparedServo).
@@ -85,11 +85,11 @@ impl<R> Requests<'_, R> {
         self.post(HOST_ALIVE);
     }
 
-    /// Gives a set to be swapped in as a whole; [`Notice::Applied`] answers. It has to be of the
-    /// period that the board's timer has, which [`tuning`](crate::tuning) leaves as it is.
+    /// Submits a set, which is swapped in as a whole; [`Notice::Applied`] answers. Its period must be that of
+    /// the board's timer; [`tuning`](crate::tuning) never changes the period.
     ///
     /// # Errors
-    /// The set itself, where the one before it is still waiting.
+    /// Returns the set if the previous set is still waiting.
     pub fn submit(&mut self, set: R) -> Result<(), R> {
         self.submit.enqueue(set)?;
         self.post(SET);
@@ -130,7 +130,7 @@ impl<R> Inbox<'_, R> {
         self.pending.load(Ordering::Relaxed)
     }
 
-    /// Pending requests, once.
+    /// Takes the pending requests.
     pub(super) fn take(&self) -> PendingRequests {
         let pending = self.pending.swap(0, Ordering::Acquire);
         PendingRequests {
@@ -147,12 +147,12 @@ impl<R> Inbox<'_, R> {
         self.sets.ready()
     }
 
-    /// The set that waits.
+    /// Takes the waiting set.
     pub(super) fn set(&mut self) -> Option<R> {
         self.sets.dequeue()
     }
 
-    /// Tells the low-priority side; where it has left too many notices unread, this one is lost.
+    /// Sends a notice to the task; the notice is lost if the queue is full.
     pub(super) fn notify(&mut self, notice: Notice) {
         let _ = self.notice_sender.enqueue(notice);
     }

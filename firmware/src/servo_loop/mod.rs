@@ -1,4 +1,4 @@
-//! The servo's interrupt, on every board.
+//! The servo loop in the interrupt of every board.
 //!
 //! ```text
 //! count -> servo -> code -> DAC           in every tick, in every state
@@ -6,8 +6,8 @@
 //!     any of them -> faulted -> (armed again) -> fading in
 //! ```
 //!
-//! The usual tick, running and without requests, goes straight through [`ServoLoop::run`]; rare
-//! work is kept out of line.
+//! The usual tick, running and without requests, stays in [`ServoLoop::run`]; rare work is in functions that
+//! are not inlined.
 
 mod fault_detection;
 mod frame;
@@ -42,25 +42,25 @@ use crate::output_timing::OutputMode;
 use crate::servo::{PreparedServo, TimingLimits};
 use crate::torque::LimitReason;
 
-/// What becomes of the servo once its clamp is shut.
+/// The action after the clamp has closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum AfterFade {
-    /// It renders, with the set that waits.
+    /// Swap the waiting set in, and render.
     Render,
-    /// The amplifier goes off.
+    /// Switch the amplifier off.
     Release,
-    /// The amplifier goes off because of this.
+    /// Switch the amplifier off because of this fault.
     Stop(Fault),
 }
 
-/// The last tick that began late, and by what part of a period.
+/// The last tick that began late, and its lateness in periods.
 #[derive(Clone, Copy, Debug, Default)]
 struct MissedUpdates {
     tick: u32,
     part: f32,
 }
 
-/// The servo on a board: its rendering, its state, and its fault detection.
+/// The servo loop of a board: the servo, its state, and its fault detection.
 #[derive(Clone, Debug)]
 pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
     rendering: PreparedServo<E, N, M>,
@@ -71,32 +71,32 @@ pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
     tick: u32,
     /// Timer counts in a period.
     period: u32,
-    /// Timer counts that a tick has: a period, or the time until its code is put out.
+    /// Timer counts available to a tick: a period, or the time until the output of its code.
     deadline: u32,
     late: MissedUpdates,
     /// Updates missed since the start.
     missed: u32,
-    /// The longest tick so far that was in time, in timer counts.
+    /// The longest tick so far that met its deadline, in timer counts.
     longest: u32,
-    /// Whether a tick was not in time.
+    /// Whether a tick missed its deadline.
     was_late: bool,
-    /// Steps of the clamp a tick.
+    /// Steps of the clamp per tick.
     ramp: u32,
-    /// Ticks until the samples of a new set have filled its memory.
+    /// Ticks until samples have filled the memory of a new set.
     settling: u32,
-    /// The last fault that was detected, and the ticks since then without amplifier.
+    /// The last detected fault, and the ticks since then with the amplifier off.
     detected_fault: Option<Fault>,
     fault_free_ticks: u32,
     link: LinkPolicy,
-    /// Ticks of silence after which the host counts as lost, if it can.
+    /// Ticks without a message after which the host counts as lost.
     link_timeout: u32,
-    /// The tick in which the host counts as lost.
+    /// The tick from which on the host counts as lost.
     link_deadline: u32,
     link_lost: bool,
 }
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
-    /// A cycle around a rendering, disarmed.
+    /// A disarmed loop with this servo.
     ///
     /// `period` is the number of timer counts in a period, and `previous_fault` the fault from
     /// before the last reset.
@@ -113,7 +113,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             }
         };
         let phase = M::TIMING.phase().map(|phase| phase / rendering.timing_limits().period);
-        // The cast rounds down, and the hardware up.
+        // The cast rounds down; the hardware rounds up.
         let deadline = phase.map_or(period, |phase| (phase * f64::from(period)) as u32);
         Self {
             rendering,
@@ -147,13 +147,13 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
         frames: &mut impl FrameSink,
     ) {
-        // Sampling: the count and the time that belongs to it.
+        // Sampling: the count and its time.
         let (passed, raw) = (hardware.periods_since_last(), hardware.count());
         let mut tick = self.tick.wrapping_add(passed);
         self.tick = tick;
-        // One jump each, none of them taken in a usual tick: conditions that are put together first
-        // cost three or four instructions each. And before there is a torque, or after there is a
-        // code: what a call must not touch costs an instruction or two to be kept from it.
+        // Each condition is one branch that a usual tick does not take: conditions combined first cost three
+        // or four instructions each. The calls are before the torque is computed or after the code is known,
+        // because each value that is kept across a call costs an instruction or two.
         if passed != 1 {
             tick = self.check_tick_timing(passed, raw, hardware, inbox);
         }
@@ -177,9 +177,10 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             code = self.unless_disarmed(code);
             pending = u32::MAX;
         }
-        // Output: put out by the timer, at the beginning of the next period or at a phase of this one.
+        // Output: the timer puts the code out at the beginning of the next period, or at a phase of this
+        // period.
         hardware.write(code);
-        // Before that phase, or after it: asked here, since from a late code the hardware has to be kept.
+        // With a phase, the deadline is checked here, because a late code must be overwritten.
         let mut slack = 0;
         if M::TIMING.is_at_phase() {
             slack = self.slack(hardware, inbox);
@@ -197,7 +198,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         frames.push(Frame { tick, count, code, limit: output.limit, state: self.state, slack });
     }
 
-    /// Timer counts that are left of those that the tick has.
+    /// Timer counts left until the tick's deadline.
     #[inline(always)]
     fn slack(
         &mut self,
@@ -221,7 +222,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.state
     }
 
-    /// The fault that stopped it, until it is armed again.
+    /// The fault that stopped the servo, until the next arming.
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
     }

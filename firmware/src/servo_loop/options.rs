@@ -1,4 +1,4 @@
-//! Options of a cycle.
+//! Options of a servo loop.
 
 /// What the servo does when the host falls silent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,14 +15,14 @@ pub enum LinkPolicy {
 /// When to arm the servo.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Arming {
-    /// Only on the host's request.
+    /// Only when the host requests it.
     #[default]
     WhenAsked,
     /// Also without a host, when the supply is switched on; after no other reset.
     AtPowerOn(Reason),
 }
 
-/// Why a device may arm itself at power-on, stated in the program and in the log.
+/// The reason why a device may arm itself at power-on, stated in the program and in the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reason(&'static str);
 
@@ -30,7 +30,7 @@ impl Reason {
     /// A reason in words.
     ///
     /// # Panics
-    /// Where it has no words; in a constant that is an error of the compiler.
+    /// If the text is empty; in a constant this is a compile error.
     #[track_caller]
     pub const fn new(words: &'static str) -> Self {
         assert!(
@@ -41,13 +41,13 @@ impl Reason {
         Self(words)
     }
 
-    /// Its words.
+    /// The text.
     pub const fn as_str(self) -> &'static str {
         self.0
     }
 }
 
-/// Options of a cycle.
+/// Options of a servo loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// What to do when the host falls silent.
@@ -59,11 +59,11 @@ pub struct Options {
 }
 
 impl Options {
-    /// Needs no host to run, and one to be armed.
+    /// The servo runs without a host, and only a host arms it.
     pub const DEFAULT: Self =
         Self { link: LinkPolicy::Ignore, link_timeout: 1.0, arming: Arming::WhenAsked };
 
-    /// The same, but armed without a host when the supply is switched on, for this reason.
+    /// The same options, but the servo is armed at power-on without a host, for this reason.
     ///
     /// ```
     /// use haptic_servo::servo_loop::{Arming, Options};

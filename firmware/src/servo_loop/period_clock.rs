@@ -1,12 +1,12 @@
-//! The servo's periods that have begun, by a clock that never stops. Belongs to what paces the servo.
+//! Counts the servo's periods by a free-running clock. The timer that paces the servo owns it.
 
 use core::hint::cold_path;
 use core::num::NonZeroU32;
 
 use super::BEGAN_LATE;
 
-/// Counts the periods by a clock that wraps at 32 bits and was zero when the first one began, after which no
-/// tick is due for a period.
+/// Counts the periods by a clock that wraps at 32 bits. The first period began at zero of the clock; its tick
+/// is due one period later.
 ///
 /// ```
 /// use core::num::NonZeroU32;
@@ -23,21 +23,21 @@ use super::BEGAN_LATE;
 pub struct PeriodClock {
     /// Clock counts in a period.
     counts: NonZeroU32,
-    /// Clock counts after its beginning in which a period counts as in time.
+    /// Clock counts after the beginning of a period within which its tick is in time.
     in_time: u32,
     /// The clock when the present period began.
     began: u32,
 }
 
 impl PeriodClock {
-    /// Periods of this many clock counts, each in time within so many counts:
-    /// [`READ_WITHIN`](super::READ_WITHIN) of them for a board whose certificate is to hold.
+    /// Periods of `counts` clock counts; a tick is in time within the first `in_time` of them: the counts of
+    /// [`READ_WITHIN`](super::READ_WITHIN) seconds on a board whose certificate must hold.
     pub const fn new(counts: NonZeroU32, in_time: u32) -> Self {
         Self { counts, in_time, began: 0 }
     }
 
-    /// The periods that had begun at this time of the clock, since this was last asked: what
-    /// [`Hardware::periods_since_last`](super::Hardware::periods_since_last) gives.
+    /// The number of periods that began between the last call and this time of the clock: the result of
+    /// [`Hardware::periods_since_last`](super::Hardware::periods_since_last).
     #[inline(always)]
     pub fn begun_by(&mut self, time: u32) -> u32 {
         let next = self.began.wrapping_add(self.counts.get());
@@ -57,8 +57,8 @@ impl PeriodClock {
         self.counts.get()
     }
 
-    /// Clock counts since the present period began: what
-    /// [`Hardware::time_in_period`](super::Hardware::time_in_period) gives.
+    /// Clock counts since the present period began: the result of
+    /// [`Hardware::time_in_period`](super::Hardware::time_in_period).
     #[inline(always)]
     pub const fn elapsed_at(&self, time: u32) -> u32 {
         time.wrapping_sub(self.began)

@@ -14,20 +14,20 @@ pub enum State {
     Disarmed = 0,
     /// The clamp is opening.
     FadingIn = 1,
-    /// The scene is felt.
+    /// The servo renders the scene.
     Running = 2,
     /// The clamp is closing, to disarm or to swap a set of parameters in.
     FadingOut = 3,
-    /// The clamp is shut while a new set fills its memory with samples.
+    /// The clamp is shut while samples fill the memory of a new set.
     Settling = 4,
     /// A fault stopped it; the amplifier is off.
     Faulted = 5,
-    /// A brushless motor is aligned: its field turns the handle, and no scene is felt.
+    /// A brushless motor is being aligned: its field turns the handle, and no scene is rendered.
     Aligning = 6,
 }
 
 impl State {
-    /// All of them, in the order of their numbers.
+    /// All states, in the order of their numbers.
     pub const ALL: [Self; 7] = [
         Self::Disarmed,
         Self::FadingIn,
@@ -66,9 +66,9 @@ impl fmt::Display for State {
 /// The servo's reply to a request for its status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
-    /// Its state.
+    /// The state.
     pub state: State,
-    /// The fault that stopped it, or that was left from before the last reset; until it is armed.
+    /// The fault that stopped the servo, or a fault from before the last reset; `None` after arming.
     pub fault: Option<Fault>,
     /// Periods since the start, wrapping.
     pub tick: u32,
@@ -76,8 +76,8 @@ pub struct Status {
     pub count: i64,
     /// Timer counts in a period.
     pub period: u32,
-    /// The least timer counts that were left since the start: of a period, or until a code was put out
-    /// where that has a phase of its own.
+    /// The smallest slack since the start, in timer counts: left of a period, or with a fixed phase until the
+    /// output of the code.
     pub worst_slack: u32,
     /// Updates missed since the start.
     pub missed: u32,
@@ -85,7 +85,7 @@ pub struct Status {
     pub dropped: u32,
     /// Net energy put into the hand since the servo was armed, in counts times codes.
     pub energy: i64,
-    /// The worst deficit since then, in counts times codes.
+    /// The largest value of the net energy since then, in counts times codes.
     pub worst_deficit: i64,
     /// Whether the host has been silent for too long.
     pub link_lost: bool,
@@ -94,15 +94,15 @@ pub struct Status {
 /// A notice to the low-priority task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Notice {
-    /// The answer to a question for the status.
+    /// The reply to a request for the status.
     Status(Status),
-    /// The servo is armed, or was so already.
+    /// The servo is armed, or was armed already.
     Armed,
-    /// The servo was not armed: what stopped it is still there.
+    /// The servo was not armed: this fault persists.
     NotArmed(Fault),
     /// The motor is being aligned; [`State::Aligning`] ends by itself.
     Aligning,
-    /// It is not: because of this fault, or because the servo is armed.
+    /// The motor is not aligned: because of this fault, or because the servo is armed.
     NotAligning(Option<Fault>),
     /// The amplifier is off.
     Disarmed,

@@ -1,5 +1,4 @@
-//! What a tick does beside rendering while the servo is not simply running: requests, ramps and
-//! swaps. Kept out of line, so that the usual tick does not pay for it.
+//! The rare work of a tick: requests, ramps and swaps. Not inlined, so that it costs the usual tick nothing.
 
 use super::swap::ARMING;
 use super::*;
@@ -7,7 +6,7 @@ use crate::current::PowerFault;
 use crate::fault::FaultRecord;
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
-    /// Every tick but that of a running servo without requests.
+    /// Called in every tick except that of a running servo without requests.
     #[cold]
     #[inline(never)]
     pub(super) fn run_state_machine(
@@ -56,7 +55,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.fault = None;
             hardware.store_fault(&FaultRecord::NOTHING);
             self.energy.reset();
-            // The motor's torque since a fault was not that of the environment's state.
+            // After a fault the environment's state does not match the motor's torque.
             self.rendering.rest_here();
             hardware.amplifier(true);
             self.ramp = ARMING;
@@ -73,7 +72,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         inbox.notify(Notice::Armed);
     }
 
-    /// Has the field of a brushless motor turn the handle. No scene is felt meanwhile.
+    /// Begins to align a brushless motor: its field turns the handle, and no scene is rendered.
     fn align(
         &mut self,
         hardware: &mut impl Hardware,
@@ -95,7 +94,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         inbox.notify(Notice::Aligning);
     }
 
-    /// An alignment ends by itself, or by a fault, which has stopped the servo before this.
+    /// Waits for the end of an alignment; a fault has stopped the servo before this call.
     fn wait_for_alignment(&mut self, hardware: &mut impl Hardware) {
         if !hardware.is_aligning() {
             hardware.amplifier(false);
@@ -120,7 +119,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    /// Closes the clamp from where the torque is, so that the torque moves at once.
+    /// Closes the clamp from the present torque on, so that the torque decreases at once.
     pub(super) fn begin_fading_out(&mut self, after_fade: AfterFade) {
         self.after_fade = after_fade;
         self.state = State::FadingOut;
@@ -143,7 +142,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) {
-        // Shut before this tick, so that this tick's code was mid-scale.
+        // The clamp was shut before this tick, so this tick's code was mid-scale.
         if !self.rendering.servo().is_shut() {
             for _ in 0..self.ramp {
                 self.rendering.servo_mut().close();
@@ -164,7 +163,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    /// A tick without amplifier.
+    /// A tick with the amplifier off.
     fn idle(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         self.swap(inbox);
         self.fault_free_ticks = self.fault_free_ticks.saturating_add(1);

@@ -1,5 +1,5 @@
-//! The swap of a parameter set while a hand may hold the device: its steps, and how long the torque is
-//! away.
+//! The swap of a parameter set while a hand may hold the device: its steps, and the duration of the gap in
+//! the torque.
 //!
 //! ```text
 //! torque of the old set                                  torque of the new set
@@ -19,24 +19,23 @@
 //! The hand feels the torque fall away and come back, each along a ramp of at most a tenth of
 //! [`RenderingOptions::fade`]; [`longest_gap`] is the sum.
 //!
-//! Safety depends on no duration here. A limit that moves, however fast, is in the certificate of either
-//! set ([`certificate::timed`](crate::certificate::TimingChecked)): a falling limit removes energy, and a
-//! rising one adds, once, the energy that the environment stores at its depth. In between there is no
-//! torque, and the new set starts in the state of a device at rest at this position, which is a possible
-//! motion.
+//! No duration here affects safety. The certificate of each set covers a torque limit that changes at any
+//! rate ([`certificate::timed`](crate::certificate::TimingChecked)): a falling limit removes energy, and a
+//! rising one adds, once, the energy that the environment stores at its depth. In between there is no torque,
+//! and the new set starts in the state of a device at rest at this position, which is a possible motion.
 //!
-//! A long gap is worse: a hand that pressed on the wall falls further, and the deeper it is when the clamp
-//! opens, the more energy that adds. But a torque that rises within a tick is a blow. Hence the ramp takes
-//! a tenth of the time in which the clamp opens after arming, where no hand presses on a wall. A swap while
-//! that clamp opens, or that ends in being disarmed, goes at the slower speed.
+//! A long gap is a disadvantage: a hand that pressed on the wall falls further, and a deeper hand gets more
+//! energy when the clamp opens. But a torque that rises within a tick is a blow. Therefore the ramp takes a
+//! tenth of the time in which the clamp opens after arming, when no hand presses on a wall. A swap during
+//! that opening, or before disarming, has the slower speed.
 
 use super::*;
 use crate::environment::MAX_DELAY;
 use crate::servo::RenderingOptions;
 
-/// Steps of the clamp a tick where it opens after arming, or closes for good.
+/// Steps of the clamp per tick after arming and before disarming.
 pub(super) const ARMING: u32 = 1;
-/// Steps of the clamp a tick for a swap.
+/// Steps of the clamp per tick for a swap.
 const SWAPPING: u32 = 10;
 
 /// Ticks that a new set runs without torque before its clamp opens. It starts at rest at the device's
@@ -47,14 +46,14 @@ const SETTLING: u32 = MAX_DELAY as u32 + 2;
 /// The longest time in s for which a swap reduces the torque of a running servo. `period` in s.
 pub fn longest_gap(options: &RenderingOptions, period: f64) -> f64 {
     let ramp = options.fade / period / f64::from(SWAPPING);
-    // A ramp ends with a part of a step, the number format's rounding adds one, and the tick in which
-    // it begins and the one in which it is seen to be shut are no part of it. The cast rounds down.
+    // A ramp ends with a part of a step, and the number format's rounding adds one step. The ticks in which
+    // the ramp begins and in which the clamp is found shut are not part of it. The cast rounds down.
     let ticks = 2 * (ramp as u32).saturating_add(2);
     f64::from(ticks.saturating_add(SETTLING + 2)) * period
 }
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
-    /// Begins to close the clamp of a running servo, if a set waits.
+    /// Begins to close the clamp of a running servo if a set is waiting.
     pub(super) fn begin_swap(&mut self, inbox: &Inbox<'_, PreparedServo<E, N, M>>) {
         if inbox.has_set() {
             self.ramp = SWAPPING;
@@ -62,8 +61,8 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    /// Puts the set that waits in the place of the running one, between two ticks and whole. To be
-    /// called with the clamp shut: the new set's is, too.
+    /// Replaces the running set by the waiting set, as a whole and between two ticks. The clamps of both sets
+    /// are shut.
     pub(super) fn swap(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) -> bool {
         let Some(mut set) = inbox.set() else { return false };
         set.servo_mut().take_position_from(self.rendering.servo());
@@ -73,13 +72,13 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         true
     }
 
-    /// Keeps the clamp shut until the new set has seen how the device moves.
+    /// Keeps the clamp shut until the new set has samples of the device's motion.
     pub(super) fn begin_settling(&mut self) {
         self.settling = SETTLING;
         self.state = State::Settling;
     }
 
-    /// A tick of that: another set may come meanwhile.
+    /// A tick of settling; another set may arrive meanwhile.
     pub(super) fn settle(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         if self.swap(inbox) {
             self.settling = SETTLING;

@@ -1,4 +1,4 @@
-//! Why a change is not one of this scene.
+//! Reasons why a change does not apply to a scene.
 
 use core::fmt;
 
@@ -17,7 +17,7 @@ pub enum TuningError {
     Absent {
         /// Which.
         parameter: Parameter,
-        /// Those that it has.
+        /// The parameters of the scene.
         has: Parameters,
     },
     /// The parameter was given two values.

@@ -1,7 +1,7 @@
-//! From a change of parameters to a set that is ready to run, or to the reason why not.
+//! Turns a change of parameters into a set that is ready to run, or into the reason for refusing it.
 //!
-//! The steps are the same as for a scene that is compiled in: certificate, timing, servo. A set is
-//! built as a whole outside of the servo's interrupt; a refused set changes nothing.
+//! The steps are those of a compiled scene: certificate, timing, servo. A set is built as a whole outside the
+//! servo's interrupt; a refused set changes nothing.
 
 mod error;
 mod render_error;
@@ -21,8 +21,8 @@ use crate::servo::{PreparedServo, RenderingOptions};
 use crate::step::Step;
 use crate::transducers::Transducers;
 
-/// An environment whose scenes can be judged, timed and rendered in the number format `N`, and changed
-/// while they run.
+/// An environment whose scenes can be certified, checked for timing, rendered in the number format `N`, and
+/// changed while they run.
 pub trait Tunable<N: Number>: EnvironmentModel + Discretize<N> {}
 
 impl<N: Number, E: EnvironmentModel + Discretize<N>> Tunable<N> for E {}
@@ -39,7 +39,7 @@ pub fn name(parameter: Parameter) -> Option<&'static str> {
 
 const _: () = assert!(TUNABLE.len() <= u16::BITS as usize, "a bit for each");
 
-/// Some of the [`TUNABLE`] parameters.
+/// A subset of the [`TUNABLE`] parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Parameters {
     /// One bit each, in the table's order.
@@ -49,7 +49,7 @@ pub struct Parameters {
 const _: () = assert!(TUNABLE.len() <= u16::BITS as usize, "a bit for each");
 
 impl Parameters {
-    /// The given ones of [`TUNABLE`].
+    /// The subset of [`TUNABLE`] with these parameters.
     pub fn of(given: impl Iterator<Item = Parameter>) -> Self {
         let place = |parameter| TUNABLE.iter().position(|(_, known)| *known == parameter);
         Self { bits: given.filter_map(place).fold(0, |bits, i| bits | 1 << i) }
@@ -88,16 +88,16 @@ pub fn parameters<E: NamedParameters + Copy>(scene: &Scene<E>) -> Parameters {
     Parameters { bits }
 }
 
-/// The value of a scene's parameter; `None` where the scene has no such number.
+/// The value of a scene's parameter; `None` if the scene does not have it.
 pub fn get<E: NamedParameters + Copy>(scene: &Scene<E>, parameter: Parameter) -> Option<f64> {
     let mut scene = *scene;
     scene.value(parameter).copied()
 }
 
-/// Whether these are changes of a scene that has these parameters.
+/// Checks that a scene with these parameters can be changed in this way.
 ///
 /// # Errors
-/// Where it does not have one of them, or a change is given twice.
+/// If the scene does not have one of the parameters, or a change occurs twice.
 pub fn check(has: Parameters, changes: &[(Parameter, f64)]) -> Result<(), TuningError> {
     for (i, &(parameter, _)) in changes.iter().enumerate() {
         if name(parameter).is_none() {
@@ -113,8 +113,7 @@ pub fn check(has: Parameters, changes: &[(Parameter, f64)]) -> Result<(), Tuning
     Ok(())
 }
 
-/// The scene with some parameters changed. Whether the values make sense is for the certificate
-/// to judge.
+/// The scene with some parameters changed. The certificate judges the values.
 ///
 /// # Errors
 /// As [`check`].
@@ -135,9 +134,9 @@ pub fn apply<E: NamedParameters + Copy>(
 /// A set that is ready to run.
 #[derive(Clone, Debug)]
 pub struct Prepared<E: Discretize<N>, N: Number, M> {
-    /// The scene, which is judged and timed.
+    /// The certified scene with checked timing.
     pub scene: Scene<E>,
-    /// Damping in N m s/rad that the device may lose with this set running; see
+    /// Damping in N m s/rad that the device may lose while this set runs; see
     /// [`TimingChecked::margin`](crate::certificate::TimingChecked::margin).
     pub margin: Option<f64>,
     /// Its servo.
@@ -146,10 +145,10 @@ pub struct Prepared<E: Discretize<N>, N: Number, M> {
 
 /// Makes a changed scene ready to run.
 ///
-/// In a frame of its own: judging takes most of the stack that a small board has.
+/// Not inlined: certifying takes most of a small board's stack.
 ///
 /// # Errors
-/// The step that does not allow it. [`explain`] has the reason.
+/// The step that failed. [`explain`] returns the reason.
 #[inline(never)]
 pub fn prepare<E, N, M>(
     scene: &Scene<E>,
@@ -172,11 +171,11 @@ where
     })
 }
 
-/// Why [`prepare`] refuses a changed scene, with remedies. This needs too much of a small board; its
-/// host computes it from the same numbers by the same code.
+/// The reason why [`prepare`] refuses a changed scene, with remedies. This is too large for a small board;
+/// its host computes it from the same numbers with the same code.
 ///
 /// # Errors
-/// The error in the set, as a sentence with the remedies.
+/// The error of the set, whose text includes the remedies.
 pub fn explain<E, N, M>(
     scene: &Scene<E>,
     changes: &[(Parameter, f64)],

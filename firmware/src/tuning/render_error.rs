@@ -1,4 +1,4 @@
-//! Why a changed scene cannot be rendered.
+//! Reasons why a changed scene cannot be rendered.
 
 use core::fmt;
 
@@ -7,22 +7,22 @@ use crate::build_error::BuildError;
 use crate::certificate::{Rejection, TimingError};
 use crate::step::Step;
 
-/// Why a scene cannot be rendered.
+/// The reason why a scene cannot be rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(
     clippy::large_enum_variant,
     reason = "a rejection has its remedies, and nothing is allocated"
 )]
 pub enum RenderError {
-    /// The change is not one of this scene.
+    /// The change does not apply to this scene.
     Tuning(TuningError),
-    /// No certificate.
+    /// The scene has no certificate.
     Rejected(Rejection),
-    /// Not with this board's timing.
+    /// The scene does not fit this board's timing.
     Timing(TimingError),
-    /// Not with these transducers in this number format.
+    /// The servo cannot be built with these transducers in this number format.
     Build(BuildError),
-    /// Not with another mode, whose table only the board has.
+    /// The change selects another mode, whose table only the board has.
     OtherMode {
         /// Its number.
         mode: f64,
@@ -30,7 +30,7 @@ pub enum RenderError {
 }
 
 impl RenderError {
-    /// Where it happened.
+    /// The step that failed.
     pub const fn step(&self) -> Step {
         match self {
             Self::Tuning(_) => Step::Change,

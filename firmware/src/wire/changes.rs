@@ -4,9 +4,9 @@ use heapless::Vec;
 
 use crate::certificate::Parameter;
 
-/// Numbers that one set may change: more than any scene has.
+/// The largest number of changes in a set: more than any scene has.
 pub const MAX_CHANGES: usize = 8;
 
-/// Numbers of a scene with their values, present or requested, all together or not at all, in the units of a
-/// scene file.
+/// Numbers of a scene with their present or requested values, in the units of a scene file. They are applied
+/// together or not at all.
 pub type Changes = Vec<(Parameter, f64), MAX_CHANGES>;

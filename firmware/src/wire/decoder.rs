@@ -1,4 +1,4 @@
-//! From bytes back to messages, one byte after the other, safe for any bytes.
+//! Decodes messages byte by byte, safely for any bytes.
 
 use cobs::{DecodeResult, DecoderState};
 use serde::Deserialize;
@@ -8,8 +8,8 @@ use super::frame::{CHECKSUM, CRC};
 /// Finds frames in a stream of bytes. Other bytes are dropped and counted; the next zero starts
 /// anew.
 ///
-/// `SIZE` is the longest message with its checksum, in bytes. A longer one is dropped as it comes
-/// in and takes no space.
+/// `SIZE` is the longest message with its checksum, in bytes. A longer message is dropped while it arrives
+/// and takes no space.
 ///
 /// ```
 /// use haptic_servo::wire::{Decoder, encode};
@@ -29,7 +29,7 @@ use super::frame::{CHECKSUM, CRC};
 pub struct Decoder<const SIZE: usize> {
     cobs: DecoderState,
     buffer: [u8; SIZE],
-    /// Bytes of the frame so far, also of those that did not fit.
+    /// Bytes of the frame so far, including those that did not fit.
     length: usize,
     discarded: Discarded,
 }
@@ -37,18 +37,18 @@ pub struct Decoder<const SIZE: usize> {
 /// Frames that a decoder dropped, by the reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Discarded {
-    /// Ended in the middle, or too short to hold a checksum: noise, or bytes that were lost.
+    /// Incomplete, or too short for a checksum: noise, or lost bytes.
     pub broken: u32,
     /// Longer than any message.
     pub too_long: u32,
-    /// The checksum is another one.
+    /// The checksum is wrong.
     pub checksum: u32,
-    /// Arrived as it was sent, and is not a message of this protocol.
+    /// The checksum is correct, but the content is not a message of this protocol.
     pub unknown: u32,
 }
 
 impl Discarded {
-    /// All of them; the counts stop at their largest value and do not wrap.
+    /// The sum of the counts. Each count stops at its largest value and does not wrap.
     pub const fn total(&self) -> u32 {
         self.broken
             .saturating_add(self.too_long)
@@ -76,7 +76,7 @@ impl<const SIZE: usize> Decoder<SIZE> {
         }
     }
 
-    /// Takes a byte, and gives the message that it ends, if it ends one.
+    /// Takes a byte, and returns the message that the byte completes, if any.
     pub fn push<'a, M: Deserialize<'a>>(&'a mut self, byte: u8) -> Option<M> {
         let length = match self.cobs.feed(byte) {
             Ok(DecodeResult::NoData) => return None,
@@ -126,7 +126,7 @@ impl Discarded {
     }
 }
 
-/// The message in a frame of that length; a frame without a length ended in the middle.
+/// The message in a frame of that length; `None` stands for an incomplete frame.
 fn message<'a, M: Deserialize<'a>>(buffer: &'a [u8], length: Option<usize>) -> Result<M, Fault> {
     let length = length.ok_or(Fault::Broken)?;
     let frame = buffer.get(..length).ok_or(Fault::TooLong)?;
@@ -136,7 +136,7 @@ fn message<'a, M: Deserialize<'a>>(buffer: &'a [u8], length: Option<usize>) -> R
     }
     match postcard::take_from_bytes(message) {
         Ok((message, [])) => Ok(message),
-        // Bytes that are left over are as foreign as bytes that are missing.
+        // Extra bytes are an error, like missing bytes.
         Ok(_) | Err(_) => Err(Fault::Unknown),
     }
 }

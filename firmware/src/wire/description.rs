@@ -14,23 +14,23 @@ use crate::servo::{
 };
 use crate::tuning::{self, Parameters, RenderError, Tunable};
 
-/// The scene that runs on a board, with all that its servo is built from.
+/// The scene that runs on a board, with everything that its servo is built from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Description {
     /// The scene, its environment as data.
     pub scene: Scene,
     /// Sensor and motor.
     pub transducers: Transducers,
-    /// How it is rendered.
+    /// Options of the rendering.
     pub rendering: RenderingOptions,
     /// The number format of the servo.
     pub format: Format,
-    /// When its torques reach the motor.
+    /// The time at which torques reach the motor.
     pub timing: OutputTiming,
 }
 
-/// The scene with a weak spring in place of an environment whose law or table the board alone has: encoder,
-/// motor and limits may be why no servo can be built of it.
+/// The scene with a weak spring in place of an environment whose law or table only the board has: the
+/// encoder, the motor or the limits may still be the reason why its servo cannot be built.
 fn with_spring(scene: &Scene) -> Scene {
     const WEAK: f64 = 1e-3;
     let spring = Wall::spring(WEAK, scene.environment.delay().max(1));
@@ -38,12 +38,13 @@ fn with_spring(scene: &Scene) -> Scene {
 }
 
 impl Description {
-    /// Why changes of the running scene are refused: the words that the board has no room for, from the same
-    /// numbers by the same code. `has` are the parameters that can be changed there.
+    /// The reason why the board refuses changes of the running scene, computed from the same numbers with the
+    /// same code, because the board has no room for the text. `has` lists the parameters that can be changed
+    /// there.
     ///
     /// # Errors
-    /// The reason. None is found for what can run, and for a servo that cannot be built in one of the
-    /// rarer number formats.
+    /// The reason. `Ok` if the changes can run, or if the servo cannot be built in one of the rarer number
+    /// formats.
     pub fn explain(
         &self,
         has: Parameters,
@@ -56,16 +57,16 @@ impl Description {
         }
     }
 
-    /// The number of the mode that changes select, if the board has that mode and does not run it: whichever
-    /// step refused it, its table is on the board alone.
+    /// The number of the mode that the changes select, if the board has that mode and does not run it: the
+    /// table of that mode is only on the board, so the host cannot repeat the step that refused it.
     pub fn other_mode(&self, changes: &[(Parameter, f64)]) -> Option<f64> {
         let running = self.scene.environment.profile()?.modes?;
         let (_, mode) = changes.iter().find(|(parameter, _)| *parameter == Parameter::Mode)?;
         (running.selecting(*mode).index().is_some() && *mode != running.mode).then_some(*mode)
     }
 
-    /// Why another mode is refused with these changes. Its table is not here; without it only a number that
-    /// is invalid with every mode can be refused.
+    /// The reason why another mode is refused with these changes. Its table is not available here, so only a
+    /// number that is invalid in every mode is found.
     fn judge_without(&self, mode: f64, changes: &[(Parameter, f64)]) -> Result<(), RenderError> {
         let is_kept = |change: &&(Parameter, f64)| change.0 != Parameter::Mode;
         let others: Changes = changes.iter().filter(is_kept).copied().collect();
@@ -77,7 +78,7 @@ impl Description {
         }
     }
 
-    /// Why the scene with these changes is refused.
+    /// The reason why the scene with these changes is refused.
     fn judge(&self, changes: &[(Parameter, f64)]) -> Result<(), RenderError> {
         match self.timing {
             OutputTiming::Latched => self.by_mode::<Latched>(changes),

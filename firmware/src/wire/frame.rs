@@ -1,10 +1,8 @@
-//! A message as bytes on the wire: postcard, a CRC-32 behind it, COBS around both, a zero on either
-//! side.
+//! A message as bytes on the wire: postcard, followed by a CRC-32, both in COBS, with a zero on either side.
 //!
-//! COBS leaves no zero inside a frame, so a zero always ends one: a decoder resynchronises at the
-//! next zero. The zero in front separates the frame from noise on an idle wire. CRC-32 and not
-//! CRC-16: a corrupted parameter set must not be taken for another one, and one random frame in
-//! 65,536 passes 16 bits.
+//! COBS leaves no zero inside a frame, so a zero always ends one: a decoder resynchronises at the next zero.
+//! The zero in front separates the frame from noise on an idle wire. CRC-32 and not CRC-16: a corrupted
+//! parameter set must not be accepted, and one random frame in 65,536 passes 16 bits.
 
 use core::fmt;
 
@@ -17,20 +15,20 @@ use serde::Serialize;
 pub const DELIMITER: u8 = 0;
 /// Bytes of the checksum.
 pub const CHECKSUM: usize = size_of::<u32>();
-/// The checksum of Ethernet and zip, which every tool knows.
+/// The checksum of Ethernet and zip, which is available everywhere.
 pub(super) static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// Bytes that a frame takes at most around a message of so many: checksum, COBS, and the zero on
-/// either side.
+/// The largest size of a frame with a message of `message` bytes: checksum, COBS, and the zero on either
+/// side.
 pub const fn largest_frame(message: usize) -> usize {
     let checked = message + CHECKSUM;
     checked + checked / 254 + 3
 }
 
-/// Writes a message as a frame, and gives the frame.
+/// Writes a message as a frame, and returns the frame.
 ///
 /// # Errors
-/// Where the frame does not fit `buffer`; see [`largest_frame`].
+/// If the frame does not fit `buffer`; see [`largest_frame`].
 pub fn encode<'b, M: Serialize>(message: &M, buffer: &'b mut [u8]) -> Result<&'b [u8], TooLong> {
     let too_long = TooLong { size: buffer.len() };
     let (first, rest) = buffer.split_first_mut().ok_or(too_long)?;
@@ -42,8 +40,8 @@ pub fn encode<'b, M: Serialize>(message: &M, buffer: &'b mut [u8]) -> Result<&'b
     buffer.get(..1 + used).ok_or(too_long)
 }
 
-/// Calls what takes a byte, instead of having it inlined wherever a message gives one: on a board
-/// that is kilobytes of its flash.
+/// Calls a function for each byte instead of inlining it wherever a message writes a byte: on a board this
+/// saves kilobytes of flash.
 struct OutOfLine<F>(F);
 
 impl<F: Flavor> Flavor for OutOfLine<F> {

@@ -1,4 +1,4 @@
-//! A board's serial port with the board's end of the wire at it.
+//! A board's serial port with its session.
 
 use super::{BoardInfo, Session};
 use crate::boot::{Booted, Program, Startup, boot};
@@ -10,13 +10,13 @@ use crate::tuning::Tunable;
 
 /// A serial port that never waits.
 pub trait Port {
-    /// Reads received bytes, as far as there is room; returns their number.
+    /// Reads received bytes into `bytes`, as many as fit; returns their number.
     fn read(&mut self, bytes: &mut [u8]) -> usize;
-    /// Sends as many of the bytes as there is room for; gives their number.
+    /// Sends as many of the bytes as the port has room for; returns their number.
     fn write(&mut self, bytes: &[u8]) -> usize;
 }
 
-/// A port with a session at it.
+/// A port and its session.
 pub struct Link<P, E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// The port.
     pub port: P,
@@ -24,7 +24,7 @@ pub struct Link<P, E: Discretize<N> + 'static, N: Number, M: 'static> {
     pub session: Session<'static, E, N, M, FRAMES>,
 }
 
-/// Bytes that are taken at once: at most what arrives within a millisecond or so.
+/// Bytes that are taken at once: about those of a millisecond.
 const PIECE: usize = 64;
 
 impl<P: Port, E, N, M> Link<P, E, N, M>
@@ -33,8 +33,8 @@ where
     N: Number,
     M: OutputMode,
 {
-    /// Reads the received bytes, answers one message, and sends as much as fits. To be called in a loop,
-    /// below the servo's priority.
+    /// Reads the received bytes, answers one message, and sends as much as fits. Call it in a loop, at a
+    /// priority below the servo's.
     pub fn poll(&mut self) {
         let mut bytes = [0; PIECE];
         let count = self.port.read(&mut bytes);
@@ -48,14 +48,14 @@ where
 /// The interrupt's state, and the link below it.
 pub type BroughtUp<H, P, E, N, M> = (ServoIsr<H, E, N, M>, Link<P, E, N, M>);
 
-/// Everything from reset to the first tick of a board, which then has to begin its periods, call
-/// [`ServoIsr::tick`] in each, and [`Link::poll`] over and over below it. The servo stays off until the host
-/// arms it, unless its program arms it at power-on, and this is one.
+/// Everything from reset to the first tick of a board. The board must then begin its periods, call
+/// [`ServoIsr::tick`] in each of them, and call [`Link::poll`] in a loop at a lower priority. The servo stays
+/// off until the host arms it, or this reset is a power-on and the program arms it then.
 ///
-/// `name` is the program's. The package `own-board` is a board that begins like this.
+/// `name` is the name of the program. The package `own-board` is an example.
 ///
 /// # Errors
-/// Where the board refuses the scene: the step of the self-check that failed. The amplifier is then off.
+/// If the board refuses the scene: the step of the self-check that failed. The amplifier is then off.
 pub fn bring_up<H, P, E, N, M>(
     name: &'static str,
     program: Program<E>,

@@ -1,4 +1,4 @@
-//! The messages. `PROTOCOL.md` has the same for clients in other languages, and a test holds it against this
+//! The messages. `PROTOCOL.md` describes them for clients in other languages; a test compares it with this
 //! file.
 //!
 //! Text is `&str` where a message is written and where it is read in place, and `String` on a host
@@ -19,29 +19,29 @@ use crate::reset::ResetCause;
 use crate::servo::Step;
 use crate::servo_loop::State;
 
-/// Longest message to a board, in bytes: the longest set, nine bytes a number.
+/// Longest message to a board, in bytes: the longest set.
 pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;
-/// Longest message to the host, in bytes: a full batch of ticks, and a program described.
+/// Longest message to the host, in bytes: a full batch of ticks, or the description of a program.
 pub const LONGEST_TO_HOST: usize = 352;
 
-/// The host's number for a request, which comes back with the answer.
+/// The host's number for a request; the answer has the same number.
 pub type Id = u16;
 
 /// Requests of a host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToBoard {
-    /// Who is there? Answered by [`ToHost::Welcome`], [`ToHost::PreviousFault`] where a fault
-    /// is, and [`ToHost::Board`]. The same in every version of the protocol.
+    /// Requests the identity of the board. Answered by [`ToHost::Welcome`], [`ToHost::PreviousFault`] if
+    /// there was a fault, and [`ToHost::Board`]. The same in every version of the protocol.
     Hello,
-    /// Which numbers are running? Answered by [`ToHost::ActiveParameters`].
+    /// Requests the active parameters. Answered by [`ToHost::ActiveParameters`].
     Get,
-    /// How is it going? Answered by [`ToHost::Status`].
+    /// Requests the status. Answered by [`ToHost::Status`].
     Status,
     /// Change these numbers, all or none. Answered by [`ToHost::Answer`], once they run.
     Set {
         /// Comes back with the answer.
         id: Id,
-        /// What to change; the other numbers stay as they run.
+        /// The changes; all other parameters keep their values.
         changes: Changes,
     },
     /// Switch the amplifier on, or clear a fault and do so. Answered by [`ToHost::Answer`].
@@ -54,9 +54,9 @@ pub enum ToBoard {
         /// Comes back with the answer.
         id: Id,
     },
-    /// Send every so many ticks from now on; `None`: no more. Not answered.
+    /// Send one tick of every so many from now on; `None`: none. Not answered.
     Stream(Option<NonZeroU32>),
-    /// What exactly is running? Answered by [`ToHost::Described`].
+    /// Requests a description of the running scene. Answered by [`ToHost::Described`].
     Describe,
     /// Align a brushless motor on the board's bridge, which moves the handle. Answered by
     /// [`ToHost::Answer`] once it begins; the state is then [`State::Aligning`] until it has ended.
@@ -70,8 +70,8 @@ pub enum ToBoard {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(clippy::large_enum_variant, reason = "a board has no heap, and one message at a time")]
 pub enum ToHost<S> {
-    /// Who answers. The same in every version of the protocol, so that a host of another version
-    /// can say so.
+    /// The identity of the board. The same in every version of the protocol, so that a host of another
+    /// version can report the mismatch.
     Welcome {
         /// [`super::PROTOCOL`] of the board.
         protocol: u16,
@@ -88,14 +88,14 @@ pub enum ToHost<S> {
     Answer {
         /// The request's.
         id: Id,
-        /// What became of it.
+        /// The result.
         outcome: Outcome,
     },
-    /// What stopped this board before it was last started.
+    /// The fault that stopped the board before its last reset.
     PreviousFault(PreviousFault),
     /// Ticks, requested with [`ToBoard::Stream`].
     Telemetry(Batch),
-    /// The scene that runs, and how.
+    /// The running scene and its options.
     Described(Description),
 }
 
@@ -106,22 +106,22 @@ pub struct BoardUnits {
     pub period: f64,
     /// Counts of the servo's timer in a period: the unit of a slack.
     pub timer_counts: u32,
-    /// Encoder counts a turn.
+    /// Encoder counts per turn.
     pub counts_per_turn: f64,
-    /// Motor torque in N m at the codes of full scale.
+    /// Motor torque in N m at a full-scale code.
     pub full_scale_torque: f64,
     /// One step of the energy monitor in J.
     pub energy_step: f64,
-    /// The longest time in s for which swapping a set in takes the torque away.
+    /// The longest time in s for which a swap reduces the torque.
     pub longest_gap: f64,
 }
 
 /// The active parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActiveParameters {
-    /// Sets that were swapped in since the start; wraps.
+    /// The number of sets swapped in since the start; wraps.
     pub sets: u32,
-    /// Damping in N m s/rad that the device may lose with these numbers running; `None`: not known.
+    /// Damping in N m s/rad that the device may lose while these parameters run; `None`: unknown.
     pub margin: Option<f64>,
     /// The numbers that can be changed.
     pub values: Changes,
@@ -132,20 +132,20 @@ pub struct ActiveParameters {
 pub enum Outcome {
     /// The request has taken effect.
     Done,
-    /// It is refused, and nothing has changed.
+    /// The request is refused; nothing has changed.
     Refused(Refusal),
 }
 
-/// Why a request is refused. The words are the host's, which has the same code.
+/// The reason why a request is refused. The host has the same code and computes the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Refusal {
-    /// One set at a time.
+    /// Another set is pending.
     Busy,
-    /// It is to be disarmed, which goes first.
+    /// A request to disarm is pending; it has priority.
     Disarming,
-    /// The fault is still there.
+    /// The fault persists.
     Fault(FaultCode),
-    /// This step failed; [`Description::explain`] has the reason.
+    /// This step failed; [`Description::explain`] returns the reason.
     Set(Step),
     /// No alignment begins: because of this fault, or because the servo is armed.
     NotAligning(Option<FaultCode>),
@@ -181,7 +181,7 @@ impl fmt::Display for Refusal {
 pub struct Status {
     /// The servo's state.
     pub state: State,
-    /// What stopped it, until it is armed again.
+    /// The fault that stopped the servo; `None` after the next arming.
     pub fault: Option<FaultCode>,
     /// Whether the host was silent for too long.
     pub link_lost: bool,
@@ -189,27 +189,27 @@ pub struct Status {
     pub tick: u32,
     /// Position in counts.
     pub count: i64,
-    /// Sets of parameters that were swapped in since the start; wraps.
+    /// The number of sets swapped in since the start; wraps.
     pub sets: u32,
     /// Updates that were missed since the start.
     pub missed: u32,
-    /// The least timer counts that were left of a period since the start.
+    /// The smallest slack since the start, in timer counts.
     pub worst_slack: u32,
     /// Net energy that was put into the hand since the servo was armed, in steps.
     pub energy: i64,
-    /// The most that this has been.
+    /// The largest value of `energy` since then.
     pub worst_deficit: i64,
-    /// Ticks that found the queue to the wire full.
+    /// Ticks that were dropped because the queue to the wire was full.
     pub dropped: u32,
-    /// Ticks of the stream that were left out because the wire is slower.
+    /// Ticks of the stream that were omitted because the wire is slower.
     pub thinned: u32,
-    /// Frames from the host that were none.
+    /// Invalid frames from the host.
     pub discarded: Discarded,
-    /// Bytes of the stack that were never used, where the board can tell.
+    /// Bytes of the stack that were never used; `None` if the board does not measure this.
     pub stack_left: Option<u32>,
-    /// Why the board was last reset.
+    /// The cause of the last reset.
     pub reset: ResetCause,
-    /// What its power stage measures, where the torque is that of its own bridge.
+    /// The measurements of the power stage; `None` without a bridge on the board.
     pub power: Option<PowerReading>,
 }
 
@@ -231,7 +231,7 @@ impl From<Fault> for FaultCode {
 }
 
 impl FaultCode {
-    /// The fault; `None` where this version knows none of that code.
+    /// The fault; `None` if this version does not know the code.
     pub const fn fault(self) -> Option<Fault> {
         Fault::decode(self.code, self.numbers)
     }
@@ -248,14 +248,14 @@ impl fmt::Display for FaultCode {
     }
 }
 
-/// A fault of before the last reset, and when and where it happened.
+/// A fault from before the last reset, with its tick and position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PreviousFault {
-    /// What happened.
+    /// The fault.
     pub fault: FaultCode,
-    /// In which tick; 0 where that is not known.
+    /// The tick of the fault; 0 if unknown.
     pub tick: u32,
-    /// Low 32 bits of the position in counts; 0 where that is not known.
+    /// Low 32 bits of the position in counts; 0 if unknown.
     pub count: i32,
 }
 

@@ -1,7 +1,7 @@
 //! Protocol of a board and its host, as bytes on a serial line or a socket. [`message`] lists the messages,
-//! [`mod@frame`] and [`decoder`] carry it, [`telemetry`] packs ticks, [`session`] answers on the board, and
-//! with a [`description`] of the running scene the host has the words for a refusal. The host asks and the
-//! board answers; of itself the board sends telemetry only, once it was asked to.
+//! [`mod@frame`] and [`decoder`] carry it, [`telemetry`] packs ticks, [`session`] answers on the board. With
+//! a [`description`] of the running scene the host computes the text of a refusal. The host sends requests
+//! and the board answers; without a request the board sends only telemetry, once a host has started it.
 
 mod changes;
 pub mod decoder;
@@ -18,7 +18,8 @@ pub use link::{BroughtUp, Link, Port, bring_up};
 pub use session::{BoardInfo, Session};
 
 /// Version of the messages. Board and host must have the same; [`message::ToBoard::Hello`] and
-/// [`message::ToHost::Welcome`] begin alike in all versions, so that each can say which it has.
+/// [`message::ToHost::Welcome`] have the same beginning in all versions, so that each side can report its
+/// version.
 pub const PROTOCOL: u16 = 7;
 
 #[cfg(test)]

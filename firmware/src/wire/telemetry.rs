@@ -1,4 +1,4 @@
-//! Ticks, packed: each as its difference from the one before, a byte instead of five.
+//! Packed ticks: each as the difference from the previous tick, one byte instead of five.
 
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -7,16 +7,16 @@ use crate::dac::DacCode;
 use crate::servo_loop::{Frame, State};
 use crate::torque::LimitReason;
 
-/// Ticks in one message. With more of them they would be seen later, and little would be saved.
+/// Ticks in one message. More would add delay and save little.
 pub const BATCH: usize = 12;
 
-/// A few ticks in the order in which they happened, not necessarily all that there were.
+/// Ticks in their order, not necessarily consecutive.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Batch {
     ticks: Vec<Packed, BATCH>,
 }
 
-/// A tick after another one, and the first one after zero.
+/// The difference of a tick from the previous tick; of the first tick, from zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Packed {
     later: u32,
@@ -28,25 +28,25 @@ struct Packed {
 }
 
 impl Batch {
-    /// A batch without a tick.
+    /// An empty batch.
     pub const fn new() -> Self {
         Self { ticks: Vec::new() }
     }
 
-    /// Whether there is no tick in it.
+    /// Whether the batch is empty.
     pub fn is_empty(&self) -> bool {
         self.ticks.is_empty()
     }
 
-    /// Whether there is no room for another tick.
+    /// Whether the batch is full.
     pub fn is_full(&self) -> bool {
         self.ticks.is_full()
     }
 
-    /// Adds a tick that came after those in it.
+    /// Adds a tick that is later than those in the batch.
     ///
     /// # Errors
-    /// The tick itself, where the batch is full.
+    /// Returns the tick if the batch is full.
     pub fn push(&mut self, tick: Frame) -> Result<(), Frame> {
         let (last, count) = self.ticks().last().map_or((0, 0), |last| (last.tick, last.count));
         let packed = Packed {

@@ -2,7 +2,7 @@ use haptic_servo::certificate::Certified;
 use haptic_servo::environment::{DelayedSpring, Matched};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 
-/// What the hand feels.
+/// The environment that the hand feels.
 pub type Environment = Matched<DelayedSpring<1>, 0, 1, true>;
 
 /// The scene.
@@ -20,5 +20,5 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.5),
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();

@@ -4,7 +4,7 @@ use haptic_servo::environment::{
 };
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-/// What the hand feels.
+/// The environment that the hand feels.
 pub type Environment = FreeModeWallAndProfile<OneSided<DamperWall<1>>, Profile<16, 1>>;
 
 /// Torque over angle: a table, which stays in flash.
@@ -24,5 +24,5 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.5),
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();

@@ -2,7 +2,7 @@ use haptic_servo::certificate::Certified;
 use haptic_servo::environment::{DampedProfile, Knots, Profile, Shape};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-/// What the hand feels.
+/// The environment that the hand feels.
 pub type Environment = DampedProfile<16, 1>;
 
 /// Torque over angle: a table, which stays in flash.
@@ -21,5 +21,5 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.5),
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();

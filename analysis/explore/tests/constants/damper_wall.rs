@@ -2,7 +2,7 @@ use haptic_servo::certificate::Certified;
 use haptic_servo::environment::{DamperWall, OneSided};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-/// What the hand feels.
+/// The environment that the hand feels.
 pub type Environment = OneSided<DamperWall<1>>;
 
 /// The scene.
@@ -15,5 +15,5 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+/// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();

@@ -1,9 +1,8 @@
-//! The way of a curve through infinity, at a pole on the unit circle (equation 4).
+//! The closure of a curve at infinity, at a pole on the unit circle (equation 4).
 //!
-//! Around a pole `z0` the contour makes half a turn outside of the circle, and the curve, which is
-//! `k / (z/z0 - 1)` there, half a turn clockwise at infinity: through the right half-plane where
-//! the residue `k` is positive, through the left one where it is negative. The picture's frame
-//! stands for infinity.
+//! Around a pole `z0` the contour makes half a turn outside the circle, and the curve, which is
+//! `k / (z/z0 - 1)` there, half a turn clockwise at infinity: through the right half-plane if the residue `k`
+//! is positive, through the left if it is negative. The chart's frame stands for infinity.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -15,19 +14,19 @@ use crate::chart::{Drawn, anchored, units};
 use crate::nyquist::Branch;
 use crate::unit_circle_poles::UnitCirclePole;
 
-/// What stands for infinity.
+/// The line style of a closure at infinity.
 const FAR: Dash = Dash::new(&[4, 4]);
 
 /// Room at the left and right for words outside of the frames, in units of the drawing.
 const WORDS: i32 = units(24);
 /// Room above and below the outermost frame.
 const ROOM: i32 = units(10);
-/// From one pole's frame to the next one's.
+/// Distance between the frames of two poles.
 const STEP: i32 = units(7);
 /// Radius of a frame's corners.
 const CORNER: f64 = units(14) as f64;
 
-/// The frame of each pole of each curve, the later ones inside of the earlier.
+/// The frame of each pole of each curve, later frames inside earlier ones.
 pub(super) fn frames(plot: &PlotArea<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> {
     let all = plot.all();
     let mut level = 0;
@@ -44,7 +43,7 @@ pub(super) fn frames(plot: &PlotArea<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> 
     curves.iter().map(|curve| curve.poles.iter().map(&mut frame).collect()).collect()
 }
 
-/// Draws the ways of one curve through infinity, and gives them back.
+/// Draws the closures of one curve at infinity, and returns them.
 pub(super) fn draw(
     plot: &PlotArea<'_>,
     curve: &Curve,
@@ -63,9 +62,8 @@ pub(super) fn draw(
     Ok(ways)
 }
 
-/// Where the curve goes to infinity at a pole and where it comes back, with rising angle. At the
-/// pole's conjugate it goes the same way where the residue is real, and the mirrored one where it
-/// is not, which is left out.
+/// The ends of the curve at a pole, where it goes to infinity and where it returns, with rising angle. At the
+/// pole's conjugate the closure is the same if the residue is real; otherwise it is mirrored and not drawn.
 fn ends(
     plot: &PlotArea<'_>,
     curve: &Curve,
@@ -76,7 +74,7 @@ fn ends(
     let places = |b: &'_ Branch| b.values.iter().map(|&v| plot.place(v)).collect::<Vec<_>>();
     let from = branch(1).map(places).map(|line| frame.exit(line.into_iter()));
     let to = branch(0).map(places).map(|line| frame.exit(line.into_iter().rev()));
-    // At rest and at half the sample rate the other side is the mirrored one.
+    // At rest and at half the sample rate the other end is the mirrored one.
     let mirrored = |end: Option<DrawingPoint>| end.map(|end| frame.nearest(plot.mirrored(end)));
     let (from, to) = match (from, to) {
         (None, None) => return None,

@@ -16,7 +16,7 @@ const LONGEST_NAME: usize = 48;
 
 /// An entry below the plot: lines of text with the patterns that they explain.
 struct Entry {
-    /// Pattern and ink of the line that this is about.
+    /// Pattern and ink of the explained line.
     sample: Option<(Dash, RGBColor, u32)>,
     words: Vec<String>,
 }

@@ -13,14 +13,14 @@ use crate::quantity::significant;
 /// Half the width of a frequency's mark and of a margin's.
 const DOT: i32 = units(3);
 const SQUARE: i32 = units(6);
-/// Two marks are at least so far apart.
+/// Smallest distance of two marks.
 const APART: f64 = units(46) as f64;
-/// Frequencies that are marked, in each decade.
+/// Marked frequencies in each decade.
 const STEPS: [f64; 3] = [1.0, 2.0, 5.0];
 /// Room on both sides of a curve.
 const CLEAR: i32 = units(5);
 
-/// Names besides frequencies.
+/// Names other than frequencies.
 pub(super) struct Names<'n> {
     /// The critical lines, with their names.
     pub(super) criticals: &'n [(f64, &'static str)],
@@ -30,8 +30,8 @@ pub(super) struct Names<'n> {
     pub(super) ways: &'n [Vec<DrawingPoint>],
 }
 
-/// Marks frequencies inside of a frame on the judged curve, and where its phase margin is reached, and writes
-/// all names: on no curve and no line, as long as there is room beside them.
+/// Marks frequencies inside a frame on the judged curve, and the point of its phase margin, and writes all
+/// names beside curves and lines, if there is room.
 pub(super) fn draw(
     plot: &PlotArea<'_>,
     scenes: &[NyquistScene],
@@ -78,7 +78,7 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// Lets no name be on a line or a curve, whatever they are.
+/// Keeps names off all lines and curves.
 fn keep_clear_of_lines(
     plot: &PlotArea<'_>,
     scenes: &[NyquistScene],
@@ -142,7 +142,7 @@ fn judged_curves(scene: &NyquistScene) -> impl Iterator<Item = (&NyquistScene, &
     judged.map(move |curve| (scene, curve))
 }
 
-/// Frequencies in Hz up to half the sample rate, the round ones last: they give way to the ends.
+/// Frequencies in Hz up to half the sample rate, round ones last, because the ends have priority.
 fn frequencies(
     plot: &PlotArea<'_>,
     scene: &NyquistScene,

@@ -14,13 +14,13 @@ use super::*;
 use crate::nyquist::{Curve, NyquistScene, Role, critical_lines, usual_window};
 use crate::quantity::shortened;
 
-/// A line that is hardly there.
+/// A very light line.
 const HAIRLINE: Dash = Dash::new(&[1, 7]);
 
 /// Longest title, in letters.
 const LONGEST_TITLE: usize = 72;
 
-/// A curve with the pattern that it is drawn in.
+/// A curve with its line pattern.
 struct Line<'j> {
     dash: Dash,
     curve: &'j Curve,
@@ -52,12 +52,12 @@ fn lines(scenes: &[NyquistScene]) -> Vec<Vec<Line<'_>>> {
 }
 
 /// Draws the Nyquist plots of named scenes for velocity, `(T z / (z - 1)) G`: the judged curve in black, with
-/// its critical line, its least real part and frequencies marked; beside it, in grey, the environment alone
-/// where that is something else. Where a pole on the unit circle takes a curve to infinity, a broken line
-/// along the frame shows on which side it comes back.
+/// its critical line, its least real part and frequencies marked; and, in grey, the environment alone if it
+/// differs. If a pole on the unit circle takes a curve to infinity, a broken line along the frame shows the
+/// side of its closure.
 ///
 /// # Errors
-/// Where an environment has no transfer function, or there is none.
+/// If an environment has no transfer function, or there is no scene.
 pub fn nyquist(
     title: &str,
     scenes: &[(String, Scene)],
@@ -94,7 +94,7 @@ fn judged(scenes: &[(String, Scene)]) -> Result<Vec<NyquistScene>, ChartError> {
 /// The curves as numbers, at rising angles from 0 to the Nyquist frequency.
 ///
 /// # Errors
-/// Where an environment has no transfer function.
+/// If an environment has no transfer function.
 pub fn data(scenes: &[(String, Scene)]) -> Result<Data, ChartError> {
     let rows = judged(scenes)?.into_iter().flat_map(|scene| {
         let NyquistScene { name, period, curves, limit, bound, .. } = scene;
@@ -137,8 +137,7 @@ fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()>
     let (x, y) = usual_window(scenes, wanted.x.clone(), wanted.y.clone());
     let mut chart = axes::chart(area).build_cartesian_2d(x.clone(), y.clone())?;
     let criticals = critical_lines(scenes);
-    // What lies left of all the lines is forbidden whatever the scene; everything, where none of
-    // the scenes has a line.
+    // The region left of all lines is forbidden for every scene; without any line, the whole plane.
     let leftmost = criticals.first().map_or(x.end, |line| line.0.clamp(x.start, x.end));
     let forbidden = Rectangle::new([(x.start, y.start), (leftmost, y.end)], FORBIDDEN.filled());
     chart.draw_series([forbidden])?;
@@ -169,7 +168,7 @@ fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()>
     marks::draw(&plot, scenes, inner, &names)
 }
 
-/// Judged in place of a curve: an upright line that all of the scene's motion keeps right of.
+/// The bound that is judged in place of a curve: a vertical line, with all motion of the scene on its right.
 fn draw_bounds(
     chart: &mut Plane<'_, '_>,
     scenes: &[NyquistScene],
@@ -185,8 +184,8 @@ fn draw_bounds(
 }
 
 /// The curve, and in a thinner line its mirror image for negative angles, with arrows in the direction of
-/// rising angles; its asymptote at rest, where it goes to infinity, in a hairline; and its ways through
-/// infinity, which are given back.
+/// rising angles; its asymptote at rest, if it goes to infinity, as a hairline; and its closures at infinity,
+/// which are returned.
 fn draw_curve(
     plot: &PlotArea<'_>,
     line: &Line<'_>,
@@ -214,7 +213,7 @@ fn draw_curve(
             let parts = Frame::clip(places, frame);
             let longest = parts.iter().max_by_key(|part| part.len());
             if let Some(part) = longest.filter(|_| judged) {
-                // The mirror image is run through backwards.
+                // The mirror image has the opposite direction.
                 let mut part = part.clone();
                 if width == 1 {
                     part.reverse();
@@ -230,8 +229,8 @@ fn draw_curve(
     if curve.role == Role::Alone { Ok(Vec::new()) } else { infinity::draw(plot, curve, frames) }
 }
 
-/// Marks the minima, and returns them with their labels: in a row for several at one place, and
-/// without a label for a single scene, which has it in the legend.
+/// Marks the minima, and returns them with their labels: in a row for several at one place; a single scene
+/// has its label in the legend.
 fn draw_minima(
     chart: &mut Plane<'_, '_>,
     scenes: &[NyquistScene],

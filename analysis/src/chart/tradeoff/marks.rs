@@ -1,10 +1,10 @@
-//! Marks of families: they differ in form, and in colours that the colour-blind can see.
+//! Marks of families: they differ in form, and in colours that are distinct for colour-blind readers.
 
 use plotters::prelude::*;
 
 use crate::chart::{Area, Drawn, UNITS, units};
 
-/// How the methods of a family are marked.
+/// The mark of a family of methods.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
     form: Form,
@@ -23,7 +23,7 @@ enum Form {
     Plus,
 }
 
-/// In the order of the families. Colours of Okabe and Ito, the yellow left out: it is lost on white.
+/// In the order of the families. Colours of Okabe and Ito, without yellow, which is hard to see on white.
 const MARKS: [(Form, RGBColor); 8] = [
     (Form::Disk, RGBColor(0, 0, 0)),
     (Form::Square, RGBColor(0, 114, 178)),
@@ -39,7 +39,7 @@ impl Mark {
     /// Half of a mark's size, in units of the drawing.
     pub const SIZE: i32 = units(4);
 
-    /// Of the family of that number; after the last they begin again.
+    /// The mark of the family with this number; the marks repeat.
     pub fn of(family: usize) -> Self {
         let (form, colour) = MARKS[family % MARKS.len()];
         Self { form, colour }

@@ -1,5 +1,5 @@
-//! `haptic advise --max-limit-cycle --rate`: the cheapest number format that is enough, and the cheapest
-//! method of simulation.
+//! `haptic advise --max-limit-cycle --rate`: the cheapest sufficient number format, and the cheapest
+//! sufficient method of simulation.
 
 use std::f64::consts::TAU;
 
@@ -62,20 +62,20 @@ pub struct FormatArguments {
     pub measure: bool,
 }
 
-/// Most ticks a second: a core of 170 MHz has 850 instructions then.
+/// Largest rate in Hz: a core of 170 MHz then has 850 cycles per tick.
 const LARGEST_RATE: f64 = 200e3;
-/// Time in s of the motion in which errors are looked for.
+/// Duration in s of the motion in which errors are measured.
 const SECONDS: f64 = 5.0;
 
-/// The scene that a format is sought for.
+/// The scene for which a format is sought.
 struct FormatQuery {
     name: String,
     problem: FormatProblem,
     trajectory: HandTrajectory,
 }
 
-/// Looks for the cheapest format. The answer is no where none keeps to the figures, or the encoder
-/// does not.
+/// Finds the cheapest format. The verdict is negative if no format, or not even the encoder, satisfies the
+/// requirements.
 pub fn run(
     scene: &str,
     arguments: &FormatArguments,
@@ -83,7 +83,7 @@ pub fn run(
 ) -> Result<CommandStatus, CommandError> {
     let query = query(scene, arguments)?;
     let scene = &query.problem.scene;
-    // A scene that is refused at this rate needs no format.
+    // A scene that is rejected at this rate needs no format.
     scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
     let motion = Motion::new(&query.problem, query.trajectory.clone(), SECONDS)?;
     let requirements = Requirements {
@@ -113,7 +113,7 @@ pub fn run(
     Ok(if is_yes { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
-/// The scene at the rate, with its sensor and motor, and what a hand does to it.
+/// The scene at the rate, with its sensor, its motor and a hand's trajectory.
 fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, CommandError> {
     let at_rate = |scene: &Scene| at_period(scene, 1.0 / arguments.rate);
     let FormatArguments { counts_per_rev: counts, range, friction, .. } = *arguments;
@@ -148,14 +148,14 @@ fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, Comman
     })
 }
 
-/// With the instructions that are kept for scenes of this type.
+/// Advises with the kept instruction counts of scenes of this type.
 fn kept(motion: &Motion, requirements: &Requirements) -> Result<Advice, CommandError> {
     let ticks = Ticks::kept()?;
     let environment = &motion.problem().scene.environment;
     Ok(Advice::new(motion, requirements, |arithmetic| Ok(ticks.of(environment, arithmetic)))?)
 }
 
-/// With the instructions that this scene takes on the emulated board.
+/// Advises with the instruction counts of this scene on the emulated board.
 fn measured(motion: &Motion, requirements: &Requirements) -> Result<Advice, CommandError> {
     let mut board = tradeoff::any_board()?;
     let advice = Advice::new(motion, requirements, |arithmetic| {
@@ -165,7 +165,7 @@ fn measured(motion: &Motion, requirements: &Requirements) -> Result<Advice, Comm
     Ok(advice)
 }
 
-/// The cheapest method of simulation whose verdict is off by no more than a part.
+/// The cheapest method of simulation whose relative error of the verdict is within a bound.
 fn simulated(bound: f64) -> Result<Option<SimulationMethod>, CommandError> {
     let table = simulation::kept()?;
     Ok(simulation::cheapest(&table, bound).map(|method| SimulationMethod {

@@ -1,4 +1,4 @@
-//! `haptic advise`: the cheapest number format, or the simplest device model, that is enough for a scene.
+//! `haptic advise`: the cheapest number format, or the simplest device model, that is sufficient for a scene.
 
 mod format;
 mod model;
@@ -31,7 +31,7 @@ pub struct Arguments {
     pub answer: JsonOption,
 }
 
-/// Advises.
+/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     match &arguments.format {
         Some(format) => format::run(&arguments.scene, format, &arguments.answer),

@@ -1,4 +1,4 @@
-//! `haptic advise --model`: how much model of the device?
+//! `haptic advise --model`: the simplest sufficient model of the device.
 
 use clap::Args;
 
@@ -67,7 +67,7 @@ fn text(advice: &Advice) -> String {
     format!("scene  {}\n\n{table}\n{no_certificate}\n{}\n", advice.scene, advice.message)
 }
 
-/// Numbers with how far they are off in brackets.
+/// A row of numbers with their errors in brackets.
 fn row(judged: &JudgedModel) -> [String; 10] {
     let JudgedModel { model, result, deviation, beyond, .. } = judged;
     let Deviation { delta, critical_stiffness, angle, torque } = *deviation;

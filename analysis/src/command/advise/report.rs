@@ -12,24 +12,24 @@ use crate::studies::bench::CORE_CLOCK;
 use crate::studies::number_format::{Advice, Candidate, FormatProblem};
 use crate::text_table::markdown_table;
 
-/// The answer as JSON.
+/// The result as JSON.
 #[derive(Serialize)]
 pub struct FormatReport {
     /// Its name.
     pub scene: String,
-    /// Ticks a second.
+    /// Ticks per second.
     pub rate: f64,
     /// Stiffness in N m/rad of the coupling at that rate; `None`: rigid.
     pub coupling_stiffness: Option<f64>,
-    /// The cheapest format that keeps to the figures.
+    /// The cheapest format that satisfies the requirements.
     pub format: Option<&'static str>,
     /// The cheapest method of simulation.
     pub simulation: Option<SimulationMethod>,
-    /// Limit cycle in N m by the encoder alone.
+    /// Limit cycle in N m caused by the encoder alone.
     pub encoder_hum: Option<f64>,
     /// All formats, the cheapest first.
     pub formats: Vec<Candidate>,
-    /// The answer in sentences.
+    /// The result as text.
     pub message: String,
 }
 
@@ -38,15 +38,15 @@ pub struct FormatReport {
 pub struct SimulationMethod {
     /// Its name.
     pub method: String,
-    /// Its steps in a sample.
+    /// Its steps per sample.
     pub substeps: f64,
-    /// Samples that it computes a second.
+    /// Samples per second of computing time.
     pub samples_per_second: f64,
-    /// Part by which its largest stable stiffness is off.
+    /// Relative error of its largest stable stiffness.
     pub verdict_error: f64,
 }
 
-/// The answer in sentences.
+/// The result as text.
 pub fn message(problem: &FormatProblem, allowed: f64, advice: &Advice) -> String {
     let choice = advice.choice();
     let format = choice.map_or_else(|| none(advice), |choice| chosen(problem, choice));
@@ -69,7 +69,7 @@ pub fn message(problem: &FormatProblem, allowed: f64, advice: &Advice) -> String
     }
 }
 
-/// That the encoder is too coarse for any format, and what would do.
+/// The text for an encoder that is too coarse for any format, with a sufficient resolution.
 fn coarse(
     problem: &FormatProblem,
     allowed: f64,
@@ -94,7 +94,7 @@ fn as_certified(rest: Option<&QuantizationBound>) -> String {
     rest.map_or_else(String::new, |rest| format!("; as certified {rest}"))
 }
 
-/// Why no format was chosen.
+/// The reason if no format was chosen.
 fn none(advice: &Advice) -> String {
     let hum = |candidate: &&Candidate| candidate.losses.map(|losses| losses.alone.torque);
     let built = advice.candidates.iter().filter(|candidate| hum(candidate).is_some());
@@ -109,7 +109,7 @@ fn none(advice: &Advice) -> String {
     format!("no format is within the limits{reason}")
 }
 
-/// Why a format was chosen.
+/// The reason for the chosen format.
 fn chosen(problem: &FormatProblem, choice: &Candidate) -> String {
     let hum = choice.losses.map_or(f64::NAN, |losses| losses.alone.torque);
     let its_cycle = match choice.is_still() {
@@ -132,12 +132,12 @@ fn chosen(problem: &FormatProblem, choice: &Candidate) -> String {
     )
 }
 
-/// A figure in a sentence or in a table.
+/// Formats a figure for text or a table.
 fn number(value: f64) -> String {
     significant(value, 3)
 }
 
-/// The answer for a person.
+/// The result as text with a table.
 pub fn text(answered: &FormatReport) -> String {
     let mut table = markdown_table(
         [

@@ -1,4 +1,5 @@
-//! `haptic chart failures`: which springs methods of integration call stable, and which are.
+//! `haptic chart failures`: the springs that methods of integration show as stable, and the springs that are
+//! stable.
 
 use clap::{Args, ValueEnum};
 
@@ -16,7 +17,7 @@ pub struct Arguments {
     pub output: OutputArguments,
 }
 
-/// Looks for the limits and draws them.
+/// Finds the limits and draws them.
 pub fn draw() -> Result<Chart, CommandError> {
     let regions = Region::all()?;
     let picture = chart::failures::failures(&regions)?;
@@ -46,7 +47,7 @@ pub fn draw() -> Result<Chart, CommandError> {
     Ok(Chart { picture, data: Data::new(header, rows) })
 }
 
-/// What the method is called on the command line.
+/// The method's name on the command line.
 fn word(method: Method) -> String {
     method.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! `haptic chart identify`: a measured device in its disk.
+//! `haptic chart identify`: the responses of a measured device in the disk of its passivity.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `haptic chart latency`: how stiff a spring may be behind a current loop, over the servo's rate.
+//! `haptic chart latency`: the largest stiffness of a spring behind a current loop, over the servo's rate.
 
 use std::ops::Range;
 
@@ -38,7 +38,7 @@ pub struct Arguments {
 /// Rates in a curve.
 const RATES: usize = 61;
 
-/// Looks for the limits and draws them.
+/// Finds the limits and draws them.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
     let bar = progress::bar(arguments.loops.len() as u64, "limits");

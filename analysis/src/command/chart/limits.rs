@@ -1,4 +1,5 @@
-//! `haptic chart limits`: how stiff a wall may be, and what the encoder costs, over the sample rate.
+//! `haptic chart limits`: the largest stiffness of a wall, and the ripple by the encoder, over the sample
+//! rate.
 
 use std::ops::Range;
 
@@ -46,7 +47,7 @@ const DELAYS: usize = 4;
 /// Sample rates in the picture of limits.
 const RATES: usize = 61;
 
-/// Looks for the limits and draws them.
+/// Finds the limits and draws them.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
     let Some(wall) = file.scene.environment.wall() else {
@@ -100,7 +101,7 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     Ok(Chart { picture, data: Data::new(header, rows) })
 }
 
-/// The whole number that a step in rad was rounded from, where there is one so near.
+/// The whole number of counts of a rounded step in rad, if one is near enough.
 fn whole(counts: f64) -> f64 {
     let nearest = counts.round();
     if (counts - nearest).abs() <= 1e-5 * nearest { nearest } else { counts }

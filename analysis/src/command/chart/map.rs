@@ -1,5 +1,5 @@
-//! `haptic chart map`: what becomes of walls of every stiffness and damping, and of torque profiles of every
-//! torque and number of repetitions.
+//! `haptic chart map`: the verdicts on walls over stiffness and damping, and on torque profiles over torque
+//! and number of repetitions.
 
 use std::ops::Range;
 
@@ -56,12 +56,12 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     }
 }
 
-/// A range of stiffness and one of damping, where they are given.
+/// A range of stiffness and a range of damping, if given.
 type Ranges = (Option<Range<f64>>, Option<Range<f64>>);
 
 /// Delays of a map of torque profiles, in samples.
 const DELAYS: std::ops::RangeInclusive<usize> = 0..=2;
-/// Most numbers of repetitions that are looked at.
+/// Largest number of repetition numbers in a map.
 const COUNTS: u32 = 512;
 
 /// The map of a scene file's torque profile.
@@ -87,7 +87,7 @@ pub fn of_profile(file: &SceneFile, (counts, torques): Ranges) -> Result<Chart, 
     if own.points.len() < 2 {
         return Err(no_detents());
     }
-    // About twice what certifies with as many repetitions as the scene has.
+    // About twice the largest certified torque with the scene's number of repetitions.
     let near = own.points.iter().min_by(|a, b| (a.0 - count).abs().total_cmp(&(b.0 - count).abs()));
     let usual = 2.0 * near.map_or(torque, |point| point.1.max(torque));
     let torques = torques.unwrap_or(0.0..usual);

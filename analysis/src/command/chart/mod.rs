@@ -26,10 +26,10 @@ pub struct Arguments {
     pub kind: Kind,
 }
 
-/// Which picture, or pictures.
+/// The kind of chart, or charts.
 #[derive(Debug, Subcommand)]
 pub enum Kind {
-    /// A picture that goes to one file.
+    /// A chart in one file.
     #[command(flatten)]
     Single(Single),
     /// Measure speed and accuracy of methods: tables, charts, Pareto fronts

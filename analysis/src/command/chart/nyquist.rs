@@ -1,4 +1,4 @@
-//! `haptic chart nyquist`: the curves of environments, seen from velocity.
+//! `haptic chart nyquist`: the Nyquist curves of environments, from velocity to torque.
 
 use clap::Args;
 

@@ -1,4 +1,4 @@
-//! Where a picture goes, and which part of it is shown.
+//! The output file of a chart, and its visible part.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use clap::Args;
 use crate::chart::{Chart, ChartError, Output, Window};
 use crate::command::value_parsers::range;
 
-/// Where a picture goes, and its numbers.
+/// The output files of a chart and its numbers.
 #[derive(Debug, Args)]
 pub struct OutputArguments {
     /// File of the chart: .svg, .png or .pdf; or .csv for its numbers only

@@ -37,7 +37,7 @@ pub struct Arguments {
     pub output: OutputArguments,
 }
 
-/// Draws the run and writes the picture; no, where it cannot show all of it.
+/// Draws the run and writes the chart; the status is negative if the chart cannot show all of it.
 pub fn run(arguments: &Arguments, files: &Files) -> Result<CommandStatus, CommandError> {
     let run = drawable(load(arguments)?);
     let left_out = run.lost.map(|_| CommandError::LeftOut { sample: run.time.len() });

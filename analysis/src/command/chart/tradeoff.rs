@@ -66,7 +66,7 @@ const SCALE: f32 = 1.0;
 /// Ticks of a run on the emulated board.
 const DEFAULT_TICKS: usize = 5000;
 
-/// All but [`Topic::All`].
+/// All topics except [`Topic::All`].
 const TOPICS: [Topic; 5] =
     [Topic::Servo, Topic::Sine, Topic::Simulation, Topic::Certificate, Topic::Rate];
 
@@ -101,7 +101,7 @@ impl Topic {
     }
 }
 
-/// Measures, keeps and draws; says which methods are on the fronts.
+/// Measures, stores and draws; prints the methods on the fronts.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures/tradeoff");
     let folder = arguments.output.as_ref().unwrap_or(&kept);
@@ -161,7 +161,7 @@ fn draw(tradeoff: &Tradeoff, folder: &Path) -> Result<(), CommandError> {
 }
 
 impl Arguments {
-    /// The panels that are asked for.
+    /// The requested panels.
     fn panels(&self, tradeoff: &Tradeoff) -> Result<Panels, CommandError> {
         let cases = tradeoff.cases();
         let columns: Vec<_> =
@@ -187,7 +187,7 @@ impl Arguments {
     }
 }
 
-/// What a tick of any scene takes, for which there is no picture.
+/// The cost of a tick of any scene, for which there is no chart.
 fn all_ticks() -> Result<Ticks, CommandError> {
     let mut board = tradeoff::any_board()?;
     let bar = progress::bar(ticks::types() as u64, "types of scenes");
@@ -197,8 +197,8 @@ fn all_ticks() -> Result<Ticks, CommandError> {
     Ok(measured)
 }
 
-/// The programs that render a wall, with the instructions that their interrupts take on the emulated
-/// board, in the mean of a hand that comes and goes.
+/// The programs that render a wall, with the mean instructions of their interrupts on the emulated board
+/// while a hand comes and goes.
 fn interrupts() -> Result<Vec<(&'static Program, f64)>, CommandError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;

@@ -1,4 +1,4 @@
-//! `haptic chart turn`: what a hand feels that turns a torque profile.
+//! `haptic chart turn`: the torque on a hand that turns a torque profile.
 
 use clap::Args;
 use haptic_servo::scene::Scene;

@@ -55,7 +55,7 @@ pub struct Arguments {
     pub target: target::Simulated,
 }
 
-/// How a record is read.
+/// The corrections for reading a record.
 #[derive(Debug, Args)]
 pub struct Reading {
     /// Time from the time stamp of a row until its torque is applied, in s
@@ -94,10 +94,10 @@ impl Reading {
     }
 }
 
-/// Part of a sine that is left out where nothing is said.
+/// Default of the part of a sine to skip.
 const SETTLE: f64 = 0.25;
 
-/// A response as programs read it.
+/// A response in the JSON output.
 #[derive(Debug, Serialize)]
 struct Point {
     /// Hz.
@@ -117,7 +117,7 @@ struct Point {
 /// Delay in s that was removed from the responses before the fit.
 #[derive(Debug, Serialize)]
 struct TakenOut {
-    /// Half a period, which a torque that is held is late by.
+    /// Half a period, the mean delay of a held torque.
     hold: f64,
     /// As declared: from the time of a row to its torque.
     torque_delay: f64,
@@ -144,7 +144,7 @@ impl TakenOut {
     }
 }
 
-/// An identification as programs read it.
+/// An identification in the JSON output.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     inertia: Estimate,
@@ -152,14 +152,14 @@ struct Report<'a> {
     /// Mean delay of the torque's step response in s: the sum of lag and delay.
     skew: Estimate,
     skew_significant: bool,
-    /// Lag and delay; `None` where they have no intervals that are true.
+    /// Lag and delay; `None` if no valid intervals exist.
     latency: Option<Latency>,
     /// Whether the responses exclude a lag alone or a delay alone.
     told_apart: bool,
-    /// Why there is no `latency`.
+    /// The reason if `latency` is `None`.
     no_latency: Option<String>,
     taken_out: TakenOut,
-    /// The board's own current loop, where there is one.
+    /// The board's own current loop, if there is one.
     current_loop: Option<TorqueSource>,
     bias: f64,
     disk: Disk,
@@ -172,8 +172,8 @@ struct Report<'a> {
     notes: &'a [String],
 }
 
-/// Answers with the device; no if it has no passivity that could be certified with, or if a code of
-/// the emulated board differs from this machine's.
+/// Prints the device; the status is negative if it has no passivity for a certificate, or if a code of the
+/// emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let Measured { record, origin, counts_per_turn, torque_source } = measured(arguments)?;
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
@@ -202,10 +202,10 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 /// A record and its known properties.
 struct Measured {
     record: Record,
-    /// Who has measured it, where that was not a board or another instrument.
+    /// The origin of a simulated measurement.
     origin: Option<Origin>,
     counts_per_turn: f64,
-    /// The current loop of a board that has one.
+    /// The board's current loop, if it has one.
     torque_source: Option<TorqueSource>,
 }
 
@@ -286,7 +286,7 @@ fn report<'a>(
 /// Warnings about the identified numbers.
 fn notes(found: &Identification) -> Vec<String> {
     let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
-    // If no rigid device explains the responses, the fitted times mean nothing.
+    // If no rigid device explains the responses, the fitted times are meaningless.
     if found.is_rigid() && found.mean_delay.is_significant() {
         notes.push(format!(
             "the counts are {} us late against the torque: uncorrected, the damping would be {} N \
@@ -321,7 +321,7 @@ fn notes(found: &Identification) -> Vec<String> {
     notes
 }
 
-/// What the responses tell of lag and delay, each for itself.
+/// The text on lag and delay separately.
 fn split(found: &Identification, latency: &Latency) -> String {
     let micro = |[lo, hi]: [f64; 2]| {
         format!("{} to {} us", significant(1e6 * lo, 3), significant(1e6 * hi, 3))
@@ -346,14 +346,14 @@ fn split(found: &Identification, latency: &Latency) -> String {
     }
 }
 
-/// The ranges of lag and delay for a scene file: that of the lag stands in the table of the device, that
-/// of the delay belongs into the table of the servo, which a file of a device does not have.
+/// The ranges of lag and delay for a scene file: the lag is in the table of the device; the delay belongs in
+/// the table of the servo, which a device file does not have.
 fn latency_lines(found: &Identification) -> String {
     let latency = match &found.latency {
         Ok(latency) => latency,
         Err(reason) => return format!("# actuator_lag, output_delay: none; {reason}\n"),
     };
-    // Outwards, so that no end is rounded into the interval.
+    // Rounded outwards, so that no end is rounded into the interval.
     let range = |[lo, hi]: [f64; 2]| {
         let outward = |value: f64, part: f64| significant(value * (1.0 + part), 4);
         format!("[{}, {}]", outward(lo, -5e-4), outward(hi, 5e-4))

@@ -1,4 +1,4 @@
-//! A record that a board makes: `haptic identify --port`.
+//! A record measured by a board: `haptic identify --port`.
 
 use std::path::Path;
 
@@ -8,8 +8,8 @@ use crate::identify::{IdentifyError, Record, record};
 use crate::link::Address;
 use crate::progress;
 
-/// Has the board measure its device; gives the record and what the board says of itself. A record that is not
-/// whole is kept too, to be looked at.
+/// Lets the board measure its device; returns the record and the board's description. An incomplete record is
+/// also kept, for inspection.
 pub fn measure(
     address: &Address,
     keep: Option<&Path>,

@@ -1,5 +1,4 @@
-//! Where a record comes from that `haptic identify` makes itself: a simulated device, driven by the
-//! program `identify`.
+//! The target of a measurement that `haptic identify` simulates: a device, driven by the program `identify`.
 
 use std::fs::File;
 use std::io::BufWriter;
@@ -20,7 +19,7 @@ use crate::progress;
 use crate::simulation::plant::Plant;
 use crate::toolchain::{self, NumberFormat, Tools};
 
-/// What drives the device.
+/// The target that drives the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Target {
@@ -56,21 +55,21 @@ pub struct Simulated {
     pub seed: u64,
 }
 
-/// How a record was made, as programs read it.
+/// The origin of a record in the JSON output.
 #[derive(Debug, Serialize)]
 pub struct Origin {
-    /// What drove the device.
+    /// The target that drove the device.
     pub target: Target,
     /// Samples.
     pub ticks: usize,
     /// Codes of the board that were equal to this machine's.
     pub codes_equal: Option<usize>,
-    /// The first that was not.
+    /// The first difference.
     pub difference: Option<Difference>,
 }
 
 impl Origin {
-    /// What there is to say of it, and its name.
+    /// Its name and its text in a report.
     pub fn row(&self) -> (&'static str, String) {
         match self.codes_equal {
             Some(equal) => ("codes equal", format!("{equal} of {}", self.ticks)),
@@ -79,7 +78,7 @@ impl Origin {
     }
 }
 
-/// Counts a turn where nothing else is said.
+/// The default of the counts per turn.
 pub const COUNTS_PER_TURN: f64 = TRANSDUCERS.counts_per_turn;
 
 /// Measures the device of a file, or that of the scenes' programs.
@@ -124,7 +123,7 @@ fn build() -> Result<PathBuf, CommandError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let spinner = progress::spinner("building identify");
-    // The program computes its codes in `f32` whatever format the scenes have.
+    // The program computes its codes in `f32` for every format of the scenes.
     let elf = toolchain.build_scene("identify", NumberFormat::F32)?;
     spinner.finish_and_clear();
     Ok(elf)

@@ -1,7 +1,8 @@
-//! Tests of a B-G431B-ESC1's bridge with a resistor and a coil between the outputs 1 and 2, before there is a
-//! motor; `boards.md` says how. Each begins with a reset, ends with the gates low, and drives for less than 50 ms.
+//! Tests of a B-G431B-ESC1's bridge with a resistor and a coil between the outputs 1 and 2, before a motor is
+//! connected; `boards.md` has the instructions. Each begins with a reset, ends with the gates low, and drives
+//! for less than 50 ms.
 //!
-//! The numbers below are those of the load and of its supply: adapt them first.
+//! First adapt the numbers below to the load and its supply.
 #![no_std]
 #![no_main]
 
@@ -14,8 +15,8 @@ use haptic_servo::current::{
 };
 use haptic_servo::servo::Transducers;
 
-/// The load, as the winding of a motor that makes no torque to speak of, and its supply in V. Resistor, coil and
-/// wires in series: 1 ohm and 0.1 mH.
+/// The load, as the winding of a motor with almost no torque, and its supply in V. Resistor, coil and wires
+/// in series: 1 ohm and 0.1 mH.
 const LOAD: Drive = Drive {
     motor: Motor {
         winding: Winding::Brushed,
@@ -28,10 +29,10 @@ const LOAD: Drive = Drive {
     largest_temperature: 60.0,
 };
 
-/// How far resistance and inductance may be off.
+/// Relative tolerance of resistance and inductance.
 const TOLERANCE: f64 = 0.1;
 
-/// The part of the supply that is between the outputs, one way and the other.
+/// The part of the supply between the outputs, in both directions.
 const DUTY: f64 = 0.1;
 
 /// Full scale is 2 A, so that the comparators trip at 3 A. No encoder is read.
@@ -55,20 +56,20 @@ const EXPECTED: DutyCurrent =
 /// The filter of the encoder's inputs.
 const FILTER: InputFilter = InputFilter::of_encoder(&TRANSDUCERS, ENCODER_CLOCK);
 
-/// The chip that these tests are for, where probe-rs looks for it.
+/// The chip of these tests, in the place where probe-rs looks for it.
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".probe-rs.chip")]
 static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 
-/// Why a test fails.
+/// The reason of a failure.
 type Failure = &'static str;
 
-/// Instants of which a mean is taken.
+/// Number of instants in a mean.
 const MEASURED: u32 = 256;
 
-/// Instants in which converters and amplifiers settle: those that are sampled between two instants are of the
-/// instant before.
+/// Instants for settling of converters and amplifiers: samples between two instants belong to the previous
+/// instant.
 const SETTLING: u32 = 40;
 
 /// The current in A that counts as zero: a count of noise, and a count of offset error.
@@ -81,7 +82,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// Gates low, amplifiers with their offsets, and a supply as it is stated.
+    /// Checks that the gates are low, the amplifiers' offsets valid, and the supply as stated.
     fn new() -> Result<Self, Failure> {
         let _ = init_chip(FILTER);
         let mut load = Load::new(&CURRENT_LOOP);
@@ -180,7 +181,7 @@ fn add(sums: &mut [u32; 2], sample: &Sample) {
     }
 }
 
-/// The next sample, where nothing has taken the gates away that were on.
+/// The next sample; fails if gates that were on have been turned off.
 fn sample(load: &mut Load) -> Result<Sample, Failure> {
     let sample = load.next().ok_or("no sample has come: the modulation does not run")?;
     if load.broke() {
@@ -200,7 +201,7 @@ fn no_duty() -> Result<(), Failure> {
     bench.check_off()
 }
 
-/// A tenth of the supply one way and the other, and off again.
+/// A tenth of the supply in both directions, and off again.
 fn ten_per_cent() -> Result<(), Failure> {
     let mut bench = Bench::new()?;
     defmt::info!(
@@ -227,7 +228,7 @@ fn ten_per_cent() -> Result<(), Failure> {
     bench.check_off()
 }
 
-/// A break takes the gates away with a current in the load, and nothing but switching them on again undoes it.
+/// A break turns the gates off during a current in the load, and only switching them on again ends it.
 fn software_break() -> Result<(), Failure> {
     let mut bench = Bench::new()?;
     bench.on();

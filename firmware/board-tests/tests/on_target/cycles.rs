@@ -22,7 +22,7 @@ use super::{Environment, FILTER, Failure, SCENE, TRANSDUCERS};
 /// The scene, as late as the board's DAC.
 const TIMED: TimingChecked<Scene<Environment>, Mode> = SCENE.certified().timing_checked();
 
-/// The board, but for what would move something.
+/// The board without the outputs that would move the motor.
 struct Muted(Registers);
 
 impl Hardware for Muted {
@@ -75,7 +75,7 @@ static MEASURED: Measured = Measured {
 };
 
 impl Measured {
-    /// Adds a tick. One interrupt writes, so loads and stores do for atomic additions.
+    /// Adds a tick. Only one interrupt writes, so loads and stores replace atomic additions.
     #[inline(always)]
     fn add(&self, cycles: u32) {
         let of = |number: &AtomicU32| number.load(Ordering::Relaxed);
@@ -93,13 +93,13 @@ impl Measured {
     }
 }
 
-/// A tick, measured from the handler's first instruction to its last but for the measurement's own.
+/// A tick, measured from the handler's first instruction to its last, without those of the measurement.
 #[unsafe(no_mangle)]
 #[cfg_attr(feature = "fast-memory", unsafe(link_section = ".fast"))]
 unsafe extern "C" fn TIM6_DAC() {
     let start = DWT::cycle_count();
-    // SAFETY: this is the handler of the interrupt that is enabled once the place is filled, and no
-    // interrupt interrupts itself.
+    // SAFETY: this is the handler of the interrupt that is enabled after the cell is filled, and no interrupt
+    // interrupts itself.
     unsafe { ISR_STATE.borrow_mut() }.tick();
     MEASURED.add(DWT::cycle_count().wrapping_sub(start));
 }
@@ -124,7 +124,7 @@ pub fn measure() -> Result<(), Failure> {
     let mut hardware = Muted(hardware);
     hardware.0.zero_encoder();
     hardware.0.start(<Mode as OutputMode>::TIMING);
-    // SAFETY: the interrupt that uses the place is not enabled yet, and finds it filled.
+    // SAFETY: the interrupt that uses the cell is not enabled yet, and finds it filled.
     unsafe {
         ISR_STATE.init(ServoIsr { servo_loop, hardware, inbox, frames });
         NVIC::unmask(embassy_stm32::interrupt::TIM6_DAC);

@@ -1,6 +1,6 @@
-//! Tests on a real board, through a debug probe; `boards.md` says how. Each begins with a reset.
+//! Tests on a real board through a debug probe; `boards.md` has the instructions. Each begins with a reset.
 //!
-//! The numbers below are those of the builder's device: adapt them first.
+//! First adapt the numbers below to your device.
 #![no_std]
 #![no_main]
 
@@ -20,7 +20,7 @@ use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{OutputMode, Transducers};
 use haptic_servo::servo_loop::Hardware;
 
-/// The builder's encoder and motor.
+/// The encoder and the motor.
 const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: width(ENCODER),
@@ -31,7 +31,7 @@ const TRANSDUCERS: Transducers = Transducers {
 /// The filter of the encoder's inputs.
 const FILTER: InputFilter = InputFilter::of_encoder(&TRANSDUCERS, ENCODER_CLOCK);
 
-/// What the servo of these tests renders: the wall of the program `damper_wall`.
+/// The environment of these tests: the wall of the program `damper_wall`.
 type Environment = OneSided<DamperWall<1>>;
 
 const SCENE: Scene<Environment> = Scene {
@@ -43,16 +43,16 @@ const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Why a test fails.
+/// The reason of a failure.
 type Failure = &'static str;
 
-/// The chip that these tests are for, where probe-rs looks for it.
+/// The chip of these tests, in the place where probe-rs looks for it.
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".probe-rs.chip")]
 static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 
-/// The board with its pacing timer running and nothing else: amplifier off, mid-scale, no watchdog.
+/// The board with only its pacing timer running: amplifier off, mid-scale, no watchdog.
 fn paced() -> Registers {
     let _ = init_chip(FILTER);
     let mut hardware = registers(Setup::DAC, SCENE.timing.period, <Mode as OutputMode>::TIMING);
@@ -89,7 +89,7 @@ impl Follower {
     }
 }
 
-/// The handle is turned by hand, once around, the way that is to be positive.
+/// The user turns the handle by hand, once around in the positive direction.
 fn turn() -> Result<(), Failure> {
     let (mut hardware, mut encoder) = (paced(), Follower::new());
     let wanted = TRANSDUCERS.counts_per_turn as i64;
@@ -103,7 +103,7 @@ fn turn() -> Result<(), Failure> {
     match count {
         0 => Err("the encoder has not moved: is it supplied and connected?"),
         _ if count < 0 => Err("the encoder counts down: swap its channels A and B"),
-        // As exactly as a hand can turn to where it was.
+        // The precision with which a hand returns to the starting point.
         _ if (count - wanted).abs() * 50 > wanted => Err("these are not the counts of a turn"),
         _ => Ok(()),
     }
@@ -144,8 +144,8 @@ fn levels() -> Result<(), Failure> {
     Ok(())
 }
 
-/// A little torque one way, for at most a tenth of a second, has to turn the handle that way; and
-/// then the other. A spring can only push back where that holds.
+/// A small torque for at most a tenth of a second must turn the handle in its direction, first one way and
+/// then the other. Otherwise a spring would not push back.
 fn polarity() -> Result<(), Failure> {
     /// A fiftieth of full scale.
     const LITTLE: u16 = MOST / 50;

@@ -7,7 +7,7 @@ use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::Transducers;
 use own_environment::ProgressiveSpring;
 
-/// What the foot feels.
+/// The environment that the foot feels.
 pub type Environment = ProgressiveSpring<1>;
 
 /// The scene.
@@ -20,8 +20,8 @@ pub const SCENE: Scene<Environment> = Scene {
     torque_limit: Some(1.0),
 };
 
-/// Its certificate, from the bounds that the type states: an environment that could oscillate stops the
-/// compiler here.
+/// Its certificate, from the bounds that the type states: an environment that could oscillate is a compile
+/// error here.
 pub const CERTIFIED: Certified<Scene<Environment>> =
     SCENE.certified_as(SCENE.environment.stated_at(SCENE.timing.period));
 

@@ -1,5 +1,5 @@
-//! The paddle with a brushed motor on a motor board: what `bridge_wall` renders with and `bridge_identify`
-//! measures. A device of your own has its numbers here, or in a module like this.
+//! The paddle with a brushed motor on a motor board, for `bridge_wall` and `bridge_identify`. For your own
+//! device, change these numbers, or copy this module.
 
 // A crate that includes several programs has this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]
@@ -12,8 +12,8 @@ use haptic_servo::servo::Transducers;
 /// Period of the servo in s, 40 of the current loop.
 pub const PERIOD: f64 = 0.001;
 
-/// What the hand holds: inertia in kg m^2, damping in N m s/rad. Motion takes 0.00253 of the damping through
-/// the current loop (`CurrentLoop::motion_loss`), so that the passivity is less.
+/// The part that the hand holds: inertia in kg m^2, damping in N m s/rad. Through the current loop, motion
+/// takes 0.00253 of the damping (`CurrentLoop::motion_loss`), so the passivity is lower.
 pub const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.0194) };
 
 /// Its encoder, and its motor at the handle, behind a capstan of 1 to 10.
@@ -37,6 +37,6 @@ pub const DRIVE: Drive = Drive {
     largest_temperature: 80.0,
 };
 
-/// Its current loop on the board's power stage: a motor that it cannot drive stops the compiler here.
+/// Its current loop on the board's power stage: a motor that it cannot drive is a compile error here.
 pub const CURRENT_LOOP: CurrentLoop =
     CurrentLoop::checked(&DRIVE, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);

@@ -1,5 +1,5 @@
-//! A shaft with a brushless motor on a motor board, whose encoder has an index: what `brushless_wall` and
-//! `brushless_index` render with. A device of your own has its numbers here, or in a module like this.
+//! A shaft with a brushless motor on a motor board, whose encoder has an index, for `brushless_wall` and
+//! `brushless_index`. For your own device, change these numbers, or copy this module.
 
 // A crate that includes several programs has this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]
@@ -37,18 +37,18 @@ pub const DRIVE: Drive = Drive {
     largest_temperature: 80.0,
 };
 
-/// Its current loop on the board's power stage. An encoder without an index leaves its input as it is, and is not
-/// checked.
+/// Its current loop on the board's power stage. With an encoder without an index, the input does not change,
+/// and lost counts are not found.
 pub const CURRENT_LOOP: CurrentLoop =
     CurrentLoop::checked(&DRIVE, &B_G431B_ESC1, &TRANSDUCERS, PERIOD)
         .with_index(EncoderIndex { offset: None });
 
-/// What the hand feels, behind a coupling that remembers the current loop's lag.
+/// The environment that the hand feels, behind a coupling that absorbs the current loop's lag.
 pub type Environment = Matched<OneSided<DamperWall<1>>, 0, 1, true>;
 
 /// The scene.
 pub const SCENE: Scene<Environment> = Scene {
-    // Motion takes 0.0001 of the damping through the current loop (`CurrentLoop::motion_loss`).
+    // Through the current loop, motion takes 0.0001 of the damping (`CurrentLoop::motion_loss`).
     device: Device { inertia: 1.5e-5, damping: 0.0005, passivity: Some(0.00039) },
     timing: Timing { period: PERIOD, worst_period: None },
     coupling: Coupling::Matched,

@@ -1,15 +1,15 @@
-//! Your device. Its numbers are here and nowhere else: measure them with `identify`, write them down
-//! here, and each scene that `haptic new` began is certified against them.
+//! Your device. Its numbers are only here: measure them with `identify`, write them here, and each scene made
+//! by `haptic new` is certified with them.
 
-// A program that renders no scene uses the transducers alone; a crate that includes several scenes has
-// this module in each.
+// A program without a scene only uses the transducers; a crate that includes several scenes has this module
+// in each.
 #![allow(dead_code, clippy::duplicate_mod)]
 
 use haptic_servo::encoder::CounterWidth;
 use haptic_servo::scene::Device;
 use haptic_servo::servo::Transducers;
 
-/// What the hand holds: inertia in kg m^2, damping in N m s/rad.
+/// The part that the hand holds: inertia in kg m^2, damping in N m s/rad.
 pub const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
 /// Its encoder and its motor with amplifier, at the handle: torque in N m, speed in rad/s.

@@ -1,5 +1,5 @@
-//! The device of the scenes in this folder that come with the project: the paddle that the paper's
-//! examples are of. A scene of your own is of *your* device, which is in `device`.
+//! The device of this project's scenes: the paddle of the paper's examples. Your own scenes use *your*
+//! device, in `device`.
 
 // A crate that includes several scenes has this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]
@@ -8,7 +8,7 @@ use haptic_servo::encoder::CounterWidth;
 use haptic_servo::scene::Device;
 use haptic_servo::servo::Transducers;
 
-/// What the hand holds: inertia in kg m^2, damping in N m s/rad.
+/// The part that the hand holds: inertia in kg m^2, damping in N m s/rad.
 pub const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
 /// Its encoder and its motor with amplifier, at the handle: torque in N m, speed in rad/s.

@@ -1,4 +1,4 @@
-//! How a program on the emulated board ends.
+//! Ends a program on the emulated board.
 
 use super::lines;
 
@@ -7,8 +7,8 @@ pub const EXIT_DONE: i32 = 0;
 /// Exit status of a program that could not start, for a logged reason.
 pub const EXIT_REFUSED: i32 = 1;
 
-/// Ends a program that cannot start. Where this machine refuses a scene that passed when it was compiled,
-/// the host has the words for it: `haptic certify`.
+/// Ends a program that cannot start. If this machine refuses a scene that passed at compile time,
+/// `haptic certify` on the host prints the reason.
 #[cold]
 pub(super) fn halt_with(reason: &'static str) -> ! {
     lines::stop();

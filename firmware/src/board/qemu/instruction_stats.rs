@@ -10,10 +10,10 @@ pub struct InstructionStats {
 }
 
 impl InstructionStats {
-    /// Of nothing.
+    /// Statistics of no values.
     pub const EMPTY: Self = Self { count: 0, min: u32::MAX, max: 0, sum: 0 };
 
-    /// Takes another one.
+    /// Adds a value.
     pub fn add(&mut self, value: u32) {
         self.count += 1;
         self.min = self.min.min(value);
@@ -21,12 +21,12 @@ impl InstructionStats {
         self.sum += u64::from(value);
     }
 
-    /// How many there were.
+    /// The number of values.
     pub const fn count(&self) -> u32 {
         self.count
     }
 
-    /// Tells the host, if there was any.
+    /// Logs the statistics, if there are values.
     pub fn log(&self, name: &str) {
         let Self { count, min, max, sum } = *self;
         if count > 0 {

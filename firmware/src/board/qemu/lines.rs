@@ -1,6 +1,6 @@
-//! The emulated board's lines to the world: where other chips have registers of an encoder's
-//! counter, of a DAC and of a pin, this one has words of memory, which the
-//! [lockstep](super::lockstep) takes to and from the host around each tick.
+//! The inputs and outputs of the emulated board. In place of the registers of an encoder's counter, a DAC and
+//! a pin it has words of memory, which the [lockstep](super::lockstep) exchanges with the host around each
+//! tick.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -20,7 +20,7 @@ pub fn count() -> RawCount {
     RawCount::from(COUNT.load(Ordering::Relaxed))
 }
 
-/// The encoder has moved.
+/// Sets the encoder's counter.
 pub fn set_count(count: u32) {
     COUNT.store(count, Ordering::Relaxed);
 }
@@ -42,7 +42,7 @@ pub fn outputs() -> (u16, bool) {
     (CODE.load(Ordering::Relaxed) as u16, AMPLIFIER.load(Ordering::Relaxed))
 }
 
-/// Takes the torque away.
+/// Sets the torque to zero and switches the amplifier off.
 pub fn stop() {
     amplifier(false);
     write(DacCode::MID_SCALE);

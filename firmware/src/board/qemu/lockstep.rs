@@ -1,8 +1,9 @@
-//! The world of the emulated board: two pipes to a process on the host, which simulates it.
+//! The lockstep of the emulated board with the plant: two pipes to a process on the host, which simulates the
+//! plant.
 //!
-//! Each tick the host writes the encoder's state into the pipe `counts`, and the board writes what became of
-//! its lines into the pipe `codes`; both are in the folder where the emulator was started, and
-//! [`output`](crate::board::output) says what the bytes are. The board waits for its count, so host and board
+//! In each tick the host writes the encoder's state into the pipe `counts`, and the board writes its outputs
+//! into the pipe `codes`. Both pipes are in the folder where the emulator was started;
+//! [`output`](crate::board::output) defines the bytes. The board waits for its count, so host and board
 //! cannot drift apart. The host ends the run by closing `counts`.
 
 use core::slice::from_raw_parts_mut;
@@ -29,30 +30,30 @@ struct Pipes {
 }
 
 static PIPES: IsrCell<Pipes> = IsrCell::empty();
-/// The last input from the host. In a static of its own, so that it is there after a fault at any
+/// The last input from the host. It has its own static, so that it is available after a fault at any
 /// instruction.
 static LATEST_INPUT: [AtomicU8; TickInput::BYTES] = [const { AtomicU8::new(0) }; TickInput::BYTES];
-/// Number of the last tick that was shown.
+/// Number of the last reported tick.
 static SHOWN: AtomicU16 = AtomicU16::new(0);
-/// Whether the next count is to be the encoder's zero.
+/// Whether the next count becomes the encoder's zero.
 static ZEROING: AtomicBool = AtomicBool::new(false);
-/// The host's count where the encoder's zero is.
+/// The host's count at the encoder's zero.
 static ZERO: AtomicU32 = AtomicU32::new(0);
 
-/// Opens both pipes, the host's first.
+/// Opens both pipes, the host's pipe first.
 ///
 /// # Errors
-/// Where no host holds the other ends.
+/// If no host has opened the other ends.
 pub fn pipes() -> Result<(File, File), NoHost> {
     let counts = File::open(c"counts").map_err(|_| NoHost)?;
     let codes = File::create(c"codes").map_err(|_| NoHost)?;
     Ok((counts, codes))
 }
 
-/// The next words of a question from the host.
+/// The next words of a request from the host.
 ///
 /// # Errors
-/// Where it has closed its end.
+/// If the host has closed its end.
 #[cfg(feature = "log")]
 pub fn words<const N: usize>(from: &mut File) -> Result<[u64; N], Error> {
     let mut bytes = [[0; 8]; N];
@@ -71,13 +72,13 @@ pub(super) unsafe fn open() -> Result<(), NoHost> {
     Ok(())
 }
 
-/// Where the device is at the next tick is the encoder's zero.
+/// Makes the position at the next tick the encoder's zero.
 pub(super) fn zero_count() {
     ZEROING.store(true, Ordering::Relaxed);
 }
 
-/// Waits for the host's state of the world; returns the periods that went by without a tick, or nothing once
-/// the host has closed the pipe.
+/// Waits for the host's input; returns the periods that passed without a tick, or `None` once the host has
+/// closed the pipe.
 ///
 /// # Safety
 /// The pipes must be open.
@@ -103,8 +104,8 @@ fn latest_input() -> (TickInput, u16) {
     TickInput::from_bytes(LATEST_INPUT.each_ref().map(|byte| byte.load(Ordering::Relaxed)))
 }
 
-/// Shows the host the board's lines, if it waits for that. A host that has gone away ends the run
-/// at the next count.
+/// Reports the board's outputs to the host, if it waits for them. If the host has closed the pipes, the run
+/// ends at the next count.
 ///
 /// # Safety
 /// The pipes must be open if a host has asked.

@@ -1,5 +1,5 @@
-//! The servo's log for the host: ticks pass through a lock-free queue and are summed up and logged
-//! below the servo's priority, never in the servo's interrupt.
+//! The servo's log for the host: ticks go through a lock-free queue and are summarised and logged at a
+//! priority below the servo's, never in its interrupt.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -16,12 +16,12 @@ use crate::encoder::RawCount;
 // The logger that carries the bytes; it registers itself.
 use defmt_semihosting as _;
 
-/// Ticks that the queue holds (one less than its length): the log may fall this far behind.
+/// Length of the queue: it holds one tick less, and the log may lag behind by that number.
 const LENGTH: usize = 17;
 /// Ticks between two lines of the log.
 const EVERY: u32 = 1000;
 
-/// One tick, as it was measured. Times are in the meter's units.
+/// The measurements of one tick. Times are in the meter's units.
 #[derive(Clone, Copy)]
 pub struct Measured {
     /// The encoder's counter.
@@ -36,11 +36,11 @@ pub struct Measured {
     pub lockstep: u32,
 }
 
-/// What looks at the parts of each tick.
+/// Analyses the parts of each tick.
 pub trait Parts {
     /// Takes a tick.
     fn take(&mut self, tick: &Measured, scale: &Scale);
-    /// Tells the host.
+    /// Logs the result.
     fn log(&mut self);
 }
 
@@ -57,12 +57,12 @@ static TICKS: IsrCell<Producer<'static, Measured>> = IsrCell::empty();
 static DROPPED: AtomicU32 = AtomicU32::new(0);
 static ENDED: AtomicBool = AtomicBool::new(false);
 
-/// Gives a tick to the log; a full queue drops it and counts that.
+/// Passes a tick to the log; a full queue drops and counts it.
 ///
 /// # Safety
 /// Only the interrupt that uses the queue may call this, after [`Log::open`].
 pub unsafe fn push(tick: Measured) {
-    // SAFETY: filled, and used by this interrupt alone, as the caller promises.
+    // SAFETY: the caller guarantees that the cell is filled and that only this interrupt uses it.
     if unsafe { TICKS.borrow_mut() }.enqueue(tick).is_err() {
         DROPPED.fetch_add(1, Ordering::Relaxed);
     }
@@ -71,23 +71,23 @@ pub unsafe fn push(tick: Measured) {
 /// Time that was spent in the servo's interrupt and the lockstep around it, wrapping.
 static SPENT: AtomicU32 = AtomicU32::new(0);
 
-/// The interrupt has taken so much time.
+/// Adds time spent in the interrupt.
 pub fn spend(time: u32) {
-    // Not an atomic addition: nothing that writes here interrupts this.
+    // An atomic addition is not needed: no other writer interrupts this.
     SPENT.store(SPENT.load(Ordering::Relaxed).wrapping_add(time), Ordering::Relaxed);
 }
 
-/// The time now, without what the servo's interrupt took of it.
+/// The present time without the time spent in the servo's interrupt.
 fn time_below() -> u32 {
     cortex_m::interrupt::free(|_| now().wrapping_sub(SPENT.load(Ordering::Relaxed)))
 }
 
-/// There will be no more ticks.
+/// Marks the end of the ticks.
 pub fn end() {
     ENDED.store(true, Ordering::Release);
 }
 
-/// Tells the host a certificate's enclosures by their bits, where they exist.
+/// Logs the bits of a certificate's enclosures, if they exist.
 pub fn certificate(by: &str, assessment: &Assessment) {
     let indices = [("alpha", assessment.alpha), ("alpha_coupled", assessment.alpha_coupled)];
     for (name, interval) in indices {
@@ -106,12 +106,12 @@ pub struct Log<P> {
     total: u32,
     interrupt: InstructionStats,
     lockstep: InstructionStats,
-    /// A round of work below the interrupt.
+    /// Statistics of the work below the interrupt.
     below: InstructionStats,
 }
 
 impl<P: Parts> Log<P> {
-    /// Begins a log that looks at the parts of a tick, too. To be called once.
+    /// Begins a log that also analyses the parts of a tick. Call it once.
     ///
     /// # Safety
     /// The interrupt that pushes the ticks must not be enabled yet.
@@ -132,9 +132,9 @@ impl<P: Parts> Log<P> {
         self.below.add(self.scale.instructions(time));
     }
 
-    /// Takes the ticks that there are; once the host has ended the run, ends the emulation.
+    /// Takes the queued ticks; ends the emulation once the host has ended the run.
     pub fn poll(&mut self) {
-        // Read before the queue is drained: ticks pushed before the end are then not missed.
+        // Read before the queue is drained, so that ticks pushed before the end are not missed.
         let ended = ENDED.load(Ordering::Acquire);
         while let Some(tick) = self.ticks.dequeue() {
             self.add(&tick);
@@ -145,7 +145,7 @@ impl<P: Parts> Log<P> {
         }
     }
 
-    /// A tick that was spent on a ramp, a swap or a fault is not summed up.
+    /// Ticks with a ramp, a swap or a fault are not included in the statistics.
     fn add(&mut self, tick: &Measured) {
         self.parts.take(tick, &self.scale);
         if tick.was_running {

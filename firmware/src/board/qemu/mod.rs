@@ -1,12 +1,13 @@
 //! The emulated board: QEMU's `netduinoplus2`, an STM32F405, in lockstep with a process on the host.
 //!
-//! SysTick's interrupt is the servo's, above everything else. There is no encoder and no motor: the
-//! host's device simulation gives a count and takes a code around each tick ([`lockstep`]), and what
-//! a tick sees of that are words of memory in the place of registers ([`lines`]). Count and code
-//! belong to the same instant, since the simulation waits for the code; a program whose torques come at
-//! a phase of their own has the time up to there for its tick, of which the simulation takes no notice.
+//! SysTick's interrupt is the servo's, with the highest priority. There is no encoder and no motor: the
+//! host's simulation of the device provides a count and takes a code around each tick ([`lockstep`]), and a
+//! tick accesses words of memory in place of registers ([`lines`]). Count and code are of the same instant,
+//! because the simulation waits for the code. A program with a fixed phase has the time up to the phase for
+//! its tick; the simulation ignores that time.
 //!
-//! The clocks keep their reset state in the emulator: the set-up that a real F405 needs never returns there.
+//! The clocks keep their reset state in the emulator, where the set-up of a real F405's clocks would never
+//! return.
 
 mod exit;
 #[cfg(feature = "log")]
@@ -31,7 +32,7 @@ pub use exit::{EXIT_DONE, EXIT_REFUSED};
 pub use start::{Mode, Statics, run};
 pub use sweep::{SweepCell, measure};
 
-/// All interrupts but SysTick's arrive here, since the program brings no table of the chip's names.
+/// All interrupts except SysTick's arrive here, because the program has no table of the chip's interrupts.
 #[cortex_m_rt::exception]
 unsafe fn DefaultHandler(number: i16) {
     assert!(number == serial::INTERRUPT.cast_signed(), "interrupt {number} was never enabled");
@@ -53,7 +54,7 @@ macro_rules! board_program {
             $bridge
         );
     };
-    // What drives the motor is outside of the emulator.
+    // The emulator has no bridge.
     ($environment:ty, $program:ident, $certified:ident, $number:ty, [$mode:ty], $bridge:tt) => {
         /// The scene, with its delay checked.
         const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
@@ -62,19 +63,19 @@ macro_rules! board_program {
         static STATICS: $crate::board::qemu::Statics<$environment, $number, $mode> =
             $crate::board::qemu::Statics::empty();
 
-        /// What other boards have as their timer's interrupt.
+        /// The counterpart of other boards' timer interrupt.
         #[inline(never)]
         extern "C" fn tick() {
-            // SAFETY: called by the handler of the interrupt that `run` enables once it has filled
-            // the place, and no interrupt interrupts itself.
+            // SAFETY: called by the handler of the interrupt that `run` enables after filling the cell, and
+            // no interrupt interrupts itself.
             unsafe { STATICS.isr.borrow_mut() }.tick();
         }
 
-        /// A tick, with the world around it.
+        /// A tick with the exchange with the host around it.
         #[unsafe(export_name = "SysTick")]
         unsafe extern "C" fn sys_tick() {
-            // SAFETY: the cell is filled before the interrupt is enabled, and this is called
-            // before and after a tick, when no reference into it is alive.
+            // SAFETY: the cell is filled before the interrupt is enabled, and this is called before and after
+            // a tick, when no reference to its content is alive.
             let state = || unsafe { STATICS.isr.borrow_mut() }.servo_loop.state();
             // SAFETY: as above.
             let lose = |missed| unsafe { STATICS.isr.borrow_mut() }.hardware.lose(missed);
@@ -95,26 +96,26 @@ macro_rules! board_program {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_sweep {
-    // A simulated device keeps within all limits.
+    // A simulated device stays within all limits.
     ($sweep:ident, $transducers:ident, $limits:ident, $bridge:tt) => {
         static ISR_STATE: $crate::board::qemu::SweepCell =
             $crate::board::isr_cell::IsrCell::empty();
 
-        /// What other boards have as their timer's interrupt.
+        /// The counterpart of other boards' timer interrupt.
         #[inline(never)]
         extern "C" fn tick() {
-            // SAFETY: called by the handler of the interrupt that `measure` enables once it has
-            // filled the place, and no interrupt interrupts itself.
+            // SAFETY: called by the handler of the interrupt that `measure` enables after filling the cell,
+            // and no interrupt interrupts itself.
             $crate::board::qemu::lines::write(unsafe { ISR_STATE.borrow_mut() }.next().code);
         }
 
-        /// A tick, with the world around it.
+        /// A tick with the exchange with the host around it.
         #[unsafe(export_name = "SysTick")]
         unsafe extern "C" fn sys_tick() {
             let state = || $crate::servo_loop::State::Running;
-            // A sweep has no use for a time that the host has lost.
+            // A sweep ignores periods that the host has skipped.
             let lose = |_| ();
-            // SAFETY: the pipes are open and the place is filled before the interrupt is enabled.
+            // SAFETY: the pipes are open and the cell is filled before the interrupt is enabled.
             unsafe { $crate::board::qemu::tick::with(tick, state, lose) };
         }
 

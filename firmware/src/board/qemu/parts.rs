@@ -1,5 +1,5 @@
-//! Instructions of the parts of a tick, measured below the servo's priority by repeating them: the
-//! servo's interrupt stays as it is flashed, without a meter inside.
+//! Instructions of the parts of a tick, measured below the servo's priority by repeating them: the servo's
+//! interrupt stays as it is flashed, without a measurement inside.
 //!
 //! The addresses of the parts are hidden from the optimiser: known addresses would be too far from
 //! a base register, unlike those in the interrupt.
@@ -21,7 +21,7 @@ use crate::servo_loop::{Frame, FrameQueue, FrameSink, Frames, State};
 use crate::torque::LimitReason;
 use crate::tuning::Tunable;
 
-/// The parts of a cycle: its servo from count to code, its energy monitor, and its frame.
+/// The parts of a tick: the servo from count to code, the energy monitor, and the frame.
 pub struct CycleParts<E: Tunable<N>, N: Number, M> {
     servo: Servo<E, N>,
     energy: EnergyMonitor,
@@ -34,8 +34,8 @@ pub struct CycleParts<E: Tunable<N>, N: Number, M> {
 }
 
 impl<E: Tunable<N>, N: Number, M: OutputMode> CycleParts<E, N, M> {
-    /// Of a servo at rest that renders the program's scene, which has been judged. Ends the program
-    /// where it cannot be built.
+    /// The parts of a servo at rest with the program's certified scene. Ends the program if the servo cannot
+    /// be built.
     pub fn new(program: &Program<E>) -> Self {
         let built = Servo::build(&program.scene, &program.transducers);
         let servo = built.unwrap_or_else(|_| halt_with(Step::Servo.as_str()));
@@ -44,8 +44,8 @@ impl<E: Tunable<N>, N: Number, M: OutputMode> CycleParts<E, N, M> {
         Self { servo, energy, last: None, contact, free, energy_cost, frame_cost, mode }
     }
 
-    /// A tick is free where neither it nor the next one gives torque. The next one's is looked at
-    /// because what a tick finds in a delayed wall is felt a tick later.
+    /// A tick counts as free if neither it nor the next tick has torque. The next tick matters because the
+    /// torque of a delayed wall comes one tick later.
     fn add_servo(&mut self, next: u16) {
         let Some((code, cost)) = self.last else { return };
         let gives_torque = |code: u16| code != DacCode::MID_SCALE.get();
@@ -75,7 +75,7 @@ impl<E: Tunable<N>, N: Number, M: OutputMode> CycleParts<E, N, M> {
     }
 }
 
-/// Instructions that a frame takes into its queue.
+/// Instructions for putting a frame into the queue.
 fn frame_cost(frames: &mut Frames<'_, FRAMES>, tick: &Measured, scale: &Scale) -> u32 {
     let code = DacCode::new(tick.code).unwrap_or(DacCode::MID_SCALE);
     let (limit, state) = (LimitReason::None, State::Running);
@@ -91,7 +91,7 @@ fn frame_cost(frames: &mut Frames<'_, FRAMES>, tick: &Measured, scale: &Scale) -
 
 impl<E: Tunable<N>, N: Number, M: OutputMode> Parts for CycleParts<E, N, M> {
     fn take(&mut self, tick: &Measured, scale: &Scale) {
-        // Before that the clamp opens, with the device at rest.
+        // Before that the clamp opens while the device is at rest.
         if !tick.was_running {
             return;
         }

@@ -1,4 +1,4 @@
-//! The board as the servo sees it.
+//! The servo's hardware on the emulated board.
 
 use super::tick_timer::{Period, TickTimer};
 use super::{lines, lockstep};
@@ -10,24 +10,24 @@ use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
 
-/// What belongs to the servo's interrupt.
+/// The data of the servo's interrupt.
 pub struct Registers {
     pace: TickTimer,
     period: Period,
 }
 
 impl Registers {
-    /// Those of a board that is paced so.
+    /// The hardware of a board with this period.
     pub fn new(period: Period) -> Self {
         Self { pace: TickTimer::new(period), period }
     }
 
-    /// The pacing is about to begin.
+    /// Call it just before the timer starts.
     pub fn start(&mut self) {
         self.pace = TickTimer::new(self.period);
     }
 
-    /// So many periods have passed without a tick.
+    /// Skips this number of periods without a tick.
     pub fn lose(&mut self, missed: u32) {
         self.pace.lose(missed);
     }
@@ -80,7 +80,7 @@ impl Startup for Registers {
         fault_memory::stored()
     }
 
-    /// Nothing but its own program resets the emulated board.
+    /// Only its own program resets the emulated board.
     fn reset_cause(&mut self) -> ResetCause {
         if fault_memory::power_stayed() { ResetCause::Software } else { ResetCause::PowerOn }
     }

@@ -16,18 +16,18 @@ const STATUS: *const u32 = 0x4001_1000 as *const u32;
 const DATA: *mut u32 = 0x4001_1004 as *mut u32;
 const CONTROL: *mut u32 = 0x4001_100C as *mut u32;
 
-/// Status: a byte has come.
+/// Status: a byte was received.
 const RECEIVED: u32 = 1 << 5;
-/// Control: port on, an interrupt for each byte that comes, transmitter on, receiver on.
+/// Control: port on, an interrupt for each received byte, transmitter on, receiver on.
 const ON: u32 = 1 << 13 | 1 << 5 | 1 << 3 | 1 << 2;
 
-/// Bytes that may wait for the task that reads them, and one: as on the other boards. What comes
-/// while there is no room is lost, and the frame that it was part of with it.
+/// Length of the queue of received bytes, which holds one byte less, as on the other boards. A byte without
+/// room is lost, and its frame with it.
 const WAITING: usize = 257;
 
-/// Clock counts that a byte takes on a line: ten bits of a 1 GHz clock.
+/// Duration of a byte on a line in clock counts: ten bits, with a clock of 1 GHz.
 const CLOCK_PER_BYTE: u32 = 1_000_000_000 / (BAUD / 10);
-/// Bytes that the port has room for.
+/// Capacity of the port in bytes.
 const ROOM: u32 = 256;
 
 /// USART1's interrupt.
@@ -37,7 +37,7 @@ struct Interrupt;
 /// Its number in the F405's vector table.
 pub(super) const INTERRUPT: u16 = 37;
 
-// SAFETY: the F405 has 82 interrupts, and 37 is one of them for as long as the program runs.
+// SAFETY: the F405 has 82 interrupts, and the number is 37 as long as the program runs.
 unsafe impl cortex_m::interrupt::InterruptNumber for Interrupt {
     fn number(self) -> u16 {
         INTERRUPT
@@ -46,23 +46,23 @@ unsafe impl cortex_m::interrupt::InterruptNumber for Interrupt {
 
 /// The interrupt's end of the queue.
 static INCOMING: IsrCell<Producer<'static, u8>> = IsrCell::empty();
-/// Bytes that came when there was no room.
+/// Bytes that were lost because the queue was full.
 static LOST: AtomicU32 = AtomicU32::new(0);
 
-/// The port. Nothing here waits: what does not fit now is for the next time.
+/// The port. Nothing here waits: bytes without room are sent at a later call.
 pub struct Serial {
     incoming: Consumer<'static, u8>,
-    /// The clock when the last byte that was written has left.
+    /// The clock at the end of the last written byte.
     free: u32,
 }
 
-/// Opens the port. To be called once, after [`lower_all`](crate::board::critical::lower_all).
+/// Opens the port. Call it once, after [`lower_all`](crate::board::critical::lower_all).
 pub fn open() -> Serial {
     static QUEUE: StaticCell<Queue<u8, WAITING>> = StaticCell::new();
     let (producer, incoming) = QUEUE.init_with(Queue::new).split();
-    // SAFETY: the interrupt that uses the place is not enabled yet.
+    // SAFETY: the interrupt that uses the cell is not enabled yet.
     unsafe { INCOMING.init(producer) };
-    // SAFETY: nothing else uses the port, and its interrupt finds its place filled.
+    // SAFETY: nothing else uses the port, and its interrupt finds the cell filled.
     unsafe {
         CONTROL.write_volatile(ON);
         NVIC::unmask(Interrupt);
@@ -70,12 +70,12 @@ pub fn open() -> Serial {
     Serial { incoming, free: tick_timer::now() }
 }
 
-/// A byte has come.
+/// Handles received bytes.
 ///
 /// # Safety
-/// To be called by the handler of the port's interrupt, and nothing else.
+/// Only the handler of the port's interrupt may call it.
 pub(super) unsafe fn receive() {
-    // SAFETY: the place was filled before the interrupt was enabled, and nothing else uses it.
+    // SAFETY: the cell was filled before the interrupt was enabled, and nothing else uses it.
     let incoming = unsafe { INCOMING.borrow_mut() };
     // SAFETY: the port's registers; reading the data clears the flag.
     while unsafe { STATUS.read_volatile() } & RECEIVED != 0 {
@@ -86,7 +86,7 @@ pub(super) unsafe fn receive() {
     }
 }
 
-/// Bytes that were lost because earlier ones were not read.
+/// Bytes that were lost because earlier bytes were not read.
 #[cfg(feature = "log")]
 pub fn lost() -> u32 {
     LOST.load(Ordering::Relaxed)
@@ -103,7 +103,7 @@ impl Port for Serial {
         count
     }
 
-    /// The emulated port takes bytes without end and in no time; a line would not.
+    /// The emulated port takes any number of bytes in no time; this limits it to the rate of a line.
     fn write(&mut self, bytes: &[u8]) -> usize {
         if bytes.is_empty() {
             return 0;

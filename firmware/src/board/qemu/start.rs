@@ -1,4 +1,4 @@
-//! From reset to a running servo, or to a measurement.
+//! The start of a program: from reset to a running servo.
 
 use cortex_m::peripheral::SYST;
 use static_cell::StaticCell;
@@ -30,15 +30,14 @@ use super::{
     parts::CycleParts,
 };
 
-/// When a torque reaches the motor, where a program does not say: at the instant of its count, as the
-/// simulation has it.
+/// The default output mode of a program: at the instant of the count, as in the simulation.
 pub type Mode = crate::servo::Simultaneous;
 
-/// A program's places in memory, which have its scene's types. In this order: the interrupt's state comes
-/// first, where a load of floating point, which reaches 1020 bytes, needs no address computed for it.
+/// The statics of a program, with its scene's types. The interrupt's state is first, within the reach of a
+/// floating-point load (1020 bytes), so that no address is computed for it.
 #[repr(C)]
 pub struct Statics<E: Tunable<N>, N: Number, M: OutputMode> {
-    /// Where the servo's interrupt finds its state.
+    /// The state of the servo's interrupt.
     pub isr: IsrCell<ServoIsr<Registers, E, N, M>>,
     mailbox: MailboxCell<E, N, M>,
     link: StaticCell<Link<Serial, E, N, M>>,
@@ -47,7 +46,7 @@ pub struct Statics<E: Tunable<N>, N: Number, M: OutputMode> {
 }
 
 impl<E: Tunable<N>, N: Number, M: OutputMode> Statics<E, N, M> {
-    /// Empty places.
+    /// Empty statics.
     pub const fn empty() -> Self {
         Self {
             isr: IsrCell::empty(),
@@ -59,7 +58,7 @@ impl<E: Tunable<N>, N: Number, M: OutputMode> Statics<E, N, M> {
     }
 }
 
-/// Runs a scene; `compiler` is how it was judged when it was compiled.
+/// Runs a scene; `compiler` is its assessment at compile time.
 pub fn run<E, N, M>(
     name: &'static str,
     program: Program<E>,
@@ -85,7 +84,7 @@ where
     let link = prepare(name, program, period, statics);
     open_pipes();
     tick_timer::start(timer, period);
-    // Does not sleep: with WFI the emulator's time runs on by two periods of SysTick at a time.
+    // Does not sleep: with WFI the emulator's time advances by two periods of SysTick at a time.
     loop {
         #[cfg(not(feature = "log"))]
         link.poll();
@@ -97,9 +96,9 @@ where
     }
 }
 
-/// Everything up to the first tick; returns the host's service.
+/// Everything up to the first tick; returns the link to the host.
 ///
-/// In a frame of its own, which is not there any more when the host's sets are judged.
+/// Not inlined, so that its frame is not on the stack while the host's sets are certified.
 #[inline(never)]
 #[expect(clippy::mut_from_ref, reason = "the reference is to a static that is initialised once")]
 fn prepare<E, N, M>(
@@ -131,7 +130,7 @@ where
         );
     }
     hardware.start();
-    // SAFETY: the interrupt that uses the place is not enabled yet.
+    // SAFETY: the interrupt that uses the cell is not enabled yet.
     unsafe { statics.isr.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
     let timer_counts = period.clock_counts();
     let info = BoardInfo {
@@ -148,23 +147,23 @@ where
     })
 }
 
-/// Clock and interrupts. To be called once.
+/// Starts the clock and sets the priorities. Call it once.
 pub(super) fn start_timer() -> SYST {
     let mut core = cortex_m::Peripherals::take().expect("the core is taken once");
     tick_timer::start_clock();
-    // SysTick stays above, with the priority that it has out of reset.
+    // SysTick keeps its reset priority, which is higher.
     critical::lower_all(&mut core.NVIC);
     core.SYST
 }
 
-/// A period, or an end.
+/// The period; ends the program if it is invalid.
 pub(super) fn period(seconds: f64) -> Period {
     Period::of(seconds).unwrap_or_else(|_| halt_with("the timer cannot pace its period"))
 }
 
-/// Opens the pipes to the host. The interrupt that uses them must not be enabled yet.
+/// Opens the pipes to the host. The interrupt that uses the pipes must not be enabled yet.
 pub(super) fn open_pipes() {
-    // SAFETY: called before the pacing starts.
+    // SAFETY: called before the timer starts.
     if unsafe { lockstep::open() }.is_err() {
         halt_with("no host holds the pipes");
     }
@@ -178,13 +177,13 @@ pub(super) fn calibrate() -> Scale {
     scale
 }
 
-/// Judges the scene as [`boot`] will do again, to tell the host what that takes and gives.
+/// Certifies the scene, as [`boot`] does again later, and logs the cost and the result.
 ///
-/// In a frame of its own: judging takes most of the stack that a small board has.
+/// Not inlined: certifying takes most of a small board's stack.
 #[cfg(feature = "log")]
 #[inline(never)]
 fn judge<E: Tunable<N>, N: Number>(program: &Program<E>, compiler: &Assessment) {
-    // Hidden from the optimiser, which would otherwise judge a constant scene when it compiles.
+    // Hidden from the optimiser, which would otherwise certify a constant scene at compile time.
     let scene = core::hint::black_box(scene_data(&program.scene));
     let start = meter::now();
     let judged = certify_in(&scene, N::FORMAT);

@@ -1,4 +1,4 @@
-//! From reset to a measurement: the same codes as on the host, one a tick, from the first tick on.
+//! A program of a sweep: the same codes as on the host, one per tick, from the first tick on.
 
 use super::start::{open_pipes, period, start_timer};
 use super::{lines, tick_timer};
@@ -21,7 +21,7 @@ pub fn measure<const N: usize>(sweep: &'static Sweep<N>, cell: &'static SweepCel
     // SAFETY: the interrupt is not enabled yet.
     let mut log = unsafe { Log::open(calibrate(), NoParts) };
     let period = period(sweep.period());
-    // SAFETY: the interrupt that uses the place is not enabled yet.
+    // SAFETY: the interrupt that uses the cell is not enabled yet.
     unsafe { cell.init(Exciter::new(sweep)) };
     open_pipes();
     lines::amplifier(true);

@@ -1,14 +1,14 @@
-//! A tick with the world around it: the host moves the encoder before, and sees the board's lines
-//! after.
+//! A tick with the exchange with the host around it: the host sets the encoder before, and reads the board's
+//! outputs after.
 
 use super::lockstep;
 #[cfg(feature = "log")]
 use super::{lines, log, meter};
 use crate::servo_loop::State;
 
-/// One interrupt. `tick` has the code of other boards' timer interrupt, from its first instruction to its
-/// last, and is measured as such; `state` is the state of the servo, and `lose` receives the number of
-/// periods without a tick.
+/// One interrupt. `tick` is the code of other boards' timer interrupt, and is measured from its first
+/// instruction to its last; `state` is the state of the servo, and `lose` receives the number of periods
+/// without a tick.
 ///
 /// # Safety
 /// The pipes must be open.
@@ -16,7 +16,7 @@ use crate::servo_loop::State;
 pub unsafe fn with(tick: extern "C" fn(), state: impl Fn() -> State, lose: impl FnOnce(u32)) {
     #[cfg(feature = "log")]
     let begin = meter::now();
-    // SAFETY: the pipes are open, as the caller promises.
+    // SAFETY: the caller guarantees that the pipes are open.
     match unsafe { lockstep::receive() } {
         Some(0) => {}
         Some(missed) => lose(missed),
@@ -33,7 +33,7 @@ pub unsafe fn with(tick: extern "C" fn(), state: impl Fn() -> State, lose: impl 
     // SAFETY: as above.
     unsafe { lockstep::show(state()) };
     #[cfg(feature = "log")]
-    // SAFETY: this is the interrupt that the queue is for, enabled after the log was opened.
+    // SAFETY: this is the interrupt of the queue, enabled after the log was opened.
     unsafe {
         log::push(log::Measured {
             count: lines::count(),
@@ -46,7 +46,7 @@ pub unsafe fn with(tick: extern "C" fn(), state: impl Fn() -> State, lose: impl 
     };
 }
 
-/// The host has ended the run; where there is a log, that is finished first.
+/// Handles the end of the run by the host; a log is finished first.
 fn ended() {
     #[cfg(feature = "log")]
     log::end();

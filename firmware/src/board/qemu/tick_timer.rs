@@ -1,4 +1,4 @@
-//! When a tick is due: SysTick, and beside it a clock that never stops and measures how late the servo is.
+//! The timer of the ticks: SysTick, and a free-running clock that measures the lateness of the servo.
 
 use core::hint::cold_path;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -17,7 +17,7 @@ const CORE_CLOCK: f64 = 168e6;
 const CONTROL: *mut u32 = 0x4000_0000 as *mut u32;
 pub const COUNTER: *const u32 = 0x4000_0024 as *const u32;
 const RELOAD: *mut u32 = 0x4000_002C as *mut u32;
-/// Counts of the clock a second: the emulated TIM2 counts nanoseconds, whatever the core does.
+/// The rate of the clock in Hz: the emulated TIM2 counts nanoseconds, independently of the core.
 const CLOCK: f64 = 1e9;
 
 /// Periods that began without a tick.
@@ -25,7 +25,7 @@ static MISSED: AtomicU32 = AtomicU32::new(0);
 
 /// Starts the clock.
 pub fn start_clock() {
-    // SAFETY: nothing else uses TIM2; a full reload and the enable bit let it run freely.
+    // SAFETY: nothing else uses TIM2; with a full reload and the enable bit it runs freely.
     unsafe {
         RELOAD.write_volatile(u32::MAX);
         CONTROL.write_volatile(1);
@@ -35,21 +35,21 @@ pub fn start_clock() {
 /// The clock.
 #[inline(always)]
 pub fn now() -> u32 {
-    // SAFETY: TIM2's counter is a register that may be read at any time and without effect.
+    // SAFETY: TIM2's counter may be read at any time and without side effects.
     unsafe { COUNTER.read_volatile() }
 }
 
-/// The clock, by its register's address: for a measurement that keeps the address from one reading to the next.
+/// The clock, read by its register's address, for a measurement that keeps the address between two readings.
 ///
 /// # Safety
-/// The address has to be that of [`COUNTER`].
+/// The address must be that of [`COUNTER`].
 #[inline(always)]
 pub unsafe fn now_at(counter: *const u32) -> u32 {
     // SAFETY: as in `now`.
     unsafe { counter.read_volatile() }
 }
 
-/// A period as both count it.
+/// A period in counts of SysTick and of the clock.
 #[derive(Clone, Copy, Debug)]
 pub struct Period {
     reload: u32,
@@ -60,7 +60,7 @@ impl Period {
     /// The period nearest to this many seconds.
     ///
     /// # Errors
-    /// Where a board cannot pace it. SysTick, with its 24 bits, could for longer.
+    /// If a board cannot pace it. The 24 bits of SysTick would allow longer periods.
     pub fn of(seconds: f64) -> Result<Self, BuildError> {
         period::check(seconds)?;
         let reload = (seconds * CORE_CLOCK + 0.5) as u32 - 1;
@@ -74,7 +74,7 @@ impl Period {
     }
 }
 
-/// Begins to pace.
+/// Starts the timer.
 pub fn start(mut timer: SYST, period: Period) {
     timer.set_clock_source(SystClkSource::Core);
     timer.set_reload(period.reload);
@@ -88,7 +88,7 @@ pub fn missed() -> u32 {
     MISSED.load(Ordering::Relaxed)
 }
 
-/// Keeps count of the periods. Belongs to the servo's interrupt.
+/// Counts the periods. The servo's interrupt owns it.
 #[derive(Debug)]
 pub struct TickTimer {
     /// Clock counts in a period.
@@ -100,24 +100,25 @@ pub struct TickTimer {
 }
 
 impl TickTimer {
-    /// From now on.
+    /// Counts from now on.
     pub fn new(period: Period) -> Self {
         let period = period.clock_counts;
         Self { period, in_time: period + period / 2, began: now() }
     }
 
-    /// Periods that have begun since the last tick: 1 in time. To be called at a tick's beginning.
+    /// Periods that have begun since the last tick: 1 if it is in time. Call it at the beginning of a tick.
     #[inline(always)]
     pub fn periods_since_last(&mut self) -> u32 {
         let now = now();
         let since = now.wrapping_sub(self.began);
-        // To half a period the period began now: the two clocks are not of one source.
+        // Up to half a period late, the period counts as beginning now: the two clocks have different
+        // sources.
         if since <= self.in_time {
             self.began = now;
             return 1;
         }
         cold_path();
-        // The clock may be a little behind SysTick, but by no part of a period that matters.
+        // The clock may lag a little behind SysTick, by a negligible part of a period.
         let almost = since.wrapping_add(self.period / 64);
         let passed = almost.checked_div(self.period).unwrap_or(1).max(1);
         let whole = passed.wrapping_mul(self.period).min(since);
@@ -132,8 +133,7 @@ impl TickTimer {
         now().wrapping_sub(self.began)
     }
 
-    /// The host has simulated so many periods more than there were ticks: they have passed here,
-    /// too.
+    /// Skips periods that the host has simulated without ticks.
     pub fn lose(&mut self, missed: u32) {
         self.began = self.began.wrapping_sub(missed.wrapping_mul(self.period));
     }

@@ -1,27 +1,26 @@
 //! Code in the G4 chips' core-coupled memory (CCM SRAM).
 //!
-//! At 170 MHz their flash has four wait states. A cache hides them from a loop, but not from an
-//! interrupt that comes after a certificate has been through the cache; in the core-coupled memory
-//! the servo's interrupt takes the same time whatever ran before. The F405's core-coupled memory is
-//! not connected to the instruction bus, and its flash cache, which it has too, is what it is left
-//! with.
+//! At 170 MHz their flash has four wait states. A cache hides them in a loop, but not in an interrupt after a
+//! certificate has filled the cache. In the core-coupled memory the servo's interrupt takes the same time
+//! after any other code. The F405's core-coupled memory is not connected to the instruction bus, so the F405
+//! only has the cache of its flash.
 
 use core::ptr::copy_nonoverlapping;
 
 unsafe extern "C" {
-    /// Where the code begins; like the other two a symbol of the linker's map, of which only the
-    /// address means something.
+    /// The beginning of the code; like the other two a symbol of the linker's map, of which only the address
+    /// is used.
     #[link_name = "__fast_start"]
     static mut START: u32;
-    /// Where it ends.
+    /// The end of the code.
     #[link_name = "__fast_end"]
     static mut END: u32;
-    /// Where it is in flash.
+    /// The address of its copy in flash.
     #[link_name = "__fast_load"]
     static LOAD: u32;
 }
 
-/// Copies the code to where it runs. To be called before anything there is.
+/// Copies the code to its address in RAM. Call it before any of this code runs.
 pub fn load() {
     let (start, end) = (&raw mut START, &raw const END);
     let words = (end.addr() - start.addr()) / size_of::<u32>();

@@ -1,4 +1,4 @@
-//! What only the F405 has like this (RM0090).
+//! Registers specific to the F405 (RM0090).
 
 use embassy_stm32::pac::{DBGMCU, FLASH, RCC};
 
@@ -6,18 +6,18 @@ use crate::fault::Fault;
 
 /// RCC_CSR: the supply was switched on.
 pub const POWER_ON: u32 = 1 << 27;
-/// RCC_CSR: the supply was below the brown-out level, and not off.
+/// RCC_CSR: the supply was below the brown-out level, but not off.
 pub const BROWN_OUT: u32 = 1 << 25;
-/// RCC_CSR: the option bytes were loaded; no such flag.
+/// RCC_CSR: the option bytes were loaded; the chip has no such flag.
 pub const OPTION_BYTES: u32 = 0;
 
-/// What its non-maskable interrupt was for: the chip has one cause.
+/// The cause of the non-maskable interrupt: the chip has only one.
 pub fn non_maskable() -> Fault {
     if RCC.cir().read().cssf() { Fault::ClockLost } else { Fault::NonMaskable }
 }
 
-/// The chip as DBGMCU_IDCODE has it, and its first revision. Chips before that one's successor say
-/// that they are others, or this revision, and must not prefetch (ES0182).
+/// The chip's identifier in DBGMCU_IDCODE, and its first revision. Chips of this revision, some of which
+/// report another identifier, must not prefetch (ES0182).
 const F405: u16 = 0x413;
 const REVISION_A: u16 = 0x1000;
 
@@ -37,8 +37,8 @@ pub fn keep_watchdog_running() {
     DBGMCU.apb1fzr().modify(|w| w.set_iwdg(false));
 }
 
-/// Warns of a brown-out level below what 168 MHz with five wait states need, which is 2.7 V
-/// (RM0090, 3.5.1). As it comes, the chip has none.
+/// Warns of a brown-out level below the 2.7 V that 168 MHz with five wait states need (RM0090, 3.5.1). A new
+/// chip has no brown-out level set.
 pub fn check_brown_out() {
     let level = FLASH.optcr().read().bor_lev();
     if level != 0 {

@@ -1,18 +1,18 @@
-//! What only the G4 chips have like this (RM0440).
+//! Registers specific to the G4 chips (RM0440).
 
 use embassy_stm32::pac::{DBGMCU, FLASH, RCC, SYSCFG};
 
 use crate::fault::Fault;
 
-/// RCC_CSR: the supply was below the brown-out level, which it also was before it was switched on:
-/// the chip does not tell one from the other.
+/// RCC_CSR: the supply was below the brown-out level or was switched on; the chip does not distinguish the
+/// two.
 pub const POWER_ON: u32 = 1 << 27;
-/// RCC_CSR: a brown-out alone; no such flag.
+/// RCC_CSR: a brown-out alone; the chip has no such flag.
 pub const BROWN_OUT: u32 = 0;
 /// RCC_CSR: the option bytes were loaded.
 pub const OPTION_BYTES: u32 = 1 << 25;
 
-/// What its non-maskable interrupt was for.
+/// The cause of the non-maskable interrupt.
 pub fn non_maskable() -> Fault {
     if RCC.cifr().read().cssf() {
         return Fault::ClockLost;
@@ -24,8 +24,8 @@ pub fn non_maskable() -> Fault {
     if SYSCFG.cfgr2().read().spf() { Fault::RamParity } else { Fault::NonMaskable }
 }
 
-/// Both caches of the flash memory, which are on out of reset, and which nothing here relies on:
-/// what runs each tick is in core-coupled memory.
+/// Both caches of the flash memory are on after reset. Nothing here relies on them: the code of each tick is
+/// in core-coupled memory.
 pub fn cache() {
     FLASH.acr().modify(|w| {
         w.set_icen(true);
@@ -38,8 +38,8 @@ pub fn keep_watchdog_running() {
     DBGMCU.apb1lfzr().modify(|w| w.set_iwdg(false));
 }
 
-/// Warns of a brown-out level below what the board works with. The core itself may run at 170 MHz
-/// down to the lowest level, but the DAC's buffer only down to 1.8 V (DS12288).
+/// Warns of a brown-out level that is too low for the board. The core may run at 170 MHz down to the lowest
+/// level, but the DAC's buffer only works down to 1.8 V (DS12288).
 pub fn check_brown_out() {
     let level = FLASH.optr().read().bor_lev();
     if level == 0 {

@@ -1,9 +1,9 @@
-//! What the boards with an STM32 chip have in common: the registers that a tick touches, the way
-//! from reset to a running servo, and the end by a panic or a fault.
+//! The common part of the STM32 boards: the registers of a tick, the start from reset to a running servo, and
+//! the end after a panic or a fault.
 //!
-//! What drives the motor is in [`output`].
+//! The torque outputs are in [`output`].
 //!
-//! A board's own file ([`wiring`]) has no more than its pins, clocks, timers and scales.
+//! A board's own file ([`wiring`]) has only its pins, clocks, timers and scales.
 
 #[cfg(feature = "fast-memory")]
 mod ccm_sram;
@@ -45,10 +45,10 @@ pub use start::{
 };
 pub use sweep::{Setup, SweepCell, measure};
 
-/// When a torque reaches the motor, where a program does not say.
+/// The default output mode of a program.
 pub type Mode = crate::servo::Latched;
 
-/// A board's data besides registers.
+/// A board's peripherals that are not accessed by registers.
 pub struct BoardPeripherals {
     /// The port to the host.
     pub serial: serial::Serial,

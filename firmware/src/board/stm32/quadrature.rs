@@ -1,4 +1,4 @@
-//! The encoder on a timer in quadrature mode: the hardware counts, at any speed, and a tick reads.
+//! The encoder on a timer in quadrature mode: the hardware counts at any speed, and a tick reads the count.
 
 use embassy_stm32::pac::timer::vals::FilterValue;
 use embassy_stm32::pac::timer::{TimGp16, TimGp32};
@@ -18,13 +18,13 @@ pub fn config() -> Config {
 
 /// A timer that counts an encoder.
 pub trait Counter: Copy {
-    /// Bits after which it wraps.
+    /// The width of the counter.
     const WIDTH: CounterWidth;
 
     /// The count.
     fn count(self) -> RawCount;
 
-    /// Finishes what the driver began: the full range, and a filter against short spikes.
+    /// Completes the driver's set-up: the full range, and a filter against short pulses.
     fn complete(self, filter: InputFilter);
 
     /// Makes the present position zero.

@@ -1,4 +1,4 @@
-//! The board as the servo sees it: each thing a register or two.
+//! The servo's hardware: each access is one or two registers.
 
 use embassy_stm32::pac;
 use embassy_stm32::pac::iwdg::vals::Key;
@@ -19,23 +19,23 @@ use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
 use crate::torque_output::TorqueOutput;
 
-/// The registers that belong to the servo's interrupt.
+/// The registers of the servo's interrupt.
 pub struct Registers {
     pace: Pace,
     output: Output,
 }
 
 impl Registers {
-    /// Prepares what paces the servo, and what puts its torque out; neither runs yet.
+    /// Prepares the pace of the servo and the torque output; neither runs yet.
     ///
     /// # Errors
-    /// Where the board cannot pace the period in s.
+    /// If the board cannot pace the period in s.
     pub fn new(setup: Setup, period: f64, timing: OutputTiming) -> Result<Self, BuildError> {
         let (output, pace) = Output::new(setup, period, timing)?;
         Ok(Self { pace, output })
     }
 
-    /// Begins to pace. The servo's interrupt is to be enabled within a period.
+    /// Starts the timers. The servo's interrupt must be enabled within a period.
     pub fn start(&mut self, timing: OutputTiming) {
         self.output.start(&mut self.pace, timing);
     }
@@ -96,8 +96,8 @@ impl Startup for Registers {
     }
 
     fn start_watchdog(&mut self) {
-        // While the core is halted the DAC holds its last code: what takes that away shall not
-        // be halted with it.
+        // While a debugger halts the core the DAC holds its last code, so the watchdog, which removes the
+        // torque, must not halt with the core.
         family::keep_watchdog_running();
         let counts = period::watchdog_counts(self.pace.periods().seconds());
         pac::IWDG.kr().write(|w| w.set_key(Key::START));

@@ -1,4 +1,4 @@
-//! Why the chip was reset, by its reset flags.
+//! The cause of a reset by the chip's reset flags.
 
 use embassy_stm32::pac::RCC;
 
@@ -6,23 +6,22 @@ use super::family::{BROWN_OUT, OPTION_BYTES, POWER_ON};
 use crate::board::fault_memory;
 use crate::reset::ResetCause;
 
-/// Flags of RCC_CSR that the F4's and the G4's have in common (RM0090, 7.3.21; RM0440, 7.4.30), the
-/// watchdogs' under different names. Every reset pulls the pin low, too, so the pin is the cause
-/// only if its flag is alone.
+/// Flags of RCC_CSR in both F4 and G4 (RM0090, 7.3.21; RM0440, 7.4.30), with different names for the
+/// watchdogs. Every reset also pulls the pin low, so the pin is the cause only if its flag is alone.
 const PIN: u32 = 1 << 26;
 const SOFTWARE: u32 = 1 << 28;
 const INDEPENDENT_WATCHDOG: u32 = 1 << 29;
 const WINDOW_WATCHDOG: u32 = 1 << 30;
 const LOW_POWER: u32 = 1 << 31;
 
-/// Reads the flags and clears them: the next reset may have another cause.
+/// Reads the flags and clears them for the next reset.
 pub fn cause() -> ResetCause {
     let flags = RCC.csr().read().0;
     RCC.csr().modify(|w| w.set_rmvf(true));
     of_flags(flags, fault_memory::power_stayed())
 }
 
-/// What resets a chip later than its supply is named first, and the supply itself before the pin.
+/// Causes other than the supply come first, and the supply before the pin.
 fn of_flags(flags: u32, power_stayed: bool) -> ResetCause {
     let is = |flag| flags & flag != 0;
     if is(INDEPENDENT_WATCHDOG) {

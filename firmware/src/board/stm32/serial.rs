@@ -14,19 +14,19 @@ use static_cell::StaticCell;
 use crate::board::BAUD;
 use crate::wire::Port;
 
-/// Bytes that may wait for the task that reads them: 5 ms of the line's rate, some ten times what
-/// that task needs for anything but a certificate, during which the host waits for its answer.
+/// Capacity for received bytes: 5 ms at the line's rate, about ten times as long as the task needs for
+/// anything except a certificate, during which the host waits for its answer.
 const RECEIVED: usize = 256;
-/// Bytes that may wait to be sent.
+/// Capacity for bytes to be sent.
 const SENT: usize = 256;
 
-/// Bytes that are given to the driver at once.
+/// Bytes that are passed to the driver at once.
 const PIECE: usize = 64;
 
-/// The port. Nothing here waits: what does not fit now is for the next time.
+/// The port. Nothing here waits: bytes without room are sent at a later call.
 pub struct Serial(BufferedUart<'static>);
 
-/// Opens a port on these pins. To be called once.
+/// Opens a port on these pins. Call it once.
 pub fn open<T: Instance>(
     port: Peri<'static, T>,
     rx: Peri<'static, impl RxPin<T>>,
@@ -39,8 +39,8 @@ pub fn open<T: Instance>(
     let mut config = Config::default();
     config.baudrate = BAUD;
     let port = BufferedUart::new(port, rx, tx, sending, receiving, interrupts, config);
-    // The rate is a constant, and each board's clock divides into it; a build whose does not would
-    // stop here at its first start, with the amplifier off.
+    // The rate is a constant, and each board's clock divides into it. A build with another clock would stop
+    // here at its first start, with the amplifier off.
     Serial(port.expect("the port's clock divides into the line's rate"))
 }
 
@@ -55,7 +55,7 @@ impl Port for Serial {
     fn write(&mut self, bytes: &[u8]) -> usize {
         let mut sent = 0;
         for piece in bytes.chunks(PIECE) {
-            // The driver takes a piece as a whole or not at all.
+            // The driver takes all of a piece or none of it.
             if !matches!(now(self.0.write(piece)), Some(Ok(_))) {
                 break;
             }

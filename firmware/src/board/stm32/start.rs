@@ -1,4 +1,4 @@
-//! From reset to a running servo.
+//! The start of a program: from reset to a running servo.
 
 use core::task::Poll;
 
@@ -29,30 +29,29 @@ use crate::servo_loop::Reason;
 use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Link, Session};
 
-/// Where the servo's interrupt finds its state.
+/// The state of the servo's interrupt.
 pub type ServoCell<E, N, M> = IsrCell<ServoIsr<Registers, E, N, M>>;
 
-/// The host's end of the board, for the task below the servo.
+/// The link to the host, for the task below the servo.
 pub type HostLink<E, N, M> = Link<Serial, E, N, M>;
 
-/// Where that link is: in a place of its own, since a task would keep a copy for each step that
-/// passes it on.
+/// The static of that link: a task would keep a copy for each step that passes it on.
 pub type LinkCell<E, N, M> = StaticCell<HostLink<E, N, M>>;
 
 /// A program's task that serves its [`HostLink`].
 pub type Task<E, N, M, S> = fn(&'static mut HostLink<E, N, M>) -> Result<SpawnToken<S>, SpawnError>;
 
-/// The static places of a program, whose types are its scene's.
+/// The statics of a program, with its scene's types.
 pub struct Statics<E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// State of the servo's interrupt.
     pub servo: &'static ServoCell<E, N, M>,
-    /// Where it meets the task below.
+    /// The mailbox between the interrupt and the task below.
     pub mailbox: &'static MailboxCell<E, N, M>,
-    /// That task's end of the host's link.
+    /// The task's link to the host.
     pub link: &'static LinkCell<E, N, M>,
     /// The filter of the encoder's inputs.
     pub filter: InputFilter,
-    /// What the output has to know of the program.
+    /// The output's data of the program.
     pub output: output::Setup,
 }
 
@@ -72,7 +71,7 @@ where
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
     EXECUTOR.init_with(Executor::new).run(|spawner| match task(link) {
         Ok(token) => spawner.spawn(token),
-        // A task's place is taken only where it was spawned before, which nothing here does.
+        // Spawning fails only if the task was spawned before, which does not happen.
         Err(_) => halt_with("the task of the host's link runs already"),
     })
 }
@@ -80,7 +79,7 @@ where
 /// The program with the counter width of this board instead of its own, or a compile error.
 ///
 /// # Panics
-/// Where the counter would wrap unseen; in a constant that is the compile error.
+/// If the counter could wrap undetected; in a constant this is a compile error.
 #[track_caller]
 pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
     let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
@@ -89,8 +88,8 @@ pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
 
 /// Everything from reset to the first tick; returns the state of the task below the servo.
 ///
-/// Not inlined, so that its stack frame is gone when that task certifies a set, which takes most of
-/// the stack.
+/// Not inlined, so that its frame is not on the stack when that task certifies a set, which takes most of the
+/// stack.
 #[inline(never)]
 #[expect(clippy::mut_from_ref, reason = "the reference is to a static that is initialised once")]
 fn bring_up<E, N, M>(
@@ -110,9 +109,9 @@ where
     let Booted { servo_loop, margin, reset, previous_fault, arms_because } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|step| halt_with(step.as_str()));
     hardware.start(M::TIMING);
-    // SAFETY: the interrupt that uses the place is not enabled yet.
+    // SAFETY: the interrupt that uses the cell is not enabled yet.
     unsafe { statics.servo.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
-    // SAFETY: its handler finds its place filled.
+    // SAFETY: its handler finds its cell filled.
     unsafe { interrupt::TIM6_DAC.enable() };
     log_banner(name);
     log_reset(reset, previous_fault, arms_because);
@@ -129,8 +128,7 @@ where
 }
 
 impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> HostLink<E, N, M> {
-    /// Serves the host, and sleeps from one interrupt to the next: all work begins with an
-    /// interrupt.
+    /// Serves the host, and sleeps between interrupts: all work begins with an interrupt.
     pub async fn serve(&mut self) -> ! {
         loop {
             self.poll();
@@ -140,7 +138,7 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> HostLink<E, N,
     }
 }
 
-/// The registers of the servo's interrupt for a period in s, or an end.
+/// The registers of the servo's interrupt for a period in s; ends the program if the period is invalid.
 pub fn registers(setup: output::Setup, seconds: f64, timing: OutputTiming) -> Registers {
     Registers::new(setup, seconds, timing).unwrap_or_else(|_| {
         let (shortest, longest) = (periods::SHORTEST, periods::LONGEST);
@@ -149,7 +147,7 @@ pub fn registers(setup: output::Setup, seconds: f64, timing: OutputTiming) -> Re
     })
 }
 
-/// The first words to a debug probe.
+/// Logs the program's name, the board and the free stack, and checks the brown-out level.
 fn log_banner(name: &str) {
     let (free, size) = (stack::unused(), stack::size());
     defmt::info!("{=str} on {=str}, stack: {} of {} bytes left", name, wiring::NAME, free, size);
@@ -168,11 +166,11 @@ fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_becaus
     }
 }
 
-/// Clocks, interrupts and pins. The motor is off, and the next torque is zero.
+/// Sets up clocks, interrupts and pins. The motor is off, and the next torque is zero.
 pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
     let chip = embassy_stm32::init(wiring::clocks());
     family::cache();
-    // From here on a crystal that stops is a fault, and not a core that stands still.
+    // From here on a stopped crystal is a fault and does not stop the core.
     pac::RCC.cr().modify(|w| w.set_csson(true));
     #[cfg(feature = "fast-memory")]
     super::ccm_sram::load();
@@ -190,8 +188,8 @@ pub const fn width<C: Counter>(_: C) -> crate::encoder::CounterWidth {
     C::WIDTH
 }
 
-/// Ends a program that cannot start. The amplifier has never been on. Where this machine refuses a scene
-/// that passed when it was compiled, the host has the words for it: `haptic certify`.
+/// Ends a program that cannot start. The amplifier has never been on. If this machine refuses a scene that
+/// passed at compile time, `haptic certify` on the host prints the reason.
 #[cold]
 pub(super) fn halt_with(reason: &'static str) -> ! {
     stop();
@@ -201,7 +199,7 @@ pub(super) fn halt_with(reason: &'static str) -> ! {
     }
 }
 
-/// Lets the executor look at its other tasks, of which there may be some one day.
+/// Lets the executor poll its other tasks, if there are any.
 async fn yield_now() {
     let mut yielded = false;
     core::future::poll_fn(|context| {
@@ -235,11 +233,11 @@ macro_rules! board_program {
 
         $crate::board_filter!($program.transducers);
 
-        /// The scene, as late as the board's DAC: where it is not, this does not compile.
+        /// The scene, whose delay must be that of the board's DAC; otherwise this does not compile.
         const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
             $certified.timing_checked::<$mode>();
 
-        /// What this board runs.
+        /// The program with this board's counter.
         const BOARD_PROGRAM: $crate::boot::Program<$environment> =
             $crate::board::stm32::with_board_counter($program);
 
@@ -253,7 +251,7 @@ macro_rules! board_program {
 
         $crate::board_tick!();
 
-        /// Below the servo: a task may not be generic, so each program has its own.
+        /// The task below the servo. A task may not be generic, so each program has its own.
         #[$crate::__private::task(embassy_executor = $crate::__private::embassy_executor)]
         async fn serve(
             link: &'static mut $crate::board::stm32::HostLink<$environment, $number, $mode>,
@@ -277,7 +275,7 @@ macro_rules! board_program {
     };
 }
 
-/// The chip that a program is for, where probe-rs looks for it.
+/// The program's chip, in the place where probe-rs looks for it.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_chip {
@@ -291,12 +289,12 @@ macro_rules! board_chip {
     };
 }
 
-/// The filter of the encoder's inputs, by the fastest edges of a program's encoder.
+/// The filter of the encoder's inputs for the fastest edges of a program's encoder.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_filter {
     ($transducers:expr) => {
-        /// Where the encoder's edges can come too fast for this board, this does not compile.
+        /// If the encoder's edges can be too fast for this board, this does not compile.
         const FILTER: $crate::board::input_filter::InputFilter =
             $crate::board::input_filter::InputFilter::of_encoder(
                 &$transducers,
@@ -314,16 +312,16 @@ macro_rules! board_tick {
             /// A tick.
             #[unsafe(no_mangle)]
             unsafe extern "C" fn TIM6_DAC() {
-                // SAFETY: this is the handler of the interrupt that is enabled once the place is
-                // filled, and no interrupt interrupts itself.
+                // SAFETY: this is the handler of the interrupt that is enabled after the cell is filled, and
+                // no interrupt interrupts itself.
                 unsafe { ISR_STATE.borrow_mut() }.tick();
             }
         }
     };
 }
 
-/// A function that is fetched without a wait, where a board can. The feature is asked here, since in
-/// the macro above it would be one of the program's crate.
+/// A function in memory without wait states, if the board has such memory. The feature is tested here,
+/// because in the macro above it would be a feature of the program's crate.
 #[cfg(feature = "fast-memory")]
 #[doc(hidden)]
 #[macro_export]
@@ -334,7 +332,7 @@ macro_rules! in_fast_memory {
     };
 }
 
-/// A function that is fetched from flash.
+/// A function in flash.
 #[cfg(not(feature = "fast-memory"))]
 #[doc(hidden)]
 #[macro_export]

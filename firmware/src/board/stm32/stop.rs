@@ -1,5 +1,5 @@
-//! What a fault leaves behind: no torque, amplifier off, a record for the next boot, and a wait for
-//! the watchdog, which resets the board.
+//! Ends a program after a fault: no torque, amplifier off, a record for the next boot, and a wait for the
+//! watchdog, which resets the board.
 
 use super::{family, output};
 use crate::board::fault_memory;
@@ -11,20 +11,20 @@ pub fn stop() {
     output::stop();
 }
 
-/// Ends the program because of a non-maskable interrupt: an error of the flash memory, of RAM, or of the
-/// crystal, without which the core runs on by its internal oscillator.
+/// Ends the program after a non-maskable interrupt: an error of the flash memory, of RAM, or of the crystal,
+/// after which the core continues with its internal oscillator.
 pub fn end_non_maskable() -> ! {
-    // First, as reading the cause may fault as well.
+    // First, because reading the cause may also fault.
     output::off();
     end(family::non_maskable())
 }
 
-/// Ends the program because of a fault. The servo's interrupt comes no more, so the watchdog resets
-/// the board; where it does not run yet, the amplifier has never been on, and the board stays as it
-/// is, for a person to look at.
+/// Ends the program after a fault. The servo's interrupt stops, so the watchdog resets the board. If the
+/// watchdog does not run yet, the amplifier has never been on, and the board stays in this state for
+/// inspection.
 pub fn end(fault: Fault) -> ! {
     cortex_m::interrupt::disable();
-    // The record before the rest: a register that does not answer ends all that is behind it.
+    // The record before the rest, because an access to a register may fail and end everything after it.
     output::off();
     fault_memory::store_fault(fault);
     output::stop();

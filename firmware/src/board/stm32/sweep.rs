@@ -1,8 +1,8 @@
-//! Plays a sweep on a real device and sends the measurement to the host, as lines of a record.
+//! Plays a sweep on a real device and sends the measurement to the host as lines of text.
 //!
-//! The motor is driven open loop, so nothing is certified and nothing runs by itself: the host starts
-//! it with a byte, sends keep-alive bytes, and ends it with another ([`byte`]). The sweep also ends
-//! if the device moves farther or faster than it may.
+//! The motor is driven open loop, so nothing is certified and nothing starts by itself: the host starts the
+//! sweep with a byte, sends keep-alive bytes, and ends it with another byte ([`byte`]). The sweep also ends
+//! if the device moves farther or faster than its limits.
 
 use core::fmt::Write;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -39,37 +39,37 @@ pub type SweepCell = IsrCell<SweepIsr>;
 
 /// Transducers and limits of a sweep.
 pub struct Setup {
-    /// The plan of the sweep.
+    /// The transducers that the sweep was planned for.
     pub transducers: Transducers,
-    /// How far and how fast the device may move.
+    /// The limits of the device's motion.
     pub limits: MotionLimits,
-    /// The same in counts.
+    /// The limits in counts.
     pub guard: Guard,
     /// The filter of the encoder's inputs.
     pub filter: InputFilter,
-    /// What the output has to know of the program.
+    /// The output's data of the program.
     pub output: output::Setup,
 }
 
-/// Rows that may wait to be sent: 64 ms at 1 kHz.
+/// Capacity for rows to be sent: 64 ms at 1 kHz.
 const ROWS: usize = 64;
-/// Bytes of the longest line: the description, with fourteen numbers of at most 17.
+/// Bytes of the longest line: the description, with fourteen numbers of at most 17 bytes.
 const LINE: usize = 256;
 
-/// Whether the host wants a sweep to begin.
+/// Whether the host has requested a sweep.
 static BEGIN: AtomicBool = AtomicBool::new(false);
-/// Whether it wants the running sweep to end.
+/// Whether the host has requested the end of the running sweep.
 static STOP: AtomicBool = AtomicBool::new(false);
 /// Ticks until the host counts as lost.
 static LISTENING: AtomicU32 = AtomicU32::new(0);
-/// The end of the last sweep, as its number plus one; 0 once it has been sent.
+/// The end of the last sweep, as its number plus one; 0 after it has been sent.
 static ENDED: AtomicU32 = AtomicU32::new(0);
 
 /// The state of the sweep's interrupt.
 pub struct SweepIsr {
     beginning: Exciter<'static>,
     exciter: Exciter<'static>,
-    /// Samples of the sweep, and those that are still to come.
+    /// Samples of the sweep, and the remaining samples.
     samples: u64,
     left: u64,
     guard: Guard,
@@ -82,12 +82,12 @@ pub struct SweepIsr {
     held: DacCode,
     hardware: Registers,
     rows: Frames<'static, ROWS>,
-    /// Rows that found no room, by the sweep's beginning.
+    /// Rows dropped before the sweep's beginning.
     dropped: u32,
 }
 
 impl SweepIsr {
-    /// One tick: the sweep's next sample while it is wanted, none while it is not.
+    /// One tick: the sweep's next sample while a sweep is requested, otherwise none.
     #[inline(always)]
     pub fn tick(&mut self) {
         let passed = self.hardware.periods_since_last();
@@ -117,10 +117,10 @@ impl SweepIsr {
         self.hardware.feed_watchdog();
     }
 
-    /// Why the sweep ends in this tick, if it does.
+    /// The reason if the sweep ends in this tick.
     fn end(&mut self, passed: u32, count: i32, step: i32) -> Option<SweepEnd> {
         let listening = LISTENING.load(Ordering::Relaxed);
-        // The task below cannot write between the two.
+        // The task below cannot write between the load and the store.
         LISTENING.store(listening.saturating_sub(1), Ordering::Relaxed);
         if self.hardware.output_fault().is_some() {
             Some(SweepEnd::OutputFault)
@@ -129,7 +129,7 @@ impl SweepIsr {
         } else if listening == 0 {
             Some(SweepEnd::Silent)
         } else if passed != 1 {
-            // A torque was held for too long: what follows would not be the sweep.
+            // A torque was held for too long: the rest would not be the sweep.
             Some(SweepEnd::MissedTick)
         } else if self.rows.dropped() != self.dropped {
             Some(SweepEnd::LostRow)
@@ -145,12 +145,12 @@ impl SweepIsr {
     }
 }
 
-/// Tells the task below how the sweep ended, behind its last row.
+/// Reports the end of the sweep to the task below, after its last row.
 fn tell_end(end: SweepEnd) {
     ENDED.store(end as u32 + 1, Ordering::Release);
 }
 
-/// Waits for the host, and plays the sweep whenever it asks.
+/// Waits for the host, and plays the sweep at its request.
 pub fn measure<const N: usize>(
     sweep: &'static Sweep<N>,
     setup: &Setup,
@@ -195,7 +195,7 @@ pub fn measure<const N: usize>(
     }
 }
 
-/// What the host wants now; whether that is the description.
+/// Handles the bytes of the host; returns whether it requested the description.
 fn listen(serial: &mut Serial, patience: u32) -> bool {
     let mut bytes = [0; 8];
     let count = serial.read(&mut bytes);
@@ -230,13 +230,13 @@ struct Writer {
     count: i32,
 }
 
-// Every line fits; a longer one would be cut off.
+// Every line fits; a longer line would be cut off.
 impl Writer {
-    /// Sends lines as long as there are any and the port takes them.
+    /// Sends lines while there are lines and the port takes them.
     fn send(&mut self, serial: &mut Serial, told: &mut FrameReader<'_, ROWS>) {
         loop {
             if self.line.is_empty() {
-                // The end before the rows: all of those are there once it is.
+                // The end is read before the rows: when it is set, all rows are in the queue.
                 let ended = ENDED.load(Ordering::Acquire);
                 if let Some(frame) = told.take() {
                     self.row(&frame);

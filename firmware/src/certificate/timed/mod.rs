@@ -1,5 +1,5 @@
-//! From a [`Certified`] scene to a [`TimingChecked`] one: the scene's delay and the board's are the same, and
-//! the scene stands the limits that a board puts on its torque.
+//! Turns a [`Certified`] scene into a [`TimingChecked`] one: the delays of scene and board are equal, and the
+//! scene also certifies with the board's limits on its torque.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -23,10 +23,9 @@ use crate::scene::Scene;
 use crate::step::Step;
 use crate::text::Sentence;
 
-/// A certified scene that agrees with the mode `M` in which a board puts its torques out.
+/// A certified scene that agrees with the output mode `M` of a board.
 ///
-/// There is no way to make one but [`Certified::time`](Certified), and a cycle is built from
-/// nothing else.
+/// Only [`Certified::time`](Certified) makes one, and a servo loop is only built from one.
 ///
 /// ```
 /// use haptic_servo::certificate::{Certified, TimingChecked};
@@ -60,23 +59,24 @@ impl<S, M> TimingChecked<S, M> {
         Self { scene, format, limited, mode: PhantomData }
     }
 
-    /// Damping in N m s/rad that may be switched on and off at will, one sample late, beside the
-    /// environment: any less keeps the certificate.
+    /// Damping in N m s/rad that may be switched arbitrarily, one sample late, in addition to the
+    /// environment: with any less the certificate holds.
     ///
-    /// An arbitrarily switched damper `B` adds at most `B` to the index (theory, section 5, the
-    /// nonlinear bound), and index and damper together have to meet conditions 17 and 18, the rule
-    /// that does not ask for linearity.
+    /// An arbitrarily switched damper `B` adds at most `B` to the index (theory, section 5, the nonlinear
+    /// bound), and index and damper together must satisfy conditions 17 and 18, which do not require
+    /// linearity.
     pub const fn injectable_damping(&self) -> f64 {
         self.limited.injectable_damping()
     }
 
-    /// Damping in N m s/rad that the device may lose with everything else as it runs on a board, where
-    /// the torque is limited; see [`Assessment::margin`], which for a linear scene leaves that out.
+    /// Damping in N m s/rad that the device may lose while everything else runs unchanged on a board, which
+    /// limits the torque; [`Assessment::margin`] of a linear scene ignores the limit.
     pub const fn margin(&self) -> f64 {
         self.limited.margin(0.0)
     }
 
-    /// The same while so much damping (N m s/rad) is switched on and off: below [`TimingChecked::injectable_damping`].
+    /// The same while a damper of `injected` N m s/rad is switched on and off: below
+    /// [`TimingChecked::injectable_damping`].
     pub const fn margin_with(&self, injected: f64) -> f64 {
         self.limited.margin(injected)
     }
@@ -92,46 +92,46 @@ impl<S, M> TimingChecked<S, M> {
     }
 }
 
-/// Why a certified scene cannot be rendered by a board.
+/// The reason why a board cannot render a certified scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimingError {
-    /// The torque takes a sample to the motor, and the environment allows none.
+    /// The torque takes a sample to reach the motor, and the environment is not late.
     NotLate,
     /// The scene is linear and would not pass with a torque limit, which every board has: the DAC range,
     /// and a lower limit while the torque is faded in and out.
     Limited {
-        /// Bound on the index with a torque limit in N m s/rad; `None` where none is known.
+        /// Bound on the index with a torque limit in N m s/rad; `None` if none is known.
         bound: Option<f64>,
-        /// Its upper bound; `None`: unknown behind a coupling that is stiffer than the standard one, or
-        /// rigid.
+        /// Its upper bound; `None`: unknown behind a rigid coupling, or one stiffer than the standard
+        /// coupling.
         limit: Option<f64>,
     },
-    /// The board puts torques out at another time than the scene says.
+    /// The board puts torques out at a time other than the scene's.
     Phase {
         /// The scene's output delay in s; the middle of its range.
         scene: f64,
         /// That of the board in s.
         board: f64,
     },
-    /// The scene's output delay is known in part only, and a board puts torques out at one time.
+    /// The scene's output delay is a range, and a board puts torques out at one time.
     DelayRange {
         /// The shortest delay in s.
         least: f64,
         /// The longest in s.
         most: f64,
     },
-    /// No board puts torques out so soon after the beginning of a period, or so late.
+    /// No board puts torques out so early or so late in a period.
     PhaseRange {
-        /// The mode's time from there in s.
+        /// The mode's phase in s.
         phase: f64,
         /// The shortest in s.
         shortest: f64,
-        /// The longest in s, of the scene's period.
+        /// The longest in s, for the scene's period.
         longest: f64,
     },
-    /// The torque lags, and the coupling does not absorb that.
+    /// The torque lags, and the coupling does not absorb the lag.
     Unmatched,
-    /// A board reads counts later than the scene allows for.
+    /// A board reads counts later than the scene allows.
     Jitter {
         /// The scene's output jitter in s.
         jitter: f64,
@@ -245,8 +245,8 @@ impl fmt::Display for TimingError {
 impl core::error::Error for TimingError {}
 
 impl Assessment {
-    /// [`TimingChecked::margin`] of the scene that was assessed and certified; `None` where no board renders it
-    /// for its numbers.
+    /// [`TimingChecked::margin`] of the assessed and certified scene; `None` if its numbers do not allow a
+    /// board to render it.
     pub const fn margin_on_board(&self, scene: &Scene) -> Option<f64> {
         self.margin_injecting(scene, 0.0)
     }
@@ -259,19 +259,19 @@ impl Assessment {
         }
     }
 
-    /// Whether a board that puts its torques out in the mode `M` renders the scene that was assessed
-    /// and certified, as far as its numbers tell: what [`Certified::time`](Certified) answers.
+    /// Checks that a board with the output mode `M` can render the assessed and certified scene, by its
+    /// numbers: the result of [`Certified::time`](Certified).
     ///
     /// # Errors
-    /// Why it does not.
+    /// The reason why it cannot.
     pub const fn renders_in<M: OutputMode>(&self, scene: &Scene) -> Result<(), TimingError> {
         self.renders_at(scene, M::TIMING)
     }
 
-    /// The same of a mode as data.
+    /// The same for a mode as data.
     ///
     /// # Errors
-    /// Why it does not.
+    /// The reason why it cannot.
     pub const fn renders_at(&self, scene: &Scene, timing: OutputTiming) -> Result<(), TimingError> {
         match agree(timing, scene, self) {
             Ok(_) => Ok(()),
@@ -280,18 +280,17 @@ impl Assessment {
     }
 }
 
-/// Whether a board may render a scene; if so, the scene with its torque limited.
+/// The scene with its torque limited, if a board may render it.
 ///
-/// A board limits every torque, so that the nonlinear bound has to pass the paper's rule, whatever
-/// rule the scene's verdict follows. That proves the scene on its own: the bound is one on the index
-/// (equation 31), and what it is known for has an index, since no wall pulls away and all that is
-/// filtered decays. The loop is solvable each tick, too: a feedthrough that took it away would be
-/// larger than the bound allows. So nothing is searched for, and a board has nothing of the
-/// polynomials by which a host finds the index itself.
+/// A board limits every torque, so the nonlinear bound must pass the paper's rule, independently of the rule
+/// of the scene's verdict. This is a complete proof: the bound is a bound on the index (equation 31), and
+/// every environment with a known bound has an index, because no wall pulls away and all filters decay. The
+/// loop is also solvable in each tick: a feedthrough that prevented this would exceed the bound. So a board
+/// needs no search, and no code for the polynomials with which a host computes the index.
 ///
-/// Where the type of an environment does not cancel damping, the program omits the code for
-/// cancelled damping, and rejects a scene that cancels some.
-// Not inlined: its frame is off a small board's stack when the servo is built.
+/// If the type of an environment does not cancel damping, the program omits the code for cancelled damping,
+/// and rejects a scene that cancels some. Not inlined, so that its frame is not on a small board's stack when
+/// the servo is built.
 #[inline(never)]
 pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     scene: &Scene,
@@ -329,7 +328,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     }
 }
 
-/// Whether a scene with this assessment agrees with a mode; if so, the scene with its torque limited.
+/// The scene with its torque limited, if a scene with this assessment agrees with a mode.
 pub(super) const fn agree(
     timing: OutputTiming,
     scene: &Scene,
@@ -387,8 +386,8 @@ pub(super) const fn agree(
     })
 }
 
-/// Whether the board's torques come when the scene says, to a part in a billion, which the jitter that
-/// a board needs is far above. A simulation puts them out as the scene says.
+/// Whether the board's torques come at the scene's time, to a part in a billion, far below the required
+/// jitter. A simulation always uses the scene's time.
 const fn is_at_its_phase(timing: OutputTiming, scene: &Scene) -> bool {
     let delay = scene.latency.output_delay;
     let board = board_delay(timing, scene);
@@ -400,8 +399,8 @@ const fn is_at_its_phase(timing: OutputTiming, scene: &Scene) -> bool {
     }
 }
 
-/// Time in s from a count to the torque that the servo computes from it, beside an environment's whole
-/// samples: until the code is put out, and an update more where a current loop takes it over.
+/// Time in s from a count to its torque, in addition to an environment's whole samples: until the code is put
+/// out, and one more update with a current loop.
 const fn board_delay(timing: OutputTiming, scene: &Scene) -> f64 {
     let phase = match timing.phase() {
         Some(phase) => phase,
@@ -413,8 +412,8 @@ const fn board_delay(timing: OutputTiming, scene: &Scene) -> f64 {
     }
 }
 
-/// Whether a scene stands counts that are read up to [`READ_WITHIN`] after the beginning of a period,
-/// as they are where torques are latched.
+/// Whether a scene certifies with counts that are read up to [`READ_WITHIN`] after the beginning of a period,
+/// as with latched torques.
 const fn stands_counts_read_late(
     timing: OutputTiming,
     limited: &Limited,
@@ -425,7 +424,7 @@ const fn stands_counts_read_late(
         return has_enough_jitter(scene);
     }
     match timing {
-        // Only behind the coupling that was made for it.
+        // Only behind the coupling that is designed for it.
         OutputTiming::AtPhase(_) => false,
         OutputTiming::Latched => {
             scene.timing.period > READ_WITHIN && limited.bound.is_below(read_late(limited, n))
@@ -434,19 +433,19 @@ const fn stands_counts_read_late(
     }
 }
 
-/// Whether a scene with a latency allows for the time in which a board reads a count. Where a current loop is
-/// updated, its timer captures the count at the very update that begins the period.
+/// Whether a scene with a latency includes the time in which a board reads a count. With an updated current
+/// loop, its timer captures the count exactly at the update that begins the period.
 const fn has_enough_jitter(scene: &Scene) -> bool {
     scene.latency.actuator_updates > 0 || scene.latency.output_jitter >= READ_WITHIN
 }
 
-/// Upper limit of the bound for that.
+/// Upper limit of the bound for counts read late.
 const fn read_late(limited: &Limited, n: &LoopIntervals) -> Interval {
     let late = Interval::exact(READ_WITHIN).div(n.period);
     Missed::read_late(n, late).limit(limited.coupling)
 }
 
-/// Whether a torque limit may make a motor of it.
+/// Whether a torque limit may make it a motor.
 const fn is_uneven<E: EnvironmentModel>(environment: &Environment) -> bool {
     match environment.profile() {
         Some(profile) => is_motor_where_limited::<E>(profile),
@@ -454,13 +453,13 @@ const fn is_uneven<E: EnvironmentModel>(environment: &Environment) -> bool {
     }
 }
 
-/// The bound on the index of a certified scene whose torque is limited; `bound` is that which the
-/// verdict compared, for one-sided and limited scenes.
+/// The bound on the index of a certified scene whose torque is limited; `bound` is the bound that the verdict
+/// compared, for one-sided and limited scenes.
 ///
-/// It holds for a limit that moves, too: the clip of a monotone law at any level is monotone and no steeper,
-/// and that of a damper or a canceller is a part of it that may change from tick to tick (theory, section 5).
-/// A falling level takes energy away; a rising level adds, once, the energy that the environment stores at
-/// its depth.
+/// It also holds for a changing limit: a monotone law clipped at any level is monotone and no steeper, and a
+/// clipped damper or canceller is a fraction of it that may change from tick to tick (theory, section 5). A
+/// falling level removes energy; a rising level adds, once, the energy that the environment stores at its
+/// depth.
 pub(super) const fn limited_bound(
     scene: &Scene,
     rule: Rule,

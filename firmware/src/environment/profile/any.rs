@@ -19,7 +19,7 @@ use crate::number::Number;
 
 /// Any torque profile as data.
 ///
-/// Over the wire its table does not go, but for what the certificate asks of it: enough to be judged.
+/// The wire does not carry its table, only the outline that the certificate needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct AnyProfile {
@@ -28,28 +28,28 @@ pub struct AnyProfile {
     outline: Outline,
     /// Torque in N m of a knot at full scale.
     pub torque: f64,
-    /// How often the table repeats in a turn.
+    /// Repetitions of the table in a turn.
     pub count: f64,
     /// Angle in rad of its first knot.
     pub centre: f64,
-    /// The ends of its range; `None`: it repeats for ever.
+    /// The ends of its range; `None`: it repeats without end.
     pub ends: Option<Ends>,
-    /// Damping `B` in N m s/rad beside it.
+    /// Damping `B` in N m s/rad in addition.
     pub damping: f64,
     /// Delay in whole samples.
     pub delay: usize,
-    /// Detents with a snap point beside it.
+    /// Detents with a snap point in addition.
     pub snap: Option<SnapPoint>,
-    /// The modes of which it is the selected one; `None`: it is the only profile.
+    /// The modes among which it is selected; `None`: it is the only profile.
     pub modes: Option<ModeSelection>,
 }
 
 impl AnyProfile {
-    /// The sum of shapes, sampled into a table that stays for ever: the number of its knots is a power of
-    /// two from 8 on.
+    /// The sum of shapes, sampled into the table `units`, which lives as long as the program. The number of
+    /// its knots must be a power of two from 8 on.
     ///
     /// # Errors
-    /// Why they are no profile.
+    /// If the shapes do not make a profile.
     pub fn sampled(
         shapes: &[Shape],
         units: &'static mut [i16],
@@ -71,14 +71,14 @@ impl AnyProfile {
         Self { units, outline, torque, count, centre, ends, damping, delay, snap, modes: None }
     }
 
-    /// A mode that is one of several, late by so many samples.
+    /// One of several modes, late by `delay` samples.
     pub(super) const fn of_mode(mode: &ProfileMode, modes: ModeSelection, delay: usize) -> Self {
         let profile = Self::of(mode.units, mode.outline, mode.layout, 0.0, delay);
         Self { modes: Some(modes), ..profile }
     }
 
-    /// The selected one of several modes, late by so many samples; `None` where there is no such mode, or where
-    /// it came over the wire.
+    /// The selected mode, late by `delay` samples; `None` if there is no such mode, or if it came over the
+    /// wire.
     pub(super) const fn selected(modes: ModeSelection, delay: usize) -> Option<Self> {
         match modes.selected() {
             Some(mode) => Some(Self::of_mode(mode, modes, delay)),
@@ -86,8 +86,8 @@ impl AnyProfile {
         }
     }
 
-    /// The same with another one of its modes selected; `None` where there is no such mode, or where it came
-    /// over the wire, without the tables of the others.
+    /// The same with another mode selected; `None` if there is no such mode, or if it came over the wire,
+    /// without the tables of the other modes.
     pub const fn selecting(&self, mode: f64) -> Option<Self> {
         match &self.modes {
             Some(modes) => Self::selected(modes.selecting(mode), self.delay),
@@ -95,7 +95,7 @@ impl AnyProfile {
         }
     }
 
-    /// What its law does about snap points, with the place of the first knot.
+    /// The law of its snap points, with the place of the first knot.
     pub(super) fn snap_law<N: Number>(&self, origin: i32) -> Result<AnySnap<N>, BuildError> {
         Ok(match &self.snap {
             None => AnySnap::None(NoSnap),
@@ -110,7 +110,7 @@ impl AnyProfile {
         Scale::of(&self.layout(), &self.outline)
     }
 
-    /// What the certificate asks of its table.
+    /// The outline of its table for the certificate.
     pub const fn outline(&self) -> Outline {
         self.outline
     }
@@ -120,13 +120,14 @@ impl AnyProfile {
         self.layout().knots_per_rad(self.outline.knots)
     }
 
-    /// Where its table is.
+    /// The position and the scale of its table.
     pub const fn layout(&self) -> Layout {
         let Self { torque, count, centre, ends, snap, .. } = *self;
         Layout { torque, count, centre, ends, snap }
     }
 
-    /// The knots in parts of its torque, [`FULL_SCALE`](super::FULL_SCALE) for all of it; none where it came over the wire.
+    /// The knots in parts of its torque, with [`FULL_SCALE`](super::FULL_SCALE) for the whole torque; empty
+    /// if it came over the wire.
     pub const fn units(&self) -> &'static [i16] {
         self.units
     }

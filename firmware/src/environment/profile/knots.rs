@@ -1,5 +1,4 @@
-//! A torque profile's knots: a table of equal cells that stays in flash, and all that the certificate
-//! asks of it.
+//! A torque profile's knots: a table of equal cells in flash, and its outline for the certificate.
 
 use super::layout::{Layout, PART_BITS};
 
@@ -7,11 +6,11 @@ use super::layout::{Layout, PART_BITS};
 /// fits 16 bits, too.
 pub const FULL_SCALE: i16 = (1 << 14) - 1;
 
-/// Knots of a torque profile in parts of its torque, [`FULL_SCALE`] for all of it, over cells of equal
-/// width. After the last knot comes the first one again.
+/// Knots of a torque profile in parts of its torque, with [`FULL_SCALE`] for the whole torque, over cells of
+/// equal width. After the last knot the first follows again.
 ///
 /// Whole numbers, so that the sum over a period is exact in every number format. `KNOTS` is a power of two,
-/// so that a tick finds its cell by leaving bits out.
+/// so that a tick finds its cell by masking bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knots<const KNOTS: usize> {
     units: [i16; KNOTS],
@@ -20,23 +19,23 @@ pub struct Knots<const KNOTS: usize> {
     layout: Layout,
 }
 
-/// What the certificate asks of a table of knots.
+/// The properties of a table of knots for the certificate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Outline {
     /// Number of knots.
     pub knots: u32,
-    /// The most by which one knot is above the one before it; not negative.
+    /// The largest rise from one knot to the next; not negative.
     pub rise: i32,
-    /// The most by which one knot is below the one before it; not negative.
+    /// The largest fall from one knot to the next; not negative.
     pub fall: i32,
-    /// Whether the cell from the last knot to the first is one like the others. If not, the profile has
-    /// ends that keep out of it, and its steps count for nothing.
+    /// Whether the cell from the last knot to the first is used. If not, the profile has ends that exclude
+    /// this cell, and its step does not count.
     pub wraps: bool,
-    /// Sum of all knots: zero, or a profile without ends is a motor.
+    /// Sum of all knots: must be zero for a profile without ends, which would otherwise be a motor.
     pub sum: i32,
-    /// Whether the profile is odd about its first knot, so that its mean stays zero where a limit clips
-    /// its torque at any level.
+    /// Whether the profile is odd about its first knot, so that its mean stays zero when a limit clips its
+    /// torque at any level.
     pub is_odd: bool,
 }
 
@@ -57,7 +56,7 @@ impl<const KNOTS: usize> Knots<KNOTS> {
         &self.cells
     }
 
-    /// Where they are.
+    /// Their position and scale.
     pub const fn layout(&self) -> Layout {
         self.layout
     }
@@ -67,14 +66,14 @@ impl<const KNOTS: usize> Knots<KNOTS> {
         &self.units
     }
 
-    /// What the certificate asks of them.
+    /// Their outline for the certificate.
     pub const fn outline(&self) -> Outline {
         self.outline
     }
 }
 
 impl Outline {
-    /// Of knots; `wraps` says whether the step from the last one to the first is felt.
+    /// The outline of knots; `wraps`: whether the step from the last knot to the first is used.
     pub const fn of(units: &[i16], wraps: bool) -> Self {
         let mut out =
             Self { knots: units.len() as u32, rise: 0, fall: 0, wraps, sum: 0, is_odd: true };
@@ -94,7 +93,7 @@ impl Outline {
     }
 }
 
-/// The straight line from one knot to the next, so that a tick reads both of its numbers at once.
+/// The straight line from one knot to the next; a tick reads both of its numbers at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
     /// Units at its beginning, in parts.
@@ -118,9 +117,9 @@ impl Cell {
     }
 }
 
-/// Where a law reads its table.
+/// A table that a law can read.
 pub trait KnotTable: Copy + core::fmt::Debug {
-    /// Units in parts at a place in parts of a cell from the first knot; any number is that of a place.
+    /// Units in parts at a place, in parts of a cell from the first knot; every number is a valid place.
     fn units_at(self, place: i32) -> i32;
 }
 
@@ -128,12 +127,12 @@ impl<const KNOTS: usize> KnotTable for &'static [Cell; KNOTS] {
     #[inline(always)]
     fn units_at(self, place: i32) -> i32 {
         let cell = (place >> PART_BITS).cast_unsigned() as usize;
-        // Masked by the length less one, a power of two: the compiler sees that it is there.
+        // Masked by the length less one, a power of two, so the compiler omits the bounds check.
         self[cell & (KNOTS - 1)].at(place)
     }
 }
 
-/// The knots of a profile that is data.
+/// The knots of a profile as data.
 impl KnotTable for &'static [i16] {
     #[inline(always)]
     fn units_at(self, place: i32) -> i32 {

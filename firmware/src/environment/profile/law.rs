@@ -1,4 +1,4 @@
-//! The law of a torque profile: one look into its table a tick.
+//! The law of a torque profile: one table look-up per tick.
 
 use super::knots::{KnotTable, Outline};
 use super::layout::{Ends, Layout};
@@ -15,9 +15,9 @@ use crate::number::Number;
 /// The law of a torque profile.
 #[derive(Clone, Debug)]
 pub struct ProfileLaw<N: Number, K, V, D, S> {
-    /// Parts of a cell in a rad.
+    /// Parts of a cell per rad.
     parts: N::Coefficient,
-    /// The place of the lower end in parts from the angle of zero.
+    /// The place of the lower end in parts from the angle zero.
     from: i32,
     /// Parts between the ends; all parts if there are no ends.
     span: u32,
@@ -26,15 +26,15 @@ pub struct ProfileLaw<N: Number, K, V, D, S> {
     knots: K,
     /// Torque of a part of a unit.
     torque: N::Coefficient,
-    /// The lower end, and the upper one.
+    /// The lower and the upper end.
     ends: [End<N>; 2],
-    /// Stiffness beyond them.
+    /// Stiffness beyond the ends.
     stiffness: N::Coefficient,
     turn: Turn<N>,
     velocity: V,
     delay: D,
     snap: S,
-    /// The steepest that it rises in N m/rad.
+    /// The steepest rise in N m/rad.
     steepest: f64,
 }
 
@@ -50,7 +50,7 @@ struct End<N> {
 impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>>
     ProfileLaw<N, K, V, D, S>
 {
-    /// `snap` makes the law of its snap point of the place of the first knot.
+    /// `snap` makes the law of its snap point from the place of the first knot.
     pub(super) fn new(
         knots: K,
         outline: &Outline,
@@ -90,8 +90,8 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>>
         Ok(law)
     }
 
-    /// The same, which with each start begins in the turn that is nearest to its range: one of several modes,
-    /// before which the device may have turned freely.
+    /// The same law, but each start is in the turn nearest to its range: for one of several modes, before
+    /// which the device may have turned freely.
     pub(super) fn counting_turns_anew(self, layout: &Layout) -> Self {
         match layout.ends {
             Some(Ends { from, to, .. }) => Self { turn: Turn::nearest_to([from, to]), ..self },
@@ -99,7 +99,7 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>>
         }
     }
 
-    /// Gives it ends.
+    /// Sets the ends.
     fn limit(&mut self, ends: &Ends) -> Result<(), BuildError> {
         let from: N = BuildError::number("lower end stop", ends.from)?;
         let to: N = BuildError::number("upper end stop", ends.to)?;
@@ -133,8 +133,8 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>>
     }
 }
 
-/// The steepest that a profile rises in N m/rad, in its table, beyond its ends, and in a line to a snap
-/// point beside either.
+/// The steepest rise of a profile in N m/rad, in its table and beyond its ends, in each case plus the line to
+/// a snap point.
 fn steepest_rise(layout: &Layout, outline: &Outline) -> f64 {
     let scale = Scale::of(layout, outline);
     let stiffness = layout.ends.map_or(0.0, |ends| ends.stiffness);
@@ -147,13 +147,13 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>> La
 {
     #[inline(always)]
     fn evaluate(&self, x: N) -> Response<N> {
-        // The torque of a profile that is not late is that in front of the coupling.
+        // The torque of an undelayed profile is that of the position in front of the coupling.
         Response::Held(self.delay.due().unwrap_or_else(|| self.torque(x)))
     }
 
     #[inline(always)]
     fn update(&mut self, x_e: N) {
-        // The torque of a later tick is that of the branch which this position decides.
+        // This position decides the branch of the next ticks.
         self.snap.update(x_e.parts(self.parts));
         if self.delay.due().is_some() {
             let torque = self.torque(x_e);
@@ -172,7 +172,7 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>> La
     fn slopes(&self) -> Slopes {
         match self.delay.due() {
             Some(_) => Slopes::default(),
-            // In front of the coupling, so that there `1 + line V` has to be positive.
+            // In front of the coupling, where `1 + line V` must be positive.
             None => Slopes { line: -self.steepest, wall: 0.0 },
         }
     }

@@ -1,10 +1,11 @@
-//! Where a table of knots is, how strong, where it ends, and the detents with a snap point that are added to it.
+//! The layout of a table of knots: its position, scale and ends, and the detents with a snap point that are
+//! added to it.
 
 use core::f64::consts::TAU;
 
 use super::shape::{down, nearest};
 
-/// Parts of a cell, as a power of two, in which places in a table are counted.
+/// Parts of a cell, as a power of two: the unit of places in a table.
 pub(super) const PART_BITS: u32 = 14;
 
 /// The ends of a range, and the springs beyond them.
@@ -19,23 +20,23 @@ pub struct Ends {
     pub stiffness: f64,
 }
 
-/// Where a table of knots is, and how strong.
+/// The position and the scale of a table of knots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
     /// Torque in N m of a knot at full scale.
     pub torque: f64,
-    /// How often the table repeats in a turn.
+    /// Repetitions of the table in a turn.
     pub count: f64,
     /// Angle in rad of the first knot.
     pub centre: f64,
-    /// The ends of its range; `None`: it repeats for ever.
+    /// The ends of its range; `None`: it repeats without end.
     pub ends: Option<Ends>,
     /// Detents with a snap point that are added to it.
     pub snap: Option<SnapPoint>,
 }
 
 impl Layout {
-    /// Knots in a rad, of a table of so many, as a law has them.
+    /// Knots per rad of a table of this many knots, as in its law.
     pub const fn knots_per_rad(&self, knots: u32) -> f64 {
         self.count * knots as f64 / TAU
     }
@@ -48,20 +49,20 @@ impl Layout {
 pub struct SnapPoint {
     /// Detents in a repetition of the table.
     pitches: f64,
-    /// Centre of the first one in pitches from the first knot, of a magnitude up to one half.
+    /// Centre of the first detent in pitches from the first knot, with a magnitude up to one half.
     pub(super) offset: f64,
-    /// Torque at the snap point in torques of the table.
+    /// Torque at the snap point relative to the torque of the table.
     share: f64,
     /// Pitches from the centre to the snap point.
     pub(super) snap: f64,
 }
 
-/// How far a detent's centre may be beyond an end, in pitches: ends are written with a few digits.
+/// Tolerance in pitches for a detent's centre beyond an end, because ends are written with few digits.
 const AT_THE_END: f64 = 0.01;
 
 impl SnapPoint {
-    /// Of detents `count` times a turn, the first at the angle `centre` in rad, of `torque` N m, beside a
-    /// table with this layout.
+    /// The snap point of `count` detents per turn of `torque` N m, the first at the angle `centre` in rad,
+    /// added to a table with this layout.
     pub(super) const fn new(
         layout: &Layout,
         count: u32,
@@ -74,7 +75,7 @@ impl SnapPoint {
         Self { pitches: count as f64 / layout.count, offset, share: torque / layout.torque, snap }
     }
 
-    /// Distance in rad of two detents.
+    /// Distance in rad between two detents.
     pub const fn pitch(&self, layout: &Layout) -> f64 {
         TAU / (layout.count * self.pitches)
     }
@@ -94,13 +95,13 @@ impl SnapPoint {
         layout.torque * self.share
     }
 
-    /// Angle in rad by which the knob goes back from a snap point to where it would snap back.
+    /// Angle in rad from a snap point back to the point where the knob would snap back.
     pub const fn hysteresis(&self, layout: &Layout) -> f64 {
         (2.0 * self.snap - 1.0) * self.pitch(layout)
     }
 
-    /// The detents that can hold the knob: those with their centre between the ends; all where there are
-    /// none. The first is above the last where none of them can.
+    /// The detents that can hold the knob: those with their centre between the ends; without ends, all. If no
+    /// detent can, the first is above the last.
     pub const fn branches(&self, layout: &Layout) -> (i32, i32) {
         let Some(Ends { from, to, .. }) = layout.ends else { return (i32::MIN, i32::MAX) };
         let (pitch, first) = (self.pitch(layout), self.centre(layout, 0));
@@ -109,12 +110,12 @@ impl SnapPoint {
         (lowest as i32, highest as i32)
     }
 
-    /// Whether the detents are the same seen from the first knot of the table to either side.
+    /// Whether the detents are symmetric about the first knot of the table.
     pub(crate) const fn is_centred(&self) -> bool {
         self.offset == 0.0 || self.offset.abs() == 0.5
     }
 
-    /// Parts of a cell from one detent to the next, of a table of so many knots.
+    /// Parts of a cell from one detent to the next, for a table of this many knots.
     pub(super) const fn parts(&self, knots: u32) -> f64 {
         knots as f64 * (1_u32 << PART_BITS) as f64 / self.pitches
     }

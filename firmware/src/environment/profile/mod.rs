@@ -1,13 +1,13 @@
 //! Torque profiles: torque over angle in straight lines, for detents, end stops, switches and textures.
 //!
-//! A profile is one table of [`Knots`], built from [`Shape`]s in a constant, so that it stays in flash and
-//! a tick reads two knots of it whatever the shapes were. One without ends repeats in whole numbers of times a
-//! turn, and its law counts angles within the turn: nothing is lost after any number of turns.
+//! A profile is one table of [`Knots`], built from [`Shape`]s in a constant. It stays in flash, and a tick
+//! reads two of its knots, for any shapes. A profile without ends repeats a whole number of times per turn,
+//! and its law counts angles within the turn, so no error accumulates over any number of turns.
 //!
-//! The torque of a late profile is that at the environment's position `x_E` some samples ago. The one of a
-//! profile that is not late (`DELAY = 0`) is that at the position in front of the coupling, as the hand
-//! feels it: `F = g(x)`. As long as `V g' < 1` that is a profile `f` of `x_E = x - V g(x)`, of slope
-//! `g' / (1 - V g')`, solved once and for all (theory, section 14).
+//! The torque of a late profile is that of the environment's position `x_E` some samples ago. The torque of
+//! an undelayed profile (`DELAY = 0`) is that of the position in front of the coupling, as the hand feels it:
+//! `F = g(x)`. If `V g' < 1` this is a profile `f` of `x_E = x - V g(x)` with the slope `g' / (1 - V g')`,
+//! solved in advance (theory, section 14).
 
 mod any;
 mod knots;
@@ -52,16 +52,15 @@ pub struct Profile<const KNOTS: usize, const DELAY: usize> {
     pub knots: &'static Knots<KNOTS>,
     /// Torque in N m of a knot at full scale.
     pub torque: f64,
-    /// How often the table repeats in a turn.
+    /// Repetitions of the table in a turn.
     pub count: f64,
     /// Angle in rad of its first knot.
     pub centre: f64,
-    /// The ends of its range; `None`: it repeats for ever.
+    /// The ends of its range; `None`: it repeats without end.
     pub ends: Option<Ends>,
 }
 
-/// A [`Profile`] with a backward-difference damper beside it, `damping (z - 1) / (T z)`, late by the same
-/// samples.
+/// A [`Profile`] plus a backward-difference damper, `damping (z - 1) / (T z)`, late by the same samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DampedProfile<const KNOTS: usize, const DELAY: usize> {
     /// The profile.
@@ -71,11 +70,10 @@ pub struct DampedProfile<const KNOTS: usize, const DELAY: usize> {
 }
 
 impl<const KNOTS: usize, const DELAY: usize> Profile<KNOTS, DELAY> {
-    /// The profile of a table, as it was built.
+    /// The profile of a table, with the numbers of its shapes.
     ///
     /// # Panics
-    /// Where shapes of it have a snap point, which a [`SnapProfile`] renders: in a constant that is a compile
-    /// error.
+    /// If a shape has a snap point, which needs a [`SnapProfile`]; in a constant this is a compile error.
     #[track_caller]
     pub const fn of(knots: &'static Knots<KNOTS>) -> Self {
         assert!(knots.layout().snap.is_none(), "detents with a snap point: use `SnapProfile::of`");
@@ -88,7 +86,7 @@ impl<const KNOTS: usize, const DELAY: usize> Profile<KNOTS, DELAY> {
         Self { knots, torque, count, centre, ends }
     }
 
-    /// With a damper beside it, of `damping` N m s/rad.
+    /// The profile with a damper of `damping` N m s/rad.
     pub const fn damped(self, damping: f64) -> DampedProfile<KNOTS, DELAY> {
         DampedProfile { profile: self, damping }
     }
@@ -103,7 +101,7 @@ impl<const KNOTS: usize, const DELAY: usize> NamedParameters for Profile<KNOTS, 
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
         match (parameter, &mut self.ends) {
             (Parameter::ProfileTorque, _) => Some(&mut self.torque),
-            // What does not repeat has no number of repetitions to choose.
+            // A profile with ends has no number of repetitions.
             (Parameter::Count, _) if self.knots.outline().wraps => Some(&mut self.count),
             (Parameter::Centre, _) if self.knots.outline().wraps => Some(&mut self.centre),
             (Parameter::From, Some(ends)) => Some(&mut ends.from),

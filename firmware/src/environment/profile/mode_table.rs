@@ -1,4 +1,4 @@
-//! A mode's table: a torque profile's knots alone.
+//! A mode's table: the knots of a torque profile without cells.
 
 use super::knots::Outline;
 use super::layout::Layout;
@@ -6,9 +6,8 @@ use super::shape::Shape;
 use super::shape_error::ShapeError;
 use super::sum::sampled;
 
-/// The table of a torque profile that is one of several: its knots alone, two bytes each, which stay in
-/// flash. [`Knots`](super::Knots) have the cells between them as well, ten bytes a knot, for a tick that is a
-/// few instructions shorter.
+/// The table of one of several torque profiles: its knots, two bytes each, in flash. [`Knots`](super::Knots)
+/// also have the cells between the knots, ten bytes per knot, which make a tick a few instructions shorter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModeTable<const KNOTS: usize> {
     units: [i16; KNOTS],
@@ -28,14 +27,14 @@ pub struct ProfileMode {
 }
 
 impl<const KNOTS: usize> ModeTable<KNOTS> {
-    /// The sum of shapes; of none the profile of a knob that turns freely.
+    /// The sum of shapes; without shapes, the profile of a freely turning knob.
     ///
     /// # Errors
-    /// Why they are no profile.
+    /// If the shapes do not make a profile.
     pub const fn sampled(shapes: &[Shape]) -> Result<Self, ShapeError> {
         const { assert!(KNOTS.is_power_of_two() && KNOTS >= 8, "a power of two from 8 on") };
         let mut units = [0; KNOTS];
-        // All units are zero, whatever they stand for.
+        // All units are zero for any torque.
         let mut found =
             (Layout { torque: 1.0, count: 1.0, centre: 0.0, ends: None, snap: None }, true);
         if !shapes.is_empty() {
@@ -48,10 +47,10 @@ impl<const KNOTS: usize> ModeTable<KNOTS> {
         Ok(Self { units, outline: Outline::of(&units, wraps), layout })
     }
 
-    /// For constants: the same, or a compile error that says why not.
+    /// For constants: the same, or a compile error with the reason.
     ///
     /// # Panics
-    /// Where the shapes are no profile; in a constant that is the compile error.
+    /// If the shapes do not make a profile; in a constant this is a compile error.
     #[track_caller]
     pub const fn of(shapes: &[Shape]) -> Self {
         match Self::sampled(shapes) {

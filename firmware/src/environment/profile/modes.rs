@@ -1,20 +1,20 @@
-//! Ways for a knob to feel, as shapes and as tables: what open haptic knobs are known for.
+//! The modes of a knob as shapes and as tables: those that are known from open-source haptic knobs.
 
 use core::f64::consts::TAU;
 
 use super::mode_table::{ModeTable, ProfileMode};
 use super::shape::Shape;
 
-/// A way for a knob to feel.
+/// A mode of a knob.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
     /// Its name.
     pub name: &'static str,
-    /// What adds up to it; nothing for a knob that turns freely.
+    /// The shapes whose sum it is; none for a freely turning knob.
     pub shapes: &'static [Shape],
 }
 
-/// All of them, as shapes; [`KNOB_MODES`] are their tables.
+/// All modes as shapes; [`KNOB_MODES`] are their tables.
 pub const MODES: [Mode; 11] = [
     Mode { name: "unbounded", shapes: &[] },
     Mode { name: "bounded 0 to 10", shapes: &[Shape::end_stops(0.0, 10.0 * TENTH, STOP)] },
@@ -61,13 +61,13 @@ macro_rules! tables {
         $(static $table: ModeTable<$knots> = ModeTable::of(MODES[$mode].shapes);)*
 
         /// The tables of [`MODES`], by the same numbers: 1.5 KB of flash in a program that selects among
-        /// them, and as much for where they are.
+        /// them, and as much for their descriptions.
         pub static KNOB_MODES: [ProfileMode; MODES.len()] =
             [$($table.named(MODES[$mode].name)),*];
     };
 }
 
-// As many knots as the narrowest straight piece of each asks for; the places of magnets lie on none.
+// As many knots as the narrowest straight piece of each mode needs; the magnets' angles are not on knots.
 tables! {
     0: UNBOUNDED, 8;
     1: BOUNDED, 8;
@@ -83,11 +83,11 @@ tables! {
 }
 
 const DEGREE: f64 = TAU / 360.0;
-/// A tenth of a range that a hand turns through without letting go.
+/// A tenth of the range that a hand turns through without letting go.
 const TENTH: f64 = 10.0 * DEGREE;
-/// Where a switch ends, beyond its two places.
+/// The end stop of a switch, beyond its two positions.
 const ON: f64 = 42.0 * DEGREE;
-/// How far a magnetic place pulls.
+/// The range of a magnet's pull.
 const MAGNET: f64 = 6.0 * DEGREE;
 /// Stiffness in N m/rad of the end stops.
 const STOP: f64 = 15.0;

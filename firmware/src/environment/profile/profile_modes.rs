@@ -1,4 +1,4 @@
-//! Several torque profiles, of which a knob renders the selected one.
+//! Several torque profiles, one of which is selected.
 
 use super::any::AnyProfile;
 use super::law::ProfileLaw;
@@ -12,32 +12,32 @@ use crate::environment::velocity::NoDamping;
 use crate::number::Number;
 use crate::parameter::named_parameters;
 
-/// Several torque profiles, of which one is rendered, delayed by whole samples: a knob whose way to feel is
+/// Several torque profiles, one of which is rendered, delayed by whole samples: a knob with modes that are
 /// selected while it runs.
 ///
-/// A scene of it is certified with each of its modes, so that with the numbers that it was compiled with none
-/// of them is refused later. Another mode is swapped in as any other change is
-/// ([`servo_loop::longest_gap`](crate::servo_loop::longest_gap)). With each the turns are counted anew:
-/// a mode with end stops starts in the turn in which the knob is nearest to its range.
+/// Its scene is certified with each of its modes, so with the compiled numbers no mode is refused later.
+/// Another mode is swapped in like any other change
+/// ([`servo_loop::longest_gap`](crate::servo_loop::longest_gap)). Each swap restarts the count of turns: a
+/// mode with end stops starts in the turn in which the knob is nearest to its range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileModes<const DELAY: usize> {
     modes: &'static [ProfileMode],
-    /// Number of the selected one, from 0.
+    /// Number of the selected mode, from 0.
     pub mode: f64,
 }
 
 impl<const DELAY: usize> ProfileModes<DELAY> {
-    /// These modes, the first one selected.
+    /// These modes, with the first selected.
     ///
     /// # Panics
-    /// Where there is none; in a constant that is a compile error.
+    /// If there is none; in a constant this is a compile error.
     #[track_caller]
     pub const fn of(modes: &'static [ProfileMode]) -> Self {
         assert!(!modes.is_empty(), "there is no mode to select");
         Self { modes, mode: 0.0 }
     }
 
-    /// The same with another one selected.
+    /// The same with another mode selected.
     pub const fn selecting(self, mode: f64) -> Self {
         Self { mode, ..self }
     }
@@ -47,8 +47,8 @@ impl<const DELAY: usize> ProfileModes<DELAY> {
         self.modes
     }
 
-    /// The selected profile as data. Where the number is that of no mode it is the first one's, with the
-    /// number, which the certificate refuses.
+    /// The selected profile as data. If no mode has the number, it is the first profile with this number,
+    /// which the certificate refuses.
     pub const fn as_any(&self) -> AnyProfile {
         let selection = ModeSelection::of(self.modes, self.mode);
         match AnyProfile::selected(selection, DELAY) {
@@ -70,8 +70,8 @@ impl<N: Number, const DELAY: usize> Discretize<N> for ProfileModes<DELAY> {
     type Law = ModeLaw<N, DELAY>;
 
     fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
-        // A number format that has no room for one of them has none for the program, so that none is refused
-        // later.
+        // A number format that cannot represent one of the modes is refused for the program, so that no mode
+        // is refused later.
         let selection = ModeSelection::of(self.modes, self.mode);
         for mode in self.modes {
             law::<N, DELAY>(&AnyProfile::of_mode(mode, selection, DELAY))?;

@@ -1,5 +1,4 @@
-//! The numbers by which a law multiplies, before a number format rounds them: the certificate judges what
-//! the format makes of these.
+//! The coefficients of a law before a number format rounds them: the certificate judges the rounded values.
 
 use super::knots::{FULL_SCALE, Outline};
 use super::layout::{Layout, PART_BITS};
@@ -7,7 +6,7 @@ use super::layout::{Layout, PART_BITS};
 /// Scales of a profile.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
-    /// Parts of a cell in a rad.
+    /// Parts of a cell per rad.
     pub parts_per_rad: f64,
     /// Torque in N m of a part of a unit.
     pub torque_of_part: f64,

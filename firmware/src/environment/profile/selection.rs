@@ -1,16 +1,16 @@
-//! Which one of several torque profiles is rendered.
+//! The selection of one of several torque profiles.
 
 use super::mode_table::ProfileMode;
 
-/// One of several torque profiles, by its number.
+/// The selection of one of several torque profiles by its number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct ModeSelection {
     #[cfg_attr(feature = "wire", serde(skip))]
     modes: &'static [ProfileMode],
-    /// Number of the selected one, from 0.
+    /// Number of the selected mode, from 0.
     pub mode: f64,
-    /// How many there are.
+    /// Number of modes.
     pub count: u32,
 }
 
@@ -24,7 +24,7 @@ impl ModeSelection {
         Self { mode, ..self }
     }
 
-    /// The number as a whole one; `None` where there is no such mode.
+    /// The number as an index; `None` if there is no such mode.
     pub const fn index(&self) -> Option<usize> {
         let whole = self.mode as u32;
         if whole as f64 == self.mode && whole < self.count { Some(whole as usize) } else { None }
@@ -35,12 +35,12 @@ impl ModeSelection {
         self.count.saturating_sub(1)
     }
 
-    /// All modes by their numbers; none where it came over the wire.
+    /// All modes by their numbers; empty if the selection came over the wire.
     pub const fn modes(&self) -> &'static [ProfileMode] {
         self.modes
     }
 
-    /// The selected one; `None` where there is none, or where it came over the wire.
+    /// The selected mode; `None` if there is no such mode, or if the selection came over the wire.
     pub(super) const fn selected(&self) -> Option<&'static ProfileMode> {
         match self.index() {
             Some(index) if index < self.modes.len() => Some(&self.modes[index]),

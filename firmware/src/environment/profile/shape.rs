@@ -4,44 +4,45 @@ use core::f64::consts::TAU;
 
 use super::shape_error::ShapeError;
 
-/// Bounds on the number of pitches from a centre to its snap point: above the lower one, where the branches
-/// on either side of a snap meet half-way.
+/// Bounds on the number of pitches from a centre to its snap point; at the lower bound the branches on both
+/// sides of a snap meet half-way.
 const SNAP: [f64; 2] = [0.5, 10.0];
 
 /// Torque over angle. A positive torque pushes back from a positive angle, as for all environments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// Places to rest at, `count` a turn, the first at `centre`: from each the torque rises in a straight
-    /// line to `torque` a quarter of the pitch away, and falls to nothing half-way to the next. No other
-    /// shape of this torque is less steep.
+    /// Rest positions, `count` per turn, the first at `centre`: from each the torque rises in a straight line
+    /// to `torque` a quarter of the pitch away, and falls to zero half-way to the next. No other shape with
+    /// this torque is less steep.
     Detents {
-        /// Number of them in a turn.
+        /// Number of detents per turn.
         count: u32,
         /// Largest torque in N m.
         torque: f64,
-        /// Angle of the first one in rad.
+        /// Angle of the first detent in rad.
         centre: f64,
     },
-    /// Places to rest at, each a spring up to its snap point, from where the next one takes the knob: see
-    /// [`Shape::snap`]. At most one shape of a sum is this one.
+    /// Rest positions, each a spring up to its snap point, where the next spring takes over: see
+    /// [`Shape::snap`]. A sum has at most one such shape.
     SnapDetents {
-        /// Number of them in a turn.
+        /// Number of detents per turn.
         count: u32,
         /// Torque in N m at the snap point.
         torque: f64,
-        /// Angle of the first one in rad.
+        /// Angle of the first detent in rad.
         centre: f64,
         /// Pitches from the centre of a detent to its snap point.
         snap: f64,
     },
-    /// [`Detents`](Self::Detents) for a pitch in rad instead of a number of them, to be felt rather than to be rested at.
+    /// Like [`Detents`](Self::Detents), with a pitch in rad instead of a number: a surface to feel, not
+    /// positions to rest at.
     Texture {
-        /// Distance of two ridges in rad.
+        /// Distance between two ridges in rad.
         pitch: f64,
         /// Largest torque in N m.
         amplitude: f64,
     },
-    /// Nothing between two angles, a spring on either side of them.
+    /// Zero torque between two angles, and springs beyond them.
     EndStops {
         /// Lower end in rad.
         from: f64,
@@ -50,39 +51,39 @@ pub enum Shape {
         /// Stiffness in N m/rad beyond them.
         stiffness: f64,
     },
-    /// A spring that pulls to zero from any angle. Its torque grows up to `width` on either side, where
-    /// its table ends, and in the same way beyond.
+    /// A spring that pulls to zero from any angle. Its table ends at `width` on either side; beyond, the
+    /// torque continues to grow with the same slope.
     Centre {
-        /// How far the table reaches in rad.
+        /// Half-width of the table in rad.
         width: f64,
         /// Stiffness in N m/rad.
         stiffness: f64,
     },
-    /// Two places to rest at, `distance` on either side of zero, and a snap between them.
+    /// Two rest positions, `distance` on either side of zero, and a snap between them.
     Bistable {
-        /// Angle of the upper one in rad.
+        /// Angle of the upper position in rad.
         distance: f64,
-        /// Largest torque in N m on the way from one to the other.
+        /// Largest torque in N m between the positions.
         torque: f64,
     },
-    /// A place that pulls like a magnet from up to `width` on either side, once a turn.
+    /// A position that pulls like a magnet from up to `width` on either side, once per turn.
     Magnet {
         /// Its angle in rad.
         angle: f64,
-        /// How far it reaches in rad.
+        /// Its range in rad.
         width: f64,
         /// Largest torque in N m, half-way.
         torque: f64,
     },
-    /// Straight lines through knots, each an angle in rad and a torque in N m; the torque of the first and
-    /// of the last one beyond these. To be held between end stops.
+    /// Straight lines through knots, each an angle in rad and a torque in N m; beyond the first and the last
+    /// knot their torques. Needs end stops.
     Table(&'static [(f64, f64)]),
-    /// The same over a period, which the last knot closes with the torque of the first.
+    /// The same over a period; the last knot closes the period with the torque of the first.
     Periodic(&'static [(f64, f64)]),
 }
 
-/// The angles in rad within which a shape changes, and the stiffness in N m/rad by which it goes on
-/// beyond them; none where it does not.
+/// The angles in rad within which a shape changes, and the stiffness in N m/rad beyond them; zero if the
+/// torque is constant there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
     pub from: f64,
@@ -96,13 +97,13 @@ impl Shape {
         Self::Detents { count, torque, centre: 0.0 }
     }
 
-    /// Detents with a snap point: each is a spring, and the next detent takes the knob where it is `snap`
-    /// pitches away from the centre, and the torque its largest. On the way back that happens as far from
-    /// the centre of the other one, so that a knob that is held between two detents stays in one of them.
-    /// Above 1 it is smooth, and the nearer to 1/2, the more like a switch.
+    /// Detents with a snap point: each is a spring, and the next detent takes over `snap` pitches away from
+    /// the centre, where the torque is largest. On the way back this happens at the same distance from the
+    /// other centre, so a knob held between two detents stays in one of them. Above 1 the detents feel
+    /// smooth; near 1/2 they feel like a switch.
     ///
     /// # Panics
-    /// Where the shape is no detents: in a constant that is a compile error.
+    /// If the shape is not detents; in a constant this is a compile error.
     #[must_use]
     pub const fn snap(self, snap: f64) -> Self {
         match self {
@@ -134,12 +135,12 @@ impl Shape {
         Self::Texture { pitch, amplitude }
     }
 
-    /// A place that pulls.
+    /// A position that pulls like a magnet.
     pub const fn magnet(angle: f64, width: f64, torque: f64) -> Self {
         Self::Magnet { angle, width, torque }
     }
 
-    /// The torque in N m at an angle in rad; of detents with a snap point that of the nearest one.
+    /// The torque in N m at an angle in rad; for detents with a snap point, that of the nearest detent.
     pub const fn torque_at(&self, angle: f64) -> f64 {
         match *self {
             Self::SnapDetents { count, torque, centre, snap } => {
@@ -173,7 +174,7 @@ impl Shape {
         }
     }
 
-    /// How often it repeats in a turn, as a whole number; `None` where it does not.
+    /// The number of repetitions per turn, a whole number; `None` if it does not repeat.
     pub(super) const fn repeats(&self) -> Option<u32> {
         let repeats = match *self {
             Self::Detents { count, .. } | Self::SnapDetents { count, .. } => return Some(count),
@@ -188,7 +189,7 @@ impl Shape {
         if is_whole { Some(whole as u32) } else { None }
     }
 
-    /// Where it changes; `None` where it does so everywhere.
+    /// The range in which it changes; `None` if it changes everywhere.
     pub(super) const fn extent(&self) -> Option<Extent> {
         Some(match *self {
             Self::EndStops { from, to, stiffness } => Extent { from, to, stiffness },
@@ -204,7 +205,7 @@ impl Shape {
         })
     }
 
-    /// Width in rad of the narrowest straight piece that a table has to show.
+    /// Width in rad of the narrowest straight piece that a table must represent.
     pub const fn narrowest(&self) -> f64 {
         match *self {
             Self::Detents { count, .. } | Self::SnapDetents { count, .. } => {
@@ -214,12 +215,12 @@ impl Shape {
             Self::EndStops { .. } | Self::Centre { .. } => f64::INFINITY,
             Self::Bistable { distance, .. } => 0.5 * distance,
             Self::Magnet { width, .. } => 0.5 * width,
-            // Its corners are cut, and its slopes are never steeper for that.
+            // Cut corners never make its slopes steeper.
             Self::Table(_) | Self::Periodic(_) => f64::INFINITY,
         }
     }
 
-    /// Whether its numbers make sense; `shape` is its place among others.
+    /// Checks its numbers; `shape` is its index among the shapes.
     pub(super) const fn checked(&self, shape: usize) -> Result<(), ShapeError> {
         let numbers: [(&'static str, f64, bool); 3] = match *self {
             Self::SnapDetents { snap, .. } if !(snap > SNAP[0] && snap <= SNAP[1]) => {
@@ -274,7 +275,7 @@ impl Shape {
     }
 }
 
-/// Angles and torques beyond that are no knob's.
+/// Larger angles and torques are not those of a knob.
 const LARGEST: f64 = 1e6;
 const UNUSED: (&str, f64, bool) = ("", 0.0, false);
 

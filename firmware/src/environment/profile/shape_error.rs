@@ -1,15 +1,15 @@
-//! Why shapes do not become a torque profile.
+//! The reasons why shapes do not make a torque profile.
 
 use core::fmt;
 
 use crate::text::Sentence;
 
-/// Why shapes do not become a torque profile.
+/// The reason why shapes do not make a torque profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ShapeError {
     /// There is no shape.
     Empty,
-    /// A number that makes no sense.
+    /// A number is out of its bound.
     Number {
         /// Which shape, from 0.
         shape: usize,
@@ -20,29 +20,29 @@ pub enum ShapeError {
         /// What it must be.
         bound: &'static str,
     },
-    /// A knot of a table that makes no sense.
+    /// A knot of a table is out of its bound.
     Knot {
         /// Which shape, from 0.
         shape: usize,
         /// Which knot of it, from 0.
         knot: usize,
-        /// The number of it that makes no sense.
+        /// The invalid number of the knot.
         value: f64,
         /// What it must be.
         bound: &'static str,
-        /// The number that `bound` ends in.
+        /// The number at the end of the text of `bound`.
         limit: Option<f64>,
     },
-    /// A shape that does not repeat within a turn, and that nothing holds between ends.
+    /// A shape does not repeat within a turn, and there are no end stops.
     Endless {
         /// Which shape, from 0.
         shape: usize,
     },
     /// The table's cells are wider than the narrowest straight piece.
     TooFewKnots {
-        /// How many knots there are.
+        /// The number of knots.
         knots: usize,
-        /// How many it takes.
+        /// The number of knots needed.
         needed: f64,
     },
     /// A second shape with a snap point.
@@ -50,9 +50,9 @@ pub enum ShapeError {
         /// Which shape, from 0.
         shape: usize,
     },
-    /// There is no torque anywhere.
+    /// The torque is zero everywhere.
     Flat,
-    /// The torque of a profile without ends is not zero in the mean: a motor.
+    /// The mean torque of a profile without ends is not zero: it would be a motor.
     Mean {
         /// The mean in N m.
         mean: f64,

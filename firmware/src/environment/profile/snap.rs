@@ -1,10 +1,10 @@
-//! Snap points: a detent holds the knob by a straight line up to its snap point, from where the next one
-//! takes it.
+//! Snap points: a detent holds the knob with a straight line up to its snap point, where the next detent
+//! takes over.
 //!
 //! The torque is that of the table and the line of the branch `b` that holds the knob,
 //! `f_b(x) = f(x) + k (x - c_b)`, which reaches the torque of the detents `snap` pitches from its centre
 //! `c_b`. The branch changes after a tick, by the position `x_E` of that tick: with `snap` above one half
-//! that takes energy away and adds none (theory, section 14.5, equation 49).
+//! this removes energy and never adds any (theory, section 14.5, equation 49).
 
 use core::hint::cold_path;
 
@@ -12,18 +12,17 @@ use super::layout::{Layout, SnapPoint};
 use crate::build_error::BuildError;
 use crate::number::Number;
 
-/// What the law of a profile does about snap points, all in whole parts of a cell, so that no turn changes
-/// anything.
+/// The law of a profile's snap points, in whole parts of a cell, so that any number of turns changes nothing.
 pub trait Holding<N: Number>: Clone + core::fmt::Debug {
-    /// `torque` plus that of the branch that holds the knob, in N m, at a place in parts.
+    /// `torque` plus the torque of the branch that holds the knob, in N m, at a place in parts.
     fn add_to(&self, torque: N, place: i32) -> N;
-    /// Ends the tick with the environment at a place: the knob snaps where that is beyond the snap point.
+    /// Ends the tick with the environment at a place: the knob snaps if the place is beyond the snap point.
     fn update(&mut self, place: i32);
     /// Holds the knob in the detent next to a place.
     fn rest_at(&mut self, place: i32);
-    /// Moves what holds the knob by so many parts, a whole number of turns.
+    /// Moves the branch that holds the knob by `by` parts, a whole number of turns.
     fn shift(&mut self, by: i32);
-    /// [`SnapPoint::hysteresis`]; infinite where there is no snap point.
+    /// [`SnapPoint::hysteresis`]; infinite without a snap point.
     fn hysteresis(&self) -> f64;
 }
 
@@ -64,7 +63,7 @@ pub struct Snap<N: Number> {
 }
 
 impl<N: Number> Snap<N> {
-    /// Of a table of so many knots, the first at the place `origin`.
+    /// The law for a table of `knots` knots, the first at the place `origin`.
     pub(super) fn new(
         snap: &SnapPoint,
         layout: &Layout,
@@ -86,7 +85,7 @@ impl<N: Number> Snap<N> {
             lowest,
             highest,
         };
-        // More than half a pitch, however it is rounded.
+        // More than half a pitch after any rounding.
         let reach = (snap.snap * parts) as u32 + 1;
         let mut out = Self {
             slope,
@@ -105,11 +104,11 @@ impl<N: Number> Snap<N> {
         self.centre = self.lattice.centre(self.branch);
     }
 
-    /// The next tick is that of the detent next to a place so far from the centre.
+    /// Selects the detent nearest to a place `away` from the centre for the next tick.
     #[inline(never)]
     fn snap(&mut self, away: i32) {
         cold_path();
-        // Never past the middle between two, where a snap would add energy.
+        // Never past the middle between two detents, where a snap would add energy.
         self.hold(self.branch.saturating_add(self.lattice.pitches(away, HALF - HALF / 8192)));
     }
 }
@@ -142,7 +141,7 @@ impl<N: Number> Holding<N> for Snap<N> {
     }
 }
 
-/// A snap point or none, as data has it.
+/// An optional snap point, for profiles as data.
 #[derive(Clone, Debug)]
 pub enum AnySnap<N: Number> {
     /// None.
@@ -187,11 +186,11 @@ impl<N: Number> Holding<N> for AnySnap<N> {
     }
 }
 
-/// Bits of a pitch below a part: a turn of 2^14 detents is off by less than a thousandth of a part.
+/// Bits of a pitch below a part: over a turn of 2^14 detents the error is less than a thousandth of a part.
 const PITCH_BITS: u32 = 24;
 /// Bits of its reciprocal, which is below 2^30: a detent is at least four cells wide, that is 2^16 parts.
 const RECIPROCAL_BITS: u32 = 46;
-/// Half a pitch as the reciprocal counts it.
+/// Half a pitch in units of the reciprocal.
 const HALF: u64 = 1 << (RECIPROCAL_BITS - 1);
 
 /// The centres of the detents.
@@ -199,9 +198,9 @@ const HALF: u64 = 1 << (RECIPROCAL_BITS - 1);
 struct Lattice {
     /// Place of the centre of the branch 0.
     first: i32,
-    /// From one to the next, in parts with [`PITCH_BITS`] bits below them.
+    /// Distance from one centre to the next, in parts with [`PITCH_BITS`] fractional bits.
     pitch: i64,
-    /// Pitches of a part, with [`RECIPROCAL_BITS`] bits below them.
+    /// Pitches per part, with [`RECIPROCAL_BITS`] fractional bits.
     per_part: u32,
     lowest: i32,
     highest: i32,

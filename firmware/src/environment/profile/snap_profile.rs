@@ -14,7 +14,7 @@ use crate::parameter::{NamedParameters, Parameter};
 
 /// A [`Profile`] whose detents hold the knob up to a snap point: see [`Shape::snap`](super::Shape::snap).
 ///
-/// Certified where it is late by at most one sample, behind a coupling.
+/// It certifies with at most one sample of delay, behind a coupling.
 ///
 /// ```
 /// use haptic_servo::environment::{Knots, Shape, SnapProfile};
@@ -45,15 +45,15 @@ use crate::parameter::{NamedParameters, Parameter};
 pub struct SnapProfile<const KNOTS: usize, const DELAY: usize> {
     /// The table.
     pub profile: Profile<KNOTS, DELAY>,
-    /// The detents that are added to it, in proportion to the table.
+    /// The detents that are added to the table, in proportion to it.
     pub snap: SnapPoint,
 }
 
 impl<const KNOTS: usize, const DELAY: usize> SnapProfile<KNOTS, DELAY> {
-    /// The profile of a table, as it was built.
+    /// The profile of a table, with the numbers of its shapes.
     ///
     /// # Panics
-    /// Where none of its shapes has a snap point: in a constant that is a compile error.
+    /// If none of its shapes has a snap point; in a constant this is a compile error.
     #[track_caller]
     pub const fn of(knots: &'static Knots<KNOTS>) -> Self {
         match knots.layout().snap {

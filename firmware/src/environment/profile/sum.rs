@@ -1,4 +1,4 @@
-//! Shapes added up, as one table of knots.
+//! The sum of shapes as one table of knots.
 
 use core::f64::consts::TAU;
 
@@ -10,11 +10,10 @@ use super::shape_error::ShapeError;
 impl<const KNOTS: usize> Knots<KNOTS> {
     /// The sum of shapes.
     ///
-    /// Knots of a table lie on these cells: where its corners do not, they are cut off, and the slopes are
-    /// no steeper for it.
+    /// The knots lie on the cells of the table: a corner elsewhere is cut off, which makes no slope steeper.
     ///
     /// # Errors
-    /// Why they are no profile.
+    /// If the shapes do not make a profile.
     pub const fn sampled(shapes: &[Shape]) -> Result<Self, ShapeError> {
         let mut units = [0; KNOTS];
         match sampled(shapes, &mut units) {
@@ -23,10 +22,10 @@ impl<const KNOTS: usize> Knots<KNOTS> {
         }
     }
 
-    /// For constants: the same, or a compile error that says why not.
+    /// For constants: the same, or a compile error with the reason.
     ///
     /// # Panics
-    /// Where the shapes are no profile; in a constant that is the compile error.
+    /// If the shapes do not make a profile; in a constant this is a compile error.
     #[track_caller]
     pub const fn of(shapes: &[Shape]) -> Self {
         match Self::sampled(shapes) {
@@ -36,11 +35,11 @@ impl<const KNOTS: usize> Knots<KNOTS> {
     }
 }
 
-/// Writes the sum of shapes into the units of knots, of which there has to be a power of two from 8 on:
-/// where they are, and whether the cell after the last one is felt.
+/// Writes the sum of shapes into the units of knots, whose number must be a power of two from 8 on. Returns
+/// their layout, and whether the cell after the last knot is used.
 ///
 /// # Errors
-/// Why they are no profile.
+/// If the shapes do not make a profile.
 pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, bool), ShapeError> {
     let frame = match Frame::of(shapes, units.len()) {
         Ok(frame) => frame,
@@ -59,7 +58,7 @@ pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, boo
         if frame.ends.is_none() {
             return Err(ShapeError::Flat);
         }
-        // All units are zero, whatever they stand for.
+        // All units are zero for any torque.
         torque = 1.0;
     }
     let mut i = 0;
@@ -73,7 +72,7 @@ pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, boo
     }
     if frame.ends.is_none() {
         let mean = mean(shapes);
-        // Less than that is not a unit of a knot.
+        // A smaller mean is less than a unit of a knot.
         if mean.abs() > 0.5 * torque / FULL_SCALE as f64 {
             return Err(ShapeError::Mean { mean });
         }
@@ -89,7 +88,8 @@ pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, boo
     Ok((layout, wraps))
 }
 
-/// Makes the knots odd about the first one, where they are but for rounding; gives whether they are.
+/// Makes the knots exactly odd about the first if they are odd except for rounding; returns whether they are
+/// odd.
 const fn make_odd(units: &mut [i16]) -> bool {
     let mut i = 0;
     while i < units.len() {
@@ -109,13 +109,13 @@ const fn make_odd(units: &mut [i16]) -> bool {
     true
 }
 
-/// Takes from the knots, a unit at a time, what rounding and cut corners leave of their sum.
+/// Makes the sum of the knots zero, one unit per knot: rounding and cut corners may leave a small sum.
 const fn balance(units: &mut [i16]) {
     let mut sum = Outline::of(units, true).sum;
     let mut i = 0;
     while sum != 0 {
         let unit = units[i % units.len()] as i32 - sum.signum();
-        // None goes beyond full scale, and there are others.
+        // No knot exceeds full scale; another knot takes the unit.
         if unit.abs() <= FULL_SCALE as i32 {
             units[i % units.len()] = unit as i16;
             sum -= sum.signum();
@@ -124,7 +124,7 @@ const fn balance(units: &mut [i16]) {
     }
 }
 
-/// The mean torque in N m of periodic tables, by their own knots; other shapes have none.
+/// The mean torque in N m of periodic tables, by their own knots; the mean of other shapes is zero.
 const fn mean(shapes: &[Shape]) -> f64 {
     let mut mean = 0.0;
     let mut i = 0;
@@ -144,16 +144,16 @@ const fn mean(shapes: &[Shape]) -> f64 {
     mean
 }
 
-/// Where the cells of a table are.
+/// The position of a table's cells.
 struct Frame {
     /// Width of a cell in rad.
     cell: f64,
     count: f64,
     centre: f64,
     ends: Option<Ends>,
-    /// The shape whose springs are the ends.
+    /// The shape whose springs are the end stops.
     outermost: Option<usize>,
-    /// The detents with a snap point, which are in no table.
+    /// The detents with a snap point, which are not in the table.
     snap: Option<Shape>,
     wraps: bool,
 }
@@ -223,7 +223,8 @@ impl Frame {
         let frame = match (single, ends) {
             (Some(shape), None) => return Err(ShapeError::Endless { shape }),
             (Some(_), Some(Ends { from, to, .. })) => {
-                // A level cell at either end keeps clear of the one from the last knot to the first.
+                // A level cell at either end keeps the range clear of the cell from the last knot to the
+                // first.
                 let cell = (to - from) / (knots - 3) as f64;
                 let (count, centre) = (TAU / (cell * knots as f64), from - cell);
                 Self { cell, count, centre, ends, outermost, snap, wraps: false }
@@ -236,7 +237,7 @@ impl Frame {
                 Self { cell, count, centre, ends, outermost, snap, wraps: true }
             }
         };
-        // Narrower ones, so that each straight piece shows.
+        // Narrower cells, so that each straight piece is represented.
         if frame.cell > narrowest {
             return Err(ShapeError::TooFewKnots {
                 knots,
@@ -255,7 +256,7 @@ impl Frame {
         let mut sum = 0.0;
         let mut i = 0;
         while i < shapes.len() {
-            // The outermost springs are beyond the table.
+            // The outermost springs act beyond the table.
             let is_beyond = match self.outermost {
                 Some(outermost) => outermost == i,
                 None => false,

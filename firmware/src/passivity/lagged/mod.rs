@@ -1,10 +1,9 @@
-//! Passivity at the device's port where the torque lags: delays of any length, an amplifier and a
-//! sensor of first order (theory, section 13).
+//! Passivity at the device's port with a lagging torque: delays of any length, an amplifier and a sensor of
+//! first order (theory, section 13).
 //!
-//! The port is passive if and only if `delta + Re(H g) >= D abs(H)^2 / (4 delta)` on the circle
-//! (equation 38), with `g` the sampled response of hold, amplifier, integrator and sensor, and `D` the
-//! part of their response between the samples. Both are rational, so that the bound of
-//! [`super::bernstein`] encloses the whole of it.
+//! The port is passive if and only if `delta + Re(H g) >= D abs(H)^2 / (4 delta)` on the circle (equation
+//! 38), with `g` the sampled response of hold, amplifier, integrator and sensor, and `D` the part of their
+//! response between the samples. Both are rational, so [`super::bernstein`] encloses the whole condition.
 //!
 //! All times in this module are in periods.
 
@@ -22,19 +21,20 @@ mod sampled;
 
 pub use sampled::{SampledLag, delay_of_updates};
 
-/// Delay and lags in periods, as far as they are known.
+/// Delay and lags in periods, as intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LagIntervals {
     /// Time from count to torque.
     pub delay: Interval,
-    /// Time constants of amplifier and sensor; exactly 0 where there is none.
+    /// Time constants of amplifier and sensor; exactly 0 without a lag.
     pub lags: [Interval; 2],
-    /// Updates of the amplifier's current loop in a period, 0 where it is continuous. With any, the delay is
-    /// [that of a whole number](delay_of_updates) of them, and there is no second lag.
+    /// Updates of the amplifier's current loop per period, 0 if it is continuous. With updates, the delay is
+    /// [a whole number](delay_of_updates) of update intervals, and there is no second lag.
     pub updates: u16,
 }
 
-/// What a device with ideal sampling feels of a held torque, `z^-whole g`, and what of it no sample shows.
+/// The sampled response of an ideal device to a held torque, `z^-whole g`, and its ripple between the
+/// samples.
 ///
 /// `g = T (bracket(z) / (z^2 lag(z))) z / (z - 1)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,13 +48,16 @@ pub struct SampledResponse {
     ripple: Series,
 }
 
-/// One lag: its time constant, and the part that remains after a tick and after the rest of a tick.
+/// One lag: its time constant, and the fractions of a step that remain after a tick and after the rest of a
+/// tick.
 #[derive(Clone, Copy)]
 struct Decay {
     tau: Interval,
-    /// The integral of the rest of a step: the time constant, unless straight lines join the updates.
+    /// The integral of the rest of a step: the time constant, except with linear interpolation between
+    /// updates.
     held: Interval,
-    /// The same less that of its square: half the time constant, unless straight lines do.
+    /// The same less the integral of its square: half the time constant, except with linear interpolation
+    /// between updates.
     unspread: Interval,
     tick: Interval,
     rest: Interval,
@@ -81,8 +84,8 @@ impl Decay {
         Self { tau, held: tau, unspread: tau.half(), tick, rest, over }
     }
 
-    /// Of a current loop that is updated so many times in a period.
-    // In a frame of its own, which no continuous lag needs.
+    /// The lag of a current loop with `updates` updates per period. Not inlined: continuous lags do not need
+    /// its frame.
     #[inline(never)]
     const fn sampled(tau: Interval, part: Interval, updates: u16) -> Self {
         let over = Interval::ONE.sub(part);
@@ -107,7 +110,8 @@ impl Decay {
     }
 }
 
-/// What a lag leaves after some time; nothing where its range begins at 0 and the time is positive.
+/// The rest of a step after some time; zero at the lower end if the lag's range begins at 0 and the time is
+/// positive.
 const fn left(time: Interval, tau: Interval) -> Interval {
     let ratio = if tau.is_positive() {
         time.div(tau)
@@ -118,7 +122,7 @@ const fn left(time: Interval, tau: Interval) -> Interval {
 }
 
 impl LagIntervals {
-    /// Pieces of the delay's range, each within a sample: at least one.
+    /// Number of pieces of the delay's range, each within a sample: at least one.
     pub const fn pieces(&self) -> usize {
         (self.last_whole() - self.first_whole()) as usize + 1
     }
@@ -133,7 +137,7 @@ impl LagIntervals {
 
     /// The response with a delay in one of the pieces.
     ///
-    /// `None` where a lag may be zero and the other as well, neither for certain.
+    /// `None` if both lags may be zero, but neither certainly is.
     pub const fn response(&self, piece: usize) -> Option<SampledResponse> {
         let whole = self.first_whole() + piece as i32;
         let part = self.delay.sub(Interval::exact(whole as f64));
@@ -153,10 +157,10 @@ impl LagIntervals {
 }
 
 /// The largest `e (1 - e)` of delays in a range, in periods, with `e` the fraction of a delay beyond its
-/// whole samples: no response that is a mixture of them has more ripple `D / T^2` (equation 45).
+/// whole samples: no mixture of such responses has more ripple `D / T^2` (equation 45).
 pub const fn ripple_of_mixture(least: Interval, most: Interval) -> Interval {
     let quarter = Interval::ONE.half().half();
-    // From one half to the next it falls and rises: its largest is at an end, or in a half.
+    // Between two half-integers it falls and rises, so its maximum is at an end or at a half-integer.
     let halves = (most.hi() + 0.5) as i32 as f64 - 0.5;
     if halves >= least.lo() {
         return quarter;
@@ -180,7 +184,7 @@ impl SampledResponse {
         Transfer { scale: period, shift: -1 - self.whole, ones: -1, ..response }
     }
 
-    /// The same with another ripple `D / T^2`, for a response without lags.
+    /// The same with a different ripple `D / T^2`, for a response without lags.
     pub const fn with_ripple(self, ripple: Interval) -> Self {
         Self { ripple: Series::constant(ripple), ..self }
     }
@@ -229,7 +233,8 @@ impl SampledResponse {
     }
 }
 
-/// `(z - a)` of each lag, and the numerator over `z` times that of what the lags hold back.
+/// The product of `(z - a)` over the lags, and the numerator over `z` times this product of the part of the
+/// torque that the lags hold back.
 const fn lost(first: Decay, second: Option<Decay>) -> Option<(Polynomial, Polynomial)> {
     let Some(second) = second else {
         return Some((first.pole(), first.passed().scaled(first.held)));
@@ -249,8 +254,8 @@ const fn lost(first: Decay, second: Option<Decay>) -> Option<(Polynomial, Polyno
     }
 }
 
-/// The same of two lags that may be equal: with the derivatives by the time constant, somewhere between
-/// the two, in place of the differences.
+/// The same for two lags that may be equal: with derivatives with respect to the time constant, between the
+/// two values, in place of the differences.
 ///
 /// With `u = tau^2 (1 - rest)`, `v = tau^2 (rest - tick)` and differences `[]` over that of the time
 /// constants, the numerator is `[u] z^2 + ([v] - tick_2 [u] + u_2 [tick]) z - (tick_2 [v] - v_2 [tick])`.
@@ -285,8 +290,7 @@ const fn bracket(held: &Polynomial, lag: &Polynomial, lost: &Polynomial) -> Opti
     Some(held.plus(&lost.scaled(Interval::ONE.neg())))
 }
 
-/// A controller in front of a response, with the two parts of equation 38 as series in
-/// `c = cos(theta)`.
+/// A controller with a sampled response: the two parts of equation 38 as series in `c = cos(theta)`.
 pub struct Port {
     /// `2 Re(H g) r / scale`.
     real: Series,
@@ -299,11 +303,11 @@ pub struct Port {
 }
 
 impl Port {
-    /// Of a controller `H` from position to torque; its poles have to be inside of the circle and
-    /// `H(1)` may not be negative (theory, section 13).
+    /// The port of a controller `H` from position to torque; its poles must be inside the circle and `H(1)`
+    /// must not be negative (theory, section 13).
     ///
     /// # Errors
-    /// Where they are not, or where a pole on the circle or a number out of range leaves it open.
+    /// If they are not, or if a pole on the circle or a number out of range leaves this undecided.
     #[inline(never)]
     pub const fn new(
         controller: &Transfer,
@@ -349,7 +353,7 @@ impl Port {
     /// is passive.
     ///
     /// # Errors
-    /// Where a pole is too near the circle for a bound.
+    /// If a pole is too near the circle for a bound.
     #[inline(never)]
     pub const fn index_for(
         &self,
@@ -366,7 +370,7 @@ impl Port {
         }
     }
 
-    /// The passivity that is needed at one `c`: the larger root in `delta` of equation 38 with equality.
+    /// The passivity needed at one `c`: the larger root in `delta` of equation 38 with equality.
     const fn needed_at(&self, c: f64) -> Interval {
         let c = Interval::exact(c);
         let r = self.r.at(c);
@@ -380,11 +384,11 @@ impl Port {
     /// Encloses the least passivity with which the port is passive, in N m s/rad (equation 39): the largest
     /// of `needed_at` over the circle. `found` is [`Port::index_for`] of any `delta`.
     ///
-    /// The index falls as `delta` grows, so that the larger of a `delta` and of its index is enough. The
+    /// The index falls with growing `delta`, so the larger of a `delta` and its index is sufficient. The
     /// damping needed at the place of that index is a better `delta`, as in Newton's method.
     ///
     /// # Errors
-    /// Where a pole is too near the circle for a bound.
+    /// If a pole is too near the circle for a bound.
     #[inline(never)]
     pub const fn needed(&self, delta: f64, found: RealPart) -> Result<Interval, IndexError> {
         let (mut delta, mut found) = (delta, found);
@@ -406,21 +410,21 @@ impl Port {
                 Err(error) => return Err(error),
             };
         }
-        // Room for values that others computed of slightly different decimals: no verdict follows it.
+        // A margin for values computed elsewhere from slightly different decimals; no verdict depends on it.
         Ok(Interval::new(least - ROOM * least, enough + ROOM * enough))
     }
 }
 
-/// Rounds of the search for the passivity that is needed: poles near the circle leave it wider.
+/// Rounds of the search for the needed passivity; with poles near the circle the result stays wider.
 const ROUNDS: u32 = 6;
-/// What it is wider than its enclosure on either side, relative to its magnitude.
+/// Additional width on either side of the enclosure, relative to its magnitude.
 const ROOM: f64 = 1e-12;
-/// Width of the enclosures that it follows, relative to their magnitude.
+/// Relative width of the enclosures in the search.
 const CLOSE: f64 = 2e-11;
-/// Width of its result relative to its magnitude.
+/// Relative width of the result.
 const PORT_TOLERANCE: f64 = 2e-10;
 
-/// The controller without exact common factors, where its poles are all inside of the circle.
+/// The controller without exact common factors, if all its poles are inside the circle.
 #[inline(never)]
 const fn stable(controller: &Transfer) -> Result<Transfer, IndexError> {
     match reduce(controller, false) {

@@ -1,14 +1,14 @@
-//! Current loops that are updated a whole number of times in a period, with straight lines between the
-//! updates (theory, section 13.8, equation 51).
+//! Current loops with a whole number of updates per period and linear interpolation between them (theory,
+//! section 13.8, equation 51).
 //!
-//! The rest of a step shrinks by `p = exp(-h / tau)` from update to update, which are `h` apart. Mean and
-//! mean square of a straight line from 1 to `p` are `(1 + p) / 2` and `(1 + p + p^2) / 3`, so that over all
-//! updates the geometric series leave the sums below where a continuous lag has `tau` and `tau / 2`.
+//! The rest of a step shrinks by `p = exp(-h / tau)` from update to update, with the interval `h`. Mean and
+//! mean square of a straight line from 1 to `p` are `(1 + p) / 2` and `(1 + p + p^2) / 3`, so the geometric
+//! series over all updates give the sums below in place of `tau` and `tau / 2` of a continuous lag.
 
 use super::left;
 use crate::passivity::interval::Interval;
 
-/// The delay of so many updates in periods.
+/// The delay of a number of updates in periods.
 pub const fn delay_of_updates(update: u32, updates: u16) -> Interval {
     let whole = update / updates as u32;
     if update == whole * updates as u32 {
@@ -17,24 +17,24 @@ pub const fn delay_of_updates(update: u32, updates: u16) -> Interval {
     Interval::exact(update as f64).div(Interval::exact(updates as f64))
 }
 
-/// A lag at the updates, straight lines between them.
+/// A lag at the updates, with linear interpolation between them.
 #[derive(Clone, Copy)]
 pub struct SampledLag {
     updates: f64,
-    /// `p`, the rest of a step an update later.
+    /// `p`, the rest of a step after one update.
     left: Interval,
 }
 
 impl SampledLag {
-    /// Of a time constant in periods, with so many updates in each.
+    /// The lag with a time constant in periods and `updates` updates per period.
     #[inline(never)]
     pub const fn of(updates: u16, tau: Interval) -> Self {
         let updates = updates as f64;
         Self { updates, left: left(Interval::ONE.div(Interval::exact(updates)), tau) }
     }
 
-    /// The integral of the rest of a step in periods, `(h / 2) (1 + p) / (1 - p)`. With `p` once, of which it
-    /// is a rising function.
+    /// The integral of the rest of a step in periods, `(h / 2) (1 + p) / (1 - p)`. Computed with `p` only
+    /// once; it rises with `p`.
     #[inline(never)]
     pub const fn held(&self) -> Interval {
         let sum = Interval::ONE.div(Interval::ONE.sub(self.left));
@@ -42,7 +42,7 @@ impl SampledLag {
     }
 
     /// The same less the integral of its square, `(h / 6) (1 + 4 p + p^2) / (1 - p^2)`: in partial fractions,
-    /// of which each rises with `p`.
+    /// each of which rises with `p`.
     pub(super) const fn unspread(&self) -> Interval {
         let near = Interval::exact(3.0).div(Interval::ONE.sub(self.left));
         let far = Interval::ONE.div(Interval::ONE.add(self.left));

@@ -5,7 +5,7 @@
 //! in a loop. Nothing here waits, and each message causes a bounded amount of work: one request of each
 //! kind can be open, and one frame is on its way out.
 //!
-//! A new set of parameters takes this way:
+//! The path of a new set of parameters:
 //!
 //! ```text
 //! ToBoard::Set -> on_message     kept in `requested`, or refused: busy
@@ -52,15 +52,15 @@ pub struct BoardInfo {
     pub timer_counts: u32,
     /// Cause of the last reset.
     pub reset: ResetCause,
-    /// The fault that stopped it before that reset.
+    /// The fault that stopped the board before that reset.
     pub previous_fault: Option<FaultRecord>,
-    /// Bytes of the stack that were never used; returns `None` where the board cannot tell.
+    /// Bytes of the stack that were never used; returns `None` if the board does not measure this.
     pub stack_left: fn() -> Option<u32>,
-    /// What the power stage measures; returns `None` where the torque is not that of a bridge on the board.
+    /// The measurements of the power stage; returns `None` without a bridge on the board.
     pub power: fn() -> Option<PowerReading>,
 }
 
-/// Most notices that one poll takes: more than the queue holds.
+/// The largest number of notices that one poll takes: more than the queue holds.
 const NOTICES: usize = 16;
 
 /// A set of parameters with the damping that the device may lose while it runs.
@@ -70,7 +70,7 @@ struct Set<E> {
     margin: Option<f64>,
 }
 
-/// The board's end of the wire; `LENGTH` is that of the servo's queue of frames.
+/// The board's end of the wire; `LENGTH` is the length of the servo's queue of frames.
 pub struct Session<'a, E: Discretize<N>, N: Number, M, const LENGTH: usize> {
     info: BoardInfo,
     program: Program<E>,
@@ -82,7 +82,7 @@ pub struct Session<'a, E: Discretize<N>, N: Number, M, const LENGTH: usize> {
     stream: Stream,
     /// The set that the servo renders.
     active: Set<E>,
-    /// Sets that were swapped in before it; wraps.
+    /// The number of sets swapped in before the active set; wraps.
     revision: u32,
     /// Changes that are not certified yet.
     requested: Option<(Id, Changes)>,
@@ -131,7 +131,7 @@ where
         }
     }
 
-    /// Takes the servo's notices, and puts the next frame into the outbox once the one before is sent:
+    /// Takes the servo's notices, and puts the next frame into the outbox after the previous frame is sent:
     /// replies first, then the answer to a new set of parameters, then telemetry.
     ///
     /// Certifies at most one set, which takes most of a small board's stack.
@@ -184,7 +184,7 @@ where
             }
             ToBoard::Set { id, changes } => match (&self.requested, &self.submitted) {
                 (None, None) => self.requested = Some((id, changes)),
-                // A repeated request, since the answer takes a while.
+                // A host repeats a request because the answer takes a while.
                 (Some((before, _)), _) | (_, Some((before, _))) if *before == id => {}
                 _ => self.replies.refuse(id, Refusal::Busy),
             },
@@ -201,10 +201,10 @@ where
                 let refusal = Refusal::NotAligning(fault.map(FaultCode::from));
                 self.replies.aligning(Outcome::Refused(refusal));
             }
-            // A servo that has stopped is as disarmed as it was to be.
+            // A stopped servo is disarmed, as requested.
             Notice::Disarmed | Notice::Stopped(_) => {
                 self.replies.switched(false, Ok(()));
-                // Disarming went before it.
+                // Disarming has priority over the alignment.
                 self.replies.aligning(Outcome::Refused(Refusal::Disarming));
             }
             Notice::Applied => {

@@ -1,9 +1,9 @@
-//! The frame that is on its way to the host.
+//! The frame that is being sent to the host.
 
 use crate::wire::frame::{encode, largest_frame};
 use crate::wire::message::{LONGEST_TO_HOST, ToHost};
 
-/// One frame, and how much of it has gone.
+/// One frame, and the number of bytes already sent.
 pub(super) struct Outbox {
     buffer: [u8; largest_frame(LONGEST_TO_HOST)],
     gone: usize,
@@ -15,24 +15,24 @@ impl Outbox {
         Self { buffer: [0; largest_frame(LONGEST_TO_HOST)], gone: 0, end: 0 }
     }
 
-    /// Whether there is nothing left to send.
+    /// Whether everything is sent.
     pub(super) const fn is_empty(&self) -> bool {
         self.gone >= self.end
     }
 
-    /// Takes a message, in place of the rest of the one before.
+    /// Takes a message; the rest of the previous message is discarded.
     pub(super) fn put(&mut self, message: &ToHost<&str>) {
         self.gone = 0;
         // The buffer has room for the longest message; a longer one would not be sent.
         self.end = encode(message, &mut self.buffer).map_or(0, <[u8]>::len);
     }
 
-    /// Bytes left to send.
+    /// The unsent bytes.
     pub(super) fn rest(&self) -> &[u8] {
         self.buffer.get(self.gone..self.end).unwrap_or_default()
     }
 
-    /// So many bytes of it have gone.
+    /// Marks this number of bytes as sent.
     pub(super) const fn sent(&mut self, bytes: usize) {
         self.gone = self.gone.saturating_add(bytes);
     }

@@ -1,5 +1,5 @@
-//! Replies to the host that are not sent yet. Of each kind there is a fixed number: a host that asks
-//! faster than the wire can carry loses replies, and no memory is taken.
+//! Replies to the host that are not sent yet. The number of each kind is fixed: a host that sends requests
+//! faster than the wire can answer loses replies, and memory does not grow.
 
 use heapless::Deque;
 
@@ -7,7 +7,7 @@ use crate::fault::Fault;
 use crate::servo_loop::Status;
 use crate::wire::message::{Id, Outcome, Refusal};
 
-/// Most answers that are kept; the oldest goes first.
+/// The largest number of answers that are kept; the oldest is discarded first.
 const ANSWERS: usize = 4;
 
 /// Replies to the host that are not sent yet.
@@ -18,7 +18,7 @@ pub(super) struct PendingReplies {
     pub parameters: bool,
     /// The description of the active scene was requested.
     pub description: bool,
-    /// The servo's status, which was requested.
+    /// The servo's requested status.
     pub status: Option<Status>,
     /// The request to switch the amplifier on (`true`) or off that the servo has not confirmed yet.
     switching: Option<(Id, bool)>,
@@ -52,8 +52,8 @@ impl PendingReplies {
         Some(part)
     }
 
-    /// Records a request to switch the amplifier on. Returns whether the servo may be asked: not while a
-    /// request to switch it off is pending.
+    /// Records a request to switch the amplifier on. Returns whether it may be passed to the servo: not while
+    /// a request to switch it off is pending.
     pub(super) fn arm(&mut self, id: Id) -> bool {
         if let Some((_, false)) = self.switching {
             self.refuse(id, Refusal::Disarming);
@@ -86,7 +86,7 @@ impl PendingReplies {
         }
     }
 
-    /// Records a request to align the motor; a request that was not answered yet is answered with it.
+    /// Records a request to align the motor; an earlier unanswered request gets the same answer.
     pub(super) fn align(&mut self, id: Id) {
         self.aligning = Some(id);
     }

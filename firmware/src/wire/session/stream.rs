@@ -1,14 +1,14 @@
-//! Ticks from the servo's queue into messages, as many as the wire carries.
+//! Packs ticks of the servo's queue into messages, as many as the wire can carry.
 
 use core::num::NonZeroU32;
 
 use crate::servo_loop::{Frame, FrameReader};
 use crate::wire::telemetry::Batch;
 
-/// Longest time in s that a tick waits for others to go with it: a picture at 30 Hz.
+/// The longest time in s that a tick waits for a full batch: a picture at 30 Hz.
 const PATIENCE: f64 = 0.03;
 
-/// What of the ticks goes to the host.
+/// The selection of ticks that are sent to the host.
 pub(super) struct Stream {
     every: Option<NonZeroU32>,
     batch: Batch,
@@ -16,7 +16,7 @@ pub(super) struct Stream {
     first: u32,
     /// The last tick that went into a batch.
     last: u32,
-    /// Ticks that the first one waits at most.
+    /// The largest number of ticks that the first tick of a batch waits.
     patience: u32,
     due: bool,
     thinned: u32,
@@ -31,16 +31,16 @@ impl Stream {
         Self { every: None, batch, first: 0, last: 0, patience, due: false, thinned: 0 }
     }
 
-    /// Every so many ticks from now on, or none.
+    /// Selects one tick of every so many from now on, or none.
     pub(super) fn set(&mut self, every: Option<NonZeroU32>) {
         self.every = every;
         self.batch = Batch::new();
         self.due = false;
     }
 
-    /// Takes ticks from the servo's queue until a message is full. While that waits for the wire,
-    /// so do the ticks behind it, up to half of the queue: the rest is left out and counted, so
-    /// that the queue never overflows for a slow wire.
+    /// Takes ticks from the servo's queue until a message is full. While the message waits for the wire, the
+    /// next ticks wait in the queue, up to half of its length; the rest is omitted and counted, so that a
+    /// slow wire never makes the queue overflow.
     pub(super) fn take<const LENGTH: usize>(&mut self, frames: &mut FrameReader<'_, LENGTH>) {
         for _ in 0..LENGTH {
             if self.due && frames.waiting() <= LENGTH / 2 {
@@ -68,7 +68,7 @@ impl Stream {
         self.due = self.batch.is_full() || (!self.batch.is_empty() && waited >= self.patience);
     }
 
-    /// The ticks that should go now.
+    /// The batch that is due.
     pub(super) fn batch(&mut self) -> Option<Batch> {
         if !core::mem::take(&mut self.due) {
             return None;
@@ -76,7 +76,7 @@ impl Stream {
         Some(core::mem::take(&mut self.batch))
     }
 
-    /// Ticks that were left out because the wire is slower.
+    /// Ticks that were omitted because the wire is slower.
     pub(super) const fn thinned(&self) -> u32 {
         self.thinned
     }

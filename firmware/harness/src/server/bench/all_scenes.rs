@@ -10,8 +10,8 @@ use crate::tables::{DETENTS, STOPPED};
 
 use super::{BenchJob, HostClosed, SceneSet};
 
-/// All scenes: those without a delay, with one sample of it and with the most in types of their own,
-/// others as data.
+/// All scenes: those with no delay, with one sample and with the longest delay in their own types, others as
+/// data.
 #[derive(Debug)]
 pub struct AllScenes;
 
@@ -50,7 +50,7 @@ fn with_delay_type<const DELAY: usize, N: Number>(job: BenchJob<'_>) -> Result<(
     }
 }
 
-/// As a servo of any environment.
+/// A servo of any environment as data.
 fn as_data<N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed> {
     let environment = job.scene.environment;
     job.run::<_, N>(environment)
@@ -74,7 +74,7 @@ enum Damped<const DELAY: usize> {
 }
 
 impl<const DELAY: usize> Damped<DELAY> {
-    /// `None` for a wall that does not damp, which as data is a spring.
+    /// `None` for a wall without damping, which is a spring as data.
     fn of(wall: &Wall) -> Option<Self> {
         let Wall { stiffness, damping, .. } = *wall;
         match wall.filter {
@@ -98,7 +98,7 @@ fn with_face<W: Spring<N> + Discretize<N>, N: Number>(
     }
 }
 
-/// A wall that ends free motion. No type has its rest elsewhere than at zero.
+/// A wall that ends free motion. No type has its rest position other than zero.
 fn with_free_mode<W: Spring<N> + Discretize<N>, N: Number>(
     job: BenchJob<'_>,
     residual: f64,

@@ -25,13 +25,13 @@ use crate::currents::{CurrentBench, Input};
 use crate::rotations::{self, Rotation};
 use crate::sines::Sine;
 
-/// The types of environments of which a program has servos. A servo of data would have instructions
-/// of its own to find out what it is.
+/// The types of environments whose servos a program contains. A servo of an environment as data would need
+/// additional instructions to select its type.
 pub trait SceneSet {
-    /// Has a servo of the scene's own type do its ticks, if the program has that.
+    /// Runs the ticks of a servo of the scene's own type, if the program contains it.
     ///
     /// # Errors
-    /// Where the host is gone.
+    /// If the host is gone.
     fn ticks<N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed>;
 }
 
@@ -53,7 +53,7 @@ pub fn run<K: SceneSet>() -> ! {
 #[derive(Debug)]
 pub struct HostClosed;
 
-/// The pipes to the host, and what the meter's numbers mean.
+/// The pipes to the host, and the scale of the meter.
 struct Host {
     counts: File,
     codes: File,
@@ -88,7 +88,7 @@ impl Host {
         self.codes.write_all(bytes).map_err(|_| HostClosed)
     }
 
-    /// The inputs that come next; `None` at the end of the benchmark.
+    /// The next inputs; `None` at the end of the benchmark.
     #[inline(never)]
     fn inputs(&mut self) -> Result<Option<Inputs>, HostClosed> {
         let mut more = [0];
@@ -130,7 +130,7 @@ impl Host {
                 });
                 *output = Output { value: servo.torque_nm(), code, instructions: time };
             }
-            // Not before: what the scale needs would be loaded within the measured stretch.
+            // Not earlier: the data of the scale would be loaded within the measured interval.
             for output in &mut outputs {
                 output.instructions = self.scale.measured(output.instructions);
             }
@@ -211,8 +211,8 @@ fn timed_rotation(rotation: Rotation, angle: u32) -> ([f32; 2], u32) {
     each!(Micromath, Libm, Cubic, Quintic, Septic, Table)
 }
 
-/// An instant of a current loop, and the time that it took. A fault, after which the loop begins anew, has no
-/// compare values.
+/// An instant of a current loop, and the time that it took. A fault has no compare values; the loop restarts
+/// after it.
 #[inline(never)]
 fn timed_instant(controller: &mut CurrentController, input: u32, instant: u32) -> ([u16; 2], u32) {
     let mut compare = [0; 2];
@@ -228,8 +228,8 @@ fn timed_instant(controller: &mut CurrentController, input: u32, instant: u32) -
     (compare, time)
 }
 
-/// The sine of the bits of a part of a turn, and the time that it took. The choice is outside of the
-/// measured stretch.
+/// The sine of the bits of a part of a turn, and the time that it took. The choice is outside the measured
+/// interval.
 fn timed(sine: Sine, turn: u32) -> (f32, u32) {
     macro_rules! each {
         ($($kind:ident),*) => {
@@ -256,7 +256,7 @@ pub struct BenchJob<'a> {
 }
 
 impl BenchJob<'_> {
-    /// Its ticks, as a servo of this environment.
+    /// Runs its ticks with a servo of this environment.
     fn run<E: Discretize<N>, N: Number>(self, environment: E) -> Result<(), HostClosed> {
         let Scene { device, timing, coupling, latency, torque_limit, .. } = *self.scene;
         let scene = Scene { device, timing, coupling, environment, latency, torque_limit };

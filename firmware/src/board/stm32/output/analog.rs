@@ -1,4 +1,4 @@
-//! The DAC, and the line that switches an amplifier outside of the board.
+//! The DAC, and the pin that enables an external amplifier.
 
 use super::Pace;
 use crate::board::stm32::start::halt_with;
@@ -11,20 +11,20 @@ use crate::output_timing::OutputTiming;
 use crate::power_reading::PowerReading;
 use crate::torque_output::TorqueOutput;
 
-/// What this output has to know of a program: whether it is for this output.
+/// The properties of a program that this output needs: whether the program is for this output.
 #[derive(Clone, Copy, Debug)]
 pub struct Setup {
     is_served: bool,
 }
 
 impl Setup {
-    /// Of a program whose torque is the DAC's.
+    /// A program for the DAC.
     pub const DAC: Self = Self { is_served: true };
-    /// Of one whose scene has the latency of a bridge. It does not run: cargo builds all programs beside the tests
-    /// on a board, and none of them is flashed.
+    /// A program whose scene has the latency of a bridge. It does not run: cargo builds all programs beside
+    /// the tests on a board, and none of them is flashed.
     pub const BRIDGE: Self = Self { is_served: false };
 
-    /// None: of an amplifier outside it is unknown.
+    /// `None`: the response of an external amplifier is unknown.
     pub const fn torque_source(&self) -> Option<TorqueSource> {
         None
     }
@@ -35,10 +35,10 @@ impl Setup {
 pub struct Output(());
 
 impl Output {
-    /// The output, and the timer that paces the servo; neither runs yet.
+    /// The output and the servo's timer; neither runs yet.
     ///
     /// # Errors
-    /// Where the board cannot pace the period in s: see [`period`](crate::period::check).
+    /// If the board cannot pace the period in s: see [`period`](crate::period::check).
     pub fn new(
         setup: Setup,
         period: f64,
@@ -50,7 +50,7 @@ impl Output {
         Ok((Self(()), Pace::prepare(period, timing)?))
     }
 
-    /// Has a timer latch the DAC, which holds mid-scale, and begins to pace.
+    /// Starts the timers: one latches the DAC, which holds mid-scale, and one paces the servo.
     pub fn start(&mut self, pace: &mut Pace, timing: OutputTiming) {
         DAC.latch(timing);
         pace.start();
@@ -68,14 +68,14 @@ impl TorqueOutput for Output {
         AMPLIFIER.set(on);
     }
 
-    /// An amplifier outside says nothing.
+    /// An external amplifier does not report faults.
     #[inline(always)]
     fn fault(&mut self) -> Option<Fault> {
         None
     }
 }
 
-/// Takes the motor's supply away: one write, in any state of the program.
+/// Disables the amplifier with one write, in any state of the program.
 pub fn off() {
     AMPLIFIER.set(false);
 }
@@ -90,17 +90,17 @@ pub fn power_reading() -> Option<PowerReading> {
     None
 }
 
-/// The DAC needs to know nothing of a program, and drives no motor that is the bridge's.
+/// The set-up of the DAC for a program; a program for the bridge is refused.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_output {
     ([]) => {
-        /// What the output has to know of this program.
+        /// The output's data of this program.
         const OUTPUT: $crate::board::stm32::output::Setup =
             $crate::board::stm32::output::Setup::DAC;
     };
     ([$current_loop:ident]) => {
-        /// What the output has to know of this program.
+        /// The output's data of this program.
         const OUTPUT: $crate::board::stm32::output::Setup =
             $crate::board::stm32::output::Setup::BRIDGE;
         $crate::not_for_the_dac!(
@@ -110,7 +110,7 @@ macro_rules! board_output {
     };
 }
 
-/// A sweep measures the torque that it is given.
+/// The set-up of the DAC for a sweep.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! sweep_output {
@@ -119,7 +119,7 @@ macro_rules! sweep_output {
     };
 }
 
-/// A compile error, but for the programs that cargo builds beside the tests on a board.
+/// A compile error, except in the programs that cargo builds beside the tests on a board.
 #[cfg(not(feature = "on-target"))]
 #[doc(hidden)]
 #[macro_export]
@@ -129,7 +129,7 @@ macro_rules! not_for_the_dac {
     };
 }
 
-/// Nothing beside the tests on a board: such a program ends at its start.
+/// No error beside the tests on a board: such a program ends at its start.
 #[cfg(feature = "on-target")]
 #[doc(hidden)]
 #[macro_export]

@@ -1,4 +1,4 @@
-//! The DAC that drives the amplifier.
+//! The DAC for an external amplifier.
 
 use embassy_stm32::Peri;
 use embassy_stm32::dac::{Channel, DacPin};
@@ -11,7 +11,7 @@ use crate::board::stm32::wiring::{DAC_RANGE, TIMER_TRIGGER};
 use crate::dac::DacCode;
 use crate::output_timing::OutputTiming;
 
-// What the servo computes for is what this board's output is linear over.
+// The servo's range of codes is the linear range of this board's output.
 const _: () = assert!(
     DAC_RANGE.codes_each_way() >= DacCode::CODES_TO_FULL_SCALE,
     "this board's DAC saturates within the codes of full scale"
@@ -31,8 +31,8 @@ pub struct DacChannel {
 }
 
 impl DacChannel {
-    /// Clocks the DAC and lets it drive its pin, at mid-scale from the first moment on: the
-    /// chips' reset value would be full torque the negative way.
+    /// Enables the DAC and its pin, at mid-scale from the first moment on: the chips' reset value would be
+    /// full negative torque.
     pub fn connect<C: Channel>(
         self,
         _: Peri<'static, DAC1>,
@@ -46,21 +46,21 @@ impl DacChannel {
         self.registers.cr().modify(|w| w.set_en(self.channel, true));
         let mut pin = Flex::new(pin);
         pin.set_as_analog();
-        // A driver that is dropped disconnects its pin.
+        // A dropped driver disconnects its pin.
         core::mem::forget(pin);
     }
 
-    /// Writes a code. It appears at the timer's next trigger where the DAC [has one](Self::latch), and
-    /// at once where it has none.
+    /// Writes a code. It appears at the next trigger if the DAC has [a trigger](Self::latch), and otherwise
+    /// at once.
     #[inline(always)]
     pub fn write(self, code: DacCode) {
         self.registers.dhr12r(self.channel).write(|w| w.set_dhr(code.get()));
     }
 
-    /// From now on a timer outputs the last written code: where torques are latched, each update of the
-    /// pacing timer, so that a code written anywhere within a period appears exactly at its end, and
-    /// where they have a phase, each update of the timer behind it. TSEL and TEN of DAC_CR; the code in
-    /// DAC_DOR follows a trigger by a few clocks of the bus.
+    /// From now on a timer puts out the last written code. Latched torques come at each update of the pacing
+    /// timer, so that a code written anywhere within a period appears exactly at its end; torques with a
+    /// phase come at each update of the second timer. TSEL and TEN of DAC_CR; the code in DAC_DOR follows a
+    /// trigger by a few clocks of the bus.
     pub fn latch(self, timing: OutputTiming) {
         let trigger = match timing {
             OutputTiming::Simultaneous => return,
@@ -78,8 +78,8 @@ impl DacChannel {
         self.registers.dor(self.channel).read().dor()
     }
 
-    /// Zero torque at once, without the timer. Mid-scale is written over the code that waits for the trigger
-    /// before the trigger is taken away: without a trigger, the last code written is put out.
+    /// Zero torque at once, without the timer. Mid-scale overwrites the waiting code before the trigger is
+    /// disabled: without a trigger, the DAC puts out the last written code.
     pub fn stop(self) {
         self.write(DacCode::MID_SCALE);
         self.registers.cr().modify(|w| w.set_ten(self.channel, false));

@@ -3,7 +3,7 @@
 use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr};
 
-/// One gate: its pin, and the alternate function by which a timer drives it.
+/// A gate: its pin, and the alternate function that connects it to a timer.
 #[derive(Clone, Copy)]
 pub struct Gate {
     port: pac::gpio::Gpio,
@@ -21,13 +21,13 @@ impl Gate {
         Self { port, pin, function }
     }
 
-    /// Whether the pin is low, whatever drives it.
+    /// Whether the pin is low, regardless of its driver.
     #[cfg(feature = "on-target")]
     pub fn is_low(&self) -> bool {
         self.port.idr().read().idr(self.pin) == pac::gpio::vals::Idr::LOW
     }
 
-    /// Gives the pin to the timer. It was an output, and low.
+    /// Connects the pin to the timer. Before, it was a low output.
     fn connect(self) {
         self.port.afr(self.pin / 8).modify(|w| w.set_afr(self.pin % 8, self.function));
         self.port.ospeedr().modify(|w| w.set_ospeedr(self.pin, Ospeedr::MEDIUM_SPEED));
@@ -36,8 +36,8 @@ impl Gate {
 }
 
 impl Gates {
-    /// Gives the first phases to the timer, which has its main output off; those of a phase that no motor
-    /// is wired to stay outputs that are low.
+    /// Connects the first phases to the timer, whose main output is off. The pins of an unused phase stay low
+    /// outputs.
     pub fn connect(self, phases: usize) {
         for gate in self.0.into_iter().take(phases).flatten() {
             gate.connect();

@@ -1,9 +1,9 @@
-//! What this program drives the motor with: the DAC and an amplifier outside, or the board's own bridge,
-//! by the feature `bridge`.
+//! The torque output of a program: the DAC with an external amplifier, or, with the feature `bridge`, the
+//! board's own bridge.
 //!
 //! Each of the two has the same names for the rest of the board: [`Output`] and its [`Setup`], the [`Pace`]
-//! of the servo's interrupt, [`power_reading`] for the host, and [`off`] and [`stop`] for a program that has come
-//! to its end.
+//! of the servo's interrupt, [`power_reading`] for the host, and [`off`] and [`stop`] for a program that
+//! ends.
 
 #[cfg(not(feature = "bridge"))]
 mod analog;

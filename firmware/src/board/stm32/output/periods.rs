@@ -1,4 +1,4 @@
-//! The clock that never stops, and the servo's periods that have begun by it. Belongs to what paces the servo.
+//! The free-running clock, and the servo's periods counted by it. The pace of the servo owns it.
 
 use core::num::NonZeroU32;
 
@@ -11,17 +11,17 @@ pub fn now() -> u32 {
     CLOCK.cnt().read()
 }
 
-/// Keeps count of the periods.
+/// Counts the periods.
 #[derive(Debug)]
 pub struct Periods {
     clock: PeriodClock,
-    /// Seconds in a period, as it is paced.
+    /// The paced period in s.
     seconds: f64,
 }
 
 impl Periods {
-    /// Periods of this many clock counts and seconds, each in time within so many counts. Prepares the clock,
-    /// which stands.
+    /// Periods of `counts` clock counts and `seconds`; a tick is in time within `in_time` counts. Prepares
+    /// the clock, which does not run yet.
     pub fn new(counts: NonZeroU32, seconds: f64, in_time: u32) -> Self {
         CLOCK.psc().write_value(0);
         CLOCK.arr().write_value(u32::MAX);
@@ -29,7 +29,7 @@ impl Periods {
         Self { clock: PeriodClock::new(counts, in_time), seconds }
     }
 
-    /// Starts the clock and then the timers that pace, so that no period begins before the clock's.
+    /// Starts the clock and then the pacing timers, so that no period begins before the clock's.
     pub fn start(&mut self, timers: impl FnOnce()) {
         cortex_m::interrupt::free(|_| {
             CLOCK.cnt().write_value(0);
@@ -38,8 +38,7 @@ impl Periods {
         });
     }
 
-    /// The periods that had begun at this time, since this was last asked: see
-    /// [`PeriodClock::begun_by`].
+    /// The number of periods that began between the last call and this time: see [`PeriodClock::begun_by`].
     #[inline(always)]
     pub fn begun_by(&mut self, time: u32) -> u32 {
         self.clock.begun_by(time)
@@ -50,7 +49,7 @@ impl Periods {
         self.clock.counts()
     }
 
-    /// Seconds in a period, as it is paced.
+    /// The paced period in s.
     pub fn seconds(&self) -> f64 {
         self.seconds
     }

@@ -1,12 +1,12 @@
-//! A pin that is switched by one register access.
+//! An output pin that is switched by one register access.
 
 use embassy_stm32::pac;
 
-/// A pin of a port, for the servo's interrupt and for the panic handler, which have no time for a
-/// driver or none left to own it.
+/// A pin of a port, for the servo's interrupt, which has no time for a driver, and for the panic handler,
+/// which cannot own a driver.
 ///
-/// 3.3 V is on, on every board: with a resistor to ground at its far end, a wire that is broken and
-/// a board without power are off.
+/// On every board 3.3 V means on. With a resistor to ground at the amplifier, a broken wire and a board
+/// without power mean off.
 #[derive(Clone, Copy)]
 pub struct OutputPin {
     /// Its port.
@@ -16,7 +16,7 @@ pub struct OutputPin {
 }
 
 impl OutputPin {
-    /// Switches; one write, which interrupts nothing and can be interrupted by anything.
+    /// Switches the pin with one write, which needs no critical section.
     #[inline(always)]
     pub fn set(self, on: bool) {
         self.port

@@ -1,20 +1,20 @@
-//! When a tick is due: a basic timer whose update starts the servo's interrupt and latches the DAC, and
-//! beside it a clock that never stops and measures how late the servo is.
+//! The timer of the ticks: a basic timer whose update starts the servo's interrupt and latches the DAC, and a
+//! free-running clock that measures the lateness of the servo.
 //!
 //! Both count the same clock, so that a period is a whole number of the clock's counts and the two
 //! cannot drift apart.
 //!
-//! Where torques come at a phase of their own, a second basic timer latches the DAC in place of the
-//! first: it has the same clock, prescaler and reload value, and its counter is as far behind as the
-//! phase is long, so that each of its updates is that late.
+//! With a fixed phase, a second basic timer latches the DAC in place of the first. It has the same clock,
+//! prescaler and reload value, and its counter lags by the phase, so that each of its updates is later by the
+//! phase.
 //!
 //! ```text
 //! TIM6     0 ......... reload|0 ......... reload|0        update: the tick's interrupt
 //! TIM7     reload-p..|0 ......... reload-p..|0 .......    update: the DAC, p + 1 counts later
 //! ```
 //!
-//! Not a compare channel: the basic timers have none, and of the others none is free on all boards
-//! that counts TIM6's clock and triggers the DACs of both families. TIM7 is, on each of them.
+//! A compare channel is not used: the basic timers have none, and no other timer that counts TIM6's clock and
+//! triggers the DACs of both families is free on all boards. TIM7 is free on each of them.
 
 use core::num::NonZeroU32;
 
@@ -32,37 +32,36 @@ use crate::output_timing::OutputTiming;
 use crate::period;
 use crate::servo_loop::READ_WITHIN;
 
-/// The pacing timer, on all boards: a timer with nothing but an update, whose trigger output all
-/// these chips' DACs can take.
+/// The pacing timer on all boards: a basic timer, whose update can trigger the DAC of all these chips.
 const TIMER: pac::timer::TimBasic = pac::TIM6;
 
 /// The timer of a phase, on all boards.
 const PHASE_TIMER: pac::timer::TimBasic = pac::TIM7;
 
-/// A period as the timer counts it.
+/// A period in counts of the timer.
 #[derive(Clone, Copy, Debug)]
 struct Period {
     /// Clock counts for one count of the timer.
     prescale: u32,
     /// Counts of the timer for one period.
     counts: u32,
-    /// Clock counts a second.
+    /// Clock counts per second.
     clock: f64,
 }
 
 impl Period {
-    /// The longest period of no more than this many seconds: a longer one needs more of the device's
-    /// passivity than was certified, a shorter one does not, since each coefficient stays what it is.
+    /// The longest period of at most this many seconds. A longer period would need more of the device's
+    /// passivity than was certified; a shorter period does not, because the coefficients do not change.
     ///
     /// # Errors
-    /// Where the board cannot pace it: see [`period`](period::check).
+    /// If the board cannot pace it: see [`period`](period::check).
     fn of(seconds: f64) -> Result<Self, BuildError> {
         period::check(seconds)?;
         let clock = f64::from(rcc::frequency::<peripherals::TIM6>().0);
         let wanted = seconds * clock;
-        // Of the prescalers from the smallest that fits the period, which has the finest steps, the nearest:
-        // usual periods are whole numbers of counts with one of the next few, to the rounding of the product.
-        // All casts round down positive, small numbers.
+        // The prescaler with the nearest period, beginning with the smallest that fits, which has the finest
+        // steps. Usual periods are whole numbers of counts with one of the next few prescalers, up to the
+        // rounding of the product. All casts round down positive, small numbers.
         let first = (wanted / MOST) as u32 + 1;
         let with = |prescale: u32| {
             let counts = ((wanted / f64::from(prescale) + 1e-6) as u32).min(MOST as u32);
@@ -78,50 +77,50 @@ impl Period {
         Ok(nearest)
     }
 
-    /// Clock counts by which it is longer or shorter.
+    /// The deviation from the wanted period in clock counts.
     fn off(&self, wanted: f64) -> f64 {
         (f64::from(self.prescale * self.counts) - wanted).abs()
     }
 
     /// Clock counts in a period.
     fn clock_counts(&self) -> NonZeroU32 {
-        // Neither factor is below one.
+        // Both factors are at least one.
         NonZeroU32::new(self.prescale * self.counts).unwrap_or(NonZeroU32::MIN)
     }
 
-    /// Counts of the timer in this many seconds, at least one and less than a period; rounded up, so that
-    /// no torque comes before the time of which its tick knows.
+    /// Counts of the timer in this many seconds, at least one and less than a period; rounded up, so that no
+    /// torque comes before its stated time.
     fn counts_in(&self, seconds: f64) -> u32 {
-        // The cast rounds down. A time in decimal digits is exact to them.
+        // The cast rounds down. The precision of a time is that of its decimal digits.
         let counts = (seconds * self.clock / f64::from(self.prescale) + (1.0 - 1e-6)) as u32;
         counts.clamp(1, self.counts - 1)
     }
 
-    /// Seconds in a period, as it is paced.
+    /// The paced period in s.
     fn seconds(&self) -> f64 {
         f64::from(self.clock_counts().get()) / self.clock
     }
 }
 
-/// Prescalers that are tried.
+/// The number of prescalers to try.
 const PRESCALERS: u32 = 16;
-/// Values of a 16-bit counter.
+/// The number of values of a 16-bit counter.
 const MOST: f64 = 65_536.0;
 
-/// What paces the servo by its DAC. Belongs to the servo's interrupt.
+/// Paces the servo by a timer. The servo's interrupt owns it.
 #[derive(Debug)]
 pub struct TickTimer {
     periods: Periods,
-    /// Whether the timer of a phase runs, too.
+    /// Whether the timer of a phase also runs.
     has_phase: bool,
 }
 
 impl TickTimer {
-    /// Sets the timers up for a period in s and leaves them standing. The servo's interrupt must still be
+    /// Sets up the timers for a period in s and does not start them. The servo's interrupt must still be
     /// disabled.
     ///
     /// # Errors
-    /// Where the board cannot pace it: see [`period`](period::check).
+    /// If the board cannot pace it: see [`period`](period::check).
     pub fn prepare(seconds: f64, timing: OutputTiming) -> Result<Self, BuildError> {
         let period = Period::of(seconds)?;
         rcc::enable_and_reset::<peripherals::TIM6>();
@@ -131,7 +130,7 @@ impl TickTimer {
             rcc::enable_and_reset::<peripherals::TIM7>();
             set_up(PHASE_TIMER, period);
             let behind = period.counts - period.counts_in(phase);
-            // TIM7_CNT: it overflows that many counts after the start, and then once a period.
+            // TIM7_CNT: it overflows `phase` counts after the start, and then once per period.
             PHASE_TIMER.cnt().write(|w| w.set_cnt(behind as u16));
         }
         // The cast saturates.
@@ -141,9 +140,9 @@ impl TickTimer {
         Ok(Self { periods, has_phase })
     }
 
-    /// Starts the clock and then the timer, so that no period begins before the clock's, and last that of
-    /// a phase, so that no torque comes before it: later by the two accesses, some tens of nanoseconds, of
-    /// which a count is read later still.
+    /// Starts the clock before the timer, so that no period begins before the clock's, and the timer of a
+    /// phase last, so that no torque comes before its phase. The torque is later by the two accesses, some
+    /// tens of nanoseconds; a count is read later by more than that.
     pub fn start(&mut self) {
         let has_phase = self.has_phase;
         self.periods.start(|| {
@@ -160,7 +159,7 @@ impl TickTimer {
         ENCODER.count()
     }
 
-    /// Acknowledges the tick; gives the periods that have begun since the last time: see
+    /// Acknowledges the tick; returns the periods that have begun since the last call: see
     /// [`Hardware::periods_since_last`](crate::servo_loop::Hardware::periods_since_last).
     #[inline(always)]
     pub fn periods_since_last(&mut self) -> u32 {
@@ -168,24 +167,24 @@ impl TickTimer {
         self.periods.begun_by(now())
     }
 
-    /// The period that has begun, and its time.
+    /// The periods and their time.
     #[inline(always)]
     pub const fn periods(&self) -> &Periods {
         &self.periods
     }
 }
 
-/// Gives a basic timer a period and makes its update its trigger output; it stands.
+/// Sets a basic timer's period and makes its update its trigger output, without starting it.
 ///
 /// The registers TIMx_PSC, ARR, CR1, CR2, EGR and SR of the basic timers are the same in RM0440 and RM0090.
 /// The update that EGR makes here is a trigger, too: the DAC must not listen yet.
 fn set_up(timer: pac::timer::TimBasic, period: Period) {
     timer.psc().write_value((period.prescale - 1) as u16);
     timer.arr().write(|w| w.set_arr((period.counts - 1) as u16));
-    // CR2.MMS: the update triggers the DAC, where that listens to this timer.
+    // CR2.MMS: the update triggers the DAC if the DAC is set to this timer.
     timer.cr2().write(|w| w.set_mms(Mms::UPDATE));
-    // Prescaler and period are taken over at an update; this one shall be no tick. It also begins the
-    // prescaler's count anew, so that two timers that are started together count together.
+    // Prescaler and period take effect at an update; this update must not cause a tick. It also restarts the
+    // prescaler's count, so that two timers started together count together.
     timer.cr1().write(|w| w.set_urs(Urs::COUNTER_ONLY));
     timer.egr().write(|w| w.set_ug(true));
     timer.sr().write(|w| w.set_uif(false));

@@ -1,5 +1,5 @@
-//! The index of the encoder: its rising edge has channel 3 of the encoder's timer capture the count (RM0440,
-//! general-purpose timers), so that none is missed or late, however fast the handle is.
+//! The index of the encoder: at its rising edge, channel 3 of the encoder's timer captures the count (RM0440,
+//! general-purpose timers), so that no index is missed or late at any speed.
 
 use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::vals::Moder;
@@ -11,7 +11,7 @@ use crate::encoder::RawCount;
 /// The channel, from zero.
 const CHANNEL: usize = 2;
 
-/// The pin of the index, and the alternate function by which it is the timer's.
+/// The pin of the index, and the alternate function that connects it to the timer.
 #[derive(Clone, Copy)]
 pub struct IndexPin {
     /// Its port.
@@ -22,8 +22,8 @@ pub struct IndexPin {
     pub function: u8,
 }
 
-/// Has each index capture the count, through the filter of the encoder's other inputs, so that the edges of all
-/// three are as late.
+/// Starts the capture at each index, with the filter of the encoder's other inputs, so that the edges of all
+/// three inputs have the same delay.
 pub fn capture() {
     let filter = ENCODER.ccmr_input(0).read().icf(0);
     ENCODER.ccmr_input(1).modify(|w| {
@@ -35,7 +35,7 @@ pub fn capture() {
     ENCODER.ccer().modify(|w| w.set_cce(CHANNEL, true));
 }
 
-/// Forgets an index that came before: the encoder has been made zero since.
+/// Discards an earlier index, because the encoder was set to zero since.
 pub fn forget() {
     ENCODER.sr().write(|w| {
         w.0 = u32::MAX;
@@ -43,7 +43,7 @@ pub fn forget() {
     });
 }
 
-/// Whether an index has come since the last one was [taken](take).
+/// Whether an index has come since the last was [taken](take).
 #[inline(always)]
 pub fn has_come() -> bool {
     ENCODER.sr().read().ccif(CHANNEL)

@@ -14,20 +14,22 @@ use crate::current::{
 use crate::dac::DacCode;
 use crate::output_timing::OutputTiming;
 
-/// State of the current interrupt, of a motor that is brushless or is not: a program has no code for the other.
+/// State of the current interrupt for a brushless or a brushed motor: a program only has the code for its
+/// kind.
 pub struct CurrentIsr<const BRUSHLESS: bool> {
     controller: CurrentController,
     current_loop: &'static CurrentLoop,
-    /// Instants in a period of the servo.
+    /// Instants per period of the servo.
     updates: u32,
-    /// The instant of the servo's period: 0 where one begins.
+    /// The instant within the servo's period: 0 at its beginning.
     instant: u32,
     /// The instant at which a code becomes the reference.
     due: u32,
-    /// Clock counts of a PWM period and a half, after which an instant is late, and the clock at the last one.
+    /// Clock counts of one and a half PWM periods, after which an instant is late; and the clock at the last
+    /// instant.
     latest: u32,
     last: u32,
-    /// The alignment that runs.
+    /// The running alignment.
     alignment: Option<Alignment>,
     /// The code's torque that the current follows, as [`DacCode::offset`].
     reference: i16,
@@ -110,7 +112,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         }
     }
 
-    /// An index has come since the last instant's sample, or just after this one's.
+    /// Handles an index that came since the last instant's sample, or just after this instant's sample.
     #[cold]
     #[inline(never)]
     fn take_index(&mut self) {
@@ -121,13 +123,13 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         }
     }
 
-    /// An instant that came or ended so many clock counts after the last one came.
+    /// The fault of an instant that began or ended `late` clock counts after the beginning of the last.
     #[cold]
     const fn late(&self, late: u32) -> PowerFault {
         PowerFault::CurrentInterruptLate { late, allowed: self.latest }
     }
 
-    /// All instants but those of a servo that drives the motor.
+    /// All instants except those in which the servo drives the motor.
     #[cold]
     #[inline(never)]
     fn otherwise(&mut self, sample: &Sample) {
@@ -135,7 +137,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         if BRUSHLESS && state == State::Aligning as u8 {
             return self.align(sample);
         }
-        // With the gates low: the offsets of the amplifiers.
+        // With the gates low, measures the offsets of the amplifiers.
         self.controller.measure_offset(sample);
         pwm::set(self.current_loop, self.current_loop.no_voltage());
         let started = if state == State::Starting as u8 {
@@ -179,7 +181,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     }
 }
 
-/// The torque of the code that the servo gave last.
+/// The torque of the servo's last code.
 #[inline(always)]
 fn reference() -> i16 {
     DacCode::from_low_bits(WAITING.load(Ordering::Relaxed)).offset()

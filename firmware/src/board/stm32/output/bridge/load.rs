@@ -1,4 +1,4 @@
-//! The power stage without its interrupts, for the tests on a board: one instant after the other, by asking.
+//! The power stage without its interrupts, for the tests on a board: instant by instant, by polling.
 //!
 //! The protection is that of the current loop: from [`Load::on`] on, the comparators break TIM1's outputs.
 
@@ -9,8 +9,7 @@ use crate::board::stm32::output::gates::Gate;
 use crate::board::stm32::wiring::GATES;
 use crate::current::{CurrentLoop, Duties, Sample};
 
-/// How often is asked whether an instant has come, before it counts as missed: far more than a period of the
-/// modulation takes.
+/// The number of polls after which an instant counts as missed: much longer than a period of the modulation.
 const PATIENCE: u32 = 100_000;
 
 /// The bridge with a load at its outputs.
@@ -19,7 +18,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// Everything set up and TIM1 counting, with the gates low.
+    /// Sets everything up, with TIM1 counting and the gates low.
     pub fn new(current_loop: &'static CurrentLoop) -> Self {
         pwm::prepare(current_loop);
         GATES.connect(current_loop.phases());
@@ -30,7 +29,7 @@ impl Load {
         Self { current_loop }
     }
 
-    /// The sample of the next instant, if there is one.
+    /// The sample of the next instant; `None` if the instant is missed.
     pub fn next(&mut self) -> Option<Sample> {
         let came = (0..PATIENCE).any(|_| sense::is_converted());
         came.then(|| {
@@ -41,25 +40,25 @@ impl Load {
         })
     }
 
-    /// Switches the gates on with no voltage, above which the comparators trip as for the current loop; these are
-    /// the counts of the phases U and V without a current.
+    /// Switches the gates on at zero voltage, with the comparators' trip levels of the current loop. `zero`
+    /// has the counts of the phases U and V without a current.
     pub fn on(&mut self, zero: [u16; 2]) {
         over_current::set(zero, self.current_loop.over_current_counts());
         self.set(self.current_loop.no_voltage());
         pwm::on();
     }
 
-    /// Duties from the next instant on.
+    /// Sets the duties from the next instant on.
     pub fn set(&mut self, duties: Duties) {
         pwm::set(self.current_loop, duties);
     }
 
-    /// All gates low, at once.
+    /// Sets all gates low at once.
     pub fn off(&mut self) {
         super::off();
     }
 
-    /// A break as a comparator makes it, by the program.
+    /// Triggers a break by the program, like that of a comparator.
     pub fn break_now(&mut self) {
         pac::TIM1.egr().write(|w| w.set_bg(0, true));
     }
@@ -74,7 +73,7 @@ impl Load {
         pac::TIM1.bdtr().read().moe()
     }
 
-    /// Whether all six inputs of the gate drivers are low at this moment, as the pins have it.
+    /// Whether the pins of all six gate driver inputs are low at this moment.
     pub fn are_gates_low(&self) -> bool {
         GATES.0.as_flattened().iter().all(Gate::is_low)
     }

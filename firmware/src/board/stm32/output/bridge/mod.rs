@@ -13,8 +13,8 @@
 //! current                               moves                         and so the torque after one h
 //! ```
 //!
-//! The gates are off from reset until the servo arms; each fault takes them away by one write, and too much
-//! current by [hardware](over_current) alone.
+//! The gates are off from reset until the servo arms. Each fault turns them off by one write, and an
+//! over-current by [hardware](over_current) alone.
 
 pub mod index;
 mod interrupt;
@@ -47,49 +47,49 @@ use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
 use crate::torque_output::TorqueOutput;
 
-/// Where the current interrupt finds its state.
+/// The state of the current interrupt.
 pub type CurrentCell<const BRUSHLESS: bool> = IsrCell<CurrentIsr<BRUSHLESS>>;
 
-/// What this output has to know of a program.
+/// The data of a program that this output needs.
 #[derive(Clone, Copy)]
 pub struct Setup {
     /// The current loop of the program's motor.
     pub current_loop: &'static CurrentLoop,
-    /// Fills the place of its interrupt's state, whose type says which motor it is. That interrupt must not be
-    /// enabled yet.
+    /// Fills the cell of the current interrupt, whose type gives the kind of motor. That interrupt must not
+    /// be enabled yet.
     pub fill: fn(OutputTiming),
 }
 
 impl Setup {
-    /// What a measurement has to know of the current loop.
+    /// The data of the current loop for a measurement.
     pub const fn torque_source(&self) -> Option<TorqueSource> {
         Some(*self.current_loop.torque_source())
     }
 }
 
-/// The code that the servo gave last.
+/// The servo's last code.
 static WAITING: AtomicU16 = AtomicU16::new(DacCode::MID_SCALE.get());
 
 /// Whether the gates are driven: see [`State`].
 static STATE: AtomicU8 = AtomicU8::new(State::Off as u8);
 
-/// The code and the numbers of a fault that the servo has not seen yet; a code of 0: no fault.
+/// The code and the numbers of a fault that the servo has not read yet; a code of 0: no fault.
 static FAULT: AtomicU32 = AtomicU32::new(0);
 static FAULT_NUMBERS: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
 
-/// What the gates do.
+/// State of the gates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum State {
-    /// All low.
+    /// All gates are low.
     Off,
-    /// The current interrupt is asked to drive them from its next instant on.
+    /// The current interrupt shall drive them from its next instant on.
     Starting,
-    /// Driven.
+    /// The servo drives them.
     On,
-    /// The current interrupt is asked to begin an alignment.
+    /// The current interrupt shall begin an alignment.
     StartingAlignment,
-    /// Driven by an alignment.
+    /// An alignment drives them.
     Aligning,
 }
 
@@ -100,10 +100,10 @@ pub struct Output {
 }
 
 impl Output {
-    /// The bridge with its gates low, and what paces the servo; nothing runs yet.
+    /// The bridge with its gates low, and the pace of the servo; nothing runs yet.
     ///
     /// # Errors
-    /// None: the period was checked with the current loop, when the program was compiled.
+    /// None: the period was checked with the current loop at compile time.
     pub fn new(setup: Setup, _: f64, timing: OutputTiming) -> Result<(Self, Pace), BuildError> {
         let current_loop = setup.current_loop;
         pwm::prepare(current_loop);
@@ -120,11 +120,11 @@ impl Output {
         Ok((Self { is_brushless }, Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
     }
 
-    /// Lets the current interrupt begin, with the gates low.
+    /// Starts the current interrupt, with the gates low.
     pub fn start(&mut self, pace: &mut Pace, _: OutputTiming) {
         index::forget();
         interrupts::ADC1_2.set_priority(Priority::P0);
-        // SAFETY: its handler finds its place filled.
+        // SAFETY: its handler finds its cell filled.
         unsafe { interrupts::ADC1_2.enable() };
         pace.start();
     }
@@ -136,8 +136,8 @@ impl TorqueOutput for Output {
         WAITING.store(code.get(), Ordering::Relaxed);
     }
 
-    /// Off at once; on with the next update, where the power stage finds everything in order. The current
-    /// interrupt comes above this one: it turns the gates on only where it finds them asked for.
+    /// Off at once; on at the next update, if the power stage finds no fault. The current interrupt has a
+    /// higher priority than this one, and turns the gates on only after a request.
     #[inline(always)]
     fn switch(&mut self, on: bool) {
         if !on {
@@ -169,7 +169,7 @@ impl TorqueOutput for Output {
     }
 }
 
-/// The fault that waits.
+/// Takes the pending fault.
 #[cold]
 #[inline(never)]
 fn take_fault() -> Option<Fault> {
@@ -177,7 +177,7 @@ fn take_fault() -> Option<Fault> {
     Fault::decode(FAULT.swap(0, Ordering::Relaxed), numbers)
 }
 
-/// Tells the servo of a fault. The gates are off.
+/// Reports a fault to the servo. The gates are off.
 #[cold]
 #[inline(never)]
 fn tell(fault: PowerFault) {
@@ -188,20 +188,20 @@ fn tell(fault: PowerFault) {
     FAULT.store(code, Ordering::Release);
 }
 
-/// All gates low, in any state of the program: first the state, so that the current interrupt does not turn
-/// on again what this turns off.
+/// Sets all gates low, in any state of the program. The state is written first, so that the current interrupt
+/// does not turn the gates on again.
 #[inline(always)]
 pub fn off() {
     STATE.store(State::Off as u8, Ordering::Relaxed);
     pwm::off();
 }
 
-/// No torque is due.
+/// Ends the torque.
 pub fn stop() {
     WAITING.store(DacCode::MID_SCALE.get(), Ordering::Relaxed);
 }
 
-/// The bridge that a program's motor is wired to, and the handler of its current interrupt.
+/// The bridge of a program's motor, and the handler of its current interrupt.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_output {
@@ -218,7 +218,7 @@ macro_rules! board_output {
 
         fn fill_current(timing: $crate::output_timing::OutputTiming) {
             let state = $crate::board::stm32::output::bridge::CurrentIsr::new(&$current_loop, timing);
-            // SAFETY: called before the interrupt that uses the place is enabled.
+            // SAFETY: called before the interrupt that uses the cell is enabled.
             unsafe { CURRENT.init(state) };
         }
 
@@ -232,15 +232,15 @@ macro_rules! board_output {
             /// An instant of the current loop.
             #[unsafe(no_mangle)]
             unsafe extern "C" fn ADC1_2() {
-                // SAFETY: this is the handler of the interrupt that is enabled once the place is
-                // filled, and no interrupt interrupts itself.
+                // SAFETY: this is the handler of the interrupt that is enabled after the cell is filled, and
+                // no interrupt interrupts itself.
                 unsafe { CURRENT.borrow_mut() }.run();
             }
         }
     };
 }
 
-/// A sweep drives the same bridge.
+/// A sweep uses the same bridge.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! sweep_output {
@@ -249,7 +249,7 @@ macro_rules! sweep_output {
     };
 }
 
-/// A compile error, but for the programs that cargo builds beside the tests on a board.
+/// A compile error, except in the programs that cargo builds beside the tests on a board.
 #[cfg(not(feature = "on-target"))]
 #[doc(hidden)]
 #[macro_export]

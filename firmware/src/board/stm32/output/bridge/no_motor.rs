@@ -1,4 +1,4 @@
-//! What stands for a motor in a program whose torque is the DAC's, so that it compiles. It does not run: cargo builds
+//! A placeholder for the motor in a program for the DAC, so that it compiles. It does not run: cargo builds
 //! all programs beside the tests on a board, and none of them is flashed.
 
 use super::Setup;
@@ -9,12 +9,12 @@ use crate::encoder::CounterWidth;
 use crate::transducers::Transducers;
 
 impl Setup {
-    /// Of a program whose torque is the DAC's.
+    /// The set-up of a program for the DAC.
     pub const DAC: Self =
         Self { current_loop: &NO_MOTOR, fill: |_| halt_with("its torque, which is the DAC's") };
 }
 
-/// Any that compiles.
+/// An arbitrary current loop.
 static NO_MOTOR: CurrentLoop = {
     let winding = Winding::Brushed;
     let motor = Motor { winding, resistance: 1.0, inductance: 1e-3, torque_constant: 1.0 };

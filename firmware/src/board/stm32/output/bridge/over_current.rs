@@ -1,5 +1,5 @@
-//! The over-current protection, which needs no program: a comparator at each shunt breaks TIM1's outputs
-//! (RM0440, chapter of the comparators).
+//! The over-current protection in hardware: a comparator at each shunt breaks TIM1's outputs (RM0440, chapter
+//! of the comparators).
 
 use embassy_stm32::pac;
 use embassy_stm32::pac::comp::vals::{Inm, Polarity};
@@ -9,21 +9,22 @@ use embassy_stm32::rcc;
 
 use crate::current::PowerStage;
 
-/// Gain of the shunts' amplifiers, whose inputs the comparators are at.
+/// Gain of the shunts' amplifiers; the comparators are at the inputs of the amplifiers.
 const AMPLIFIER_GAIN: u16 = 16;
 
-/// COMP1 at PA1, COMP2 at PA7 and COMP4 at PB0, with the channel of DAC3 that each compares with: COMP1 and
-/// COMP3 have the first, COMP2 and COMP4 the second (RM0440, table of the inverting inputs).
+/// COMP1 at PA1, COMP2 at PA7 and COMP4 at PB0, with the channel of DAC3 at the inverting input of each:
+/// COMP1 and COMP3 have the first, COMP2 and COMP4 the second (RM0440, table of the inverting inputs).
 const COMPARATORS: [pac::comp::Comp; 3] = [pac::COMP1, pac::COMP2, pac::COMP4];
 
 /// Ratio of the comparators' threshold to the current at which the current interrupt turns the gates off: a
-/// sample in the middle of the low side is the mean of the ripple, and a comparator sees its peak.
+/// sample in the middle of the low side's time has the mean of the ripple, and a comparator sees the peak.
 const ABOVE: (u16, u16) = (6, 5);
 
-/// The least that they do, in counts of DAC3: noise and switching shall not be a short.
+/// The smallest threshold in counts of DAC3, so that noise and switching do not trip as a short circuit.
 const LEAST: u16 = 2;
 
-/// Sets the comparators up. Until [`set`] they trip at the amplifiers' largest output, at which none of them is.
+/// Sets up the comparators. Until [`set`] they trip at the amplifiers' largest output, which no amplifier
+/// reaches.
 pub fn prepare() {
     rcc::enable_and_reset::<peripherals::DAC3>();
     let dac = pac::DAC3;
@@ -51,11 +52,12 @@ pub fn prepare() {
     }
 }
 
-/// Has the comparators trip at an over-current of this many counts of the converters, above the counts of the
-/// phases U and V without a current. Phase W, whose amplifier no converter reads, has that of phase V.
+/// Sets the trip level for an over-current of this many counts of the converters, above the counts of the
+/// phases U and V without a current: [`ABOVE`] times as many. Phase W, whose amplifier no converter reads,
+/// has the level of phase V.
 ///
-/// The shunts' voltages are those behind their amplifiers, by the gain. Rounded down: never later than it says
-/// by more than the least.
+/// The shunts' voltages are the amplifiers' outputs divided by the gain. The level is rounded down, but is at
+/// least the smallest threshold.
 pub fn set(zero: [u16; 2], counts: u16) {
     let above = (counts / ABOVE.1 * ABOVE.0).max(LEAST * AMPLIFIER_GAIN);
     for (channel, zero) in zero.into_iter().enumerate() {

@@ -1,10 +1,10 @@
-//! When a tick is due with the bridge: its current interrupt pends the servo's at every so many updates
-//! of TIM1.
+//! The pace of the servo with the bridge: the current interrupt pends the servo's interrupt at a fixed number
+//! of updates of TIM1.
 //!
-//! The count is not read late, whenever that interrupt comes: each update of TIM1 has the encoder's timer
-//! capture it (RM0440, general-purpose timers: channel 4 of TIM4 captures on TRC, which is TIM1's trigger
-//! output by the timers' interconnection, and encoder mode leaves that input free). Any channel captures on
-//! TRC; the third is the one whose pin is at the encoder's connector, and captures its [index](super::index).
+//! A late interrupt does not make the count late: at each update of TIM1 the encoder's timer captures the
+//! count (RM0440, general-purpose timers: channel 4 of TIM4 captures on TRC, which is TIM1's trigger output
+//! by the timers' interconnection, and encoder mode does not use that input). Any channel can capture on TRC;
+//! the third has its pin at the encoder's connector, and captures the [index](super::index).
 
 use core::num::NonZeroU32;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -24,7 +24,7 @@ static COUNT: AtomicU32 = AtomicU32::new(0);
 /// TIM1's trigger output among the triggers of TIM4 (RM0440, table of their interconnection).
 const TIM1_TRGO: Ts = Ts::ITR0;
 
-/// Has each update of TIM1 capture the encoder's count.
+/// Sets up the capture of the encoder's count at each update of TIM1.
 pub fn capture_counts() {
     ENCODER.smcr().modify(|w| w.set_ts(TIM1_TRGO));
     ENCODER.ccmr_input(1).modify(|w| w.set_ccs(1, CcmrInputCcs::TRC));
@@ -37,22 +37,22 @@ pub fn captured() -> RawCount {
     RawCount::from(ENCODER.ccr(3).read().ccr())
 }
 
-/// Takes the count of a period down, and the time.
+/// Stores the count and the time of a period's beginning.
 #[inline(always)]
 pub fn begin_period(count: RawCount, now: u32) {
     COUNT.store(count.bits(), Ordering::Relaxed);
     TIME.store(now, Ordering::Relaxed);
 }
 
-/// What paces the servo by its bridge. Belongs to the servo's interrupt.
+/// Paces the servo by the bridge. The servo's interrupt owns it.
 #[derive(Debug)]
 pub struct Pace {
     periods: Periods,
 }
 
 impl Pace {
-    /// A period of this many clock counts, with so many in each PWM period, after which the next count is captured
-    /// over this one.
+    /// A period of `period` clock counts; a tick is in time within `in_time` of them, which is a PWM period,
+    /// after which the next capture overwrites the count.
     pub fn new(period: NonZeroU32, in_time: u32) -> Self {
         capture_counts();
         let clock = f64::from(rcc::frequency::<peripherals::TIM2>().0);
@@ -71,14 +71,14 @@ impl Pace {
     }
 
     /// The periods that have begun since the last time: see
-    /// [`Hardware::periods_since_last`](crate::servo_loop::Hardware::periods_since_last). Late is an
-    /// interrupt of the current loop that missed its update.
+    /// [`Hardware::periods_since_last`](crate::servo_loop::Hardware::periods_since_last). A tick is late if
+    /// the interrupt of the current loop missed its update.
     #[inline(always)]
     pub fn periods_since_last(&mut self) -> u32 {
         self.periods.begun_by(TIME.load(Ordering::Relaxed))
     }
 
-    /// The period that has begun, and its time.
+    /// The periods and their time.
     #[inline(always)]
     pub const fn periods(&self) -> &Periods {
         &self.periods

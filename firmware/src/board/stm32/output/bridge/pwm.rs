@@ -1,4 +1,4 @@
-//! TIM1: the six gates of the bridge, and the time of everything in it (RM0440, advanced-control timers).
+//! TIM1: the six gates of the bridge and the timing of the current loop (RM0440, advanced-control timers).
 //!
 //! ```text
 //! counter   /\    /\    /\        centre-aligned, up to the reload value and back to zero
@@ -10,8 +10,8 @@
 //!         __|  |__|  |__|  |__    on while the counter is at or above the compare value (PWM mode 2)
 //! ```
 //!
-//! The low sides conduct around each update, which is where their shunts are sampled. The repetition counter
-//! of 1, written before the counter starts, leaves the updates at zero and takes away those at the top.
+//! The low sides conduct around each update, where their shunts are sampled. A repetition counter of 1,
+//! written before the counter starts, keeps the updates at zero and suppresses those at the top.
 
 use embassy_stm32::pac;
 use embassy_stm32::pac::timer::regs::BdtrAdv;
@@ -28,12 +28,12 @@ const TIMER: pac::timer::TimAdv = pac::TIM1;
 /// The comparators of the three phases, as TIM1_AF1 counts them: COMP1, COMP2 and COMP4.
 const COMPARATORS: [usize; 3] = [0, 1, 3];
 
-/// Sets the timer up with all gates off, and leaves it standing.
+/// Sets up the timer with all gates off, and does not start it.
 pub fn prepare(current_loop: &CurrentLoop) {
     let (reload, phases) = (current_loop.timer_counts(), current_loop.phases());
     rcc::enable_and_reset::<peripherals::TIM1>();
-    // The comparators alone break, and a core that is locked up; no pin does. Before the break is enabled: out of
-    // reset it is the pin's.
+    // Only the comparators and a core lock-up cause a break, and no pin. Set before the break is enabled,
+    // because after reset its source is the pin.
     TIMER.af1().write(|w| {
         w.set_bkine(false);
         for comparator in COMPARATORS {
@@ -42,11 +42,11 @@ pub fn prepare(current_loop: &CurrentLoop) {
         }
     });
     pac::SYSCFG.cfgr2().modify(|w| w.set_cll(true));
-    // With the main output off, each gate that the timer is given is low.
+    // With the main output off, each gate that the timer drives is low.
     off();
     TIMER.cr1().write(|w| {
         w.set_cms(Cms::CENTER_ALIGNED1);
-        // The update that is made below is not the counter's.
+        // The update generated below is not one of the counter.
         w.set_urs(Urs::COUNTER_ONLY);
     });
     TIMER.cr2().write(|w| w.set_mms(Mms::UPDATE));
@@ -58,7 +58,7 @@ pub fn prepare(current_loop: &CurrentLoop) {
             w.set_ocm(phase % 2, Ocm::PWM_MODE2);
             w.set_ocpe(phase % 2, true);
         });
-        // At the reload value: the low side alone.
+        // At the reload value only the low side conducts.
         TIMER.ccr(phase).write(|w| w.set_ccr(reload));
     }
     TIMER.ccer().write(|w| {
@@ -76,8 +76,8 @@ pub fn start() {
     TIMER.cr1().modify(|w| w.set_cen(true));
 }
 
-/// TIM1_BDTR with the gates on or off. Each write of it is a whole one, so that none of it can be lost
-/// between a read and a write.
+/// TIM1_BDTR with the gates on or off. Each write sets the whole register, so that no bit can be lost between
+/// a read and a write.
 #[inline(always)]
 fn gates(on: bool) -> BdtrAdv {
     let mut register = BdtrAdv(0);
@@ -91,8 +91,8 @@ fn gates(on: bool) -> BdtrAdv {
     register
 }
 
-/// Lets the timer drive the gates, from the next instant at which it switches one. A past break is cleared;
-/// an active break turns the gates off again at once.
+/// Enables the timer's outputs to the gates, from the next switching instant on. A past break is cleared; an
+/// active break turns the gates off again at once.
 pub fn on() {
     TIMER.sr().write(|w| {
         w.0 = u32::MAX;
@@ -101,13 +101,13 @@ pub fn on() {
     TIMER.bdtr().write_value(gates(true));
 }
 
-/// All gates low, now: one write, which needs nothing but the timer's clock.
+/// Sets all gates low at once: one write, which only needs the timer's clock.
 #[inline(always)]
 pub fn off() {
     TIMER.bdtr().write_value(gates(false));
 }
 
-/// Whether a comparator has taken the gates away.
+/// Whether a comparator has turned the gates off.
 #[inline(always)]
 pub fn broke() -> bool {
     TIMER.sr().read().bif(0)
@@ -128,7 +128,7 @@ pub fn updated() -> bool {
     TIMER.sr().read().uif()
 }
 
-/// Duties for the next update.
+/// Sets the duties from the next update on.
 #[inline(always)]
 pub fn set(current_loop: &CurrentLoop, duties: Duties) {
     for (phase, duty) in duties.0.into_iter().enumerate() {

@@ -20,7 +20,7 @@ use embassy_stm32::rcc;
 /// triggers).
 const TIM1_TRGO: u8 = 0;
 
-/// A converter, with the channel that is sampled at the update and the one in between.
+/// A converter, with its channels at the update and between the updates.
 struct Converter {
     registers: Adc,
     current: u8,
@@ -32,21 +32,21 @@ const FIRST: Converter = Converter { registers: pac::ADC1, current: 3, slow: 5 }
 /// OPAMP2's output PA6 and the divider of the supply at PA0.
 const SECOND: Converter = Converter { registers: pac::ADC2, current: 3, slow: 1 };
 
-/// Sets amplifiers and converters up. From TIM1's first update on the converters sample, and ADC1's
-/// interrupt comes once both are done.
+/// Sets up amplifiers and converters. From TIM1's first update on the converters sample, and ADC1's interrupt
+/// comes after both have finished.
 pub fn prepare() {
     for amplifier in [pac::OPAMP1, pac::OPAMP2, pac::OPAMP3] {
         amplifier.csr().write(|w| {
             w.set_vp_sel(VpSel::VINP0);
             w.set_vm_sel(VmSel::PGA);
-            // The board biases the inverting input, too, so that no current is half of the scale.
+            // The board also biases the inverting input, so that zero current is half of the scale.
             w.set_pga_gain(PgaGain::GAIN16_INPUT_VINM0);
             w.set_opahsm(true);
         });
         amplifier.csr().modify(|w| w.set_opampen(true));
     }
     rcc::enable_and_reset::<peripherals::ADC1>();
-    // 42.5 MHz of the most, which is 60 MHz (DS12589), in step with the core and TIM1.
+    // 42.5 MHz, synchronous with the core and TIM1; the maximum is 60 MHz (DS12589).
     pac::ADC12_COMMON.ccr().write(|w| w.set_ckmode(Ckmode::SYNC_DIV4));
     FIRST.prepare();
     SECOND.prepare();
@@ -67,10 +67,10 @@ impl Converter {
         adc.isr().write(|w| w.set_adrdy(true));
         adc.cr().modify(|w| w.set_aden(true));
         while !adc.isr().read().adrdy() {}
-        // Without its queue the injected sequence is the last one written.
+        // With the queue disabled the injected sequence is the last one written.
         adc.cfgr().write(|w| w.set_jqdis(true));
         adc.smpr().write(|w| {
-            // 0.15 us: the amplifier drives the converter without a resistor between.
+            // 0.15 us: the amplifier drives the converter without a series resistor.
             w.set_smp(self.current.into(), SampleTime::CYCLES6_5);
             w.set_smp(self.slow.into(), SampleTime::CYCLES47_5);
         });
@@ -84,21 +84,22 @@ impl Converter {
     }
 }
 
-/// Whether the currents of an instant wait to be read.
+/// Whether the currents of an instant are ready to be read.
 #[cfg(feature = "on-target")]
 pub fn is_converted() -> bool {
     FIRST.registers.isr().read().jeos()
 }
 
-/// The currents of this instant, phases U and V, as the converters count them. Acknowledges ADC1's interrupt.
+/// The currents of the phases U and V at this instant, in counts of the converters. Acknowledges ADC1's
+/// interrupt.
 #[inline(always)]
 pub fn currents() -> [u16; 2] {
     FIRST.registers.isr().write(|w| w.set_jeos(true));
     [FIRST.registers.jdr(0).read().jdata(), SECOND.registers.jdr(0).read().jdata()]
 }
 
-/// Voltage of the supply and temperature, as the converters counted them in the period before; begins to
-/// convert them again.
+/// Voltage of the supply and temperature, in counts of the converters in the previous period; starts their
+/// next conversion.
 #[inline(always)]
 pub fn bus_and_temperature() -> (u16, u16) {
     let read = (SECOND.registers.dr().read().rdata(), FIRST.registers.dr().read().rdata());
