@@ -1,6 +1,6 @@
-//! Studies and measurements: what methods, number formats, device models and linked programs cost and lose.
-//! None of them is needed to certify, simulate or run a scene, and nothing below uses them; the charts and
-//! the commands show the results.
+//! Studies and measurements: the costs and errors of methods, number formats, device models and linked
+//! programs. None of them is needed to certify, simulate or run a scene, and no lower layer uses them; the
+//! charts and the commands show the results.
 
 pub mod bench;
 pub mod failures;

@@ -1,8 +1,8 @@
-//! A spring in closed loop, leaned against with a steady torque and let go: how stiff it is at rest, and
-//! whether it comes to rest.
+//! A spring in closed loop with a hand that leans with a steady torque and lets go: its stiffness at rest,
+//! and whether it comes to rest.
 //!
-//! A device behind an encoder and without Coulomb friction never comes to rest on a spring: it moves over
-//! an edge or two. With the friction that the certificate asks for it stands still.
+//! A device behind an encoder and without Coulomb friction never comes to rest on a spring: it moves over an
+//! edge or two. With the friction that the certificate requires it stands still.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -20,11 +20,11 @@ use crate::toolchain::NumberFormat;
 
 /// Torque in N m of the hand: less than the programs' limit.
 pub const TORQUE: f64 = 0.9;
-/// Ticks until the hand begins, until its torque has grown to [`TORQUE`], and until it is gone.
+/// Ticks until the hand begins, until its torque reaches [`TORQUE`], and until it lets go.
 const LEANS: [usize; 3] = [250, 750, 2250];
 /// Ticks of a run.
 pub const TICKS: usize = 3500;
-/// Ticks in which the device should be at rest: leaned against, and let go.
+/// Ticks in which the device should be at rest while the hand leans.
 pub const LEANING: Range<usize> = 1750..2250;
 /// The same after the hand has let go.
 pub const FREE: Range<usize> = 3000..3500;
@@ -45,7 +45,7 @@ pub fn device(program: &Program, friction: f64) -> LoadedDevice {
         .expect("a device that is written there moves")
 }
 
-/// The Coulomb friction in N m with which a device comes to rest, by the certificate of a program in `f32`.
+/// The Coulomb friction in N m with which a device comes to rest, from the certificate of a program in `f32`.
 pub fn friction_to_rest(program: &Program) -> f64 {
     let steps = Resolution::of(&program.transducers, None);
     let steps = match program.bridge {
@@ -58,7 +58,7 @@ pub fn friction_to_rest(program: &Program) -> f64 {
 /// A device at rest, or nearly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtRest {
-    /// Counts from the lowest to the highest that the encoder shows.
+    /// Counts from the encoder's lowest to its highest reading.
     pub counts: i32,
     /// Mean angle of these counts in rad.
     pub angle: f64,
@@ -67,7 +67,7 @@ pub struct AtRest {
 }
 
 impl AtRest {
-    /// Of the counts and codes of some ticks.
+    /// From the counts and codes of some ticks.
     pub fn of(program: &Program, ticks: &[(i32, u16)]) -> Self {
         let transducers = &program.transducers;
         let (radians, newton_metres) = (
@@ -84,7 +84,7 @@ impl AtRest {
         }
     }
 
-    /// Stiffness in N m/rad of the wall that the hand leans against.
+    /// Stiffness of the wall in N m/rad.
     pub fn stiffness(&self) -> f64 {
         self.torque / self.angle
     }
@@ -93,7 +93,7 @@ impl AtRest {
 /// Counts and codes of a program's servo on the host, in closed loop with its device in the leaning hand.
 ///
 /// # Panics
-/// Where the program's servo cannot be built.
+/// If the program's servo cannot be built.
 pub fn run_on_host(program: &Program, friction: f64) -> Vec<(i32, u16)> {
     let mut device = device(program, friction);
     let mut servo = program

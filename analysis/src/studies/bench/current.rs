@@ -1,4 +1,4 @@
-//! What an instant of a bridge's current loop costs.
+//! The cost of an instant of a bridge's current loop.
 
 use std::path::Path;
 
@@ -11,15 +11,16 @@ use crate::emulator::{BenchClient, EmulatorError};
 /// Instants of steps of the code, some of which end in a fault.
 const INSTANTS: u32 = 4000;
 
-/// Instants a second, and periods a second of the servo below them.
+/// Instants per second; and periods per second of the servo below them.
 pub const INSTANT_RATE: f64 = 40e3;
 /// The same of the servo.
 pub const SERVO_RATE: f64 = 10e3;
 
-/// Most instructions of an instant of a brushed motor, and of a brushless one, from a sample to compare values.
+/// Largest number of instructions of an instant, from a sample to compare values, of a brushed and of a
+/// brushless motor.
 ///
 /// # Errors
-/// Where the emulated board fails.
+/// If the emulated board fails.
 pub fn instant_instructions(elf: &Path) -> Result<[u32; 2], EmulatorError> {
     let mut board = BenchClient::boot(elf)?;
     let inputs: Vec<_> = (1..=INSTANTS).map(|instant| Input::of_steps(instant).0).collect();
@@ -32,8 +33,8 @@ pub fn instant_instructions(elf: &Path) -> Result<[u32; 2], EmulatorError> {
     Ok(most)
 }
 
-/// Instructions a second of instants and of a servo with so many instructions in a period, in per cent of the
-/// core's clock.
+/// Instructions per second of the instants and of a servo with this number of instructions per period, in per
+/// cent of the core's clock.
 pub fn share_of_core(instant: f64, servo: f64) -> f64 {
     100.0 * (instant * INSTANT_RATE + servo * SERVO_RATE) / CORE_CLOCK
 }

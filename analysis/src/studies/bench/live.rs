@@ -9,26 +9,26 @@ use crate::emulator::plant_thread::{FixedCount, PlantThread};
 use crate::emulator::{Emulator, EmulatorError};
 use crate::link::{Address, Link, LinkError, RequestResult};
 
-/// What a set took.
+/// The cost of a set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LiveSet {
-    /// Whether it was taken.
+    /// Whether it was accepted.
     pub taken: bool,
     /// Instructions below the servo, from the frame's last byte to the answer's first.
     pub instructions: u64,
-    /// Most instructions of the servo's interrupt meanwhile, requests for it included.
+    /// Largest number of instructions of the servo's interrupt meanwhile, including requests.
     pub interrupt: u64,
     /// Bytes of the stack that were never used, before and after.
     pub stack_left: Option<u32>,
 }
 
-/// Why a set could not be measured.
+/// The reason why a set could not be measured.
 #[derive(Debug, Error)]
 pub enum LiveError {
     /// The emulated board.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
-    /// The way to it.
+    /// The link to the board.
     #[error(transparent)]
     Link(#[from] LinkError),
 }
@@ -36,7 +36,7 @@ pub enum LiveError {
 /// Sends a set to a program on the emulated board, whose servo runs meanwhile.
 ///
 /// # Errors
-/// Where the board or the way to it fails.
+/// If the board or the link fails.
 pub fn live_set(elf: &Path, changes: &[(Parameter, f64)]) -> Result<LiveSet, LiveError> {
     let mut emulator = Emulator::boot(elf)?;
     emulator.arm_and_wait()?;

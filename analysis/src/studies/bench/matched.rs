@@ -1,4 +1,4 @@
-//! What a tick behind the matched coupling costs.
+//! The cost of a tick behind the matched coupling.
 
 use std::path::Path;
 
@@ -12,14 +12,14 @@ use crate::emulator::{BenchClient, EmulatorError};
 use crate::latency_limits::lag_of;
 use crate::program::damper_wall;
 
-/// Ticks of a hand that goes in and out of the wall, each at another speed.
+/// Ticks of a hand that goes in and out of the wall with varying speed.
 const TICKS: u32 = 2048;
 
-/// Most instructions of a tick from count to code in contact, in `f32`: of the damper wall without delay
-/// whose torques come 10 us after their counts, and of the same with a current loop of 3 kHz.
+/// Largest number of instructions of a tick from count to code in contact, in `f32`: for the damper wall
+/// without delay whose torques come 10 us after their counts, and for the same with a current loop of 3 kHz.
 ///
 /// # Errors
-/// Where the emulated board fails.
+/// If the emulated board fails.
 pub fn contact_instructions(elf: &Path) -> Result<[u32; 2], EmulatorError> {
     let mut board = BenchClient::boot(elf)?;
     let prompt = Latency::delayed(1e-5);

@@ -21,7 +21,7 @@ use haptic_servo::environment::{Coefficients, Environment, Rational};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde::Serialize;
 
-/// Instructions a second of a board's core: 170 MHz, if an instruction took a cycle.
+/// Instructions per second of a board's core: 170 MHz, at one cycle per instruction.
 pub const CORE_CLOCK: f64 = 170e6;
 
 /// One measured figure.
@@ -37,12 +37,12 @@ pub struct Figure {
     pub against: Option<f64>,
     /// `value / against`: below 1 is better.
     pub ratio: Option<f64>,
-    /// Where the other figure comes from.
+    /// The source of the reference.
     pub source: &'static str,
 }
 
 impl Figure {
-    /// A figure beside another one.
+    /// A figure with a reference.
     pub fn new(
         name: impl Into<String>,
         value: f64,
@@ -55,8 +55,8 @@ impl Figure {
     }
 }
 
-/// Environments to judge: low and high degrees, poles near and far, delays. The coefficients are
-/// products of pole pairs, so that the degree says how much there is to do.
+/// Environments to judge: low and high degrees, poles near and far, delays. The coefficients are products of
+/// pole pairs, so that the degree determines the amount of work.
 pub fn scenes() -> Vec<Scene> {
     let mut scenes = Vec::new();
     for degree in 0..=8 {
@@ -91,14 +91,14 @@ fn scene(rational: Rational) -> Scene {
     }
 }
 
-/// Cells along a side of the map that is measured.
+/// Cells along a side of the measured map.
 const MAP_SIDE: usize = 300;
 
-/// Walls a second that a map of a scene's walls judges on all cores: both rules, and stability
-/// without a hand where neither certifies. The scene is rigid in its device, as [`scenes`] are.
+/// Walls per second in a map of a scene's walls on all cores: both rules, and stability without a hand if
+/// neither certifies. The scene is rigid in its device, as [`scenes`] are.
 ///
 /// # Errors
-/// Where the scene has no wall.
+/// If the scene has no wall.
 pub fn map_rate(scene: &Scene) -> Result<f64, MapError> {
     let family = Family::rigid("the scene that is measured", scene)?;
     let (stiffness, damping) = family.usual_ranges();
@@ -107,15 +107,15 @@ pub fn map_rate(scene: &Scene) -> Result<f64, MapError> {
         black_box(Map::new(&family, stiffness.clone(), damping.clone(), MAP_SIDE, || {}));
         (MAP_SIDE * MAP_SIDE) as f64 / start.elapsed().as_secs_f64()
     };
-    // The first starts the threads and is thrown away.
+    // The first round starts the threads and is discarded.
     round();
     Ok(median((0..5).map(|_| round()).collect()))
 }
 
-/// Rounds of the measurement, of which the median counts.
+/// Number of rounds; the result is their median.
 const ROUNDS: usize = 31;
 
-/// Median time in microseconds that one verdict takes on one core of this machine.
+/// Median time of one verdict on one core of this machine in microseconds.
 pub fn verdict_time(scenes: &[Scene]) -> f64 {
     let round = || {
         let start = Instant::now();
@@ -124,19 +124,19 @@ pub fn verdict_time(scenes: &[Scene]) -> f64 {
         }
         start.elapsed().as_secs_f64() * 1e6 / scenes.len() as f64
     };
-    // The first fills caches and is thrown away.
+    // The first round fills caches and is discarded.
     round();
     median((0..ROUNDS).map(|_| round()).collect())
 }
 
-/// The same scenes where a torque comes 10 us after its count, through a current loop of 3 kHz.
+/// The same scenes with torques 10 us after their counts, through a current loop of 3 kHz.
 pub fn lagging_scenes() -> Vec<Scene> {
     let latency = Latency::delayed(1e-5).with_actuator_lag(lag_of(3e3));
     scenes().into_iter().map(|scene| Scene { latency, ..scene }).collect()
 }
 
-/// Microseconds of the scene in the middle: what a verdict costs grows with its degree, and many times
-/// as much where poles are next to the circle.
+/// Time of the median scene in microseconds: the cost of a verdict grows with its degree, and is many times
+/// larger if poles are close to the circle.
 pub fn middle_verdict_time(scenes: &[Scene]) -> f64 {
     let time = |scene: &Scene| {
         let round = || {
@@ -150,31 +150,31 @@ pub fn middle_verdict_time(scenes: &[Scene]) -> f64 {
     median(scenes.iter().map(time).collect())
 }
 
-/// Largest certified stiffness in N m/rad of an undelayed spring without coupling, at 1 kHz, for a device
-/// of 0.022 N m s/rad, with a torque 5 us after its count and a current loop of 3 kHz; and the same
-/// where torques are latched by the next count and the lag is charged as a whole sample.
+/// Largest certified stiffness in N m/rad of an undelayed spring without coupling, at 1 kHz, for a device of
+/// 0.022 N m s/rad, with a torque 5 us after its count and a current loop of 3 kHz; and the same with latched
+/// torques and the lag counted as a whole sample.
 pub fn lagging_springs() -> (f64, f64) {
     let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
     let early = Latency::delayed(5e-6).with_actuator_lag(lag_of(3e3));
     (largest_spring(&device, 1e-3, early, 0), largest_spring(&device, 1e-3, Latency::NONE, 2))
 }
 
-/// The middle of some values; 0 of none.
+/// The median of some values; 0 without values.
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Milliseconds that a certificate adds to the compilation of a program: the difference between a
-/// program with `COPIES` certified scenes and the same program without, divided by their number.
-/// The two are compiled in turn, so that other load of the machine meets both.
+/// Milliseconds that a certificate adds to the compilation of a program: the difference between a program
+/// with `COPIES` certified scenes and the same program without, divided by their number. The two are compiled
+/// alternately, so that other load of the machine affects both.
 ///
-/// `latency` is the part of the scenes in which they differ: [`AT_ONCE`] or [`LAGGING`].
+/// `latency` is the varying part of the scenes: [`AT_ONCE`] or [`LAGGING`].
 ///
 /// `library` is the built firmware library, `dependencies` the folder of its dependencies.
 ///
 /// # Errors
-/// Where the compiler cannot be run, or refuses the program.
+/// If the compiler cannot be run, or refuses the program.
 pub fn compile_time(
     rustc: &Path,
     library: &Path,
@@ -205,7 +205,7 @@ pub fn compile_time(
     Ok(median(differences.collect::<std::io::Result<Vec<_>>>()?))
 }
 
-/// One-sided walls without latency whose torque is limited.
+/// One-sided walls without latency and with limited torque.
 pub const AT_ONCE: &str = "type Wall = OneSided<DamperWall<1>>;
 const fn wall(wall: DamperWall<1>) -> Wall { OneSided { face: 0.0, wall } }
 const LATENCY: Latency = Latency::NONE;
@@ -218,9 +218,9 @@ const LATENCY: Latency = Latency::delayed(1e-5).with_actuator_lag(53e-6);
 const LIMIT: Option<f64> = None;
 ";
 
-/// Certificates in the program that is compiled.
+/// Certificates in the compiled program.
 const COPIES: usize = 8;
-/// Compilations of each program; the median of their differences counts.
+/// Compilations of each program; the result is the median of their differences.
 const COMPILATIONS: usize = 15;
 
 fn program(copies: usize, latency: &str) -> String {

@@ -1,4 +1,4 @@
-//! Each scene's parts of a tick, and its state: no more than it uses.
+//! The parts of a tick and the state of each scene.
 
 use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
@@ -8,17 +8,17 @@ use crate::program::{Program, State};
 use crate::studies::tick_parts::{Part, Share, TickParts, TickPartsError};
 use crate::toolchain::{self, NumberFormat};
 
-/// What a scene's program has.
+/// The inventory of a scene's program.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inventory {
     /// Name of the program.
     pub scene: &'static str,
-    /// The tick from count to code in `f32`, as it is linked into the servo's interrupt: with and
-    /// without injected damping, one after the other.
+    /// The tick from count to code in `f32`, as linked into the servo's interrupt: with and without injected
+    /// damping together.
     pub tick: Share,
     /// Its parts, in the order of a tick.
     pub parts: Vec<PartShare>,
-    /// What the servo keeps in `f32`.
+    /// Its state in `f32`.
     pub state_f32: State,
     /// Its state in the scene's fixed-point format.
     pub state_fixed: State,
@@ -28,21 +28,21 @@ pub struct Inventory {
     pub ram: u64,
 }
 
-/// What of a tick is one part.
+/// One part of a tick.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartShare {
     /// The part.
     pub part: String,
-    /// What there is of it.
+    /// The share of the part.
     #[serde(flatten)]
     pub share: Share,
 }
 
 impl Inventory {
-    /// Of a program that was built for the emulated board without log.
+    /// The inventory of a program that was built for the emulated board without log.
     ///
     /// # Errors
-    /// Where the program cannot be taken apart.
+    /// If the parts of the program cannot be determined.
     pub fn of(program: &Program, built: &toolchain::Program) -> Result<Self, TickPartsError> {
         let tick = TickParts::of_file(&built.path)?;
         let part = |part: Part| PartShare { part: part.to_string(), share: tick.share(part) };
@@ -57,7 +57,7 @@ impl Inventory {
         })
     }
 
-    /// Its figures as a benchmark lists them, the parts left out.
+    /// Its figures for a benchmark, without the parts.
     pub fn figures(&self) -> Vec<Figure> {
         let figures = [
             ("flash without log", self.flash, "bytes"),
@@ -77,7 +77,7 @@ impl Inventory {
     }
 }
 
-/// The scenes side by side, for a person.
+/// The scenes as a table.
 pub fn table(scenes: &[Inventory]) -> Table {
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN);

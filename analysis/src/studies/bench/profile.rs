@@ -1,4 +1,4 @@
-//! What a verdict about a torque profile of 64 knots costs, on this machine and on the emulated board.
+//! The cost of a verdict on a torque profile of 64 knots, on this machine and on the emulated board.
 
 use std::path::Path;
 
@@ -25,11 +25,11 @@ pub fn scenes() -> Vec<Scene> {
     scenes
 }
 
-/// Most instructions of a verdict about them on the emulated board, and of the same with all that a message
-/// about it says.
+/// Largest number of instructions of a verdict on them on the emulated board, and of the whole assessment
+/// with remedies.
 ///
 /// # Errors
-/// Where the emulated board fails.
+/// If the emulated board fails.
 pub fn verdict_instructions(elf: &Path) -> Result<[u64; 2], EmulatorError> {
     let mut board = CertifyClient::boot(elf)?;
     let mut most = [0; 2];

@@ -1,4 +1,4 @@
-//! What a step of the exact method costs, against a loop that is written for its scene by hand.
+//! The cost of a step of the exact method, compared with a loop written by hand for its scene.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -12,7 +12,7 @@ use crate::simulation::{Experiment, Integration, Simulator, Trajectory};
 
 /// Steps of a run.
 pub const STEPS: usize = 10_000;
-/// So near the standard coupling's limit that the motion lasts through all steps.
+/// Near the standard coupling's limit, so that the motion lasts for all steps.
 const STIFFNESS: f64 = 43.999;
 
 /// A wall of the paper's device, released from a millirad.

@@ -1,4 +1,4 @@
-//! Certificates of two ends of a range, where the loop between is neither.
+//! Certificates of both ends of a range do not cover a loop between them.
 //!
 //! A servo computes `F(k+1) = E (x(k) - V F(k))` ahead and writes it a few microseconds after the next count.
 //! The torque of its count is late behind its coupling, but not at the motor: neither the wall that is one
@@ -16,15 +16,15 @@ use crate::simulation::{Experiment, Integration};
 
 /// Stiffness in N m/rad and damping in N m s/rad of the wall.
 const WALL: (f64, f64) = (22.0, 0.01);
-/// Time in s from a count to the torque that was computed of the one before.
+/// Time in s from a count to the torque that was computed from the previous count.
 const WRITTEN: f64 = 5e-6;
 
-/// The wall that many samples late behind the standard coupling.
+/// The wall with this delay in samples behind the standard coupling.
 fn end(delay: usize) -> Scene {
     coupled(PADDLE, wall_of(WALL.0, WALL.1, delay))
 }
 
-/// The loop that runs: `H = E / (1 + V E / z)` without a coupling, written that late.
+/// The running loop: `H = E / (1 + V E / z)` without a coupling, written with this delay.
 pub fn between() -> Scene {
     let Coupling::Spring { stiffness } = end(0).coupling else { unreachable!("a spring") };
     let (stiff, lost) = (WALL.0 + WALL.1 / PERIOD, WALL.1 / PERIOD);
@@ -38,7 +38,7 @@ pub fn between() -> Scene {
     Scene { latency: Latency::delayed(WRITTEN), ..rigid(PADDLE, loop_between) }
 }
 
-/// Both ends pass, and the loop between them shakes the bare device.
+/// Both ends certify, and the loop between them oscillates without a hand.
 pub fn between_ends() -> Result<CaseResult, FailureError> {
     let of_end = |method: &str, delay| MethodResult {
         method: method.into(),
@@ -52,7 +52,7 @@ pub fn between_ends() -> Result<CaseResult, FailureError> {
     let alone = Experiment::still(&scene);
     let truth =
         MethodResult::eigenvalues("exact exponential, in no hand", &alone, Integration::default())?;
-    // Steps so small that the motion begins above them.
+    // Small steps, so that the motion begins above them.
     let counts_per_turn = f64::from(1 << 22);
     let fine = Transducers { counts_per_turn, full_scale_torque: 2.0, ..PADDLES };
     let mut shakes = loop_run("computed ahead, written 5 us late", &scene, fine, Outcome::Diverges)

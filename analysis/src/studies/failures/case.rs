@@ -1,4 +1,4 @@
-//! A question about one loop, and the results of the methods that were asked.
+//! A question about one loop, and the results of the methods.
 
 use haptic_servo::environment::ShapeError;
 use thiserror::Error;
@@ -8,7 +8,7 @@ use super::method_result::MethodResult;
 use crate::chain::ChainError;
 use crate::simulation::SimulationError;
 
-/// Why a case has no answers.
+/// The reason why a case has no results.
 #[derive(Debug, Error)]
 pub enum FailureError {
     /// A loop cannot be simulated.
@@ -17,10 +17,10 @@ pub enum FailureError {
     /// A loop cannot be run.
     #[error(transparent)]
     Run(#[from] LoopRunError),
-    /// There is no such device.
+    /// The device is invalid.
     #[error(transparent)]
     Chain(#[from] ChainError),
-    /// Shapes are no torque profile.
+    /// Shapes do not make a torque profile.
     #[error(transparent)]
     Shape(#[from] ShapeError),
     /// A wall has no largest stiffness.
@@ -33,29 +33,29 @@ pub enum FailureError {
 pub struct Case {
     /// Its name on the command line.
     pub name: &'static str,
-    /// The question, in a few words.
+    /// The question as short text.
     pub question: &'static str,
     pub(super) evaluate: fn() -> Result<CaseResult, FailureError>,
 }
 
-/// The results of all methods, and the loops that show which are right.
+/// The results of all methods, and the loops that show which of them are right.
 #[derive(Clone, Debug)]
 pub struct CaseResult {
-    /// The methods that others use.
+    /// The common methods.
     pub methods: Vec<MethodResult>,
     /// The certificate.
     pub certificate: MethodResult,
-    /// What does not err on this loop.
+    /// The true result for this loop.
     pub truth: MethodResult,
-    /// Loops that show it: the loop in question, then a loop that the certificate allows.
+    /// The runs: of the loop in question, then of a loop that the certificate allows.
     pub runs: Vec<LoopRun>,
 }
 
 impl Case {
-    /// Asks all methods.
+    /// Evaluates all methods.
     ///
     /// # Errors
-    /// Where the loop cannot be had.
+    /// If the loop cannot be built.
     pub fn evaluate(&self) -> Result<CaseResult, FailureError> {
         (self.evaluate)()
     }

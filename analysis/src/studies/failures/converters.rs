@@ -1,4 +1,4 @@
-//! What a linear analysis in real numbers does not see: steps of the arithmetic and of the encoder.
+//! The effects that a linear analysis in real numbers ignores: steps of the arithmetic and of the encoder.
 
 use haptic_servo::certificate::Resolution;
 use haptic_servo::number::{Arithmetic, Format};
@@ -18,7 +18,7 @@ const LEANS: f64 = 0.2;
 /// Samples of a run.
 const SAMPLES: usize = 5000;
 
-/// Fixed point with 16 bits behind the point, on a device without friction.
+/// Fixed point with 16 fractional bits, on a device without friction.
 pub fn fixed_point() -> Result<CaseResult, FailureError> {
     let scene = paper();
     // The finest encoder and DAC: their steps cause limit cycles, too.
@@ -37,7 +37,7 @@ pub fn fixed_point() -> Result<CaseResult, FailureError> {
     Ok(CaseResult { methods: ideal(&scene)?, certificate, truth, runs: vec![hums, rests] })
 }
 
-/// The encoder's steps, without friction and with as much as section 8 requires.
+/// The encoder's steps, without friction and with the friction that section 8 requires.
 pub fn encoder() -> Result<CaseResult, FailureError> {
     let scene = paper();
     let needed = friction_for_rest(&scene, &PADDLES);

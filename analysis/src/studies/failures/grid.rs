@@ -41,7 +41,7 @@ pub fn grid() -> Result<CaseResult, FailureError> {
     let alone = Experiment::still(&scene);
     let truth =
         MethodResult::eigenvalues("exact exponential, in no hand", &alone, Integration::default())?;
-    // A spring with which the device resonates where the minimum is.
+    // A spring with which the device resonates at the minimum.
     let stiffness = PADDLE.inertia * (angle() / PERIOD).powi(2);
     let mut grows = loop_run("in a hand that resonates there", &scene, PADDLES, Outcome::Diverges);
     grows.experiment.plant =
@@ -57,14 +57,14 @@ fn angle() -> f64 {
     PI * ((finest / 3.0).floor() + 0.5) / finest
 }
 
-/// `E = -g (z - 1) (z^2 - 1) / (z (z^2 - 2 r c z + r^2))`: seen from velocity, `-depth delta` at
-/// the angle whose cosine is `c`, within `1 - r` of it.
+/// `E = -g (z - 1) (z^2 - 1) / (z (z^2 - 2 r c z + r^2))`: from velocity, `-depth delta` at the angle whose
+/// cosine is `c`, within `1 - r` of it.
 fn resonance(depth: f64, angle: f64) -> Environment {
     let r = 1.0 - NARROW;
     let gain = depth * PADDLE.damping * NARROW / PERIOD;
     let polynomial = |values: &[f64]| Coefficients::new(values).expect("four coefficients fit");
     Environment::Rational(Rational {
-        // With the two zeros at 1 that are declared.
+        // With two declared zeros at 1.
         numerator: polynomial(&[-gain, -gain]),
         denominator: polynomial(&[1.0, -2.0 * r * angle.cos(), r * r, 0.0]),
         delay: 0,
@@ -72,7 +72,7 @@ fn resonance(depth: f64, angle: f64) -> Environment {
     })
 }
 
-/// The environment that behind the standard coupling is this scene's controller.
+/// The environment that gives this scene's controller behind the standard coupling.
 fn equivalent(scene: &Scene) -> Result<Response, FailureError> {
     Ok(Response::new(LoopTransfers::of(scene).map_err(SimulationError::from)?.equivalent))
 }

@@ -1,4 +1,4 @@
-//! Methods of integration that show a loop as it is not (theory, section 9).
+//! Methods of integration that show a wrong behaviour of a loop (theory, section 9).
 
 use haptic_servo::servo::Transducers;
 
@@ -45,7 +45,7 @@ pub fn explicit_euler() -> Result<CaseResult, FailureError> {
     })
 }
 
-/// Semi-implicit Euler in few steps: a wall that shakes comes to rest.
+/// Semi-implicit Euler with few steps: an oscillating wall comes to rest.
 pub fn semi_implicit_euler() -> Result<CaseResult, FailureError> {
     let scene = rigid(KNOB, wall_of(1500.0, 0.0, 0));
     let experiment = Experiment::still(&scene);
@@ -63,11 +63,11 @@ pub fn semi_implicit_euler() -> Result<CaseResult, FailureError> {
     Ok(CaseResult { methods, certificate, truth, runs: vec![shakes, rests] })
 }
 
-/// Runge-Kutta of fourth order in one step a tick: two masses in a hand.
+/// Runge-Kutta of fourth order with one step per tick: two masses in a hand.
 pub fn runge_kutta() -> Result<CaseResult, FailureError> {
     const STIFFNESS: f64 = 2750.0;
-    // Friction hides what grows slowly; a finer encoder needs less of it. The motor is strong enough
-    // for a motion that friction does not hide.
+    // Friction hides slow growth; a finer encoder needs less friction. The motor is strong enough for a
+    // motion that friction does not hide.
     let counts_per_turn = f64::from(1 << 22);
     let fine = Transducers { counts_per_turn, full_scale_torque: 100.0, ..KNOBS };
     let scene = rigid(KNOB, wall_of(STIFFNESS, 0.0, 0));
@@ -90,7 +90,7 @@ pub fn runge_kutta() -> Result<CaseResult, FailureError> {
     Ok(CaseResult { methods, certificate: MethodResult::certificate(&scene), truth, runs })
 }
 
-/// The name of a method in so many steps.
+/// The name of a method with a number of steps.
 fn name(method: Method, substeps: u32) -> String {
     let steps = if substeps == 1 { "step" } else { "steps" };
     match method {

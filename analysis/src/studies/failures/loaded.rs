@@ -10,7 +10,7 @@ use crate::simulation::plant::POSITION;
 use crate::simulation::torque_signal::TorqueSignal;
 use crate::simulation::{Experiment, Integration, Machine, SimulationError};
 
-/// A device that keeps a record of where it was.
+/// A device that records its positions.
 pub struct LoadedDevice {
     machine: Machine,
     hand_torque: TorqueSignal,
@@ -25,7 +25,7 @@ impl LoadedDevice {
     /// The device of an experiment at its start, with the encoder and the motor of the servo.
     ///
     /// # Errors
-    /// Where it is too fast for its motion over a period to be computed.
+    /// If it is too fast for its motion over a period to be computed.
     pub fn new(
         experiment: &Experiment,
         transducers: &Transducers,
@@ -52,7 +52,7 @@ impl LoadedDevice {
         self.machine.state()[POSITION]
     }
 
-    /// Lets the motor apply `torque` in N m over a tick, and over those after it that are missed.
+    /// Applies the motor's `torque` in N m over a tick, and over the missed ticks after it.
     pub fn apply(&mut self, torque: f64) {
         loop {
             self.positions.push(self.position());

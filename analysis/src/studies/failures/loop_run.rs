@@ -18,7 +18,7 @@ use crate::emulator::{EmulatorError, ServoClient};
 use crate::lockstep::run;
 use crate::simulation::{Experiment, Integration, SimulationError, simulate};
 
-/// Why a loop cannot be run.
+/// The reason why a loop cannot be run.
 #[derive(Debug, Error)]
 pub enum LoopRunError {
     /// The loop cannot be simulated.
@@ -27,47 +27,47 @@ pub enum LoopRunError {
     /// The board failed.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
-    /// The board refuses, or takes, what the host does not.
+    /// The board refuses a scene that the host accepts, or the reverse.
     #[error("host and board disagree on whether this scene may run: {0}")]
     Disagreement(String),
-    /// The servo cannot be had in this arithmetic.
+    /// The servo cannot be built in this arithmetic.
     #[error(transparent)]
     Servo(#[from] BuildError),
-    /// The angle is more than this arithmetic holds.
+    /// The angle does not fit this arithmetic.
     #[error(transparent)]
     Angle(#[from] OutOfRange),
 }
 
-/// A loop that is run.
+/// A loop to run.
 #[derive(Clone, Debug)]
 pub struct LoopRun {
-    /// The run, in a few words.
+    /// The run as short text.
     pub what: &'static str,
     /// Scene, device, hand, friction, missed ticks.
     pub experiment: Experiment,
     /// Encoder and motor of the board.
     pub transducers: Transducers,
-    /// What the board computes in.
+    /// The board's arithmetic.
     pub arithmetic: Arithmetic,
-    /// The device in the board's scene, in place of the true one: with more damping and passivity,
-    /// since only so does a board run a rejected scene.
+    /// The device in the board's scene, in place of the true one: with more damping and passivity, because
+    /// otherwise a board does not run a rejected scene.
     pub claimed: Option<Device>,
     /// The expected outcome.
     pub expected: Outcome,
 }
 
-/// What a board did with a scene.
+/// The result of a scene on a board.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BoardResult {
-    /// It does not run it, whatever device is claimed.
+    /// The board does not run it with any claimed device.
     Refused,
-    /// It ran it, all its codes being those of the same servo on the host.
+    /// The board ran it, and all codes equal those of the same servo on the host.
     Ran(Motion),
 }
 
 impl BoardResult {
-    /// Whether this is the expected outcome: a board that refuses lets nothing diverge.
+    /// Whether this is the expected outcome; a refusal prevents divergence.
     pub fn agrees_with(&self, expected: Outcome) -> bool {
         match self {
             Self::Refused => expected != Outcome::Converges,
@@ -77,10 +77,10 @@ impl BoardResult {
 }
 
 impl LoopRun {
-    /// The motion of the loop in `f64`, with no quantisation but the experiment's.
+    /// The motion of the loop in `f64`, with only the experiment's quantisation.
     ///
     /// # Errors
-    /// Where it cannot be simulated.
+    /// If it cannot be simulated.
     pub fn simulated(&self) -> Result<Motion, LoopRunError> {
         let positions = match self.arithmetic {
             Arithmetic::F32 => simulate(&self.experiment, Integration::default())?.position,
@@ -101,11 +101,11 @@ impl LoopRun {
         Ok(device.positions)
     }
 
-    /// The motion of the loop of which the emulated board is the servo. The board is compared
-    /// with the servo on this machine in every tick.
+    /// The motion of the loop with the emulated board as the servo. The board is compared with the servo on
+    /// this machine in every tick.
     ///
     /// # Errors
-    /// Where the board fails, or disagrees with this machine.
+    /// If the board fails, or disagrees with this machine.
     pub fn emulated(&self, player: &mut ServoClient) -> Result<BoardResult, LoopRunError> {
         let request = self.request();
         let (reply, here) = (player.start(&request)?, self.certified());
@@ -124,13 +124,13 @@ impl LoopRun {
         }
     }
 
-    /// Whether the emulated board can have the scene: of torque profiles only those of its own tables.
+    /// Whether the emulated board can run the scene: torque profiles only with its own tables.
     pub fn goes_to_a_board(&self) -> bool {
         let profile = self.experiment.scene.environment.profile();
         profile.is_none_or(|profile| index_of(profile).is_some())
     }
 
-    /// The scene that is sent to the board, with the device that is claimed.
+    /// The scene for the board, with the claimed device.
     pub fn scene_for_board(&self) -> Scene {
         let scene = self.experiment.scene;
         Scene { device: self.claimed.unwrap_or(scene.device), ..scene }
@@ -150,7 +150,7 @@ impl LoopRun {
         }
     }
 
-    /// Ticks that are not missed.
+    /// The number of ticks that are not missed.
     fn ticks(&self) -> usize {
         let Experiment { missed, samples, .. } = &self.experiment;
         missed.ticks().take(*samples).filter(|is_missed| !is_missed).count()
@@ -161,7 +161,7 @@ impl LoopRun {
     }
 }
 
-/// Builds a servo, in an arithmetic that is still to be chosen.
+/// Builds a servo in an arithmetic selected at run time.
 struct Build<'a> {
     certified: &'a Certified<Scene>,
     transducers: &'a Transducers,
@@ -179,7 +179,7 @@ impl MethodResult {
     /// The verdict of a simulation.
     ///
     /// # Errors
-    /// Where it cannot be simulated.
+    /// If it cannot be simulated.
     pub fn simulated(method: &str, loop_run: &LoopRun) -> Result<Self, LoopRunError> {
         let motion = loop_run.simulated()?;
         let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);

@@ -18,7 +18,7 @@ const DELAY: f64 = 0.5 * PERIOD;
 /// Part of the limit that the common formula allows.
 const PART: f64 = 0.99;
 
-/// What lies between count and torque.
+/// The latency between count and torque.
 pub fn latency() -> Latency {
     Latency::delayed(DELAY).with_actuator_lag(lag_of(BANDWIDTH))
 }
@@ -50,7 +50,7 @@ pub fn mean_delay() -> Result<CaseResult, FailureError> {
     let mut shakes = loop_run("0.99 of it, in that hand", &scene, PADDLES, Outcome::Diverges)
         .with_claimed_passivity(2.0);
     shakes.experiment = Experiment { friction: 0.0, ..held };
-    // Three times the motion, and more where a hand is heavy.
+    // Until the motion has tripled, with bounds for heavy hands.
     let samples = (4.0 / hand.spectral_radius.ln()).clamp(1000.0, 150_000.0) as usize;
     let certified = spring(0.95 * largest_spring(&PADDLE, PERIOD, latency(), 0));
     let rests = loop_run("0.95 of the certified limit", &certified, PADDLES, Outcome::Converges);

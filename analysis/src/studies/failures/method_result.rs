@@ -1,4 +1,4 @@
-//! The verdict of a method about a loop, and whether it is right.
+//! The verdict of a method on a loop, and whether it is right.
 
 use haptic_servo::certificate::{QuantizationBound, Rejection, Resolution, assess, certify};
 use haptic_servo::number::Format;
@@ -18,7 +18,7 @@ pub enum MethodVerdict {
     Safe,
     /// No.
     Unsafe,
-    /// Neither, which never means yes.
+    /// Neither; never counts as safe.
     Undecided,
 }
 
@@ -38,7 +38,7 @@ impl MethodVerdict {
     }
 }
 
-/// How a verdict is wrong.
+/// The kind of a wrong verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Failure {
@@ -48,7 +48,7 @@ pub enum Failure {
     Needless,
 }
 
-/// The verdict of a method about a loop, and its reason.
+/// The verdict of a method on a loop, and its reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MethodResult {
     /// The method.
@@ -57,16 +57,16 @@ pub struct MethodResult {
     /// Its verdict.
     #[serde(rename = "says")]
     pub verdict: MethodVerdict,
-    /// The number that the verdict rests on, if there is one: which, and in which unit, is in
+    /// The number that decides the verdict, if there is one; its meaning and unit are in
     /// [`MethodResult::reason`].
     pub figure: Option<f64>,
-    /// Why, in a sentence with numbers.
+    /// The reason as text with numbers.
     #[serde(rename = "because")]
     pub reason: String,
 }
 
 impl MethodResult {
-    /// A verdict that rests on a number; `reason` has `{}` where that number goes.
+    /// A verdict by a number; `reason` has `{}` in the place of the number.
     pub fn new(
         method: impl Into<String>,
         verdict: MethodVerdict,
@@ -77,10 +77,10 @@ impl MethodResult {
         Self { method: method.into(), verdict, figure: Some(figure), reason }
     }
 
-    /// The verdict of the eigenvalues of a loop, as a method of integration shows them.
+    /// The verdict by the eigenvalues of a loop, as shown by a method of integration.
     ///
     /// # Errors
-    /// Where there is no loop, or its eigenvalues are not found.
+    /// If there is no loop, or its eigenvalues are not found.
     pub fn eigenvalues(
         method: impl Into<String>,
         experiment: &Experiment,
@@ -90,7 +90,7 @@ impl MethodResult {
         Ok(Self::modulus(method, "largest eigenvalue", radius(&eigenvalues(&closed.matrix)?)))
     }
 
-    /// The verdict of a modulus that has to be inside the unit circle; `of` names it.
+    /// The verdict by a modulus that must be inside the unit circle; `of` names it.
     pub fn modulus(method: impl Into<String>, of: &str, modulus: f64) -> Self {
         let (is_inside, beside) = (modulus < 1.0, significant((modulus - 1.0).abs(), 6));
         let side = if is_inside { "inside" } else { "outside" };
@@ -102,7 +102,7 @@ impl MethodResult {
         }
     }
 
-    /// The verdict of the certificate about a scene: the index that it found, or its refusal.
+    /// The verdict of the certificate on a scene: its index, or its rejection.
     pub fn certificate(scene: &Scene) -> Self {
         let assessment = assess(scene);
         let index = assessment.alpha_port.or(assessment.alpha_coupled).or(assessment.alpha);
@@ -121,8 +121,8 @@ impl MethodResult {
         }
     }
 
-    /// The verdict of the certificate about a certified scene at rest, on a device with these steps and
-    /// this friction, computed in a number format; the figure is the friction in N m that is enough.
+    /// The verdict of the certificate on a certified scene at rest, on a device with these steps and this
+    /// friction, in a number format; the figure is the sufficient friction in N m.
     pub fn at_rest(scene: &Scene, format: Format, steps: &Resolution) -> Self {
         let rest = QuantizationBound::of(scene, format, steps);
         let verdict = match rest.and_then(|rest| rest.comes_to_rest()) {
@@ -133,7 +133,7 @@ impl MethodResult {
         Self { method: "certificate".into(), verdict, figure: rest.map(|rest| rest.hum()), reason }
     }
 
-    /// How it is wrong, if it is.
+    /// The failure, if it is wrong.
     pub fn failure(&self, truth: MethodVerdict) -> Option<Failure> {
         match (self.verdict, truth) {
             (MethodVerdict::Safe, MethodVerdict::Unsafe) => Some(Failure::Dangerous),
@@ -143,7 +143,7 @@ impl MethodResult {
     }
 }
 
-/// What a certificate rests on, in words.
+/// The basis of a certificate as text.
 fn certified(index: Option<Interval>, delta: Interval) -> String {
     let number = |value: f64| significant(value, 6);
     let needs = index.map_or_else(String::new, |alpha| number(alpha.hi()));

@@ -1,4 +1,4 @@
-//! Missed ticks: a limit that was computed for the period that was meant.
+//! Missed ticks: a limit computed for the nominal period.
 
 use haptic_servo::scene::{Scene, Timing};
 
@@ -8,7 +8,7 @@ use super::motion::Outcome;
 use super::setting::{KNOB, KNOBS, PERIOD, loop_run, rigid, wall_of};
 use crate::missed::Missed;
 
-/// 0.95 of the limit of the nominal period, and of that of the worst one.
+/// Springs at 0.95 of the limit for the nominal period, and for the worst period.
 pub fn missed_ticks() -> Result<CaseResult, FailureError> {
     let limit = 2.0 * KNOB.damping / PERIOD;
     let nominal = rigid(KNOB, wall_of(0.95 * limit, 0.0, 0));

@@ -1,8 +1,7 @@
-//! Where methods fail: the verdict of each on a loop, the truth, and the certificate's verdict
-//! before.
+//! Failures of common methods: the verdict of each on a loop, the truth, and the certificate's verdict.
 //!
-//! A case is a question about one loop. Common methods answer it, and so do the certificate and an
-//! exact reference; the loop is then run, in simulation and with the emulated board as its servo.
+//! A case is a question about one loop. Common methods, the certificate and an exact reference answer it;
+//! then the loop runs in simulation and with the emulated board as its servo.
 
 pub mod between_ends;
 mod case;
@@ -30,7 +29,7 @@ pub use case::{Case, CaseResult, FailureError};
 
 macro_rules! cases {
     ($($name:literal, $question:literal, $evaluate:path;)*) => {
-        /// All cases, in the order in which they are shown.
+        /// All cases, in their order of output.
         pub const ALL: &[Case] =
             &[$(Case { name: $name, question: $question, evaluate: $evaluate }),*];
     };

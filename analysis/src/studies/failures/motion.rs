@@ -1,4 +1,4 @@
-//! Whether a motion ends, and how.
+//! The outcome of a motion.
 
 use std::fmt;
 
@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use crate::quantity::significant;
 
-/// How a motion ends.
+/// The outcome of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Outcome {
-    /// It ends.
+    /// It comes to rest.
     #[serde(rename = "rests")]
     Converges,
     /// It persists, but is smaller.
@@ -31,18 +31,17 @@ impl Outcome {
     }
 }
 
-/// How far something moved to and fro, at the start and at the end.
+/// The swing of a motion at its start and at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Motion {
     /// Largest less smallest position in the first tenth of the samples, in rad.
     pub first: f64,
-    /// The same in the last tenth; infinite, which is not a number in JSON, where it has left the range
-    /// of numbers.
+    /// The same in the last tenth; infinite (null in JSON) if the motion has left the range of numbers.
     pub last: f64,
 }
 
 impl Motion {
-    /// Of positions in rad: `asked` of them, or fewer if the motion leaves the range.
+    /// From positions in rad: `asked` of them, or fewer if the motion leaves the range.
     pub fn of(positions: &[f64], asked: usize) -> Self {
         let tenth = (asked / 10).max(1).min(positions.len());
         let first = swing(&positions[..tenth]);
@@ -51,9 +50,9 @@ impl Motion {
         Self { first, last }
     }
 
-    /// How it went on.
+    /// The outcome.
     pub fn outcome(&self) -> Outcome {
-        /// Part of the first swing below which a motion counts as ended.
+        /// Fraction of the first swing below which a motion counts as ended.
         const STILL: f64 = 1e-6;
         if !self.last.is_finite() || self.last > self.first {
             Outcome::Diverges

@@ -1,9 +1,8 @@
-//! A passivity observer and controller as they are written in the literature, at a velocity of
-//! zero.
+//! A passivity observer and controller, as in the literature, at a velocity of zero.
 //!
-//! The observer sums up the energy that the environment has taken, `W += F(k-1) (x(k) - x(k-1))`;
-//! where `W` is negative the controller adds the damping `-W / (T v^2)` that is to bring it back to
-//! zero. Between two counts of the encoder `v` is zero.
+//! The observer sums the energy that the environment has taken, `W += F(k-1) (x(k) - x(k-1))`; if `W` is
+//! negative the controller adds the damping `-W / (T v^2)` to bring it back to zero. Between two counts of
+//! the encoder `v` is zero.
 
 use std::f64::consts::TAU;
 
@@ -25,12 +24,12 @@ const SAMPLES: usize = 4000;
 /// Torque in N m with which the hand leans on the wall.
 const LEANS: f64 = 0.2;
 
-/// A wall that needs no observer, under two of them.
+/// A wall that needs no observer, with two observers.
 pub fn passivity_observer() -> Result<CaseResult, FailureError> {
     let scene = coupled(PADDLE, wall_of(20.0, 0.0, 1));
     let mut ours =
         loop_run("the certified wall", &scene, PADDLES, Outcome::Converges).pushed(0.0, SAMPLES);
-    // Slowly in and out, far less than a count a tick.
+    // Slowly in and out, by far less than a count per tick.
     let part = |sample: usize| sample as f64 / (SAMPLES / 4) as f64;
     let lean = |sample| LEANS * part(sample).min(2.0 - part(sample)).max(0.0);
     ours.experiment.hand_torque = TorqueSignal::Held((0..SAMPLES).map(lean).collect());

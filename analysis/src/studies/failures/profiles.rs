@@ -1,4 +1,5 @@
-//! Torque profiles: detents that rest in a simulation and hum on a board, and a profile that is a motor.
+//! Torque profiles: detents that rest in a simulation and oscillate on a board, and a profile that is a
+//! motor.
 
 use std::f64::consts::TAU;
 
@@ -16,34 +17,35 @@ use crate::simulation::{Experiment, Integration, simulate};
 
 /// Detents in a turn.
 pub const DETENTS: u32 = 120;
-/// Torque in N m of those that hum.
+/// Torque in N m of the oscillating detents.
 pub const HUMMING: f64 = 0.25;
-/// Torque in N m of those that are certified.
+/// Torque in N m of the certified detents.
 pub const CERTIFIED: f64 = 0.19;
-/// Velocity in rad/s with which the detents are passed at first.
+/// Initial velocity in rad/s over the detents.
 const SPEED: f64 = 20.0;
-/// Steps of a simulation in which the torque is not held, in a tick.
+/// Steps per tick of a simulation without hold.
 const FINE: u32 = 20;
 
 /// Teeth of a ratchet in a turn.
 pub const TEETH: u32 = 24;
 /// Mean torque in N m of the ratchet.
 pub const MEAN: f64 = 3.0;
-/// By how many N m it goes up and down.
+/// Amplitude of its torque in N m.
 pub const SWING: f64 = 2.0;
-/// Velocity in rad/s with which the ratchet is turned at first.
+/// Initial velocity of the ratchet in rad/s.
 const TURNED: f64 = 6.0;
-/// The angle in rad of the end stops between which the ratchet can be simulated.
+/// The angle in rad of the end stops for the ratchet's simulation.
 const FAR: f64 = 100.0;
-/// Stiffness in N m/rad of the end stops, and of the hand that holds the ratchet: more than it falls by.
+/// Stiffness in N m/rad of the end stops, and of the hand that holds the ratchet: more than the ratchet's
+/// steepest fall.
 const STIFFNESS: f64 = 50.0;
 /// Damping in N m s/rad of that hand.
 const DAMPING: f64 = 0.5;
-/// Knots of a tooth, and of one less the mean.
+/// Knots of a tooth, and of a tooth without the mean.
 const TOOTH: [(f64, f64); 5] = tooth(MEAN);
 const LEVEL_TOOTH: [(f64, f64); 5] = tooth(0.0);
 
-/// Detents whose torque is simulated where it is felt: as it acts, held and a sample late, they do not rest.
+/// Detents that are simulated without hold and delay; with a held torque, a sample late, they do not rest.
 pub fn fine_detents() -> Result<CaseResult, FailureError> {
     let hums = detents("0.25 N m", HUMMING, 1, PERIOD, Outcome::LimitCycles)?;
     let hums = hums.with_claimed_passivity(2.0);
@@ -85,7 +87,7 @@ pub fn ratchet() -> Result<CaseResult, FailureError> {
     Ok(CaseResult { methods, certificate, truth, runs: vec![turns, rests] })
 }
 
-/// The detents of a rigid paddle, passed at first.
+/// The detents of a rigid paddle with an initial velocity.
 fn detents(
     what: &'static str,
     torque: f64,
@@ -100,7 +102,7 @@ fn detents(
     Ok(loop_run(what, &scene, PADDLES, expected).pushed(SPEED, samples))
 }
 
-/// Teeth of a knob, between end stops so far away that none is reached.
+/// Teeth of a knob between distant end stops, which are never reached.
 fn turning(
     what: &'static str,
     tooth: &'static [(f64, f64)],
@@ -109,7 +111,7 @@ fn turning(
     let ends = Shape::end_stops(-FAR, FAR, STIFFNESS);
     let scene = rigid(KNOB, profile(&[Shape::Periodic(tooth), ends], 1)?);
     let mut loop_run = loop_run(what, &scene, KNOBS, expected).pushed(TURNED, 6000);
-    // No board has its table, so that there are no steps that friction would have to make up for.
+    // No board has its table, so there are no steps that friction must compensate.
     loop_run.experiment.friction = 0.0;
     Ok(loop_run)
 }
@@ -132,7 +134,7 @@ const fn tooth(mean: f64) -> [(f64, f64); 5] {
     ]
 }
 
-/// The verdict of a simulation that integrates in its own way.
+/// The verdict of a simulation with its own integration.
 fn rests_by(
     method: &str,
     experiment: &Experiment,
@@ -145,7 +147,7 @@ fn rests_by(
     Ok(MethodResult::new(method, verdict, motion.last, reason))
 }
 
-/// The verdict of the slopes alone: `T (L/2 + M)` of a torque that is a sample late.
+/// The verdict by the slopes alone: `T (L/2 + M)` for a torque that is a sample late.
 fn by_slopes(scene: &Scene) -> MethodResult {
     let steepest = SWING * 4.0 * f64::from(TEETH) / TAU;
     let needed = 1.5 * PERIOD * steepest;

@@ -1,4 +1,4 @@
-//! Up to which stiffness a method calls a spring stable, over the steps that it takes in a tick.
+//! The largest stiffness of a spring that a method shows as stable, over its steps per tick.
 
 use super::case::FailureError;
 use crate::limits::{Limit, largest_stiffness};
@@ -7,24 +7,24 @@ use crate::simulation::{Experiment, Integration};
 use crate::stability::critical_stiffness;
 use crate::studies::tradeoff::simulation;
 
-/// The compared methods, the least accurate one first.
+/// The compared methods, the least accurate first.
 pub const METHODS: [Method; 4] = [Method::SemiImplicit, Method::Rk4, Method::Tustin, Method::Euler];
 
-/// Steps a tick that are looked at, about evenly apart on a logarithmic axis.
+/// The steps per tick, about evenly spaced on a logarithmic axis.
 const SUBSTEPS: [u32; 21] =
     [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 25, 30, 36, 44, 54, 66, 81, 100];
 
-/// What methods make of a spring on one device.
+/// The limits of a spring on one device by several methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
     /// The device.
     pub device: &'static str,
-    /// Stiffness in N m/rad at which the loop stops being stable.
+    /// Stiffness in N m/rad above which the loop is unstable.
     pub truth: f64,
     /// Largest certified stiffness in N m/rad.
     pub certified: f64,
-    /// What each of [`METHODS`] takes for the truth: steps a tick and stiffness in N m/rad, zero
-    /// where it calls no spring stable.
+    /// The apparent limit by each of [`METHODS`]: steps per tick and stiffness in N m/rad, zero if no spring
+    /// appears stable.
     pub apparent: [Vec<(f64, f64)>; METHODS.len()],
 }
 
@@ -32,7 +32,7 @@ impl Region {
     /// An undelayed spring without a coupling on the heavy knob, and on two masses in a hand.
     ///
     /// # Errors
-    /// Where an eigenvalue is not found.
+    /// If an eigenvalue is not found.
     pub fn all() -> Result<[Self; 2], FailureError> {
         let [knob, held] = simulation::cases();
         Ok([Self::of(knob.name, &knob.experiment)?, Self::of(held.name, &held.experiment)?])

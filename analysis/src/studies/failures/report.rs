@@ -10,17 +10,17 @@ use super::walls::{DELAYS, wall};
 use crate::emulator::ServoClient;
 use crate::worst_hand::HandCase;
 
-/// A case with everything about it.
+/// A case with all its results.
 #[derive(Clone, Debug, Serialize)]
 pub struct CaseReport {
     /// Its name.
     pub name: &'static str,
     /// The question.
     pub question: &'static str,
-    /// The methods that others use.
+    /// The common methods.
     #[serde(rename = "claims")]
     pub methods: Vec<JudgedMethod>,
-    /// What does not err on this loop.
+    /// The true result for this loop.
     pub truth: MethodResult,
     /// The certificate.
     pub certificate: MethodResult,
@@ -29,26 +29,26 @@ pub struct CaseReport {
     pub runs: Vec<RunResult>,
 }
 
-/// The result of a method, and how it is wrong.
+/// The result of a method, and its failure.
 #[derive(Clone, Debug, Serialize)]
 pub struct JudgedMethod {
     /// The result.
     #[serde(flatten)]
     pub result: MethodResult,
-    /// How it is wrong, if it is.
+    /// The failure, if it is wrong.
     pub failure: Option<Failure>,
 }
 
 /// Expected and observed outcome of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunResult {
-    /// The run, in a few words.
+    /// The run as short text.
     pub what: &'static str,
-    /// The outcome that was expected.
+    /// The expected outcome.
     pub expected: Outcome,
     /// Its motion in simulation.
     pub simulated: Motion,
-    /// What the emulated board did, if it was asked and can have the scene.
+    /// The result on the emulated board, if requested and if it can run the scene.
     pub emulated: Option<BoardResult>,
 }
 
@@ -59,7 +59,7 @@ pub struct WallReport {
     pub delay: usize,
     /// Largest certified stiffness in N m/rad.
     pub limit: f64,
-    /// The hand in which it oscillates at 1.01 of that.
+    /// The hand in which it oscillates at 1.01 of that stiffness.
     pub hand: HandCase,
     /// The runs.
     #[serde(rename = "trials")]
@@ -67,10 +67,10 @@ pub struct WallReport {
 }
 
 impl Case {
-    /// Asks all methods, and runs the loops: on the emulated board, too, if there is one.
+    /// Evaluates all methods, and runs the loops, also on the emulated board if there is one.
     ///
     /// # Errors
-    /// Where a loop cannot be had or run.
+    /// If a loop cannot be built or run.
     pub fn report(&self, player: &mut Option<ServoClient>) -> Result<CaseReport, FailureError> {
         let result = self.evaluate()?;
         let truth = result.truth.verdict;
@@ -89,7 +89,7 @@ impl Case {
 /// The walls of every delay.
 ///
 /// # Errors
-/// Where one has no limit, or cannot be run.
+/// If a wall has no limit, or cannot be run.
 pub fn walls(player: &mut Option<ServoClient>) -> Result<Vec<WallReport>, FailureError> {
     let report = |delay| {
         let wall = wall(delay)?;
@@ -122,7 +122,7 @@ impl RunResult {
 }
 
 impl CaseReport {
-    /// Whether some method is wrong, the certificate is not, and all was seen as expected.
+    /// Whether some method is wrong, the certificate is right, and all runs are as expected.
     pub fn holds(&self) -> bool {
         self.methods.iter().any(|judged| judged.failure.is_some())
             && self.certificate.failure(self.truth.verdict).is_none()
@@ -131,7 +131,7 @@ impl CaseReport {
 }
 
 impl WallReport {
-    /// Whether all was seen as expected.
+    /// Whether all runs are as expected.
     pub fn holds(&self) -> bool {
         self.hand.grows() && self.runs.iter().all(RunResult::is_as_expected)
     }

@@ -1,4 +1,4 @@
-//! Roots in floating point: a pole a millionth beside the circle, with others near it.
+//! Roots in floating point: a pole at a distance of a millionth from the circle, with other poles near it.
 
 use haptic_servo::environment::{Coefficients, Environment, Rational};
 use haptic_servo::scene::Scene;
@@ -11,15 +11,15 @@ use crate::stability::{eigenvalues, radius};
 
 /// Distance of the pole from the circle: 2^-20, so that every coefficient is a double.
 pub const BESIDE: f64 = 1.0 / (1 << 20) as f64;
-/// How far inside the circle the four other poles are.
+/// Distance of the four other poles from the circle, inside.
 pub const OTHERS: f64 = 1.0 / (1 << 8) as f64;
 
-/// A pole outside, which the roots of the denominator show inside.
+/// A pole outside the circle that computed roots show inside.
 pub fn outside() -> Result<CaseResult, FailureError> {
     evaluate(1.0 + BESIDE)
 }
 
-/// The same pole inside, which they show outside.
+/// The same pole inside, shown outside.
 pub fn inside() -> Result<CaseResult, FailureError> {
     evaluate(1.0 - BESIDE)
 }
@@ -77,8 +77,8 @@ fn companion(descending: &[f64]) -> DMatrix<f64> {
     })
 }
 
-/// By what the filter's response to an impulse changes over 2^20 samples, once its four fast poles
-/// have died away; computed factor by factor, each of which is exact to a rounding a sample.
+/// The change of the filter's impulse response over 2^20 samples, after its four fast poles have decayed;
+/// computed factor by factor, each exact to one rounding per sample.
 fn growth(pole: f64) -> f64 {
     const LATER: usize = 1 << 20;
     let mut states = [0.0; 5];

@@ -1,4 +1,4 @@
-//! Rules of thumb and theorems short of a condition.
+//! Rules of thumb, and theorems without one of their conditions.
 
 use std::f64::consts::PI;
 
@@ -123,7 +123,7 @@ pub fn damped_rule() -> Result<CaseResult, FailureError> {
     evaluate(methods, &scene, vec![shakes.with_claimed_passivity(10.0), rests.pushed(1.0, 2000)])
 }
 
-/// A study whose truth is the eigenvalues of the device in no hand.
+/// A case whose truth is given by the eigenvalues of the device without a hand.
 fn evaluate(
     methods: Vec<MethodResult>,
     scene: &Scene,

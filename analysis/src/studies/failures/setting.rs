@@ -1,4 +1,4 @@
-//! What the cases have in common: two devices, walls, and what a board would have around them.
+//! The common setting of the cases: two devices, walls, and a board's sensors and motors.
 
 use std::f64::consts::TAU;
 
@@ -17,10 +17,10 @@ use crate::simulation::Experiment;
 /// Period of all cases in s.
 pub const PERIOD: f64 = 1e-3;
 
-/// A heavy knob (theory, end of section 8): undelayed and rigid it takes a spring of 1000 N m/rad.
+/// A heavy knob (theory, end of section 8): undelayed and rigid, its largest spring is 1000 N m/rad.
 pub const KNOB: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
 
-/// The paper's paddle: undelayed and rigid it takes a spring of 44 N m/rad.
+/// The paper's paddle: undelayed and rigid, its largest spring is 44 N m/rad.
 pub const PADDLE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
 /// Encoder and motor of the knob.
@@ -40,7 +40,7 @@ pub const PADDLES: Transducers = Transducers {
     largest_speed: Transducers::NO_HAND_IS_FASTER,
 };
 
-/// A wall that is felt on both sides: stiffness in N m/rad, damping in N m s/rad, delay in samples.
+/// A wall that acts on both sides: stiffness in N m/rad, damping in N m s/rad, delay in samples.
 pub fn wall_of(stiffness: f64, damping: f64, delay: usize) -> Environment {
     let (filter, face, one_sided) = (None, 0.0, false);
     Environment::DamperWall(Wall { stiffness, damping, filter, delay, face, one_sided })
@@ -66,8 +66,8 @@ pub fn coupled(device: Device, environment: Environment) -> Scene {
     Scene { coupling: Coupling::Spring { stiffness }, ..scene }
 }
 
-/// Friction in N m that ends the limit cycle of a wall (theory, section 8): that of the encoder,
-/// and half a step of the DAC, which is a torque error.
+/// Friction in N m that ends the limit cycle of a wall (theory, section 8): for the encoder, plus half a step
+/// of the DAC, which is a torque error.
 pub fn friction_for_rest(scene: &Scene, transducers: &Transducers) -> f64 {
     let codes = f64::from(DacCode::CODES_TO_FULL_SCALE);
     encoder_friction(scene, transducers) + 0.5 * transducers.full_scale_torque / codes
@@ -99,17 +99,16 @@ pub fn loop_run(
 }
 
 impl LoopRun {
-    /// The same pushed off with `velocity` rad/s, for so many samples.
+    /// The same with an initial `velocity` in rad/s, for a number of samples.
     pub fn pushed(mut self, velocity: f64, samples: usize) -> Self {
         self.experiment.start = Motion { position: 0.0, velocity };
         self.experiment.samples = samples;
         self
     }
 
-    /// The same, with a board that is told that the device has so many times the damping and passivity that
-    /// it has, which makes a board run a scene that it would refuse. The device that moves is the true one,
-    /// and so is the torque: no law here but a canceller's, of which there is none, has the device's damping
-    /// in it.
+    /// The same, with a board whose scene claims `times` the device's true damping and passivity, so that it
+    /// runs a scene that it would refuse. The moving device is the true one, and the torque is unchanged:
+    /// only a canceller's law depends on the device's damping, and there is none here.
     pub fn with_claimed_passivity(mut self, times: f64) -> Self {
         let device = self.experiment.scene.device;
         let passivity = device.passivity.map(|passivity| times * passivity);

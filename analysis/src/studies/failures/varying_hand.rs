@@ -1,12 +1,12 @@
-//! A hand that varies with the servo's period destabilises what no hand that stays as it is does
+//! A hand that varies with the servo's period destabilises a loop that is stable in every constant hand
 //! (theory, section 13.6).
 //!
-//! The device is a damper with almost no inertia. The hand reflects the incoming wave: of the incident torque
-//! `e = F_hand + delta v` it returns `r = delta v - F_hand`, so that its energy is the integral of
+//! The device is a damper with almost no inertia. The hand reflects the incoming wave: from the incident
+//! torque `e = F_hand + delta v` it returns `r = delta v - F_hand`, so that its energy is the integral of
 //! `(e^2 - r^2)/(4 delta)`. It takes the two coefficients of `e` over a period in the plane of 1 and
-//! `exp(-t/tau)`, sends each through an all-pass with a delay of a period, and returns their weighted sum,
-//! constant over a period: never more energy than has come. Weights and all-passes are such that at one angle
-//! the whole of a lagging torque comes back as what a sample sees.
+//! `exp(-t/tau)`, filters each by an all-pass with a delay of a period, and returns their weighted sum,
+//! constant over a period: never more energy than it received. Weights and all-passes are chosen so that at
+//! one angle the whole lagging torque returns in the part that a sample sees.
 
 use std::f64::consts::PI;
 
@@ -48,13 +48,13 @@ fn resonant(gain: f64) -> Scene {
     Scene { latency: Latency::NONE.with_actuator_lag(LAG), ..rigid(LIGHT, resonance) }
 }
 
-/// The resonance at so many times the certified limit: its index is that many times the damping.
+/// The resonance at `times` the certified limit: its index is `times` the damping.
 pub fn at(times: f64) -> Scene {
     let index = assess(&resonant(1.0)).alpha_port.map_or(f64::NAN, Interval::midpoint);
     resonant(times * LIGHT.damping / index)
 }
 
-/// 1.005 of the limit: no hand that stays as it is shakes it, and a hand that varies does.
+/// At 1.005 of the limit, stable in every constant hand and unstable in a varying hand.
 pub fn varying_hand() -> Result<CaseResult, FailureError> {
     let scene = at(1.005);
     let device = Chain::rigid(LIGHT.inertia, LIGHT.damping)?;
@@ -92,7 +92,7 @@ pub fn varying_hand() -> Result<CaseResult, FailureError> {
     })
 }
 
-/// A coefficient's way through the hand.
+/// The path of a coefficient through the hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AllPass {
     /// Weight; those of both are the sides of a triangle with a right angle and the hypotenuse 1.
@@ -101,14 +101,14 @@ pub struct AllPass {
     pub pole: f64,
 }
 
-/// The hand: the coefficients in the plane, and what becomes of them. Units are those of the loop.
+/// The hand: the filters of the coefficients in the plane. Units are those of the loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VaryingHand {
     /// `tau` in periods.
     lag: f64,
     /// `exp(-1/tau)`
     left: f64,
-    /// Of the constant, and of the part perpendicular to it.
+    /// The paths of the constant, and of the part perpendicular to it.
     pub ways: [AllPass; 2],
 }
 
@@ -120,11 +120,11 @@ fn plane(lag: f64) -> (f64, f64) {
 }
 
 impl VaryingHand {
-    /// The hand that is the worst against a scene behind an amplifier, at the angle where its certificate
-    /// lacks the most.
+    /// The worst hand for a scene behind an amplifier, at the angle with the largest shortage of its
+    /// certificate.
     ///
     /// # Errors
-    /// Where the scene has no transfer function.
+    /// If the scene has no transfer function.
     pub fn against(scene: &Scene) -> Result<Self, FailureError> {
         let controller = Response::new(transfers(scene).map_err(SimulationError::from)?.controller);
         let (period, damping) = (scene.timing.period, scene.device.damping);
@@ -157,10 +157,10 @@ impl VaryingHand {
         Ok(Self { lag, left, ways })
     }
 
-    /// Growth a period of the loop of a scene in this hand: the largest eigenvalue of the whole over a period.
+    /// Growth per period of the loop of a scene in this hand: the largest eigenvalue of the monodromy matrix.
     ///
     /// # Errors
-    /// Where the scene has no transfer function, or the eigenvalues are not found.
+    /// If the scene has no transfer function, or the eigenvalues are not found.
     pub fn multiplier(&self, scene: &Scene) -> Result<f64, FailureError> {
         let found = eigenvalues(&self.monodromy(scene)?)?;
         Ok(radius(&found))

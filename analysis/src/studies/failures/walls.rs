@@ -1,5 +1,5 @@
-//! Both sides of the line: walls at 0.99 of the certified limit, which come to rest, and at 1.01 of
-//! it, with the hand in which they do not.
+//! Walls on both sides of the limit: at 0.99 of the certified limit, where they come to rest, and at 1.01,
+//! with the hand in which they do not.
 //!
 //! For a rigid device and a linear wall the certified limit is the true one (theory, section 4.1).
 
@@ -16,9 +16,9 @@ use crate::worst_hand::{HandCase, plant, search};
 /// Delays in samples.
 pub const DELAYS: std::ops::RangeInclusive<usize> = 0..=4;
 
-/// How fast in rad/s a wall in a hand is pushed that has to come to rest.
+/// Initial velocity in rad/s of a wall in a hand that must come to rest.
 const SLOW: f64 = 0.1;
-/// Most samples in which a wall has to grow.
+/// Largest number of samples in which a motion must grow.
 const LONGEST: f64 = 150_000.0;
 
 /// A wall of one delay.
@@ -26,19 +26,19 @@ const LONGEST: f64 = 150_000.0;
 pub struct Wall {
     /// Largest certified stiffness in N m/rad.
     pub limit: f64,
-    /// The hand in which it is worst at 1.01 of that.
+    /// The worst hand at 1.01 of that stiffness.
     pub hand: HandCase,
-    /// At 0.99, in no hand and in that one.
+    /// At 0.99, without a hand and in that hand.
     pub below: [LoopRun; 2],
     /// At 1.01 in that hand.
     pub above: LoopRun,
 }
 
-/// A wall of that delay on the paddle: behind the standard coupling, but for the undelayed one,
-/// whose stiffness has a limit only without.
+/// A wall of that delay on the paddle: behind the standard coupling, except for the undelayed wall, whose
+/// stiffness has a limit only without a coupling.
 ///
 /// # Errors
-/// Where it has no limit, or no hand is found.
+/// If it has no limit, or no hand is found.
 pub fn wall(delay: usize) -> Result<Wall, FailureError> {
     let scene = match delay {
         0 => rigid(PADDLE, wall_of(0.0, 0.0, delay)),
@@ -56,10 +56,10 @@ pub fn wall(delay: usize) -> Result<Wall, FailureError> {
         loop_run
     };
     let below_in_hand = held("0.99 of it, in the worst hand", &below, Outcome::Converges);
-    // As long as friction needs to stop that much inertia, and some seconds.
+    // The time that friction needs to stop this inertia, plus some seconds.
     let momentum = SLOW * (PADDLE.inertia + hand.hand.inertia);
     let seconds = 3.0 * momentum / below_in_hand.experiment.friction + 4.0;
-    // Without friction, which would hide that little: long enough for three times the motion.
+    // Without friction, which would hide such slow growth: until the motion has tripled.
     let samples = (2.0 / hand.spectral_radius.ln()).clamp(1000.0, LONGEST) as usize;
     let mut above = held("1.01 of it, in the worst hand", &above, Outcome::Diverges);
     above.experiment.friction = 0.0;

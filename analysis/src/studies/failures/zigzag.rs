@@ -1,5 +1,5 @@
-//! A hand that moves to and fro over one edge of the encoder, a tick each: the least friction that
-//! keeps a wall passive is no less than that of section 8 of the theory.
+//! A hand that moves back and forth over one edge of the encoder, in alternate ticks: the least friction that
+//! keeps a wall passive is not less than that of section 8 of the theory.
 
 use std::f64::consts::TAU;
 
@@ -15,14 +15,14 @@ use super::setting::{PADDLE, PADDLES, encoder_friction, loop_run, rigid, wall_of
 use crate::simulation::SimulationError;
 use crate::simulation::unquantized_servo::UnquantizedServo;
 
-/// Times to and fro.
+/// Number of cycles.
 const TIMES: usize = 8;
-/// Way of the hand to both sides of the edge, in steps of the encoder.
+/// Amplitude of the hand on both sides of the edge, in steps of the encoder.
 const BESIDE: f64 = 0.1;
-/// Part of the friction that is needed.
+/// Fraction of the needed friction.
 const ALMOST: f64 = 0.99;
 
-/// A wall with almost the friction that it needs: by itself it comes to rest.
+/// A wall with almost the friction that it needs: without the hand it comes to rest.
 pub fn zigzag() -> Result<CaseResult, FailureError> {
     let scene = wall();
     let needed = encoder_friction(&scene, &PADDLES);
@@ -44,11 +44,10 @@ pub fn wall() -> Scene {
     rigid(PADDLE, wall_of(20.0, 0.005, 0))
 }
 
-/// Energy in J that a hand gets out of a wall and its dry friction each time that it goes over an
-/// edge of the encoder and back.
+/// Energy in J that a hand gains from a wall and its dry friction in each cycle over an edge of the encoder.
 ///
 /// # Errors
-/// Where the scene has no law that could run.
+/// If the scene has no law that can run.
 pub fn gained(scene: &Scene, friction: f64) -> Result<f64, FailureError> {
     let step = TAU / PADDLES.counts_per_turn;
     let mut servo = UnquantizedServo::new(scene).map_err(SimulationError::from)?;

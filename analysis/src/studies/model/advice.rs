@@ -1,4 +1,4 @@
-//! Which model is enough, and what the others miss.
+//! The simplest sufficient model, and the errors of the others.
 
 use std::path::Path;
 
@@ -9,13 +9,13 @@ use super::{Deviation, Model, ModelResult, percent};
 use crate::file::SceneFile;
 use crate::simulation::{Experiment, SimulationError};
 
-/// Why models cannot be compared.
+/// The reason why models cannot be compared.
 #[derive(Debug, Error)]
 pub enum ModelError {
     /// The fullest model has no motion or no loop.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    /// The run is a rest.
+    /// Nothing moves in the run.
     #[error(
         "{scene}: nothing moves in its simulation, so models cannot be compared; give it a \
          position, a velocity or a torque"
@@ -26,47 +26,46 @@ pub enum ModelError {
     },
 }
 
-/// Which model is enough.
+/// The comparison of models.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Advice {
-    /// What the person calls the scene.
+    /// The name of the scene in the file.
     pub scene: String,
-    /// Most that a number may be off, as a share of the fullest model's.
+    /// Largest relative error of a number, compared with the fullest model.
     pub bound: f64,
-    /// The cheapest model that is enough.
+    /// The cheapest sufficient model.
     pub enough: String,
-    /// What that leaves out.
+    /// The omissions of that model.
     pub left_out: Vec<String>,
     /// All models, the cheapest first; the last is the fullest.
     pub models: Vec<JudgedModel>,
-    /// Why there is no certificate to compare; `None` where there is.
+    /// The reason if there is no certificate to compare.
     pub no_certificate: Option<String>,
-    /// The answer as a sentence.
+    /// The result as text.
     pub message: String,
 }
 
-/// A model beside the fullest one.
+/// A model compared with the fullest model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JudgedModel {
     /// Its name.
     pub model: String,
-    /// What the fullest model has and this has not.
+    /// Parts of the fullest model that this model omits.
     pub lacks: Vec<String>,
     /// Its result.
     #[serde(flatten)]
     pub result: ModelResult,
     /// Its deviation from the fullest model.
     pub deviation: Deviation,
-    /// What of it is beyond the bound; empty where the model is enough.
+    /// The deviations beyond the bound; empty if the model is sufficient.
     pub beyond: Vec<String>,
 }
 
-/// Compares the models of a file's machine by what the file wants to be simulated; `folder` is
-/// where its torque file is looked for, `bound` the most that a number may be off, as a share of
-/// the fullest model's.
+/// Compares the models of a file's machine by the file's simulation; `folder` is the folder of its torque
+/// file, `bound` the largest relative error of a number, compared with the fullest model.
 ///
 /// # Errors
-/// Where the file has no simulation, or one in which nothing moves, or its scene no closed loop.
+/// If the file has no simulation, nothing moves in it, or its scene has no closed loop.
 pub fn advise(file: &SceneFile, folder: &Path, bound: f64) -> Result<Advice, ModelError> {
     let run = Experiment::of(file, folder)?;
     let fullest = Model::fullest(file);
@@ -117,7 +116,7 @@ impl JudgedModel {
         Self { model, lacks, result, deviation, beyond }
     }
 
-    /// What its omissions cost and save.
+    /// The text on the errors and the savings of its omissions.
     fn costs(&self, full: &ModelResult) -> String {
         let of = |(name, part)| format!("{} of the {name}", percent(part));
         let off: Vec<String> = self.deviation.parts().map(of).collect();

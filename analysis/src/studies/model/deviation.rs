@@ -1,4 +1,4 @@
-//! How far a model is from the fullest one.
+//! The deviation of a model from the fullest model.
 
 use serde::Serialize;
 
@@ -6,24 +6,23 @@ use super::model_result::ModelResult;
 use crate::quantity::significant;
 use crate::simulation::Trajectory;
 
-/// How far a model's numbers are from the fullest's, each as a share of the fullest's.
+/// The relative deviations of a model's numbers from those of the fullest model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Deviation {
-    /// Of the device's passivity, on which the certificate rests; `None` where the fullest model
-    /// has none.
+    /// Of the device's passivity, which the certificate uses; `None` if the fullest model has none.
     pub delta: Option<f64>,
-    /// Of the stiffness at which the loop in its hand stops being stable; `None` where neither
-    /// model has one, infinite where only one has.
+    /// Of the critical stiffness of the loop in its hand; `None` if neither model has one, infinite if only
+    /// one has.
     pub critical_stiffness: Option<f64>,
-    /// Largest of the angle over the run, as a share of the largest angle; infinite where the
-    /// motion of only one of the two leaves the range of numbers.
+    /// Largest deviation of the angle over the run, relative to the largest angle; infinite if the motion of
+    /// only one of the two leaves the range of numbers.
     pub angle: f64,
     /// The same of the torque.
     pub torque: f64,
 }
 
 impl Deviation {
-    /// Of a model's facts from the fullest's.
+    /// The deviation of a model's result from the fullest model's.
     pub(super) fn of(result: &ModelResult, fullest: &ModelResult) -> Self {
         let delta = fullest.delta.map(|full| share(result.delta, full));
         let critical_stiffness = match (result.critical_stiffness, fullest.critical_stiffness) {
@@ -38,7 +37,7 @@ impl Deviation {
         Self { delta, critical_stiffness, angle, torque }
     }
 
-    /// Its parts by name, those apart that are not there.
+    /// Its available parts by name.
     pub fn parts(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let parts = [
             ("delta", self.delta),
@@ -50,7 +49,7 @@ impl Deviation {
     }
 }
 
-/// A share as people write it.
+/// A fraction in per cent.
 pub fn percent(share: f64) -> String {
     if share.is_finite() { format!("{} %", significant(100.0 * share, 3)) } else { "-".to_owned() }
 }
@@ -68,7 +67,7 @@ fn largest_difference(column: &[f64], full: &[f64]) -> f64 {
     relative(difference, peak)
 }
 
-/// Equal numbers are equal, both zero included.
+/// Equal numbers have no deviation, including two zeros.
 fn relative(difference: f64, of: f64) -> f64 {
     if difference == 0.0 { 0.0 } else { difference / of }
 }

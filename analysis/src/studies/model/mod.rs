@@ -1,8 +1,8 @@
-//! How much model of a device a scene needs: the cheapest model whose verdict and motion stay within a bound
-//! of the full model's, which the scene's file describes.
+//! The simplest sufficient model of a device: the cheapest model whose verdict and motion stay within a bound
+//! of those of the full model, which the scene's file describes.
 //!
-//! The servo is the same in all of them. What a model may leave out is the hand that holds the
-//! device, masses of the chain (links are welded: [`Chain::lumped`]) and the amplifier's lag.
+//! The servo is the same in all of them. A model may omit the hand that holds the device, masses of the chain
+//! (links become rigid: [`Chain::lumped`]) and the amplifier's lag.
 
 mod advice;
 mod deviation;
@@ -22,19 +22,19 @@ use crate::file::SceneFile;
 use crate::simulation::Experiment;
 use crate::simulation::plant::Plant;
 
-/// What of the machine is modelled.
+/// The modelled parts of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Model {
     /// Masses of the chain; one is a rigid device.
     pub masses: usize,
-    /// Whether it is in the hand of the file.
+    /// Whether the file's hand holds it.
     pub hand: bool,
     /// Whether the amplifier lags.
     pub lag: bool,
 }
 
 impl Model {
-    /// All that the file describes.
+    /// The model with all parts of the file.
     pub fn fullest(file: &SceneFile) -> Self {
         Self {
             masses: file.chain.masses().len(),
@@ -43,8 +43,8 @@ impl Model {
         }
     }
 
-    /// This one and all that leave something of it out, the cheapest first: that with the fewest
-    /// states, and among those the one with the fewest parts.
+    /// This model and all models that omit parts of it, the cheapest first: by the number of states, then by
+    /// the number of parts.
     pub fn up_to(self) -> Vec<Self> {
         let either = |is: bool| if is { &[false, true][..] } else { &[false] };
         let mut models = Vec::new();
@@ -62,7 +62,7 @@ impl Model {
         file.chain.lumped(self.masses)
     }
 
-    /// The scene of a file on this model's machine, as far as its latency goes.
+    /// The scene of a file with the latency of this model's machine.
     pub fn scene(self, file: &SceneFile) -> Scene {
         let mut scene = file.scene;
         if !self.lag {
@@ -78,12 +78,12 @@ impl Model {
         Plant::of(&self.chain(file)).with_hand(hand)
     }
 
-    /// What the file wants to be simulated, on this model's machine.
+    /// The file's simulation on this model's machine.
     pub fn experiment(self, file: &SceneFile, run: &Experiment) -> Experiment {
         Experiment { plant: self.plant(file), scene: self.scene(file), ..run.clone() }
     }
 
-    /// Its omissions from another model, in words.
+    /// Its omissions compared with another model, as text.
     pub fn lacks(self, fuller: Self) -> Vec<String> {
         let mut lacks = Vec::new();
         match fuller.masses - self.masses {

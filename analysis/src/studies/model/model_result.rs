@@ -18,24 +18,23 @@ use crate::verdict::{self, VerdictReport};
 pub struct ModelResult {
     /// States of the loop, the servo's included.
     pub states: usize,
-    /// Samples that are simulated in a second on one core of this machine.
+    /// Simulated samples per second on one core of this machine.
     pub steps_per_second: f64,
-    /// Passivity in N m s/rad that the certificate counts on; `None` where the device of this model
-    /// has none.
+    /// Passivity in N m s/rad for the certificate; `None` if the device of this model has none.
     pub delta: Option<f64>,
-    /// The certificate's answer; `None` where there is no `delta`.
+    /// The certificate's verdict; `None` without a `delta`.
     pub certificate: Option<verdict::Verdict>,
     /// Whether the loop is stable in the model's hand.
     pub stability: stability::StabilityVerdict,
-    /// Stiffness of the environment in N m/rad at which it stops being so.
+    /// Stiffness of the environment in N m/rad above which the loop is unstable.
     pub critical_stiffness: Option<f64>,
-    /// What the run of the file gives.
+    /// The motion of the file's run.
     #[serde(skip)]
     pub motion: Trajectory,
 }
 
 impl ModelResult {
-    /// Asks a model of a file's machine; `run` is what the file wants to be simulated.
+    /// Evaluates a model of a file's machine; `run` is the file's simulation.
     pub(super) fn of(
         model: Model,
         file: &SceneFile,
@@ -56,8 +55,8 @@ impl ModelResult {
     }
 }
 
-/// The certificate of the scene on the model's device, if that has any passivity: its own, or what
-/// the file declares where that is less.
+/// The certificate of the scene on the model's device, if the device has passivity: its own, or the declared
+/// passivity if that is less.
 fn certificate(model: Model, file: &SceneFile) -> Option<VerdictReport> {
     let mut device = model.chain(file).as_rigid().ok()?;
     if let Some(declared) = declared(file) {
@@ -66,7 +65,7 @@ fn certificate(model: Model, file: &SceneFile) -> Option<VerdictReport> {
     Some(verdict::judge(&file.name, &Scene { device, ..model.scene(file) }))
 }
 
-/// The passivity that the file declares, if it is not that of its chain.
+/// The file's declared passivity, if it is not that of its chain.
 fn declared(file: &SceneFile) -> Option<f64> {
     let own = file.chain.as_rigid().ok()?.passivity;
     file.scene.device.passivity.filter(|&passivity| own != Some(passivity))

@@ -1,4 +1,4 @@
-//! Which number format is enough for a scene, and the cheapest that is.
+//! The cheapest sufficient number format for a scene.
 
 use haptic_servo::certificate::QuantizationBound;
 use haptic_servo::number::Arithmetic;
@@ -8,38 +8,37 @@ use super::{FormatError, Losses, Motion};
 use crate::quantity::significant;
 use crate::verdict::AtRest;
 
-/// What a format has to keep to.
+/// The requirements on a format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Requirements {
-    /// Most torque in N m, from its lowest to its highest, that may be left at rest: by the format,
-    /// and by the encoder.
+    /// Largest torque of a limit cycle at rest in N m, peak to peak: by the format, and by the encoder.
     pub hum: f64,
     /// Largest error of the torque in N m, if there is one.
     pub error: Option<f64>,
-    /// Most of a core's time that a tick may take, as a part.
+    /// Largest fraction of a core's time for a tick.
     pub share: f64,
-    /// Ticks a second.
+    /// Ticks per second.
     pub rate: f64,
-    /// Instructions that a core does in a second.
+    /// Instructions per second of a core.
     pub clock: f64,
 }
 
-/// A format with its cost and its losses.
+/// A format with its cost and its errors.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
     /// Its name.
     pub format: &'static str,
-    /// Most instructions of a tick from count to code.
+    /// Largest number of instructions of a tick from count to code.
     pub instructions: f64,
-    /// Part of the core's time that these take at the rate.
+    /// Fraction of the core's time at the rate.
     pub share: f64,
-    /// Its losses; `None` if the format cannot hold the scene.
+    /// Its errors; `None` if the format cannot represent the scene.
     pub losses: Option<Losses>,
     /// Certified bound on the torque's error, with encoder and DAC, and the device's friction
     /// against it; `None` without a bound.
     #[serde(serialize_with = "at_rest")]
     pub rest: Option<QuantizationBound>,
-    /// Why it is not taken; empty where it is, or is only dearer.
+    /// The reasons for rejecting it; empty if it is sufficient.
     pub rejected: Vec<String>,
 }
 
@@ -66,15 +65,15 @@ pub struct Advice {
     /// Torque in N m of the limit cycle by the encoder alone, in the finest format; `None` if its
     /// resolution is not stated.
     pub encoder_hum: Option<f64>,
-    /// Most of that which is wanted.
+    /// The largest allowed limit cycle.
     hum: f64,
 }
 
 impl Advice {
-    /// Looks at all formats; `instructions` are those of a tick in each.
+    /// Evaluates all formats; `instructions` returns those of a tick in each.
     ///
     /// # Errors
-    /// Where the scene is refused or cannot be simulated.
+    /// If the scene is rejected or cannot be simulated.
     pub fn new(
         motion: &Motion,
         requirements: &Requirements,
@@ -104,7 +103,7 @@ impl Advice {
         Ok(Self { candidates, encoder_hum, hum: requirements.hum })
     }
 
-    /// The cheapest format that keeps to the figures: with the encoder, where there is one.
+    /// The cheapest format that satisfies the requirements, with the encoder if it is stated.
     pub fn choice(&self) -> Option<&Candidate> {
         let keep = || self.candidates.iter().filter(|candidate| candidate.rejected.is_empty());
         keep().find(|candidate| !self.hums(candidate)).or_else(|| keep().next())
@@ -116,7 +115,7 @@ impl Advice {
     }
 }
 
-/// What a format adds at rest; of two that cost the same the quieter one is better.
+/// The limit cycle of a format at rest; of two formats with the same cost the smaller is better.
 fn hum(candidate: &Candidate) -> f64 {
     candidate.losses.map_or(f64::INFINITY, |losses| losses.alone.torque)
 }

@@ -1,4 +1,4 @@
-//! What a tick takes on the emulated board in a format.
+//! The cost of a tick on the emulated board in a format.
 
 use firmware_harness::bench_request::BenchRequest;
 use haptic_servo::number::Arithmetic;
@@ -9,17 +9,17 @@ use crate::emulator::BenchClient;
 /// Instructions of a tick from count to code, on the emulated board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// The most that a tick takes.
+    /// The largest number.
     pub most: u32,
     /// Their mean.
     pub mean: f64,
 }
 
-/// Has the board follow a motion, beside this machine.
+/// Runs a motion on the board and on this machine.
 ///
 /// # Errors
-/// Where the scene cannot be had in this format, the board fails or has no program for it, or a
-/// torque or a code of the board is not to the bit that of this machine.
+/// If the scene cannot be represented in this format, if the board fails or has no program for it, or if a
+/// torque or a code of the board differs from this machine's in any bit.
 pub fn cost(
     board: &mut BenchClient,
     motion: &Motion,

@@ -1,4 +1,4 @@
-//! Why a scene has no figures in a number format.
+//! The reasons why a scene has no figures in a number format.
 
 use haptic_servo::certificate::Rejection;
 use haptic_servo::number::OutOfRange;
@@ -8,7 +8,7 @@ use thiserror::Error;
 use crate::emulator::EmulatorError;
 use crate::simulation::SimulationError;
 
-/// Why a scene has no figures in a number format.
+/// The reason why a scene has no figures in a number format.
 #[derive(Debug, Error)]
 pub enum FormatError {
     /// The certificate refuses the scene.
@@ -29,13 +29,13 @@ pub enum FormatError {
          cannot be distinguished from it: give the device more damping, or the scene more margin"
     )]
     NoRest {
-        /// Longest time that is waited for, in s.
+        /// The longest time of the search in s.
         seconds: f64,
     },
     /// The emulated board failed.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
-    /// The emulated board computes something else.
+    /// The emulated board's result differs.
     #[error(
         "in {format} the torque of the emulated board differs from that of this machine at tick \
          {tick}: its program has another version"

@@ -1,4 +1,4 @@
-//! The certificate's word on whether a device comes to rest, in any format.
+//! The certificate's bound for a device's coming to rest, in any format.
 
 use haptic_servo::certificate::{QuantizationBound, Resolution};
 use haptic_servo::number::Arithmetic;
@@ -10,7 +10,7 @@ impl FormatProblem {
     /// friction against it (theory, section 8). `None` without a bound: the controller's impulse
     /// response is not summable.
     pub fn rest(&self, arithmetic: Arithmetic) -> Option<QuantizationBound> {
-        // In the units of the servo, since it rounds in those.
+        // In the units of the servo, in which it rounds.
         let units = self.units(arithmetic);
         let Resolution { encoder, full_scale, friction, current, crossing } = self.steps;
         let steps = Resolution {

@@ -1,5 +1,5 @@
-//! What does not come to rest where everything should: a device without friction under a constant
-//! push, which only rounding keeps in motion.
+//! The limit cycle of rounding: a device without friction under a constant push, which only rounding keeps in
+//! motion.
 
 use haptic_servo::environment::Environment;
 use haptic_servo::number::Arithmetic;
@@ -12,33 +12,32 @@ use crate::simulation::held_device::{DeviceState, HeldDevice};
 /// The limit cycle of a device that is pressed against a wall, or released in free mode.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LimitCycle {
-    /// Torque in N m from its lowest to its highest, the most that any start ends with.
+    /// Torque in N m, peak to peak, the largest of all starts.
     #[serde(rename = "hum")]
     pub torque: f64,
-    /// Angle in rad from its lowest to its highest, the least that any start ends with.
+    /// Angle in rad, peak to peak, the smallest of all starts.
     #[serde(rename = "cycle")]
     pub angle: f64,
 }
 
-/// Torque in N m that pushes against a wall, or half of the limit where that is less.
+/// Torque in N m that pushes against a wall, or half of the limit if that is less.
 pub const PRELOAD: f64 = 0.2;
-/// Starts in rad off zero.
+/// Initial positions in rad.
 const STARTS: [f64; 9] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6];
-/// Shortest time in s over which a motion is looked at.
+/// Shortest window of a motion in s.
 const WINDOW: f64 = 0.25;
-/// Longest. A motion that does not die away by half within it is not waited for.
+/// Longest window in s. A motion that does not decay by half within it is an error.
 const LONGEST: f64 = 4.0;
-/// Most windows until a motion has died away as far as it will.
+/// Largest number of windows until a motion has decayed to its limit cycle.
 const WINDOWS: usize = 40;
-/// A motion that has not become smaller by this part from one window to the next has died away.
+/// Ratio of two windows above which a motion counts as decayed.
 const STEADY: f64 = 0.9;
 
-/// Lets a device come to rest, from several starts; with an encoder whose counts are as coarse as
-/// the scene's, or with angles that no encoder has counted.
+/// Lets a device come to rest from several starts, with the scene's encoder or with exact angles.
 ///
 /// # Errors
-/// Where the scene is refused, cannot be had in this format, or does not come to rest in a time that
-/// is worth waiting for.
+/// If the scene is rejected, cannot be represented in this format, or does not decay within the longest
+/// window.
 pub fn at_rest(
     problem: &FormatProblem,
     arithmetic: Arithmetic,
@@ -65,12 +64,11 @@ pub fn at_rest(
     Ok(largest)
 }
 
-/// Time in s in which the motion dies away by half at least, where nothing but inertia keeps it up: in
-/// `f64`, with angles that no encoder has counted.
+/// Time in s in which the motion decays at least by half without rounding: in `f64`, with exact angles.
 fn window(problem: &FormatProblem, device: &HeldDevice, push: f64) -> Result<f64, FormatError> {
     let mut window = WINDOW;
     while window <= LONGEST {
-        // Four windows at once, in which a slow oscillation shows its whole span.
+        // Four windows together, so that a slow oscillation shows its whole span.
         let ticks = ticks(4.0 * window, problem.scene.timing.period);
         let servo = problem.servo(Arithmetic::F64)?;
         let motion = Motion { position: STARTS[0], velocity: 0.0 };
@@ -85,12 +83,12 @@ fn window(problem: &FormatProblem, device: &HeldDevice, push: f64) -> Result<f64
     Err(FormatError::NoRest { seconds: LONGEST })
 }
 
-/// Ticks in a time in s.
+/// Number of ticks in a time in s.
 fn ticks(time: f64, period: f64) -> usize {
     (time / period).ceil() as usize
 }
 
-/// Whether there is something to lean on.
+/// Whether the environment has a spring.
 fn has_spring(environment: &Environment) -> bool {
     match environment {
         Environment::FreeMode { .. } => false,
@@ -111,7 +109,7 @@ struct Settling<'a> {
 }
 
 impl Settling<'_> {
-    /// The limit cycle in a window of so many ticks, once it no longer shrinks.
+    /// The limit cycle in a window of `ticks` ticks, after it has stopped shrinking.
     fn settle(&mut self, ticks: usize) -> Result<LimitCycle, FormatError> {
         let mut last = self.window(ticks)?;
         for _ in 1..WINDOWS {

@@ -1,16 +1,16 @@
-//! All that a format loses of a scene's torque.
+//! All errors of a format in a scene's torque.
 
 use haptic_servo::number::Arithmetic;
 use serde::Serialize;
 
 use super::{FormatError, LimitCycle, Motion, at_rest};
 
-/// What a format loses.
+/// The errors of a format.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Losses {
     /// Largest difference in N m to the torques of `f64` on the same counts.
     pub error: f64,
-    /// The same around 1 rad; `None` where the scene cannot be moved there.
+    /// The same around 1 rad; `None` if the scene cannot be moved there.
     pub error_elsewhere: Option<f64>,
     /// Limit cycle by the format alone.
     pub alone: LimitCycle,
@@ -19,10 +19,10 @@ pub struct Losses {
 }
 
 impl Losses {
-    /// What a format loses in a motion, and at rest.
+    /// The errors of a format in a motion, and at rest.
     ///
     /// # Errors
-    /// Where the scene cannot be had in this format.
+    /// If the scene cannot be represented in this format.
     pub fn of(motion: &Motion, arithmetic: Arithmetic) -> Result<Self, FormatError> {
         let elsewhere = motion.around(1.0);
         Ok(Self {

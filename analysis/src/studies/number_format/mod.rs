@@ -1,5 +1,5 @@
-//! What the servo's number format does to its torque: the same servo in every format, on the same
-//! counts, in the same hand.
+//! The effect of the number format on the servo's torque: the same servo in every format, on the same counts,
+//! in the same hand.
 
 mod advice;
 mod cost;
@@ -25,8 +25,7 @@ use haptic_servo::servo::Transducers;
 
 use crate::controller::{Controller, controller};
 
-/// Default of the largest angle in rad to each side that a scaled format has to hold: a knob's or a
-/// paddle's.
+/// Default of the largest angle in rad to each side of zero in a scaled format: that of a knob or a paddle.
 pub const HALF_A_TURN: f64 = std::f64::consts::PI;
 
 /// A scene with its sensor and motor, to be computed in any format.
@@ -38,18 +37,18 @@ pub struct FormatProblem {
     pub transducers: Transducers,
     /// The stated resolution, and the device's friction.
     pub steps: Resolution,
-    /// Largest angle in rad to each side that a scaled format has to hold.
+    /// Largest angle in rad to each side of zero in a scaled format.
     pub range: f64,
 }
 
-/// A servo that takes angles in rad and gives torques in N m, whatever it is scaled to inside.
+/// A servo from angles in rad to torques in N m, independently of its internal units.
 pub struct FormatServo {
     controller: Box<dyn Controller>,
     units: Units,
 }
 
 impl FormatProblem {
-    /// What the numbers of a format count in this scene.
+    /// The units of a format's numbers in this scene.
     pub fn units(&self, arithmetic: Arithmetic) -> Units {
         if arithmetic.is_scaled() {
             let torque = self.scene.torque_limit.unwrap_or(self.transducers.full_scale_torque);
@@ -68,7 +67,7 @@ impl FormatProblem {
     /// The scene's servo in a format, at rest at zero.
     ///
     /// # Errors
-    /// Where the scene is refused, or cannot be had in this format.
+    /// If the scene is rejected, or cannot be represented in this format.
     pub fn servo(&self, arithmetic: Arithmetic) -> Result<FormatServo, FormatError> {
         let (scene, transducers) = self.scaled(arithmetic);
         let controller = arithmetic.choose(Build { scene, transducers })?;
@@ -83,16 +82,16 @@ impl FormatServo {
         (tick.torque * self.units.torque, tick.code)
     }
 
-    /// The torque in N m at an angle in rad that no encoder has counted.
+    /// The torque in N m at an exact angle in rad.
     ///
     /// # Errors
-    /// Where the format does not hold the angle.
+    /// If the format cannot represent the angle.
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, FormatError> {
         Ok(self.controller.tick_at(angle / self.units.angle)? * self.units.torque)
     }
 }
 
-/// Builds a servo, in a format that is still to be chosen.
+/// Builds a servo in a format selected at run time.
 struct Build {
     scene: Scene,
     transducers: Transducers,

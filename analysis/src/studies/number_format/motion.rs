@@ -1,4 +1,4 @@
-//! A motion of contact and free, and how far a format's torques are from those of `f64` in it.
+//! A motion in and out of contact, and the deviation of a format's torques from those of `f64`.
 
 use haptic_servo::environment::Environment;
 use haptic_servo::number::Arithmetic;
@@ -8,12 +8,12 @@ use crate::controller::controller;
 use crate::hand::HandTrajectory;
 use crate::lockstep::{NoRemote, SimulatedDevice, run};
 
-/// Counts of a device in a hand, as the servo in `f64` moves it.
+/// Counts of a device in a hand, with the servo in `f64`.
 #[derive(Clone, Debug)]
 pub struct Motion {
     problem: FormatProblem,
     counts: Vec<i32>,
-    /// Where the comparison begins.
+    /// The tick in which the comparison begins.
     begin: usize,
 }
 
@@ -21,10 +21,10 @@ pub struct Motion {
 const APPROACH: f64 = 1.0;
 
 impl Motion {
-    /// Moves the device by a hand's script, for so many s.
+    /// Moves the device by a hand's trajectory, for a time in s.
     ///
     /// # Errors
-    /// Where the scene is refused or cannot be simulated.
+    /// If the scene is rejected or cannot be simulated.
     pub fn new(
         problem: &FormatProblem,
         trajectory: HandTrajectory,
@@ -46,8 +46,8 @@ impl Motion {
         Self { problem: *problem, counts, begin: 0 }
     }
 
-    /// The same motion around the whole count nearest to so many rad, with the wall's face there;
-    /// `None` where the environment has its rest at zero and nowhere else.
+    /// The same motion around the whole count nearest to `angle` rad, with the wall's face there; `None` if
+    /// the environment's rest position is always zero.
     pub fn around(&self, angle: f64) -> Option<Self> {
         let counts_per_radian = self.problem.transducers.counts_per_turn / std::f64::consts::TAU;
         let offset = (angle * counts_per_radian).round();
@@ -70,12 +70,12 @@ impl Motion {
         Some(Self { problem, counts: approach.chain(there).collect(), begin })
     }
 
-    /// The raw counts, one a tick.
+    /// The raw counts, one per tick.
     pub fn counts(&self) -> &[i32] {
         &self.counts
     }
 
-    /// What moves.
+    /// The scene and its transducers.
     pub fn problem(&self) -> &FormatProblem {
         &self.problem
     }
@@ -83,7 +83,7 @@ impl Motion {
     /// Torques in N m and codes in a format, tick by tick.
     ///
     /// # Errors
-    /// Where the scene cannot be had in this format.
+    /// If the scene cannot be represented in this format.
     pub fn torques(&self, arithmetic: Arithmetic) -> Result<Vec<(f64, u16)>, FormatError> {
         let mut servo = self.problem.servo(arithmetic)?;
         Ok(self.counts.iter().map(|&count| servo.tick(count)).collect())
@@ -92,7 +92,7 @@ impl Motion {
     /// Largest difference in N m of a format's torques to those of `f64` on the same counts.
     ///
     /// # Errors
-    /// Where the scene cannot be had in this format.
+    /// If the scene cannot be represented in this format.
     pub fn error(&self, arithmetic: Arithmetic) -> Result<f64, FormatError> {
         let (here, reference) = (self.torques(arithmetic)?, self.torques(Arithmetic::F64)?);
         let pairs = here.iter().zip(&reference).skip(self.begin);

@@ -1,11 +1,11 @@
-//! Units of angle and torque: how a scene fits a format that holds nothing above 1.
+//! Units of angle and torque, which scale a scene to a format with a range of 1.
 
 use haptic_servo::environment::{Coefficients, Environment, Rational};
 use haptic_servo::parameter::Parameter;
 use haptic_servo::scene::{Coupling, Device, Scene};
 use haptic_servo::servo::Transducers;
 
-/// What a servo's numbers count. Powers of two, so that a change of units rounds nothing.
+/// The units of a servo's numbers: powers of two, so that a change of units is exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
     /// Unit of angles in rad.
@@ -18,7 +18,7 @@ impl Units {
     /// rad and N m.
     pub const SI: Self = Self { angle: 1.0, torque: 1.0 };
 
-    /// The smallest in which an angle in rad and a torque in N m are below 1.
+    /// The smallest units in which an angle in rad and a torque in N m are below 1.
     pub fn above(angle: f64, torque: f64) -> Self {
         let above = |value: f64| (value.log2().floor() + 1.0).exp2();
         Self { angle: above(angle), torque: above(torque) }
@@ -48,7 +48,7 @@ impl Units {
     /// The same sensor and motor in these units.
     pub fn transducers(&self, transducers: &Transducers) -> Transducers {
         Transducers {
-            // A turn has fewer units than rad, and a unit as many times more counts.
+            // A turn has fewer units than rad, and a unit more counts by the same factor.
             counts_per_turn: transducers.counts_per_turn * self.angle,
             counter: transducers.counter,
             full_scale_torque: transducers.full_scale_torque / self.torque,

@@ -7,10 +7,10 @@ use addr2line::gimli::{EndianSlice, Error as DwarfError, LittleEndian, SectionId
 use object::{Object, ObjectSection, ObjectSymbol, SectionKind};
 use thiserror::Error;
 
-/// Why a program cannot be listed.
+/// The reason why a program cannot be listed.
 #[derive(Debug, Error)]
 pub enum ListingError {
-    /// It is no ELF file.
+    /// The file is not an ELF file.
     #[error("not an ELF file: {0}")]
     Elf(#[from] object::read::Error),
     /// Its line tables are invalid.
@@ -26,7 +26,7 @@ pub enum ListingError {
 
 /// An instruction.
 pub(super) struct Instruction<'a> {
-    /// The functions that it was inlined from, the innermost first, as Rust calls them.
+    /// The functions that it was inlined from, the innermost first, by their names in Rust.
     pub functions: &'a [String],
     /// Its length.
     pub bytes: u64,
@@ -80,8 +80,7 @@ fn lines<'elf>(file: &object::File<'elf>) -> Result<Lines<'elf>, ListingError> {
     Ok(Context::from_dwarf(dwarf)?)
 }
 
-/// Where code begins and where data does, as the linker marks them for the processor (ELF for the
-/// Arm Architecture, mapping symbols).
+/// The beginnings of code and data, by the linker's mapping symbols (ELF for the Arm Architecture).
 fn marks(file: &object::File<'_>) -> BTreeMap<u64, bool> {
     let mark = |name: &str| match name.get(..2)? {
         "$t" => Some(true),
@@ -110,7 +109,7 @@ fn is_multiplication(first: u16, second: u16) -> bool {
 }
 
 fn functions(lines: &Lines<'_>, address: u64) -> Result<Vec<String>, ListingError> {
-    // Line tables in other files are not looked for: the linker writes none.
+    // Line tables in other files are ignored: the linker does not write them.
     let mut frames = lines.find_frames(address).skip_all_loads()?;
     let mut functions = Vec::new();
     while let Some(frame) = frames.next()? {

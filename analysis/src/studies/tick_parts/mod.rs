@@ -1,8 +1,8 @@
-//! What a program for the board has of each part of a tick: its linked instructions, each asked
-//! which of the firmware's functions it was made of.
+//! The parts of a tick in a program for the board: its linked instructions, attributed to the firmware's
+//! functions from which they were compiled.
 //!
-//! The tick is compiled into the servo's interrupt as a whole, so that no symbol shows its parts;
-//! the program's line tables do.
+//! The tick is compiled into the servo's interrupt as a whole, so its parts have no symbols; the program's
+//! line tables show them.
 
 mod listing;
 mod part;
@@ -18,7 +18,7 @@ use listing::{Instruction, listing};
 use serde::Serialize;
 use thiserror::Error;
 
-/// Why a program's file could not be taken apart.
+/// The reason why the parts of a program could not be determined.
 #[derive(Debug, Error)]
 pub enum TickPartsError {
     /// It could not be read.
@@ -39,12 +39,12 @@ pub enum TickPartsError {
     },
 }
 
-/// What a program has of a part.
+/// The share of a part in a program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Share {
     /// Instructions.
     pub instructions: u64,
-    /// Those of them that multiply floating-point numbers.
+    /// Instructions that multiply floating-point numbers.
     pub multiplications: u64,
     /// Bytes of code.
     pub bytes: u64,
@@ -57,10 +57,10 @@ pub struct TickParts {
 }
 
 impl TickParts {
-    /// Takes the linked program in a file apart.
+    /// Determines the parts of the linked program in a file.
     ///
     /// # Errors
-    /// Where the file cannot be read, or is not as [`of_elf`](Self::of_elf) needs it.
+    /// If the file cannot be read, or is unsuitable for [`of_elf`](Self::of_elf).
     pub fn of_file(path: &Path) -> Result<Self, TickPartsError> {
         let elf = fs::read(path)
             .map_err(|source| TickPartsError::File { path: path.to_owned(), source })?;
@@ -68,11 +68,11 @@ impl TickParts {
             .map_err(|source| TickPartsError::Listing { path: path.to_owned(), source })
     }
 
-    /// Takes the linked program in an ELF file apart. The tick is in it twice, with and without
-    /// [injected damping](Part::Injection), as far as the two have nothing in common.
+    /// Determines the parts of the linked program in an ELF file. The program contains the tick twice, with
+    /// and without [injected damping](Part::Injection), except for their common code.
     ///
     /// # Errors
-    /// Where the file is not a program for the board, or has no line tables.
+    /// If the file is not a program for the board, or has no line tables.
     pub fn of_elf(elf: &[u8]) -> Result<Self, ListingError> {
         let mut parts = Self::default();
         listing(elf, |Instruction { functions, bytes, multiplies }| {
@@ -86,7 +86,7 @@ impl TickParts {
         Ok(parts)
     }
 
-    /// Its share of a part; all zero if there is no trace of it.
+    /// Its share of a part; all zero if it does not contain the part.
     pub fn share(&self, part: Part) -> Share {
         self.shares[part as usize]
     }

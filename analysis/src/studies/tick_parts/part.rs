@@ -1,4 +1,4 @@
-//! The parts of a tick, and how they are known by the functions that instructions come from.
+//! The parts of a tick, identified by the functions of their instructions.
 
 use std::fmt;
 
@@ -15,12 +15,12 @@ pub enum Part {
     Filter,
     /// The canceller of the device's damping.
     Canceller,
-    /// A wall's face, where it is not at zero or only pushes.
+    /// A wall's face, if it is not at zero or only pushes.
     Face,
     /// Samples between position and torque.
     Delay,
-    /// The damping that is injected where there is a deficit of energy: an option of every
-    /// program, chosen when it starts, for which the tick is there once more.
+    /// The damping that is injected during a deficit of energy: an option of every program, selected at its
+    /// start, for which the program contains a second version of the tick.
     Injection,
     /// The virtual coupling.
     Coupling,
@@ -32,10 +32,10 @@ pub enum Part {
     Rest,
 }
 
-/// How the function is called that does a tick: how its name begins and ends.
+/// The name of the function of a tick: its beginning and its end.
 const TICK: (&str, &str) = ("<haptic_servo::servo::prepared_servo::PreparedServo<", "::tick");
 
-/// How the functions of a part are called: how the name begins, and what else is in it.
+/// The names of a part's functions: the beginning, and another part of the name.
 const NAMES: [(&str, &str, Part); 18] = [
     ("<haptic_servo::energy::Injector<", "", Part::Injection),
     ("<haptic_servo::environment::velocity::Difference<", "", Part::Damper),
@@ -58,7 +58,7 @@ const NAMES: [(&str, &str, Part); 18] = [
 ];
 
 impl Part {
-    /// All of them, in the order of a tick.
+    /// All parts, in the order of a tick.
     pub const ALL: [Self; 12] = [
         Self::Encoder,
         Self::Spring,
@@ -74,15 +74,15 @@ impl Part {
         Self::Rest,
     ];
 
-    /// The part that an instruction belongs to, by the functions that it was inlined from, the
-    /// innermost first; `None` where it is not of a tick.
+    /// The part of an instruction, by the functions that it was inlined from, the innermost first; `None` if
+    /// it is not of a tick.
     pub(super) fn of(functions: &[String]) -> Option<Self> {
         let (begins, ends) = TICK;
         let is_tick = |name: &String| name.starts_with(begins) && name.ends_with(ends);
         let tick = functions.iter().position(is_tick)?;
         let found = functions[..tick].iter().find_map(|name| Self::of_function(name));
         let found = found.unwrap_or(Self::Rest);
-        // The canceller is made of the same high-pass as a filter.
+        // The canceller uses the same high-pass as a filter.
         let cancels = |name: &String| Self::of_function(name) == Some(Self::Canceller);
         let is_canceller = found == Self::Filter && functions[..tick].iter().any(cancels);
         Some(if is_canceller { Self::Canceller } else { found })

@@ -1,37 +1,37 @@
-//! Comparisons: their columns, and which values are the better ones.
+//! Comparisons: their columns, and the better direction of each.
 
 use crate::table::Column;
 
-/// What every number of a table is.
+/// The format of a number in a table.
 pub const NUMBER: &str = "a number of 0 or more, `inf`, or nothing where there is none";
 
-/// Which values of a column are the good ones.
+/// The better direction of a column's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// The smaller the better.
+    /// Smaller values are better.
     Minimize,
-    /// The greater the better.
+    /// Greater values are better.
     Maximize,
 }
 
-/// A column of a table that is drawn along an axis.
+/// A column of a table for an axis of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
     /// The column in the file.
     pub column: Column,
-    /// Its name and its unit, as on the axis.
+    /// Name and unit on the axis.
     pub label: &'static str,
-    /// Which way is better.
+    /// The better direction.
     pub direction: Direction,
-    /// Values up to this one are all the same and are drawn there: what the reference itself is good
-    /// for, or half of the smallest count. Above 0, because axes are logarithmic.
+    /// Values up to this floor count as equal and are drawn there: the precision of the reference, or half of
+    /// the smallest count. Above 0, because axes are logarithmic.
     pub floor: f64,
-    /// What a value at the floor is called in the picture.
+    /// The name of the floor in the chart.
     pub at_floor: &'static str,
 }
 
 impl Axis {
-    /// A column of numbers of which the smaller are the better.
+    /// A column in which smaller numbers are better.
     pub const fn least(names: &'static [&'static str], label: &'static str) -> Self {
         let column = Column { names, bound: NUMBER };
         Self {
@@ -43,12 +43,12 @@ impl Axis {
         }
     }
 
-    /// A column of numbers of which the greater are the better.
+    /// A column in which greater numbers are better.
     pub const fn most(names: &'static [&'static str], label: &'static str) -> Self {
         Self { direction: Direction::Maximize, ..Self::least(names, label) }
     }
 
-    /// The same with all values up to `floor` taken for the same, called by these words.
+    /// The same with a floor and its name.
     pub const fn floored(self, floor: f64, at_floor: &'static str) -> Self {
         Self { floor, at_floor, ..self }
     }
@@ -68,11 +68,11 @@ impl Axis {
 pub struct Comparison {
     /// Name of its files, without the extension.
     pub name: &'static str,
-    /// Above its picture.
+    /// Title of its chart.
     pub title: &'static str,
-    /// What a method costs.
+    /// The cost of a method.
     pub cost: Axis,
-    /// What one gets for it: a panel of the picture each.
+    /// The errors, with one panel each.
     pub errors: &'static [Axis],
     /// Columns that are kept but not drawn.
     pub others: &'static [Column],

@@ -1,4 +1,4 @@
-//! Why methods could not be measured.
+//! The reasons why methods could not be measured.
 
 use thiserror::Error;
 
@@ -6,7 +6,7 @@ use crate::emulator::EmulatorError;
 use crate::studies::number_format::FormatError;
 use crate::toolchain::{BuildError, SetupError};
 
-/// Why methods could not be measured on the emulated board.
+/// The reason why methods could not be measured on the emulated board.
 #[derive(Debug, Error)]
 pub enum TradeoffError {
     /// A number format has no figures.

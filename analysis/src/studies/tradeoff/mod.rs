@@ -26,8 +26,8 @@ use crate::quantity::significant;
 use crate::table::{Column, Table, TableError};
 use crate::toolchain::{self, BuildError, Toolchain, Tools};
 
-/// Digits of the numbers in a table: more than a measured time has, and as many as tell a wrong
-/// error from a right one.
+/// Digits of the numbers in a table: more than the precision of a measured time, and enough to detect a wrong
+/// error.
 const DIGITS: usize = 6;
 
 const CASE: Column = Column { names: &["case"], bound: "a name" };
@@ -43,8 +43,8 @@ pub struct Method {
     pub family: String,
     /// Its own name, short enough to stand beside its mark.
     pub name: String,
-    /// The figures in the order of [`Comparison::columns`]; infinite where the method fails, `None`
-    /// where it has no such figure.
+    /// The figures in the order of [`Comparison::columns`]; infinite if the method fails, `None` if it does
+    /// not have the figure.
     pub values: Vec<Option<f64>>,
 }
 
@@ -60,7 +60,7 @@ impl Method {
         self.values[0]
     }
 
-    /// Its error of that number among those of the subject.
+    /// Its error with this index.
     pub fn error(&self, number: usize) -> Option<f64> {
         self.values[1 + number]
     }
@@ -91,9 +91,8 @@ impl Tradeoff {
         self.methods.iter().filter(move |method| method.case == case)
     }
 
-    /// The methods of a case that no other beats: each has the best error, of that number among
-    /// those of the subject, of all that cost no more. From the cheapest to the best. A method that
-    /// fails is on no front.
+    /// The Pareto front of a case: each method has the best value of the error with this index among all
+    /// methods of at most its cost. From the cheapest to the best. A failing method is never on a front.
     pub fn front(&self, case: &str, error: usize) -> Vec<&Method> {
         let (cost, direction) = (&self.comparison.cost, &self.comparison.errors[error]);
         let figures = |m: &Method| Some((m.cost()?, m.error(error)?));
@@ -116,10 +115,10 @@ impl Tradeoff {
         front
     }
 
-    /// Reads a table that was kept.
+    /// Reads a stored table.
     ///
     /// # Errors
-    /// Where it is not the table of this subject.
+    /// If it is not a table of this comparison.
     pub fn read<R: Read>(
         comparison: &'static Comparison,
         mut table: Table<R>,
@@ -141,10 +140,10 @@ impl Tradeoff {
         Ok(Self { comparison, methods })
     }
 
-    /// Writes it to be kept.
+    /// Writes the table.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn write(&self, to: impl Write) -> std::io::Result<()> {
         let mut file = csv::Writer::from_writer(to);
         let words = [CASE, FAMILY, NAME].into_iter();
@@ -158,9 +157,8 @@ impl Tradeoff {
     }
 }
 
-/// The shortest time in s of each work in so many rounds, in which they take turns: the time without
-/// other load. Each runs twice in a turn, and the second run counts, so that the state of the
-/// processor's caches after another work costs nothing.
+/// The shortest time in s of each work over a number of alternating rounds: the time without other load. Each
+/// runs twice in a round, and the second run counts, so that the caches are filled.
 fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
     let mut times = vec![f64::INFINITY; works.len()];
     for _ in 0..rounds {
@@ -177,7 +175,7 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
 /// An emulated board that computes the scenes that have a program, and sines.
 ///
 /// # Errors
-/// Where its program cannot be built or the emulator cannot be started.
+/// If its program cannot be built or the emulator cannot be started.
 pub fn board() -> Result<BenchClient, TradeoffError> {
     boot("building the trial of the formats", Toolchain::build_bench_programs)
 }
@@ -206,7 +204,7 @@ fn written(value: f64) -> String {
     significant(value, DIGITS)
 }
 
-/// Each once, in the order in which they come.
+/// Each once, in order of appearance.
 fn distinct<'t>(words: impl Iterator<Item = &'t str>) -> Vec<&'t str> {
     let mut seen = Vec::new();
     for word in words {

@@ -1,5 +1,4 @@
-//! The sample rate: how stiff a wall it allows, how rough the encoder makes it, and what part of
-//! the processor it takes.
+//! The sample rate: the stiffest wall, the ripple by the encoder, and the share of the processor.
 
 use std::f64::consts::TAU;
 
@@ -26,11 +25,11 @@ pub static COMPARISON: Comparison = Comparison {
 
 /// Sample rates in Hz.
 const RATES: [f64; 8] = [500.0, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5];
-/// Counts of the encoder a turn.
+/// Counts of the encoder per turn.
 const COUNTS: f64 = 65536.0;
 
-/// The table of some programs' walls, each with the instructions that its interrupt takes. A core
-/// is taken to do an instruction a cycle, as in `haptic bench`.
+/// The table of some programs' walls, each with the instructions that its interrupt takes. A core is assumed
+/// to execute one instruction per cycle, as in `haptic bench`.
 pub fn table(programs: &[(&Program, f64)]) -> Tradeoff {
     let rows = programs.iter().flat_map(|&(program, instructions)| {
         RATES.iter().filter_map(move |&rate| row(program, instructions, rate))
@@ -38,7 +37,7 @@ pub fn table(programs: &[(&Program, f64)]) -> Tradeoff {
     Tradeoff { comparison: &COMPARISON, methods: rows.collect() }
 }
 
-/// A wall at its stiffest; `None` where no stiffness is certified, or each.
+/// The stiffest wall; `None` if no stiffness is certified, or every one.
 fn row(program: &Program, instructions: f64, rate: f64) -> Option<Method> {
     let scene = at_period(&program.scene, 1.0 / rate);
     let Limit::RoundUp3(stiffness) = largest_stiffness(&with_wall(&scene, 0.0, Some(1))) else {

@@ -33,25 +33,25 @@ pub static COMPARISON: Comparison = Comparison {
     ],
 };
 
-/// What `f64` itself rounds away of numbers around 1.
+/// The rounding error of `f64` for numbers around 1.
 const FLOOR: f64 = 1e-16;
 const NONE: &str = "none";
 /// Time in s of the motion.
 const SECONDS: f64 = 5.0;
 
-/// A scene whose tick is measured, and what the device does meanwhile.
+/// A scene whose tick is measured, and the device's motion.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// Its name.
     pub name: &'static str,
     /// The scene with its sensor and motor.
     pub problem: number_format::FormatProblem,
-    /// What a hand does.
+    /// The hand's trajectory.
     pub trajectory: HandTrajectory,
 }
 
 impl Case {
-    /// Of a program, whose counter does not wrap.
+    /// The case of a program, with a counter that does not wrap.
     pub(super) fn of(program: &Program) -> Self {
         let transducers = Transducers { counter: CounterWidth::Bits32, ..program.transducers };
         let (scene, range) = (program.scene, HALF_A_TURN);
@@ -66,16 +66,16 @@ impl Case {
         Self { name, ..self }
     }
 
-    /// What the device does.
+    /// The motion of the device.
     ///
     /// # Errors
-    /// Where the scene cannot be simulated.
+    /// If the scene cannot be simulated.
     pub fn motion(&self) -> Result<Motion, FormatError> {
         Motion::new(&self.problem, self.trajectory.clone(), SECONDS)
     }
 }
 
-/// The programs' scenes that are linear but for faces and limits, and a wall that also pulls.
+/// The programs' scenes that are linear except for faces and limits, and a wall that also pulls.
 pub fn cases() -> Vec<Case> {
     let is_linear = |program: &&Program| program.scene.environment.has_transfer();
     let mut cases: Vec<_> = program::ALL.iter().filter(is_linear).map(Case::of).collect();
@@ -93,7 +93,7 @@ pub fn cases() -> Vec<Case> {
 /// Measures all formats on all scenes.
 ///
 /// # Errors
-/// Where the board cannot be built or fails.
+/// If the board's program cannot be built or the board fails.
 pub fn measure() -> Result<Tradeoff, TradeoffError> {
     let mut board = super::board()?;
     let mut methods = Vec::new();
@@ -107,10 +107,10 @@ pub fn measure() -> Result<Tradeoff, TradeoffError> {
     Ok(Tradeoff { comparison: &COMPARISON, methods })
 }
 
-/// The table that is kept.
+/// The stored table.
 ///
 /// # Errors
-/// Where it is not a table of this subject.
+/// If it is not a table of this comparison.
 pub fn kept() -> Result<Tradeoff, TableError> {
     let kept = include_bytes!("../../../pictures/tradeoff/servo.csv");
     Tradeoff::read(&COMPARISON, Table::new("servo.csv", &kept[..])?)

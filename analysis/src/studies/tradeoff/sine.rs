@@ -1,13 +1,13 @@
-//! The sine of a sweep, and sine and cosine of a motor's phase: what each means takes on the emulated board, and
-//! how far off it is.
+//! The sine of a sweep, and sine and cosine of a motor's phase: the cost of each method on the emulated
+//! board, and its error.
 //!
-//! Two cases: of the sine of a sweep, which is of a part of a turn in `f32`, the error is that of the sine; of a
-//! phase, which is one in 32 bits, that of the torque (`torque_error`).
+//! Two cases: for the sine of a sweep, with a part of a turn in `f32`, the error is that of the sine; for a
+//! phase in 32 bits, that of the torque (`torque_error`).
 //!
-//! The G4's CORDIC unit is not among the measured ones, since no emulator has it. A model of its arithmetic is
-//! in the tests: with 16 iterations its angle is off by up to 2^-15, which no torque shows. It would take a dozen
-//! instructions in place of the table's thirty, and wait for as long as these take; but what runs would not be the
-//! code that tests run, and on no board but those with the unit.
+//! The G4's CORDIC unit is not measured, because no emulator has it. A model of its arithmetic is in the
+//! tests: with 16 iterations the error of its angle is up to 2^-15, which is invisible in the torque. It
+//! would take a dozen instructions in place of the table's thirty, and wait for about the same time. But the
+//! running code would not be the tested code, and would need a board with the unit.
 
 use std::f64::consts::TAU;
 
@@ -27,10 +27,10 @@ pub static COMPARISON: Comparison = Comparison {
     others: &[Column { names: &["mean_instructions"], bound: NUMBER }],
 };
 
-/// Parts of a turn, spread evenly: those of a tone that is measured over as many samples.
+/// The number of evenly spread parts of a turn: those of a tone measured over as many samples.
 const TURNS: u32 = 4000;
 
-/// The parts of a turn that are tried.
+/// The tested parts of a turn.
 pub fn turns() -> Vec<f32> {
     (0..TURNS).map(|part| part as f32 / TURNS as f32).collect()
 }
@@ -41,8 +41,8 @@ pub fn error(sines: impl IntoIterator<Item = f64>) -> f64 {
     pairs.fold(0.0, |most, (turn, sine)| (sine - exact(turn)).abs().max(most))
 }
 
-/// The sine in `f64`, of an angle within an eighth of a turn, to which parts of a turn are brought
-/// without rounding.
+/// The sine in `f64` of an angle within an eighth of a turn, to which a part of a turn is reduced without
+/// rounding.
 fn exact(turn: f32) -> f64 {
     let eighths = (f64::from(turn) * 8.0).floor();
     let quarters = ((eighths + 1.0) / 2.0).floor();
@@ -55,10 +55,10 @@ fn exact(turn: f32) -> f64 {
     }
 }
 
-/// Measures all of them.
+/// Measures all methods.
 ///
 /// # Errors
-/// Where the board cannot be built or fails.
+/// If the board's program cannot be built or the board fails.
 pub fn measure() -> Result<Tradeoff, TradeoffError> {
     let mut board = super::board()?;
     let inputs: Vec<_> = turns().into_iter().map(f32::to_bits).collect();
@@ -103,21 +103,21 @@ const POLYNOMIALS: &str = "polynomials of our own";
 /// The case of a motor's phase.
 const PHASE: &str = "phase";
 
-/// Most instructions, and their mean.
+/// Largest number of instructions, and their mean.
 fn instructions(outputs: &[Output]) -> [f64; 2] {
     let instructions = outputs.iter().map(|output| f64::from(output.instructions));
     let most = instructions.clone().fold(0.0, f64::max);
     [most, instructions.sum::<f64>() / outputs.len() as f64]
 }
 
-/// The phases that are tried: spread over a turn, at no regular distance from a table's entries.
+/// The tested phases: spread over a turn, at irregular distances from a table's entries.
 fn angles() -> Vec<u32> {
     (0..TURNS).map(|k| k.wrapping_mul(2_654_435_769)).collect()
 }
 
-/// Relative error of the torque of a current loop with this sine and cosine of an angle: it makes a current that is
-/// the commanded one, across the magnets, as it sees it. With an error of the angle `x` and one of the magnitude
-/// `y` it is `cos x/(1 + y) - 1`.
+/// Relative error of the torque of a current loop with this sine and cosine of an angle: it controls the
+/// current to be the commanded one across the magnets, as it sees them. With an error of the angle `x` and
+/// one of the magnitude `y` it is `cos x/(1 + y) - 1`.
 fn torque_error(angle: u32, [sine, cosine]: [f32; 2]) -> f64 {
     let [sine, cosine] = [sine, cosine].map(f64::from);
     let exact = TAU * f64::from(angle) / 2_f64.powi(32);
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
     use crate::table::Table;
 
-    /// The table that is kept.
+    /// The stored table.
     fn kept() -> Tradeoff {
         let kept = include_bytes!("../../../pictures/tradeoff/sine.csv");
         Tradeoff::read(&COMPARISON, Table::new("sine.csv", &kept[..]).unwrap()).unwrap()

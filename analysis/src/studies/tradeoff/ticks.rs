@@ -1,9 +1,9 @@
-//! What a tick of any scene takes on the emulated board, in every number format.
+//! The cost of a tick of any scene on the emulated board, in every number format.
 //!
-//! A scene's program has a servo of its own type: its environment, whether that filters, where it has
-//! its rest, its delay. All types of which a file can name a scene are measured, delays and degrees at
-//! a few values: one between them takes no more than the next larger. In `f64`, which is software, a
-//! tick depends on its numbers, too, and these are those of one scene in one hand.
+//! A scene's program has its own type of servo: by its environment, its filter, its rest position and its
+//! delay. All types of scenes in a file are measured, delays and degrees at a few values: a value between
+//! them costs at most as much as the next larger. In `f64`, which is software, the cost of a tick also
+//! depends on the numbers, which are those of one scene in one hand.
 
 use std::io::Write;
 
@@ -19,16 +19,16 @@ use crate::program::{Program, knob};
 use crate::studies::number_format::{FormatError, cost};
 use crate::table::{Column, Table, TableError};
 
-/// Most instructions of a tick from count to code, by type of scene and format.
+/// Largest number of instructions of a tick from count to code, by type of scene and format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ticks {
     rows: Vec<(String, [f64; FORMATS])>,
 }
 
 const FORMATS: usize = Arithmetic::ALL.len();
-/// Delays that are measured.
+/// Measured delays.
 const DELAYS: [usize; 3] = [0, 1, MAX_DELAY];
-/// Degrees that are measured.
+/// Measured degrees.
 const DEGREES: [usize; 4] = [1, 2, 4, MAX_DEGREE];
 
 const TYPE: Column = Column { names: &["type"], bound: "a type of scene" };
@@ -46,7 +46,7 @@ impl Ticks {
     /// Measures all types in all formats; `step` is called after each type.
     ///
     /// # Errors
-    /// Where the board fails, or computes something else than this machine.
+    /// If the board fails, or its results differ from this machine's.
     pub fn measure(board: &mut BenchClient, mut step: impl FnMut()) -> Result<Self, FormatError> {
         let mut rows = Vec::new();
         for case in cases() {
@@ -61,10 +61,10 @@ impl Ticks {
         Ok(Self { rows })
     }
 
-    /// Those that are kept.
+    /// The stored figures.
     ///
     /// # Errors
-    /// Where they are no such table.
+    /// If the file is not such a table.
     pub fn kept() -> Result<Self, TableError> {
         let kept = include_bytes!("../../../pictures/tradeoff/ticks.csv");
         let mut table = Table::new("ticks.csv", &kept[..])?;
@@ -85,10 +85,10 @@ impl Ticks {
         Ok(Self { rows })
     }
 
-    /// Writes them to be kept.
+    /// Writes the figures.
     ///
     /// # Errors
-    /// Where they cannot be written.
+    /// If they cannot be written.
     pub fn write(&self, to: impl Write) -> std::io::Result<()> {
         let mut file = csv::Writer::from_writer(to);
         let formats = FORMAT_NAMES.iter().map(|[name]| *name);
@@ -100,7 +100,7 @@ impl Ticks {
         file.flush()
     }
 
-    /// Those of a scene in a format; infinitely many where no scene of its type was measured.
+    /// The instructions of a scene in a format; infinite if no scene of its type was measured.
     pub fn of(&self, environment: &Environment, arithmetic: Arithmetic) -> f64 {
         let wanted = type_of(environment);
         let row = self.rows.iter().find(|(name, _)| *name == wanted);
@@ -114,8 +114,8 @@ pub fn types() -> usize {
     cases().len()
 }
 
-/// What of an environment decides which instructions its tick has, in words; delays and degrees as
-/// they are measured.
+/// The type of an environment, which determines the instructions of its tick, as text; with the measured
+/// delays and degrees.
 fn type_of(environment: &Environment) -> String {
     let delay = |delay: usize| format!("delay {}", measured(&DELAYS, delay));
     match environment {
@@ -152,12 +152,12 @@ fn wall_type(wall: &Wall) -> String {
     }
 }
 
-/// The least of the measured values that is not below one.
+/// The smallest measured value that is not below `one`.
 fn measured(values: &[usize], one: usize) -> usize {
     values.iter().copied().find(|value| *value >= one).unwrap_or(one)
 }
 
-/// A scene of each type, that certifies.
+/// A certified scene of each type.
 fn cases() -> Vec<Case> {
     DELAYS.into_iter().flat_map(of_delay).collect()
 }
@@ -185,7 +185,7 @@ fn of_delay(delay: usize) -> Vec<Case> {
     cases.chain(walls).chain(unlimited).chain(knobs).flatten().collect()
 }
 
-/// The wall wherever one can have its rest, without a filter and with one.
+/// The wall with all kinds of rest positions, with and without a filter.
 fn of_sides(wall: Wall) -> [Wall; 6] {
     const PLACE: f64 = 0.01;
     let filtered = Wall { filter: Some(0.5), ..wall };
@@ -194,14 +194,14 @@ fn of_sides(wall: Wall) -> [Wall; 6] {
     [wall, placed(wall), one_sided(wall), filtered, placed(filtered), one_sided(filtered)]
 }
 
-/// The knob: a profile between ends that boards latch. An endless one has a turn in it, which not every format
-/// holds, and other types are too large for the board's program beside all that is there.
+/// The knob: a profile with ends for latched torques. A profile without ends contains a turn, which not every
+/// format can represent, and other types do not fit the board's program.
 fn between_ends(delay: usize) -> Option<Environment> {
     let knob = knob::SCENE.environment.as_any();
     (knob.delay == delay).then_some(Environment::Profile(knob))
 }
 
-/// A spring of about 1 N m/rad with as many coefficients that are not zero as there can be.
+/// A spring of about 1 N m/rad with the largest number of nonzero coefficients.
 fn of_degree(degree: usize, delay: usize) -> Rational {
     let coefficients = |rest: f64| {
         let mut values = [rest; MAX_DEGREE + 1];

@@ -1,4 +1,4 @@
-//! What the page of `haptic explore` costs its reader, in a browser of this machine.
+//! The cost of the page of `haptic explore` in a browser of this machine.
 
 pub mod scenes;
 
@@ -19,58 +19,58 @@ use crate::verdict::judge_in;
 /// Runs in the page before its own scripts.
 const WATCH: &str = include_str!("watch.js");
 
-/// Most bytes of a page.
+/// Largest size of a page in bytes.
 const SIZE_BUDGET: f64 = 700e3;
-/// Most seconds from opening a page to its first verdict on the screen.
+/// Largest time in s from opening a page to its first visible verdict.
 const OPENING_BUDGET: f64 = 0.5;
-/// Most milliseconds of a frame that a verdict may take.
+/// Largest time of a verdict within a frame in ms.
 const VERDICT_BUDGET: f64 = 1.0;
 /// Milliseconds of a frame.
 const FRAME: f64 = 1e3 / 60.0;
-/// Most seconds for a map of 40 000 points.
+/// Largest time for a map of 40 000 points in s.
 const MAP_BUDGET: f64 = 1.0;
-/// Most milliseconds until the first picture of a map.
+/// Largest time until the first picture of a map in ms.
 const FIRST_PICTURE_BUDGET: f64 = 100.0;
-/// Most times as long as on this machine that a verdict may take in a page.
+/// Largest ratio of a verdict's time in a page to its time in this program.
 const PAGE_BUDGET: f64 = 2.0;
 
 /// Width of the window in pixels.
 const WIDTH: u32 = 1280;
-/// Times that a drag goes there and back.
+/// Number of back-and-forth strokes of a drag.
 const STROKES: f64 = 3.0;
-/// How far it goes to either side of the slider's middle, as a part of its length.
+/// Its reach to either side of the slider's middle, as a fraction of the slider's length.
 const REACH: f64 = 0.3;
 
-/// How often a page is measured.
+/// The numbers of repetitions of a page's measurements.
 #[derive(Clone, Copy, Debug)]
 pub struct Repetitions {
     /// Openings of each page.
     openings: usize,
-    /// Movements of the mouse in a drag: at least one a frame.
+    /// Movements of the mouse in a drag: at least one per frame.
     movements: usize,
-    /// Rounds of verdicts, of which the median counts.
+    /// Rounds of verdicts; the result is their median.
     rounds: usize,
     /// Rounds before that, in which the browser optimises functions that are called often.
     rounds_before: usize,
 }
 
 impl Repetitions {
-    /// For figures that come out alike: four seconds of dragging.
+    /// For repeatable figures: four seconds of dragging.
     pub const THOROUGH: Self = Self { openings: 5, movements: 240, rounds: 31, rounds_before: 8 };
     /// For their order of magnitude.
     pub const QUICK: Self = Self { openings: 1, movements: 60, rounds: 3, rounds_before: 1 };
 }
 
-/// Why a page could not be measured.
+/// The reason why a page could not be measured.
 #[derive(Debug, Error)]
 pub enum PageError {
     /// The browser fails.
     #[error(transparent)]
     Browser(#[from] BrowserError),
-    /// The page complains.
+    /// The page reported errors.
     #[error("the page complains of {0:?}")]
     Complaints(Vec<String>),
-    /// Nothing has been judged while a slider was dragged.
+    /// No verdict was computed while a slider was dragged.
     #[error("the page with the scene {scene} has judged nothing while {key} was dragged")]
     NothingJudged {
         /// The scene.
@@ -81,10 +81,10 @@ pub enum PageError {
     /// A scene of the measurement cannot be judged here.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The answer has no form as JSON.
+    /// The answer is not valid JSON.
     #[error("an answer cannot be written: {0}")]
     Json(#[from] serde_json::Error),
-    /// The page's answer is another one than this program's.
+    /// The page's answer differs from this program's.
     #[error("to {question} the page answers {of_page}, and this program {here}")]
     OtherAnswer {
         /// The scene.
@@ -104,7 +104,7 @@ pub struct ScenePage {
     pub text: String,
 }
 
-/// A browser that watches the pages that are opened in it.
+/// A browser that records the pages opened in it.
 ///
 /// # Errors
 /// If there is no browser.
@@ -118,7 +118,7 @@ pub fn watching_browser() -> Result<Page, PageError> {
 /// file. Calls `progress` with the name of each measurement.
 ///
 /// # Errors
-/// If a page does not behave as for a reader.
+/// If a page does not behave as expected.
 pub fn figures(
     mut browser: Page,
     pages: &[ScenePage],
@@ -146,7 +146,7 @@ fn size_figure(size: f64) -> Figure {
     Figure::new("page of haptic explore: size", size, "bytes", Some(SIZE_BUDGET), "budget")
 }
 
-/// Median and most of some values, as two figures.
+/// Median and largest of some values, as two figures.
 fn spread(
     name: &str,
     values: Vec<f64>,
@@ -160,8 +160,8 @@ fn spread(
     })
 }
 
-/// Opens the page several times: when its first verdict is on the screen, when the worker has sent the first
-/// picture of its map, and when all of it.
+/// Opens the page several times: the times until its first verdict is visible, until the first picture of its
+/// map, and until the whole map.
 fn opened(
     browser: &mut Page,
     site: &Site,
@@ -190,7 +190,7 @@ fn opened(
     Ok(figures)
 }
 
-/// Drags a slider of the page that is open, as a hand does: back and forth, by the mouse.
+/// Drags a slider of the open page with the mouse, back and forth.
 fn dragged(
     browser: &mut Page,
     scene: &PageScene,
@@ -220,7 +220,7 @@ fn dragged(
     let name = |what| format!("page, {}: {what} while a slider is dragged", scene.name);
     let mut figures = Vec::new();
     for (what, times) in [("verdict, words and remedies", full), ("verdict and words", quick)] {
-        // Where remedies take longer than a frame has, they wait until the hand does.
+        // If remedies take longer than a frame, they are computed when the hand rests.
         if !times.is_empty() {
             figures.extend(spread(&name(what), times, "ms", VERDICT_BUDGET, "budget, of a frame"));
         }
@@ -229,8 +229,8 @@ fn dragged(
     Ok(figures)
 }
 
-/// The same verdicts by the program of the page that is open and by this one, in turns, and the same answers:
-/// from a scene as JSON to its verdict as JSON.
+/// The times of the same verdicts in the open page and in this program, alternately, from a scene as JSON to
+/// its verdict as JSON; the answers must be equal.
 fn compared(browser: &mut Page, repetitions: Repetitions) -> Result<[Figure; 2], PageError> {
     let questions: Vec<String> = scenes::judged().iter().map(Value::to_string).collect();
     browser.value(&format!("window.bench.start({})", json!(questions)))?;
@@ -264,7 +264,7 @@ fn compared(browser: &mut Page, repetitions: Repetitions) -> Result<[Figure; 2],
     ])
 }
 
-/// Milliseconds of all answers here.
+/// Time of all answers in this program in ms.
 fn round(questions: &[String]) -> Result<f64, PageError> {
     let start = Instant::now();
     for question in questions {
@@ -273,7 +273,7 @@ fn round(questions: &[String]) -> Result<f64, PageError> {
     Ok(start.elapsed().as_secs_f64() * 1e3)
 }
 
-/// What the page's program does for `certify`, by the same functions.
+/// The work of the page's module for `certify`, with the same functions.
 fn certify(question: &str) -> Result<String, PageError> {
     let file = file::parse("scene", file::Format::Json, question)?;
     let report = judge_in(&file.name, &file.scene, Format::F64, &file.steps());

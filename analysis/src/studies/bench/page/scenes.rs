@@ -1,11 +1,11 @@
-//! The scenes that a page is measured with.
+//! The scenes of the page's measurements.
 
 use serde_json::{Value, json};
 
-/// A page that is opened, dragged and drawn.
+/// A page to open, drag and draw.
 #[derive(Clone, Copy, Debug)]
 pub struct PageScene {
-    /// What the table calls it.
+    /// Its name in the table.
     pub name: &'static str,
     /// The scene as a file in TOML.
     pub toml: &'static str,
@@ -13,8 +13,8 @@ pub struct PageScene {
     pub dragged: &'static str,
 }
 
-/// A wall, which the page starts with where no scene is named; free mode, whose map is of other numbers; and a
-/// wall behind everything that makes a verdict long: two lags, a range of latency, and a filter.
+/// A wall, the start of a page without a scene; free mode, whose map has other parameters; and a wall with
+/// everything that makes a verdict slow: two lags, a range of latency, and a filter.
 pub const SHOWN: [PageScene; 3] = [
     PageScene {
         name: "wall",
@@ -38,8 +38,8 @@ pub const SHOWN: [PageScene; 3] = [
     },
 ];
 
-/// Scenes as JSON for what a verdict takes here and in a page: walls, springs, free mode, profiles, at once and
-/// late, certified and not.
+/// Scenes as JSON to compare the time of a verdict here and in a page: walls, springs, free mode, profiles,
+/// with and without latency, certified and not.
 pub fn judged() -> Vec<Value> {
     let mut scenes = Vec::new();
     for stiffness in [2.0, 12.0, 22.0, 60.0] {

@@ -1,41 +1,40 @@
-//! Ten thousand environments of known answer, drawn from a seed.
+//! Ten thousand environments with known verdicts, drawn from a seed.
 //!
-//! They are drawn with nothing but exact sums, products and halvings, so that every machine draws
-//! the same. Their indices were found in rational arithmetic by the package `tests`, which checks them
-//! and can find them again (`tests/tests/all/reference.rs`); that takes minutes, so `indices.f64` beside
-//! this file keeps them. The damping that a device has to spare is then set beside the index, so that the
-//! right verdict is known.
+//! They are drawn with exact sums, products and halvings only, so that every machine draws the same. Their
+//! indices were found in rational arithmetic by the package `tests`, which checks them and can find them
+//! again (`tests/tests/all/reference.rs`); this takes minutes, so the file `indices.f64` contains them. The
+//! passivity of the device is set close to the index, so that the right verdict is known.
 
 use std::ops::Range;
 
 use fastrand::Rng;
 
-/// Period in s of all of them: a power of two, which divides without rounding.
+/// Period in s of all environments: a power of two, so that divisions are exact.
 pub const PERIOD: f64 = 1.0 / 1024.0;
 /// Environments of each kind.
 pub const EACH: usize = 2500;
-/// Passivity in N m s/rad of a device whose environment has no index, or an index that spares passivity.
+/// Passivity in N m s/rad of a device whose environment has no index, or a negative one.
 const SPARE: f64 = 16.0;
-/// One of so many environments has no index: its spring pushes, or a pole is outside of the circle.
+/// One of this many environments has no index: its spring is negative, or a pole is outside the circle.
 const ODD: usize = 32;
 /// Binary places of the coefficients.
 const PLACES: i32 = 44;
 
-/// How environments are drawn.
+/// The kinds of environments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Springs and walls, one to three samples late, whose index is known by formula.
+    /// Springs and walls, one to three samples late, with an index by formula.
     Walls,
     /// One to six poles at least a hundredth inside of the circle.
     Inside,
     /// A pair of poles a millionth to a thousandth from the circle, so that the minimum is narrow.
     Narrow,
-    /// As `Inside`, on a device whose passivity is a thousandth to `1e-12` beside the index.
+    /// As `Inside`, on a device whose passivity differs from the index by a fraction of `1e-3` to `1e-12`.
     Border,
 }
 
 impl Kind {
-    /// All of them, in the order of the indices.
+    /// All kinds, in the order of the indices.
     pub const ALL: [Self; 4] = [Self::Walls, Self::Inside, Self::Narrow, Self::Border];
 
     /// Its name in tables and pictures.
@@ -56,16 +55,16 @@ pub struct Environment {
     pub numerator: Vec<f64>,
     /// Denominator, of the same degree or a greater one.
     pub denominator: Vec<f64>,
-    /// Samples on top.
+    /// Additional samples of delay.
     pub delay: usize,
-    /// Stiffness in N m/rad and damping in N m s/rad, where it is a wall.
+    /// Stiffness in N m/rad and damping in N m s/rad, if it is a wall.
     pub wall: Option<(f64, f64)>,
     /// Passivity of the device over the index.
     ratio: f64,
 }
 
 impl Environment {
-    /// The passivity in N m s/rad of the device that it is on, given its index.
+    /// The passivity of its device in N m s/rad, given its index.
     pub fn delta(&self, alpha: Option<f64>) -> f64 {
         alpha.filter(|alpha| *alpha > 0.0).map_or(SPARE, |alpha| self.ratio * alpha)
     }
@@ -76,8 +75,8 @@ impl Environment {
     }
 }
 
-/// The indices `alpha` in N m s/rad of all environments, kind by kind, as doubles with the least byte
-/// first: each the double next to it or the one after, not a number where there is none.
+/// The indices `alpha` in N m s/rad of all environments, kind by kind, as little-endian doubles, each within
+/// one place of the exact index, NaN if there is none.
 const INDICES: &[[u8; 8]; Kind::ALL.len() * EACH] =
     include_bytes!("indices.f64").as_chunks().0.as_array().expect("an index for each environment");
 
@@ -105,7 +104,7 @@ pub fn environment(kind: Kind, number: usize) -> Environment {
     Environment { ratio, ..drawn }
 }
 
-/// `2^-k (1 + u)`: all sizes alike.
+/// `2^-k (1 + u)`: all magnitudes equally likely.
 fn part(rng: &mut Rng, halvings: Range<u32>) -> f64 {
     (1.0 + rng.f64()) * 0.5_f64.powi(rng.u32(halvings) as i32)
 }
@@ -123,7 +122,7 @@ fn wall(rng: &mut Rng) -> Environment {
     }
 }
 
-/// One to six poles, and one more outside of the circle in such a part of them.
+/// One to six poles, and in a fraction `outside` of them another pole outside the circle.
 fn rational(rng: &mut Rng, outside: f64) -> Environment {
     let count = rng.usize(1..7);
     let mut denominator = polynomial(rng, count);
@@ -136,7 +135,7 @@ fn rational(rng: &mut Rng, outside: f64) -> Environment {
     finished(rng, numerator, denominator)
 }
 
-/// Poles and, in one of two, zeros as near the circle beside them: a notch.
+/// Poles and, in every second environment, zeros at the same distance from the circle beside them: a notch.
 fn narrow(rng: &mut Rng) -> Environment {
     let (cosine, gap) = (2.0 * rng.f64() - 1.0, part(rng, 10..20));
     let side = if rng.usize(..ODD) == 0 { 1.0 } else { -1.0 };
@@ -152,7 +151,7 @@ fn narrow(rng: &mut Rng) -> Environment {
     finished(rng, numerator, denominator)
 }
 
-/// With a spring that pulls, but for a few, and rounded coefficients.
+/// Adds a positive spring, except in a few, and rounds the coefficients.
 fn finished(rng: &mut Rng, mut numerator: Vec<f64>, denominator: Vec<f64>) -> Environment {
     let pushes = numerator.iter().sum::<f64>() * denominator.iter().sum::<f64>() < 0.0;
     if pushes && rng.usize(..ODD) != 0 {
@@ -169,8 +168,7 @@ fn finished(rng: &mut Rng, mut numerator: Vec<f64>, denominator: Vec<f64>) -> En
     }
 }
 
-/// Descending coefficients of a polynomial with so many roots, a hundredth inside of the circle or
-/// more.
+/// Descending coefficients of a polynomial with `count` roots, at least a hundredth inside the circle.
 fn polynomial(rng: &mut Rng, count: usize) -> Vec<f64> {
     let mut product = vec![1.0];
     while product.len() <= count {

@@ -1,4 +1,4 @@
-//! Ways to an index and a verdict: by formula, by enclosure, on a grid, by roots.
+//! Methods for an index and a verdict: by formula, by enclosure, on a grid, by roots.
 
 use std::f64::consts::PI;
 
@@ -15,7 +15,7 @@ use crate::closed_form;
 
 /// Coarsest angle of a logarithmic grid in rad.
 const NEAREST: f64 = 1e-6;
-/// A root whose imaginary part is no larger counts as real.
+/// A root with at most this imaginary part counts as real.
 const REAL: f64 = 1e-6;
 
 /// A verdict.
@@ -25,7 +25,7 @@ pub enum IndexVerdict {
     Yes,
     /// Not passive.
     No,
-    /// Left open.
+    /// Undecided.
     Open,
 }
 
@@ -39,17 +39,17 @@ pub struct IndexResult {
     pub verdict: IndexVerdict,
 }
 
-/// A way to an index and a verdict.
+/// A method for an index and a verdict.
 #[derive(Clone, Debug)]
 pub enum IndexMethod {
     /// The formula of theory, section 5.
     ClosedForm,
-    /// The certificate's enclosure, so tight relative to the index.
+    /// The certificate's enclosure with this relative width.
     Enclosure(f64),
     /// The certificate's enclosure until it is clear whether it will be a proof; an unproved scene
     /// is rejected, and the index is not searched.
     Decision,
-    /// The least of so many values, and how they lie.
+    /// The least value on a grid.
     Grid(Grid),
     /// Zeros of the derivative as eigenvalues of a companion matrix.
     Roots,
@@ -62,7 +62,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// So many points, the last at -1, as far apart in their angles or in the logarithms of these.
+    /// A grid of `count` points, the last at -1, evenly spaced in their angles or in the logarithms of the
+    /// angles.
     pub fn new(count: usize, is_logarithmic: bool) -> Self {
         let angle = |i: usize| {
             let part = (i + 1) as f64 / count as f64;
@@ -148,8 +149,8 @@ fn proved(found: Result<RealPart, IndexError>, delta: f64) -> IndexResult {
     }
 }
 
-/// What ordinary arithmetic sees: poles by their roots, the sign of the residue at 1, then the
-/// least real part.
+/// The result of ordinary arithmetic: poles by their roots, the sign of the residue at 1, then the least real
+/// part.
 fn seen(environment: &Environment, delta: f64, least: impl Fn() -> Option<f64>) -> IndexResult {
     let nothing = |verdict| IndexResult { alpha: None, verdict };
     let Some(poles) = roots(&environment.denominator) else { return nothing(IndexVerdict::Open) };
@@ -167,7 +168,7 @@ fn seen(environment: &Environment, delta: f64, least: impl Fn() -> Option<f64>) 
     }
 }
 
-/// The least of `T p / (2 r)` among the ends and the real zeros of its derivative.
+/// The least `T p / (2 r)` at the ends and the real zeros of its derivative.
 fn least_at_roots(environment: &Environment) -> Option<f64> {
     let p = monomials(&real_part(environment));
     let r = monomials(&squared(&environment.denominator));

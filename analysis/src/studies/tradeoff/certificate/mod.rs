@@ -1,6 +1,6 @@
-//! Methods for the certificate: their time, the error of their index, and the rates of false
-//! positives and false negatives among ten thousand environments of known answer. A false positive
-//! is dangerous and a false negative only a loss, so the two are never added up.
+//! Methods for the certificate: their time, the error of their index, and the rates of false positives and
+//! false negatives among ten thousand environments with known verdicts. A false positive is dangerous and a
+//! false negative only a loss, so the two are never added.
 
 pub mod environments;
 pub mod index_methods;
@@ -22,7 +22,7 @@ pub static COMPARISON: Comparison = Comparison {
     title: "Certificate: ways to the index alpha and the verdict, on 2500 environments of each kind",
     cost: Axis::least(&["microseconds"], "time of a verdict (microseconds)"),
     errors: &[
-        // The indices are doubles, off by one place at most.
+        // The indices are doubles with an error of at most one place.
         Axis::least(&["alpha_error"], "error of alpha, 99 of 100 below it (part)")
             .floored(1e-15, "a double's last places"),
         Axis::least(&["wrong_yes"], "not passive, and passed, of 2500").floored(0.5, "none"),
@@ -36,25 +36,25 @@ pub static COMPARISON: Comparison = Comparison {
     ],
 };
 
-/// Environments of each kind on which a judge is timed.
+/// Environments of each kind for the timing of a method.
 const TIMED: usize = 25;
-/// Rounds of that, of which the fastest counts.
+/// Rounds of the timing; the result is the fastest.
 const ROUNDS: usize = 9;
 /// Widths of enclosures, relative to the index.
 const TOLERANCES: [f64; 5] = [1e-1, 1e-3, 1e-6, 1e-9, 1e-13];
 
-/// A way to the index, with its family and its name.
+/// A method for the index, with its family and its name.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     /// Its family.
     pub family: &'static str,
     /// Its own name.
     pub name: String,
-    /// The way.
+    /// The method.
     pub method: IndexMethod,
 }
 
-/// All ways that are compared.
+/// All compared methods.
 pub fn candidates() -> Vec<Candidate> {
     let one = |family, method| vec![Candidate { family, name: family.to_owned(), method }];
     let enclosure = |&tolerance: &f64| Candidate {
@@ -78,7 +78,7 @@ pub fn candidates() -> Vec<Candidate> {
     all
 }
 
-/// Measures all ways on all environments; `step` is called after each way on each kind.
+/// Measures all methods on all environments; `step` is called after each method on each kind.
 pub fn measure(mut step: impl FnMut()) -> Tradeoff {
     let mut methods = Vec::new();
     for kind in Kind::ALL {
@@ -130,15 +130,15 @@ pub struct MethodErrors {
     pub wrong_yes: usize,
     /// False negatives.
     pub wrong_no: usize,
-    /// It leaves the verdict open.
+    /// Undecided verdicts.
     pub open: usize,
-    /// Errors of the index over the index, in order; infinite where there is one and none was found.
-    /// Empty for a judge that looks for none.
+    /// Relative errors of the index in order; infinite if an index exists and none was found. Empty for a
+    /// method that does not compute an index.
     pub errors: Vec<f64>,
 }
 
 impl MethodErrors {
-    /// Asks a judge about environments of a kind.
+    /// Evaluates a method on environments of a kind.
     pub fn of(method: &IndexMethod, kind: Kind, numbers: std::ops::Range<usize>) -> Self {
         let one = |number: usize| Some((number, evaluated(method, kind, number)?));
         let answers: Vec<_> = numbers.into_par_iter().filter_map(one).collect();
@@ -158,7 +158,7 @@ impl MethodErrors {
         errors
     }
 
-    /// The error that such a part of the environments stays below.
+    /// The error at a fraction of the environments.
     fn quantile(&self, part: f64) -> Option<f64> {
         let last = self.errors.len().checked_sub(1)?;
         self.errors.get((part * last as f64).ceil() as usize).copied()

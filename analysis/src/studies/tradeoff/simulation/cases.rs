@@ -1,4 +1,4 @@
-//! The motions that the methods are measured on.
+//! The motions of the measurements.
 
 use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
@@ -13,11 +13,10 @@ pub(super) const SAMPLES: usize = 1000;
 /// Stiffness of the spring in N m/rad: stable for every method on one mass.
 pub(super) const STIFFNESS: f64 = 300.0;
 
-/// A motion to be computed: a spring that is neither delayed nor coupled, on a device that is
-/// released at a millirad.
+/// A motion to be computed: a spring without delay and coupling, on a device released at a millirad.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// What moves.
+    /// The name.
     pub name: &'static str,
     /// The motion.
     pub experiment: Experiment,

@@ -1,5 +1,5 @@
-//! Methods of integration by their steps in a tick: how fast they are, how far off the motion is,
-//! and how far off the verdict (theory, section 9).
+//! Methods of integration by their steps per tick: their speed, the error of the motion, and the error of the
+//! verdict (theory, section 9).
 
 mod cases;
 mod stepper;
@@ -23,10 +23,11 @@ pub static COMPARISON: Comparison = Comparison {
     title: "Simulation: methods of integration by their steps in a sample of 1 ms",
     cost: Axis::most(&["samples_per_second"], "samples simulated a second"),
     errors: &[
-        // As exact as `analysis/tests/all/simulation_reference.rs` finds the reference to be, in sixty digits.
+        // The precision of the reference, which `analysis/tests/all/simulation_reference.rs` checks with
+        // sixty digits.
         Axis::least(&["angle_error"], "largest error of the angle (part of its largest)")
             .floored(1e-12, "no error seen"),
-        // As exact as the borders of stability are found.
+        // The precision of the stability limits.
         Axis::least(&["verdict_error"], "error of the largest stable stiffness (part)")
             .floored(1e-9, "no error seen"),
     ],
@@ -36,28 +37,28 @@ pub static COMPARISON: Comparison = Comparison {
     ],
 };
 
-/// Number of the verdict's error among the errors.
+/// Index of the verdict's error among the errors.
 pub const VERDICT: usize = 1;
-/// Number of the steps among the columns.
+/// Index of the steps among the columns.
 pub const SUBSTEPS_COLUMN: usize = 3;
 /// Steps in a tick.
 const SUBSTEPS: [u32; 8] = [1, 2, 3, 5, 10, 20, 50, 100];
-/// Rounds of the measurement, of which the fastest counts.
+/// Rounds of the measurement; the result is the fastest.
 const ROUNDS: usize = 31;
 /// A relative error of the angle above which the motion is lost.
 const LOST: f64 = 1e3;
 
-/// The table that is kept.
+/// The stored table.
 ///
 /// # Errors
-/// Where it is not a table of this subject.
+/// If it is not a table of this comparison.
 pub fn kept() -> Result<Tradeoff, TableError> {
     let kept = include_bytes!("../../../../pictures/tradeoff/simulation.csv");
     Tradeoff::read(&COMPARISON, Table::new("simulation.csv", &kept[..])?)
 }
 
-/// The cheapest method in a table of this subject whose largest stable stiffness for the rigid
-/// device is off by no more than a part.
+/// The cheapest method in a table of this comparison whose largest stable stiffness for the rigid device has
+/// at most a given relative error.
 pub fn cheapest(table: &Tradeoff, bound: f64) -> Option<&Row> {
     let [rigid, _] = cases();
     let is_enough = |method: &&Row| method.error(VERDICT).is_some_and(|error| error <= bound);
@@ -68,7 +69,7 @@ pub fn cheapest(table: &Tradeoff, bound: f64) -> Option<&Row> {
 /// Measures all methods on all motions.
 ///
 /// # Errors
-/// Where a motion cannot be computed.
+/// If a motion cannot be computed.
 pub fn measure() -> Result<Tradeoff, SimulationError> {
     let mut methods = Vec::new();
     for case in cases() {
@@ -95,7 +96,7 @@ fn strides() -> Vec<Integration> {
     Method::ALL.into_iter().flat_map(of).collect()
 }
 
-/// What a case's figures are compared with.
+/// The reference of a case's figures.
 struct Truth {
     motion: Trajectory,
     critical: Option<f64>,
@@ -108,7 +109,7 @@ impl Truth {
         Ok(Self { motion, critical: critical_stiffness(&case.experiment, exact)? })
     }
 
-    /// A method's figures, of which the time in s for all samples is given.
+    /// A method's figures; `time` is the time in s for all samples.
     fn row(
         &self,
         case: &Case,
@@ -148,7 +149,7 @@ impl Truth {
     }
 }
 
-/// A method's name where there is little room.
+/// A method's short name.
 fn short(method: Method) -> &'static str {
     match method {
         Method::Exact => "exact",

@@ -1,8 +1,8 @@
-//! A simulation written for one device: states on the stack, the rates evaluated as often as
-//! the method needs them.
+//! A simulation written for one device, with states on the stack and the evaluations of the rates that the
+//! method needs.
 //!
-//! The program's own simulation multiplies all steps of a tick into one matrix beforehand, so that
-//! there every method costs the same; here each step is made.
+//! The program's own simulation multiplies all steps of a tick into one matrix beforehand, so that every
+//! method has the same cost there; here each step is computed.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -16,14 +16,14 @@ pub(super) struct Stepper<const N: usize> {
     integration: Integration,
     /// `A` and the motor's column of `B`.
     rates: (SMatrix<f64, N, N>, SVector<f64, N>),
-    /// The step as a matrix and the motor's column, for methods that are known by it.
+    /// The step as a matrix and the motor's column, for methods that are defined by it.
     step: (SMatrix<f64, N, N>, SVector<f64, N>),
     /// Length of a step in s.
     h: f64,
 }
 
 impl<const N: usize> Stepper<N> {
-    /// Of a device that has `N` states.
+    /// The stepper of a device with `N` states.
     pub(super) fn new(case: &Case, integration: Integration) -> Self {
         let plant = &case.experiment.plant;
         let h = case.experiment.scene.timing.period / f64::from(integration.substeps);
@@ -39,7 +39,7 @@ impl<const N: usize> Stepper<N> {
         Self { integration, rates, step, h }
     }
 
-    /// What runs the case.
+    /// A function that runs the case.
     pub(super) fn into_runner(self, case: &Case) -> Box<dyn Fn(usize) -> Vec<f64> + '_> {
         Box::new(move |samples| self.run(case, samples))
     }
