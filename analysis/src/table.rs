@@ -21,7 +21,7 @@ pub enum TableError {
     Unreadable {
         /// The file.
         file: String,
-        /// Why.
+        /// The cause.
         message: String,
     },
     /// A column is missing.

@@ -36,7 +36,7 @@ macro_rules! steps {
     };
 }
 
-/// All of them.
+/// All values.
 pub const ALL: &[Preset] = &[
     scene!(
         "delayed spring",

@@ -69,7 +69,7 @@ pub enum BrowserError {
     Unopened {
         /// Its address.
         address: String,
-        /// Why.
+        /// The cause.
         why: Value,
     },
     /// An expression has thrown.

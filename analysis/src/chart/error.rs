@@ -16,7 +16,7 @@ pub enum ChartError {
     Output {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
     /// The numbers could not be written.
@@ -24,7 +24,7 @@ pub enum ChartError {
     Data {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
     /// The file's name does not give the kind of picture.

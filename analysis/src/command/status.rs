@@ -218,7 +218,7 @@ pub enum CommandError {
     /// The page could not be opened.
     #[error("the page is written, but no browser could be opened: {why}")]
     NoBrowser {
-        /// Why.
+        /// The cause.
         why: String,
     },
     /// A file or folder could not be written.
@@ -226,7 +226,7 @@ pub enum CommandError {
     Unwritable {
         /// The file or folder.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// A scene that cannot be simulated.
@@ -274,7 +274,7 @@ pub enum CommandError {
     Listen {
         /// The address.
         address: Address,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// A simulated board has ended by itself.

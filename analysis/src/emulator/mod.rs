@@ -83,7 +83,7 @@ pub enum EmulatorError {
     Program {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// The board did not answer in time.

@@ -18,7 +18,7 @@ pub enum LinkError {
     Open {
         /// The address.
         address: Address,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// The port opened; no board answers.
@@ -60,7 +60,7 @@ pub enum LinkError {
     Lost {
         /// The address.
         address: Address,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
 }

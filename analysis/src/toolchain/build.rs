@@ -52,7 +52,7 @@ pub enum BuildError {
     File {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// The board does not have this torque output.
@@ -80,7 +80,7 @@ pub enum BuildError {
     Map {
         /// The map.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: NoLength,
     },
     /// The program's size could not be read.
@@ -88,7 +88,7 @@ pub enum BuildError {
     Size {
         /// The program's file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: SizeError,
     },
 }

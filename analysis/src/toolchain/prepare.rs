@@ -21,7 +21,7 @@ pub enum SetupError {
     Unrunnable {
         /// The step.
         step: Step,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// A step failed.

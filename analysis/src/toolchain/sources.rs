@@ -26,7 +26,7 @@ pub enum SourcesError {
     File {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// There is no such scene.

@@ -1,4 +1,4 @@
-//! The board around the core: its peripherals on their bus, and the device that is wired to them.
+//! The board around the core: its peripherals on their bus, and the connected device.
 
 mod bus;
 
@@ -21,7 +21,7 @@ use crate::peripheral::serial::Serial;
 use crate::peripheral::watchdog::Watchdog;
 use crate::power_stage::{Gates, Outcome, PowerStage, Surroundings};
 
-/// What happened on the board's pins, with the time.
+/// An event on the board's pins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// The DAC's output changed.
@@ -33,7 +33,7 @@ pub enum Event {
 /// The converters' first registers.
 const CONVERTERS: [u32; 2] = [0x5000_0000, 0x5000_0100];
 
-/// An access of the program to a peripheral.
+/// A program's access to a peripheral.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BusAccess {
     /// When.
@@ -48,7 +48,7 @@ pub struct BusAccess {
 
 /// The board.
 pub struct VirtualBoard {
-    /// Instructions since power was switched on, waiting included.
+    /// Instructions since power-on, including waiting.
     pub now: u64,
     /// The core's registers in memory.
     pub system: System,
@@ -56,7 +56,7 @@ pub struct VirtualBoard {
     pub clock: Clock,
     /// The pacing timer.
     pub tick_timer: BasicTimer,
-    /// The timer that triggers the DAC at a phase of the pacing timer's period, where it runs.
+    /// The timer that triggers the DAC at a phase of the pacing timer's period, if it runs.
     pub phase_timer: BasicTimer,
     /// The encoder's counter.
     pub encoder: Counter,
@@ -66,7 +66,7 @@ pub struct VirtualBoard {
     pub dac: Dac,
     /// The serial port.
     pub serial: Serial,
-    /// The power stage, on a board that has one.
+    /// The power stage, if the board has one.
     pub power_stage: PowerStage,
     /// The device at the motor and the encoder.
     pub device: Box<dyn Device + Send>,
@@ -74,7 +74,7 @@ pub struct VirtualBoard {
     pub meter: Meter,
     /// Samples so far: updates of the pacing timer.
     pub samples: u64,
-    /// A register on which the bus gives an error, as of a broken peripheral.
+    /// A register with a bus error, to simulate a broken peripheral.
     pub broken: Option<u32>,
     /// Events of the pins, if they are recorded.
     pub events: Option<Vec<(u64, Event)>>,
@@ -100,7 +100,7 @@ pub struct VirtualBoard {
 }
 
 impl VirtualBoard {
-    /// A board whose power has just been switched on.
+    /// A board after power-on.
     pub fn new(chip: &'static Chip, device: Box<dyn Device + Send>) -> Self {
         Self {
             now: 0,
@@ -139,8 +139,7 @@ impl VirtualBoard {
         self.chip
     }
 
-    /// Every unit as out of reset; memory, time and the device stay, and with them the option bytes and
-    /// what a debugger has set.
+    /// Resets every unit; memory, time, the device, the option bytes and the settings of a debugger stay.
     pub fn reset(&mut self, cause: Cause) {
         self.advance_power_stage();
         let device = std::mem::replace(&mut self.device, Box::new(FixedDevice));
@@ -165,7 +164,7 @@ impl VirtualBoard {
         self.record_pin_events();
     }
 
-    /// The flash memory's interface out of reset, with the option bytes as they are.
+    /// The flash memory's interface after reset, with unchanged option bytes.
     fn flash_after_reset(&self) -> InertRegisters {
         let mut flash = (self.chip.flash_interface)();
         flash.set(self.chip.options, self.flash.get(self.chip.options));
@@ -178,24 +177,24 @@ impl VirtualBoard {
         self.ports[port].level(pin)
     }
 
-    /// Level that the program gives a pin.
+    /// Output level of a pin.
     pub fn level(&self, port: usize, pin: u32) -> Level {
         self.ports[port].level(pin)
     }
 
-    /// Whether the program has the chip pull an encoder's pin up or down.
+    /// Whether the chip pulls an encoder's pin up or down.
     pub fn pulls_encoder(&self) -> bool {
         let (pins, _) = self.chip.encoder;
         pins.iter().any(|&(port, pin)| self.ports[port].is_pulled(pin))
     }
 
-    /// What the torque's pin is driven with.
+    /// The code at the torque's pin; `None` if it is not driven.
     pub fn torque(&self) -> Option<u16> {
         let (port, pin) = TORQUE;
         self.dac.output().filter(|_| self.ports[port].is_analog(pin))
     }
 
-    /// When something happens next that the program has not asked for.
+    /// The time of the next event that is not an instruction.
     pub fn due(&self) -> u64 {
         let timers = [self.tick_timer.due(), self.phase_timer.due(), self.system.systick.due()];
         timers
@@ -226,9 +225,8 @@ impl VirtualBoard {
         self.watchdog.due().is_some_and(|due| due <= now)
     }
 
-    /// The pacing timer's update: the sample that it ends goes into the device, and the DAC begins the next
-    /// one. The output is then the code that the sample ends with; a device whose codes have a phase knows
-    /// its time.
+    /// The pacing timer's update: it ends a sample for the device, and the DAC begins the next. The output is
+    /// the code at the end of the sample; a device whose codes have a phase knows its time.
     fn sample(&mut self) {
         self.end_sample();
         if self.tick_timer.triggers() {
@@ -236,8 +234,7 @@ impl VirtualBoard {
         }
     }
 
-    /// A sample ends: with an update of the pacing timer, or with the servo's interrupt that the program asks
-    /// for itself.
+    /// Ends a sample: at an update of the pacing timer, or at the servo's interrupt that the program pends.
     fn end_sample(&mut self) {
         self.samples += 1;
         let is_on = self.amplifier() == Level::High || self.power_stage.timer.is_on();
@@ -245,7 +242,7 @@ impl VirtualBoard {
         self.turn_encoder(counts);
     }
 
-    /// The power stage goes on to now.
+    /// Advances the power stage to the present time.
     fn advance_power_stage(&mut self) {
         let Self { power_stage, device, ports, chip, clock, now, .. } = self;
         if chip.gates.is_none() {
@@ -256,7 +253,7 @@ impl VirtualBoard {
         self.take(outcome);
     }
 
-    /// The program, or a test, has changed something that the power stage depends on.
+    /// Updates the power stage after a change by the program or a test.
     pub fn power_stage_changed(&mut self) {
         let Self { power_stage, ports, chip, clock, .. } = self;
         if chip.gates.is_none() {
@@ -268,14 +265,14 @@ impl VirtualBoard {
         self.take(outcome);
     }
 
-    /// A break of the power stage by the chip itself: its clock has failed.
+    /// Breaks the power stage after a failure of the chip's clock.
     pub(crate) fn break_power_stage(&mut self) {
         self.advance_power_stage();
         self.power_stage.break_by_system();
         self.power_stage_changed();
     }
 
-    /// The core is locked up, which breaks the power stage where the program has asked for that.
+    /// The core is locked up, which breaks the power stage if the program has configured this.
     pub(crate) fn lock_up(&mut self) {
         if self.chip.gates.is_some() && self.configuration.get(BREAKS) & LOCK_UP_BREAKS != 0 {
             self.break_power_stage();
@@ -301,7 +298,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Turns the encoder, which is counted where it is wired as the program has set its pins up.
+    /// Turns the encoder, which counts if the program has configured its pins as wired.
     pub fn turn_encoder(&mut self, counts: i32) {
         let rose = self.index.as_mut().and_then(|index| index.turn(counts));
         if !self.is_wired(self.chip.encoder) {
@@ -319,14 +316,14 @@ impl VirtualBoard {
         self.encoder.turn(counts - before);
     }
 
-    /// The encoder turns by so many counts that its counter loses, as by a bad cable.
+    /// Turns the encoder by counts that its counter loses, as with a bad cable.
     pub fn lose_counts(&mut self, counts: i32) {
         if let Some(index) = &mut self.index {
             index.turn(counts);
         }
     }
 
-    /// Puts bytes on the line to the program, where its pin is set up for that.
+    /// Sends bytes on the line to the program, if its pin is configured for that.
     pub fn send(&mut self, bytes: &[u8]) {
         if self.is_wired(self.chip.serial) {
             self.serial.send(bytes);
@@ -334,12 +331,12 @@ impl VirtualBoard {
         }
     }
 
-    /// Whether the program has given both pins this alternate function.
+    /// Whether both pins have this alternate function.
     fn is_wired(&self, (pins, function): ([(usize, u32); 2], u32)) -> bool {
         pins.iter().all(|&(port, pin)| self.ports[port].function(pin) == Some(function))
     }
 
-    /// Sets the interrupt lines as the units hold them.
+    /// Sets the interrupt lines from the units.
     fn update_interrupt_lines(&mut self) {
         let exceptions = &mut self.system.exceptions;
         exceptions.set_line(FIRST_INTERRUPT + TICK_INTERRUPT, self.tick_timer.line());
@@ -370,7 +367,7 @@ impl VirtualBoard {
         self.seen = now;
     }
 
-    /// Whether something has to be done before the next instruction.
+    /// Whether an event is due before the next instruction.
     pub(crate) fn wants_attention(&self) -> bool {
         self.stopped.is_some() || self.bus_error.is_some() || self.system.reset_requested
     }

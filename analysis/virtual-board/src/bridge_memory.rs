@@ -1,5 +1,5 @@
-//! What a program that drives the bridge keeps in memory, and no pin shows: the code that the servo gave
-//! last, and whether it aligns the motor.
+//! The state of a bridge's program in memory, which no pin shows: the servo's last code, and whether the
+//! motor is being aligned.
 
 use crate::image::Image;
 use crate::processor::Processor;
@@ -11,7 +11,7 @@ const STATE: [&str; 2] = ["6bridge5STATE", "6bridge5STATE.0"];
 /// States from this one on are of an alignment: requested, and running.
 const FIRST_OF_ALIGNMENT: u8 = 3;
 
-/// Where a program keeps it.
+/// The addresses of this state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BridgeMemory {
     code: u32,
@@ -19,7 +19,7 @@ pub struct BridgeMemory {
 }
 
 impl BridgeMemory {
-    /// In this program; none where it does not drive a bridge.
+    /// The addresses in this program; `None` if it does not drive a bridge.
     pub fn of(image: &Image) -> Option<Self> {
         let place = |names: [&str; 2]| {
             let found = names.iter().find_map(|name| image.symbol_ending(name));
@@ -28,7 +28,7 @@ impl BridgeMemory {
         Some(Self { code: place(CODE)?, state: place(STATE)? })
     }
 
-    /// The code that the servo gave last.
+    /// The servo's last code.
     pub fn code(&self, core: &Processor) -> Option<u16> {
         let bytes = core.memory(self.code, 2)?;
         Some(u16::from_le_bytes(bytes.try_into().ok()?))

@@ -22,30 +22,30 @@ pub struct MapEntry {
     pub clocked: Option<(u32, u32, u32)>,
 }
 
-/// Where flash begins, which the core sees from address 0 on out of reset.
+/// First address of flash, which is also at address 0 after reset.
 pub const FLASH: u32 = 0x0800_0000;
-/// Where the core-coupled memory begins.
+/// First address of the core-coupled memory.
 pub const COUPLED: u32 = 0x1000_0000;
-/// Where RAM begins.
+/// First address of RAM.
 pub const RAM: u32 = 0x2000_0000;
 
-/// Bytes that a unit takes of the map.
+/// Size of a unit in the map in bytes.
 pub const SPAN: u32 = 0x400;
 
 /// A chip on its board.
 #[derive(Debug)]
 pub struct Chip {
-    /// Name of the board that it is on, as `haptic` has it.
+    /// Name of its board in `haptic`.
     pub name: &'static str,
     /// Bytes of [`FLASH`].
     pub flash: u32,
     /// Bytes of [`RAM`].
     pub ram: u32,
-    /// Bytes of [`COUPLED`] memory, and whether instructions come from there.
+    /// Bytes of [`COUPLED`] memory, and whether it can hold instructions.
     pub coupled: (u32, bool),
     /// The board's crystal in Hz.
     pub crystal: u64,
-    /// The core's clock in Hz once the program has set it up.
+    /// The core's clock in Hz after the program's set-up.
     pub core: u64,
     /// The map of its peripherals.
     pub map: &'static [MapEntry],
@@ -53,12 +53,12 @@ pub struct Chip {
     pub counter: u32,
     /// The pin that switches the amplifier on, as port and number; high is on, on every board.
     pub amplifier: (usize, u32),
-    /// The gates of its power stage, where it has one: high sides, then low sides of the phases U, V and W,
-    /// each with the alternate function that is TIM1.
+    /// The gates of its power stage, if it has one: high sides, then low sides of the phases U, V and W, each
+    /// with the alternate function that is TIM1.
     pub gates: Option<&'static [((usize, u32), u32); 6]>,
     /// The encoder's two pins and the alternate function that is its timer.
     pub encoder: ([(usize, u32); 2], u32),
-    /// The pin of the encoder's index and the alternate function that is its timer's channel 3, where there is one.
+    /// The pin of the encoder's index and the alternate function of its timer's channel 3, if there is one.
     pub index: Option<((usize, u32), u32)>,
     /// The serial port's two pins and the alternate function that is that port.
     pub serial: ([(usize, u32); 2], u32),
@@ -74,15 +74,15 @@ pub struct Chip {
     pub power: fn() -> InertRegisters,
     /// Its flash interface.
     pub flash_interface: fn() -> InertRegisters,
-    /// The place of the option bytes in it.
+    /// The offset of the option bytes in it.
     pub options: u32,
     /// Its system configuration.
     pub configuration: fn() -> InertRegisters,
     /// Its unit for debugging.
     pub debug: fn() -> InertRegisters,
-    /// Names of its units' registers, by the place behind the unit's first.
+    /// Names of its units' registers, by offset.
     pub names: fn(Unit, u32) -> Option<&'static str>,
-    /// Its ports out of reset.
+    /// Its ports after reset.
     pub ports: fn(usize) -> Pins,
 }
 
@@ -113,11 +113,11 @@ const fn ungated(base: u32, name: &'static str, unit: Unit) -> MapEntry {
 /// Peripherals that a debugger may stop while it halts the core: bits of [`FREEZE`]. Nothing halts here, so
 /// writes have no effect.
 pub const WATCHDOG_FREEZES: u32 = 1 << 12;
-/// Place of that register in the unit for debugging.
+/// Offset of that register in the unit for debugging.
 pub const FREEZE: u32 = 0x08;
 
-/// Place of the G4's CFGR2 in the system configuration, one of whose bits has a core that is locked up
-/// break the outputs of TIM1 (RM0440, 10.2.8).
+/// Offset of the G4's CFGR2 in the system configuration; one of its bits makes a locked-up core break the
+/// outputs of TIM1 (RM0440, 10.2.8).
 pub const BREAKS: u32 = 0x1C;
 /// That bit.
 pub const LOCK_UP_BREAKS: u32 = 1;
@@ -131,8 +131,8 @@ static DEBUG_F405: &[(u32, u32, u32)] =
 static G4: &Layout = &clock_g4::LAYOUT;
 static F4: &Layout = &clock_f4::LAYOUT;
 
-/// The map of an STM32G4. Which two timers are the encoder's counter and the free-running clock depends
-/// on the board; all else is in the same place.
+/// The map of an STM32G4. The timers of the encoder's counter and of the free-running clock depend on the
+/// board; all other units are in the same place.
 const fn g4_map([first, second]: [MapEntry; 2]) -> [MapEntry; 19] {
     [
         first,
@@ -168,7 +168,7 @@ const POWER_STAGE: [MapEntry; 7] = [
     map_entry(0x5000_1000, "DAC3", Unit::ThresholdDac, 0x4C, 0x2C, 18),
 ];
 
-/// A map with those of a power stage.
+/// A map with the units of a power stage.
 const fn with_power_stage(map: [MapEntry; 19]) -> [MapEntry; 26] {
     let mut all = [POWER_STAGE[0]; 26];
     let mut i = 0;
@@ -240,7 +240,7 @@ pub static B_G431B_ESC1: Chip = Chip {
         ((0, 12), 6),
         ((1, 15), 4),
     ]),
-    // CFGR2 as above, and whether a core that is locked up breaks TIM1's outputs.
+    // CFGR2 as above, with the bit for a locked-up core.
     configuration: || InertRegisters::new(&[(BREAKS, 0, LOCK_UP_BREAKS)]),
     // TIM4_CH1 and TIM4_CH2.
     encoder: ([(1, 6), (1, 7)], 2),
@@ -307,8 +307,8 @@ pub static STM32F405: Chip = Chip {
     },
 };
 
-/// What QEMU calls `netduinoplus2`: the same chip on a board that nothing is wired to, of which only
-/// TIM2 is modelled. As there, it counts without being clocked.
+/// QEMU's `netduinoplus2`: the same chip on a board without connections, with only TIM2 modelled. As in QEMU,
+/// it counts without being clocked.
 pub static NETDUINO_PLUS_2: Chip = Chip {
     name: "netduinoplus2",
     map: &[ungated(0x4000_0000, "TIM2", Unit::FreeClock)],
@@ -316,13 +316,13 @@ pub static NETDUINO_PLUS_2: Chip = Chip {
 };
 
 impl Chip {
-    /// One for each board that is flashed.
+    /// The chips of all boards.
     pub const BOARDS: [&'static Self; 3] = [&NUCLEO_G474RE, &B_G431B_ESC1, &STM32F405];
 
-    /// Those that every test runs on: one of each family.
+    /// The chips of every test: one of each family.
     pub const ALL: [&'static Self; 2] = [&NUCLEO_G474RE, &STM32F405];
 
-    /// The chip of the board of this name, where there is a virtual one.
+    /// The chip of the board with this name, if there is a virtual board.
     pub fn find(name: &str) -> Option<&'static Self> {
         Self::BOARDS.into_iter().find(|chip| chip.name == name)
     }

@@ -2,24 +2,24 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What a device is, to the board.
+/// The board's interface to a device.
 pub trait Device {
-    /// A sample ends: the code that the DAC put out from the sample's beginning or from its phase on, and
-    /// whether the amplifier was on. Gives the counts that the encoder has turned in it.
+    /// Ends a sample: receives the code that the DAC put out from the sample's beginning or from its phase
+    /// on, and whether the amplifier was on. Returns the encoder's counts in the sample.
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32;
 
-    /// A period of the board's own power stage ends, in s, in which the motor that is wired to it had this
-    /// torque in N m as a mean. Gives the motion at its end. Without an implementation, it stands still.
+    /// Ends a period of the board's own power stage, with its duration in s and the motor's mean torque in N
+    /// m. Returns the motion at its end. By default the device stands still.
     fn turn(&mut self, torque: f64, seconds: f64) -> Motion {
         let _ = (torque, seconds);
         Motion::default()
     }
 }
 
-/// How a device moves.
+/// The motion of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Counts that the encoder has turned since the last time.
+    /// Counts of the encoder since the last call.
     pub counts: i32,
     /// Angle in rad.
     pub angle: f64,
@@ -37,7 +37,7 @@ impl Device for FixedDevice {
     }
 }
 
-/// A device that is shared.
+/// A shared device.
 impl<D: Device> Device for Arc<Mutex<D>> {
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
         self.lock().unwrap_or_else(PoisonError::into_inner).sample(code, amplifier)

@@ -1,20 +1,20 @@
-//! The index of an encoder: a pulse once a turn.
+//! The index of an encoder: one pulse per turn.
 
 /// An encoder's third output, by the counts of the other two, in the direction in which the board counts up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EncoderIndex {
     /// Counts of a turn.
     pub counts_per_turn: i64,
-    /// Where the pulse begins in a turn.
+    /// Position of the beginning of the pulse in a turn.
     pub at: i64,
-    /// Counts for which it lasts.
+    /// Width of the pulse in counts.
     pub width: i64,
-    /// Where the encoder is.
+    /// Position of the encoder.
     pub position: i64,
 }
 
 impl EncoderIndex {
-    /// Of an encoder that is at zero.
+    /// The index of an encoder at zero.
     pub fn new(counts_per_turn: i64, at: i64, width: i64) -> Self {
         Self { counts_per_turn, at, width, position: 0 }
     }
@@ -24,7 +24,7 @@ impl EncoderIndex {
         (self.position - self.at).rem_euclid(self.counts_per_turn) < self.width
     }
 
-    /// The encoder turns by so many counts; those after which the output rose last, if it did.
+    /// Turns the encoder; returns the number of counts until the output's last rise, if it rose.
     pub fn turn(&mut self, counts: i32) -> Option<i32> {
         let step = counts.signum();
         let mut rose = None;

@@ -1,66 +1,66 @@
-//! Why a board cannot be switched on, or cannot go on.
+//! The reasons why a board cannot boot or cannot continue.
 
 use std::fmt;
 
 use crate::peripheral::Unmodelled;
 
-/// Why a board cannot go on.
+/// The reason why a board cannot continue.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BoardError {
     /// The program uses a feature that is not modelled.
     #[error("{what}; instruction {now} at {address:#010x}")]
     NotModelled {
-        /// What.
+        /// The feature.
         what: NotModelled,
-        /// When.
+        /// The time in instructions.
         now: u64,
-        /// Where.
+        /// The address.
         address: u32,
     },
-    /// The core is locked up: a fault where none can be served, and no watchdog to reset it.
+    /// The core is locked up: a fault that cannot be served, and no watchdog to reset it.
     #[error(
         "the core is locked up by a fault within a fault, and there is no watchdog; \
          instruction {now} at {address:#010x}"
     )]
     LockedUp {
-        /// When.
+        /// The time in instructions.
         now: u64,
-        /// Where.
+        /// The address.
         address: u32,
     },
-    /// The program wants its debugger.
+    /// The program has a breakpoint.
     #[error("the core is stopped by a breakpoint; instruction {now} at {address:#010x}")]
     Breakpoint {
-        /// When.
+        /// The time in instructions.
         now: u64,
-        /// Where.
+        /// The address.
         address: u32,
     },
     /// Both switches of a leg of the power stage were on.
     #[error("both switches of leg {leg} of the power stage were on; instruction {now}")]
     ShootThrough {
-        /// When.
+        /// The time in instructions.
         now: u64,
-        /// Which: 0 is phase U.
+        /// The leg: 0 is phase U.
         leg: usize,
     },
-    /// The clock stands still, and there is no watchdog.
+    /// The clock has stopped, and there is no watchdog.
     #[error("the core's clock has stopped, and there is no watchdog; instruction {now}")]
     NoClock {
-        /// When.
+        /// The time in instructions.
         now: u64,
     },
-    /// What was waited for did not come.
+    /// An expected event did not occur.
     #[error("{what} has not happened within {instructions} instructions")]
     Late {
-        /// What was waited for.
+        /// The expected event.
         what: &'static str,
-        /// How long.
+        /// The waiting time in instructions.
         instructions: u64,
     },
 }
 
-/// Why there is no board.
+/// The reason why a board cannot boot.
 #[derive(Debug, thiserror::Error)]
 pub enum BootError {
     /// The program's file could not be read.
@@ -68,54 +68,54 @@ pub enum BootError {
     File {
         /// The file.
         path: String,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
-    /// It is not a program.
+    /// The file is not a program.
     #[error("{path}: {source}")]
     Image {
         /// The file.
         path: String,
-        /// Why.
+        /// The cause.
         source: object::Error,
     },
-    /// It is not for this chip's memory.
+    /// The program does not fit this chip's memory.
     #[error("the program has {size} bytes at {address:#010x}, where the chip has no flash")]
     NoFlash {
-        /// Where.
+        /// The address.
         address: u32,
-        /// How many.
+        /// The size in bytes.
         size: usize,
     },
 }
 
-/// Something that is not modelled was used.
+/// The use of a feature that is not modelled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NotModelled {
-    /// Name of the unit; none where nothing is at the address.
+    /// Name of the unit; `None` if there is no unit at the address.
     pub unit: Option<&'static str>,
-    /// The register's name, where it has one.
+    /// The register's name, if it has one.
     pub register: Option<&'static str>,
     /// The address.
     pub address: u32,
-    /// What was written, if it was.
+    /// The written value, if it was a write.
     pub written: Option<u32>,
-    /// Why it is not.
+    /// The reason.
     pub why: AccessError,
 }
 
-/// Why an access fails.
+/// The reason why an access fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AccessError {
-    /// Nothing of the virtual board is there.
+    /// There is no unit of the virtual board.
     Nobody,
-    /// The unit is, but not this register or these bits.
+    /// The unit is modelled, but not this register or these bits.
     Unit(Unmodelled),
     /// The unit's clock is off, or the unit is held in reset.
     Stopped,
-    /// Such an access (by bytes) is not.
+    /// Accesses of this width are not modelled.
     Width,
-    /// A converter has sampled a channel that nothing drives.
+    /// A converter has sampled a floating channel.
     Floating,
 }
 

@@ -1,9 +1,7 @@
-//! What an exception keeps of the program that it interrupts: a frame on the stack (ARM DDI 0403E,
-//! B1.5.6 to B1.5.8).
+//! The stack frame of the code that an exception interrupts (ARM DDI 0403E, B1.5.6 to B1.5.8).
 //!
-//! The floating-point registers are put into the frame at once. A core that puts them there only
-//! when the handler uses some itself leaves the frame's words as they were; nothing but time tells the
-//! difference.
+//! The floating-point registers are stored in the frame at once. A core with lazy stacking stores them only
+//! if the handler uses such registers; the only difference is time.
 
 use unicorn_engine::RegisterARM;
 
@@ -12,12 +10,12 @@ use crate::processor::Processor;
 /// The status: Thumb.
 pub const THUMB: u32 = 1 << 24;
 
-/// A frame, and one with the floating-point registers, in bytes.
+/// Size in bytes of a frame, and of a frame with the floating-point registers.
 const SHORT: u32 = 0x20;
 const LONG: u32 = 0x68;
 /// The frame's status: the stack was moved by a word to align it.
 const REALIGNED: u32 = 1 << 9;
-/// The word that an exception returns by: all that is the same in each.
+/// The common bits of an exception's return word.
 const RETURN: u32 = 0xFFFF_FFE1;
 /// To the program and not to another exception; without the floating-point registers.
 const TO_PROGRAM: u32 = 1 << 3;
@@ -25,7 +23,7 @@ const WITHOUT_FLOATING: u32 = 1 << 4;
 /// To the stack that exceptions do not use.
 const OTHER_STACK: u32 = 1 << 2;
 
-/// Registers that come first, in this order; behind them the next instruction and the status.
+/// The first registers, in this order; after them the next instruction and the status.
 const KEPT: [RegisterARM; 6] = [
     RegisterARM::R0,
     RegisterARM::R1,
@@ -55,8 +53,8 @@ const FLOATING: [RegisterARM; 16] = [
     RegisterARM::S15,
 ];
 
-/// Puts a frame on the stack and the word to return by into its register. `nested`: the interrupted code is
-/// an exception itself.
+/// Pushes a frame on the stack and sets the return word. `nested`: the interrupted code is an exception
+/// itself.
 pub fn push(core: &mut Processor, nested: bool) {
     let long = core.uses_floating_point();
     let stack = core.register(RegisterARM::MSP);
@@ -70,7 +68,7 @@ pub fn push(core: &mut Processor, nested: bool) {
         words.extend([core.register(RegisterARM::FPSCR), 0]);
     }
     let bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
-    // A stack that has run over keeps nothing; the handler of faults does not count on it.
+    // An overflowed stack stores nothing; the handler of faults does not rely on it.
     core.set_memory(frame, &bytes);
     let word = if nested { RETURN } else { RETURN | TO_PROGRAM };
     core.set_uses_floating_point(false);
@@ -78,17 +76,18 @@ pub fn push(core: &mut Processor, nested: bool) {
     core.set_register(RegisterARM::LR, if long { word } else { word | WITHOUT_FLOATING });
 }
 
-/// A frame that an exception returns by.
+/// The frame of an exception's return.
 pub struct Frame {
     words: Vec<u32>,
-    /// The word that it returns by.
+    /// The return word.
     word: u32,
-    /// Where the stack was before it, but for its alignment.
+    /// The stack pointer before the frame, except for its alignment.
     above: u32,
 }
 
 impl Frame {
-    /// The frame on the stack, for this word; none where it is no return, or there is no stack.
+    /// The frame on the stack for this return word; `None` if it is not a return word, or if there is no
+    /// stack.
     pub fn of(core: &Processor, word: u32) -> Option<Self> {
         let is_return = word & !(TO_PROGRAM | WITHOUT_FLOATING) | 1 == RETURN;
         if !is_return || word & OTHER_STACK != 0 {
@@ -109,7 +108,7 @@ impl Frame {
         self.word & TO_PROGRAM != 0
     }
 
-    /// Takes it off the stack: the registers are as they were.
+    /// Pops it from the stack and restores the registers.
     pub fn pop(&self, core: &mut Processor) {
         for (register, value) in KEPT.into_iter().zip(&self.words) {
             core.set_register(register, *value);

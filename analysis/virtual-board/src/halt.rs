@@ -3,13 +3,13 @@
 /// Why the core has stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halt {
-    /// Something may have to be done before the next instruction.
+    /// An event may be due before the next instruction.
     Attention,
     /// It waits for an interrupt.
     Waiting,
     /// It returns from an exception, with this word.
     Returning(u32),
-    /// The bus has nothing there: an instruction, or data at the address.
+    /// There is no memory for an instruction, or for data at the address.
     NoMemory {
         /// Whether an instruction was fetched.
         fetch: bool,

@@ -1,5 +1,5 @@
-//! What the engine asks while it executes: for each instruction whether it may go on, for each
-//! access to a peripheral what there is, and what becomes of what it cannot do itself.
+//! The callbacks of the engine: before each instruction, for each access to a peripheral, and for everything
+//! that it cannot execute itself.
 
 use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn};
 
@@ -14,30 +14,30 @@ const REGIONS: [(u64, u64); 2] = [(0x4000_0000, 0x2000_0000), (0xE000_0000, 0x00
 const BREAKPOINT: u32 = 7;
 const RETURN_FROM_EXCEPTION: u32 = 8;
 
-/// What the engine asks.
+/// The engine with its context.
 pub type Engine<'a> = Unicorn<'a, Context>;
 
-/// What the answers depend on.
+/// The context of the callbacks.
 pub struct Context {
     /// The board.
     pub board: VirtualBoard,
-    /// A stop before the next instruction from this time on: when something is due, or at once.
+    /// The time from which on the engine stops before the next instruction: when an event is due, or at once.
     deadline: u64,
-    /// An exception waits for its mask to fall.
+    /// A masked exception is pending.
     masked: bool,
     /// Where the last instructions were.
     pub history: PcHistory,
-    /// Why the engine was stopped, if it was.
+    /// The reason if the engine was stopped.
     pub halt: Option<Halt>,
 }
 
 impl Context {
-    /// Around a board.
+    /// A context of a board.
     pub fn new(board: VirtualBoard) -> Self {
         Self { board, deadline: 0, masked: false, history: PcHistory::default(), halt: None }
     }
 
-    /// A run begins, up to a time; with `masked`, also to where the masks let an exception through.
+    /// Begins a run up to a time; with `masked`, it also ends when the masks no longer block an exception.
     pub fn begin(&mut self, until: u64, masked: bool) {
         (self.deadline, self.masked, self.halt) = (until, masked, None);
     }
@@ -50,7 +50,7 @@ impl Context {
     }
 }
 
-/// Has an engine whose memory is mapped ask.
+/// Connects the callbacks to an engine with mapped memory.
 pub fn wire(engine: &mut Engine<'static>) {
     for (base, size) in REGIONS {
         let read = move |engine: &mut Engine<'_>, offset: u64, size: usize| {
@@ -84,7 +84,7 @@ fn before_instruction(engine: &mut Engine<'_>, address: u64, size: u32) {
     let context = engine.get_data();
     let is_usual =
         context.board.now < context.deadline && !context.masked && context.history.is_next(address);
-    // Half of the time that a board takes is spent here: nothing else is asked in the usual way.
+    // Half of a board's time is spent here, so the usual path only tests this.
     if !is_usual && !goes_on(engine, address) {
         return;
     }
@@ -93,7 +93,7 @@ fn before_instruction(engine: &mut Engine<'_>, address: u64, size: u32) {
     context.board.now += 1;
 }
 
-/// Stops before an instruction if it has to be, or else counts those that were skipped before it.
+/// Stops before an instruction if necessary, or counts the skipped instructions before it.
 #[cold]
 fn goes_on(engine: &mut Engine<'_>, address: u32) -> bool {
     let context = engine.get_data();
@@ -104,7 +104,7 @@ fn goes_on(engine: &mut Engine<'_>, address: u32) -> bool {
     if !context.history.is_next(address) {
         let mut history = context.history;
         let skipped = history.skip(address, |from, code| {
-            // Where there is no memory, there is no block.
+            // Without memory there is no IT block.
             let _ = engine.mem_read(from.into(), code);
         });
         let context = engine.get_data_mut();
@@ -114,12 +114,12 @@ fn goes_on(engine: &mut Engine<'_>, address: u32) -> bool {
     true
 }
 
-/// Whether the masks let an exception through.
+/// Whether the masks allow an exception.
 fn is_unmasked(engine: &Engine<'_>) -> bool {
     engine.get_data().board.system.exceptions.next(masks(engine)).is_some()
 }
 
-/// What the engine calls an interrupt: the core wants something that is done outside.
+/// Called at an engine's interrupt: the core requests an action outside the engine.
 fn interrupted(engine: &mut Engine<'_>, number: u32) {
     let halt = match number {
         BREAKPOINT => Halt::Breakpoint,
@@ -134,11 +134,11 @@ fn interrupted(engine: &mut Engine<'_>, number: u32) {
 
 fn stop(engine: &mut Engine<'_>, why: Halt) {
     engine.get_data_mut().halt = Some(why);
-    // Fails only where the engine does not run.
+    // Fails only if the engine does not run.
     let _ = engine.emu_stop();
 }
 
-/// What holds exceptions off.
+/// The masks of exceptions.
 pub fn masks(engine: &Engine<'_>) -> Masks {
     let read = |register| engine.reg_read(register).unwrap_or(0);
     Masks {

@@ -1,17 +1,17 @@
-//! The host at the standard input and output: messages of the board, and the replies.
+//! The host at standard input and output: messages of the board, and the replies.
 
 use std::io::{self, BufWriter, Read, Stdin, Stdout, Write};
 
 use virtual_board::device::Motion;
 
-/// What a message to the host is.
+/// The kinds of messages to the host.
 const SAMPLE: u8 = 1;
 const PWM_PERIOD: u8 = 2;
 
 /// An invalid code.
 const NO_CODE: u16 = u16::MAX;
 
-/// Whether the amplifier is on, or what the gates of the board's own bridge are driven by.
+/// Whether the amplifier is on, or the driver of the bridge's gates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drive {
     /// Nothing.
@@ -22,7 +22,7 @@ pub enum Drive {
     Aligning = 2,
 }
 
-/// The host, and bytes on their way between it and the board's serial port.
+/// The host, and the bytes between it and the board's serial port.
 pub struct HostLink {
     input: Stdin,
     output: BufWriter<Stdout>,
@@ -30,14 +30,14 @@ pub struct HostLink {
     pub to_board: Vec<u8>,
     /// Bytes that the serial port has sent.
     pub from_board: Vec<u8>,
-    /// The host has closed its end, or why it cannot be talked to.
+    /// Set if the host has closed its end, or if communication failed.
     end: Option<io::Result<()>>,
-    /// How the shaft moved last.
+    /// The last motion of the shaft.
     motion: Motion,
 }
 
 impl HostLink {
-    /// With the process that has started this one.
+    /// A link to the process that has started this one.
     pub fn new() -> Self {
         Self {
             input: io::stdin(),
@@ -49,14 +49,14 @@ impl HostLink {
         }
     }
 
-    /// Tells of a sample; the counts that the encoder turns by.
+    /// Reports a sample; returns the counts of the encoder.
     pub fn sample(&mut self, code: Option<u16>, drive: Drive) -> i32 {
         let exchanged = self.exchange_sample(code, drive);
         self.or_end(exchanged).unwrap_or(0)
     }
 
-    /// Tells the mean torque in N m of a period of the modulation that took so many seconds; the motion of
-    /// the shaft at its end. It stands still once the host has closed its end.
+    /// Reports the mean torque in N m over a period of the modulation of `seconds`; returns the motion of the
+    /// shaft at its end. The shaft stands still after the host has closed its end.
     pub fn turn(&mut self, torque: f64, seconds: f64) -> Motion {
         let exchanged = self.exchange_turn(torque, seconds);
         let standing = Motion { counts: 0, speed: 0.0, ..self.motion };
@@ -64,12 +64,12 @@ impl HostLink {
         self.motion
     }
 
-    /// The reason, once the host is gone.
+    /// The reason, after the host is gone.
     pub fn end(&mut self) -> Option<io::Result<()>> {
         self.end.take()
     }
 
-    /// What came, or none from the end on.
+    /// The received value; `None` from the end on.
     fn or_end<T>(&mut self, exchanged: io::Result<T>) -> Option<T> {
         match exchanged {
             Ok(came) => Some(came),
@@ -78,7 +78,7 @@ impl HostLink {
                     io::ErrorKind::UnexpectedEof => Ok(()),
                     _ => Err(error),
                 };
-                // A host that has closed its end does not read, either.
+                // A host that has closed its end does not read either.
                 self.end.get_or_insert(end);
                 None
             }

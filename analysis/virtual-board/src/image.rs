@@ -1,4 +1,4 @@
-//! A program's file: what of it goes to memory.
+//! A program's file, and its content in memory.
 
 use object::elf::{FileHeader32, PT_LOAD};
 use object::read::elf::{FileHeader, ProgramHeader};
@@ -17,7 +17,7 @@ impl Image {
     /// The program in an ELF file.
     ///
     /// # Errors
-    /// Where it is none.
+    /// If it is not an ELF file.
     pub fn of_elf(file: Vec<u8>) -> Result<Self, object::Error> {
         let data = file.as_slice();
         let header = FileHeader32::<Endianness>::parse(data)?;
@@ -39,7 +39,7 @@ impl Image {
         u32::try_from(symbol.address()).ok()
     }
 
-    /// Address and size of the one symbol whose mangled name ends so.
+    /// Address and size of the only symbol whose mangled name has this end.
     pub fn symbol_ending(&self, end: &str) -> Option<(u32, u32)> {
         let file = object::File::parse(self.file.as_slice()).ok()?;
         let ends =

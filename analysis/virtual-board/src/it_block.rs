@@ -1,28 +1,28 @@
-//! Instructions that an IT block (if-then) skips (ARM DDI 0403E, A7.3): the engine says nothing of
-//! them, but a core takes a clock for each.
+//! Instructions skipped by an IT block (ARM DDI 0403E, A7.3): the engine does not report them, but a core
+//! needs a clock for each.
 
-/// Instructions of a block, at most.
+/// Largest number of instructions in a block.
 const LONGEST: u32 = 4;
-/// Bytes from where a block begins to its last instruction, at most: that begins it, and three.
+/// Largest distance in bytes from a block's beginning to its last instruction.
 const TO_LAST: u32 = 2 + 4 * (LONGEST - 1);
-/// Bytes that can be skipped at once.
+/// Largest number of bytes skipped at once.
 const SKIPPED: u32 = 4 * LONGEST;
 
-/// Addresses of the last instructions, to find the IT block that a skipped one belongs to.
+/// Addresses of the last instructions, to find the IT block of a skipped instruction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PcHistory {
-    /// The latest, in the place of its number modulo the length.
+    /// The latest addresses, at their numbers modulo the length.
     places: [u32; 8],
-    /// How many there were.
+    /// Number of instructions so far.
     count: usize,
-    /// How many there were at the last jump.
+    /// Number of instructions at the last jump.
     jumped: usize,
-    /// Where the next one is, unless there is a jump or one is skipped.
+    /// Expected address of the next instruction, without a jump or a skip.
     next: u32,
 }
 
 impl PcHistory {
-    /// Where the latest was.
+    /// Address of the latest instruction.
     pub fn latest(&self) -> u32 {
         self.place(self.count.wrapping_sub(1))
     }
@@ -33,7 +33,7 @@ impl PcHistory {
         address == self.next
     }
 
-    /// An instruction of so many bytes is executed.
+    /// Records an executed instruction with its size in bytes.
     #[inline]
     pub fn push(&mut self, address: u32, size: u32) {
         self.places[self.count % self.places.len()] = address;
@@ -41,8 +41,8 @@ impl PcHistory {
         self.next = address + size;
     }
 
-    /// How many instructions were skipped before an instruction that does not follow the last one; `read`
-    /// returns the program from an address on. 0: a jump.
+    /// Number of skipped instructions before an instruction that does not follow the last; `read` returns the
+    /// program from an address on. 0: a jump.
     pub fn skip(&mut self, address: u32, read: impl FnOnce(u32, &mut [u8])) -> u64 {
         let skipped = self.skipped(address, read);
         if skipped == 0 {
@@ -51,14 +51,13 @@ impl PcHistory {
         skipped
     }
 
-    /// Instructions from where the next one was expected up to `address`, if a block was there
-    /// that goes as far.
+    /// Number of instructions from the expected address up to `address`, if a block extends that far.
     fn skipped(&self, address: u32, read: impl FnOnce(u32, &mut [u8])) -> u64 {
         // Skipped instructions are always ahead and near.
         if address.wrapping_sub(self.next) > SKIPPED {
             return 0;
         }
-        // Of the instructions since the last jump, those near enough to have begun the block.
+        // Instructions since the last jump that are near enough to be the beginning of the block.
         let near = self.next.saturating_sub(TO_LAST);
         let since = (self.jumped..self.count).rev().map(|number| self.place(number));
         let candidates = since.take(LONGEST as usize + 1).take_while(|&at| at >= near);
@@ -79,17 +78,17 @@ impl PcHistory {
             skipped += u64::from(at >= self.next);
             at += if is_long(half(at)) { 4 } else { 2 };
         }
-        // Beyond the block only a jump leads.
+        // Only a jump leads beyond the block.
         if address <= at { skipped } else { 0 }
     }
 
-    /// Where the instruction of a number was.
+    /// Address of the instruction with this number.
     fn place(&self, number: usize) -> u32 {
         self.places[number % self.places.len()]
     }
 }
 
-/// How many instructions follow an instruction as its block; 0 if it begins none.
+/// Number of instructions in the block of an IT instruction; 0 for others.
 fn length(instruction: u16) -> u32 {
     if instruction & 0xFF00 != 0xBF00 || instruction & 0xF == 0 {
         return 0;

@@ -1,25 +1,25 @@
 //! A board that is simulated down to the registers and runs an unmodified program.
 //!
-//! What `haptic flash` would write to an STM32G474RE, an STM32G431CB or an STM32F405RG runs here
-//! unmodified: the drivers set clocks up and wait for them, the pacing timer interrupts, the encoder's
+//! The program that `haptic flash` writes to an STM32G474RE, an STM32G431CB or an STM32F405RG runs here
+//! unmodified: the drivers set up clocks and wait for them, the pacing timer interrupts, the encoder's
 //! counter is turned by a simulated device, and the DAC's output drives that device.
 //!
 //! - [`machine`]: the board with its power on.
-//! - [`board`]: the units, and the device that is wired to them.
-//! - [`chip`]: the chips: their memory maps, and the pins that the boards use; [`unit`](mod@unit): what a
-//!   peripheral is for.
-//! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
+//! - [`board`]: the units, and the connected device.
+//! - [`chip`]: the chips: their memory maps, and the pins that the boards use; [`unit`](mod@unit): the kinds
+//!   of peripherals.
+//! - [`peripheral`], [`core`]: the units, and the core's parts other than its instructions.
 //! - [`power_stage`]: TIM1 and the analogue units, with the circuit around them; [`motor`]: its currents.
 //! - [`device`]: the device at the board; [`bridge_memory`]: the state of a program in its memory.
 //!   [`encoder_index`]: the encoder's third output.
 //! - [`meter`]: instructions of a tick.
-//! - [`processor`]: the instructions, which a library executes; `hooks`: what it asks meanwhile; [`halt`]:
-//!   why it stops.
-//! - [`error`]: why a board cannot be switched on or cannot go on.
+//! - [`processor`]: the instructions, which a library executes; `hooks`: its callbacks; [`halt`]: the reasons
+//!   for its stops.
+//! - [`error`]: the reasons why a board cannot boot or continue.
 //! - [`semihosting`]: a debugger that answers a program's calls.
 //!
-//! Time is counted in instructions, each of which takes one clock of the core; so it is the right
-//! order of everything that is shown here, and nothing is said of its duration on a chip.
+//! Time is counted in instructions, each of which takes one clock of the core. So the order of all events is
+//! right, but their duration on a chip is not modelled.
 
 pub mod board;
 pub mod bridge_memory;

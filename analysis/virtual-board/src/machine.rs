@@ -24,9 +24,9 @@ pub struct Machine {
     core: Processor,
     image: Image,
     waiting: bool,
-    /// A fault where none can be served: nothing is executed until a reset.
+    /// A fault could not be served: nothing is executed until a reset.
     locked_up: bool,
-    /// An exception that is served from elsewhere than where the vector table says.
+    /// An exception that is served at an address other than its vector.
     diverted: Option<(Number, u32)>,
     resets: Vec<(u64, Cause)>,
     log: Vec<u8>,
@@ -35,10 +35,10 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Switches a board on that has this program in its flash and this device at its pins.
+    /// Boots a board with this program in its flash and this device at its pins.
     ///
     /// # Errors
-    /// Where the file cannot be read, or is not a program for the chip.
+    /// If the file cannot be read, or is not a program for the chip.
     pub fn boot(
         elf: &Path,
         chip: &'static Chip,
@@ -51,10 +51,10 @@ impl Machine {
         Self::power_on(image, chip, device)
     }
 
-    /// The same with a program that is at hand.
+    /// The same with a program in memory.
     ///
     /// # Errors
-    /// Where it is not for the chip.
+    /// If it is not for the chip.
     pub fn power_on(
         image: Image,
         chip: &'static Chip,
@@ -85,17 +85,17 @@ impl Machine {
         self.core.board()
     }
 
-    /// The board, to do something to it from outside.
+    /// The board, mutable.
     pub fn board_mut(&mut self) -> &mut VirtualBoard {
         self.core.board_mut()
     }
 
-    /// The core, to look at its memory.
+    /// The core, for its memory.
     pub fn core(&self) -> &Processor {
         &self.core
     }
 
-    /// The core, to do something to its memory.
+    /// The core, mutable.
     pub fn core_mut(&mut self) -> &mut Processor {
         &mut self.core
     }
@@ -110,17 +110,16 @@ impl Machine {
         &self.resets
     }
 
-    /// Has an exception served at another address from now on, or again where the vector table
-    /// says; gives what the table says.
+    /// Serves an exception at another address from now on, or again at its vector; returns its vector.
     pub fn divert(&mut self, number: Number, to: Option<u32>) -> u32 {
         self.diverted = to.map(|address| (number, address));
         self.vector(number.into())
     }
 
-    /// Runs for so many instructions.
+    /// Runs for a number of instructions.
     ///
     /// # Errors
-    /// Where the board cannot go on.
+    /// If the board cannot continue.
     pub fn run_for(&mut self, instructions: u64) -> Result<(), BoardError> {
         let end = self.board().now + instructions;
         while self.board().now < end {
@@ -129,10 +128,10 @@ impl Machine {
         Ok(())
     }
 
-    /// Runs until something is so, which is looked at whenever something has happened.
+    /// Runs until a condition is true, which is tested after every event.
     ///
     /// # Errors
-    /// Where the board cannot go on, or it is not so within so many instructions.
+    /// If the board cannot continue, or the condition is not true within the number of instructions.
     pub fn run_until(
         &mut self,
         what: &'static str,
@@ -149,10 +148,10 @@ impl Machine {
         Ok(())
     }
 
-    /// Runs so many samples of the servo.
+    /// Runs a number of samples of the servo.
     ///
     /// # Errors
-    /// Where the board cannot go on, or the pacing timer does not come.
+    /// If the board cannot continue, or the pacing timer does not run.
     pub fn run_samples(&mut self, samples: u64) -> Result<(), BoardError> {
         for _ in 0..samples {
             let next = self.board().samples + 1;
@@ -163,7 +162,7 @@ impl Machine {
         Ok(())
     }
 
-    /// What the program has logged so far, as defmt has encoded it.
+    /// The program's log so far, in defmt's encoding.
     pub fn log(&mut self) -> &[u8] {
         self.drain_log();
         &self.log
@@ -206,14 +205,14 @@ impl Machine {
             return Err(BoardError::ShootThrough { now, leg });
         }
         if let Some(address) = self.core.board_mut().bus_error.take() {
-            // The access has failed; the instruction is its own.
+            // The access has failed; continue at its instruction.
             self.core.set_register(RegisterARM::PC, at | 1);
             self.fault(FaultStatus::Data, address)?;
         }
         Ok(())
     }
 
-    /// What becomes of the core that has stopped executing.
+    /// Handles a stop of the core.
     fn halted(&mut self, halt: Halt) -> Result<(), BoardError> {
         match halt {
             Halt::Attention => Ok(()),
@@ -239,7 +238,7 @@ impl Machine {
         board.now = board.now.max(end.min(board.due()));
     }
 
-    /// The clock of the core and of all that it paces stands still. The watchdog has its own.
+    /// The clock of the core and of everything that it paces has stopped. The watchdog has its own clock.
     fn stand_still(&mut self) -> Result<(), BoardError> {
         let board = self.core.board_mut();
         let Some(due) = board.watchdog.due() else {
@@ -250,7 +249,7 @@ impl Machine {
         Ok(())
     }
 
-    /// Out of reset: the stack and the first instruction are the vector table's first words.
+    /// Starts after reset: the stack and the first instruction are the vector table's first words.
     fn start(&mut self) {
         for register in [RegisterARM::PRIMASK, RegisterARM::FAULTMASK, RegisterARM::BASEPRI] {
             self.core.set_register(register, 0);
@@ -264,7 +263,7 @@ impl Machine {
         (self.waiting, self.locked_up) = (false, false);
     }
 
-    /// Resets the board, for whatever cause; its memory stays.
+    /// Resets the board for a cause; its memory stays.
     pub fn reset(&mut self, cause: Cause) {
         self.drain_log();
         self.resets.push((self.board().now, cause));
@@ -279,11 +278,11 @@ impl Machine {
         self.reset(Cause::Power);
     }
 
-    /// Takes down what the program has logged since the last time.
+    /// Stores the program's log since the last call.
     fn drain_log(&mut self) {
         self.log.extend(rtt::drain(&mut self.core, &self.image));
     }
 }
 
-/// Instructions within which the pacing timer has to come.
+/// Number of instructions within which the pacing timer must update.
 const LONGEST: u64 = 200_000_000;

@@ -3,8 +3,8 @@
 //! `WINDING RESISTANCE INDUCTANCE TORQUE_CONSTANT SUPPLY`, for a program that drives the board's own bridge:
 //! `brushed` or the number of pole pairs, ohm, H, N m/A, V.
 //!
-//! All numbers have their lowest byte first. At the end of each sample the board writes what the
-//! sample was, and waits for what comes of it:
+//! All numbers are little-endian. At the end of each sample the board writes the sample, and waits for the
+//! reply:
 //!
 //! | board | bytes | | world | bytes |
 //! |---|---|---|---|---|
@@ -24,7 +24,7 @@
 //! | length in s, a double | 8 | | speed in rad/s, a double | 8 |
 //!
 //! The message of a sample then comes at the beginning of the servo's period. Its code is the servo's, which
-//! the current loop follows from there on; its fourth byte is 1 where the servo drives the gates, and 2 while
+//! the current loop follows from there on; its fourth byte is 1 while the servo drives the gates, and 2 while
 //! an alignment does.
 //!
 //! Once the input ends, the board writes a 0, then how many there were and the least, the most and
@@ -32,7 +32,7 @@
 //! then the number of resets (4), and the rest is the log as defmt has encoded it. A bridge's code is in
 //! memory, and nothing is counted up to it.
 //!
-//! A board that cannot go on writes why to its standard error, and ends with a failure.
+//! A board that cannot continue writes the reason to standard error, and ends with a failure.
 
 mod host_link;
 mod wired_motor;
@@ -84,7 +84,7 @@ fn run() -> Result<(), Failure> {
     Ok(report(&mut machine)?)
 }
 
-/// Wires a motor to the bridge; where the program keeps what no pin shows.
+/// Connects a motor to the bridge; returns the addresses of the program's state.
 fn wire(machine: &mut Machine, motor: &[String]) -> Result<BridgeMemory, Failure> {
     let Ok(words) = motor.try_into() else {
         let wanted = "WINDING RESISTANCE INDUCTANCE TORQUE_CONSTANT SUPPLY";
@@ -104,14 +104,14 @@ fn locked(host: &Mutex<HostLink>) -> MutexGuard<'_, HostLink> {
     host.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A sample, with what comes and goes over the serial port; says when the host has closed its end.
+/// Runs a sample, with the bytes of the serial port; returns the end once the host has closed its end.
 fn step(machine: &mut Machine, host: &Mutex<HostLink>) -> Result<Option<()>, Failure> {
     machine.run_samples(1)?;
     carry_bytes(machine, &mut locked(host));
     Ok(locked(host).end().transpose()?)
 }
 
-/// The same to the begin of a period of the servo, where its code is taken over.
+/// The same up to the beginning of a period of the servo, where its code is taken over.
 fn bridge_step(
     machine: &mut Machine,
     memory: &BridgeMemory,
@@ -140,7 +140,7 @@ fn carry_bytes(machine: &mut Machine, host: &mut HostLink) {
     host.from_board.extend(board.serial.take_sent());
 }
 
-/// What was measured, to the standard output.
+/// Writes the measurements to standard output.
 fn report(machine: &mut Machine) -> io::Result<()> {
     let mut output = BufWriter::new(io::stdout());
     output.write_all(&[0])?;
@@ -157,7 +157,7 @@ fn report(machine: &mut Machine) -> io::Result<()> {
     output.flush()
 }
 
-/// What a DAC drives, which the host simulates.
+/// The device behind a DAC, which the host simulates.
 struct DacPlant(Arc<Mutex<HostLink>>);
 
 impl Device for DacPlant {
@@ -166,7 +166,7 @@ impl Device for DacPlant {
     }
 }
 
-/// What the motor at the bridge turns, which the host simulates.
+/// The shaft of the bridge's motor, which the host simulates.
 struct Shaft(Arc<Mutex<HostLink>>);
 
 impl Device for Shaft {

@@ -1,16 +1,15 @@
-//! Instructions of the servo's interrupt, counted from outside: nothing is subtracted, because
-//! nothing was added.
+//! Instructions of the servo's interrupt, counted from outside without overhead.
 
 /// Numbers of instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InstructionStats {
-    /// How many there were.
+    /// The number of values.
     pub count: u64,
     /// The smallest.
     pub least: u64,
     /// The largest.
     pub most: u64,
-    /// All together.
+    /// The sum.
     pub sum: u64,
 }
 
@@ -34,7 +33,7 @@ impl InstructionStats {
 pub struct Meter {
     compute: InstructionStats,
     interrupt: InstructionStats,
-    /// When the interrupt began, and when the encoder was read in it.
+    /// The times at which the interrupt began and read the encoder.
     began: Option<u64>,
     read: Option<u64>,
 }

@@ -1,15 +1,14 @@
 //! An electrical motor at the three terminals of a bridge: exact currents between switching instants.
 //!
-//! Each phase is a resistance, an inductance and a back-EMF in series; the three meet at a neutral point
-//! that nothing else is connected to. A brushed motor is the same circuit with half of the winding at each
-//! of two terminals. While the voltages at the terminals stand still, each current is an exponential, so
-//! that a step has no length at which it becomes wrong. The back-EMF stands still for as long as the speed
-//! and the angle that it was last given.
+//! Each phase is a resistance, an inductance and a back-EMF in series; the three meet at a neutral point that
+//! nothing else is connected to. A brushed motor is the same circuit with half of the winding at each of two
+//! terminals. While the voltages at the terminals are constant, each current is an exponential, so a step of
+//! any length is exact. The back-EMF is constant between two updates of speed and angle.
 
 use std::array;
 use std::f64::consts::TAU;
 
-/// What the windings are.
+/// The kind of the windings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Winding {
     /// One winding, at the first two wires.
@@ -18,8 +17,8 @@ pub enum Winding {
     Brushless {
         /// Electrical turns in a turn of the shaft.
         pole_pairs: u32,
-        /// Electrical angle at the shaft's angle of zero, in rad: where the first phase links the most
-        /// flux, it is zero.
+        /// Electrical angle at the shaft's angle zero, in rad; it is zero where the first phase links the
+        /// most flux.
         offset: f64,
     },
 }
@@ -31,7 +30,7 @@ pub enum Leg {
     High,
     /// The switch to ground is on.
     Low,
-    /// Both are off: what current there is flows through a diode.
+    /// Both are off: a current flows through a diode.
     Off,
 }
 
@@ -42,7 +41,7 @@ enum Rail {
     Ground,
 }
 
-/// What a time brought, as integrals over it.
+/// Integrals over an interval of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Totals {
     /// Torque, in N m s.
@@ -79,8 +78,8 @@ pub struct Motor {
     pub wires: [usize; 3],
     /// Terminals whose wire is broken.
     pub open: [bool; 3],
-    /// A short between all three wires, as its resistance in Ω and inductance in H from each to their
-    /// common point. Beside it, nothing of the motor is felt.
+    /// A short circuit between all three wires, as resistance in Ω and inductance in H from each to their
+    /// common point. It hides the motor.
     pub short: Option<(f64, f64)>,
     /// Currents from the terminals into the motor, in A.
     currents: [f64; 3],
@@ -92,7 +91,7 @@ pub struct Motor {
 
 /// Currents below this, in A, have ended.
 const NONE: f64 = 1e-12;
-/// Diodes that may begin or end to conduct between two switching instants.
+/// Largest number of diodes that begin or end to conduct between two switching instants.
 const CHANGES: usize = 16;
 
 impl Motor {
@@ -114,7 +113,7 @@ impl Motor {
         motor
     }
 
-    /// The shaft is at this angle in rad, and turns with this speed in rad/s.
+    /// Sets the shaft's angle in rad and its speed in rad/s.
     pub fn turn(&mut self, angle: f64, speed: f64) {
         self.speed = speed;
         self.shape = array::from_fn(|terminal| self.shape_of(self.wires[terminal], angle));
@@ -158,8 +157,8 @@ impl Motor {
         0.5 * self.phase().1 * squares
     }
 
-    /// How far a current can change within a time, in A and s, whatever the legs do: at most all of the supply and
-    /// two back-EMFs, and as much again over the resistance, are at an inductance.
+    /// Largest change of a current in A within a time in s, for any switching: at most the supply and two
+    /// back-EMFs, and as much again over the resistance, are at an inductance.
     pub fn largest_change(&self, supply: f64, seconds: f64) -> f64 {
         let (resistance, inductance) = self.phase();
         let back_emf = (0..3).map(|terminal| self.back_emf(terminal).abs()).fold(0.0, f64::max);
@@ -168,7 +167,7 @@ impl Motor {
         (driving + driving.max(resistance * current)) / inductance * seconds
     }
 
-    /// Time passes, in s, while the legs are so and the supply has this voltage.
+    /// Advances by a time in s, with these legs and this voltage of the supply.
     pub fn advance(&mut self, legs: [Leg; 3], supply: f64, seconds: f64) -> Totals {
         let mut totals = Totals::default();
         let mut left = seconds;
@@ -214,7 +213,7 @@ impl Motor {
     /// The rails that currents flow to; none where no current flows.
     fn rails(&mut self, legs: [Leg; 3], supply: f64) -> [Option<Rail>; 3] {
         let mut rails = array::from_fn(|terminal| self.rail(terminal, legs[terminal]));
-        // Each round connects a terminal more, or is the last.
+        // Each round connects one more terminal, or is the last.
         while let Some((terminal, rail)) = self.begins_to_conduct(&rails, legs, supply) {
             rails[terminal] = Some(rail);
         }
@@ -264,7 +263,7 @@ impl Motor {
         (between > supply + NONE).then_some((highest, Rail::Supply))
     }
 
-    /// The neutral point's voltage: the currents' changes have to sum up to zero. None where it floats.
+    /// The neutral point's voltage: the sum of the currents' changes is zero. `None` if it floats.
     fn neutral(&self, rails: &[Option<Rail>; 3], supply: f64) -> Option<f64> {
         let (mut sum, mut number) = (0.0, 0.0);
         for (terminal, rail) in rails.iter().enumerate() {
@@ -276,7 +275,7 @@ impl Motor {
         (number > 0.0).then(|| sum / number)
     }
 
-    /// The currents that these voltages would settle at.
+    /// The settled currents with these voltages.
     fn settled(&self, rails: [Option<Rail>; 3], supply: f64) -> [f64; 3] {
         let neutral = self.neutral(&rails, supply).unwrap_or(0.0);
         array::from_fn(|terminal| {
@@ -286,7 +285,7 @@ impl Motor {
         })
     }
 
-    /// Time until the first current that flows through a diode is zero, at most so long.
+    /// Time until the first current through a diode is zero, at most `most`.
     fn until_a_diode_ends(&self, legs: [Leg; 3], settled: [f64; 3], most: f64) -> f64 {
         let (resistance, inductance) = self.phase();
         let ends = |terminal: usize| {
@@ -297,7 +296,7 @@ impl Motor {
         (0..3).filter_map(ends).fold(most, f64::min)
     }
 
-    /// The currents go on towards their settled values, for so long.
+    /// Lets the currents move towards their settled values for a time.
     fn flow(&mut self, rails: [Option<Rail>; 3], settled: [f64; 3], seconds: f64) -> Totals {
         let (resistance, inductance) = self.phase();
         let lag = inductance / resistance;

@@ -48,7 +48,7 @@ const DAC: Row = &[
 ];
 /// The watchdog; the F4's ends with the status.
 const WATCHDOG: Row = &["KR", "PR", "RLR", "SR", "WINR"];
-/// What keeps clocks running for a debugger.
+/// The debug unit.
 const DEBUG: Row = &["IDCODE", "CR", "APB1FZR1", "APB1FZR2", "APB2FZR"];
 
 const CLOCK_G4: Row = &[
@@ -175,7 +175,7 @@ pub fn f405(unit: Unit, offset: u32) -> Option<&'static str> {
     at(row, offset)
 }
 
-/// What both have alike.
+/// The common registers of both families.
 fn common(unit: Unit) -> Row {
     match unit {
         Unit::TickTimer | Unit::PhaseTimer | Unit::FreeClock | Unit::Encoder => TIMER,

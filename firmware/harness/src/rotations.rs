@@ -27,7 +27,7 @@ pub enum Rotation {
 const QUARTER: u32 = 1 << 30;
 
 impl Rotation {
-    /// All of them.
+    /// All values.
     pub const ALL: [Self; 6] =
         [Self::Micromath, Self::Libm, Self::Cubic, Self::Quintic, Self::Septic, Self::Table];
 

@@ -30,7 +30,7 @@ pub(crate) const SEPTIC: [f32; 4] = [6.283_164, -41.337_143, 81.340_77, -70.993_
 const NONIC: [f32; 5] = [6.283_185, -41.341_656, 81.601_006, -76.549_78, 39.536_705];
 
 impl Sine {
-    /// All of them.
+    /// All values.
     pub const ALL: [Self; 7] = [
         Self::Micromath,
         Self::Libm,

@@ -42,7 +42,7 @@ fn rational(numerator: &[f64], denominator: &[f64]) -> Environment {
     })
 }
 
-/// All of them.
+/// All values.
 pub fn all() -> Vec<RefutedScene> {
     let damper = |k, b, n| Environment::DamperWall(wall(k, b, n));
     let refuted = |name, scene| RefutedScene { name, scene, judged_as: None };

@@ -65,7 +65,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
+    /// All values.
     pub const ALL: [Self; 7] = [
         Self::Wall,
         Self::FreeMode,

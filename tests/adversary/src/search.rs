@@ -132,7 +132,7 @@ pub enum Unjudged {
 /// Boots a drawn scene as a board does, and does something with it.
 ///
 /// # Errors
-/// Why not.
+/// The reason.
 pub fn booted<T: Task>(
     drawn: &RandomScene,
     output: Option<Output>,

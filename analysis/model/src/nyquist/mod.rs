@@ -46,7 +46,7 @@ const AROUND_LEAST: i32 = 60;
 pub struct NoTransfer {
     /// Name of the scene.
     pub scene: String,
-    /// Why.
+    /// The cause.
     pub why: Unbuildable,
 }
 

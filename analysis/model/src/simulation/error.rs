@@ -27,7 +27,7 @@ pub enum SimulationError {
     TorqueFile {
         /// The file.
         file: String,
-        /// Why.
+        /// The cause.
         error: std::io::Error,
     },
     /// The torque file is not text.

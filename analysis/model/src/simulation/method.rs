@@ -26,7 +26,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All of them.
+    /// All values.
     pub const ALL: [Self; 5] =
         [Self::Exact, Self::Euler, Self::SemiImplicit, Self::Rk4, Self::Tustin];
 

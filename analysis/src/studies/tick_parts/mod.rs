@@ -26,7 +26,7 @@ pub enum TickPartsError {
     File {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// It cannot be listed.
@@ -34,7 +34,7 @@ pub enum TickPartsError {
     Listing {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: ListingError,
     },
 }

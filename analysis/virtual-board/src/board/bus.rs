@@ -1,4 +1,4 @@
-//! The board's bus: what a program reads and writes there, or why there is no answer.
+//! The board's bus: the reads and writes of a program, and the errors of accesses.
 
 use super::{BusAccess, VirtualBoard};
 use crate::chip::{MapEntry, TICK_INTERRUPT};
@@ -15,9 +15,9 @@ use crate::peripheral::serial::Serial;
 use crate::power_stage::Surroundings;
 use crate::unit::Unit;
 
-/// What an address leads to; where that is registers, with the place behind the first one.
+/// The target of an address, with the offset of a register.
 enum Target {
-    /// Priorities of exceptions, a byte each, from this one on.
+    /// Priorities of exceptions, a byte each, from this exception on.
     Priorities(Number),
     /// The system control space.
     System(u32),
@@ -37,7 +37,7 @@ impl Target {
     }
 }
 
-/// Who has no answer, and why.
+/// The unit and the error of a failed access.
 type Fault = (Option<&'static str>, AccessError);
 
 impl VirtualBoard {
@@ -75,7 +75,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Whether the bus gives an error there, which is kept for the core.
+    /// Whether the bus has an error there, which is stored for the core.
     fn has_bus_error(&mut self, address: u32) -> bool {
         let is_broken = self.broken == Some(address);
         if is_broken {
@@ -120,7 +120,7 @@ impl VirtualBoard {
         done.map_err(|why| (Some(target.name()), AccessError::Unit(why)))
     }
 
-    /// What an access of so many bytes leads to.
+    /// The target of an access with a size in bytes.
     fn find(&self, address: u32, size: usize) -> Result<Target, Fault> {
         if let Some(offset) = within(address, SYSTEM) {
             let priorities = System::priority_at(offset).map(Target::Priorities);
@@ -180,7 +180,7 @@ impl VirtualBoard {
             | Unit::OpAmps
             | Unit::ThresholdDac => {
                 self.advance_power_stage();
-                // The comparators' levels are those of now.
+                // The comparators' levels are updated first.
                 if unit == Unit::Comparators {
                     self.power_stage_changed();
                 }
@@ -189,7 +189,7 @@ impl VirtualBoard {
         }
     }
 
-    /// IDR: the pins that this chip drives high. What others drive is not seen here.
+    /// IDR: the pins that this chip drives high. Pins driven by others are not modelled.
     fn input(&self, port: usize) -> u32 {
         let gates = self.chip.gates.iter().flat_map(|gates| gates.iter());
         let gates = gates.zip(self.power_stage.gates());
@@ -287,7 +287,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Takes down the first access that has no answer, which ends the run.
+    /// Stores the first failed access, which ends the run.
     fn stop(&mut self, (unit, why): Fault, address: u32, written: Option<u32>) {
         let chip = self.chip();
         let map_entry = chip.at(address);

@@ -1,13 +1,13 @@
-//! Which exceptions are pending, which are active and which comes next (ARM DDI 0403E, B1.5).
+//! The pending and active exceptions, and the next one (ARM DDI 0403E, B1.5).
 
 /// Number of an exception: the core's own below 16, interrupts from there on.
 pub type Number = u16;
 
-/// What nothing holds off: a failure of the chip.
+/// The non-maskable interrupt: a failure of the chip.
 pub const NON_MASKABLE: Number = 2;
-/// What the core takes when nothing else may take a fault.
+/// The hard fault: taken if no other exception may take a fault.
 pub const HARD_FAULT: Number = 3;
-/// The request for service at leisure.
+/// The pendable request for service.
 pub const PEND_SV: Number = 14;
 /// The core's own timer.
 pub const SYS_TICK: Number = 15;
@@ -24,19 +24,19 @@ pub const PRIORITY_BITS: u8 = 0xF0;
 /// Priority of a program that no exception has interrupted: below all others.
 const THREAD: i16 = 256;
 
-/// The core's registers that hold exceptions off.
+/// The core's mask registers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Masks {
-    /// PRIMASK: all but faults.
+    /// PRIMASK: masks all except faults.
     pub primask: bool,
-    /// FAULTMASK: all but the non-maskable interrupt.
+    /// FAULTMASK: masks all except the non-maskable interrupt.
     pub faultmask: bool,
-    /// BASEPRI: this priority and those below it; 0 for none.
+    /// BASEPRI: masks this priority and lower ones; 0 for none.
     pub basepri: u8,
 }
 
 impl Masks {
-    /// The priority that they raise the running program to.
+    /// The priority to which they raise the running program.
     fn priority(self) -> i16 {
         let base = if self.basepri == 0 { THREAD } else { i16::from(self.basepri) };
         if self.faultmask {
@@ -48,7 +48,7 @@ impl Masks {
         }
     }
 
-    /// As they are, but for PRIMASK.
+    /// The same masks without PRIMASK.
     fn without_primask(self) -> Self {
         Self { primask: false, ..self }
     }
@@ -82,13 +82,13 @@ impl Set {
 #[derive(Clone, Debug)]
 pub struct Exceptions {
     enabled: Set,
-    /// Asked for, by an edge or by the program.
+    /// Requested, by an edge or by the program.
     pending: Set,
-    /// Lines from peripherals that are up, each of which asks for as long as it is.
+    /// Active lines from peripherals, which request their interrupts as long as they are active.
     lines: Set,
     active: Set,
     priorities: [u8; NUMBERS],
-    /// Those that have begun and not ended, the latest last.
+    /// Active exceptions, the latest last.
     nested: Vec<Number>,
 }
 
@@ -107,39 +107,39 @@ impl Default for Exceptions {
 }
 
 impl Exceptions {
-    /// The active exception; `None` in a program that nothing has interrupted.
+    /// The active exception; `None` in an uninterrupted program.
     pub fn current(&self) -> Option<Number> {
         self.nested.last().copied()
     }
 
-    /// Exceptions that are being served.
+    /// The number of active exceptions.
     pub fn depth(&self) -> usize {
         self.nested.len()
     }
 
-    /// Asks for one.
+    /// Requests an exception.
     pub fn pend(&mut self, number: Number) {
         self.pending.put(number, true);
     }
 
-    /// Takes that back.
+    /// Withdraws a request.
     pub fn unpend(&mut self, number: Number) {
         self.pending.put(number, false);
     }
 
-    /// Whether one is asked for.
+    /// Whether an exception is requested.
     pub fn is_pending(&self, number: Number) -> bool {
         self.asked().has(number)
     }
 
-    /// Whether one is being served.
+    /// Whether an exception is active.
     pub fn is_active(&self, number: Number) -> bool {
         self.active.has(number)
     }
 
-    /// A peripheral's line goes up or down. An interrupt that was asked for stays so.
+    /// Sets a peripheral's line. A requested interrupt stays requested.
     pub fn set_line(&mut self, number: Number, up: bool) {
-        // What rises while it is served comes again at its end.
+        // A rising line during service requests the interrupt again.
         if up && !self.lines.has(number) {
             self.pend(number);
         }
@@ -156,8 +156,8 @@ impl Exceptions {
         self.enabled.has(number)
     }
 
-    /// Sets its priority, of which the chips have the upper bits. Of an interrupt that the chips do
-    /// not have, it is ignored.
+    /// Sets its priority, of which the chips have the upper bits. Ignored for an interrupt that the chips do
+    /// not have.
     pub fn set_priority(&mut self, number: Number, priority: u8) {
         if let Some(own) = self.priorities.get_mut(usize::from(number)) {
             *own = priority & PRIORITY_BITS;
@@ -169,24 +169,24 @@ impl Exceptions {
         self.priorities.get(usize::from(number)).copied().unwrap_or(0)
     }
 
-    /// Whether any is asked for and enabled, masked or not.
+    /// Whether any exception is requested and enabled, masked or not.
     pub fn any_pending(&self) -> bool {
         self.waiting() != Set::default()
     }
 
-    /// The one to be served next, if it may interrupt what runs now.
+    /// The next exception, if it may interrupt the running code.
     pub fn next(&self, masks: Masks) -> Option<Number> {
         let ranked = self.waiting().numbers().map(|number| (self.rank(number), number));
         let (priority, number) = ranked.min()?;
         (priority < self.running(masks)).then_some(number)
     }
 
-    /// Whether one would end a wait for interrupts: PRIMASK does not keep it from that.
+    /// Whether an exception would end a wait for interrupts, which PRIMASK does not prevent.
     pub fn wakes(&self, masks: Masks) -> bool {
         self.next(masks.without_primask()).is_some()
     }
 
-    /// Begins to serve one.
+    /// Begins to serve an exception.
     pub fn enter(&mut self, number: Number) {
         self.pending.put(number, false);
         self.active.put(number, true);
@@ -200,22 +200,22 @@ impl Exceptions {
         }
     }
 
-    /// Whether a fault can be served where the core is now: not in or above its own priority.
+    /// Whether a fault can be served now: not at its own or a higher priority.
     pub fn can_fault(&self, masks: Masks) -> bool {
         self.running(masks) > -1
     }
 
-    /// All that are asked for.
+    /// All requested exceptions.
     fn asked(&self) -> Set {
         Set(self.pending.0 | self.lines.0 & !self.active.0)
     }
 
-    /// Those that are asked for and enabled.
+    /// All requested and enabled exceptions.
     fn waiting(&self) -> Set {
         Set(self.asked().0 & self.enabled.0)
     }
 
-    /// The priority of what runs now.
+    /// The priority of the running code.
     fn running(&self, masks: Masks) -> i16 {
         let nested = self.nested.iter().map(|&number| self.rank(number)).min();
         nested.unwrap_or(THREAD).min(masks.priority())

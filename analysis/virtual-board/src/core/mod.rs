@@ -1,5 +1,4 @@
-//! What a Cortex-M4 has besides its instructions: exceptions and the system registers
-//! (ARM DDI 0403E).
+//! The parts of a Cortex-M4 other than its instructions: exceptions and the system registers (ARM DDI 0403E).
 
 pub mod exceptions;
 pub mod system;

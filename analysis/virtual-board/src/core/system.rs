@@ -6,25 +6,25 @@ use super::exceptions::{
 use super::systick::SysTick;
 use crate::peripheral::{Access, Unmodelled, only};
 
-/// Where it begins.
+/// First address of the system control space.
 pub const SYSTEM: u32 = 0xE000_E000;
-/// Where the unit with the cycle counter begins.
+/// First address of the unit with the cycle counter.
 pub const WATCH: u32 = 0xE000_1000;
 
 /// AIRCR: the key to write with it, and the value read instead.
 const KEY: u32 = 0x05FA;
 const KEY_READ: u32 = 0xFA05 << 16;
-/// AIRCR: a reset is asked for.
+/// AIRCR: requests a reset.
 const RESET_REQUEST: u32 = 1 << 2;
-/// AIRCR: which bits of a priority tell who interrupts whom. Zero: all that there are.
+/// AIRCR: the bits of a priority that decide preemption. Zero: all bits.
 const GROUPING: u32 = 0b111 << 8;
 /// CPACR: full access to the floating-point unit.
 const FLOATING_POINT: u32 = 0xF << 20;
 /// FPCCR: floating-point registers are saved on exception entry, lazily if possible.
 const KEPT: u32 = 0b11 << 30;
-/// HFSR: a fault that could not be served as itself.
+/// HFSR: a fault that was escalated.
 const FORCED: u32 = 1 << 30;
-/// CCR out of reset: frames are aligned to 8 bytes.
+/// CCR after reset: frames are aligned to 8 bytes.
 const ALIGNED_FRAMES: u32 = 1 << 9;
 /// CPUID of a Cortex-M4, revision 0, patch 1.
 const CPUID: u32 = 0x410F_C241;
@@ -50,33 +50,32 @@ pub struct System {
     cycles_from: u64,
 }
 
-/// CFSR's bits that can be met here.
+/// The modelled bits of CFSR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum FaultStatus {
-    /// An instruction was fetched where there is no memory.
+    /// An instruction fetch without memory.
     Fetch = 1 << 8,
-    /// Data where there is none; the address is known.
+    /// A data access without memory, at a known address.
     Data = (1 << 9) | (1 << 15),
-    /// No such instruction.
+    /// An undefined instruction.
     Undefined = 1 << 16,
     /// Not a Thumb instruction, or an invalid return from an exception.
     State = 1 << 17,
 }
 
 impl System {
-    /// Where the vector table is.
+    /// The address of the vector table.
     pub fn vectors(&self) -> u32 {
         self.vectors
     }
 
-    /// Whether a wait for an interrupt goes on after the exception that ended it.
+    /// Whether a wait for an interrupt continues after the exception that ended it.
     pub fn sleeps_on_exit(&self) -> bool {
         self.sleep & (1 << 1) != 0
     }
 
-    /// Takes a fault down and asks for the exception that serves it, which is the hard fault: the
-    /// programs enable no other.
+    /// Stores a fault and requests its exception, which is the hard fault: the programs enable no other.
     pub fn fault(&mut self, status: FaultStatus, address: u32) {
         self.faults.0 |= status as u32;
         self.faults.1 |= FORCED;
@@ -99,7 +98,7 @@ impl System {
             0xD0C => KEY_READ,
             0xD10 => self.sleep,
             0xD14 => ALIGNED_FRAMES,
-            // No fault but the hard one is enabled.
+            // Only the hard fault is enabled.
             0xD24 => 0,
             0xD28 => self.faults.0,
             0xD2C => self.faults.1,
@@ -175,14 +174,14 @@ impl System {
                 self.watch = value;
             }
             0x4 => self.cycles_from = now.wrapping_sub(value.into()),
-            // The lock of software access, which this core does not have: ignored there too.
+            // The lock of software access, which this core does not have: also ignored by the core.
             0xFB0 => {}
             _ => return Err(Unmodelled::Register),
         }
         Ok(())
     }
 
-    /// ICSR: which exceptions are pending and active.
+    /// ICSR: the pending and active exceptions.
     fn control_state(&self) -> u32 {
         let exceptions = &self.exceptions;
         let pending = (FIRST_INTERRUPT..FIRST_INTERRUPT + INTERRUPTS as Number)
@@ -210,7 +209,7 @@ impl System {
 
     /// AIRCR.
     fn set_control(&mut self, value: u32) -> Access<()> {
-        // Without its key a write does nothing.
+        // Without its key a write has no effect.
         if value >> 16 != KEY {
             return Ok(());
         }
@@ -239,13 +238,13 @@ impl System {
     }
 }
 
-/// Whether a write asks for this interrupt: ISPR.
+/// Whether a write requests this interrupt: ISPR.
 pub fn pends(offset: u32, value: u32, interrupt: Number) -> bool {
     let interrupt = u32::from(interrupt);
     offset == 0x200 + 4 * (interrupt / 32) && value >> (interrupt % 32) & 1 != 0
 }
 
-/// The interrupts of a word of the controller's bits, lowest first; none where the chips have none.
+/// The interrupts of a word of the controller's bits, lowest first; `None` for bits without an interrupt.
 fn numbers(offset: u32) -> impl Iterator<Item = Option<Number>> {
     let first = usize::try_from(offset).unwrap_or(0) * 8;
     (first..first + 32)

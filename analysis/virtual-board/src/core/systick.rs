@@ -18,13 +18,13 @@ const REACHED: u32 = 1 << 16;
 pub struct SysTick {
     control: u32,
     reload: u32,
-    /// When the counter is next zero, while it counts.
+    /// The next time at which the counter is zero, while it counts.
     zero: Option<u64>,
     reached: bool,
 }
 
 impl SysTick {
-    /// When it next has something to do.
+    /// The time of its next event.
     pub fn due(&self) -> Option<u64> {
         self.zero
     }
@@ -37,7 +37,7 @@ impl SysTick {
         self.control & INTERRUPT != 0
     }
 
-    /// Reads a register, by its place behind the first.
+    /// Reads a register by its offset.
     pub fn read(&mut self, offset: u32, now: u64) -> Access<u32> {
         match offset {
             0x0 => {

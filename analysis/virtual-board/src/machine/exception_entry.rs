@@ -13,10 +13,10 @@ use crate::frame::{self, Frame, THUMB};
 const SERVO: Number = FIRST_INTERRUPT + TICK_INTERRUPT;
 
 impl Machine {
-    /// Begins to serve what may be served now; whether the core waits for more.
+    /// Begins to serve pending exceptions; returns whether the core waits.
     pub(super) fn waits(&mut self) -> bool {
         let exceptions = &self.core.board().system.exceptions;
-        // Usual, and the masks need not be asked for.
+        // The usual case, without reading the masks.
         if !exceptions.any_pending() {
             return self.waiting;
         }
@@ -28,12 +28,12 @@ impl Machine {
         self.waiting
     }
 
-    /// A fault at the instruction where the core stands.
+    /// A fault at the present instruction.
     pub(super) fn fault(&mut self, status: FaultStatus, address: u32) -> Result<(), BoardError> {
         let masks = self.core.masks();
         let board = self.core.board_mut();
         if !board.system.exceptions.can_fault(masks) {
-            // The one way out that there is.
+            // Only the watchdog can end this.
             if board.watchdog.due().is_some() {
                 self.locked_up = true;
                 board.lock_up();
@@ -45,7 +45,7 @@ impl Machine {
         Ok(())
     }
 
-    /// A word of the vector table, which is at the beginning of flash out of reset.
+    /// A word of the vector table, which is at the beginning of flash after reset.
     pub(super) fn vector(&self, number: u32) -> u32 {
         let table = match self.core.board().system.vectors() {
             0 => FLASH,
@@ -71,7 +71,7 @@ impl Machine {
         self.core.set_register(RegisterARM::PC, vector);
     }
 
-    /// Ends the exception that is being served (B1.5.8): back to what its frame says.
+    /// Ends the active exception (B1.5.8): returns to the state of its frame.
     pub(super) fn leave(&mut self, word: u32) -> Result<(), BoardError> {
         let Some(frame) = Frame::of(&self.core, word) else {
             let stack = self.core.register(RegisterARM::MSP);

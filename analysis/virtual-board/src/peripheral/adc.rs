@@ -12,7 +12,7 @@ const INJECTED_CONVERTED: u32 = 1 << 5;
 const INJECTED_ENDED: u32 = 1 << 6;
 const FLAGS: u32 =
     READY | REGULAR_CONVERTED | REGULAR_ENDED | OVERRUN | INJECTED_CONVERTED | INJECTED_ENDED;
-/// What a program clears before it begins, and never comes here: the end of sampling, the analogue
+/// Flags that a program clears at its start and that are never set here: the end of sampling, the analogue
 /// watchdogs, and the queue's overflow.
 const NEVER: u32 = (1 << 1) | (0b111 << 7) | (1 << 10);
 /// CR.
@@ -42,7 +42,7 @@ const REGULATOR_START: u64 = 20;
 /// Clocks of the converter for a calibration, and from being switched on to being ready.
 const CALIBRATION: u64 = 116;
 const START: u64 = 4;
-/// Twice the clocks of the converter that each sampling time takes, and the conversion behind it.
+/// Twice the converter's clocks of each sampling time, and of the conversion after it.
 const SAMPLING: [u64; 8] = [5, 13, 25, 49, 95, 185, 495, 1281];
 const CONVERSION: u64 = 25;
 /// The factor that a calibration finds.
@@ -53,11 +53,11 @@ const FACTOR: u32 = 0x40;
 pub struct AdcClock {
     /// The core's clock in Hz.
     pub core: u64,
-    /// Core clocks for each of the converter's; none where that is not chosen.
+    /// Core clocks per clock of the converter; `None` if it is not selected.
     pub divider: Option<u64>,
 }
 
-/// Which channel is converted.
+/// The group of a conversion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Group {
     Regular,
@@ -68,10 +68,10 @@ enum Group {
 #[derive(Clone, Copy, Debug)]
 struct Conversion {
     group: Group,
-    /// When the sampling ends; none once it has.
+    /// The end of the sampling; `None` after it.
     samples: Option<u64>,
     ends: u64,
-    /// Conversions that are still to come, of an oversampled one.
+    /// Remaining conversions of an oversampled one.
     left: u32,
     sum: u32,
 }
@@ -90,14 +90,14 @@ pub struct Adc {
     data: u32,
     injected_data: u32,
     is_calibrated: bool,
-    /// When the regulator has started.
+    /// The time at which the regulator has started.
     regulated: Option<u64>,
-    /// When a calibration ends.
+    /// The end of a calibration.
     calibrated: Option<u64>,
-    /// When it is ready.
+    /// The time at which it is ready.
     ready: Option<u64>,
     conversion: Option<Conversion>,
-    /// A regular conversion waits behind the injected one.
+    /// A regular conversion waits for the end of the injected one.
     waits: bool,
 }
 
@@ -125,7 +125,7 @@ impl Default for Adc {
 }
 
 impl Adc {
-    /// When something happens next.
+    /// The time of the next event.
     pub fn due(&self) -> Option<u64> {
         let conversion = self.conversion.map(|now| now.samples.unwrap_or(now.ends));
         [self.calibrated, self.ready, conversion].into_iter().flatten().min()
@@ -172,7 +172,7 @@ impl Adc {
         match self.conversion {
             // A trigger during an injected conversion is ignored.
             Some(Conversion { group: Group::Injected, .. }) => return,
-            // The regular one is done again behind it.
+            // The regular conversion is repeated after it.
             Some(_) => self.waits = true,
             None => {}
         }
@@ -263,7 +263,7 @@ impl Adc {
         Ok(())
     }
 
-    /// Nothing that is under way may be changed.
+    /// A running conversion must not be changed.
     fn set_while(&self, busy: u32, value: u32) -> Access<()> {
         if self.control & busy == 0 { Ok(()) } else { Err(Unmodelled::Bits(value)) }
     }
@@ -396,7 +396,7 @@ impl Adc {
         self.conversion = Some(Conversion { group, samples: Some(samples), ends, left, sum });
     }
 
-    /// A conversion has ended: the next one of an oversampled result, or the result.
+    /// Ends a conversion: begins the next one of an oversampled result, or stores the result.
     fn converted(&mut self, conversion: Conversion, clock: AdcClock) {
         let Conversion { group, ends, left, sum, .. } = conversion;
         if left > 0 {
@@ -430,14 +430,14 @@ impl Adc {
     }
 }
 
-/// What both converters share: the clock.
+/// The clock, which both converters share.
 #[derive(Clone, Debug, Default)]
 pub struct AdcCommon {
     control: u32,
 }
 
 impl AdcCommon {
-    /// Core clocks for each of the converters'; none where the clock is not the bus's.
+    /// Core clocks per clock of the converters; `None` if the clock is not the bus's.
     pub fn divider(&self) -> Option<u64> {
         match self.control >> 16 & 0b11 {
             0 => None,
@@ -482,7 +482,7 @@ mod tests {
     const JDR1: u32 = 0x80;
 
     const CLOCK: AdcClock = AdcClock { core: 170_000_000, divider: Some(4) };
-    /// When it is ready.
+    /// The time at which it is ready.
     const BEGIN: u64 = 10_000;
 
     fn write(adc: &mut Adc, now: u64, writes: &[(u32, u32)]) {

@@ -21,26 +21,26 @@ pub struct BasicTimer {
     flag: u32,
     prescaler: u32,
     reload: u32,
-    /// The prescaler that it counts with: taken over at an update.
+    /// The active prescaler, which takes effect at an update.
     counting: u32,
-    /// What it begins to count from; while it counts, that is nobody's business.
+    /// The starting count; unused while it counts.
     count: u32,
-    /// When it next overflows, while it counts.
+    /// The time of its next overflow, while it counts.
     overflow: Option<u64>,
 }
 
 impl BasicTimer {
-    /// Out of reset.
+    /// The timer after reset.
     pub fn new() -> Self {
         Self { reload: 0xFFFF, ..Self::default() }
     }
 
-    /// When it next overflows.
+    /// The time of its next overflow.
     pub fn due(&self) -> Option<u64> {
         self.overflow
     }
 
-    /// Overflows where that is due; whether it did. `divider` is the core's clock by the timer's.
+    /// Overflows if it is due; returns whether it did. `divider` is the core's clock divided by the timer's.
     pub fn advance(&mut self, now: u64, divider: u64) -> bool {
         let Some(overflow) = self.overflow.filter(|&overflow| overflow <= now) else {
             return false;
@@ -56,7 +56,7 @@ impl BasicTimer {
         self.flag & self.interrupt != 0
     }
 
-    /// Whether others are triggered by its updates.
+    /// Whether its updates are triggers.
     pub fn triggers(&self) -> bool {
         self.trigger == TRIGGER_UPDATE
     }
@@ -118,7 +118,7 @@ impl BasicTimer {
         Ok(())
     }
 
-    /// An update by the program: takes the prescaler over and starts from zero.
+    /// An update by the program: activates the prescaler and restarts from zero.
     fn generate(&mut self, now: u64, divider: u64) {
         self.counting = self.prescaler;
         self.count = 0;

@@ -62,7 +62,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// All of them.
+    /// All values.
     pub const ALL: [Self; 8] = [
         Self::Power,
         Self::BrownOut,
