@@ -1,4 +1,4 @@
-//! Which scene: the program in `firmware/src/bin` that `HAPTIC_SCENE` names.
+//! Selects the scene: the program in `firmware/src/bin` with the name in `HAPTIC_SCENE`.
 
 use std::path::Path;
 use std::{env, fs};

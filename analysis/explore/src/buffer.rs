@@ -1,5 +1,5 @@
-//! The memory that the page and the program share: the text of a question, and the text and the numbers of
-//! the last answer.
+//! The memory shared by page and module: the text of a request, and the text and the numbers of the last
+//! answer.
 
 use std::cell::RefCell;
 
@@ -19,7 +19,7 @@ pub struct Answers {
 }
 
 impl Answers {
-    /// Where the text begins.
+    /// Address of the text.
     pub fn text(&self) -> *const u8 {
         self.text.as_ptr()
     }
@@ -29,18 +29,18 @@ impl Answers {
         self.text.len()
     }
 
-    /// Where the numbers begin.
+    /// Address of the numbers.
     pub fn numbers(&self) -> *const f64 {
         self.numbers.as_ptr()
     }
 
-    /// How many they are.
+    /// Number of the numbers.
     pub fn numbers_count(&self) -> usize {
         self.numbers.len()
     }
 }
 
-/// Where to write a question of so many bytes.
+/// Address for a request with this size in bytes.
 pub fn input(bytes: usize) -> *mut u8 {
     INPUT.with_borrow_mut(|input| {
         input.clear();
@@ -49,12 +49,12 @@ pub fn input(bytes: usize) -> *mut u8 {
     })
 }
 
-/// Something of the last answer.
+/// Reads the last answer.
 pub fn read<T>(of: impl FnOnce(&Answers) -> T) -> T {
     ANSWERS.with_borrow(of)
 }
 
-/// Answers the question: 0, or 1 where the text is a refusal.
+/// Answers the request: 0, or 1 if the text is a refusal.
 pub fn answer(function: impl FnOnce(&str, &mut Vec<f64>) -> PageResult) -> u32 {
     let mut numbers = ANSWERS.with_borrow_mut(|answers| std::mem::take(&mut answers.numbers));
     numbers.clear();

@@ -1,5 +1,5 @@
-//! The host's end of a board's wire, without a port and without a clock: bytes and times come in, bytes and
-//! news go out. It asks, waits and asks again as `haptic scope` does.
+//! The host's end of a board's wire, without a port and a clock: bytes and times in, bytes and news out. It
+//! sends, waits and repeats requests like `haptic scope`.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -17,17 +17,17 @@ use haptic_servo::wire::message::{
 };
 use haptic_servo::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
 
-/// Seconds of curves that are kept.
+/// Duration of the kept curves in s.
 pub const WINDOW: f64 = 5.0;
 
-/// Values that come with a status, at its time in s since the servo started.
+/// Values of a status, at its time in s since the servo's start.
 #[derive(Clone, Copy, Debug)]
 pub struct Slow {
     /// The time.
     pub time: f64,
     /// Damping in N m s/rad that the device may lose.
     pub margin: Option<f64>,
-    /// Net energy in J that went into the hand.
+    /// Net energy into the hand in J.
     pub energy: f64,
 }
 
@@ -38,16 +38,16 @@ pub struct Client {
     outgoing: Vec<u8>,
     last_id: Id,
     greeting: Greeting,
-    /// The board, once it has said who it is.
+    /// The board, after its greeting.
     pub connected: Option<Connected>,
     pending: Option<Pending>,
-    /// What became of requests, in words, until it is taken.
+    /// The results of requests as text, until they are taken.
     pub replies: Vec<String>,
-    /// Whether a status or the numbers that run have come since this was last taken.
+    /// Whether a status or active parameters have arrived since the last call.
     pub has_news: bool,
 }
 
-/// A board that has not said yet who it is.
+/// A board before its greeting.
 struct Greeting {
     program: Option<String>,
     previous_fault: Option<PreviousFault>,
@@ -55,30 +55,30 @@ struct Greeting {
     end: Duration,
 }
 
-/// A board that has said who it is.
+/// A board after its greeting.
 pub struct Connected {
     /// Name of its program.
     pub program: String,
-    /// What its numbers mean.
+    /// The units of its numbers.
     pub board: BoardUnits,
-    /// What stopped it before it was last started.
+    /// The fault that stopped it before its last reset.
     pub previous_fault: Option<PreviousFault>,
-    /// How it was going when it was last asked.
+    /// Its last status.
     pub status: Option<Status>,
-    /// The numbers that run.
+    /// The active parameters.
     pub parameters: Option<ActiveParameters>,
-    /// The scene that runs.
+    /// The running scene.
     pub description: Option<Description>,
     /// The last seconds.
     pub history: History,
-    /// The same of the numbers with each status.
+    /// The same for the values of each status.
     pub slow: VecDeque<Slow>,
     scale: Scale,
     heard: Duration,
     beat: Duration,
 }
 
-/// A request that the board has not answered yet.
+/// An unanswered request.
 struct Pending {
     id: Id,
     request: Request,
@@ -87,7 +87,7 @@ struct Pending {
 }
 
 impl Client {
-    /// Says hello to the board there. `id` is a number that no earlier client has used, as far as possible.
+    /// Greets the board at an address. `id` should not have been used by an earlier client.
     pub fn start(address: String, id: Id, now: Duration) -> Self {
         let again = now + QUERY.again;
         let greeting =
@@ -107,17 +107,17 @@ impl Client {
         client
     }
 
-    /// Where the board is.
+    /// Address of the board.
     pub fn address(&self) -> &str {
         &self.address
     }
 
-    /// Bytes to the board since this was last called.
+    /// Bytes to the board since the last call.
     pub fn take_outgoing(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.outgoing)
     }
 
-    /// Frames from the board that were none.
+    /// Invalid frames from the board.
     pub fn discarded(&self) -> Discarded {
         self.decoder.discarded()
     }
@@ -125,7 +125,7 @@ impl Client {
     /// Takes bytes from the board, and passes its ticks to `each`.
     ///
     /// # Errors
-    /// Why this is not a board to go on with.
+    /// The reason why this board cannot be used.
     pub fn receive(
         &mut self,
         bytes: &[u8],
@@ -143,7 +143,7 @@ impl Client {
     /// Sends the requests that are due.
     ///
     /// # Errors
-    /// Where the board has been silent for too long.
+    /// If the board has been silent for too long.
     pub fn tick(&mut self, now: Duration) -> Result<(), String> {
         let Some(connected) = &mut self.connected else { return self.greet(now) };
         if now.saturating_sub(connected.heard) > SILENCE {
@@ -166,10 +166,10 @@ impl Client {
         Ok(())
     }
 
-    /// Passes on a request; one at a time, but that disarming waits for nothing. A set is judged here before.
+    /// Sends a request, one at a time, except that disarming never waits. A set is certified here first.
     ///
     /// # Errors
-    /// The reason where it is not sent.
+    /// The reason if it is not sent.
     pub fn request(&mut self, request: Request, now: Duration) -> Result<(), String> {
         if self.connected.is_none() {
             return Err(Reply::NoLink.line(&request));
@@ -190,8 +190,8 @@ impl Client {
         Ok(())
     }
 
-    /// Judges changes of what runs on the board, by the board's own scene, as the board would. A mode whose
-    /// table is there alone is for the board to judge.
+    /// Judges changes of the board's running scene like the board. Only the board can judge a mode whose
+    /// table it alone has.
     ///
     /// # Errors
     /// The reason for which the board would refuse them.
@@ -207,7 +207,7 @@ impl Client {
         }
     }
 
-    /// Gives up waiting for an answer, and says so.
+    /// Gives up waiting for an answer, and reports it.
     pub fn give_up(&mut self) {
         if let Some(Pending { request, .. }) = self.pending.take() {
             self.replies.push(Reply::Unanswered.line(&request));
@@ -216,7 +216,7 @@ impl Client {
 
     fn send(&mut self, message: &ToBoard) {
         let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-        // The buffer is as long as the longest message.
+        // The buffer has the size of the longest message.
         if let Ok(frame) = encode(message, &mut buffer) {
             self.outgoing.extend_from_slice(frame);
         }
@@ -370,7 +370,7 @@ impl Connected {
         }
     }
 
-    /// Keeps a status; returns whether other numbers run than with the last one.
+    /// Stores a status; returns whether the active parameters have changed since the last.
     fn is_changed_by(&mut self, status: Status) -> Result<bool, String> {
         let last = self.status.replace(status);
         if last.is_some_and(|last| status.tick.wrapping_sub(last.tick) > u32::MAX / 2) {
@@ -398,7 +398,7 @@ impl Connected {
     }
 }
 
-/// The sentence of a board that has not answered for so long.
+/// The message for a board that has not answered in time.
 fn silent(address: &str, what: &str, after: Duration) -> String {
     format!("the board on {address} has not answered {what} within {} s", after.as_secs_f64())
 }

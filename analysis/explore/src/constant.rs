@@ -1,4 +1,4 @@
-//! A scene as the constants of a Rust program, such as those in `firmware/src/bin`.
+//! A scene as the constants of a Rust program, as in `firmware/src/bin`.
 
 mod expression;
 
@@ -22,7 +22,7 @@ pub fn constant(text: &str, _: &mut Vec<f64>) -> PageResult {
     of(&file)
 }
 
-/// A type with a value of it, the names that both use, and a table that they refer to.
+/// A type with a value, the names that both use, and their table.
 struct Typed {
     name: String,
     value: Expression,
@@ -35,7 +35,7 @@ impl Typed {
         Self { name, value, uses: BTreeSet::from([used]), knots: None }
     }
 
-    /// Another type around some, each in a field of its name, after fields that are numbers.
+    /// A type around others, each in a field of its name, after fields that are numbers.
     fn around(
         used: &'static str,
         numbers: Vec<(&'static str, Expression)>,
@@ -144,7 +144,7 @@ fn coupling(coupling: Coupling) -> Expression {
     }
 }
 
-/// Only what there is.
+/// Only the nonzero parts.
 fn latency(latency: &Latency) -> Expression {
     let Latency {
         output_delay,
@@ -184,7 +184,7 @@ fn time(TimeRange { least, most }: TimeRange) -> Expression {
     word(format!("TimeRange::between({least:?}, {most:?})"))
 }
 
-/// Behind the coupling that remembers as many torques as the scene's latency needs.
+/// Behind the matched coupling with the memory that the scene's latency needs.
 fn matched(scene: &Scene, own: Typed) -> Typed {
     let Latency { actuator_lag, sensor_lag, actuator_updates, .. } = scene.latency;
     let period = scene.timing.period;
@@ -238,7 +238,7 @@ fn damper(wall: &Wall) -> Typed {
     Typed::new(name, format!("{name}<{}>", wall.delay), structure(name, fields))
 }
 
-/// With its face, where it has one.
+/// With its face, if it has one.
 fn placed(wall: &Wall, own: Typed) -> Typed {
     let face = vec![("face", number(wall.face))];
     if wall.one_sided {
@@ -247,7 +247,7 @@ fn placed(wall: &Wall, own: Typed) -> Typed {
     if wall.face == 0.0 { own } else { Typed::around("Placed", face, vec![("wall", own)]) }
 }
 
-/// A wall beside something else, of which there is a type with one side or in the middle.
+/// A wall in a sum, which must be one-sided or centred.
 fn beside(wall: &Wall, own: Typed) -> Result<Typed, String> {
     if !wall.one_sided && wall.face != 0.0 {
         return Err(format!("{FREE_MODE_WALLS}; `face` is {:?} rad", wall.face));
@@ -271,7 +271,7 @@ fn rational(rational: &Rational) -> Typed {
     typed
 }
 
-/// A torque profile with its table, alone or beside a wall and a canceller.
+/// A torque profile with its table, alone or in a sum with a wall and a canceller.
 fn profiled(environment: &Environment, shapes: Option<&Shapes>) -> Result<Typed, String> {
     let shapes = shapes.ok_or("the profile has no shapes")?;
     let composed = match environment {

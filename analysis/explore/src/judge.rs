@@ -1,4 +1,4 @@
-//! The certificate, as `haptic certify` has it.
+//! The certificate, as in `haptic certify`.
 
 use haptic_model::file::SceneFile;
 use haptic_model::remedy_change::{RemedyChange, remedy_changes};
@@ -24,7 +24,7 @@ struct Judged {
     remedies: Vec<RemedyChange>,
 }
 
-/// What `haptic certify --json` prints for a scene as JSON; `{"error": ..}` where there is nothing to judge.
+/// The output of `haptic certify --json` for a scene as JSON; `{"error": ..}` if the scene is invalid.
 pub fn certify(text: &str, _: &mut Vec<f64>) -> PageResult {
     match read(text) {
         Ok(file) => json(&report(&file)),
@@ -32,12 +32,12 @@ pub fn certify(text: &str, _: &mut Vec<f64>) -> PageResult {
     }
 }
 
-/// Verdict, numbers, rows of words and remedies of a scene, or its faults.
+/// Verdict, numbers, rows of text and remedies of a scene, or its faults.
 pub fn judge(text: &str, _: &mut Vec<f64>) -> PageResult {
     judged(text, report)
 }
 
-/// The same without remedies, which take long where times are known to lie in ranges.
+/// The same without remedies, which take long if times are ranges.
 pub fn judge_without_remedies(text: &str, _: &mut Vec<f64>) -> PageResult {
     judged(text, |file| verdict::judge_without_remedies(&file.name, &file.scene, &file.steps()))
 }

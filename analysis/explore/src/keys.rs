@@ -1,4 +1,4 @@
-//! The keys of a scene, so that the page's fields are made of the one table that reading is made of.
+//! The keys of a scene: the page's fields come from the same table as the reader of scene files.
 
 use haptic_model::file::key::{self, Bound, Form, Key, Presence};
 use haptic_model::file::kind::{self, Kind};
@@ -9,8 +9,8 @@ use serde_json::{Map, Value, json};
 use crate::PageResult;
 use crate::presets::{self, Preset};
 
-/// All keys with unit, bound, default and words; which of them each type of environment and each shape
-/// takes, and those that it needs with a value of each; and scenes to begin with.
+/// All keys with unit, bound, default and text; the keys of each type of environment and each shape, with a
+/// value of each required key; and scenes to start from.
 pub fn keys(_: &str, _: &mut Vec<f64>) -> PageResult {
     let kinds = kind::ALL.iter().map(|kind| {
         let needed: Vec<_> = kind.needed.iter().map(|key| key.path).collect();
@@ -54,7 +54,7 @@ fn of(key: &Key) -> Value {
     })
 }
 
-/// What an environment of this type begins with: the values of the example of that type.
+/// The initial values of an environment of this type: those of its example.
 fn values_of_kind(kind: &Kind) -> Map<String, Value> {
     let own =
         |key: &Key| kind.values.iter().find(|(other, _)| *other == key).map(|(_, value)| *value);

@@ -1,10 +1,10 @@
-//! What the page of `haptic explore` runs as WebAssembly: the certificate, the servo and the wire's decoder
-//! of this workspace, and nothing of its own.
+//! The WebAssembly module of the page of `haptic explore`: the certificate, the servo and the wire's decoder
+//! of this workspace.
 //!
-//! A page calls a function in three steps, without any library in between (`page/engine.js`): it writes a
-//! text where [`input()`] says, calls the function, and reads the answer where [`text()`] says, and where
-//! [`numbers()`] says, if there are many numbers. A function gives 0, or 1 if its answer is
-//! the sentence of a refusal. Everything is on one thread; a worker has an instance of its own.
+//! A page calls a function in three steps, without a library (`page/engine.js`): it writes a text at the
+//! address of [`input()`], calls the function, and reads the answer at [`text()`], and many numbers at
+//! [`numbers()`]. A function returns 0, or 1 if its answer is the text of a refusal. Everything runs on one
+//! thread; a worker has its own instance.
 
 pub mod buffer;
 pub mod client;
@@ -25,14 +25,13 @@ mod test_scenes;
 
 use buffer::Answers;
 
-/// What a function answers: a text or a refusal in a sentence. Numbers, if there are any, go to the buffer
-/// beside it.
+/// The answer of a function: a text, or the text of a refusal. Numbers go to the buffer in addition.
 pub type PageResult = Result<String, String>;
 
-/// The functions of the page, by the names that it calls them.
+/// The functions of the page, by their names.
 ///
-/// `unsafe` is the attribute's word for a name that no other function of the program may have: all that have
-/// one are in this list, so that the compiler sees a name that is twice.
+/// The attribute is `unsafe` because another function of the program might have the same name: all such names
+/// are in this list, so the compiler detects duplicates.
 macro_rules! functions {
     ($($(#[doc = $doc:literal])* $name:ident = $function:path;)*) => {
         $(
@@ -68,31 +67,31 @@ functions! {
     handle_push = handle::push;
     /// Nothing: counts and codes of the handle's servo, and its scene.
     handle_record = handle::recorded;
-    /// A scene and counts: the codes that its servo makes of them.
+    /// A scene and counts: the codes of its servo.
     handle_replay = handle::replay;
     /// A scene and a turn: the torque at rest around its knob.
     handle_rim = handle::rim;
-    /// A scene and the axes of a map: what it shows; the regions follow row by row.
+    /// A scene and the axes of a map: its description; the regions follow row by row.
     map_begin = map::begin;
-    /// A row and columns: those cells of the map that was begun.
+    /// A row and columns: these cells of the map.
     map_row = map::row;
-    /// A scene: what it would do in a hand, over time.
+    /// A scene: its motion in a hand.
     motion = motion::motion;
     /// A scene: its Nyquist plot.
     nyquist = nyquist::nyquist;
     /// A scene: its torque over the angle.
     profile = profile::profile;
-    /// Nothing: what holds for every board.
+    /// Nothing: the facts that hold for every board.
     wire_facts = wire::facts;
-    /// An address: begins to talk to the board there.
+    /// An address: begins a conversation with the board there.
     wire_start = wire::start;
     /// Takes time and bytes from the board; returns the news.
     wire_turn = wire::turn;
     /// Nothing: the link to the board is lost.
     wire_lost = wire::lost;
-    /// What a board shall do.
+    /// A request to a board.
     wire_request = wire::request;
-    /// Changes of what runs on the board: a refusal is the board's.
+    /// Changes of the running scene: the board's refusal, if any.
     wire_judge = wire::judge;
     /// `on` or `off`: rows for a record.
     wire_record = wire::record;
@@ -100,31 +99,31 @@ functions! {
     wire_curves = wire::curves;
 }
 
-/// Where to write the question of the next call, of so many bytes.
+/// Address for the request of the next call, with this size in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn input(bytes: usize) -> *mut u8 {
     buffer::input(bytes)
 }
 
-/// Where the last answer's text begins.
+/// Address of the last answer's text.
 #[unsafe(no_mangle)]
 pub extern "C" fn text() -> *const u8 {
     buffer::read(Answers::text)
 }
 
-/// Bytes of that text.
+/// Size of that text in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn text_bytes() -> usize {
     buffer::read(Answers::text_bytes)
 }
 
-/// Where the last answer's numbers begin.
+/// Address of the last answer's numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn numbers() -> *const f64 {
     buffer::read(Answers::numbers)
 }
 
-/// How many they are.
+/// Number of the numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn numbers_count() -> usize {
     buffer::read(Answers::numbers_count)

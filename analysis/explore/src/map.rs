@@ -1,7 +1,7 @@
-//! The map around a scene: what becomes of it with other numbers, cell by cell.
+//! The map around a scene: the verdicts with other numbers, cell by cell.
 //!
-//! A map is begun with a scene and the two numbers that it goes along, and then computed row by row in any
-//! order, so that a picture can be coarse first.
+//! A map begins with a scene and two parameters as axes, and is then computed row by row in any order, so
+//! that a picture can be coarse first.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -17,34 +17,34 @@ use serde_json::{Value, json};
 use crate::PageResult;
 use crate::scene_text::read;
 
-/// Most cells along an axis.
+/// Largest number of cells along an axis.
 const MOST: usize = 2000;
 
 thread_local! {
     static MAP: RefCell<Option<Map>> = const { RefCell::new(None) };
 }
 
-/// The map that is computed.
+/// The present map.
 struct Map {
     plane: Plane,
     ranges: [Range<f64>; 2],
     cells: [usize; 2],
 }
 
-/// What a map is begun with.
+/// The request for a map.
 #[derive(Deserialize)]
 struct Question {
     /// The scene as text.
     scene: String,
-    /// Keys of the two axes, where they are chosen.
+    /// Keys of the two axes, if chosen.
     axes: Option<[String; 2]>,
-    /// From and to on each axis, where they are chosen.
+    /// The range of each axis, if chosen.
     ranges: Option<[[f64; 2]; 2]>,
     /// Cells along each axis.
     cells: [usize; 2],
 }
 
-/// Begins a map: what its axes are, and which there could be.
+/// Begins a map: returns its axes and the possible axes.
 pub fn begin(text: &str, _: &mut Vec<f64>) -> PageResult {
     let question: Question = serde_json::from_str(text).map_err(|error| error.to_string())?;
     let file = read(&question.scene).map_err(|error| error.to_string())?;
@@ -86,7 +86,7 @@ pub fn begin(text: &str, _: &mut Vec<f64>) -> PageResult {
 }
 
 /// Computes cells of a row: the row's number and those of the columns, counted from the lowest and leftmost
-/// cell. The numbers are the regions by their places in the list that the beginning has given.
+/// cell. The numbers are the indices of the regions in the list that `begin` returned.
 pub fn row(text: &str, numbers: &mut Vec<f64>) -> PageResult {
     let mut words = text.split(' ').map(|word| {
         word.parse::<usize>().map_err(|_| format!("`{word}` is not a number of a row or column"))
@@ -116,7 +116,7 @@ fn number(parameter: Parameter) -> Value {
     json!({ "key": parameter.key(), "name": name, "unit": unit })
 }
 
-/// What a region is called, also where nothing is said of stability.
+/// The name of a region, with or without a statement on stability.
 fn words(region: Region, says_stability: bool) -> &'static str {
     match region {
         Region::Rejected if !says_stability => "rejected",
@@ -125,7 +125,7 @@ fn words(region: Region, says_stability: bool) -> &'static str {
     }
 }
 
-/// Keys with values that a scene has to have besides to be another member.
+/// Further keys with values that another member of the map's scenes must have.
 fn also(scene: &Scene, axes: [Parameter; 2]) -> Vec<[&'static str; 2]> {
     match scene.environment {
         // A spring with a damper is a wall.

@@ -1,4 +1,4 @@
-//! What a scene would do in a hand, certified or not, as `haptic simulate` computes it.
+//! The motion of a scene in a hand, certified or not, as computed by `haptic simulate`.
 
 use std::path::Path;
 
@@ -15,26 +15,26 @@ use serde_json::json;
 use crate::PageResult;
 use crate::scene_text::read;
 
-/// Most samples of a push that no scene file asks for.
+/// Largest number of samples of a default push.
 const MOST: f64 = 40_000.0;
-/// Least samples of it: of the slowest servo, too.
+/// Smallest number of samples of it, also for the slowest servo.
 const LEAST: f64 = 50.0;
-/// When that push ends, in s.
+/// The end of that push in s.
 const END: f64 = 3.5;
-/// Angle in rad beyond which no hand follows, and that is as far as such a push is shown.
+/// Angle in rad beyond which a hand does not follow; the end of the drawing of such a push.
 const FARTHEST: f64 = 4.0;
-/// The same for what a scene file asks for: 160 000 turns.
+/// The same for a scene file's simulation: 160 000 turns.
 const RUN_AWAY: f64 = 1e6;
-/// How long a hand that makes the scene oscillate is shown, in s, and with what torque it begins, in N m.
+/// Duration in s of the motion in a hand in which the scene oscillates, and its initial torque in N m.
 const SHAKEN: f64 = 0.5;
 const TAP: f64 = 1e-3;
-/// Most samples of a simulation that a scene file asks for: a picture of more is no better, and a page that
-/// computes more does not answer.
+/// Largest number of samples of a scene file's simulation: more do not improve a picture, and the page would
+/// not respond.
 const LONGEST: usize = 2_000_000;
 
-/// A run of the scene: that of its `[simulation]`, or a push by a typical hand where there is none; of a
-/// rejected scene, in the hand that it oscillates in most if one is found. The question is the scene, or
-/// `typical` and a line feed before it: then no such hand is looked for, which takes longer than a frame.
+/// A run of the scene: that of its `[simulation]`, or otherwise a push by a typical hand; of a rejected
+/// scene, in the hand with the strongest oscillation, if one is found. The request is the scene, optionally
+/// after `typical` and a line feed: then that hand is not searched, which takes longer than a frame.
 ///
 /// Numbers: time in s, angle in rad and coupling torque in N m, column by column.
 pub fn motion(text: &str, numbers: &mut Vec<f64>) -> PageResult {
@@ -71,7 +71,7 @@ struct Run {
     trace: Trace,
 }
 
-/// What the scene file asks for.
+/// The scene file's simulation.
 fn asked_for(file: &SceneFile) -> Result<Run, String> {
     if let Some(simulation) = &file.simulation {
         if let HandTorque::File(name) = &simulation.torque {
@@ -88,7 +88,7 @@ fn asked_for(file: &SceneFile) -> Result<Run, String> {
     Ok(Run { what: "the scene's own [simulation]".to_owned(), trace })
 }
 
-/// The push that demonstrates an environment, by a hand that does not let go.
+/// The push that demonstrates an environment, without release.
 fn pushed(file: &SceneFile) -> Result<Run, String> {
     let path = HandTrajectory::for_environment(&file.scene.environment);
     let hand = file.hand.unwrap_or(path.hand);
@@ -106,12 +106,12 @@ fn pushed(file: &SceneFile) -> Result<Run, String> {
         hand_torque: TorqueSignal::Held((0..samples).map(torque).collect()),
         ..Experiment::at_rest(file)
     };
-    // It does not let go: that would be another loop.
+    // Without release, which would be another loop.
     let what = path.description.split(" and ").next().unwrap_or_default();
     run(file, &held, what.to_owned())
 }
 
-/// The hand in which a rejected scene oscillates most, after a tap; `None` where none is found.
+/// The hand in which a rejected scene oscillates most, after a tap; `None` if none is found.
 fn shaken(file: &SceneFile) -> Option<Run> {
     let found = worst_hand::search(&file.scene, &file.chain).ok()?;
     if !found.oscillates {

@@ -1,4 +1,4 @@
-//! The Nyquist plot of a scene, as `haptic chart nyquist` draws it.
+//! The Nyquist plot of a scene, as in `haptic chart nyquist`.
 
 use haptic_model::nyquist::{Curve, NyquistScene, usual_window, words};
 use serde_json::{Value, json};
@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 use crate::PageResult;
 use crate::scene_text::read;
 
-/// The curves of a scene, what they must keep clear of, and the part of the plane that shows both. The
-/// numbers are the angle in rad, the real and the imaginary part in N m s/rad of each point, branch after
-/// branch; of each branch the answer has how many there are.
+/// The curves of a scene, their critical lines, and the part of the plane that shows both. The numbers are
+/// the angle in rad, the real and the imaginary part in N m s/rad of each point, branch after branch; the
+/// answer has the number of points of each branch.
 pub fn nyquist(text: &str, numbers: &mut Vec<f64>) -> PageResult {
     let file = read(text).map_err(|error| error.to_string())?;
     let scene = NyquistScene::of(&file.name, &file.scene).map_err(|error| error.to_string())?;

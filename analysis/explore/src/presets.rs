@@ -1,9 +1,9 @@
-//! Scenes to begin with: those of the programs in `firmware/src/bin`, and a rejected scene.
+//! Scenes to start from: those of the programs in `firmware/src/bin`, and a rejected scene.
 
-/// A scene to begin with.
+/// A scene to start from.
 #[derive(Clone, Copy, Debug)]
 pub struct Preset {
-    /// What the page calls it.
+    /// Its name on the page.
     pub name: &'static str,
     /// The scene as a file.
     pub toml: &'static str,

@@ -1,5 +1,5 @@
-//! The torque of a scene over the angle, at rest: of a torque profile as `haptic chart profile` draws it, of
-//! a wall its line.
+//! The torque of a scene over the angle, at rest: a torque profile as in `haptic chart profile`, or a wall's
+//! line.
 
 use haptic_model::profile_curve::{Piece, ProfileCurve};
 use haptic_model::quantity::significant;
@@ -11,7 +11,7 @@ use crate::scene_text::read;
 
 /// Points of the line of a wall.
 const POINTS: usize = 201;
-/// How far from its face a wall is shown, in rad, where no torque limit says it.
+/// Visible range of a wall from its face in rad, without a torque limit.
 const REACH: f64 = 0.1;
 
 /// Angle in rad and torque in N m of each point as numbers; the steepest pieces, and the notes.

@@ -1,4 +1,4 @@
-//! Scenes as texts: read without a judgement, and written as a scene file.
+//! Scenes as texts: read without a verdict, and written as a scene file.
 
 use haptic_model::file::{self, FileError, Format, Problem, SceneFile, write};
 use serde::Serialize;
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::PageResult;
 
-/// What the page calls the text in its fields.
+/// The name of the text in the page's fields.
 const NAME: &str = "scene";
 
 /// The faults of a scene, each with its key and its place in the text.
@@ -15,7 +15,7 @@ pub struct Wrong {
     errors: Vec<WrongValue>,
 }
 
-/// A value that is wrong.
+/// An invalid value.
 #[derive(Debug, Serialize)]
 struct WrongValue {
     /// Full name with the numbers of lists; null: it belongs to no key.
@@ -26,7 +26,7 @@ struct WrongValue {
 }
 
 impl Wrong {
-    /// All that is wrong.
+    /// All faults.
     pub fn of(error: &FileError) -> Self {
         let each = std::iter::once(error).chain(&error.rest);
         let value = |error: &FileError| WrongValue {
@@ -39,7 +39,7 @@ impl Wrong {
     }
 }
 
-/// A text as the format that it is in: as JSON where it begins with a brace.
+/// The format of a text: JSON if it begins with a brace.
 fn format(text: &str) -> Result<Format, FileError> {
     if text.len() as u64 > file::MAX_BYTES {
         return Err(FileError::whole(NAME, 1, 1, Problem::TooLong { bound: file::MAX_BYTES }));
@@ -52,7 +52,7 @@ pub fn read(text: &str) -> Result<SceneFile, FileError> {
     file::parse(NAME, format(text)?, text)
 }
 
-/// TOML or JSON: `{"scene": ..}` with all its keys, whatever they are, or the fault of its grammar.
+/// TOML or JSON: `{"scene": ..}` with all its keys, valid or not, or the error of its grammar.
 pub fn parse(text: &str, _: &mut Vec<f64>) -> PageResult {
     let scene = format(text).and_then(|format| file::as_json(NAME, format, text));
     Ok(match scene {
@@ -63,7 +63,7 @@ pub fn parse(text: &str, _: &mut Vec<f64>) -> PageResult {
     .to_string())
 }
 
-/// A scene as a scene file in TOML, which reads back as the same to the last bit.
+/// A scene as a scene file in TOML, which reads back with the same bits.
 pub fn toml(text: &str, _: &mut Vec<f64>) -> PageResult {
     read(text).map(|file| write::toml(&file)).map_err(|error| error.to_string())
 }

@@ -1,4 +1,4 @@
-//! A board that the page talks to. The page carries the bytes and has the clock.
+//! The page's conversation with a board. The page carries the bytes and has the clock.
 //!
 //! Bytes are text here: a letter for each, of U+0000 to U+00FF, as `String.fromCharCode` makes them. Times are
 //! the page's, in ms since any beginning.
@@ -24,19 +24,19 @@ thread_local! {
     static WIRE: RefCell<Wire> = const { RefCell::new(Wire { client: None, is_recording: false }) };
 }
 
-/// What outlives a call.
+/// The state between calls.
 struct Wire {
     client: Option<Client>,
-    /// Whether ticks are given as rows of a table, too.
+    /// Whether ticks are also returned as rows of a table.
     is_recording: bool,
 }
 
-/// Asks for a new conversation.
+/// The request for a new conversation.
 #[derive(Deserialize)]
 struct Start {
     address: String,
     now: f64,
-    /// Any number, another one each time.
+    /// Any number, different each time.
     id: u16,
 }
 
@@ -56,13 +56,13 @@ struct Asked {
 struct Turn {
     /// Bytes to the board.
     send: String,
-    /// What became of requests.
+    /// The results of requests.
     replies: Vec<String>,
     /// Rows of the record.
     rows: String,
-    /// How the board is, where that is new.
+    /// The state of the board, if it is new.
     board: Option<Value>,
-    /// Why the conversation has ended.
+    /// The reason if the conversation has ended.
     lost: Option<String>,
 }
 
@@ -106,13 +106,13 @@ pub fn turn(question: &str, _: &mut Vec<f64>) -> PageResult {
     })
 }
 
-/// The link is lost: what was asked for is not answered any more.
+/// The link is lost: pending requests are not answered any more.
 pub fn lost(_: &str, _: &mut Vec<f64>) -> PageResult {
     WIRE.with_borrow_mut(|wire| wire.turn(Some(String::new())))
 }
 
-/// Asks the board for something: `{"now": .., "request": "set", "changes": "stiffness=20"}`. A set that the
-/// board would refuse is refused here, in the same words.
+/// Sends a request: `{"now": .., "request": "set", "changes": "stiffness=20"}`. A set that the board would
+/// refuse is refused here, with the same text.
 pub fn request(question: &str, _: &mut Vec<f64>) -> PageResult {
     let Asked { now, request, changes } =
         serde_json::from_str(question).map_err(|error| error.to_string())?;
@@ -137,7 +137,7 @@ pub fn request(question: &str, _: &mut Vec<f64>) -> PageResult {
     })
 }
 
-/// Judges changes as they are typed, by the scene that runs on the board. A refusal is the reason.
+/// Judges changes as they are typed, with the board's running scene. A refusal is the reason.
 pub fn judge(changes: &str, _: &mut Vec<f64>) -> PageResult {
     let changes = change::line(changes)?;
     WIRE.with_borrow(|wire| match &wire.client {
@@ -146,15 +146,15 @@ pub fn judge(changes: &str, _: &mut Vec<f64>) -> PageResult {
     })
 }
 
-/// Has ticks given as rows of a table from now on, `on`, or no more, `off`.
+/// Returns ticks as rows of a table from now on, `on`, or no more, `off`.
 pub fn record(question: &str, _: &mut Vec<f64>) -> PageResult {
     WIRE.with_borrow_mut(|wire| wire.is_recording = question == "on");
     Ok(String::new())
 }
 
-/// The curves of the last seconds, with so many columns: position in rad, torque in N m, margin in N m s/rad
-/// and energy in J, each as the number of its points and the points, a time in s that is not positive and a
-/// value.
+/// The curves of the last seconds, with a number of columns: position in rad, torque in N m, margin in N m
+/// s/rad and energy in J, each as the number of its points and the points, a time in s that is not positive
+/// and a value.
 pub fn curves(columns: &str, numbers: &mut Vec<f64>) -> PageResult {
     let columns: usize =
         columns.parse().map_err(|_| format!("`{columns}` is not a number of columns"))?;
@@ -209,7 +209,7 @@ impl Wire {
     }
 }
 
-/// How a board is, in the words of `haptic scope`.
+/// The state of a board as text, as in `haptic scope`.
 fn view(client: &Client) -> Option<Value> {
     let connected = client.connected.as_ref()?;
     let Connected { program, board, previous_fault, .. } = connected;
@@ -240,7 +240,7 @@ fn view(client: &Client) -> Option<Value> {
     }))
 }
 
-/// What a power stage measures.
+/// The measurements of a power stage.
 fn in_words(power: &Power) -> String {
     match power.index_offset() {
         Some(offset) => format!("{power}; {offset}"),
@@ -248,7 +248,7 @@ fn in_words(power: &Power) -> String {
     }
 }
 
-/// A number that runs.
+/// An active parameter.
 fn number(parameter: Parameter, value: f64) -> Value {
     let (words, unit) = parameter.name_and_unit();
     let whole = match parameter.range() {
@@ -269,7 +269,7 @@ fn time(now: f64) -> Result<Duration, String> {
     Duration::try_from_secs_f64(now / 1e3).map_err(|_| format!("`{now}` is not a time in ms"))
 }
 
-/// The bytes that letters are.
+/// Converts letters to bytes.
 fn bytes(letters: &str) -> Result<Vec<u8>, String> {
     let byte = |letter: char| {
         u8::try_from(letter).map_err(|_| format!("`{letter}` is not a byte: U+0000 to U+00FF"))

@@ -1,8 +1,8 @@
-//! What `cargo haptic` runs: builds the program `haptic` and becomes it.
+//! The program of `cargo haptic`: builds the program `haptic` and executes it.
 //!
-//! `cargo run --quiet` would be silent for the minutes that the first build takes, and without `--quiet`
-//! would add its lines to every answer. This is silent where there is nothing to build. It writes to
-//! standard error only, and the answer's exit status is that of `haptic`.
+//! `cargo run --quiet` would be silent for the minutes of the first build, and without `--quiet` would add
+//! its lines to every output. This program is silent if there is nothing to build. It writes to standard
+//! error only, and its exit status is that of `haptic`.
 
 use std::env;
 use std::io::{self, IsTerminal, Write};
@@ -11,9 +11,9 @@ use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Longest that a build may take that is not spoken of: longer than looking whether anything has changed.
+/// Longest duration of a build without a message: longer than a check for changes.
 const SILENCE: Duration = Duration::from_secs(2);
-/// Time between two looks at a build.
+/// Time between two polls of a build.
 const LOOK: Duration = Duration::from_millis(20);
 
 fn main() -> ExitCode {
@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Comes back only where the build fails; it has said why.
+/// Returns only if the build fails; cargo has printed the reason.
 fn launch() -> io::Result<ExitCode> {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut build = Command::new(cargo);
@@ -49,8 +49,8 @@ fn launch() -> io::Result<ExitCode> {
     Err(Command::new(haptic).args(env::args_os().skip(1)).exec())
 }
 
-/// Waits for a build: in silence at first, then with a line; at a terminal that line counts seconds and
-/// goes away at the end.
+/// Waits for a build: silently at first, then with a line; at a terminal the line counts seconds and
+/// disappears at the end.
 fn wait(mut build: Child) -> io::Result<ExitStatus> {
     let start = Instant::now();
     let shows = io::stderr().is_terminal();
@@ -74,7 +74,7 @@ fn wait(mut build: Child) -> io::Result<ExitStatus> {
 
 fn show(seconds: u64, shows: bool) {
     const WHAT: &str = "building haptic, which takes minutes the first time";
-    // No output is left if this fails.
+    // If this fails, no other output is possible.
     let _ = match shows {
         true => write!(io::stderr(), "\r{WHAT} ({seconds} s)\x1b[K"),
         false => writeln!(io::stderr(), "{WHAT}"),

@@ -1,4 +1,4 @@
-//! Verdicts, as `haptic certify` has them, and the index alone.
+//! Verdicts, as in `haptic certify`, and the index alone.
 
 use haptic_model::file::Purpose;
 use haptic_model::number;
@@ -23,7 +23,7 @@ pub fn certify(py: Python<'_>, scene: Source, format: &str) -> Result<String, Re
     py.detach(|| verdict(&scene, format_of(format)?))
 }
 
-/// The same for many scenes, on every core; `{"error": ..}` for a scene that has no answer.
+/// The same for many scenes, on every core; `{"error": ..}` for an invalid scene.
 #[pyfunction]
 pub fn certify_many(
     py: Python<'_>,
@@ -46,7 +46,7 @@ pub fn certify_many(
 }
 
 /// Both ends of the enclosure of the index in N m s/rad: of the environment alone, or of `E'`, the
-/// environment behind what its coupling has beyond the standard one. None where there is no index.
+/// environment behind the excess of its coupling over the standard one. None if there is no index.
 #[pyfunction]
 pub fn index(
     py: Python<'_>,
@@ -64,10 +64,10 @@ pub fn index(
     })
 }
 
-/// The number format of a name.
+/// The number format with a name.
 ///
 /// # Errors
-/// Where there is no such format.
+/// If there is no such format.
 pub fn format_of(name: &str) -> Result<Format, Refusal> {
     number::format(name).map_err(|bound| Refusal::Argument {
         name: "format".to_owned(),

@@ -5,7 +5,7 @@ use haptic_model::simulation::method::Method;
 
 use crate::refusal::Refusal;
 
-/// Most steps in a tick.
+/// Largest number of steps per tick.
 const MOST: i64 = 1_000_000;
 
 /// The names of all methods.
@@ -16,7 +16,7 @@ pub fn names() -> Vec<&'static str> {
 /// The method and the steps of two arguments.
 ///
 /// # Errors
-/// Where one of them is out of its bound.
+/// If one of them is out of its bound.
 pub fn integration(method: &str, substeps: i64) -> Result<Integration, Refusal> {
     let out_of_bounds = |name: &str, value: String, bound: String| Refusal::Argument {
         name: name.to_owned(),

@@ -1,5 +1,5 @@
-//! The functions that the Python package `haptic` calls: scenes as texts in, JSON and the bytes of arrays
-//! out. `haptic/__init__.py` makes dictionaries and NumPy arrays of them, and has the documentation of the
+//! The functions for the Python package `haptic`: from scenes as texts to JSON and the bytes of arrays.
+//! `haptic/__init__.py` converts these to dictionaries and NumPy arrays, and has the documentation of the
 //! interface.
 //!
 //! A function lets other threads of Python run while it computes. Functions that may take long check for a
@@ -16,7 +16,7 @@ mod transfer;
 
 use pyo3::prelude::*;
 
-/// The functions, by the names that `haptic/__init__.py` calls them.
+/// The functions, by their names in `haptic/__init__.py`.
 #[pymodule(gil_used = false)]
 mod _native {
     use pyo3::prelude::*;
@@ -42,7 +42,7 @@ mod _native {
     }
 }
 
-/// Ends a computation if Python has got a signal: Ctrl-C raises `KeyboardInterrupt`.
+/// Ends a computation if Python has received a signal: Ctrl-C raises `KeyboardInterrupt`.
 fn check_signals() -> PyResult<()> {
     Python::attach(|py| py.check_signals())
 }

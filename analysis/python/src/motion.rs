@@ -1,4 +1,4 @@
-//! The motion of a scene: its samples, and whether it dies away.
+//! The motion of a scene: its samples, and whether it decays.
 
 use haptic_model::file::Purpose;
 use haptic_model::nominal_latency::left_out;
@@ -29,7 +29,7 @@ pub fn tick_statuses() -> Vec<&'static str> {
 }
 
 /// The columns of `haptic simulate --json` as bytes, the status of each tick as its code; `period` in s;
-/// `overflow`, a sentence where the motion leaves the range of numbers.
+/// `overflow`, a text if the motion leaves the range of numbers.
 #[pyfunction]
 pub fn simulate<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Why there is no answer, as the exception that Python gets.
+//! The reasons for a failure, as Python exceptions.
 
 use haptic_model::file::FileError;
 use haptic_model::number::DoesNotFit;
@@ -15,7 +15,7 @@ pyo3::create_exception!(
     "A scene or an argument that has no answer; the sentence names the key, its value and its bound."
 );
 
-/// Why there is no answer.
+/// The reason for a failure.
 #[derive(Debug, Error)]
 pub enum Refusal {
     /// A file, or a text, with the places of its errors.
@@ -24,7 +24,7 @@ pub enum Refusal {
     /// A dictionary, which has no lines.
     #[error("{}", sentences(.0))]
     Dictionary(FileError),
-    /// A number that the number format does not hold.
+    /// A number that the number format cannot represent.
     #[error(transparent)]
     DoesNotFit(#[from] DoesNotFit),
     /// The scene has no motion.

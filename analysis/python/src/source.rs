@@ -1,4 +1,4 @@
-//! Where a scene comes from: a file, a text, or a dictionary.
+//! The source of a scene: a file, a text, or a dictionary.
 
 use std::path::Path;
 
@@ -43,7 +43,7 @@ impl Source {
     /// Reads it.
     ///
     /// # Errors
-    /// As for a scene file: every key that is wrong.
+    /// As for a scene file: every invalid key.
     pub fn read(&self, purpose: Purpose) -> Result<SceneFile, Refusal> {
         let parse = |format| file::parse_for(purpose, NAME, format, &self.1);
         match self.0 {
@@ -53,7 +53,7 @@ impl Source {
         }
     }
 
-    /// Where the files that it names are looked for.
+    /// The folder of the files that it names.
     pub fn folder(&self) -> &Path {
         let parent = (self.0 == Form::Path).then(|| Path::new(&self.1).parent());
         parent.flatten().unwrap_or(Path::new(""))
@@ -65,7 +65,7 @@ impl Source {
     }
 }
 
-/// A scene as JSON with the keys that it has, whether or not they mean anything.
+/// A scene as JSON with all its keys, valid or not.
 #[pyfunction]
 pub fn load(py: Python<'_>, scene: Source) -> Result<String, Refusal> {
     py.detach(|| {

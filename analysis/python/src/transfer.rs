@@ -12,7 +12,7 @@ use crate::certificate::format_of;
 use crate::refusal::Refusal;
 use crate::source::Source;
 
-/// Value at each angle `theta` (rad): real and imaginary parts by turns.
+/// Value at each angle `theta` (rad): real and imaginary parts alternately.
 #[pyfunction]
 pub fn response<'py>(
     py: Python<'py>,

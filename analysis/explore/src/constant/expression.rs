@@ -1,23 +1,23 @@
-//! A Rust expression, on one line where that is short enough, and otherwise a field a line.
+//! A Rust expression, on one line if that is short enough, otherwise with one field per line.
 
 /// Longest line in columns.
 const WIDTH: usize = 100;
 /// Columns of an indentation.
 const INDENT: usize = 4;
 
-/// What stands in a constant.
+/// The value of a constant.
 pub enum Expression {
     /// A number, a path, a call.
     Word(String),
-    /// A structure with named fields, and with what the other fields are taken from.
+    /// A structure with named fields, and the expression for the other fields.
     Structure(&'static str, Vec<(&'static str, Expression)>, Option<String>),
-    /// References to values in a row.
+    /// A list of references to values.
     List(Vec<Expression>),
     /// A call with one argument.
     Call(&'static str, Box<Expression>),
 }
 
-/// A text as it is.
+/// A verbatim text.
 pub fn word(text: impl ToString) -> Expression {
     Expression::Word(text.to_string())
 }
@@ -27,7 +27,7 @@ pub fn number(number: f64) -> Expression {
     word(format!("{number:?}"))
 }
 
-/// A number that there may be.
+/// An optional number.
 pub fn optional(number: Option<f64>) -> Expression {
     word(format!("{number:?}"))
 }
@@ -38,12 +38,12 @@ pub fn structure(name: &'static str, fields: Vec<(&'static str, Expression)>) ->
 }
 
 impl Expression {
-    /// Values in a row.
+    /// A list of values.
     pub fn list(values: Vec<Self>) -> Self {
         Self::List(values)
     }
 
-    /// A structure that has its other fields from an expression.
+    /// A structure with its other fields from an expression.
     pub fn with_rest(self, rest: impl Into<String>) -> Self {
         match self {
             Self::Structure(name, fields, _) => Self::Structure(name, fields, Some(rest.into())),
@@ -56,8 +56,8 @@ impl Expression {
         Self::Call(call, Box::new(self))
     }
 
-    /// Behind the `=` of a constant that begins with so many columns: on a line of its own if it fits there
-    /// and no better.
+    /// After the `=` of a constant whose beginning has `columns` columns: on its own line if it fits only
+    /// there.
     pub fn after(&self, columns: usize) -> String {
         let line = self.line();
         if columns + 1 + line.len() < WIDTH {
@@ -87,7 +87,7 @@ impl Expression {
         }
     }
 
-    /// With a field or a value a line, below a line with this indentation.
+    /// With one field or value per line, below a line with this indentation.
     pub fn broken(&self, indent: usize) -> String {
         let within = indent + INDENT;
         let [outer, inner] = [indent, within].map(|columns| " ".repeat(columns));
@@ -112,7 +112,7 @@ impl Expression {
         }
     }
 
-    /// Behind so many columns of its line, on which the comma after it has to fit.
+    /// After `columns` columns of its line, which must also hold the comma.
     fn fitting(&self, indent: usize, columns: usize) -> String {
         let line = self.line();
         if indent + columns + line.len() < WIDTH { line } else { self.broken(indent) }

@@ -1,4 +1,4 @@
-//! The simulated device between the converter's codes and the encoder's counts, held or let go.
+//! The simulated device between the DAC's codes and the encoder's counts, held or released.
 
 use haptic_model::device::{Energy, Hand, HandSetpoint, SimulatedEncoder};
 use haptic_model::simulation::SimulationError;
@@ -18,10 +18,10 @@ pub struct DeviceInHand {
 }
 
 impl DeviceInHand {
-    /// A scene's device in a hand, which moves on as it did with the scene before, if there was one.
+    /// A scene's device in a hand, which continues its motion from the previous scene, if there was one.
     ///
     /// # Errors
-    /// Where device and hand are too fast for their motion over a period to be computed.
+    /// If device and hand are too fast for their motion over a period to be computed.
     pub fn new(
         scene: &Scene,
         hand: Hand,
@@ -31,7 +31,7 @@ impl DeviceInHand {
         let held = HeldDevice::of(scene, hand)?;
         let state = match before {
             Some((device, old)) if moves_as(old, scene) => device.state.clone(),
-            // Torques that are on their way do not arrive.
+            // Torques in transit are discarded.
             Some((device, _)) => held.at(device.state.motion()),
             None => held.at(Default::default()),
         };
@@ -85,7 +85,7 @@ impl DeviceInHand {
     }
 }
 
-/// Whether the states of the one scene's device are those of the other's.
+/// Whether the devices of two scenes have the same states.
 fn moves_as(one: &Scene, other: &Scene) -> bool {
     one.timing.period == other.timing.period && one.latency == other.latency
 }

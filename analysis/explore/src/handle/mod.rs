@@ -1,10 +1,10 @@
-//! The handle of the page: a scene's servo with a simulated device, in a hand that a person moves.
+//! The handle of the page: a scene's servo with a simulated device, in a hand that the user moves.
 //!
-//! Tick by tick it does what `haptic run` does: the device's angle becomes a count, the servo that is built
-//! from the certified scene, in `f32` as on a board, makes a code of it, and the code's torque moves the
-//! device ([`HeldDevice`](haptic_model::simulation::held_device::HeldDevice)), exactly over each tick, with
-//! the scene's output delay and lags. A board that latches its codes computes each of them a tick before, from
-//! the same counts; motor and device see no difference.
+//! Each tick is as in `haptic run`: the device's angle becomes a count, the servo of the certified scene, in
+//! `f32` as on a board, computes a code, and the code's torque moves the device
+//! ([`HeldDevice`](haptic_model::simulation::held_device::HeldDevice)), exactly over each tick, with the
+//! scene's output delay and lags. A board with latched codes computes each code one tick earlier, from the
+//! same counts, without a difference for motor and device.
 
 mod device_in_hand;
 mod oscillation;
@@ -32,16 +32,16 @@ use simulated::{Motion, Simulated};
 
 pub use rim::rim;
 
-/// The most ticks of one call: a page that waited for long goes on from there.
+/// Largest number of ticks of one call; a page that was paused continues from there.
 const MOST_TICKS: u32 = 50_000;
 
 thread_local! {
     static HANDLE: RefCell<Option<Simulated>> = const { RefCell::new(None) };
 }
 
-/// Takes a scene into the hand, by its `Settings`. Another scene goes on with the device as it moves: its
-/// servo settles at the device's angle, while time stands still, and takes over with the next tick. What
-/// cannot be read, or has no motion, changes nothing.
+/// Holds a scene with its `Settings`. A new scene continues with the moving device: its servo settles at the
+/// device's angle, without time passing, and takes over in the next tick. An invalid scene, or one without a
+/// motion, changes nothing.
 pub fn hold(question: &str, _: &mut Vec<f64>) -> PageResult {
     let settings: Settings = parsed(question)?;
     HANDLE.with_borrow_mut(|handle| {
@@ -53,9 +53,9 @@ pub fn hold(question: &str, _: &mut Vec<f64>) -> PageResult {
     })
 }
 
-/// The next ticks, with the hand as `Motion` says. Numbers of each: count, angle in rad by the encoder,
-/// coupling torque in N m, code, number of the limit's reason, and set-point and angle of the device in rad
-/// at the tick's end. The motor applies the coupling torque's negative.
+/// The next ticks, with the hand's `Motion`. Numbers of each: count, angle in rad by the encoder, coupling
+/// torque in N m, code, number of the limit's reason, and set-point and angle of the device in rad at the
+/// tick's end. The motor applies the coupling torque's negative.
 pub fn motion(question: &str, numbers: &mut Vec<f64>) -> PageResult {
     let motion: Motion = parsed(question)?;
     if motion.ticks > MOST_TICKS {
@@ -70,7 +70,7 @@ pub fn motion(question: &str, numbers: &mut Vec<f64>) -> PageResult {
     with_handle(|handle| json(&handle.run(&motion, numbers)))
 }
 
-/// Begins the push that shows an environment, in the hand that there is.
+/// Begins the push that demonstrates an environment, in the present hand.
 pub fn push(_: &str, _: &mut Vec<f64>) -> PageResult {
     with_handle(|handle| {
         handle.push();
@@ -78,8 +78,8 @@ pub fn push(_: &str, _: &mut Vec<f64>) -> PageResult {
     })
 }
 
-/// What the servo did since it was built: the scene's text, and in the numbers a count and a code for each
-/// tick, from the first one on.
+/// The record of the servo since it was built: the scene's text, and in the numbers a count and a code for
+/// each tick.
 pub fn recorded(_: &str, numbers: &mut Vec<f64>) -> PageResult {
     with_handle(|handle| {
         handle.recorded(numbers);
@@ -97,7 +97,7 @@ struct Recording {
     counts: Vec<i32>,
 }
 
-/// The codes that a certified scene's servo makes of counts, as `haptic run --replay` prints them.
+/// The codes of a certified scene's servo for counts, as printed by `haptic run --replay`.
 pub fn replay(question: &str, numbers: &mut Vec<f64>) -> PageResult {
     let recording: Recording = parsed(question)?;
     let file = read(&recording.scene).map_err(|error| error.to_string())?;

@@ -1,34 +1,34 @@
-//! Whether the torque oscillates while the hand rests: how much, and how fast.
+//! Detects an oscillation of the torque while the hand rests, with its amplitude and frequency.
 
 use std::collections::VecDeque;
 
 use serde::Serialize;
 
-/// Time in s over which the torque is looked at.
+/// The window of the torque in s.
 const WINDOW: f64 = 0.25;
-/// The least and the most ticks of it.
+/// The smallest and the largest number of ticks of the window.
 const TICKS: [f64; 2] = [32.0, 16_384.0];
-/// The least amplitude, in steps of the converter: below it are the steps of encoder and converter.
+/// The smallest amplitude in steps of the DAC; smaller ones are steps of encoder and DAC.
 const LEAST_STEPS: f64 = 3.0;
-/// Part of its amplitude that an oscillation has in the second half of the window at the least: what decays
-/// faster is the end of a motion.
+/// Smallest ratio of the amplitudes in the second half and in the whole window: a faster decay is the end of
+/// a motion.
 const LASTING: f64 = 0.8;
-/// Part of the amplitude by which the torque has to be on either side of its mean to count as a period.
+/// Fraction of the amplitude that the torque must exceed on both sides of its mean to count as a period.
 const SIDE: f64 = 0.25;
-/// Part of the range of its angles by which the device drifts from half to half of the window at most.
+/// Largest drift of the device between the halves of the window, relative to the range of its angles.
 const DRIFT: f64 = 0.5;
-/// Periods in the window at the least.
+/// Smallest number of periods in the window.
 const LEAST_PERIODS: usize = 4;
 
-/// A torque that oscillates.
+/// An oscillation of the torque.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Oscillation {
     /// Half of the distance between its extremes, in N m.
     pub amplitude: f64,
     /// In Hz.
     pub frequency: f64,
-    /// Encoder counts from end to end of the device's motion: where they are few, it is the encoder's steps
-    /// between which the loop hunts.
+    /// Encoder counts of the device's motion, peak to peak: if they are few, the loop hunts between steps of
+    /// the encoder.
     pub counts: f64,
 }
 
@@ -47,7 +47,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// For a period in s, steps of the converter in N m, and of the encoder in rad.
+    /// For a period in s, with the steps of the DAC in N m and of the encoder in rad.
     pub fn new(period: f64, step: f64, count: f64) -> Self {
         let ticks = (WINDOW / period).clamp(TICKS[0], TICKS[1]) as usize;
         Self {
@@ -60,7 +60,7 @@ impl Watch {
         }
     }
 
-    /// Torque in N m and angle in rad of a tick; all that came before is forgotten unless the hand rests.
+    /// Adds torque in N m and angle in rad of a tick; earlier ticks are discarded unless the hand rests.
     pub fn add(&mut self, torque: f64, angle: f64, rests: bool) {
         for (values, value) in [(&mut self.torques, torque), (&mut self.angles, angle)] {
             if !rests {
@@ -111,7 +111,7 @@ impl Watch {
     }
 }
 
-/// Whether a device turns on by itself, as a knob that nobody holds does from detent to detent.
+/// Whether a device keeps turning, like a released knob from detent to detent.
 fn turns_on(angles: &VecDeque<f64>, half: usize) -> bool {
     let [least, most] = extremes(angles.range(half..));
     (mean(angles.range(half..)) - mean(angles.range(..half))).abs() > DRIFT * (most - least)

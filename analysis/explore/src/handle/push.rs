@@ -1,13 +1,13 @@
-//! A push that is played in place of what a person does.
+//! A push that is played in place of the user's motion.
 
 use haptic_model::device::HandSetpoint;
 use haptic_model::hand::HandTrajectory;
 use haptic_servo::environment::Environment;
 
-/// Time in s in which the set-point comes to where the trajectory begins.
+/// Time in s in which the set-point moves to the beginning of the trajectory.
 const APPROACH: f64 = 0.5;
 
-/// A hand's trajectory, and how far it is.
+/// A hand's trajectory, and the present position in it.
 pub struct Push {
     trajectory: HandTrajectory,
     period: f64,
@@ -28,7 +28,7 @@ impl Push {
         Self { trajectory, period, ticks: 0 }
     }
 
-    /// The set-point over the next tick; `None` where the hand has let go.
+    /// The set-point over the next tick; `None` if the hand has let go.
     pub fn next(&mut self) -> Option<HandSetpoint> {
         let start = self.ticks as f64 * self.period;
         self.ticks += 1;

@@ -1,9 +1,9 @@
 //! The counts and codes of a servo, from its first tick on.
 
-/// The most ticks that are kept: a quarter of an hour at 1 kHz.
+/// Largest number of kept ticks: a quarter of an hour at 1 kHz.
 const MOST: usize = 1 << 20;
 
-/// The counts and codes of a servo. Rows beyond the room are dropped, so that the beginning is kept.
+/// The counts and codes of a servo. Later rows are dropped when it is full, so that the beginning is kept.
 #[derive(Clone, Debug, Default)]
 pub struct Record {
     ticks: Vec<(i32, u16)>,

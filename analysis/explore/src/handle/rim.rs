@@ -11,7 +11,7 @@ use crate::scene_text::read;
 /// Points of a turn.
 const POINTS: u32 = 721;
 
-/// Which turn of which scene.
+/// A turn of a scene.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Turn {
@@ -22,14 +22,14 @@ struct Turn {
     to: f64,
 }
 
-/// What limits a knob's way.
+/// The limits of a knob's motion.
 #[derive(Serialize)]
 struct Rim {
     /// Angles in rad at which its end stops begin.
     ends: Option<[f64; 2]>,
 }
 
-/// The torque in N m at rest at angles from one to another, evenly; none of a scene without a torque profile.
+/// The torque in N m at rest at evenly spaced angles; empty for a scene without a torque profile.
 pub fn rim(question: &str, numbers: &mut Vec<f64>) -> PageResult {
     let Turn { scene, from, to } = parsed(question)?;
     let scene = read(&scene).map_err(|error| error.to_string())?.scene;

@@ -13,30 +13,30 @@ use serde::Serialize;
 
 use super::unchecked::Unchecked;
 
-/// What makes the torque.
+/// The source of the torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rendering {
     /// The servo of a certified scene, as on a board.
     Certified,
-    /// One of a scene that is not certified: no board runs it.
+    /// The servo of a scene that is not certified: no board runs it.
     Unchecked,
     /// Nothing: the motor is off.
     Off,
 }
 
-/// A servo, and why it is not the one of a certified scene.
+/// A servo, and the reason if it is not that of a certified scene.
 pub struct Rendered {
     /// The servo.
     pub servo: Box<dyn Controller>,
-    /// Which one it is.
+    /// The kind of servo.
     pub rendering: Rendering,
-    /// Why it is not that of a certified scene.
+    /// The reason if it is not that of a certified scene.
     pub refusal: Option<String>,
 }
 
 impl Rendered {
-    /// The servo of a scene: where it is checked, that of a certified one or none.
+    /// The servo of a scene; with the check, only of a certified scene.
     pub fn of(file: &SceneFile, transducers: &Transducers, is_checked: bool) -> Self {
         let refusal = match certified(file, transducers) {
             Ok(servo) => return Self { servo, rendering: Rendering::Certified, refusal: None },

@@ -9,15 +9,15 @@ use serde::Deserialize;
 pub struct Settings {
     /// Text of the scene.
     pub scene: String,
-    /// Encoder counts a turn; default: those of the scene.
+    /// Encoder counts per turn; default: those of the scene.
     pub counts_per_turn: Option<f64>,
     /// The hand.
     pub hand: HandSettings,
-    /// Whether only a certified scene gives torque.
+    /// Whether only a certified scene has torque.
     pub is_checked: bool,
 }
 
-/// A hand as it was asked for.
+/// A requested hand.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandSettings {

@@ -16,11 +16,11 @@ use super::servo::{Rendered, Rendering};
 use super::settings::Settings;
 use crate::scene_text::read;
 
-/// The most ticks in which a servo settles at the angle at which it takes over.
+/// Largest number of ticks in which a servo settles before it takes over.
 const MOST_SETTLING: u32 = 1000;
 /// Ticks with the same code after which it has settled.
 const SETTLED: u32 = 16;
-/// The fastest in rad/s that the hand's set-point moves, also where a pointer jumps.
+/// Largest speed of the hand's set-point in rad/s, even if a pointer jumps.
 const FASTEST: f64 = 40.0;
 
 /// A servo with its device.
@@ -30,50 +30,50 @@ pub struct Simulated {
     transducers: Transducers,
     rendered: Rendered,
     device: DeviceInHand,
-    /// The hand's set-point in rad; the device's angle where no hand holds it.
+    /// The hand's set-point in rad; the device's angle without a hand.
     setpoint: f64,
     push: Option<Push>,
     record: Record,
     watch: Watch,
 }
 
-/// What the page draws around the handle.
+/// The data for the page's drawing of the handle.
 #[derive(Serialize)]
 pub struct Held<'a> {
     rendering: Rendering,
-    /// Why it is not the servo of a certified scene.
+    /// The reason if it is not the servo of a certified scene.
     refusal: Option<&'a str>,
     /// In s.
     period: f64,
     counts_per_turn: f64,
     /// Torque in N m at the largest code.
     full_scale: f64,
-    /// The most torque in N m that there is.
+    /// Largest possible torque in N m.
     torque_limit: f64,
     /// Whether it is drawn as a knob, and not as a paddle.
     is_knob: bool,
-    /// Where a wall begins, in rad.
+    /// The face of a wall in rad.
     face: Option<f64>,
     /// Whether it pushes in one direction only.
     one_sided: bool,
 }
 
-/// How the hand moves over the next ticks.
+/// The motion of the hand over the next ticks.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
-    /// How many.
+    /// The number of ticks.
     pub ticks: u32,
-    /// The set-point in rad at their end, as far as a hand is as fast.
+    /// The set-point in rad at their end, subject to the hand's largest speed.
     pub setpoint: f64,
     /// Whether it holds the device.
     pub is_held: bool,
-    /// Whether it takes over from a push, which goes on otherwise.
+    /// Whether it takes over from a push, which continues otherwise.
     #[serde(default)]
     pub takes_over: bool,
 }
 
-/// The set-point's way over some ticks, at a steady speed that a hand can have.
+/// The set-point's path over some ticks, at a constant possible speed of a hand.
 struct Path {
     from: f64,
     to: f64,
@@ -87,8 +87,8 @@ impl Path {
         Self { from, to: motion.setpoint.clamp(from - farthest, from + farthest), ticks }
     }
 
-    /// Angle in rad at the end of a tick; at that of the last one it is there to the last bit, so that a hand
-    /// that rests is seen to rest.
+    /// Angle in rad at the end of a tick; exact at the end of the last tick, so that a resting hand is
+    /// detected.
     fn after(&self, tick: u32) -> f64 {
         let left = (self.ticks - f64::from(tick) - 1.0) / self.ticks;
         self.to + (self.from - self.to) * left
@@ -102,19 +102,19 @@ pub struct Moved {
     pub is_pushing: bool,
     /// Whether a hand holds the device.
     pub is_held: bool,
-    /// Its set-point in rad; the device's angle where none does.
+    /// Its set-point in rad; the device's angle without a hand.
     pub setpoint: f64,
-    /// What passed between hand and device since the scene was taken into the hand.
+    /// Energy between hand and device since the scene was taken into the hand.
     pub energy: Energy,
     /// The torque's oscillation while the hand rests.
     pub oscillation: Option<Oscillation>,
 }
 
 impl Simulated {
-    /// A scene, with its device as it moved before.
+    /// A scene whose device continues its previous motion.
     ///
     /// # Errors
-    /// Where the scene cannot be read, or has no motion.
+    /// If the scene is invalid, or has no motion.
     pub fn new(settings: Settings, before: Option<&Self>) -> Result<Self, String> {
         let file = read(&settings.scene).map_err(|error| error.to_string())?;
         let hand = settings.hand.hand()?;
@@ -145,15 +145,15 @@ impl Simulated {
         Ok(simulated)
     }
 
-    /// Whether it renders the scene of these settings, in whatever hand.
+    /// Whether it renders the scene of these settings, in any hand.
     pub fn renders(&self, settings: &Settings) -> bool {
         self.settings == Settings { hand: self.settings.hand, ..settings.clone() }
     }
 
-    /// Changes the hand alone.
+    /// Changes only the hand.
     ///
     /// # Errors
-    /// Where there is no such hand, or no motion in it.
+    /// If the hand is invalid, or there is no motion in it.
     pub fn change_hand(&mut self, settings: Settings) -> Result<(), String> {
         let hand = settings.hand.hand()?;
         self.device.change_hand(&self.scene, hand).map_err(|error| error.to_string())?;
@@ -161,7 +161,7 @@ impl Simulated {
         Ok(())
     }
 
-    /// What the page draws.
+    /// The data for the page's drawing.
     pub fn held(&self) -> Held<'_> {
         let (environment, full_scale) =
             (&self.scene.environment, self.transducers.full_scale_torque);
@@ -189,13 +189,13 @@ impl Simulated {
         numbers.extend(self.record.numbers());
     }
 
-    /// Begins the push that shows the environment.
+    /// Begins the push that demonstrates the environment.
     pub fn push(&mut self) {
         let period = self.scene.timing.period;
         self.push = Some(Push::new(&self.scene.environment, self.setpoint, period));
     }
 
-    /// The next ticks, whose numbers are those of [`super::motion`].
+    /// The next ticks, with the numbers of [`super::motion`].
     pub fn run(&mut self, motion: &Motion, numbers: &mut Vec<f64>) -> Moved {
         if motion.takes_over {
             self.push = None;
@@ -244,7 +244,7 @@ impl Simulated {
         ]);
     }
 
-    /// Shows the servo the device where it is, until its memory has forgotten where it was built.
+    /// Runs the servo with the device at its present angle until the servo's memory has settled.
     fn settle(&mut self) {
         let count = self.device.count();
         let (mut code, mut same) = (DacCode::MID_SCALE.get(), 0);

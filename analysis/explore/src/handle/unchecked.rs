@@ -1,5 +1,5 @@
-//! A servo that no certificate covers, between the encoder's counts and the converter's codes: for simulation
-//! only. Its law is the firmware's, in `f64`.
+//! A servo without a certificate, from the encoder's counts to the DAC's codes: for simulation only. Its law
+//! is the firmware's, in `f64`.
 
 use std::f64::consts::TAU;
 
@@ -19,15 +19,15 @@ pub struct Unchecked {
     position: Position,
     radians_per_count: f64,
     code_scale: f64,
-    /// What a torque at its limit is limited by.
+    /// The reason for a torque at its limit.
     limit: LimitReason,
 }
 
 impl Unchecked {
-    /// The servo of a scene, whose torque is limited as on a board: by the scene, or else by the converter.
+    /// The servo of a scene, with the torque limited as on a board: by the scene, or otherwise by the DAC.
     ///
     /// # Errors
-    /// Where coupling and environment have no unique solution, or no law.
+    /// If coupling and environment have no unique solution, or no law.
     pub fn new(scene: &Scene, transducers: &Transducers) -> Result<Self, BuildError> {
         transducers.check(scene.timing, scene.torque_limit)?;
         let full_scale = transducers.full_scale_torque;
