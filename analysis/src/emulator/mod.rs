@@ -17,7 +17,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use haptic_servo::board::lockstep_protocol::{TickInput, TickOutput};
@@ -32,11 +32,9 @@ pub use report::{Calibration, CertificateBits, EmulatorReport, InstructionStats,
 pub use servo_client::ServoClient;
 pub use transport::Transport;
 
+use crate::toolchain::{QEMU, emulator};
 use log::{LogDecoder, LogReader};
 use pipes::Pipes;
-
-/// The emulator's program.
-pub const QEMU: &str = "qemu-system-arm";
 
 /// The arguments of the emulated board. With `icount` each instruction takes 32 ns of the board's time,
 /// independently of the host's load.
@@ -265,7 +263,7 @@ impl Guest {
         let folder = TempDir::with_prefix("haptic-").map_err(EmulatorError::Pipe)?;
         let pipes = Pipes::make(folder.path()).map_err(EmulatorError::Pipe)?;
         let errors = File::create(folder.path().join(ERRORS)).map_err(EmulatorError::Pipe)?;
-        let mut process = Command::new(QEMU)
+        let mut process = emulator()
             .args(BOARD)
             .args(more)
             .arg("-kernel")

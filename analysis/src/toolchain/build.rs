@@ -11,6 +11,7 @@ use super::memory::{Memory, NoLength};
 use super::output::last_lines;
 use super::size::{SizeError, Sizes};
 use super::sources::{Sources, SourcesError, workspace_root};
+use super::unpacked::{QEMU, Unpacked};
 use super::{BoardModel, TARGET, Target, TorqueOutput};
 
 /// The number format of a scene's program.
@@ -439,9 +440,10 @@ impl Toolchain {
     }
 
     fn cargo_for(&self, target: Target) -> Command {
+        let unpacked = self.workspace.unpacked();
         let mut command = match self.compiler {
             Compiler::Own => Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into())),
-            Compiler::Debian => Command::new("/usr/bin/cargo"),
+            Compiler::Debian => Command::new(unpacked.program("cargo", "/usr/bin/cargo")),
         };
         command.current_dir(&self.workspace.root);
         for name in INHERITED {
@@ -452,9 +454,11 @@ impl Toolchain {
             // Debian has no compiled `core` for these targets; its source is built with the program, which
             // needs unstable features of cargo.
             command.env_remove("RUSTUP_TOOLCHAIN");
-            command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1");
+            command.env("RUSTC", unpacked.program("rustc", "/usr/bin/rustc"));
+            command.env("RUSTC_BOOTSTRAP", "1");
+            unpacked.add_libraries(&mut command);
             let (variable, linker) = target.linker();
-            command.env(variable, linker).args(target.libraries());
+            command.env(variable, unpacked.program(linker, linker)).args(target.libraries());
             command.envs(target.flags());
         }
         command
@@ -527,7 +531,17 @@ impl Program {
     }
 }
 
+/// The emulator, to be started: the unpacked one, or the installed one.
+pub fn emulator() -> Command {
+    Workspace::find().map_or_else(|_| Command::new(QEMU), |found| found.unpacked().emulator())
+}
+
 impl Workspace {
+    /// The packages that are unpacked for this workspace.
+    pub(super) fn unpacked(&self) -> Unpacked {
+        Unpacked::beside(&self.target)
+    }
+
     /// The workspace that this program was built from.
     pub(super) fn find() -> Result<Self, BuildError> {
         let root = workspace_root()?;

@@ -64,10 +64,12 @@ impl Debian {
 /// The state of a package.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PackageState {
-    /// It is installed.
-    Installed(Version),
+    /// It is installed, or unpacked for this workspace.
+    Present(Version),
     /// It could be installed.
     Available(Version),
+    /// It could be installed, but another package would be removed.
+    Conflicting(Version),
     /// The lists do not contain it.
     Unknown,
 }
@@ -138,6 +140,15 @@ impl Package {
             Self::Lld | Self::Cmake | Self::Make | Self::Cxx | Self::PkgConfig | Self::Libclang => {
                 None
             }
+        }
+    }
+
+    /// Whether its programs run from a folder in which they are unpacked. The tools that build the virtual
+    /// board's processor look for their parts where they are installed.
+    pub(super) const fn runs_unpacked(self) -> bool {
+        match self {
+            Self::Rustc | Self::Cargo | Self::RustSource | Self::Lld | Self::Qemu => true,
+            Self::Cmake | Self::Make | Self::Cxx | Self::PkgConfig | Self::Libclang => false,
         }
     }
 

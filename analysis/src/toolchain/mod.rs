@@ -16,17 +16,19 @@ pub mod probe;
 mod size;
 mod sources;
 mod target;
+mod unpacked;
 mod version;
 
 pub use apt::AptError;
 pub use board::{BoardModel, TorqueOutput, UnknownBoard};
-pub use build::{BuildError, NumberFormat, Program, Toolchain, build_haptic_with};
+pub use build::{BuildError, NumberFormat, Program, Toolchain, build_haptic_with, emulator};
 pub use memory::Memory;
 pub use plan::Tools;
 pub use prepare::{SetupError, install, prepare};
 pub use size::Sizes;
 pub use sources::{Sources, SourcesError};
 pub use target::Target;
+pub use unpacked::QEMU;
 pub use version::Version;
 
 /// The target of the boards' programs: Cortex-M4 with its single-precision unit.

@@ -5,20 +5,39 @@ use std::fs::DirEntry;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use super::apt::Apt;
 use super::host_environment::{
     Debian, HostEnvironment, NativeBuildTools, Package, PackageState, Rust,
 };
+use super::unpacked::Unpacked;
 use super::{Target, Version};
-use crate::emulator::QEMU;
 
-/// Observes the tools on this machine for building programs for `target`. `lists_are_fresh`: the lists of
-/// packages have just been fetched.
-pub fn observe(target: Target, lists_are_fresh: bool) -> HostEnvironment {
+/// What set-up has found out by its steps.
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    /// The lists of packages have just been fetched.
+    pub lists_are_fresh: bool,
+    /// Packages whose installation would remove others.
+    pub conflicting: Vec<Package>,
+}
+
+/// Whether this process has root's rights.
+pub fn is_root() -> bool {
+    nix::unistd::geteuid().is_root()
+}
+
+/// Observes the tools on this machine for building programs for `target`.
+pub(super) fn observe(
+    target: Target,
+    unpacked: &Unpacked,
+    apt: &Apt,
+    findings: &Findings,
+) -> HostEnvironment {
     HostEnvironment {
         rust: rust(target),
         rustup: output_of("rustup", &["--version"]).is_some(),
         fetching_forbidden: std::env::var_os("RUSTUP_AUTO_INSTALL").is_some_and(|v| v == "0"),
-        qemu: output_of(QEMU, &["--version"]).as_deref().and_then(Version::find),
+        qemu: output(unpacked.emulator().arg("--version")).as_deref().and_then(Version::find),
         native: NativeBuildTools {
             cmake: output_of("cmake", &["--version"]).is_some(),
             make: output_of("make", &["--version"]).is_some(),
@@ -26,8 +45,8 @@ pub fn observe(target: Target, lists_are_fresh: bool) -> HostEnvironment {
             pkg_config: output_of("pkg-config", &["--version"]).is_some(),
             libclang: has_libclang(),
         },
-        debian: debian(lists_are_fresh),
-        root: nix::unistd::geteuid().is_root(),
+        debian: debian(unpacked, apt, findings),
+        root: is_root(),
     }
 }
 
@@ -78,19 +97,27 @@ fn has_core(folder: &Path) -> bool {
     })
 }
 
-fn debian(lists_are_fresh: bool) -> Option<Debian> {
+fn debian(unpacked: &Unpacked, apt: &Apt, findings: &Findings) -> Option<Debian> {
     output_of("apt-get", &["--version"])?;
-    Some(Debian { lists_are_fresh, packages: Package::ALL.map(package) })
+    output_of("dpkg-deb", &["--version"])?;
+    let state = |package: Package| match state(package, unpacked, apt) {
+        PackageState::Available(version) if findings.conflicting.contains(&package) => {
+            PackageState::Conflicting(version)
+        }
+        state => state,
+    };
+    Some(Debian { lists_are_fresh: findings.lists_are_fresh, packages: Package::ALL.map(state) })
 }
 
-fn package(package: Package) -> PackageState {
+fn state(package: Package, unpacked: &Unpacked, apt: &Apt) -> PackageState {
     let name = package.name();
     let installed = output_of("dpkg-query", &["-W", "-f=${db:Status-Status} ${Version}", name])
         .and_then(|state| Version::find(state.strip_prefix("installed ")?));
-    if let Some(version) = installed {
-        return PackageState::Installed(version);
+    if let Some(version) = installed.or_else(|| unpacked.version(package)) {
+        return PackageState::Present(version);
     }
-    let candidate = output_of("apt-cache", &["policy", name]).and_then(|policy| {
+    let mut policy = Command::new("apt-cache");
+    let candidate = output(policy.args(apt.options()).args(["policy", name])).and_then(|policy| {
         let line = policy.lines().find_map(|line| line.trim().strip_prefix("Candidate:"))?;
         Version::find(line)
     });
@@ -99,8 +126,11 @@ fn package(package: Package) -> PackageState {
 
 /// The output of a program, if it exists and succeeds.
 fn output_of(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
-    let output = Command::new(program)
-        .args(arguments)
+    output(Command::new(program).args(arguments))
+}
+
+fn output(command: &mut Command) -> Option<String> {
+    let output = command
         // The output read here must not depend on the user's language.
         .env("LC_ALL", "C")
         .stdin(Stdio::null())

@@ -9,8 +9,8 @@ use std::fmt;
 
 use super::build::Compiler;
 use super::host_environment::{HostEnvironment, NativeBuildTools, Package, PackageState, Rust};
+use super::unpacked::QEMU;
 use super::{Target, Version, apt};
-use crate::emulator::QEMU;
 
 /// The purpose of the set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +57,8 @@ pub enum Step {
     FetchLists,
     /// `apt-get install`.
     Install(Vec<Package>),
+    /// `apt-get download`, and into a folder of this workspace.
+    Unpack(Vec<Package>),
 }
 
 /// A step that the user must take.
@@ -103,19 +105,27 @@ pub fn plan(host: &HostEnvironment, tools: Tools) -> Plan {
         _ => Need::Nothing,
     };
     let needs = [compiler_need, emulator, native];
-    let requests: Vec<_> = needs.iter().filter_map(Need::request).collect();
+    let mut requests: Vec<_> = needs.iter().filter_map(Need::request).collect();
     let packages: Vec<_> = needs.iter().flat_map(Need::packages).copied().collect();
-    let lists_may_help =
-        host.root && host.debian.as_ref().is_some_and(|debian| !debian.lists_are_fresh);
+    let lists_may_help = host.debian.as_ref().is_some_and(|debian| !debian.lists_are_fresh);
     if !requests.is_empty() && lists_may_help {
         return Plan::Do(Step::FetchLists);
     }
-    if !requests.is_empty() || (!packages.is_empty() && !host.root) {
-        let packages = (!packages.is_empty()).then_some(ManualStep::Packages(packages));
-        return Plan::Ask(packages.into_iter().chain(requests).collect());
+    let (installed, others): (Vec<_>, Vec<_>) =
+        packages.into_iter().partition(|package| host.may_install(*package));
+    let (unpacked, by_hand): (Vec<_>, Vec<_>) =
+        others.into_iter().partition(|package| package.runs_unpacked());
+    if !by_hand.is_empty() {
+        requests.insert(0, ManualStep::Packages(by_hand));
     }
-    if !packages.is_empty() {
-        return Plan::Do(Step::Install(packages));
+    if !requests.is_empty() {
+        return Plan::Ask(requests);
+    }
+    if !installed.is_empty() {
+        return Plan::Do(Step::Install(installed));
+    }
+    if !unpacked.is_empty() {
+        return Plan::Do(Step::Unpack(unpacked));
     }
     if needs.iter().any(|need| matches!(need, Need::AddTarget)) {
         return Plan::Do(Step::AddTarget(target));
@@ -162,14 +172,22 @@ fn native(host: &HostEnvironment) -> Need {
 }
 
 impl HostEnvironment {
+    /// Whether a package may be installed: by root, without removing another package.
+    fn may_install(&self, package: Package) -> bool {
+        let state = self.debian.as_ref().map(|debian| debian.state(package));
+        self.root && !matches!(state, Some(PackageState::Conflicting(_)))
+    }
+
     /// The missing packages of a tool, or a manual step if they are not available.
     fn packages(&self, wanted: &[Package], otherwise: ManualStep) -> Need {
         let Some(debian) = &self.debian else { return Need::Person(otherwise) };
         let mut missing = Vec::new();
         for package in wanted {
             match debian.state(*package) {
-                PackageState::Installed(version) if package.is_served_by(version) => {}
-                PackageState::Available(version) if package.is_served_by(version) => {
+                PackageState::Present(version) if package.is_served_by(version) => {}
+                PackageState::Available(version) | PackageState::Conflicting(version)
+                    if package.is_served_by(version) =>
+                {
                     missing.push(*package);
                 }
                 _ => return Need::Person(otherwise),
@@ -203,6 +221,10 @@ impl fmt::Display for Step {
             Self::Install(packages) => {
                 let names: Vec<_> = packages.iter().map(|package| package.name()).collect();
                 f.write_str(&apt::by_hand(&names))
+            }
+            Self::Unpack(packages) => {
+                let names: Vec<_> = packages.iter().map(|package| package.name()).collect();
+                write!(f, "apt-get download {}", names.join(" "))
             }
         }
     }

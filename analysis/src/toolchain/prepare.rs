@@ -1,13 +1,16 @@
 //! Prepares this machine to build for the board, or states the steps for the user.
 
 use std::io;
+use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 
-use super::apt::{Apt, AptError, person_agrees};
+use super::apt::{self, Apt, AptError};
 use super::build::{Toolchain, Workspace};
-use super::observe::observe;
+use super::host_environment::Package;
+use super::observe::{Findings, is_root, observe};
 use super::output::last_lines;
 use super::plan::{ManualStep, Plan, Step, Tools, plan};
+use super::unpacked::Unpacked;
 use super::{BuildError, Target};
 
 /// The reason why programs for the board cannot be built here.
@@ -51,9 +54,9 @@ fn bullets(requests: &[ManualStep]) -> String {
 
 /// Ensures that programs for the board can be built and, if requested, run; returns the toolchain.
 ///
-/// As root on Debian it installs missing packages; with rustup it adds the target, unless the machine's owner
-/// forbids it. `progress` receives each step before it is taken. A package is removed only after a yes at the
-/// terminal.
+/// As root on Debian it installs missing packages. If that would remove a package, or without root's rights, it
+/// unpacks them into a folder of this workspace. With rustup it adds the target, unless the machine's owner
+/// forbids it. `progress` receives each step before it is taken. No package is ever removed.
 ///
 /// # Errors
 /// Otherwise, [`SetupError::Missing`] states exactly what to install.
@@ -61,9 +64,13 @@ pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, Setup
     let workspace = Workspace::find()?;
     // Two programs that install at the same time would disturb each other.
     let _lock = workspace.lock("setup")?;
+    let unpacked = workspace.unpacked();
+    let apt = Apt::of(is_root(), unpacked.folder());
+    let mut findings = Findings::default();
     let mut taken = Vec::new();
     loop {
-        let step = match plan(&observe(tools.target(), taken.contains(&Step::FetchLists)), tools) {
+        let host = observe(tools.target(), &unpacked, &apt, &findings);
+        let step = match plan(&host, tools) {
             Plan::Ready(compiler) => return Ok(Toolchain::new(compiler, workspace)),
             Plan::Ask(requests) => return Err(SetupError::Missing(requests)),
             Plan::Do(step) => step,
@@ -71,23 +78,46 @@ pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, Setup
         if taken.contains(&step) {
             return Err(SetupError::InVain(step));
         }
-        match (take(&step, &progress), &step) {
+        match (take(&step, &apt, &unpacked, &progress), &step) {
+            (Err(SetupError::Apt(AptError::Removes { changes, .. })), Step::Install(packages)) => {
+                progress(&format!("{step} {changes}: not done"));
+                findings.conflicting.extend(conflicting(&apt, packages)?);
+                continue;
+            }
             // A mirror may have dropped the versions that old lists name.
-            (Err(SetupError::Apt(AptError::Failed { .. })), Step::Install(_))
-                if !taken.contains(&Step::FetchLists) =>
+            (Err(SetupError::Apt(AptError::Failed { .. })), Step::Install(_) | Step::Unpack(_))
+                if !findings.lists_are_fresh =>
             {
-                take(&Step::FetchLists, &progress)?;
-                taken.push(Step::FetchLists);
-                take(&step, &progress)?;
+                take(&Step::FetchLists, &apt, &unpacked, &progress)?;
+                findings.lists_are_fresh = true;
+                continue;
             }
             (result, _) => result?,
         }
+        findings.lists_are_fresh |= step == Step::FetchLists;
         taken.push(step);
     }
 }
 
+/// The packages of a list that cannot be installed without removing others.
+fn conflicting(apt: &Apt, packages: &[Package]) -> Result<Vec<Package>, AptError> {
+    let mut found = Vec::new();
+    for package in packages {
+        if !apt.changes(&[package.name()])?.removed.is_empty() {
+            found.push(*package);
+        }
+    }
+    // Together they may remove what none removes alone.
+    Ok(if found.is_empty() { packages.to_vec() } else { found })
+}
+
 /// Announces a step and takes it.
-fn take(step: &Step, progress: &impl Fn(&str)) -> Result<(), SetupError> {
+fn take(
+    step: &Step,
+    apt: &Apt,
+    unpacked: &Unpacked,
+    progress: &impl Fn(&str),
+) -> Result<(), SetupError> {
     match step {
         Step::AddTarget(target) => {
             progress(&step.to_string());
@@ -95,12 +125,13 @@ fn take(step: &Step, progress: &impl Fn(&str)) -> Result<(), SetupError> {
         }
         Step::FetchLists => {
             progress(&step.to_string());
-            Ok(Apt::default().update()?)
+            Ok(apt.update()?)
         }
         Step::Install(packages) => {
             let names: Vec<_> = packages.iter().map(|package| package.name()).collect();
-            Ok(Apt::default().install(&names, progress, person_agrees)?)
+            Ok(apt.install(&names, progress)?)
         }
+        Step::Unpack(packages) => Ok(unpacked.add(packages, apt, progress)?),
     }
 }
 
@@ -127,12 +158,11 @@ fn add_target(step: &Step, target: Target) -> Result<(), SetupError> {
 /// # Errors
 /// If it does not allow it, or if it fails.
 pub fn install(packages: &[&str], progress: impl Fn(&str)) -> Result<(), AptError> {
-    let apt = Apt::default();
-    let root = nix::unistd::geteuid().is_root();
-    if !root {
-        return Err(AptError::Unrunnable(io::ErrorKind::PermissionDenied.into()));
+    if !is_root() {
+        return Err(AptError::NotRoot(apt::by_hand(packages)));
     }
-    let install = || apt.install(packages, &progress, person_agrees);
+    let apt = Apt::of(true, Path::new(""));
+    let install = || apt.install(packages, &progress);
     match install() {
         Err(AptError::Failed { .. }) => {
             apt.update()?;

@@ -46,7 +46,7 @@ fn debian() -> Debian {
 }
 
 fn installed() -> Debian {
-    Debian { lists_are_fresh: false, packages: VERSIONS.map(PackageState::Installed) }
+    Debian { lists_are_fresh: false, packages: VERSIONS.map(PackageState::Present) }
 }
 
 /// A Debian container without rustup's target and without the emulator, as root.
@@ -96,7 +96,7 @@ fn rustup_fetches_nothing_where_it_is_forbidden() {
 fn root_on_debian_installs_all_that_is_missing_at_once() {
     check(&bare_container(), Plan::Do(Step::Install(FOR_EMULATOR.to_vec())));
     let mut debian = debian();
-    debian.packages[0] = PackageState::Installed(NEW);
+    debian.packages[0] = PackageState::Present(NEW);
     let rest = FOR_EMULATOR[1..].to_vec();
     let host = HostEnvironment { debian: Some(debian), ..bare_container() };
     check(&host, Plan::Do(Step::Install(rest)));
@@ -112,9 +112,35 @@ fn the_emulator_alone_is_installed_where_it_alone_is_missing() {
 }
 
 #[test]
-fn a_person_who_is_not_root_is_told_the_packages() {
+fn a_user_who_is_not_root_gets_the_packages_unpacked() {
     let host = HostEnvironment { root: false, ..bare_container() };
-    check(&host, Plan::Ask(vec![ManualStep::Packages(FOR_EMULATOR.to_vec())]));
+    check(&host, Plan::Do(Step::Unpack(FOR_EMULATOR.to_vec())));
+}
+
+/// `qemu-utils` of a later release is installed: the emulator would replace it by an older one.
+#[test]
+fn a_package_that_would_remove_another_one_is_unpacked() {
+    let mut conflict = debian();
+    conflict.packages[4] = PackageState::Conflicting(QEMU_7);
+    let host = HostEnvironment { debian: Some(conflict.clone()), ..bare_container() };
+    // The others first, installed as usual.
+    check(&host, Plan::Do(Step::Install(Package::COMPILER.to_vec())));
+    conflict.packages[..4].fill(PackageState::Present(NEW));
+    let host = HostEnvironment { debian: Some(conflict.clone()), ..host };
+    check(&host, Plan::Do(Step::Unpack(vec![Package::Qemu])));
+    // It is then found, and its state does not matter.
+    check(&HostEnvironment { qemu: Some(QEMU_7), ..host }, Plan::Ready(Compiler::Debian));
+}
+
+/// They look for their parts where they are installed.
+#[test]
+fn the_tools_of_the_virtual_board_are_not_unpacked() {
+    let native = NativeBuildTools { cmake: false, ..complete().native };
+    let mut conflict = debian();
+    conflict.packages[5] = PackageState::Conflicting(CMAKE);
+    let host = HostEnvironment { native, debian: Some(conflict), root: true, ..complete() };
+    let expected = Plan::Ask(vec![ManualStep::Packages(vec![Package::Cmake])]);
+    assert_eq!(plan(&host, Tools::CompilerAndVirtualBoard), expected);
 }
 
 #[test]
@@ -126,9 +152,9 @@ fn lists_are_fetched_before_a_package_is_given_up() {
     check(&host, Plan::Do(Step::FetchLists));
     let compiler = ManualStep::Compiler { found: Some(NEW), rustup: false, target: Target::Board };
     let both = vec![compiler, ManualStep::Emulator { found: None }];
-    check(&HostEnvironment { debian: Some(fresh), ..host.clone() }, Plan::Ask(both.clone()));
-    // Only root can fetch them.
-    check(&HostEnvironment { root: false, ..host }, Plan::Ask(both));
+    check(&HostEnvironment { debian: Some(fresh), ..host.clone() }, Plan::Ask(both));
+    // Any user can fetch lists of their own.
+    check(&HostEnvironment { root: false, ..host }, Plan::Do(Step::FetchLists));
 }
 
 #[test]
@@ -140,7 +166,7 @@ fn packages_that_are_too_old_do_not_serve() {
         HostEnvironment { qemu: Some(QEMU_7), debian: Some(old.clone()), ..bare_container() };
     let request = ManualStep::Compiler { found: Some(NEW), rustup: false, target: Target::Board };
     check(&host, Plan::Ask(vec![request.clone()]));
-    old.packages[0] = PackageState::Installed(OLD);
+    old.packages[0] = PackageState::Present(OLD);
     check(&HostEnvironment { debian: Some(old), ..host }, Plan::Ask(vec![request]));
 }
 
@@ -168,13 +194,16 @@ fn elsewhere_the_person_is_told_what_to_get() {
 #[test]
 fn both_kinds_of_request_are_made_together() {
     let mut packages = debian();
-    packages.packages[4] = PackageState::Unknown;
-    let host = HostEnvironment { root: false, debian: Some(packages), ..bare_container() };
+    packages.packages[5] = PackageState::Unknown;
+    packages.packages[0] = PackageState::Unknown;
+    packages.lists_are_fresh = true;
+    let native = NativeBuildTools { cmake: false, ..complete().native };
+    let host = HostEnvironment { debian: Some(packages), native, ..bare_container() };
     let requests = vec![
-        ManualStep::Packages(Package::COMPILER.to_vec()),
-        ManualStep::Emulator { found: None },
+        ManualStep::Compiler { found: Some(NEW), rustup: false, target: Target::Board },
+        ManualStep::NativeBuildTools(native),
     ];
-    check(&host, Plan::Ask(requests));
+    assert_eq!(plan(&host, Tools::CompilerAndVirtualBoard), Plan::Ask(requests));
 }
 
 #[test]
@@ -193,7 +222,7 @@ fn requests_are_commands() {
 /// Whatever the machine, following the plan ends: each step changes the facts that asked for it.
 #[test]
 fn following_the_plan_ends() {
-    for bits in 0..8192_u32 {
+    for bits in 0..16384_u32 {
         let bit = |n: u32| bits >> n & 1 == 1;
         let mut host = HostEnvironment {
             rust: bit(0).then_some(Rust { version: NEW, has_target: bit(1) }),
@@ -210,6 +239,11 @@ fn following_the_plan_ends() {
                 libclang: bit(9),
             },
         };
+        if bit(13)
+            && let Some(debian) = &mut host.debian
+        {
+            debian.packages[4] = PackageState::Conflicting(QEMU_7);
+        }
         if bit(7) {
             host.debian = host
                 .debian
@@ -224,7 +258,7 @@ fn following_the_plan_ends() {
                 assert!(!matches!(step, Step::AddTarget(_)) || !host.fetching_forbidden);
                 take(&mut host, step);
                 steps += 1;
-                assert!(steps <= 3, "{host:?}");
+                assert!(steps <= 4, "{host:?}");
             }
         }
     }
@@ -235,10 +269,10 @@ fn take(host: &mut HostEnvironment, step: Step) {
     match (step, &mut host.debian) {
         (Step::AddTarget(_), _) => host.rust = rust(NEW, true),
         (Step::FetchLists, Some(debian)) => debian.lists_are_fresh = true,
-        (Step::Install(packages), Some(debian)) => {
+        (Step::Install(packages) | Step::Unpack(packages), Some(debian)) => {
             for package in packages {
                 let index = Package::ALL.iter().position(|p| *p == package).unwrap();
-                debian.packages[index] = PackageState::Installed(NEW);
+                debian.packages[index] = PackageState::Present(NEW);
                 match package {
                     Package::Qemu => host.qemu = Some(QEMU_7),
                     Package::Cmake => host.native.cmake = true,
