@@ -46,7 +46,7 @@
 //! | `fixed-point` | programs compute in their scene's fixed-point format instead of `f32` |
 //! | `nucleo-g474re` | board: NUCLEO-G474RE, with an external current amplifier |
 //! | `b-g431b-esc1` | board: B-G431B-ESC1 |
-//! | `stm32f405` | board: STM32F405, as on a VESC 6 |
+//! | `feather-stm32f405` | board: Adafruit Feather STM32F405 Express |
 //! | `bridge` | the board's own bridge drives the motor: B-G431B-ESC1 |
 //! | `board-qemu` | the emulated board |
 //! | `log` | measurements and their log, on the emulated board |

@@ -31,7 +31,7 @@ pub struct Arguments {
     /// Address to listen on: tcp://HOST:PORT, unix:PATH
     #[arg(long, value_name = "PORT")]
     pub port: Address,
-    /// Run the program as flashed, on a virtual board (nucleo-g474re, b-g431b-esc1, stm32f405);
+    /// Run the program as flashed, on a virtual board (nucleo-g474re, b-g431b-esc1, feather-stm32f405);
     /// default: a thread with the same servo
     #[arg(long, value_name = "BOARD", value_parser = BoardModel::find)]
     pub board: Option<BoardModel>,

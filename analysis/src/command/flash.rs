@@ -15,7 +15,7 @@ pub struct Arguments {
     /// Name of a program in firmware/src/bin, for example damper_wall or identify
     #[arg(value_name = "PROGRAM")]
     pub program: String,
-    /// Board to build for: nucleo-g474re, b-g431b-esc1 or stm32f405
+    /// Board to build for: nucleo-g474re, b-g431b-esc1 or feather-stm32f405
     #[arg(long, value_parser = BoardModel::find)]
     pub board: BoardModel,
     /// What makes the torque: the board's DAC, for an amplifier outside, or its own bridge; by default what

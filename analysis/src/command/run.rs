@@ -89,7 +89,7 @@ pub struct Arguments {
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Target: host, qemu (the emulated board), or board:NAME (the program as flashed, on a virtual
-    /// board: nucleo-g474re, b-g431b-esc1, stm32f405; with a motor, aligned and armed, where the program
+    /// board: nucleo-g474re, b-g431b-esc1, feather-stm32f405; with a motor, aligned and armed, where the program
     /// is for the board's own bridge)
     #[arg(long, default_value_t = Target::Host)]
     pub target: Target,

@@ -9,8 +9,8 @@ pub enum BoardModel {
     NucleoG474re,
     /// B-G431B-ESC1 and boards like it.
     BG431bEsc1,
-    /// The VESC 6 MK3 or MK4, with an STM32F405.
-    Stm32f405,
+    /// The Adafruit Feather STM32F405 Express.
+    FeatherStm32f405,
 }
 
 /// The torque output of a board.
@@ -59,14 +59,14 @@ pub struct UnknownBoard {
 
 impl BoardModel {
     /// All boards.
-    pub const ALL: [Self; 3] = [Self::NucleoG474re, Self::BG431bEsc1, Self::Stm32f405];
+    pub const ALL: [Self; 3] = [Self::NucleoG474re, Self::BG431bEsc1, Self::FeatherStm32f405];
 
     /// Its name, which is also the feature's.
     pub const fn name(self) -> &'static str {
         match self {
             Self::NucleoG474re => "nucleo-g474re",
             Self::BG431bEsc1 => "b-g431b-esc1",
-            Self::Stm32f405 => "stm32f405",
+            Self::FeatherStm32f405 => "feather-stm32f405",
         }
     }
 
@@ -80,7 +80,7 @@ impl BoardModel {
         let kibibytes = match self {
             Self::NucleoG474re => 512,
             Self::BG431bEsc1 => 128,
-            Self::Stm32f405 => 1024,
+            Self::FeatherStm32f405 => 1024,
         };
         kibibytes << 10
     }
@@ -112,7 +112,7 @@ mod tests {
         }
         assert_eq!(
             BoardModel::find("arduino").unwrap_err().to_string(),
-            "there is no board arduino; there are nucleo-g474re, b-g431b-esc1, stm32f405"
+            "there is no board arduino; there are nucleo-g474re, b-g431b-esc1, feather-stm32f405"
         );
     }
 }

@@ -97,7 +97,7 @@ fn only_a_program_runs_on_a_virtual_board_and_only_on_one_that_there_is() {
     for (arguments, parts) in [
         (
             &["run", "--target", "board:arduino", "damper_wall"][..],
-            ["no board arduino", "nucleo-g474re, b-g431b-esc1, stm32f405"],
+            ["no board arduino", "nucleo-g474re, b-g431b-esc1, feather-stm32f405"],
         ),
         (&["run", "--target", "board", "damper_wall"], ["no target board", "board:NAME"]),
         (
@@ -105,16 +105,16 @@ fn only_a_program_runs_on_a_virtual_board_and_only_on_one_that_there_is() {
             ["nucleo-g474re has no bridge", "b-g431b-esc1 has"],
         ),
         (
-            &["twin", "bridge_wall", "--board", "stm32f405", "--port", "unix:x"],
-            ["stm32f405 has no bridge", "b-g431b-esc1 has"],
+            &["twin", "bridge_wall", "--board", "feather-stm32f405", "--port", "unix:x"],
+            ["feather-stm32f405 has no bridge", "b-g431b-esc1 has"],
         ),
         (
-            &["run", "--target", "board:stm32f405", "--full-scale", "3.5", "damper_wall"],
+            &["run", "--target", "board:feather-stm32f405", "--full-scale", "3.5", "damper_wall"],
             ["is built for", "run it on the host"],
         ),
         (
             &["twin", "damper_wall", "--board", "arduino", "--port", "unix:x"],
-            ["no board arduino", "nucleo-g474re, b-g431b-esc1, stm32f405"],
+            ["no board arduino", "nucleo-g474re, b-g431b-esc1, feather-stm32f405"],
         ),
     ] {
         let output = haptic(arguments);

@@ -251,13 +251,13 @@ pub static B_G431B_ESC1: Chip = Chip {
     ..NUCLEO_G474RE
 };
 
-/// STM32F405RG on a VESC 6 MK3 or MK4.
+/// STM32F405RG on an Adafruit Feather STM32F405 Express (its published schematic, commit f10cfb4).
 pub static STM32F405: Chip = Chip {
-    name: "stm32f405",
+    name: "feather-stm32f405",
     flash: 1 << 20,
     ram: 128 << 10,
     coupled: (64 << 10, false),
-    crystal: 8_000_000,
+    crystal: 12_000_000,
     core: 168_000_000,
     map: &[
         map_entry(0x4000_0400, "TIM3", Unit::Encoder, 0x40, 0x20, 1),
@@ -283,7 +283,8 @@ pub static STM32F405: Chip = Chip {
         ungated(0xE004_2000, "DBGMCU", Unit::Debug),
     ],
     counter: 16,
-    amplifier: (1, 6),
+    // PC3, D11.
+    amplifier: (2, 3),
     gates: None,
     // TIM3_CH1 and TIM3_CH2.
     encoder: ([(2, 6), (2, 7)], 2),

@@ -11,7 +11,7 @@ use haptic_servo::servo_loop::{self as servo, Hardware, PeriodClock, READ_WITHIN
 use haptic_servo::{board::fault_memory, boot::Startup, reset::ResetCause};
 use haptic_servo::{dac::DacCode, encoder::RawCount, period, wire};
 use heapless::spsc::{Producer, Queue};
-use stm32_metapac::{DAC1, DBGMCU, GPIOB, IWDG, RCC, TIM3, TIM5, TIM6, iwdg::vals::Key};
+use stm32_metapac::{DAC1, DBGMCU, GPIOC, IWDG, RCC, TIM3, TIM5, TIM6, iwdg::vals::Key};
 
 use crate::chip::{self, PERIOD, TIMER_CLOCK};
 use crate::scene::{Environment, PROGRAM};
@@ -30,7 +30,7 @@ impl Hardware for Board {
     }
     /// Yours: off by this one access, and off while the pin floats, by a pull-down resistor.
     fn amplifier(&mut self, on: bool) {
-        GPIOB.bsrr().write(|w| if on { w.set_bs(6, true) } else { w.set_br(6, true) });
+        GPIOC.bsrr().write(|w| if on { w.set_bs(3, true) } else { w.set_br(3, true) });
     }
     /// Yours: by a clock that runs while the interrupt is delayed; without it lateness is not detected.
     fn periods_since_last(&mut self) -> u32 {
@@ -128,7 +128,7 @@ mod app {
 /// Yours: the end of the program removes the torque, and does not feed the watchdog.
 fn end(fault: Fault) -> ! {
     cortex_m::interrupt::disable();
-    GPIOB.bsrr().write(|w| w.set_br(6, true));
+    GPIOC.bsrr().write(|w| w.set_br(3, true));
     fault_memory::store_fault(fault);
     loop {} // until the watchdog's reset
 }

@@ -1,10 +1,11 @@
-//! Clocks, pins and timers of an STM32F405 with an 8 MHz crystal (RM0090), in place of a HAL.
+//! Clocks, pins and timers of an STM32F405 with a 12 MHz crystal (RM0090), as on an Adafruit Feather
+//! STM32F405 Express, in place of a HAL.
 //!
 //! | pin | what |
 //! |---|---|
 //! | PC6, PC7 | encoder, on TIM3 |
 //! | PA4 | DAC |
-//! | PB6 | amplifier, high is on; it floats during a reset |
+//! | PC3 | amplifier, high is on; it floats during a reset |
 //! | PB10, PB11 | serial port to the host, on USART3 |
 
 use core::num::NonZeroU32;
@@ -53,7 +54,7 @@ fn clocks() {
     while !RCC.cr().read().hserdy() {}
     RCC.pllcfgr().modify(|w| {
         w.set_pllsrc(Pllsrc::HSE);
-        w.set_pllm(Pllm::DIV4);
+        w.set_pllm(Pllm::DIV6);
         w.set_plln(Plln::MUL168);
         w.set_pllp(Pllp::DIV2);
     });
@@ -87,7 +88,7 @@ fn pins() {
         w.set_gpioben(true);
         w.set_gpiocen(true);
     });
-    GPIOB.moder().modify(|w| w.set_moder(6, Moder::OUTPUT));
+    GPIOC.moder().modify(|w| w.set_moder(3, Moder::OUTPUT));
     for pin in [6, 7] {
         GPIOC.afr(0).modify(|w| w.set_afr(pin, 2));
         GPIOC.moder().modify(|w| w.set_moder(pin, Moder::ALTERNATE));

@@ -27,6 +27,9 @@ mod fatal;
 #[cfg(target_os = "none")]
 #[allow(unsafe_code)]
 pub mod fault_memory;
+#[cfg(all(target_os = "none", feature = "feather-stm32f405"))]
+#[allow(unsafe_code)]
+pub mod feather_stm32f405;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
 pub mod isr_cell;
@@ -41,9 +44,6 @@ pub mod stack;
 #[cfg(all(target_os = "none", feature = "stm32"))]
 #[allow(unsafe_code)]
 pub mod stm32;
-#[cfg(all(target_os = "none", feature = "stm32f405"))]
-#[allow(unsafe_code)]
-pub mod stm32f405;
 
 /// Bits per second on a board's serial port to the host, 8N1: the fastest usual rate that the clocks of all
 /// boards reach within a quarter of a per cent.
@@ -275,7 +275,7 @@ macro_rules! board_program {
     ($($any:tt)*) => {
         compile_error!(
             "name the board that this program is for: --features nucleo-g474re, b-g431b-esc1 or \
-             stm32f405, or board-qemu,log for the emulated one"
+             feather-stm32f405, or board-qemu,log for the emulated one"
         );
     };
 }
@@ -288,7 +288,7 @@ macro_rules! board_sweep {
     ($($any:tt)*) => {
         compile_error!(
             "name the board that this program is for: --features nucleo-g474re, b-g431b-esc1 or \
-             stm32f405, or board-qemu,log for the emulated one"
+             feather-stm32f405, or board-qemu,log for the emulated one"
         );
     };
 }

@@ -13,7 +13,7 @@ fn chip(board: BoardModel) -> &'static str {
     match board {
         BoardModel::NucleoG474re => "STM32G474RETx",
         BoardModel::BG431bEsc1 => "STM32G431CBUx",
-        BoardModel::Stm32f405 => "STM32F405RGTx",
+        BoardModel::FeatherStm32f405 => "STM32F405RGTx",
     }
 }
 

@@ -1,7 +1,7 @@
 //! From power-on to the first torque.
 
 use virtual_board::board::Event;
-use virtual_board::chip::{B_G431B_ESC1, STM32F405};
+use virtual_board::chip::B_G431B_ESC1;
 use virtual_board::device::FixedDevice;
 use virtual_board::peripheral::pins::Level;
 
@@ -100,24 +100,6 @@ fn the_power_stage_of_an_esc_is_off_before_its_torque_pin_is_driven() {
     let events: Vec<_> = bench.events().iter().map(|&(_, event)| event).collect();
     let [low, high] = [Level::Low, Level::High].map(Event::Amplifier);
     assert_eq!(events, [low, Event::Torque(Some(MID_SCALE)), high]);
-}
-
-#[test]
-fn a_vesc_holds_its_power_on_and_its_power_stage_off() {
-    let mut bench = Bench::boot(&STM32F405, "damper_wall", FixedDevice);
-    while bench.machine.board().amplifier() == Level::Floating {
-        // Nothing is driven before the power is held.
-        let (hold, gates) = (bench.machine.board().level(C, 5), bench.machine.board().level(B, 5));
-        assert!(hold == Level::High || gates == Level::Floating);
-        bench.run_for(1);
-    }
-    let held = |bench: &Bench| {
-        let board = bench.machine.board();
-        assert_eq!((board.level(C, 5), board.level(B, 5)), (Level::High, Level::Low));
-    };
-    held(&bench);
-    bench.run(200);
-    held(&bench);
 }
 
 /// The longest filter, of those in the reference manuals' table, that is a quarter of a count's time.

@@ -9,7 +9,7 @@
 mod ccm_sram;
 #[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
 pub mod clock_170;
-#[cfg(feature = "stm32f405")]
+#[cfg(feature = "feather-stm32f405")]
 mod f4;
 #[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
 mod g4;
@@ -22,17 +22,17 @@ mod start;
 pub(super) mod stop;
 mod sweep;
 
-#[cfg(feature = "stm32f405")]
+#[cfg(feature = "feather-stm32f405")]
 use f4 as family;
 #[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
 use g4 as family;
 
 #[cfg(feature = "b-g431b-esc1")]
 pub use super::b_g431b_esc1 as wiring;
+#[cfg(feature = "feather-stm32f405")]
+pub use super::feather_stm32f405 as wiring;
 #[cfg(feature = "nucleo-g474re")]
 pub use super::nucleo_g474re as wiring;
-#[cfg(feature = "stm32f405")]
-pub use super::stm32f405 as wiring;
 
 #[cfg(all(feature = "bridge", not(feature = "b-g431b-esc1")))]
 compile_error!("this board has no bridge: --output bridge is for the b-g431b-esc1");

@@ -1,12 +1,9 @@
-//! VESC 6 MK3 and MK4: STM32F405RG at 168 MHz. Not for other VESCs: on each of them one of these pins has
-//! another function (listed in `boards.md`).
+//! Adafruit Feather STM32F405 Express: STM32F405RG at 168 MHz.
 //!
 //! Facts of the chip are from its datasheet (DS8626) and reference manual (RM0090), facts of the
-//! board from the header of its published firmware: `hwconf/trampa/vesc6/hw_60_core.h` of
-//! `vedderb/bldc`, with `HW60_IS_MK3` or `HW60_IS_MK4`.
-//!
-//! The board's own power stage stays off: its gate driver is held disabled. The board is a motor
-//! controller and has no input for an analogue current amplifier; the firmware uses its pin headers.
+//! board from its published schematic (`adafruit/Adafruit-Feather-STM32F405-Express-PCB`, commit f10cfb4). Each
+//! pin used here is on one of the two headers, and nothing else on the board is connected to it, except a
+//! resistor of 100 kOhm from RX to 3.3 V.
 
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::peripherals::USART3;
@@ -25,43 +22,43 @@ use super::stm32::{BoardPeripherals, quadrature, serial};
 use crate::dac::OutputRange;
 
 /// The board's name as a feature and for `haptic flash`.
-pub const NAME: &str = "stm32f405";
+pub const NAME: &str = "feather-stm32f405";
 /// The chip's name for debug probes.
 pub const CHIP: &[u8; 13] = b"STM32F405RGTx";
 
-/// The encoder: TIM3, the timer of PC6 and PC7, which are H1 and H2 of the hall sensors' connector. It has 16
-/// bits; the inputs of the chip's 32-bit timers are not on a connector.
+/// The encoder: TIM3, the timer of PC6 and PC7 (D6 and D5). It has 16 bits: of the chip's 32-bit timers, TIM2
+/// has its inputs at the flash chip (PA15, PB3) or at the DAC (PA5), and TIM5 on pins without a header.
 pub const ENCODER: pac::timer::TimGp16 = pac::TIM3;
 /// TIM3's clock for counting and sampling, in Hz.
 pub const ENCODER_CLOCK: f64 = 84e6;
-/// PC6 and PC7 tolerate 5 V without the chip's own pull (DS8626), and the connector supplies 5 V.
+/// PC6 and PC7 tolerate 5 V without the chip's own pull (DS8626), and the header supplies 5 V from USB.
 pub const ENCODER_PULL: Pull = Pull::None;
 /// The clock that measures the lateness of the servo: TIM5, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
-/// The DAC: channel 1, whose pin PA4 is the chip select of the SPI header (HW_SPI_PIN_NSS).
-/// Channel 2's pin PA5 is an analogue input of the communication header.
+/// The DAC: channel 1, whose pin PA4 is A0.
 pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
-/// The range of the output buffer: 0.2 V from either rail (DS8626), with the board's 3.3 V at its lowest,
-/// three per cent below nominal.
+/// The range of the output buffer: 0.2 V from either rail (DS8626). The reference of the 64-pin package is its
+/// analogue supply: the board's 3.3 V behind a ferrite, at its lowest three per cent below nominal (an AP2112;
+/// its tolerance is not read in its data sheet).
 pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
 /// TIM6's update among the triggers of the F4's DAC (RM0090, DAC external triggers).
 pub const TIMER_TRIGGER: u8 = 0;
-/// The amplifier: PB6, the signal of the servo connector (HW_ICU_PIN). It floats while the chip is in reset, so
-/// the amplifier's input needs a pull-down resistor.
-pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOB, pin: 6 };
+/// The amplifier: PC3 (D11). It floats while the chip is in reset, so the amplifier's input needs a pull-down
+/// resistor. PB6 and PB7 (SCL, SDA) cannot serve: the board pulls them up.
+pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOC, pin: 3 };
 
 bind_interrupts!(struct Interrupts {
     USART3 => BufferedInterruptHandler<USART3>;
 });
 
-/// 168 MHz, the chip's maximum, from the board's 8 MHz crystal. Timers on the slow bus count 84 MHz.
+/// 168 MHz, the chip's maximum, from the board's 12 MHz crystal. Timers on the slow bus count 84 MHz.
 pub fn clocks() -> Config {
     let mut config = Config::default();
-    config.rcc.hse = Some(Hse { freq: Hertz(8_000_000), mode: HseMode::Oscillator });
+    config.rcc.hse = Some(Hse { freq: Hertz(12_000_000), mode: HseMode::Oscillator });
     config.rcc.pll_src = PllSource::HSE;
     config.rcc.pll = Some(Pll {
         // 2 MHz into the PLL, which the manual recommends against jitter.
-        prediv: PllPreDiv::DIV4,
+        prediv: PllPreDiv::DIV6,
         mul: PllMul::MUL168,
         divp: Some(PllPDiv::DIV2),
         divq: None,
@@ -79,12 +76,7 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
     // registers.
     core::mem::forget((
-        // The board's power switch: high keeps the power on after the button is released
-        // (HW_SHUTDOWN_HOLD_ON). First, as in the board's own firmware.
-        Output::new(chip.PC5, Level::High, Speed::Low),
-        // The gate driver's enable (ENABLE_GATE); low is off.
-        Output::new(chip.PB5, Level::Low, Speed::Low),
-        Output::new(chip.PB6, Level::Low, Speed::Low),
+        Output::new(chip.PC3, Level::Low, Speed::Low),
         Qei::new(chip.TIM3, chip.PC6, chip.PC7, quadrature::config()),
         Timer::new(chip.TIM5),
         Timer::new(chip.TIM6),
@@ -92,7 +84,7 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     ));
     DAC.connect(chip.DAC1, chip.PA4);
     BoardPeripherals {
-        // TX and RX of the communication header.
+        // RX and TX of the header.
         serial: serial::open(chip.USART3, chip.PB11, chip.PB10, Interrupts),
     }
 }
