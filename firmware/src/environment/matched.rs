@@ -12,8 +12,10 @@ use crate::parameter::{NamedParameters, Parameter};
 /// An environment behind [`Coupling::Matched`]: the coupling's memory is part of the type, so that a scene
 /// without latency has none.
 ///
-/// `WHOLE` is the number of whole samples in the scene's output delay, `LAGS` the number of lags (of
-/// amplifier and sensor), `UPDATES` whether the amplifier is updated several times in a period.
+/// `WHOLE` is the number of [whole samples](crate::latency::Latency::whole_samples) in the scene's output
+/// delay, `LAGS` the number of lags (of amplifier and sensor; one that is known in a range counts
+/// [twice](crate::latency::Latency::trails)), `UPDATES` whether the amplifier is updated several times in a
+/// period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matched<E, const WHOLE: usize = 0, const LAGS: usize = 0, const UPDATES: bool = false> {
     /// The environment.
