@@ -19,6 +19,7 @@ mod examples;
 mod failures;
 mod foreign;
 mod interval;
+mod jitter;
 mod knob_modes;
 mod lagging;
 mod latency;
