@@ -88,7 +88,7 @@ pub struct Latency {
     /// Time from a count to its torque, in addition to the environment's whole samples.
     pub output_delay: TimeRange,
     /// Largest deviation in s from that delay in either direction, which may differ from tick to tick: of
-    /// the torques, or of the counts. Where both deviate, this is not enough (theory, section 13.5).
+    /// the torques, or of the counts. Where both deviate, this is not enough (theory, section 13.4).
     pub output_jitter: f64,
     /// Time constant of the amplifier.
     pub actuator_lag: TimeRange,

@@ -13,13 +13,13 @@ pub(crate) type Fading = (Interval, Interval);
 
 /// The taps of a coupling over `T / (2 delta)`, as intervals:
 /// `v_m = U_late(m - 1) - U_early(m)`, with `U(y)` the integral over all times after `y` of what is left of a
-/// step (equation 40).
+/// step (equation 54).
 ///
 /// They fall from `width` to 0. Jitter makes torques earlier and later; so do ranges of delay and lag.
 #[derive(Clone, Copy)]
 pub(crate) struct ResponseWindow {
     /// The longest time between two counts, and the mean delay of the latest response less that of the
-    /// earliest: the device's passivity divided by it is left (equation 42).
+    /// earliest: the device's passivity divided by it is left (equation 55).
     pub width: Interval,
     /// The longest time between two counts: 1 unless updates may be missed.
     pub between_counts: Interval,
@@ -134,7 +134,7 @@ impl ResponseWindow {
 
     /// The sampled response `g` and ripple `D` of a device that has the passivity `delta / width` and no
     /// uncertainty: `g = T (z / (z - 1) - sum v_m z^-m / width)`, `D = T^2 / abs(z - 1)^2 - abs(g)^2`
-    /// (equation 43); `None` beyond the degrees of a polynomial.
+    /// (equation 57); `None` beyond the degrees of a polynomial.
     #[inline(never)]
     pub const fn response(&self) -> Option<SampledResponse> {
         // The first taps, which are all of them `width`, are whole samples of delay.

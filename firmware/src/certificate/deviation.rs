@@ -41,7 +41,7 @@ impl Deviation {
         }
     }
 
-    /// All torques lie in a window (theory, section 13.4, equation 43).
+    /// All torques lie in a window (theory, equation 57).
     #[inline(never)]
     const fn within_window(lagging: &Lagging, n: &LoopIntervals) -> Option<Self> {
         // Only with a matched coupling is it known that no torque is latched across a missed update.
@@ -62,7 +62,7 @@ impl Deviation {
         }
     }
 
-    /// Only the means of the ticks change, and their ripples (equation 44 with `mu = 1`).
+    /// Only the means of the ticks change, and their ripples (equation 58 with `mu = 1`).
     const fn of_means(h: Interval) -> Self {
         let root = Interval::exact(2.0).sqrt();
         let left = Interval::ONE.sub(h.div(root));
@@ -70,7 +70,7 @@ impl Deviation {
         Self { left, ripple: ripple.mul(left), response: None }
     }
 
-    /// The work of the pulses by which the torque differs (equation 45 with `s = delta sqrt(h)`).
+    /// The work of the pulses by which the torque differs (equation 42 with `s = delta sqrt(h)`).
     const fn of_work(h: Interval) -> Self {
         let share = Interval::exact(h.sqrt().half().midpoint());
         let left = Interval::ONE.sub(share);

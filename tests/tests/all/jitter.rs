@@ -148,7 +148,10 @@ type State = SVector<f64, 4>;
 
 impl<'a> Sampled<'a> {
     fn of(scene: &'a Scene, compliances: &'a [f64], mass: f64, spring: f64) -> Self {
-        let Environment::DamperWall(wall) = &scene.environment else { unreachable!() };
+        let (Environment::DamperWall(wall) | Environment::DelayedSpring(wall)) = &scene.environment
+        else {
+            unreachable!()
+        };
         Self {
             period: scene.timing.period,
             mass,

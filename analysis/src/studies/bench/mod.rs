@@ -16,8 +16,8 @@ use std::time::Instant;
 
 use crate::latency_limits::{lag_of, largest_spring};
 use crate::stability_map::{Family, Map, MapError};
-use haptic_servo::certificate::assess;
-use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::certificate::{PassivityProblem, assess};
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde::Serialize;
 
@@ -157,6 +157,22 @@ pub fn lagging_springs() -> (f64, f64) {
     let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
     let early = Latency::delayed(5e-6).with_actuator_lag(lag_of(3e3));
     (largest_spring(&device, 1e-3, early, 0), largest_spring(&device, 1e-3, Latency::NONE, 2))
+}
+
+/// The part of the device's passivity that certified springs may need behind the matched coupling, where
+/// torques or counts deviate by up to a hundredth of a period from tick to tick.
+pub fn spring_with_jitter() -> f64 {
+    let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+    let scene = Scene {
+        device,
+        timing: Timing { period: 1e-3, worst_period: None },
+        coupling: Coupling::Matched,
+        environment: Environment::DelayedSpring(Wall::spring(20.0, 1)),
+        latency: Latency { output_jitter: 1e-5, ..Latency::delayed(1e-4) },
+        torque_limit: Some(1.0),
+    };
+    let limit = PassivityProblem::of(&scene).ok().and_then(|posed| posed.limit());
+    limit.map_or(0.0, |limit| limit.lo() / device.damping)
 }
 
 /// The median of some values; 0 without values.
