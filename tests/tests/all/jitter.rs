@@ -491,6 +491,8 @@ fn what_the_bound_allows_passes_at_the_port() {
         let posed = PassivityProblem::of(&linear(&scene)).unwrap();
         if posed.passes_paper() {
             assert!(posed.passes_exact(), "{scene:?}");
+            let kept = posed.kept_responses::<Vec<_>>().unwrap();
+            assert_eq!(posed.answer_with(&kept), posed.answer(), "{scene:?}");
             judged += 1;
         }
     }

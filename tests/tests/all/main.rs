@@ -20,6 +20,7 @@ mod failures;
 mod foreign;
 mod interval;
 mod jitter;
+mod jitter_conditions;
 mod knob_modes;
 mod lagging;
 mod latency;
