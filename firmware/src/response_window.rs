@@ -1,4 +1,4 @@
-//! What is left of a step of the torque, between the earliest and the latest response that a scene allows
+//! The rest of a step of the torque, between the earliest and the latest response that a scene allows
 //! (theory, section 13.4).
 //!
 //! All times in this module are in periods.
@@ -12,8 +12,8 @@ use crate::passivity::polynomial::Polynomial;
 pub(crate) type Fading = (Interval, Interval);
 
 /// The taps of a coupling over `T / (2 delta)`, as intervals:
-/// `v_m = U_late(m - 1) - U_early(m)`, with `U(y)` the integral over all times after `y` of what is left of a
-/// step (equation 54).
+/// `v_m = U_late(m - 1) - U_early(m)`, with `U(y)` the integral over all times after `y` of the rest of a step
+/// (equation 54).
 ///
 /// They fall from `width` to 0. Jitter makes torques earlier and later; so do ranges of delay and lag.
 #[derive(Clone, Copy)]
@@ -38,7 +38,7 @@ struct End {
     lags: [Interval; 2],
     /// The weight of each lag in the response of both.
     weights: [Interval; 2],
-    /// The integral of all that is left of a step when it begins.
+    /// `U(0)`, the mean delay of the lags.
     held_back: Interval,
     updates: u16,
 }
@@ -198,7 +198,7 @@ impl End {
         Some(Self { delay, lags, weights, held_back, updates })
     }
 
-    /// `U` at a time after the beginning of the response; before it, a step is left in full.
+    /// `U` at a time after the beginning of the response; before it, the rest is all of a step.
     ///
     /// An enclosure of 0 counts as before: `U` falls by at most 1 for each period.
     const fn left_after(&self, time: Interval) -> Interval {

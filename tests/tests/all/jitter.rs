@@ -1,4 +1,4 @@
-//! Torques and counts that deviate in time from tick to tick: limits to many digits, scenes that oscillate, and
+//! Torques and counts that deviate in time from tick to tick (theory, equation 56): limits to many digits, scenes that oscillate, and
 //! certified loops in hands and patterns of jitter. The sampled loop is a model of its own, with device and
 //! amplifier in continuous time.
 

@@ -76,7 +76,7 @@ impl Loop {
         wall / (1.0 + wall * self.coupling.map_or(0.0, |stiffness| 1.0 / stiffness))
     }
 
-    /// The integral of what is left of a step, from a time after its beginning on.
+    /// The integral of the rest of a step, from a time after its beginning on.
     fn left(&self, time: f64) -> f64 {
         if time <= 0.0 {
             self.lag - time
