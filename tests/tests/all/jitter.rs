@@ -1,6 +1,6 @@
-//! Torques and counts that deviate in time from tick to tick (theory, equation 56): limits to many digits, scenes that oscillate, and
-//! certified loops in hands and patterns of jitter. The sampled loop is a model of its own, with device and
-//! amplifier in continuous time.
+//! Torques and counts that deviate in time from tick to tick (theory, equation 56): limits to many digits,
+//! scenes that oscillate, and certified loops in hands and patterns of jitter. The sampled loop is a model of
+//! its own, with device and amplifier in continuous time.
 
 use std::collections::{HashMap, VecDeque};
 
