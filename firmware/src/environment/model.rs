@@ -32,8 +32,7 @@ pub enum Memory {
     Of {
         /// [Whole samples](Latency::whole_samples) of the output delay.
         whole: usize,
-        /// The number of lags, of amplifier and sensor; one that is known in a range counts
-        /// [twice](Latency::trails).
+        /// The number of [lags](Latency::trails) of amplifier and sensor, where a lag in a range counts twice.
         lags: usize,
         /// Whether the amplifier is updated several times in a period.
         updates: bool,

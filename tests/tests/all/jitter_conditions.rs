@@ -69,11 +69,26 @@ impl Loop {
         }
     }
 
-    fn controller(&self, factor: f64, z: Complex<f64>) -> Complex<f64> {
-        let wall = z.powi(-(self.whole as i32))
+    fn wall(&self, factor: f64, z: Complex<f64>) -> Complex<f64> {
+        z.powi(-(self.whole as i32))
             * factor
-            * (self.stiffness + self.damping * (Complex::new(1.0, 0.0) - 1.0 / z));
-        wall / (1.0 + wall * self.coupling.map_or(0.0, |stiffness| 1.0 / stiffness))
+            * (self.stiffness + self.damping * (Complex::new(1.0, 0.0) - 1.0 / z))
+    }
+
+    /// `1 + E V`, whose zeros are the controller's poles.
+    fn closed(&self, factor: f64, z: Complex<f64>) -> Complex<f64> {
+        1.0 + self.wall(factor, z) * self.coupling.map_or(0.0, |stiffness| 1.0 / stiffness)
+    }
+
+    fn controller(&self, factor: f64, z: Complex<f64>) -> Complex<f64> {
+        self.wall(factor, z) / self.closed(factor, z)
+    }
+
+    /// Whether the controller has its poles inside of the circle: `1 + E V` does not turn around 0 on it.
+    fn is_stable(&self, factor: f64) -> bool {
+        let on = |n: i32| self.closed(factor, Complex::from_polar(1.0, PI * f64::from(n) / 4000.0));
+        let turned: f64 = (0..4000).map(|n| (on(n + 1) / on(n)).arg()).sum();
+        turned.abs() < 1.0
     }
 
     /// The integral of the rest of a step, from a time after its beginning on.
@@ -129,7 +144,7 @@ impl Loop {
             let needed = at.d / (4.0 * (1.0 - share)) + h / (4.0 * share);
             1.0 - share + (controller * at.g).re >= needed * controller.norm_sqr()
         });
-        in_window || of_means || of_work
+        self.is_stable(factor) && (in_window || of_means || of_work)
     }
 }
 
