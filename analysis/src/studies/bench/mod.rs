@@ -277,6 +277,13 @@ mod tests {
         }
     }
 
+    /// Equation 55: torques in a window of two hundredths of a period.
+    #[test]
+    fn a_jitter_costs_the_width_of_its_window() {
+        let left = spring_with_jitter();
+        assert!(left >= 0.98 && (left * 1.02 - 1.0).abs() < 1e-9, "{left}");
+    }
+
     #[test]
     fn the_median_is_in_the_middle() {
         assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
