@@ -188,7 +188,7 @@ impl BuildError {
             Self::NoMatchedCoupling => {
                 t.push(
                     "there is no matched coupling for this latency: actuator lag and sensor lag are too \
-                     much alike, the jitter is a whole period, or a number is out of range",
+                     much alike, updates may be missed where torques lag, or a number is out of range",
                 );
             }
             Self::Turn { counts, largest } => {

@@ -15,6 +15,9 @@ pub const LONGEST_DELAY: f64 = 8.0;
 /// Longest lag, in periods: a slower loop filters everything that a servo at this rate could add.
 pub const LONGEST_LAG: f64 = 100.0;
 
+/// Largest number of [trails](Latency::trails): two lags, each in a range.
+pub const TRAILS: usize = 4;
+
 /// Relative tolerance of a whole number of updates, because decimals of a third are rounded.
 const NEARLY_WHOLE: f64 = 1e-9;
 
@@ -60,6 +63,12 @@ impl TimeRange {
         self.least == self.most
     }
 
+    /// The series of [`Latency::trails`] for a lag.
+    const fn trails(self) -> usize {
+        let lasts = [!is_zero(self.most), !self.is_exact() && !is_zero(self.least)];
+        lasts[0] as usize + lasts[1] as usize
+    }
+
     /// The time in the middle of the range.
     pub const fn middle(self) -> f64 {
         if self.is_exact() { self.least } else { 0.5 * (self.least + self.most) }
@@ -78,7 +87,8 @@ const fn is_zero(number: f64) -> bool {
 pub struct Latency {
     /// Time from a count to its torque, in addition to the environment's whole samples.
     pub output_delay: TimeRange,
-    /// Largest deviation in s from that delay in either direction, which may differ from tick to tick.
+    /// Largest deviation in s from that delay in either direction, which may differ from tick to tick: of
+    /// the torques, or of the counts. Where both deviate, this is not enough (theory, section 13.4).
     pub output_jitter: f64,
     /// Time constant of the amplifier.
     pub actuator_lag: TimeRange,
@@ -167,13 +177,29 @@ impl Latency {
     }
 
     /// Largest jitter in s of a scene with this period and an environment that is late by a sample or more
-    /// (`is_late`) or not: no torque comes before its count.
-    ///
-    /// The sample also counts if an amplifier lags, because the bound for jitter does not depend on the tick
-    /// in which a torque begins (theory, equation 42).
+    /// (`is_late`) or not: no torque comes before its count, which in the first case is a period earlier.
     pub const fn largest_jitter(&self, is_late: bool, period: f64) -> f64 {
-        let sample = if is_late && !self.actuator_lag.is_zero() { period } else { 0.0 };
-        self.output_delay.least + sample
+        self.output_delay.least + if is_late { period } else { 0.0 }
+    }
+
+    /// The whole samples that the latest torque takes at this period in s, jitter included: as many past
+    /// torques a [matched coupling](crate::matched::MatchedCoupling) stores.
+    pub const fn whole_samples(&self, period: f64) -> usize {
+        /// Above the rounding errors of the quotient, so that a whole number is not below itself.
+        const ROUNDING: f64 = 2e-15;
+        let latest = match self.actuator_updates {
+            0 => (self.torque_delay().most + self.output_jitter) / period,
+            updates => {
+                self.nearest_update(period) as f64 / updates as f64 + self.output_jitter / period
+            }
+        };
+        (latest * (1.0 + ROUNDING)) as usize
+    }
+
+    /// The number of decaying series in the effect of past torques: one for each lag, two if it is known in a
+    /// range.
+    pub const fn trails(&self) -> usize {
+        self.actuator_lag.trails() + self.sensor_lag.trails()
     }
 
     /// The time from a count to the parts of its torque: the delay of the output plus the amplifier's

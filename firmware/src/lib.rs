@@ -114,6 +114,7 @@ pub mod number;
 pub mod output_timing;
 pub mod parameter;
 pub mod period;
+mod response_window;
 pub mod step;
 pub mod text;
 

@@ -1,32 +1,28 @@
-//! The coupling that absorbs latency (theory, section 13.3).
+//! The coupling that absorbs latency and jitter (theory, sections 13.3 to 13.5).
 //!
-//! A coupling `V` behind which any passive environment, linear or not, is passive with a lagging torque:
-//! `V = (T z / (z - 1) - g) / (2 delta)` (equation 40), with `g` the sampled response of hold, delay and
-//! lags. Without latency it is the standard coupling `T / (2 delta)`. A delay of `(n + e) T` adds a spring in
-//! series for each tick and part of a tick that a torque takes,
+//! A coupling behind which any passive environment, linear or not, is passive with a lagging torque. Its
+//! compliances are those of a [`ResponseWindow`] (equations 40 and 54). Without latency it is the standard coupling
+//! `T / (2 delta)`. A delay of `(n + e) T` adds a spring in series for each tick and part of a tick that a
+//! torque takes,
 //!
 //! ```text
 //! V = (T / (2 delta)) (1 + 1/z + ... + z^-n + e z^-(n+1)),
 //! ```
 //!
 //! and a lag a decaying series of them. All except the first depend only on past torques: the servo subtracts
-//! their deflection from the device's position, and solves the rest as for a spring.
+//! their deflection from the device's position, and solves the rest as for a spring. Times that deviate from
+//! tick to tick, or are known in a range, make all of them softer.
 //!
-//! Coefficients are rounded, times may be ranges, and a tick's count may be read late: for each of these the
-//! first spring is a little softer than in the formula, as the proof requires. [`MatchedCoupling::of`]
-//! computes both the servo's coefficients and the resulting limit on the environment's index, so that they
-//! cannot disagree.
+//! Coefficients are rounded, and for that the first spring is a little softer than in the formula, as the
+//! proof requires. [`MatchedCoupling::of`] computes both the servo's coefficients and the resulting limit on
+//! the environment's index, so that they cannot disagree.
 
-use crate::latency::{Latency, TimeRange};
+use crate::latency::{Latency, TRAILS};
 use crate::number::{Format, Rounding};
 use crate::parameter::MAX_DELAY;
 use crate::passivity::interval::Interval;
-use crate::passivity::lagged::SampledLag;
 use crate::passivity::polynomial::Polynomial;
-
-/// The ratio of the first spring's excess `k` to the sum `s` of the other deviations that leaves the largest
-/// limit: the loss is proportional to `(k + s/3)^2 / (k - s)`.
-const EXCESS: f64 = 7.0 / 3.0;
+use crate::response_window::{Fading, ResponseWindow, with_trails};
 
 /// The effect of a lag in later ticks: `gain` rad/(N m) of the torque before last, and the fraction `decay`
 /// of it in each following tick.
@@ -38,53 +34,37 @@ pub struct Trail {
     pub decay: f64,
 }
 
-impl Trail {
-    /// `z - decay`, or 1 without a lag.
-    const fn pole(&self) -> Polynomial {
-        if self.gain == 0.0 {
-            return Polynomial::ascending(&[Interval::ONE]);
-        }
-        Polynomial::ascending(&[Interval::exact(-self.decay), Interval::ONE])
-    }
-}
-
 /// The coupling's coefficients as a number format rounds them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchedCoupling {
     /// Compliance in rad/(N m) for the torque of this tick.
     pub compliance: f64,
-    /// Whole samples that a torque takes.
+    /// [Whole samples](Latency::whole_samples) that a torque takes.
     pub whole: usize,
     /// Compliance for each of this many earlier torques.
     pub held: f64,
     /// Compliance for the torque before these.
     pub arriving: f64,
-    /// The trails of the lags; with a gain of 0 without a lag.
-    pub trails: [Trail; 2],
+    /// The trails of the lags; with a gain of 0 where there is none.
+    pub trails: [Trail; TRAILS],
     /// Upper bound on the environment's index in N m s/rad.
     pub limit: Interval,
 }
 
-/// Compliances of one latency over `T / (2 delta)`: exact, as intervals.
-#[derive(Clone, Copy)]
-struct Taps {
-    whole: usize,
-    arriving: Interval,
-    trails: [(Interval, Interval); 2],
-}
-
 impl MatchedCoupling {
-    /// The coupling for a device of this passivity (N m s/rad) at this period (s).
+    /// The coupling for a device of this passivity (N m s/rad) at this period (s), and at this longest time
+    /// between two updates (s) if updates may be missed.
     ///
-    /// `None` if a number is out of range, or if two lags are so nearly equal that their difference cannot be
-    /// distinguished from zero.
+    /// `None` if a number is out of range, if two lags are so nearly equal that their difference cannot be
+    /// distinguished from zero, or if no [window](ResponseWindow::of) exists.
     pub const fn of(
         period: f64,
+        worst_period: Option<f64>,
         passivity: f64,
         latency: &Latency,
         format: Format,
     ) -> Option<Self> {
-        Self::of_kind::<true>(period, passivity, latency, format)
+        Self::of_kind::<true>(period, worst_period, passivity, latency, format)
     }
 
     /// The same; without `UPDATES` there is no coupling, and no code, for an amplifier that is updated
@@ -92,38 +72,48 @@ impl MatchedCoupling {
     #[inline(never)]
     pub(crate) const fn of_kind<const UPDATES: bool>(
         period: f64,
+        worst_period: Option<f64>,
         passivity: f64,
         latency: &Latency,
         format: Format,
     ) -> Option<Self> {
-        if !UPDATES && latency.actuator_updates != 0 {
+        let Some(window) = ResponseWindow::of::<UPDATES>(period, worst_period, latency) else {
             return None;
-        }
+        };
         let (t, delta) = (Interval::decimal(period), Interval::decimal(passivity));
-        let Some((delta, given_up)) = after_jitter(t, delta, latency) else { return None };
         let standard = t.div(delta.double());
-        let Some(taps) = Taps::of::<UPDATES>(t, latency, Within::Middle) else { return None };
-        let Some(unknown) = unknown::<UPDATES>(t, latency) else { return None };
-        let held = format.coefficient(standard.midpoint(), Rounding::Nearest);
-        let arriving =
-            format.coefficient(standard.mul(taps.arriving).midpoint(), Rounding::Nearest);
-        let trails =
-            [rounded(standard, taps.trails[0], format), rounded(standard, taps.trails[1], format)];
-        let exact = Self {
+        let whole = window.whole;
+        let held = standard.mul(window.tap(if whole == 0 { 0 } else { 1 }));
+        let arriving = standard.mul(window.tap(whole + 1));
+        let mut run = Self {
             compliance: 0.0,
-            whole: taps.whole,
-            held,
-            arriving,
-            trails,
+            whole,
+            held: format.coefficient(held.midpoint(), Rounding::Nearest),
+            arriving: format.coefficient(arriving.midpoint(), Rounding::Nearest),
+            trails: [Trail { gain: 0.0, decay: 0.0 }; TRAILS],
             limit: Interval::ENTIRE,
         };
-        let error = exact.rounding(standard, &taps).add(standard.mul(unknown));
-        let least = standard.add(given_up).add(error.mul(Interval::exact(EXCESS)));
-        // Above the standard coupling even without latency, by a last bit.
-        let compliance = format.coefficient(least.hi().next_up(), Rounding::Outward);
-        let excess = Interval::exact(compliance).sub(standard).sub(given_up);
-        let Some(limit) = limit(t, delta, excess, error) else { return None };
-        Some(Self { compliance, limit, ..exact })
+        let mut i = 0;
+        while i < TRAILS {
+            run.trails[i] = rounded(standard, window.trails[i], format);
+            i += 1;
+        }
+        let error = run.rounding(standard, &window);
+        let first = standard.mul(window.tap(0));
+        // Above the formula even without an error, by a last bit. With twice the error the loss is least.
+        let least = first.add(error.double()).hi().next_up();
+        run.compliance = format.coefficient(least, Rounding::Outward);
+        let excess = Interval::exact(run.compliance).sub(first);
+        match limit(
+            t,
+            delta,
+            window.width,
+            excess,
+            &Deviation { moment: error, sum: Interval::ZERO },
+        ) {
+            Some(limit) => Some(Self { limit, ..run }),
+            None => None,
+        }
     }
 
     /// Numerator and denominator of `V(z)` with the rounded coefficients; `None` beyond the degrees of a
@@ -141,16 +131,18 @@ impl MatchedCoupling {
             i += 1;
         }
         taps[0] = Interval::exact(self.arriving);
-        let poles = [self.trails[0].pole(), self.trails[1].pole()];
-        let (Some(lag), Some(taps)) =
-            (poles[0].times(&poles[1]), both(&Polynomial::ascending(&taps), &poles))
-        else {
+        let mut trails = [(Interval::ZERO, Interval::ZERO); TRAILS];
+        i = 0;
+        while i < TRAILS {
+            let Trail { gain, decay } = self.trails[i];
+            trails[i] = (Interval::exact(gain), Interval::exact(decay));
+            i += 1;
+        }
+        let Some((numerator, lag)) = with_trails(&Polynomial::ascending(&taps), &trails) else {
             return None;
         };
-        let first = poles[1].scaled(Interval::exact(self.trails[0].gain));
-        let second = poles[0].scaled(Interval::exact(self.trails[1].gain));
         match lag.shifted_up(last) {
-            Some(denominator) => Some((taps.plus(&first).plus(&second), denominator)),
+            Some(denominator) => Some((numerator, denominator)),
             None => None,
         }
     }
@@ -163,16 +155,22 @@ impl MatchedCoupling {
         self.compliance + held + self.trails.iter().map(lasts).sum::<f64>()
     }
 
-    /// Sum over the taps of `(2 m + 1)` times the rounding error.
-    const fn rounding(&self, standard: Interval, taps: &Taps) -> Interval {
+    /// Sum over the taps of `(2 m + 1)` times the rounding error, except the first. Where the window is around
+    /// two samples or more, the tap at that sample differs from the others that are held, and this difference
+    /// counts as such an error.
+    const fn rounding(&self, standard: Interval, window: &ResponseWindow) -> Interval {
+        let mut sum = Interval::ZERO;
+        let mut m = 1;
+        while m <= self.whole + 1 {
+            let run = if m > self.whole { self.arriving } else { self.held };
+            let error = Interval::exact(run).sub(standard.mul(window.tap(m))).abs();
+            sum = sum.add(error.mul(Interval::exact(2.0 * m as f64 + 1.0)));
+            m += 1;
+        }
         let n = self.whole as f64;
-        let held = Interval::exact(self.held).sub(standard).abs();
-        let arriving = Interval::exact(self.arriving).sub(standard.mul(taps.arriving)).abs();
-        let mut sum = held.mul(Interval::exact(n * (n + 2.0)));
-        sum = sum.add(arriving.mul(Interval::exact(2.0 * n + 3.0)));
         let mut i = 0;
-        while i < self.trails.len() {
-            let (gain, decay) = taps.trails[i];
+        while i < TRAILS {
+            let (gain, decay) = window.trails[i];
             let run = self.trails[i];
             let gain = standard.mul(gain);
             if !gain.is_zero() {
@@ -184,13 +182,6 @@ impl MatchedCoupling {
             i += 1;
         }
         sum
-    }
-}
-
-const fn both(p: &Polynomial, factors: &[Polynomial; 2]) -> Option<Polynomial> {
-    match p.times(&factors[0]) {
-        Some(p) => p.times(&factors[1]),
-        None => None,
     }
 }
 
@@ -206,129 +197,7 @@ const fn moments(n: f64, a: Interval, first: Interval, later: Interval) -> Inter
     first.mul(at_once).add(later.mul(growing))
 }
 
-impl Taps {
-    /// The taps for the times at one place in their ranges.
-    const fn of<const UPDATES: bool>(
-        t: Interval,
-        latency: &Latency,
-        place: Within,
-    ) -> Option<Self> {
-        let updates = if UPDATES { latency.actuator_updates } else { 0 };
-        let delay = match updates {
-            0 => place.of(latency.torque_delay()).div(t),
-            _ => match latency.delay_in_updates(t.midpoint()) {
-                Some(delay) => delay,
-                None => return None,
-            },
-        };
-        let whole = delay.midpoint().max(0.0) as usize;
-        let part = delay.sub(Interval::exact(whole as f64));
-        let rest = Interval::ONE.sub(part);
-        let lags = [place.of(latency.actuator_lag).div(t), place.of(latency.sensor_lag).div(t)];
-        let Some(mut weights) = weights(lags) else { return None };
-        if updates != 0 {
-            weights[0] = SampledLag::of(updates, lags[0]).held();
-        }
-        let mut taps =
-            Self { whole, arriving: part, trails: [(Interval::ZERO, Interval::ZERO); 2] };
-        let mut i = 0;
-        while i < lags.len() {
-            if !lags[i].is_zero() {
-                let left = rest.div(lags[i]).exp_of_negative();
-                let decay = Interval::ONE.div(lags[i]).exp_of_negative();
-                let passed = Interval::ONE.sub(left);
-                taps.arriving = taps.arriving.add(weights[i].mul(passed));
-                let gain = weights[i].mul(left).mul(Interval::ONE.sub(decay));
-                taps.trails[i] = (gain, decay);
-            }
-            i += 1;
-        }
-        if taps.arriving.is_finite() { Some(taps) } else { None }
-    }
-
-    /// Sum of `(2 m + 1)` times each compliance except the first.
-    const fn moment(&self) -> Interval {
-        let n = self.whole as f64;
-        let mut sum = Interval::exact(n * (n + 2.0));
-        sum = sum.add(self.arriving.mul(Interval::exact(2.0 * n + 3.0)));
-        let mut i = 0;
-        while i < self.trails.len() {
-            let (gain, decay) = self.trails[i];
-            if !gain.is_zero() {
-                sum = sum.add(moments(n, decay, gain, Interval::ZERO));
-            }
-            i += 1;
-        }
-        sum
-    }
-}
-
-/// The weight of each lag in the response of both, `tau_1^2 / (tau_1 - tau_2)` and the like.
-const fn weights(lags: [Interval; 2]) -> Option<[Interval; 2]> {
-    let [a, b] = lags;
-    if a.is_zero() || b.is_zero() {
-        return Some([a, b]);
-    }
-    let apart = a.sub(b);
-    if apart.contains(0.0) {
-        return None;
-    }
-    Some([a.mul(a).div(apart), b.mul(b).div(apart.neg())])
-}
-
-/// A place in the range of each time.
-#[derive(Clone, Copy)]
-enum Within {
-    Least,
-    Middle,
-    Most,
-}
-
-impl Within {
-    const fn of(self, range: TimeRange) -> Interval {
-        Interval::decimal(match self {
-            Self::Least => range.least,
-            Self::Middle => range.middle(),
-            Self::Most => range.most,
-        })
-    }
-}
-
-/// The uncertainty of [`Taps::moment`] by the ranges of the times: every compliance grows with every time.
-const fn unknown<const UPDATES: bool>(t: Interval, latency: &Latency) -> Option<Interval> {
-    let shortest = Taps::of::<UPDATES>(t, latency, Within::Least);
-    let longest = Taps::of::<UPDATES>(t, latency, Within::Most);
-    let (Some(shortest), Some(longest)) = (shortest, longest) else { return None };
-    let range = longest.moment().sub(shortest.moment());
-    Some(Interval::new(0.0, range.hi().max(0.0)))
-}
-
-/// The remaining passivity of a device whose torques or counts deviate in time from tick to tick by `h T`,
-/// and the loss of the coupling's compliance.
-///
-/// For any `s > 0` the work of the pulses by which such a torque differs is at most
-/// `(s / 2) integral v^2 + (h T / (2 s)) sum (F_k - F_(k-1))^2`, and so is that of a count read late
-/// (equation 42). The first is subtracted from `delta`, the second from a spring: `s = 2 delta sqrt(h)`
-/// divides the loss about equally.
-const fn after_jitter(
-    t: Interval,
-    delta: Interval,
-    latency: &Latency,
-) -> Option<(Interval, Interval)> {
-    if latency.output_jitter == 0.0 {
-        return Some((delta, Interval::ZERO));
-    }
-    let h = Interval::decimal(latency.output_jitter).div(t);
-    let share = h.sqrt().midpoint();
-    if !(share > 0.0 && share < 1.0) {
-        return None;
-    }
-    let share = Interval::exact(share);
-    let given_up = h.mul(t).div(delta.double().mul(share));
-    Some((delta.mul(Interval::ONE.sub(share)), given_up))
-}
-
-const fn rounded(standard: Interval, trail: (Interval, Interval), format: Format) -> Trail {
+const fn rounded(standard: Interval, trail: Fading, format: Format) -> Trail {
     let (gain, decay) = trail;
     Trail {
         gain: format.coefficient(standard.mul(gain).midpoint(), Rounding::Nearest),
@@ -336,28 +205,33 @@ const fn rounded(standard: Interval, trail: (Interval, Interval), format: Format
     }
 }
 
-/// The upper bound on an index behind a coupling with an `excess` of the first spring over the formula and
-/// deviations of the others with `sum (2 m + 1) abs(e_m)` equal to `error`; `None` if that coupling is not
-/// known to be passive.
-///
-/// `Q = (1 - 1/z) (excess - sum e_m z^-m) / T` has `Re Q >= (1 - c) (excess - error) / T`, since
-/// `abs(cos(m x) - cos((m + 1) x)) <= (2 m + 1) (1 - cos x)`, and `abs(Q)^2 <= 2 (1 - c) (excess +
-/// error / 3)^2 / T^2`: that is its output strict passivity `gamma`, and condition 18 is
-/// `alpha < delta gamma / (delta + gamma)` (equation 41).
-pub const fn limit(
+/// The deviations `e_m`, `m >= 1`, of a coupling from the formula.
+#[derive(Clone, Copy)]
+struct Deviation {
+    /// `sum (2 m + 1) abs(e_m)` in rad/(N m).
+    moment: Interval,
+    /// A number from 0 to `sum abs(e_m)`.
+    sum: Interval,
+}
+
+/// The upper bound on an index behind a coupling with an `excess` of the first spring over the formula of a
+/// window of this `width`, and with these deviations of the others (equation 41); `None` if that coupling is
+/// not known to be passive.
+const fn limit(
     t: Interval,
     delta: Interval,
+    width: Interval,
     excess: Interval,
-    error: Interval,
+    others: &Deviation,
 ) -> Option<Interval> {
-    let margin = excess.sub(error);
+    let margin = excess.sub(others.moment);
     if !margin.is_positive() || !delta.is_positive() {
-        return if excess.is_zero() && error.is_zero() { Some(delta) } else { None };
+        let is_exact = excess.is_zero() && others.moment.is_zero();
+        return if is_exact { Some(delta.div(width)) } else { None };
     }
-    let most = excess.add(error.div(Interval::exact(3.0)));
-    // delta / (1 + delta / gamma)
-    let over = delta.double().mul(most).mul(most).div(t.mul(margin));
-    Some(delta.div(Interval::ONE.add(over)))
+    let most = excess.sub(others.sum);
+    let loss = delta.double().mul(most).mul(most).div(t.mul(margin));
+    Some(delta.div(width.add(loss)))
 }
 
 /// The upper bound on an index behind a coupling spring of this compliance, if torques lag; `None` if no
@@ -365,17 +239,32 @@ pub const fn limit(
 ///
 /// All [compliances](MatchedCoupling) that the spring lacks count as deviations.
 pub const fn limit_behind_spring<const UPDATES: bool>(
-    t: Interval,
+    period: f64,
     delta: Interval,
     compliance: Interval,
     latency: &Latency,
 ) -> Option<Interval> {
-    if !UPDATES && latency.actuator_updates != 0 {
-        return None;
-    }
-    let Some((delta, given_up)) = after_jitter(t, delta, latency) else { return None };
-    let Some(taps) = Taps::of::<UPDATES>(t, latency, Within::Most) else { return None };
+    let Some(window) = ResponseWindow::of::<UPDATES>(period, None, latency) else { return None };
+    let t = Interval::decimal(period);
     let standard = t.div(delta.double());
-    let excess = compliance.sub(standard).sub(given_up);
-    limit(t, delta, excess, standard.mul(taps.moment()))
+    let (mut moment, mut sum) = (Interval::ZERO, Interval::ZERO);
+    let mut m = 1;
+    while m <= window.whole + 1 {
+        let tap = window.tap(m);
+        sum = sum.add(tap);
+        moment = moment.add(tap.mul(Interval::exact(2.0 * m as f64 + 1.0)));
+        m += 1;
+    }
+    let mut i = 0;
+    while i < TRAILS {
+        let (gain, decay) = window.trails[i];
+        if !gain.is_zero() {
+            sum = sum.add(gain.div(Interval::ONE.sub(decay)));
+            moment = moment.add(moments(window.whole as f64, decay, gain, Interval::ZERO));
+        }
+        i += 1;
+    }
+    let excess = compliance.sub(standard.mul(window.tap(0)));
+    let others = Deviation { moment: standard.mul(moment), sum: standard.mul(sum) };
+    limit(t, delta, window.width, excess, &others)
 }

@@ -71,6 +71,7 @@ impl<E> Scene<E> {
     pub const fn context(&self) -> LawContext {
         LawContext {
             period: self.timing.period,
+            worst_period: self.timing.worst_period,
             damping: self.device.damping,
             passivity: self.device.passivity(),
             coupling: self.coupling,

@@ -186,14 +186,9 @@ fn time(TimeRange { least, most }: TimeRange) -> Expression {
 
 /// Behind the matched coupling with the memory that the scene's latency needs.
 fn matched(scene: &Scene, own: Typed) -> Typed {
-    let Latency { actuator_lag, sensor_lag, actuator_updates, .. } = scene.latency;
-    let period = scene.timing.period;
-    let whole = match actuator_updates {
-        0 => (scene.latency.torque_delay().middle() / period) as usize,
-        updates => scene.latency.nearest_update(period) as usize / usize::from(updates),
-    };
-    let lags = usize::from(!actuator_lag.is_zero()) + usize::from(!sensor_lag.is_zero());
-    let numbers = match (whole, lags, actuator_updates) {
+    let latency = &scene.latency;
+    let (whole, lags) = (latency.whole_samples(scene.timing.period), latency.trails());
+    let numbers = match (whole, lags, latency.actuator_updates) {
         (0, 0, 0) => String::new(),
         (_, 0, 0) => format!(", {whole}"),
         (_, _, 0) => format!(", {whole}, {lags}"),

@@ -80,8 +80,10 @@ fn coupling_stiffness(scene: &Scene) -> Option<f64> {
         Coupling::Rigid => None,
         Coupling::Spring { stiffness } => Some(stiffness),
         Coupling::Matched => {
-            let (period, delta) = (scene.timing.period, scene.device.passivity());
-            let matched = MatchedCoupling::of(period, delta, &scene.latency, Format::F64)?;
+            let Timing { period, worst_period } = scene.timing;
+            let delta = scene.device.passivity();
+            let matched =
+                MatchedCoupling::of(period, worst_period, delta, &scene.latency, Format::F64)?;
             let (numerator, denominator) = matched.transfer()?;
             let at_rest = |p: &Polynomial| p.at_unit_root(UnitRoot::Plus).midpoint();
             Some(at_rest(&denominator) / at_rest(&numerator))

@@ -188,6 +188,7 @@ fn torques<const DELAY: usize>(
 ) -> Vec<f64> {
     let context = LawContext {
         period: 0.001,
+        worst_period: None,
         damping: 0.022,
         passivity: 0.022,
         coupling: Coupling::Rigid,

@@ -1,50 +1,79 @@
-//! The loss of passivity by a delay that deviates from tick to tick.
+//! Proofs for linear scenes whose delay deviates from tick to tick.
 
 use super::loop_intervals::{Lagging, LoopIntervals};
 use crate::passivity::interval::Interval;
+use crate::passivity::lagged::SampledResponse;
+use crate::response_window::ResponseWindow;
+use crate::scene::Timing;
 
-/// The loss by a delay that deviates from tick to tick: passivity, and ripple over `T^2` (theory, section
-/// 13.5).
+/// A condition of the form of equation 38 that proves a linear scene: for a device that has only a part of
+/// its passivity left, with more ripple, or with another sampled response.
 #[derive(Clone, Copy)]
 pub(super) struct Deviation {
-    /// The divisor of `D / 4`.
-    pub divisor: Interval,
-    /// The upper bound on the index.
-    pub limit: Interval,
-    /// Ripple over `T^2`.
+    /// The part of the passivity that is left.
+    pub left: Interval,
+    /// The added ripple over `T^2`.
     pub ripple: Interval,
+    /// The sampled response in place of those of the scene's delays and lags.
+    pub response: Option<SampledResponse>,
 }
 
 impl Deviation {
-    /// `None` if no bound is known.
-    pub const fn of(lagging: &Lagging, n: &LoopIntervals) -> Option<Self> {
+    /// The number of proofs; each alone is enough.
+    pub const COUNT: usize = 3;
+
+    const NONE: Self = Self { left: Interval::ONE, ripple: Interval::ZERO, response: None };
+
+    /// One of the proofs; `None` if it does not cover the scene.
+    pub const fn of(proof: usize, lagging: &Lagging, n: &LoopIntervals) -> Option<Self> {
         let latency = &lagging.latency;
-        let none = Self { divisor: n.delta, limit: n.delta, ripple: Interval::ZERO };
-        if latency.output_jitter == 0.0 {
-            return Some(none);
-        }
-        if !latency.sensor_lag.is_zero() {
-            return None;
+        if latency.output_jitter == 0.0 && !n.misses_updates {
+            return if proof == 0 { Some(Self::NONE) } else { None };
         }
         let h = Interval::decimal(latency.output_jitter).div(n.period);
-        if latency.actuator_lag.is_zero() && latency.actuator_response.is_zero() {
-            let limit = n.delta.mul(Interval::ONE.sub(h.half()));
-            return Some(Self { limit, ripple: h.double().add(h), ..none });
+        // A jitter of counts is one of torques with the lags of amplifier and sensor exchanged.
+        let is_of_pulses = latency.sensor_lag.is_zero() && !n.misses_updates;
+        match proof {
+            0 => Self::within_window(lagging, n),
+            1 if is_of_pulses && h.hi() <= 0.5 => Some(Self::of_means(h)),
+            2 if is_of_pulses && h.hi() <= 1.0 => Some(Self::of_work(h)),
+            _ => None,
         }
-        let share = h.sqrt().half().midpoint();
-        if !(share > 0.0 && share < 1.0) {
+    }
+
+    /// All torques lie in a window (theory, equation 57).
+    #[inline(never)]
+    const fn within_window(lagging: &Lagging, n: &LoopIntervals) -> Option<Self> {
+        // Only with a matched coupling is it known that no torque is latched across a missed update.
+        if n.misses_updates && lagging.matched.is_none() {
             return None;
         }
-        let share = Interval::exact(share);
-        let left = n.delta.mul(Interval::ONE.sub(share));
-        Some(Self { divisor: left, limit: left, ripple: h.div(share) })
+        let Lagging { latency, timing: Timing { period, worst_period }, .. } = lagging;
+        let Some(window) = ResponseWindow::of::<true>(*period, *worst_period, latency) else {
+            return None;
+        };
+        match window.response() {
+            Some(response) => Some(Self {
+                left: window.between_counts.div(window.width),
+                ripple: Interval::ZERO,
+                response: Some(response),
+            }),
+            None => None,
+        }
     }
-}
 
-/// The upper bound on the index at the port of a scene whose torque lags.
-pub(super) const fn port_limit(lagging: &Lagging, n: &LoopIntervals) -> Interval {
-    match Deviation::of(lagging, n) {
-        Some(deviation) => deviation.limit,
-        None => n.delta,
+    /// Only the means of the ticks change, and their ripples (equation 58 with `mu = 1`).
+    const fn of_means(h: Interval) -> Self {
+        let root = Interval::exact(2.0).sqrt();
+        let left = Interval::ONE.sub(h.div(root));
+        let ripple = h.mul(root.double().double().add(Interval::ONE));
+        Self { left, ripple: ripple.mul(left), response: None }
+    }
+
+    /// The work of the pulses by which the torque differs (equation 42 with `s = delta sqrt(h)`).
+    const fn of_work(h: Interval) -> Self {
+        let share = Interval::exact(h.sqrt().half().midpoint());
+        let left = Interval::ONE.sub(share);
+        Self { left, ripple: h.mul(left).div(share), response: None }
     }
 }

@@ -6,7 +6,7 @@ use crate::matched::{MatchedCoupling, limit_behind_spring};
 use crate::number::{Format, Rounding};
 use crate::passivity::interval::Interval;
 use crate::passivity::transfer::{Transfer, Unbuildable};
-use crate::scene::{Coupling, Scene};
+use crate::scene::{Coupling, Scene, Timing};
 
 /// The numbers of a scene as the intervals that the certificate computes with.
 #[derive(Clone, Copy)]
@@ -49,6 +49,8 @@ pub(super) const fn has_latency(scene: &Scene) -> bool {
 pub(super) struct Lagging {
     /// The times.
     pub latency: Latency,
+    /// The timing of the servo.
+    pub timing: Timing,
     /// The coupling, if it is matched.
     pub matched: Option<MatchedCoupling>,
     /// Upper bound on the index by the paper's rule; `None` if none is known.
@@ -193,23 +195,31 @@ impl LoopIntervals {
     // Not inlined: scenes without latency do not need its frame.
     #[inline(never)]
     const fn add_latency<const UPDATES: bool>(&mut self, scene: &Scene) {
-        let latency = scene.latency;
-        let mut lagging = Lagging { latency, matched: None, limit: None };
-        if self.misses_updates {
-            // No proof covers missed updates and latency together.
-        } else if self.is_matched {
-            let passivity = scene.device.passivity();
-            let period = scene.timing.period;
-            lagging.matched =
-                MatchedCoupling::of_kind::<UPDATES>(period, passivity, &latency, self.format);
+        let Scene { latency, timing, .. } = *scene;
+        let mut lagging = Lagging { latency, timing, matched: None, limit: None };
+        // A latched torque is that of a count before the missed ones.
+        let may_be_latched = self.missed.is_some() && latency.output_delay.least == 0.0;
+        if self.is_matched && !may_be_latched {
+            let Timing { period, worst_period } = timing;
+            let (passivity, format) = (scene.device.passivity(), self.format);
+            lagging.matched = MatchedCoupling::of_kind::<UPDATES>(
+                period,
+                worst_period,
+                passivity,
+                &latency,
+                format,
+            );
             if let Some(matched) = &lagging.matched {
                 lagging.limit = Some(matched.limit);
                 self.compliance = Interval::exact(matched.compliance);
             }
-        } else if self.coupling.is_some() {
-            let (period, delta) = (self.period, self.delta);
-            lagging.limit =
-                limit_behind_spring::<UPDATES>(period, delta, self.compliance, &latency);
+        } else if self.coupling.is_some() && !self.is_matched && !self.misses_updates {
+            lagging.limit = limit_behind_spring::<UPDATES>(
+                timing.period,
+                self.delta,
+                self.compliance,
+                &latency,
+            );
         }
         self.latency = Some(lagging);
     }

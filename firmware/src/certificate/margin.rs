@@ -47,7 +47,8 @@ impl Assessment {
     /// For a linear scene: `delta` less the index at the port.
     const fn linear(&self, scene: &Scene) -> Option<f64> {
         let n = LoopIntervals::of(scene, self.format);
-        if n.missed.is_some() {
+        // The search would design a matched coupling anew.
+        if n.missed.is_some() && n.latency.is_none() {
             return searched(scene, self);
         }
         let Ok(posed) = PassivityProblem::in_format(scene, self.format) else { return None };

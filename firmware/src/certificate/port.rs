@@ -120,6 +120,11 @@ const fn after(first: f64, then: f64) -> Interval {
     Interval::decimal(first).add(Interval::decimal(then))
 }
 
+/// The product, without rounding for a factor of 1.
+const fn scaled(value: Interval, factor: Interval) -> Interval {
+    if factor.is_exact() && factor.contains(1.0) { value } else { value.mul(factor) }
+}
+
 const fn parts(range: TimeRange) -> usize {
     if range.is_exact() { 1 } else { PARTS }
 }
@@ -153,11 +158,28 @@ pub struct KeptResponses<V> {
     responses: V,
 }
 
+/// The smaller of both, if either is known.
+const fn better(a: Found, b: Found) -> Found {
+    match (a, b) {
+        (Ok(a), Ok(b)) => {
+            let index = if b.0.minimum.hi() < a.0.minimum.hi() { b.0 } else { a.0 };
+            let minimum = a.0.minimum.min(b.0.minimum);
+            Ok((RealPart { minimum, ..index }, a.1.min(b.1)))
+        }
+        (Ok(known), Err(_)) | (Err(_), Ok(known)) => Ok(known),
+        (Err(_), Err(error)) => Err(error),
+    }
+}
+
+/// The index, and the least sufficient passivity.
+type Found = Result<(RealPart, Interval), IndexError>;
+
 const UNKNOWN: IndexError = IndexError::Undecided(UndecidedReason::OutOfRange);
 
 impl PassivityProblem {
-    /// The largest `-Re(H g) + D abs(H)^2 / (4 delta)`, which proves the scene if it is below
-    /// [`port_limit`].
+    /// The largest `-Re(H g) + D abs(H)^2 / (4 delta)`, which proves the scene if it is below the passivity.
+    /// Where a delay deviates from tick to tick, `delta` is the part of it that is [left](Deviation), and the
+    /// result is divided by that part.
     #[inline(never)]
     pub(super) const fn port_index(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
         match self.over_cells(closeness, false) {
@@ -176,18 +198,46 @@ impl PassivityProblem {
         }
     }
 
-    /// The largest of both over all times in their ranges; the second only on request.
-    pub(super) const fn over_cells(
-        &self,
-        closeness: &Precision,
-        and_needed: bool,
-    ) -> Result<(RealPart, Interval), IndexError> {
-        let (h, lagging, deviation) = match self.at_the_port() {
+    /// The smallest of both over the proofs for this scene; the second only on request, and the proofs up to
+    /// the first that is enough otherwise.
+    pub(super) const fn over_cells(&self, closeness: &Precision, and_needed: bool) -> Found {
+        let (h, lagging) = match self.at_the_port() {
             Ok(found) => found,
             Err(error) => return Err(error),
         };
-        let Some(cells) = Cells::of(&lagging, self.numbers.period) else { return Err(UNKNOWN) };
-        let corners = Corners::of(&lagging, self.numbers.period);
+        let mut best = Err(UNKNOWN);
+        let mut proof = 0;
+        while proof < Deviation::COUNT {
+            if let Some(deviation) = Deviation::of(proof, &lagging, &self.numbers) {
+                let found = match &deviation.response {
+                    Some(response) => self.piece(&h, response, &deviation, closeness, and_needed),
+                    None => self.over_ranges(&h, &lagging, &deviation, closeness, and_needed),
+                };
+                best = better(best, found);
+                if !and_needed && self.is_enough(&best) {
+                    return best;
+                }
+            }
+            proof += 1;
+        }
+        best
+    }
+
+    const fn is_enough(&self, found: &Found) -> bool {
+        matches!(found, Ok((index, _)) if index.minimum.is_below(self.numbers.delta))
+    }
+
+    /// The largest of both over all times in their ranges.
+    const fn over_ranges(
+        &self,
+        h: &Transfer,
+        lagging: &Lagging,
+        deviation: &Deviation,
+        closeness: &Precision,
+        and_needed: bool,
+    ) -> Found {
+        let Some(cells) = Cells::of(lagging, self.numbers.period) else { return Err(UNKNOWN) };
+        let corners = Corners::of(lagging, self.numbers.period);
         let count = match corners {
             Some(corners) => corners.count(),
             None => cells.count(),
@@ -205,7 +255,7 @@ impl PassivityProblem {
                 if let Some(corners) = corners {
                     response = response.with_ripple(corners.ripple);
                 }
-                all = match (self.piece(&h, &response, &deviation, closeness, and_needed), all) {
+                all = match (self.piece(h, &response, deviation, closeness, and_needed), all) {
                     (Err(error), _) => return Err(error),
                     (Ok(one), None) => Some(one),
                     (Ok(one), Some(before)) => Some(larger(one, before)),
@@ -260,13 +310,25 @@ impl PassivityProblem {
         responses: &[SampledResponse],
         closeness: &Precision,
     ) -> Result<RealPart, IndexError> {
-        let (h, _, deviation) = self.at_the_port()?;
-        let mut all = None;
-        for response in responses {
-            let one = self.piece(&h, response, &deviation, closeness, false)?;
-            all = Some(all.map_or(one, |before| larger(one, before)));
+        let (h, lagging) = self.at_the_port()?;
+        let mut best = Err(UNKNOWN);
+        for proof in 0..Deviation::COUNT {
+            let Some(deviation) = Deviation::of(proof, &lagging, &self.numbers) else { continue };
+            let piece = |response| self.piece(&h, response, &deviation, closeness, false);
+            let found = match &deviation.response {
+                Some(response) => piece(response),
+                None => responses
+                    .iter()
+                    .map(piece)
+                    .reduce(|all, one| Ok(larger(one?, all?)))
+                    .unwrap_or(Err(UNKNOWN)),
+            };
+            best = better(best, found);
+            if self.is_enough(&best) {
+                break;
+            }
         }
-        all.map(|(found, _)| found).ok_or(UNKNOWN)
+        best.map(|(found, _)| found)
     }
 
     // Not inlined, so that the caller's frame is smaller.
@@ -278,21 +340,24 @@ impl PassivityProblem {
         deviation: &Deviation,
         closeness: &Precision,
         and_needed: bool,
-    ) -> Result<(RealPart, Interval), IndexError> {
+    ) -> Found {
         let port = match Port::new(h, response, self.numbers.period, deviation.ripple) {
             Ok(port) => port,
             Err(error) => return Err(error),
         };
-        let found = match port.index_for(deviation.divisor, closeness) {
+        let left = deviation.left;
+        let delta = scaled(self.numbers.delta, left);
+        let found = match port.index_for(delta, &closeness.scaled(left)) {
             Ok(found) => found,
             Err(error) => return Err(error),
         };
+        let over_left = Interval::ONE.div(left);
+        let index = RealPart { minimum: scaled(found.minimum, over_left), ..found };
         if !and_needed {
-            return Ok((found, Interval::ENTIRE));
+            return Ok((index, Interval::ENTIRE));
         }
-        let delta = deviation.divisor.midpoint();
-        match port.needed(delta, found) {
-            Ok(needed) => Ok((found, needed)),
+        match port.needed(delta.midpoint(), found) {
+            Ok(needed) => Ok((index, scaled(needed, over_left))),
             Err(error) => Err(error),
         }
     }
@@ -311,18 +376,17 @@ impl PassivityProblem {
 
     /// The whole controller.
     #[inline(never)]
-    const fn at_the_port(&self) -> Result<(Transfer, Lagging, Deviation), IndexError> {
+    const fn at_the_port(&self) -> Result<(Transfer, Lagging), IndexError> {
         let Some(lagging) = self.numbers.latency else { return Err(UNKNOWN) };
         if self.has_no_transfer() {
             return Err(IndexError::Undecided(UndecidedReason::NoTransferFunction));
         }
-        if self.numbers.misses_updates {
+        if self.numbers.misses_updates && lagging.matched.is_none() {
             return Err(IndexError::Undecided(UndecidedReason::MissedWithLatency));
         }
-        let Some(deviation) = Deviation::of(&lagging, &self.numbers) else { return Err(UNKNOWN) };
         let controller = self.numbers.behind_coupling(&cancelled(&self.environment));
         match controller {
-            Ok(controller) => Ok((controller, lagging, deviation)),
+            Ok(controller) => Ok((controller, lagging)),
             Err(_) => Err(UNKNOWN),
         }
     }

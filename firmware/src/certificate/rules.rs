@@ -1,6 +1,5 @@
 //! The two rules: the paper's (equations 17 to 19) and the exact one (theory, section 4.1).
 
-use super::deviation::port_limit;
 use super::loop_intervals::LoopIntervals;
 #[cfg(doc)]
 use super::loop_intervals::Missed;
@@ -85,11 +84,8 @@ pub(super) const fn compare(index: Interval, limit: Interval) -> RuleAnswer {
 ///
 /// If torques lag, the index at the port must be below the passivity.
 pub(super) const fn exact_limit(n: &LoopIntervals) -> Interval {
-    if let Some(lagging) = &n.latency {
-        return port_limit(lagging, n);
-    }
     match n.coupling_damping() {
-        Some(damping) if n.is_standard => n.delta.min(damping),
+        Some(damping) if n.is_standard && n.latency.is_none() => n.delta.min(damping),
         _ => n.delta,
     }
 }

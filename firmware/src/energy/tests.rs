@@ -133,6 +133,7 @@ proptest! {
     ) {
         let setting = LawContext {
             period: PERIOD,
+worst_period: None,
             damping: 0.022,
             passivity: 0.022,
             coupling: Coupling::Spring { stiffness: 44.0 },

@@ -12,6 +12,7 @@ use super::stated::StatedModel;
 use super::turn::Turn;
 use crate::build_error::BuildError;
 use crate::coupling::{Coupling, Response, Slopes};
+use crate::latency::TRAILS;
 use crate::number::Number;
 
 /// Any environment as data.
@@ -254,7 +255,7 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
 #[derive(Clone, Debug)]
 pub struct DataLaw<N: Number> {
     law: EnvironmentLaw<N>,
-    memory: Option<CouplingMemory<N, VariableDelay<N>, 2>>,
+    memory: Option<CouplingMemory<N, VariableDelay<N>, TRAILS>>,
 }
 
 impl<N: Number> Law<N> for DataLaw<N> {

@@ -76,7 +76,8 @@ impl LawContext {
         &self,
         format: Format,
     ) -> Result<MatchedCoupling, BuildError> {
-        MatchedCoupling::of_kind::<UPDATES>(self.period, self.passivity, &self.latency, format)
+        let Self { period, worst_period, passivity, latency, .. } = self;
+        MatchedCoupling::of_kind::<UPDATES>(*period, *worst_period, *passivity, latency, format)
             .ok_or(BuildError::NoMatchedCoupling)
     }
 }
@@ -86,6 +87,8 @@ impl LawContext {
 pub struct LawContext {
     /// Sample period `T` in s.
     pub period: f64,
+    /// Longest tolerated time in s between two updates of the torque; `None`: the period.
+    pub worst_period: Option<f64>,
     /// Damping `b` of the device in N m s/rad.
     pub damping: f64,
     /// Passivity `delta` of the device in N m s/rad.

@@ -12,8 +12,9 @@ use crate::parameter::{NamedParameters, Parameter};
 /// An environment behind [`Coupling::Matched`]: the coupling's memory is part of the type, so that a scene
 /// without latency has none.
 ///
-/// `WHOLE` is the number of whole samples in the scene's output delay, `LAGS` the number of lags (of
-/// amplifier and sensor), `UPDATES` whether the amplifier is updated several times in a period.
+/// `WHOLE` is the number of [whole samples](crate::latency::Latency::whole_samples) in the scene's output
+/// delay, `LAGS` the number of [lags](crate::latency::Latency::trails) of amplifier and sensor, where a lag in
+/// a range counts twice, `UPDATES` whether the amplifier is updated several times in a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matched<E, const WHOLE: usize = 0, const LAGS: usize = 0, const UPDATES: bool = false> {
     /// The environment.

@@ -30,9 +30,9 @@ pub enum Memory {
     None,
     /// Those for the latency in the parameters of [`Matched`].
     Of {
-        /// Whole samples of the output delay.
+        /// [Whole samples](Latency::whole_samples) of the output delay.
         whole: usize,
-        /// The number of lags, of amplifier and sensor.
+        /// The number of [lags](Latency::trails) of amplifier and sensor, where a lag in a range counts twice.
         lags: usize,
         /// Whether the amplifier is updated several times in a period.
         updates: bool,
@@ -49,14 +49,11 @@ impl Memory {
             Self::None => !is_matched,
             Self::Any => true,
             Self::Of { whole, lags, updates } => {
-                let needed = match latency.actuator_updates {
-                    0 => (latency.torque_delay().middle() / period) as usize,
-                    updates => latency.nearest_update(period) as usize / updates as usize,
-                };
-                let lagging = !latency.actuator_lag.is_zero() as usize
-                    + !latency.sensor_lag.is_zero() as usize;
                 let is_updated = latency.actuator_updates != 0;
-                is_matched && needed == whole && lagging == lags && is_updated == updates
+                is_matched
+                    && latency.whole_samples(period) == whole
+                    && latency.trails() == lags
+                    && is_updated == updates
             }
         }
     }

@@ -397,6 +397,7 @@ mod tests {
     fn setting() -> LawContext {
         LawContext {
             period: 1e-3,
+            worst_period: None,
             damping: 0.022,
             passivity: 0.022,
             coupling: Coupling::Rigid,

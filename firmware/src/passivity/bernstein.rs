@@ -45,6 +45,14 @@ impl Precision {
         Self { border, ..Self::TIGHT }
     }
 
+    /// The same for a function that is smaller by this factor.
+    pub const fn scaled(&self, factor: Interval) -> Self {
+        if !self.border.is_finite() {
+            return *self;
+        }
+        Self { border: self.border.mul(factor), ..*self }
+    }
+
     /// A width relative to the minimum's magnitude.
     pub const fn within(tolerance: f64) -> Self {
         Self { tolerance: tolerance.max(TOLERANCE), ..Self::TIGHT }

@@ -19,6 +19,8 @@ mod examples;
 mod failures;
 mod foreign;
 mod interval;
+mod jitter;
+mod jitter_conditions;
 mod knob_modes;
 mod lagging;
 mod latency;

@@ -8,7 +8,7 @@ use haptic_servo::parameter::Parameter;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::passivity::polynomial::Polynomial;
 use haptic_servo::passivity::transfer::{Transfer, Unbuildable};
-use haptic_servo::scene::{Coupling, Scene};
+use haptic_servo::scene::{Coupling, Scene, Timing};
 use nalgebra::Complex;
 
 use super::eigenvalues::eigenvalues;
@@ -37,8 +37,10 @@ fn compliance(scene: &Scene) -> Result<Response, Unbuildable> {
         Coupling::Rigid => constant(0.0),
         Coupling::Spring { stiffness } => constant(1.0 / stiffness),
         Coupling::Matched => {
-            let (period, delta) = (scene.timing.period, scene.device.passivity());
-            let matched = MatchedCoupling::of(period, delta, &scene.latency, Format::F64);
+            let Timing { period, worst_period } = scene.timing;
+            let delta = scene.device.passivity();
+            let matched =
+                MatchedCoupling::of(period, worst_period, delta, &scene.latency, Format::F64);
             let (numerator, denominator) =
                 matched.and_then(|matched| matched.transfer()).ok_or(Unbuildable::OutOfRange)?;
             Response::new(Transfer::new(numerator, denominator))

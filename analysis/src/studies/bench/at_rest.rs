@@ -118,13 +118,11 @@ mod tests {
     use super::*;
     use crate::program::STIFFEST;
 
-    /// Spring and coupling in a row, with what counts that are read late take of the device's damping.
+    /// Spring and coupling in a row, with what counts that are read late make the coupling softer by.
     fn predicted() -> f64 {
         let (delta, period) = (0.022, 1e-3);
         let (delay, lag, jitter) = (5e-6, 53.0517e-6, 1e-6);
-        let share = f64::sqrt(jitter / period);
-        let coupling =
-            (period + delay + lag) / (2.0 * delta * (1.0 - share)) + jitter / (2.0 * delta * share);
+        let coupling = (period + delay + lag + 3.0 * jitter) / (2.0 * delta);
         1.0 / (1.0 / 2400.0 + coupling)
     }
 
@@ -133,7 +131,7 @@ mod tests {
     #[test]
     fn the_stiffest_spring_is_as_stiff_as_certified_and_comes_to_rest() {
         let predicted = predicted();
-        assert!((38.5..38.57).contains(&predicted), "{predicted}");
+        assert!((40.7..40.8).contains(&predicted), "{predicted}");
         let friction = friction_to_rest(&STIFFEST);
         assert!((0.002..0.004).contains(&friction), "{friction}");
         let transducers = &STIFFEST.transducers;
@@ -148,10 +146,12 @@ mod tests {
                 (leaning.torque - predicted * leaning.angle).abs() <= 0.5 * code,
                 "{leaning:?}"
             );
-            // The encoder shows the whole counts below an angle.
+            // The encoder shows the whole counts below an angle; in motion over edges their mean is that of
+            // the times between the edges, which may all be near one end.
             let angle = TORQUE / predicted;
             let off = angle - (leaning.angle + 0.5 * count);
-            assert!(off.abs() <= 0.5 * count + friction / predicted, "{off} {leaning:?}");
+            let moved = 0.5 * f64::from(1 + leaning.counts) * count;
+            assert!(off.abs() <= moved + friction / predicted, "{off} {leaning:?}");
             assert!(free.angle.abs() <= count + friction / predicted, "{free:?}");
         }
     }

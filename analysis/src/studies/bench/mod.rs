@@ -16,8 +16,8 @@ use std::time::Instant;
 
 use crate::latency_limits::{lag_of, largest_spring};
 use crate::stability_map::{Family, Map, MapError};
-use haptic_servo::certificate::assess;
-use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::certificate::{PassivityProblem, assess};
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde::Serialize;
 
@@ -159,6 +159,22 @@ pub fn lagging_springs() -> (f64, f64) {
     (largest_spring(&device, 1e-3, early, 0), largest_spring(&device, 1e-3, Latency::NONE, 2))
 }
 
+/// The part of the device's passivity that certified springs may need behind the matched coupling, where
+/// torques or counts deviate by up to a hundredth of a period from tick to tick.
+pub fn spring_with_jitter() -> f64 {
+    let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+    let scene = Scene {
+        device,
+        timing: Timing { period: 1e-3, worst_period: None },
+        coupling: Coupling::Matched,
+        environment: Environment::DelayedSpring(Wall::spring(20.0, 1)),
+        latency: Latency { output_jitter: 1e-5, ..Latency::delayed(1e-4) },
+        torque_limit: Some(1.0),
+    };
+    let limit = PassivityProblem::of(&scene).ok().and_then(|posed| posed.limit());
+    limit.map_or(0.0, |limit| limit.lo() / device.damping)
+}
+
 /// The median of some values; 0 without values.
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
@@ -259,6 +275,13 @@ mod tests {
         for scene in &scenes {
             assert!(assess(scene).alpha.is_some(), "{scene:?}");
         }
+    }
+
+    /// Equation 55: torques in a window of two hundredths of a period.
+    #[test]
+    fn a_jitter_costs_the_width_of_its_window() {
+        let left = spring_with_jitter();
+        assert!(left >= 0.98 && (left * 1.02 - 1.0).abs() < 1e-9, "{left}");
     }
 
     #[test]

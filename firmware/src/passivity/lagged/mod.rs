@@ -189,6 +189,28 @@ impl SampledResponse {
         Self { ripple: Series::constant(ripple), ..self }
     }
 
+    /// The response `T z^-(whole + 1 - later) (z / (z - 1) - absorbed / (z^later lag))`, with the ripple that
+    /// makes it as large as `T / (z - 1)`; `None` beyond the degrees of a polynomial.
+    pub const fn absorbed(
+        whole: usize,
+        later: usize,
+        absorbed: &Polynomial,
+        lag: Polynomial,
+    ) -> Option<Self> {
+        let (Some(all), Some(some)) =
+            (lag.shifted_up(later + 1), absorbed.times_unit_root(UnitRoot::Plus, 1))
+        else {
+            return None;
+        };
+        let shift = -1 - later as i32;
+        let Some(cross) = Series::real_part(Kernel::AtOne, shift, absorbed, &lag) else {
+            return None;
+        };
+        let bracket = all.plus(&some.scaled(Interval::ONE.neg()));
+        let ripple = Series::ZERO.minus(&cross).minus(&Series::squared_magnitude(absorbed));
+        Some(Self { whole: whole as i32, bracket, lag, ripple })
+    }
+
     /// `D / T^2` at `c = cos(theta)`.
     pub const fn ripple_at(&self, c: f64) -> Interval {
         let c = Interval::exact(c);

@@ -49,10 +49,32 @@ impl SampledLag {
         near.sub(far).sub(Interval::ONE).div(Interval::exact(6.0 * self.updates))
     }
 
+    /// The integral of the rest of a step from a time in periods on, which is not negative.
+    ///
+    /// From the update before that time on the rest is a straight line. Computed for the lower end of the
+    /// time: the rest is at most 1.
+    #[inline(never)]
+    pub const fn held_after(&self, time: Interval) -> Interval {
+        let from = Interval::exact(time.lo().max(0.0)).mul(Interval::exact(self.updates));
+        let update = from.lo() as u32;
+        let part = from.sub(Interval::exact(update as f64));
+        let within = part.and(Interval::new(0.0, 1.0));
+        let beyond = Interval::exact((part.hi() - 1.0).max(0.0))
+            .div(Interval::exact(self.updates))
+            .add(Interval::exact(time.hi()).sub(Interval::exact(time.lo())));
+        let sunk = Interval::ONE.sub(self.left).mul(within.mul(within)).half();
+        let passed = within.sub(sunk).div(Interval::exact(self.updates));
+        let held = self.after_updates(update).mul(self.held().sub(passed));
+        held.sub(Interval::new(0.0, beyond.hi().max(0.0)))
+    }
+
     /// The rest of a step after a time in periods that is a whole number of updates.
     #[inline(never)]
     pub const fn after(&self, time: Interval) -> Interval {
-        let mut updates = (time.midpoint() * self.updates + 0.5) as u32;
+        self.after_updates((time.midpoint() * self.updates + 0.5) as u32)
+    }
+
+    const fn after_updates(&self, mut updates: u32) -> Interval {
         let (mut power, mut square) = (Interval::ONE, self.left);
         while updates > 0 {
             if updates & 1 == 1 {

@@ -103,3 +103,30 @@ fn springs_have_their_closed_form() {
         assert!(delay != 0.5 || (limit - 0.9443).abs() < 1e-4);
     }
 }
+
+/// The integral of the rest of a step, added up over straight lines.
+#[test]
+fn what_a_sampled_lag_holds_is_the_integral_of_its_step() {
+    let exact = Interval::exact;
+    for (updates, tau) in [(1_u16, 0.3_f64), (4, 0.2), (7, 2.0)] {
+        let n = f64::from(updates);
+        let left = (-1.0 / (n * tau)).exp();
+        let rest = |y: f64| {
+            let update = (y * n).floor();
+            left.powf(update) * (1.0 - (1.0 - left) * (y * n - update))
+        };
+        let lag = SampledLag::of(updates, exact(tau));
+        for from in [0.0, 0.1, 0.25, 0.6, 1.0, 2.37] {
+            const PARTS: i32 = 400_000;
+            let step = 40.0 / f64::from(PARTS);
+            let sum: f64 =
+                (0..PARTS).map(|i| step * rest(from + step * (f64::from(i) + 0.5))).sum();
+            let found = lag.held_after(exact(from));
+            assert!(
+                (found.midpoint() - sum).abs() < 1e-8,
+                "{updates} {tau} {from}: {found:?} {sum}"
+            );
+            assert!(found.hi() - found.lo() < 1e-14 * (1.0 + found.hi()), "{found:?}");
+        }
+    }
+}

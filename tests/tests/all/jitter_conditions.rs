@@ -1,0 +1,174 @@
+//! The conditions for linear scenes whose delay deviates from tick to tick (theory, equations 42, 57 and 58),
+//! at angles of the circle and summed over the aliases, compared with the largest wall that is certified.
+
+use std::f64::consts::{PI, SQRT_2, TAU};
+
+use haptic_servo::certificate::PassivityProblem;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use nalgebra::Complex;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use tests::scenes::log_uniform;
+
+const ALIASES: i32 = 300;
+const ANGLES: usize = 250;
+/// Relative error of a largest factor: the aliases that are left out, the angles between, and the `D` of
+/// equation 58, which the program does not make smaller.
+const TOLERANCE: f64 = 0.012;
+
+/// A loop with period and passivity 1.
+#[derive(Clone, Copy, Debug)]
+struct Loop {
+    stiffness: f64,
+    damping: f64,
+    whole: usize,
+    coupling: Option<f64>,
+    delay: f64,
+    lag: f64,
+    jitter: f64,
+}
+
+/// What does not depend on the wall, at one angle.
+struct At {
+    z: Complex<f64>,
+    g: Complex<f64>,
+    d: f64,
+    in_window: Complex<f64>,
+}
+
+impl Loop {
+    fn draw(rng: &mut ChaCha8Rng) -> Self {
+        let jitter = [0.002, 0.02, 0.1, 0.3, 0.45][rng.random_range(0..5)];
+        Self {
+            stiffness: log_uniform(rng, 0.1, 2.0),
+            damping: if rng.random_bool(0.5) { 0.0 } else { rng.random_range(0.0..0.8) },
+            whole: rng.random_range(0..=2),
+            coupling: if rng.random_bool(0.5) { None } else { Some(log_uniform(rng, 0.3, 4.0)) },
+            delay: jitter + [0.0, 0.3, 1.0][rng.random_range(0..3)],
+            lag: if rng.random_bool(0.4) { 0.0 } else { log_uniform(rng, 0.02, 1.5) },
+            jitter,
+        }
+    }
+
+    fn scene(&self, factor: f64) -> Scene {
+        Scene {
+            device: Device { inertia: 1.0, damping: 1.0, passivity: None },
+            timing: Timing { period: 1.0, worst_period: None },
+            coupling: match self.coupling {
+                Some(stiffness) => Coupling::Spring { stiffness },
+                None => Coupling::Rigid,
+            },
+            environment: Environment::DamperWall(Wall {
+                damping: factor * self.damping,
+                ..Wall::spring(factor * self.stiffness, self.whole)
+            }),
+            latency: Latency { output_jitter: self.jitter, ..Latency::delayed(self.delay) }
+                .with_actuator_lag(self.lag),
+            torque_limit: None,
+        }
+    }
+
+    fn wall(&self, factor: f64, z: Complex<f64>) -> Complex<f64> {
+        z.powi(-(self.whole as i32))
+            * factor
+            * (self.stiffness + self.damping * (Complex::new(1.0, 0.0) - 1.0 / z))
+    }
+
+    /// `1 + E V`, whose zeros are the controller's poles.
+    fn closed(&self, factor: f64, z: Complex<f64>) -> Complex<f64> {
+        1.0 + self.wall(factor, z) * self.coupling.map_or(0.0, |stiffness| 1.0 / stiffness)
+    }
+
+    fn controller(&self, factor: f64, z: Complex<f64>) -> Complex<f64> {
+        self.wall(factor, z) / self.closed(factor, z)
+    }
+
+    /// Whether the controller has its poles inside of the circle: `1 + E V` does not turn around 0 on it.
+    fn is_stable(&self, factor: f64) -> bool {
+        let on = |n: i32| self.closed(factor, Complex::from_polar(1.0, PI * f64::from(n) / 4000.0));
+        let turned: f64 = (0..4000).map(|n| (on(n + 1) / on(n)).arg()).sum();
+        turned.abs() < 1.0
+    }
+
+    /// The integral of the rest of a step, from a time after its beginning on.
+    fn left(&self, time: f64) -> f64 {
+        if time <= 0.0 {
+            self.lag - time
+        } else if self.lag > 0.0 {
+            self.lag * (-time / self.lag).exp()
+        } else {
+            0.0
+        }
+    }
+
+    fn at(&self, theta: f64) -> At {
+        let z = Complex::from_polar(1.0, theta);
+        let (mut g, mut held, mut sampled) = (Complex::new(0.0, 0.0), 0.0, 0.0);
+        for k in -ALIASES..=ALIASES {
+            let jw = Complex::new(0.0, theta + TAU * f64::from(k));
+            let h = (1.0 - 1.0 / z) / jw * (-jw * self.delay).exp() / (1.0 + jw * self.lag);
+            g += h / jw;
+            held += h.norm_sqr();
+            sampled += 1.0 / jw.norm_sqr();
+        }
+        let [early, late] = [self.delay - self.jitter, self.delay + self.jitter];
+        let width = 1.0 + 2.0 * self.jitter;
+        let mut taken = Complex::new(0.0, 0.0);
+        for m in 0..200 {
+            let place = f64::from(m);
+            let tap = self.left(place - 1.0 - late) - self.left(place - early);
+            taken += tap / width * z.powi(-m);
+        }
+        At { z, g, d: held * sampled - g.norm_sqr(), in_window: z / (z - 1.0) - taken }
+    }
+
+    /// Whether one of the conditions holds at all angles.
+    fn passes(&self, factor: f64, angles: &[At]) -> bool {
+        let h = self.jitter;
+        let all = |condition: &dyn Fn(Complex<f64>, &At) -> bool| {
+            angles.iter().all(|at| condition(self.controller(factor, at.z), at))
+        };
+        let left = 1.0 / (1.0 + 2.0 * h);
+        let in_window = all(&|controller, at| {
+            let over = 1.0 / (at.z - 1.0).norm_sqr() - at.in_window.norm_sqr();
+            left + (controller * at.in_window).re >= over * controller.norm_sqr() / (4.0 * left)
+        });
+        let ripple = h * (4.0 * SQRT_2 + 1.0);
+        let of_means = all(&|controller, at| {
+            let needed = (at.d + ripple) * controller.norm_sqr() / 4.0;
+            1.0 - h / SQRT_2 + (controller * at.g).re >= needed
+        });
+        let share = 0.5 * h.sqrt();
+        let of_work = all(&|controller, at| {
+            let needed = at.d / (4.0 * (1.0 - share)) + h / (4.0 * share);
+            1.0 - share + (controller * at.g).re >= needed * controller.norm_sqr()
+        });
+        self.is_stable(factor) && (in_window || of_means || of_work)
+    }
+}
+
+/// The largest factor of a wall that passes, if all smaller ones do.
+fn largest(passes: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (1e-3, 20.0);
+    while high / low > 1.001 {
+        let middle = f64::sqrt(low * high);
+        if passes(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
+#[test]
+fn the_largest_wall_is_that_of_the_best_condition() {
+    let mut rng = ChaCha8Rng::seed_from_u64(57);
+    for _ in 0..80 {
+        let drawn = Loop::draw(&mut rng);
+        let angles: Vec<_> =
+            (1..=ANGLES).map(|n| drawn.at(PI * n as f64 / ANGLES as f64)).collect();
+        let wanted = largest(|factor| drawn.passes(factor, &angles));
+        let found = largest(|factor| {
+            PassivityProblem::of(&drawn.scene(factor)).is_ok_and(|posed| posed.is_certified())
+        });
+        assert!((found / wanted - 1.0).abs() < TOLERANCE, "{found} for {wanted}: {drawn:?}");
+    }
+}
