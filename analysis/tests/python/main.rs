@@ -6,12 +6,14 @@
 #[path = "../all/common/mod.rs"]
 mod common;
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode, Stdio};
+use std::path::Path;
+use std::process::{Command, ExitCode};
 
+use analysis::toolchain::python::{PythonEnvironment, finished};
+use analysis::toolchain::target_folder;
 use libtest_mimic::{Arguments, Trial};
 
-use self::common::{root, set_up_package, set_up_tool};
+use self::common::root;
 
 /// The tests of `agree.py`, each a process.
 const AGREE: [&str; 5] = ["certify", "simulate", "index", "stability_map", "refusals"];
@@ -30,12 +32,12 @@ fn main() -> ExitCode {
     // A list of the tests, or other tests, need no Python.
     let wanted = |name: &str| arguments.filter.as_ref().is_none_or(|part| name.contains(part));
     let looks = !arguments.list && AGREE.into_iter().chain([EXAMPLE, IGNORED]).any(wanted);
-    let environment = Environment::kept();
-    let missing = looks.then(|| environment.set_up()).and_then(Result::err);
+    let environment = PythonEnvironment::kept().unwrap();
+    let missing = looks.then(|| environment.set_up(&FROM_PYPI)).and_then(Result::err);
     if let Some(why) = &missing {
         eprintln!("skipped: tests/python runs the package for Python: {why}");
     } else if looks {
-        environment.install();
+        install(&environment);
     }
     let trial = |name: &'static str| {
         let run = move || {
@@ -57,90 +59,23 @@ fn run(name: &str) {
     }
 }
 
-/// A virtual environment of Python's.
-struct Environment(PathBuf);
-
-impl Environment {
-    /// Beside the builds, and kept, so that nothing is fetched a second time.
-    fn kept() -> Self {
-        Self(Path::new(env!("CARGO_TARGET_TMPDIR")).join("python"))
-    }
-
-    /// A program of it, to be started; other programs of it are found, too.
-    fn program(&self, name: &str) -> Command {
-        let folder = self.0.join(if cfg!(windows) { "Scripts" } else { "bin" });
-        let mut path = folder.clone().into_os_string();
-        if let Some(rest) = std::env::var_os("PATH") {
-            path.push(if cfg!(windows) { ";" } else { ":" });
-            path.push(rest);
-        }
-        let mut command = Command::new(folder.join(name));
-        command.env("PATH", path).env("MPLBACKEND", "Agg").env("PYTHONDONTWRITEBYTECODE", "1");
-        command.stdin(Stdio::null());
-        command
-    }
-
-    fn pip(&self, arguments: &[&str]) -> Command {
-        let mut pip = self.program("python");
-        // One try: without a network every further one takes its time, and fails, too.
-        pip.args(["-m", "pip", "--disable-pip-version-check", "--retries", "1", "install"]);
-        pip.args(["--quiet"]).args(arguments);
-        pip
-    }
-
-    /// Creates it, with the packages that the package needs.
-    ///
-    /// # Errors
-    /// Where there is no Python, or no PyPI.
-    fn set_up(&self) -> Result<(), String> {
-        set_up_tool("python3")?;
-        // Debian has the part that puts pip into an environment in a package of its own.
-        set_up_package("python3-venv", &["python3", "-c", "import ensurepip"])?;
-        if !self.0.join("pyvenv.cfg").exists() {
-            let made = finished(Command::new("python3").args(["-m", "venv"]).arg(&self.0));
-            made.map_err(|why| {
-                // An incomplete environment would lack pip the next time, too.
-                std::fs::remove_dir_all(&self.0).ok();
-                format!("python3 -m venv: {why}")
-            })?;
-        }
-        finished(&mut self.pip(&FROM_PYPI)).map_err(|why| format!("pip has no PyPI: {why}"))
-    }
-
-    /// Installs the package from this checkout as a user does, but compiled as tests are. The build tools are
-    /// in the environment, so that pip does not fetch them.
-    ///
-    /// # Panics
-    /// Where it cannot be installed.
-    fn install(&self) {
-        let package = root().join("analysis/python");
-        let mut pip = self.pip(&["--no-build-isolation", "--no-deps", "--force-reinstall"]);
-        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
-        pip.arg(&package).env("MATURIN_PEP517_ARGS", "--profile dev --locked");
-        pip.env("CARGO_TARGET_DIR", target);
-        finished(&mut pip).unwrap_or_else(|why| panic!("{}: {why}", package.display()));
-    }
-}
-
-/// Runs a program to its end.
+/// Installs the package from this checkout as a user does, but compiled as tests are. The build tools are
+/// in the environment, so that pip does not fetch them.
 ///
-/// # Errors
-/// The last lines of its output, if it fails.
-fn finished(command: &mut Command) -> Result<(), String> {
-    let output = command.output().map_err(|error| error.to_string())?;
-    if output.status.success() {
-        return Ok(());
-    }
-    let said = [output.stdout, output.stderr].concat();
-    let said = String::from_utf8_lossy(&said);
-    let last: Vec<&str> =
-        said.lines().rev().filter(|line| !line.trim().is_empty()).take(20).collect();
-    Err(last.into_iter().rev().collect::<Vec<_>>().join("\n"))
+/// # Panics
+/// Where it cannot be installed.
+fn install(environment: &PythonEnvironment) {
+    let package = root().join("analysis/python");
+    let mut pip = environment.pip_install();
+    pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]).arg(&package);
+    pip.env("MATURIN_PEP517_ARGS", "--profile dev --locked");
+    pip.env("CARGO_TARGET_DIR", target_folder().unwrap());
+    finished(&mut pip).unwrap_or_else(|why| panic!("{}: {why}", package.display()));
 }
 
 /// Runs a file of Python in a folder of its own; returns its output.
 fn python(folder: &Path, file: &str, arguments: &[&str]) -> String {
-    let mut python = Environment::kept().program("python");
+    let mut python = PythonEnvironment::kept().unwrap().program("python");
     python.arg(root().join(file)).args(arguments).current_dir(folder);
     let output = python.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

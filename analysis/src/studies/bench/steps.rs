@@ -1,67 +1,209 @@
-//! The cost of a step of the exact method, compared with a loop written by hand for its scene.
+//! The cost of a step of the exact method, and the same motion by peers.
 
 use std::hint::black_box;
+use std::process::Command;
 use std::time::Instant;
 
 use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-use super::{ROUNDS, median};
+use super::figure::{Pair, median};
+use super::peer::{Peer, PeerError};
 use crate::device::Motion;
 use crate::simulation::{Experiment, Integration, Simulator, Trajectory};
+use crate::toolchain::target_folder;
 
-/// Steps of a run.
+/// Steps of a run; the same number is in `steps.c`.
 pub const STEPS: usize = 10_000;
 /// Near the standard coupling's limit, so that the motion lasts for all steps.
 const STIFFNESS: f64 = 43.999;
+const COUPLING: f64 = 44.0;
+const PERIOD: f64 = 1e-3;
+const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+/// The position in rad from which the device is released.
+const START: f64 = 1e-3;
+/// Largest difference between a peer's values and ours, as a part of the largest position, velocity or torque:
+/// the sums have other orders.
+const ROUNDING: f64 = 1e-10;
+
+/// The same motion in plain C.
+const C_SOURCE: &str = include_str!("steps.c");
+/// The C compiler, which a linker of Rust's programs brings.
+const C_COMPILER: &str = "cc";
+/// Its optimisation. Without contraction it computes the same operations on every machine.
+const C_OPTIONS: [&str; 2] = ["-O2", "-ffp-contract=off"];
 
 /// A wall of the paper's device, released from a millirad.
 pub fn experiment(damping: f64, delay: usize, torque_limit: Option<f64>) -> Experiment {
-    let stiffness = STIFFNESS - 2.0 * damping / 1e-3;
+    let stiffness = STIFFNESS - 2.0 * damping / PERIOD;
     let wall = Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false };
     let scene = Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 1e-3, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
+        device: DEVICE,
+        timing: Timing { period: PERIOD, worst_period: None },
+        coupling: Coupling::Spring { stiffness: COUPLING },
         environment: Environment::DamperWall(wall),
         latency: Latency::NONE,
         torque_limit,
     };
-    let start = Motion { position: 1e-3, velocity: 0.0 };
+    let start = Motion { position: START, velocity: 0.0 };
     Experiment { samples: STEPS, start, ..Experiment::still(&scene) }
 }
 
-/// Mass-damper and delayed spring, states in variables, samples recorded.
-pub fn by_hand(out: &mut Trajectory) {
-    let (m, b, t, k, coupling) = (2.2e-5, 0.022, 1e-3, STIFFNESS, 44.0);
-    let decay = f64::exp(-b * t / m);
+/// The numbers of that motion for a peer: by hand for a mass and a damper, on an undamped wall one sample late.
+pub fn numbers() -> [f64; 7] {
+    let Device { inertia: m, damping: b, .. } = DEVICE;
+    let decay = f64::exp(-b * PERIOD / m);
     let slide = (1.0 - decay) * m / b;
-    let (to_position, to_velocity) = ((t - slide) / b, (1.0 - decay) / b);
-    let (mut x, mut v, mut due) = (1e-3, 0.0, 0.0);
-    let samples = out.position.iter_mut().zip(&mut out.velocity).zip(&mut out.torque);
-    for ((position, velocity), torque) in samples {
-        (*position, *velocity, *torque) = (x, v, due);
-        let next = k * (x - due / coupling);
-        (x, v) = (x + slide * v - to_position * due, decay * v - to_velocity * due);
-        due = next;
+    let (to_position, to_velocity) = ((PERIOD - slide) / b, (1.0 - decay) / b);
+    [slide, decay, to_position, to_velocity, STIFFNESS, 1.0 / COUPLING, START]
+}
+
+/// The exact method on that wall.
+pub struct Steps {
+    simulator: Simulator,
+    out: Trajectory,
+}
+
+impl Steps {
+    /// Ready to run.
+    pub fn ready() -> Self {
+        let simulator = Simulator::new(&experiment(0.0, 1, None), Integration::default())
+            .expect("a wall has a difference equation");
+        Self { simulator, out: Trajectory::of_length(STEPS) }
+    }
+
+    /// Time of a step in ns. The second run counts, so that the caches are filled.
+    fn nanoseconds(&mut self) -> f64 {
+        self.simulator.fill(black_box(&mut self.out));
+        let start = Instant::now();
+        self.simulator.fill(black_box(&mut self.out));
+        start.elapsed().as_secs_f64() * 1e9 / STEPS as f64
+    }
+
+    /// Median time of a step in ns on one core.
+    pub fn time(&mut self, rounds: usize) -> f64 {
+        median((0..rounds).map(|_| self.nanoseconds()).collect())
+    }
+
+    /// Times of a step in ns, here and by a peer, whose motion must be the same.
+    ///
+    /// # Errors
+    /// If the peer fails, or its motion differs by more than rounding.
+    pub fn beside(
+        &mut self,
+        rounds: usize,
+        name: &'static str,
+        peer: &mut Peer,
+        [values, seconds]: [&str; 2],
+    ) -> Result<Pair, PeerError> {
+        self.simulator.fill(&mut self.out);
+        same_motion(name, &peer.numbers(values)?, &self.out)?;
+        Pair::in_turns(
+            rounds,
+            || Ok(self.nanoseconds()),
+            || Ok(peer.number(seconds)? * 1e9 / STEPS as f64),
+        )
     }
 }
 
-/// Median times in nanoseconds of one step on one core: of the exact method on a wall of degree
-/// 1, and of the loop by hand, in turns.
-pub fn step_times() -> (f64, f64) {
-    let mut simulator = Simulator::new(&experiment(0.0, 1, None), Integration::default())
-        .expect("a wall has a difference equation");
-    let mut out = Trajectory::of_length(STEPS);
-    let time = |run: &mut dyn FnMut(&mut Trajectory), out: &mut Trajectory| {
-        let start = Instant::now();
-        run(black_box(out));
-        start.elapsed().as_secs_f64() * 1e9 / STEPS as f64
-    };
-    let (mut exact, mut hand) = (Vec::new(), Vec::new());
-    for _ in 0..ROUNDS {
-        exact.push(time(&mut |out| simulator.fill(out), &mut out));
-        hand.push(time(&mut |out| by_hand(out), &mut out));
+/// # Errors
+/// The first value of a peer that is not ours.
+fn same_motion(peer: &'static str, theirs: &[f64], ours: &Trajectory) -> Result<(), PeerError> {
+    let ours = [&ours.position, &ours.velocity, &ours.torque];
+    let all: Vec<_> = ours
+        .into_iter()
+        .flat_map(|values| {
+            let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            values.iter().map(move |&value| (value, ROUNDING * largest))
+        })
+        .collect();
+    if theirs.len() != all.len() {
+        let answer = format!("{} numbers instead of {}", theirs.len(), all.len());
+        return Err(PeerError::Answer { request: "values".to_owned(), answer });
     }
-    (median(exact), median(hand))
+    let mut pairs = theirs.iter().zip(all).enumerate();
+    let other = pairs.find(|(_, (theirs, (ours, off)))| !((**theirs - ours).abs() <= *off));
+    match other {
+        Some((index, (&theirs, (ours, _)))) => {
+            Err(PeerError::OtherNumbers { peer, index, theirs, ours })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Compiles `steps.c` in the folder of builds, starts it, and returns it with its compiler.
+///
+/// # Errors
+/// If there is no C compiler, or it does not compile.
+pub fn in_c() -> Result<(Peer, String), PeerError> {
+    let missing = |why: String| PeerError::Unavailable(format!("{C_COMPILER}: {why}"));
+    let run = |command: &mut Command| {
+        let output = command.output().map_err(|error| missing(error.to_string()))?;
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        match output.status.success() {
+            true => Ok(said),
+            false => Err(missing(String::from_utf8_lossy(&output.stderr).into_owned())),
+        }
+    };
+    let version = run(Command::new(C_COMPILER).arg("--version"))?;
+    let target = target_folder().map_err(|error| missing(error.to_string()))?;
+    // Removed at the end: a running program keeps its file.
+    let folder = tempfile::Builder::new().prefix("bench-").tempdir_in(target)?;
+    let [source, program] = ["steps.c", "steps"].map(|name| folder.path().join(name));
+    std::fs::write(&source, C_SOURCE)?;
+    run(Command::new(C_COMPILER).args(C_OPTIONS).arg("-o").arg(&program).arg(&source))?;
+    let work = numbers().map(|number| format!("{number:?}")).join(" ");
+    let peer = Peer::start(&mut Command::new(&program), &work)?;
+    let version = version.lines().next().unwrap_or(C_COMPILER);
+    Ok((peer, format!("plain C, {version}, {}, same run", C_OPTIONS[0])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn motion() -> Trajectory {
+        let mut steps = Steps::ready();
+        steps.simulator.fill(&mut steps.out);
+        steps.out
+    }
+
+    /// The same equation in this language, in the order of operations of the C: every bit of all samples.
+    #[test]
+    fn the_c_peer_computes_the_motion_bit_for_bit() {
+        let [slide, decay, to_position, to_velocity, stiffness, compliance, start] = numbers();
+        let (mut peer, version) = in_c().unwrap();
+        assert!(version.starts_with("plain C, ") && version.len() > 20, "{version}");
+        let theirs = peer.numbers("values").unwrap();
+        assert_eq!(theirs.len(), 3 * STEPS);
+        let (mut x, mut v, mut due) = (start, 0.0, 0.0);
+        for k in 0..STEPS {
+            let found = [theirs[k], theirs[STEPS + k], theirs[2 * STEPS + k]];
+            assert_eq!(found.map(f64::to_bits), [x, v, due].map(f64::to_bits), "{k}");
+            let next = stiffness * (x - due * compliance);
+            (x, v) = (x + slide * v - to_position * due, decay * v - to_velocity * due);
+            due = next;
+        }
+        same_motion("C", &theirs, &motion()).unwrap();
+        assert!(peer.number("seconds").unwrap() > 0.0);
+    }
+
+    /// The work is compared before the time: a peer with one other value, or fewer values, is not measured.
+    #[test]
+    fn another_motion_is_an_error() {
+        let (ours, mut theirs) = (motion(), in_c().unwrap().0.numbers("values").unwrap());
+        // The motion lasts.
+        let late =
+            ours.torque[STEPS - 100..].iter().fold(0.0, |most: f64, one| most.max(one.abs()));
+        assert!(late > 1e-3, "{late}");
+        theirs[25_000] += 1e-9;
+        let error = same_motion("C", &theirs, &ours).unwrap_err().to_string();
+        assert!(error.starts_with("C computes ") && error.ends_with("value 25000"), "{error}");
+        theirs.pop();
+        let error = same_motion("C", &theirs, &ours).unwrap_err().to_string();
+        assert!(error.contains("29999 numbers instead of 30000"), "{error}");
+        theirs[25_000] = f64::NAN;
+        theirs.push(0.0);
+        assert!(same_motion("C", &theirs, &ours).is_err());
+    }
 }
