@@ -28,7 +28,7 @@ use crate::studies::bench::page::{self, Repetitions, ScenePage};
 use crate::studies::bench::parts::{self, Inventory};
 use crate::studies::bench::profile;
 use crate::studies::bench::python::{JUDGES, PythonPeers, SIMULATOR};
-use crate::studies::bench::steps::{Steps, in_c};
+use crate::studies::bench::steps::{in_c, step_time, steps_beside};
 use crate::studies::bench::{self, CORE_CLOCK, Rounds};
 use crate::text_table::markdown_table;
 use crate::toolchain::{self, BoardModel, NumberFormat, Toolchain, Tools, TorqueOutput};
@@ -296,11 +296,10 @@ fn beside_peers(
             figures.push(verdict.again_beside(name, measured)?);
         }
     }
-    let mut steps = Steps::ready();
-    let (name, time) = ("exact simulation, a step", steps.time(rounds.own));
+    let (name, time) = ("exact simulation, a step", step_time(rounds.own));
     let step = Figure::new(name, time, "ns", Some(STEP_BUDGET), "budget, 100 M steps/s");
     let in_c = in_c().and_then(|(mut peer, source)| {
-        Ok((steps.beside(rounds.own, "C", &mut peer, ["values", "seconds"])?, source))
+        Ok((steps_beside(rounds.own, "C", &mut peer, ["values", "seconds"])?, source))
     });
     figures.extend([step.clone(), step.again_beside("C", in_c)?]);
     if let Some(peers) = &mut peers {

@@ -10,7 +10,7 @@ use serde_json::json;
 
 use super::figure::Pair;
 use super::peer::{Peer, PeerError};
-use super::steps::{self, STEPS, Steps};
+use super::steps::{STEPS, numbers, steps_beside};
 use crate::toolchain::python::{PythonEnvironment, finished};
 
 const SCRIPT: &str = include_str!("peers.py");
@@ -100,7 +100,7 @@ impl PythonPeers {
         let about = peer.ask(&format!("about {SIMULATOR}"))?;
         let requests = ["values", "seconds"].map(|request| format!("{request} {SIMULATOR}"));
         let requests = [&*requests[0], &requests[1]];
-        let pair = Steps::ready().beside(rounds, SIMULATOR, peer, requests)?;
+        let pair = steps_beside(rounds, SIMULATOR, peer, requests)?;
         Ok((pair, format!("{about}, same run")))
     }
 }
@@ -118,7 +118,7 @@ fn work(scenes: &[Scene]) -> String {
         "period": scene.map(|scene| scene.timing.period),
         "delta": scene.map(|scene| scene.device.damping),
         "environments": environments.collect::<Vec<_>>(),
-        "motion": steps::numbers(),
+        "motion": numbers(),
         "steps": STEPS,
     })
     .to_string()

@@ -58,52 +58,43 @@ pub fn numbers() -> [f64; 7] {
     [slide, decay, to_position, to_velocity, STIFFNESS, 1.0 / COUPLING, START]
 }
 
-/// The exact method on that wall.
-pub struct Steps {
-    simulator: Simulator,
-    out: Trajectory,
+/// The exact method on that wall, from its start.
+fn simulator() -> Simulator {
+    Simulator::new(&experiment(0.0, 1, None), Integration::default())
+        .expect("a wall has a difference equation")
 }
 
-impl Steps {
-    /// Ready to run.
-    pub fn ready() -> Self {
-        let simulator = Simulator::new(&experiment(0.0, 1, None), Integration::default())
-            .expect("a wall has a difference equation");
-        Self { simulator, out: Trajectory::of_length(STEPS) }
-    }
+/// Time of a step in ns on one core. The second run counts, so that the caches are filled.
+fn nanoseconds(out: &mut Trajectory) -> f64 {
+    simulator().fill(black_box(out));
+    let mut simulator = simulator();
+    let start = Instant::now();
+    simulator.fill(black_box(out));
+    start.elapsed().as_secs_f64() * 1e9 / STEPS as f64
+}
 
-    /// Time of a step in ns. The second run counts, so that the caches are filled.
-    fn nanoseconds(&mut self) -> f64 {
-        self.simulator.fill(black_box(&mut self.out));
-        let start = Instant::now();
-        self.simulator.fill(black_box(&mut self.out));
-        start.elapsed().as_secs_f64() * 1e9 / STEPS as f64
-    }
+/// Median time of a step in ns on one core.
+pub fn step_time(rounds: usize) -> f64 {
+    let mut out = Trajectory::of_length(STEPS);
+    median((0..rounds).map(|_| nanoseconds(&mut out)).collect())
+}
 
-    /// Median time of a step in ns on one core.
-    pub fn time(&mut self, rounds: usize) -> f64 {
-        median((0..rounds).map(|_| self.nanoseconds()).collect())
-    }
-
-    /// Times of a step in ns, here and by a peer, whose motion must be the same.
-    ///
-    /// # Errors
-    /// If the peer fails, or its motion differs by more than rounding.
-    pub fn beside(
-        &mut self,
-        rounds: usize,
-        name: &'static str,
-        peer: &mut Peer,
-        [values, seconds]: [&str; 2],
-    ) -> Result<Pair, PeerError> {
-        self.simulator.fill(&mut self.out);
-        same_motion(name, &peer.numbers(values)?, &self.out)?;
-        Pair::in_turns(
-            rounds,
-            || Ok(self.nanoseconds()),
-            || Ok(peer.number(seconds)? * 1e9 / STEPS as f64),
-        )
-    }
+/// Times of a step in ns, here and by a peer with these requests for its values and its time; its motion must
+/// be the same.
+///
+/// # Errors
+/// If the peer fails, or its motion differs by more than rounding.
+pub fn steps_beside(
+    rounds: usize,
+    name: &'static str,
+    peer: &mut Peer,
+    [values, seconds]: [&str; 2],
+) -> Result<Pair, PeerError> {
+    let mut out = Trajectory::of_length(STEPS);
+    simulator().fill(&mut out);
+    same_motion(name, &peer.numbers(values)?, &out)?;
+    let theirs = || Ok::<_, PeerError>(peer.number(seconds)? * 1e9 / STEPS as f64);
+    Pair::in_turns(rounds, || Ok(nanoseconds(&mut out)), theirs)
 }
 
 /// # Errors
@@ -163,9 +154,9 @@ mod tests {
     use super::*;
 
     fn motion() -> Trajectory {
-        let mut steps = Steps::ready();
-        steps.simulator.fill(&mut steps.out);
-        steps.out
+        let mut out = Trajectory::of_length(STEPS);
+        simulator().fill(&mut out);
+        out
     }
 
     /// The same equation in this language, in the order of operations of the C: every bit of all samples.
