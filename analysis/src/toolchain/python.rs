@@ -51,11 +51,11 @@ impl PythonEnvironment {
         pip
     }
 
-    /// Creates it unless it is there, with packages from PyPI.
+    /// Creates it unless it is there.
     ///
     /// # Errors
-    /// The reason if there is no Python or no PyPI.
-    pub fn set_up(&self, packages: &[&str]) -> Result<(), String> {
+    /// The reason if there is no Python.
+    pub fn set_up(&self) -> Result<(), String> {
         set_up_tool("python3")?;
         // Debian has the part that puts pip into an environment in a package of its own.
         set_up_package("python3-venv", &["python3", "-c", "import ensurepip"])?;
@@ -67,7 +67,7 @@ impl PythonEnvironment {
                 format!("python3 -m venv: {why}")
             })?;
         }
-        finished(self.pip_install().args(packages)).map_err(|why| format!("pip has no PyPI: {why}"))
+        Ok(())
     }
 }
 

@@ -21,6 +21,9 @@ const AGREE: [&str; 5] = ["certify", "simulate", "index", "stability_map", "refu
 /// The test of `examples/map.py`.
 const EXAMPLE: &str = "the_example_draws_its_map";
 
+/// The benchmark beside packages of Python.
+const PEERS: &str = "peers_are_measured_in_the_same_run";
+
 /// The example without dependencies.
 const IGNORED: &str = "without_python_these_tests_are_ignored";
 
@@ -31,9 +34,13 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     // A list of the tests, or other tests, need no Python.
     let wanted = |name: &str| arguments.filter.as_ref().is_none_or(|part| name.contains(part));
-    let looks = !arguments.list && AGREE.into_iter().chain([EXAMPLE, IGNORED]).any(wanted);
+    let looks = !arguments.list && AGREE.into_iter().chain([EXAMPLE, PEERS, IGNORED]).any(wanted);
     let environment = PythonEnvironment::kept().unwrap();
-    let missing = looks.then(|| environment.set_up(&FROM_PYPI)).and_then(Result::err);
+    let fetch = || finished(environment.pip_install().args(FROM_PYPI));
+    let set_up = || {
+        environment.set_up().and_then(|()| fetch().map_err(|why| format!("pip has no PyPI: {why}")))
+    };
+    let missing = looks.then(set_up).and_then(Result::err);
     if let Some(why) = &missing {
         eprintln!("skipped: tests/python runs the package for Python: {why}");
     } else if looks {
@@ -47,13 +54,14 @@ fn main() -> ExitCode {
         let trial = Trial::test(name, run).with_ignored_flag(missing.is_some());
         if missing.is_some() { trial.with_kind("no python") } else { trial }
     };
-    let trials = AGREE.into_iter().chain([EXAMPLE, IGNORED]).map(trial).collect();
+    let trials = AGREE.into_iter().chain([EXAMPLE, PEERS, IGNORED]).map(trial).collect();
     libtest_mimic::run(&arguments, trials).exit_code()
 }
 
 fn run(name: &str) {
     match name {
         EXAMPLE => the_example_draws_its_map(),
+        PEERS => peers_are_measured_in_the_same_run(),
         IGNORED => without_python_these_tests_are_ignored(),
         _ => agrees(name),
     }
@@ -108,6 +116,41 @@ fn the_example_draws_its_map() {
     assert!((0.05..0.3).contains(&share), "{share}");
 }
 
+/// NumPy and SciPy have a build for every machine; for the others, the row has a ratio or the reason.
+fn peers_are_measured_in_the_same_run() {
+    let mut bench = common::program(&["bench", "--host", "--peers", "--quick", "--json"]);
+    // Without cargo, nothing is compiled.
+    let figures = common::answer(&bench.env("CARGO", "/nowhere").output().unwrap());
+    let row = |end: &str| {
+        let mut figures = figures.as_array().unwrap().iter();
+        figures.find(|figure| figure["name"].as_str().unwrap().ends_with(end)).unwrap()
+    };
+    const JUDGED: &str = "; of 45: 0 wrong, 0 undecided, same run";
+    for (peer, package, method) in [
+        ("numpy", "numpy ", ", companion matrix"),
+        ("slycot", "slycot ", ", AB13DD"),
+        ("python-control", "control ", ", get_input_ff_index"),
+        ("scipy", "scipy ", ", signal.dlsim"),
+    ] {
+        let row = row(&format!(": beside {peer}"));
+        let source = row["source"].as_str().unwrap();
+        match row["ratio"].as_f64() {
+            Some(ratio) => {
+                let [value, against] = ["value", "against"].map(|key| row[key].as_f64().unwrap());
+                assert!(ratio > 0.0 && (ratio - value / against).abs() < 1e-12, "{row}");
+                let judged = if peer == "scipy" { ", same run" } else { JUDGED };
+                let version = source.strip_prefix(package).expect(source);
+                assert!(version.starts_with(|first: char| first.is_ascii_digit()), "{source}");
+                assert!(version.ends_with(&format!("{method}{judged}")), "{source}");
+            }
+            None => {
+                assert!(["slycot", "python-control"].contains(&peer), "{row}");
+                assert!(source.contains(&format!("{peer} is not available: ")), "{row}");
+            }
+        }
+    }
+}
+
 /// They do not count as passed: runs this program again, with a path that has no programs.
 fn without_python_these_tests_are_ignored() {
     let this = std::env::current_exe().unwrap();
@@ -115,7 +158,7 @@ fn without_python_these_tests_are_ignored() {
     assert!(run.status.success(), "{run:?}");
     let (shown, said) =
         (String::from_utf8(run.stdout).unwrap(), String::from_utf8(run.stderr).unwrap());
-    assert_eq!(shown.matches("test [no python] ").count(), AGREE.len() + 2, "{shown}");
-    assert!(shown.contains("0 passed; 0 failed; 7 ignored"), "{shown}");
+    assert_eq!(shown.matches("test [no python] ").count(), AGREE.len() + 3, "{shown}");
+    assert!(shown.contains("0 passed; 0 failed; 8 ignored"), "{shown}");
     assert!(said.contains("skipped: ") && said.contains("apt install python3"), "{said}");
 }

@@ -87,14 +87,14 @@ impl Figure {
         Self { name, value, unit, against: budget, ratio: None, source }
     }
 
-    /// A figure with a peer of the same run.
+    /// A figure with a peer of the same run; the source says so.
     pub fn beside(
         name: impl Into<String>,
         pair: Pair,
         unit: &'static str,
         source: impl Into<String>,
     ) -> Self {
-        let ratio = Some(pair.ratio());
+        let (ratio, source) = (Some(pair.ratio()), format!("{}, same run", source.into()));
         Self { ratio, ..Self::new(name, pair.ours, unit, Some(pair.peers), source) }
     }
 
@@ -112,6 +112,7 @@ impl Figure {
         match measured {
             Ok((pair, source)) => Ok(Self::beside(name, pair, self.unit, source)),
             Err(PeerError::Unavailable(why)) => {
+                let why = why.lines().next().unwrap_or_default();
                 let source = format!("{}; {peer} is not available: {why}", self.source);
                 Ok(Self { name, source, ..self.clone() })
             }
@@ -160,7 +161,7 @@ mod tests {
     fn a_missing_peer_leaves_the_budget_and_no_ratio() {
         let alone = Figure::new("a step", 8.0, "ns", Some(10.0), "budget");
         assert_eq!(alone.ratio, None);
-        let missing = Err(PeerError::Unavailable("no cc".to_owned()));
+        let missing = Err(PeerError::Unavailable("no cc\n(a cause)".to_owned()));
         let row = alone.again_beside("C", missing).unwrap();
         assert_eq!((row.value, row.against, row.ratio), (8.0, Some(10.0), None));
         assert_eq!(row.source, "budget; C is not available: no cc");

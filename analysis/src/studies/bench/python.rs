@@ -33,7 +33,7 @@ impl PythonPeers {
     /// If Python is there and does not start.
     pub fn start(scenes: &[Scene], progress: impl Fn(&str)) -> Result<Self, PeerError> {
         let environment = PythonEnvironment::kept().map_err(|error| error.to_string());
-        let ready = environment.and_then(|python| python.set_up(&[]).map(|()| python));
+        let ready = environment.and_then(|python| python.set_up().map(|()| python));
         let python = match ready {
             Ok(python) => python,
             Err(why) => return Ok(Self(Err(why))),
@@ -88,7 +88,7 @@ impl PythonPeers {
         };
         let pair = Pair::in_turns(rounds, judged, || Ok(peer.number(&seconds)? * each))?;
         let of = scenes.len();
-        Ok((pair, format!("{about}, same run; of {of}: {wrong} wrong, {undecided} undecided")))
+        Ok((pair, format!("{about}; of {of}: {wrong} wrong, {undecided} undecided")))
     }
 
     /// The times of a step in ns, here and by a package.
@@ -101,7 +101,7 @@ impl PythonPeers {
         let requests = ["values", "seconds"].map(|request| format!("{request} {SIMULATOR}"));
         let requests = [&*requests[0], &requests[1]];
         let pair = steps_beside(rounds, SIMULATOR, peer, requests)?;
-        Ok((pair, format!("{about}, same run")))
+        Ok((pair, about))
     }
 }
 

@@ -146,7 +146,7 @@ pub fn in_c() -> Result<(Peer, String), PeerError> {
     let work = numbers().map(|number| format!("{number:?}")).join(" ");
     let peer = Peer::start(&mut Command::new(&program), &work)?;
     let version = version.lines().next().unwrap_or(C_COMPILER);
-    Ok((peer, format!("plain C, {version}, {}, same run", C_OPTIONS[0])))
+    Ok((peer, format!("plain C, {version}, {}", C_OPTIONS[0])))
 }
 
 #[cfg(test)]

@@ -252,7 +252,7 @@ fn compared(browser: &mut Page, repetitions: Repetitions) -> Result<[Figure; 2],
     )?;
     let name = format!("page: verdict, {} scenes, median", questions.len());
     Ok([
-        Figure::beside(name, pair, "us", "natively on one core, same run"),
+        Figure::beside(name, pair, "us", "natively on one core"),
         Figure::new(
             "page: verdict, WebAssembly over native",
             pair.ratio().get(),
