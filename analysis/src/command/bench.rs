@@ -88,6 +88,7 @@ const INTERRUPT_BUDGET: f64 = 150.0;
 const CORE_BUDGET: f64 = 15.0;
 /// Ticks per second for the share of the CPU.
 const TICK_RATE: f64 = 20e3;
+
 /// Largest number of instructions of a tick of the damper wall behind the matched coupling, in contact.
 const MATCHED_BUDGET: f64 = 50.0;
 
@@ -108,16 +109,17 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         arguments.answer.print(&scenes, |scenes| format!("{}\n", parts::table(scenes)))?;
         return Ok(CommandStatus::Success);
     }
-    if arguments.page {
-        let figures = about_pages(arguments.repetitions())?;
-        arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
-        return Ok(CommandStatus::Success);
-    }
-    if arguments.host {
-        let figures = on_host(arguments)?;
-        arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
-        return Ok(CommandStatus::Success);
-    }
+    let figures = match arguments {
+        Arguments { page: true, .. } => about_pages(arguments.repetitions())?,
+        Arguments { host: true, .. } => on_host(arguments)?,
+        _ => everything(arguments)?,
+    };
+    arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
+    Ok(CommandStatus::Success)
+}
+
+/// The figures of this machine, of the page, and of the programs on the emulated board.
+fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let mut figures = on_host(arguments)?;
@@ -138,8 +140,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     behind_matched(&toolchain, &mut figures)?;
     about_profiles(&toolchain, &mut figures)?;
     about_bridges(&toolchain, &mut figures)?;
-    arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
-    Ok(CommandStatus::Success)
+    Ok(figures)
 }
 
 /// The cost of the page of `haptic explore` in a browser.
@@ -489,7 +490,7 @@ const LIVE_COUPLING: f64 = 44.0;
 
 fn table(figures: &[Figure]) -> Table {
     let mut table =
-        markdown_table(["figure", "value", "unit", "against", "ratio", "which is"], [1, 3, 4]);
+        markdown_table(["figure", "value", "unit", "against", "ratio", "against what"], [1, 3, 4]);
     for figure in figures {
         let number =
             |value: Option<f64>| value.map_or_else(String::new, |value| significant(value, 4));

@@ -166,8 +166,7 @@ mod tests {
         assert_eq!((row.value, row.against, row.ratio), (8.0, Some(10.0), None));
         assert_eq!(row.source, "budget; C is not available: no cc");
         assert!(serde_json::to_value(&row).unwrap()["ratio"].is_null());
-        let broken =
-            Err(PeerError::Answer { request: "seconds".to_owned(), answer: "soon".to_owned() });
+        let broken = Err(PeerError::Wrong("another motion".to_owned()));
         assert!(alone.again_beside("C", broken).is_err());
     }
 }

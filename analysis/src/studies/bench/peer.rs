@@ -14,26 +14,9 @@ pub enum PeerError {
     /// It has ended, or cannot be reached.
     #[error("a peer of the benchmark ended: {0}")]
     Ended(#[from] io::Error),
-    /// It failed, or answered something else.
-    #[error("a peer of the benchmark answered {answer:?} to {request:?}")]
-    Answer {
-        /// The request.
-        request: String,
-        /// The answer.
-        answer: String,
-    },
-    /// It computes other numbers: its work is not equal.
-    #[error("{peer} computes {theirs} where this program computes {ours}, in value {index}")]
-    OtherNumbers {
-        /// The peer.
-        peer: &'static str,
-        /// Index of the value, counted from 0.
-        index: usize,
-        /// The peer's value.
-        theirs: f64,
-        /// The value here.
-        ours: f64,
-    },
+    /// It answered something else, or computes other numbers: its work is not equal.
+    #[error("a peer of the benchmark answered {0}")]
+    Wrong(String),
 }
 
 /// The beginning of the answer of a peer whose package is missing.
@@ -84,21 +67,16 @@ impl Peer {
     pub fn numbers(&mut self, request: &str) -> Result<Vec<f64>, PeerError> {
         let answer = self.ask(request)?;
         let numbers: Result<_, _> = answer.split_whitespace().map(str::parse).collect();
-        numbers.map_err(|_| PeerError::Answer { request: request.to_owned(), answer })
+        numbers.map_err(|_| PeerError::Wrong(format!("{answer:?} to {request:?}")))
     }
 
-    /// The one number of an answer.
+    /// The first number of an answer.
     ///
     /// # Errors
-    /// As of [`Self::numbers`]; also if there is not one.
+    /// As of [`Self::numbers`]; also if there is none.
     pub fn number(&mut self, request: &str) -> Result<f64, PeerError> {
-        match self.numbers(request)?[..] {
-            [number] => Ok(number),
-            ref others => {
-                let answer = format!("{} numbers", others.len());
-                Err(PeerError::Answer { request: request.to_owned(), answer })
-            }
-        }
+        let first = self.numbers(request)?.first().copied();
+        first.ok_or_else(|| PeerError::Wrong(format!("no number to {request:?}")))
     }
 }
 
