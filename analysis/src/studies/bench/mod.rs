@@ -1,8 +1,7 @@
-//! Measured cost of a certificate, a step, a tick and a page: beside a budget, or beside a peer that is measured
-//! in the same run.
+//! Measured cost of a certificate, a step, a tick and a page, beside a budget or beside a peer of the same run.
 //!
-//! A figure without a peer is [`figure::Figure::new`]; a figure with a peer needs a [`figure::Pair`], which
-//! measures both.
+//! A row of the table is a [`figure::Figure`]: `new` for a budget, `beside` for a peer, which needs a
+//! [`figure::Pair`] that measures both.
 
 pub mod at_rest;
 pub mod current;

@@ -39,7 +39,7 @@ def companion_roots():
         return passive(-np.min(ch.chebval(cosine, p) / ch.chebval(cosine, r)))
 
     scenes = [(np.array(n), np.array(d), delay) for n, d, delay in WORK["environments"]]
-    return lambda: [verdict(*scene) for scene in scenes]
+    return each(verdict, scenes)
 
 
 def bounded_real():
@@ -58,7 +58,7 @@ def bounded_real():
         return float(norm < 1.0) if np.isfinite(norm) else float("nan")
 
     systems = [system(*one) for one in state_spaces()]
-    return lambda: [verdict(*one) for one in systems]
+    return each(verdict, systems)
 
 
 def matrix_inequality():
@@ -66,12 +66,24 @@ def matrix_inequality():
     import control
     import cvxopt  # noqa: F401  control reports its absence late
 
-    systems = [control.ss(*one, PERIOD) for one in state_spaces()]
-    return lambda: [passive(-control.get_input_ff_index(system)) for system in systems]
+    systems = [(control.ss(*one, PERIOD),) for one in state_spaces()]
+    return each(lambda system: passive(-control.get_input_ff_index(system)), systems)
 
 
 def passive(alpha):
     return float("nan") if alpha != alpha else float(alpha < DELTA)
+
+
+def each(verdict, systems):
+    """The verdicts; none where a package gives up."""
+
+    def attempt(system):
+        try:
+            return verdict(*system)
+        except (ArithmeticError, RuntimeError, ValueError):
+            return float("nan")
+
+    return lambda: [attempt(system) for system in systems]
 
 
 def state_spaces():
