@@ -20,13 +20,16 @@ use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
 use crate::studies::bench::current;
+use crate::studies::bench::figure::{Figure, Pair, Ratio};
 use crate::studies::bench::live::live_set;
 use crate::studies::bench::matched;
 use crate::studies::bench::page::scenes::{PageScene, SHOWN};
 use crate::studies::bench::page::{self, Repetitions, ScenePage};
 use crate::studies::bench::parts::{self, Inventory};
 use crate::studies::bench::profile;
-use crate::studies::bench::{self, CORE_CLOCK, Figure};
+use crate::studies::bench::python::{JUDGES, PythonPeers, SIMULATOR};
+use crate::studies::bench::steps::{in_c, step_time, steps_beside};
+use crate::studies::bench::{self, CORE_CLOCK, Rounds};
 use crate::text_table::markdown_table;
 use crate::toolchain::{self, BoardModel, NumberFormat, Toolchain, Tools, TorqueOutput};
 
@@ -40,8 +43,15 @@ pub struct Arguments {
     /// frames, maps, and verdicts against those of this program
     #[arg(long, conflicts_with = "parts")]
     pub page: bool,
-    /// With --page: measure each figure a few times only, for its order of magnitude
-    #[arg(long, requires = "page")]
+    /// Print only the figures of this machine: verdicts, simulated steps, maps, compilation
+    #[arg(long, conflicts_with_all = ["parts", "page"])]
+    pub host: bool,
+    /// Also measure numpy, slycot, python-control and scipy, in turns with this program; installs them from
+    /// PyPI into the folder of builds
+    #[arg(long, conflicts_with_all = ["parts", "page"])]
+    pub peers: bool,
+    /// Measure each time a few times only, for its order of magnitude
+    #[arg(long, conflicts_with = "parts")]
     pub quick: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
@@ -51,6 +61,10 @@ pub struct Arguments {
 impl Arguments {
     fn repetitions(&self) -> Repetitions {
         if self.quick { Repetitions::QUICK } else { Repetitions::THOROUGH }
+    }
+
+    fn rounds(&self) -> Rounds {
+        if self.quick { Rounds::QUICK } else { Rounds::THOROUGH }
     }
 }
 
@@ -62,19 +76,8 @@ const LAGGING_BUDGET: f64 = 15.0;
 const JITTER_BUDGET: f64 = 0.98;
 /// Largest time of a verdict for a torque profile of 64 knots.
 const PROFILE_BUDGET: f64 = 5.0;
-/// Published times in microseconds of one verdict by other methods.
-const OTHERS: [(&str, f64, &str); 3] = [
-    ("slicot", 390.0, "a SLICOT-based test"),
-    ("roots", 360.0, "companion roots in numpy"),
-    ("lmi", 4000.0, "an LMI solver"),
-];
 /// Largest time of a step of the exact simulation on one core in nanoseconds.
 const STEP_BUDGET: f64 = 10.0;
-/// Published times in nanoseconds for such a step elsewhere.
-const STEPS_ELSEWHERE: [(&str, f64, &str); 2] = [
-    ("C", 5.38, "plain C at -O2, 186 M steps/s"),
-    ("dlsim", 4000.0, "scipy's dlsim, 0.25 M steps/s"),
-];
 /// Smallest number of walls per second in a map.
 const MAP_BUDGET: f64 = 1e5;
 /// Largest time that a certificate may add to a compilation in milliseconds.
@@ -87,10 +90,6 @@ const INTERRUPT_BUDGET: f64 = 150.0;
 const CORE_BUDGET: f64 = 15.0;
 /// Ticks per second for the share of the CPU.
 const TICK_RATE: f64 = 20e3;
-/// Instructions of a tick of the damper wall in contact and free: plain C at -O3 on the same core, for the
-/// same task without a coupling.
-const C_CONTACT: f64 = 53.0;
-const C_FREE: f64 = 42.0;
 
 /// Largest number of instructions of a tick of the damper wall behind the matched coupling, in contact.
 const MATCHED_BUDGET: f64 = 50.0;
@@ -112,15 +111,21 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         arguments.answer.print(&scenes, |scenes| format!("{}\n", parts::table(scenes)))?;
         return Ok(CommandStatus::Success);
     }
-    if arguments.page {
-        let figures = about_pages(arguments.repetitions())?;
-        arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
-        return Ok(CommandStatus::Success);
-    }
+    let figures = match arguments {
+        Arguments { page: true, .. } => about_pages(arguments.repetitions())?,
+        Arguments { host: true, .. } => on_host(arguments)?,
+        _ => everything(arguments)?,
+    };
+    arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
+    Ok(CommandStatus::Success)
+}
+
+/// The figures of this machine, of the page, and of the programs on the emulated board.
+fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
-    let mut figures = on_host();
-    match about_pages(Repetitions::THOROUGH) {
+    let mut figures = on_host(arguments)?;
+    match about_pages(arguments.repetitions()) {
         Ok(pages) => figures.extend(pages),
         Err(error) => eprintln!("page of haptic explore: not measured: {error}"),
     }
@@ -137,8 +142,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     behind_matched(&toolchain, &mut figures)?;
     about_profiles(&toolchain, &mut figures)?;
     about_bridges(&toolchain, &mut figures)?;
-    arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
-    Ok(CommandStatus::Success)
+    Ok(figures)
 }
 
 /// The cost of the page of `haptic explore` in a browser.
@@ -247,33 +251,28 @@ fn inventories(toolchain: &Toolchain) -> Result<Vec<Inventory>, CommandError> {
     Ok(pairs.map(|(program, built)| Inventory::of(program, built)).collect::<Result<_, _>>()?)
 }
 
-fn on_host() -> Vec<Figure> {
-    let time = bench::verdict_time(&bench::scenes());
-    let figure = |name: &str, against, source| {
-        Figure::new(format!("verdict, median: {name}"), time, "us", Some(against), source)
-    };
-    let mut figures = vec![figure("budget", VERDICT_BUDGET, "budget, one core")];
-    figures.extend(OTHERS.map(|(name, against, source)| figure(name, against, source)));
-    figures.extend(lagging());
+/// The figures of this machine.
+fn on_host(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
+    let rounds = arguments.rounds();
+    let progress = |what: &str| eprintln!("peers: {what}");
+    let scenes = bench::scenes();
+    let peers = arguments.peers.then(|| PythonPeers::start(&scenes, progress)).transpose()?;
+    let spinner = progress::spinner("measuring this machine");
+    let mut figures = beside_peers(rounds, &scenes, peers)?;
+    figures.extend(lagging(rounds));
     figures.push(Figure::new(
         "verdict about a torque profile of 64 knots, median",
-        bench::verdict_time(&profile::scenes()),
+        bench::verdict_time(&profile::scenes(), rounds.own),
         "us",
         Some(PROFILE_BUDGET),
         "budget, one core",
     ));
-    let (step, by_hand) = bench::steps::step_times();
-    let figure = |name: &str, against, source| {
-        Figure::new(format!("exact simulation, a step: {name}"), step, "ns", Some(against), source)
-    };
-    figures.push(figure("budget", STEP_BUDGET, "budget, 100 M steps/s"));
-    figures.push(figure("by hand", by_hand, "a loop written for the scene, same run"));
-    figures.extend(STEPS_ELSEWHERE.map(|(name, against, source)| figure(name, against, source)));
-    figures.extend(maps());
+    figures.extend(maps(rounds));
+    spinner.finish_and_clear();
     let spinner = progress::spinner("compiling certificates");
     for (name, latency) in [("", bench::AT_ONCE), (" with delay and lag", bench::LAGGING)] {
         let name = format!("certificate{name}, added to compilation");
-        match compile_time(latency) {
+        match compile_time(latency, rounds) {
             Ok(time) => {
                 figures.push(Figure::new(name, time, "ms", Some(COMPILE_BUDGET), "budget"));
             }
@@ -281,13 +280,42 @@ fn on_host() -> Vec<Figure> {
         }
     }
     spinner.finish_and_clear();
-    figures
+    Ok(figures)
+}
+
+/// A verdict and a simulated step: beside their budgets, and again beside each peer of this run.
+fn beside_peers(
+    rounds: Rounds,
+    scenes: &[Scene],
+    mut peers: Option<PythonPeers>,
+) -> Result<Vec<Figure>, CommandError> {
+    let time = bench::verdict_time(scenes, rounds.own);
+    let verdict =
+        Figure::new("verdict, median", time, "us", Some(VERDICT_BUDGET), "budget, one core");
+    let mut figures = vec![verdict.clone()];
+    for name in JUDGES {
+        if let Some(peers) = &mut peers {
+            let measured = peers.verdicts(rounds.python, scenes, name);
+            figures.push(verdict.again_beside(name, measured)?);
+        }
+    }
+    let (name, time) = ("exact simulation, a step", step_time(rounds.own));
+    let step = Figure::new(name, time, "ns", Some(STEP_BUDGET), "budget, 100 M steps/s");
+    let in_c = in_c().and_then(|(mut peer, source)| {
+        Ok((steps_beside(rounds.own, "C", &mut peer, ["values", "seconds"])?, source))
+    });
+    figures.extend([step.clone(), step.again_beside("C", in_c)?]);
+    if let Some(peers) = &mut peers {
+        figures.push(step.again_beside(SIMULATOR, peers.steps(rounds.python))?);
+    }
+    Ok(figures)
 }
 
 /// The cost of a verdict with a lagging torque, and the tightness of this verdict.
-fn lagging() -> [Figure; 4] {
-    let time = bench::middle_verdict_time(&bench::lagging_scenes());
-    let (lagging, whole_samples) = bench::lagging_springs();
+fn lagging(rounds: Rounds) -> [Figure; 4] {
+    let time = bench::middle_verdict_time(&bench::lagging_scenes(), rounds.own);
+    let springs = bench::lagging_springs();
+    let at_rest = || bench::at_rest::rendered_stiffness(&program::STIFFEST);
     [
         Figure::new(
             "verdict with delay and lag, degrees 0 to 8, median",
@@ -296,11 +324,10 @@ fn lagging() -> [Figure; 4] {
             Some(LAGGING_BUDGET),
             "budget, one core",
         ),
-        Figure::new(
+        Figure::beside(
             "certified spring at 1 kHz, 5 us, current loop of 3 kHz",
-            lagging,
+            springs,
             "N m/rad",
-            Some(whole_samples),
             "latched, lag as a whole sample",
         ),
         Figure::new(
@@ -310,11 +337,10 @@ fn lagging() -> [Figure; 4] {
             Some(JITTER_BUDGET),
             "budget, at least",
         ),
-        Figure::new(
+        Figure::beside(
             "undelayed_spring: stiffness at rest in closed loop, same latency",
-            bench::at_rest::rendered_stiffness(&program::STIFFEST),
+            Pair::computed(at_rest, || springs.ours()),
             "N m/rad",
-            Some(lagging),
             "the certified spring above",
         ),
     ]
@@ -322,7 +348,7 @@ fn lagging() -> [Figure; 4] {
 
 /// Walls per second in a map: behind the standard coupling, and two samples late behind a coupling with `E'`
 /// different from `E`.
-fn maps() -> Vec<Figure> {
+fn maps(rounds: Rounds) -> Vec<Figure> {
     let name = "a map's walls judged, all cores";
     let scenes = [("standard coupling, delay 1", 44.0, 1), ("softer coupling, delay 2", 30.0, 2)];
     let figure = |(what, stiffness, delay): (&str, f64, usize)| {
@@ -336,7 +362,7 @@ fn maps() -> Vec<Figure> {
         });
         let coupling = Coupling::Spring { stiffness };
         let scene = Scene { coupling, environment, ..damper_wall::SCENE.as_data() };
-        let rate = bench::map_rate(&Scene { torque_limit: None, ..scene }).ok()?;
+        let rate = bench::map_rate(&Scene { torque_limit: None, ..scene }, rounds.maps).ok()?;
         let budget = "budget, a million in 10 s";
         Some(Figure::new(format!("{name}: {what}"), rate, "1/s", Some(MAP_BUDGET), budget))
     };
@@ -344,7 +370,7 @@ fn maps() -> Vec<Figure> {
 }
 
 /// Builds the library once and measures the time that a certified constant adds to a program that uses it.
-fn compile_time(latency: &str) -> io::Result<f64> {
+fn compile_time(latency: &str, rounds: Rounds) -> io::Result<f64> {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(&cargo)
@@ -356,7 +382,8 @@ fn compile_time(latency: &str) -> io::Result<f64> {
         .ok_or_else(|| io::Error::other(String::from_utf8_lossy(&output.stderr).into_owned()))?;
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let dependencies = library.parent().map(|folder| folder.join("deps")).unwrap_or_default();
-    bench::compile_time(Path::new(&rustc), &library, &dependencies, latency)
+    let rustc = Path::new(&rustc);
+    bench::compile_time(rustc, &library, &dependencies, latency, rounds.compilations)
 }
 
 /// The path of the built library in cargo's messages.
@@ -391,22 +418,14 @@ fn on_target(
         )?;
         spinner.finish_and_clear();
         let Some(board) = outcome.emulated() else { continue };
-        let is_measured_in_c = name == "damper_wall" && format == NumberFormat::F32;
-        let groups = [
-            ("contact", board.contact_instructions, C_CONTACT),
-            ("free", board.free_instructions, C_FREE),
-        ];
-        for (state, stats, c) in groups {
+        let groups = [("contact", board.contact_instructions), ("free", board.free_instructions)];
+        for (state, stats) in groups {
             let Some(stats) = stats else { continue };
-            let (against, source) = if is_measured_in_c {
-                (Some(c), "plain C at -O3, no coupling")
-            } else {
-                (None, "")
-            };
             let name = format!("{name}, {format}: tick, count to code, {state}, most");
-            figures.push(Figure::new(name, stats.max as f64, "instructions", against, source));
+            figures.push(Figure::new(name, stats.max as f64, "instructions", None, ""));
         }
-        interrupt(&format!("{name}, {format}"), &board, is_measured_in_c, figures);
+        let has_budget = name == "damper_wall" && format == NumberFormat::F32;
+        interrupt(&format!("{name}, {format}"), &board, has_budget, figures);
         if format == NumberFormat::F32 {
             figures.push(Figure::new(
                 format!("{name}: certificate on the target"),
@@ -480,7 +499,7 @@ const LIVE_COUPLING: f64 = 44.0;
 
 fn table(figures: &[Figure]) -> Table {
     let mut table =
-        markdown_table(["figure", "value", "unit", "against", "ratio", "which is"], [1, 3, 4]);
+        markdown_table(["figure", "value", "unit", "against", "ratio", "against what"], [1, 3, 4]);
     for figure in figures {
         let number =
             |value: Option<f64>| value.map_or_else(String::new, |value| significant(value, 4));
@@ -489,8 +508,8 @@ fn table(figures: &[Figure]) -> Table {
             number(Some(figure.value)),
             figure.unit.to_owned(),
             number(figure.against),
-            number(figure.ratio),
-            figure.source.to_owned(),
+            number(figure.ratio.map(Ratio::get)),
+            figure.source.clone(),
         ]);
     }
     table

@@ -139,6 +139,9 @@ pub enum CommandError {
     /// The page of `haptic explore` could not be measured.
     #[error(transparent)]
     Page(#[from] crate::studies::bench::page::PageError),
+    /// A peer of the benchmark failed.
+    #[error(transparent)]
+    Peer(#[from] crate::studies::bench::peer::PeerError),
     /// A picture could not be drawn.
     #[error(transparent)]
     Chart(#[from] ChartError),

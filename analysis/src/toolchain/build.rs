@@ -579,6 +579,14 @@ impl Workspace {
     }
 }
 
+/// Cargo's folder for this machine's programs.
+///
+/// # Errors
+/// If the workspace cannot be found.
+pub fn target_folder() -> Result<PathBuf, BuildError> {
+    Ok(Workspace::find()?.target)
+}
+
 fn variable(name: &str) -> Option<OsString> {
     std::env::var_os(name).filter(|value| !value.is_empty())
 }

@@ -152,12 +152,39 @@ fn add_target(step: &Step, target: Target) -> Result<(), SetupError> {
     })
 }
 
-/// Installs Debian packages that only the tests need, if this machine allows it: as root, and without
+/// Makes sure that a program is installed beside the project; its package has the same name.
+///
+/// # Errors
+/// As for [`set_up_package`].
+pub fn set_up_tool(name: &str) -> Result<(), String> {
+    set_up_package(name, &[name, "--version"])
+}
+
+/// Makes sure that a package is installed beside the project: `command` has to succeed. If it fails, root on
+/// Debian installs the package, as for the project's other tools.
+///
+/// # Errors
+/// Elsewhere, with the package to install.
+pub fn set_up_package(package: &str, command: &[&str]) -> Result<(), String> {
+    let run = || Command::new(command[0]).args(&command[1..]).output();
+    let is_there = || run().is_ok_and(|output| output.status.success());
+    if is_there() {
+        return Ok(());
+    }
+    let by_hand = format!("install it (Debian: apt install {package})");
+    match install(&[package], |step| eprintln!("{step}")) {
+        Ok(()) if is_there() => Ok(()),
+        Ok(()) => Err(by_hand),
+        Err(error) => Err(format!("{error}; {by_hand}")),
+    }
+}
+
+/// Installs Debian packages that no board's program needs, if this machine allows it: as root, and without
 /// removing packages.
 ///
 /// # Errors
 /// If it does not allow it, or if it fails.
-pub fn install(packages: &[&str], progress: impl Fn(&str)) -> Result<(), AptError> {
+fn install(packages: &[&str], progress: impl Fn(&str)) -> Result<(), AptError> {
     if !is_root() {
         return Err(AptError::NotRoot(apt::by_hand(packages)));
     }

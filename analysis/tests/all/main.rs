@@ -2,6 +2,7 @@
 //! them wait for a compiler or an emulator others compute. `cargo test -p analysis --test all NAME::` runs
 //! those of one file.
 
+mod bench;
 mod charts;
 mod closed_loop;
 mod common;

@@ -6,8 +6,7 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use analysis::browser::{NAME, TIMEOUT, command};
-
-use crate::common::set_up_tool;
+use analysis::toolchain::set_up_tool;
 
 /// Makes sure that a browser is installed.
 ///

@@ -6,18 +6,23 @@
 #[path = "../all/common/mod.rs"]
 mod common;
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode, Stdio};
+use std::path::Path;
+use std::process::{Command, ExitCode};
 
+use analysis::toolchain::python::{PythonEnvironment, finished};
+use analysis::toolchain::target_folder;
 use libtest_mimic::{Arguments, Trial};
 
-use self::common::{root, set_up_package, set_up_tool};
+use self::common::root;
 
 /// The tests of `agree.py`, each a process.
 const AGREE: [&str; 5] = ["certify", "simulate", "index", "stability_map", "refusals"];
 
 /// The test of `examples/map.py`.
 const EXAMPLE: &str = "the_example_draws_its_map";
+
+/// The benchmark beside packages of Python.
+const PEERS: &str = "peers_are_measured_in_the_same_run";
 
 /// The example without dependencies.
 const IGNORED: &str = "without_python_these_tests_are_ignored";
@@ -29,13 +34,17 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     // A list of the tests, or other tests, need no Python.
     let wanted = |name: &str| arguments.filter.as_ref().is_none_or(|part| name.contains(part));
-    let looks = !arguments.list && AGREE.into_iter().chain([EXAMPLE, IGNORED]).any(wanted);
-    let environment = Environment::kept();
-    let missing = looks.then(|| environment.set_up()).and_then(Result::err);
+    let looks = !arguments.list && AGREE.into_iter().chain([EXAMPLE, PEERS, IGNORED]).any(wanted);
+    let environment = PythonEnvironment::kept().unwrap();
+    let fetch = || finished(environment.pip_install().args(FROM_PYPI));
+    let set_up = || {
+        environment.set_up().and_then(|()| fetch().map_err(|why| format!("pip has no PyPI: {why}")))
+    };
+    let missing = looks.then(set_up).and_then(Result::err);
     if let Some(why) = &missing {
         eprintln!("skipped: tests/python runs the package for Python: {why}");
     } else if looks {
-        environment.install();
+        install(&environment);
     }
     let trial = |name: &'static str| {
         let run = move || {
@@ -45,102 +54,36 @@ fn main() -> ExitCode {
         let trial = Trial::test(name, run).with_ignored_flag(missing.is_some());
         if missing.is_some() { trial.with_kind("no python") } else { trial }
     };
-    let trials = AGREE.into_iter().chain([EXAMPLE, IGNORED]).map(trial).collect();
+    let trials = AGREE.into_iter().chain([EXAMPLE, PEERS, IGNORED]).map(trial).collect();
     libtest_mimic::run(&arguments, trials).exit_code()
 }
 
 fn run(name: &str) {
     match name {
         EXAMPLE => the_example_draws_its_map(),
+        PEERS => peers_are_measured_in_the_same_run(),
         IGNORED => without_python_these_tests_are_ignored(),
         _ => agrees(name),
     }
 }
 
-/// A virtual environment of Python's.
-struct Environment(PathBuf);
-
-impl Environment {
-    /// Beside the builds, and kept, so that nothing is fetched a second time.
-    fn kept() -> Self {
-        Self(Path::new(env!("CARGO_TARGET_TMPDIR")).join("python"))
-    }
-
-    /// A program of it, to be started; other programs of it are found, too.
-    fn program(&self, name: &str) -> Command {
-        let folder = self.0.join(if cfg!(windows) { "Scripts" } else { "bin" });
-        let mut path = folder.clone().into_os_string();
-        if let Some(rest) = std::env::var_os("PATH") {
-            path.push(if cfg!(windows) { ";" } else { ":" });
-            path.push(rest);
-        }
-        let mut command = Command::new(folder.join(name));
-        command.env("PATH", path).env("MPLBACKEND", "Agg").env("PYTHONDONTWRITEBYTECODE", "1");
-        command.stdin(Stdio::null());
-        command
-    }
-
-    fn pip(&self, arguments: &[&str]) -> Command {
-        let mut pip = self.program("python");
-        // One try: without a network every further one takes its time, and fails, too.
-        pip.args(["-m", "pip", "--disable-pip-version-check", "--retries", "1", "install"]);
-        pip.args(["--quiet"]).args(arguments);
-        pip
-    }
-
-    /// Creates it, with the packages that the package needs.
-    ///
-    /// # Errors
-    /// Where there is no Python, or no PyPI.
-    fn set_up(&self) -> Result<(), String> {
-        set_up_tool("python3")?;
-        // Debian has the part that puts pip into an environment in a package of its own.
-        set_up_package("python3-venv", &["python3", "-c", "import ensurepip"])?;
-        if !self.0.join("pyvenv.cfg").exists() {
-            let made = finished(Command::new("python3").args(["-m", "venv"]).arg(&self.0));
-            made.map_err(|why| {
-                // An incomplete environment would lack pip the next time, too.
-                std::fs::remove_dir_all(&self.0).ok();
-                format!("python3 -m venv: {why}")
-            })?;
-        }
-        finished(&mut self.pip(&FROM_PYPI)).map_err(|why| format!("pip has no PyPI: {why}"))
-    }
-
-    /// Installs the package from this checkout as a user does, but compiled as tests are. The build tools are
-    /// in the environment, so that pip does not fetch them.
-    ///
-    /// # Panics
-    /// Where it cannot be installed.
-    fn install(&self) {
-        let package = root().join("analysis/python");
-        let mut pip = self.pip(&["--no-build-isolation", "--no-deps", "--force-reinstall"]);
-        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
-        pip.arg(&package).env("MATURIN_PEP517_ARGS", "--profile dev --locked");
-        pip.env("CARGO_TARGET_DIR", target);
-        finished(&mut pip).unwrap_or_else(|why| panic!("{}: {why}", package.display()));
-    }
-}
-
-/// Runs a program to its end.
+/// Installs the package from this checkout as a user does, but compiled as tests are. The build tools are
+/// in the environment, so that pip does not fetch them.
 ///
-/// # Errors
-/// The last lines of its output, if it fails.
-fn finished(command: &mut Command) -> Result<(), String> {
-    let output = command.output().map_err(|error| error.to_string())?;
-    if output.status.success() {
-        return Ok(());
-    }
-    let said = [output.stdout, output.stderr].concat();
-    let said = String::from_utf8_lossy(&said);
-    let last: Vec<&str> =
-        said.lines().rev().filter(|line| !line.trim().is_empty()).take(20).collect();
-    Err(last.into_iter().rev().collect::<Vec<_>>().join("\n"))
+/// # Panics
+/// Where it cannot be installed.
+fn install(environment: &PythonEnvironment) {
+    let package = root().join("analysis/python");
+    let mut pip = environment.pip_install();
+    pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]).arg(&package);
+    pip.env("MATURIN_PEP517_ARGS", "--profile dev --locked");
+    pip.env("CARGO_TARGET_DIR", target_folder().unwrap());
+    finished(&mut pip).unwrap_or_else(|why| panic!("{}: {why}", package.display()));
 }
 
 /// Runs a file of Python in a folder of its own; returns its output.
 fn python(folder: &Path, file: &str, arguments: &[&str]) -> String {
-    let mut python = Environment::kept().program("python");
+    let mut python = PythonEnvironment::kept().unwrap().program("python");
     python.arg(root().join(file)).args(arguments).current_dir(folder);
     let output = python.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -173,6 +116,41 @@ fn the_example_draws_its_map() {
     assert!((0.05..0.3).contains(&share), "{share}");
 }
 
+/// NumPy and SciPy have a build for every machine; for the others, the row has a ratio or the reason.
+fn peers_are_measured_in_the_same_run() {
+    let mut bench = common::program(&["bench", "--host", "--peers", "--quick", "--json"]);
+    // Without cargo, nothing is compiled.
+    let figures = common::answer(&bench.env("CARGO", "/nowhere").output().unwrap());
+    let row = |end: &str| {
+        let mut figures = figures.as_array().unwrap().iter();
+        figures.find(|figure| figure["name"].as_str().unwrap().ends_with(end)).unwrap()
+    };
+    const JUDGED: &str = "; of 45: 0 wrong, 0 undecided, same run";
+    for (peer, package, method) in [
+        ("numpy", "numpy ", ", companion matrix"),
+        ("slycot", "slycot ", ", AB13DD"),
+        ("python-control", "control ", ", get_input_ff_index"),
+        ("scipy", "scipy ", ", signal.dlsim"),
+    ] {
+        let row = row(&format!(": beside {peer}"));
+        let source = row["source"].as_str().unwrap();
+        match row["ratio"].as_f64() {
+            Some(ratio) => {
+                let [value, against] = ["value", "against"].map(|key| row[key].as_f64().unwrap());
+                assert!(ratio > 0.0 && (ratio - value / against).abs() < 1e-12, "{row}");
+                let judged = if peer == "scipy" { ", same run" } else { JUDGED };
+                let version = source.strip_prefix(package).expect(source);
+                assert!(version.starts_with(|first: char| first.is_ascii_digit()), "{source}");
+                assert!(version.ends_with(&format!("{method}{judged}")), "{source}");
+            }
+            None => {
+                assert!(["slycot", "python-control"].contains(&peer), "{row}");
+                assert!(source.contains(&format!("{peer} is not available: ")), "{row}");
+            }
+        }
+    }
+}
+
 /// They do not count as passed: runs this program again, with a path that has no programs.
 fn without_python_these_tests_are_ignored() {
     let this = std::env::current_exe().unwrap();
@@ -180,7 +158,7 @@ fn without_python_these_tests_are_ignored() {
     assert!(run.status.success(), "{run:?}");
     let (shown, said) =
         (String::from_utf8(run.stdout).unwrap(), String::from_utf8(run.stderr).unwrap());
-    assert_eq!(shown.matches("test [no python] ").count(), AGREE.len() + 2, "{shown}");
-    assert!(shown.contains("0 passed; 0 failed; 7 ignored"), "{shown}");
+    assert_eq!(shown.matches("test [no python] ").count(), AGREE.len() + 3, "{shown}");
+    assert!(shown.contains("0 passed; 0 failed; 8 ignored"), "{shown}");
     assert!(said.contains("skipped: ") && said.contains("apt install python3"), "{said}");
 }

@@ -1,12 +1,18 @@
-//! Measured cost of a certificate, a step, a tick and a page, each with its reference.
+//! Measured cost of a certificate, a step, a tick and a page, beside a budget or beside a peer of the same run.
+//!
+//! A row of the table is a [`figure::Figure`]: `new` for a budget, `beside` for a peer, which needs a
+//! [`figure::Pair`] that measures both.
 
 pub mod at_rest;
 pub mod current;
+pub mod figure;
 pub mod live;
 pub mod matched;
 pub mod page;
 pub mod parts;
+pub mod peer;
 pub mod profile;
+pub mod python;
 pub mod steps;
 
 use std::hint::black_box;
@@ -14,45 +20,34 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+use self::figure::{Pair, median};
 use crate::latency_limits::{lag_of, largest_spring};
 use crate::stability_map::{Family, Map, MapError};
 use haptic_servo::certificate::{PassivityProblem, assess};
 use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
-use serde::Serialize;
 
 /// Instructions per second of a board's core: 170 MHz, at one cycle per instruction.
 pub const CORE_CLOCK: f64 = 170e6;
 
-/// One measured figure.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Figure {
-    /// Its name.
-    pub name: String,
-    /// The figure.
-    pub value: f64,
-    /// Its unit.
-    pub unit: &'static str,
-    /// Its reference, in the same unit; `None` if there is none.
-    pub against: Option<f64>,
-    /// `value / against`: below 1 is better.
-    pub ratio: Option<f64>,
-    /// The source of the reference.
-    pub source: &'static str,
+/// The number of rounds of a time on this machine, whose median is the figure.
+#[derive(Clone, Copy, Debug)]
+pub struct Rounds {
+    /// For a time here, or in turns with plain C.
+    pub own: usize,
+    /// In turns with Python.
+    pub python: usize,
+    /// For a map.
+    pub maps: usize,
+    /// Compilations of each program.
+    pub compilations: usize,
 }
 
-impl Figure {
-    /// A figure with a reference.
-    pub fn new(
-        name: impl Into<String>,
-        value: f64,
-        unit: &'static str,
-        against: Option<f64>,
-        source: &'static str,
-    ) -> Self {
-        let ratio = against.map(|against| value / against);
-        Self { name: name.into(), value, unit, against, ratio, source }
-    }
+impl Rounds {
+    /// For repeatable figures.
+    pub const THOROUGH: Self = Self { own: 31, python: 9, maps: 5, compilations: 15 };
+    /// For their order of magnitude.
+    pub const QUICK: Self = Self { own: 3, python: 1, maps: 1, compilations: 1 };
 }
 
 /// Environments to judge: low and high degrees, poles near and far, delays. The coefficients are products of
@@ -99,7 +94,7 @@ const MAP_SIDE: usize = 300;
 ///
 /// # Errors
 /// If the scene has no wall.
-pub fn map_rate(scene: &Scene) -> Result<f64, MapError> {
+pub fn map_rate(scene: &Scene, rounds: usize) -> Result<f64, MapError> {
     let family = Family::rigid("the scene that is measured", scene)?;
     let (stiffness, damping) = family.usual_ranges();
     let round = || {
@@ -109,14 +104,11 @@ pub fn map_rate(scene: &Scene) -> Result<f64, MapError> {
     };
     // The first round starts the threads and is discarded.
     round();
-    Ok(median((0..5).map(|_| round()).collect()))
+    Ok(median((0..rounds).map(|_| round()).collect()))
 }
 
-/// Number of rounds; the result is their median.
-const ROUNDS: usize = 31;
-
 /// Median time of one verdict on one core of this machine in microseconds.
-pub fn verdict_time(scenes: &[Scene]) -> f64 {
+pub fn verdict_time(scenes: &[Scene], rounds: usize) -> f64 {
     let round = || {
         let start = Instant::now();
         for scene in scenes {
@@ -126,7 +118,7 @@ pub fn verdict_time(scenes: &[Scene]) -> f64 {
     };
     // The first round fills caches and is discarded.
     round();
-    median((0..ROUNDS).map(|_| round()).collect())
+    median((0..rounds).map(|_| round()).collect())
 }
 
 /// The same scenes with torques 10 us after their counts, through a current loop of 3 kHz.
@@ -137,7 +129,7 @@ pub fn lagging_scenes() -> Vec<Scene> {
 
 /// Time of the median scene in microseconds: the cost of a verdict grows with its degree, and is many times
 /// larger if poles are close to the circle.
-pub fn middle_verdict_time(scenes: &[Scene]) -> f64 {
+pub fn middle_verdict_time(scenes: &[Scene], rounds: usize) -> f64 {
     let time = |scene: &Scene| {
         let round = || {
             let start = Instant::now();
@@ -145,7 +137,7 @@ pub fn middle_verdict_time(scenes: &[Scene]) -> f64 {
             start.elapsed().as_secs_f64() * 1e6
         };
         round();
-        median((0..ROUNDS).map(|_| round()).collect())
+        median((0..rounds).map(|_| round()).collect())
     };
     median(scenes.iter().map(time).collect())
 }
@@ -153,10 +145,11 @@ pub fn middle_verdict_time(scenes: &[Scene]) -> f64 {
 /// Largest certified stiffness in N m/rad of an undelayed spring without coupling, at 1 kHz, for a device of
 /// 0.022 N m s/rad, with a torque 5 us after its count and a current loop of 3 kHz; and the same with latched
 /// torques and the lag counted as a whole sample.
-pub fn lagging_springs() -> (f64, f64) {
+pub fn lagging_springs() -> Pair {
     let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
     let early = Latency::delayed(5e-6).with_actuator_lag(lag_of(3e3));
-    (largest_spring(&device, 1e-3, early, 0), largest_spring(&device, 1e-3, Latency::NONE, 2))
+    let largest = |latency, delay| largest_spring(&device, 1e-3, latency, delay);
+    Pair::computed(|| largest(early, 0), || largest(Latency::NONE, 2))
 }
 
 /// The part of the device's passivity that certified springs may need behind the matched coupling, where
@@ -175,12 +168,6 @@ pub fn spring_with_jitter() -> f64 {
     limit.map_or(0.0, |limit| limit.lo() / device.damping)
 }
 
-/// The median of some values; 0 without values.
-pub fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
-}
-
 /// Milliseconds that a certificate adds to the compilation of a program: the difference between a program
 /// with `COPIES` certified scenes and the same program without, divided by their number. The two are compiled
 /// alternately, so that other load of the machine affects both.
@@ -196,6 +183,7 @@ pub fn compile_time(
     library: &Path,
     dependencies: &Path,
     latency: &str,
+    rounds: usize,
 ) -> std::io::Result<f64> {
     let folder = tempfile::tempdir()?;
     let time = |copies: usize| -> std::io::Result<f64> {
@@ -217,7 +205,7 @@ pub fn compile_time(
             Err(std::io::Error::other(String::from_utf8_lossy(&output.stderr).into_owned()))
         }
     };
-    let differences = (0..COMPILATIONS).map(|_| Ok((time(COPIES)? - time(0)?) / COPIES as f64));
+    let differences = (0..rounds).map(|_| Ok((time(COPIES)? - time(0)?) / COPIES as f64));
     Ok(median(differences.collect::<std::io::Result<Vec<_>>>()?))
 }
 
@@ -236,8 +224,6 @@ const LIMIT: Option<f64> = None;
 
 /// Certificates in the compiled program.
 const COPIES: usize = 8;
-/// Compilations of each program; the result is the median of their differences.
-const COMPILATIONS: usize = 15;
 
 fn program(copies: usize, latency: &str) -> String {
     let mut text = String::from(
@@ -282,11 +268,5 @@ mod tests {
     fn a_jitter_costs_the_width_of_its_window() {
         let left = spring_with_jitter();
         assert!(left >= 0.98 && (left * 1.02 - 1.0).abs() < 1e-9, "{left}");
-    }
-
-    #[test]
-    fn the_median_is_in_the_middle() {
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(Vec::new()), 0.0);
     }
 }

@@ -3,7 +3,7 @@
 use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
 
-use super::Figure;
+use super::figure::Figure;
 use crate::program::{Program, State};
 use crate::studies::tick_parts::{Part, Share, TickParts, TickPartsError};
 use crate::toolchain::{self, NumberFormat};

@@ -1,67 +1,173 @@
-//! The cost of a step of the exact method, compared with a loop written by hand for its scene.
+//! The cost of a step of the exact method, and the same motion by peers.
 
 use std::hint::black_box;
+use std::process::Command;
 use std::time::Instant;
 
 use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-use super::{ROUNDS, median};
+use super::figure::{Pair, median};
+use super::peer::{Peer, PeerError};
 use crate::device::Motion;
 use crate::simulation::{Experiment, Integration, Simulator, Trajectory};
+use crate::toolchain::target_folder;
 
-/// Steps of a run.
+/// Steps of a run; the same number is in `steps.c`.
 pub const STEPS: usize = 10_000;
 /// Near the standard coupling's limit, so that the motion lasts for all steps.
 const STIFFNESS: f64 = 43.999;
+const COUPLING: f64 = 44.0;
+const PERIOD: f64 = 1e-3;
+const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+/// The position in rad from which the device is released.
+const START: f64 = 1e-3;
+/// Largest difference between a peer's values and ours, as a part of the largest position, velocity or torque:
+/// the sums have other orders.
+const ROUNDING: f64 = 1e-10;
+
+/// The same motion in plain C.
+const C_SOURCE: &str = include_str!("steps.c");
+/// The C compiler, which a linker of Rust's programs brings.
+const C_COMPILER: &str = "cc";
+/// Its optimisation. Without contraction it computes the same operations on every machine.
+const C_OPTIONS: [&str; 2] = ["-O2", "-ffp-contract=off"];
 
 /// A wall of the paper's device, released from a millirad.
 pub fn experiment(damping: f64, delay: usize, torque_limit: Option<f64>) -> Experiment {
-    let stiffness = STIFFNESS - 2.0 * damping / 1e-3;
+    let stiffness = STIFFNESS - 2.0 * damping / PERIOD;
     let wall = Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false };
     let scene = Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 1e-3, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
+        device: DEVICE,
+        timing: Timing { period: PERIOD, worst_period: None },
+        coupling: Coupling::Spring { stiffness: COUPLING },
         environment: Environment::DamperWall(wall),
         latency: Latency::NONE,
         torque_limit,
     };
-    let start = Motion { position: 1e-3, velocity: 0.0 };
+    let start = Motion { position: START, velocity: 0.0 };
     Experiment { samples: STEPS, start, ..Experiment::still(&scene) }
 }
 
-/// Mass-damper and delayed spring, states in variables, samples recorded.
-pub fn by_hand(out: &mut Trajectory) {
-    let (m, b, t, k, coupling) = (2.2e-5, 0.022, 1e-3, STIFFNESS, 44.0);
-    let decay = f64::exp(-b * t / m);
+/// The numbers of that motion for a peer: by hand for a mass and a damper, on an undamped wall one sample late.
+pub fn numbers() -> [f64; 7] {
+    let Device { inertia: m, damping: b, .. } = DEVICE;
+    let decay = f64::exp(-b * PERIOD / m);
     let slide = (1.0 - decay) * m / b;
-    let (to_position, to_velocity) = ((t - slide) / b, (1.0 - decay) / b);
-    let (mut x, mut v, mut due) = (1e-3, 0.0, 0.0);
-    let samples = out.position.iter_mut().zip(&mut out.velocity).zip(&mut out.torque);
-    for ((position, velocity), torque) in samples {
-        (*position, *velocity, *torque) = (x, v, due);
-        let next = k * (x - due / coupling);
-        (x, v) = (x + slide * v - to_position * due, decay * v - to_velocity * due);
-        due = next;
-    }
+    let (to_position, to_velocity) = ((PERIOD - slide) / b, (1.0 - decay) / b);
+    [slide, decay, to_position, to_velocity, STIFFNESS, 1.0 / COUPLING, START]
 }
 
-/// Median times in nanoseconds of one step on one core: of the exact method on a wall of degree
-/// 1, and of the loop by hand, in turns.
-pub fn step_times() -> (f64, f64) {
-    let mut simulator = Simulator::new(&experiment(0.0, 1, None), Integration::default())
-        .expect("a wall has a difference equation");
+/// The exact method on that wall, from its start.
+fn simulator() -> Simulator {
+    Simulator::new(&experiment(0.0, 1, None), Integration::default())
+        .expect("a wall has a difference equation")
+}
+
+/// Time of a step in ns on one core. The second run counts, so that the caches are filled.
+fn nanoseconds(out: &mut Trajectory) -> f64 {
+    simulator().fill(black_box(out));
+    let mut simulator = simulator();
+    let start = Instant::now();
+    simulator.fill(black_box(out));
+    start.elapsed().as_secs_f64() * 1e9 / STEPS as f64
+}
+
+/// Median time of a step in ns on one core.
+pub fn step_time(rounds: usize) -> f64 {
     let mut out = Trajectory::of_length(STEPS);
-    let time = |run: &mut dyn FnMut(&mut Trajectory), out: &mut Trajectory| {
-        let start = Instant::now();
-        run(black_box(out));
-        start.elapsed().as_secs_f64() * 1e9 / STEPS as f64
-    };
-    let (mut exact, mut hand) = (Vec::new(), Vec::new());
-    for _ in 0..ROUNDS {
-        exact.push(time(&mut |out| simulator.fill(out), &mut out));
-        hand.push(time(&mut |out| by_hand(out), &mut out));
+    median((0..rounds).map(|_| nanoseconds(&mut out)).collect())
+}
+
+/// Times of a step in ns, here and by a peer with these requests for its values and its time; its motion must
+/// be the same.
+///
+/// # Errors
+/// If the peer fails, or its motion differs by more than rounding.
+pub fn steps_beside(
+    rounds: usize,
+    name: &str,
+    peer: &mut Peer,
+    [values, seconds]: [&str; 2],
+) -> Result<Pair, PeerError> {
+    let mut out = Trajectory::of_length(STEPS);
+    simulator().fill(&mut out);
+    same_motion(name, &peer.numbers(values)?, &out)?;
+    let theirs = || Ok::<_, PeerError>(peer.number(seconds)? * 1e9 / STEPS as f64);
+    Pair::in_turns(rounds, || Ok(nanoseconds(&mut out)), theirs)
+}
+
+/// # Errors
+/// The first value of a peer that differs by more than rounding.
+fn same_motion(peer: &str, theirs: &[f64], ours: &Trajectory) -> Result<(), PeerError> {
+    let columns = [&ours.position, &ours.velocity, &ours.torque];
+    if theirs.len() != 3 * STEPS {
+        return Err(PeerError::Wrong(format!("{} of {} values: {peer}", theirs.len(), 3 * STEPS)));
     }
-    (median(exact), median(hand))
+    for (ours, theirs) in columns.into_iter().zip(theirs.chunks(STEPS)) {
+        let largest = ours.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        // NaN is not the same.
+        let is_same = |(ours, theirs): &(&f64, &f64)| (*ours - *theirs).abs() <= ROUNDING * largest;
+        if let Some((ours, theirs)) = ours.iter().zip(theirs).find(|pair| !is_same(pair)) {
+            return Err(PeerError::Wrong(format!("{theirs} in place of {ours}: {peer}")));
+        }
+    }
+    Ok(())
+}
+
+/// Compiles `steps.c` in the folder of builds, starts it, and returns it with its compiler.
+///
+/// # Errors
+/// If there is no C compiler, or it does not compile.
+pub fn in_c() -> Result<(Peer, String), PeerError> {
+    let missing = |why: String| PeerError::Unavailable(format!("{C_COMPILER}: {why}"));
+    let run = |command: &mut Command| {
+        let output = command.output().map_err(|error| missing(error.to_string()))?;
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        match output.status.success() {
+            true => Ok(said),
+            false => Err(missing(String::from_utf8_lossy(&output.stderr).into_owned())),
+        }
+    };
+    let version = run(Command::new(C_COMPILER).arg("--version"))?;
+    let target = target_folder().map_err(|error| missing(error.to_string()))?;
+    // Removed at the end: a running program keeps its file.
+    let folder = tempfile::Builder::new().prefix("bench-").tempdir_in(target)?;
+    let [source, program] = ["steps.c", "steps"].map(|name| folder.path().join(name));
+    std::fs::write(&source, C_SOURCE)?;
+    run(Command::new(C_COMPILER).args(C_OPTIONS).arg("-o").arg(&program).arg(&source))?;
+    let work = numbers().map(|number| format!("{number:?}")).join(" ");
+    let peer = Peer::start(&mut Command::new(&program), &work)?;
+    let version = version.lines().next().unwrap_or(C_COMPILER);
+    Ok((peer, format!("plain C, {version}, {}", C_OPTIONS[0])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The C has another order of operations, so that both agree to rounding only. A peer with one other value
+    /// or fewer values is not measured.
+    #[test]
+    fn the_c_peer_computes_the_motion_of_the_exact_simulation() {
+        let mut ours = Trajectory::of_length(STEPS);
+        simulator().fill(&mut ours);
+        // It lasts.
+        let late =
+            ours.torque[STEPS - 100..].iter().fold(0.0, |most: f64, one| most.max(one.abs()));
+        assert!(late > 1e-3, "{late}");
+        let (mut peer, compiler) = in_c().unwrap();
+        assert!(compiler.starts_with("plain C, ") && compiler.len() > 20, "{compiler}");
+        let theirs = peer.numbers("values").unwrap();
+        same_motion("C", &theirs, &ours).unwrap();
+        assert!(peer.number("seconds").unwrap() > 0.0);
+        for other in [theirs[25_000] + 1e-9, f64::NAN] {
+            let mut others = theirs.clone();
+            others[25_000] = other;
+            let error = same_motion("C", &others, &ours).unwrap_err().to_string();
+            assert!(error.contains(&format!("{other} in place of ")), "{error}");
+        }
+        let error = same_motion("C", &theirs[1..], &ours).unwrap_err().to_string();
+        assert!(error.contains("29999 of 30000 values"), "{error}");
+    }
 }

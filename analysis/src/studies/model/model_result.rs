@@ -10,7 +10,7 @@ use super::Model;
 use crate::file::SceneFile;
 use crate::simulation::{Experiment, Integration, SimulationError, Trajectory, simulate};
 use crate::stability;
-use crate::studies::bench::median;
+use crate::studies::bench::figure::median;
 use crate::verdict::{self, VerdictReport};
 
 /// The results of a model.

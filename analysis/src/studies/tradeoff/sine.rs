@@ -5,9 +5,8 @@
 //! phase in 32 bits, that of the torque (`torque_error`).
 //!
 //! The G4's CORDIC unit is not measured, because no emulator has it. A model of its arithmetic is in the
-//! tests: with 16 iterations the error of its angle is up to 2^-15, which is invisible in the torque. It
-//! would take a dozen instructions in place of the table's thirty, and wait for about the same time. But the
-//! running code would not be the tested code, and would need a board with the unit.
+//! tests: with 16 iterations the error of its angle is up to 2^-15, which is invisible in the torque. With
+//! the unit, the running code would not be the tested code, and would need a board that has it.
 
 use std::f64::consts::TAU;
 

@@ -64,40 +64,13 @@ pub fn haptic_reading(arguments: &[&str], input: &[u8]) -> Output {
     output
 }
 
-/// Makes sure that a program is installed that a test needs beside the project; its package has the same
-/// name.
-///
-/// # Errors
-/// As for [`set_up_package`].
-pub fn set_up_tool(name: &str) -> Result<(), String> {
-    set_up_package(name, &[name, "--version"])
-}
-
-/// Makes sure that a package is installed that a test needs beside the project: `command` has to succeed. If
-/// it fails, root on Debian installs the package, as for the project's other tools.
-///
-/// # Errors
-/// Elsewhere, with the package to install.
-pub fn set_up_package(package: &str, command: &[&str]) -> Result<(), String> {
-    let run = || Command::new(command[0]).args(&command[1..]).output();
-    let is_there = || run().is_ok_and(|output| output.status.success());
-    if is_there() {
-        return Ok(());
-    }
-    let by_hand = format!("install it (Debian: apt install {package})");
-    match analysis::toolchain::install(&[package], |step| eprintln!("{step}")) {
-        Ok(()) if is_there() => Ok(()),
-        Ok(()) => Err(by_hand),
-        Err(error) => Err(format!("{error}; {by_hand}")),
-    }
-}
-
 /// The program itself, set up.
 ///
 /// # Panics
 /// Where it cannot be installed, with the package to install.
 pub fn tool(name: &str) -> &str {
-    set_up_tool(name).unwrap_or_else(|error| panic!("this test runs {name}: {error}"));
+    analysis::toolchain::set_up_tool(name)
+        .unwrap_or_else(|error| panic!("this test runs {name}: {error}"));
     name
 }
 

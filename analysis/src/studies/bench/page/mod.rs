@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use thiserror::Error;
 
 use self::scenes::PageScene;
-use super::{Figure, median};
+use super::figure::{Figure, Pair, median};
 use crate::browser::{BrowserError, Page, Site};
 use crate::file::{self, FileError};
 use crate::verdict::judge_in;
@@ -244,19 +244,18 @@ fn compared(browser: &mut Page, repetitions: Repetitions) -> Result<[Figure; 2],
         }
     }
     browser.value(&format!("window.bench.round({})", repetitions.rounds_before))?;
-    let (mut in_page, mut here) = (Vec::new(), Vec::new());
     let microseconds = 1e3 / questions.len() as f64;
-    for _ in 0..repetitions.rounds {
-        in_page.push(browser.number("window.bench.round(1)")? * microseconds);
-        here.push(round(&questions)? * microseconds);
-    }
-    let (in_page, here) = (median(in_page), median(here));
+    let pair = Pair::in_turns(
+        repetitions.rounds,
+        || Ok::<_, PageError>(browser.number("window.bench.round(1)")? * microseconds),
+        || Ok(round(&questions)? * microseconds),
+    )?;
     let name = format!("page: verdict, {} scenes, median", questions.len());
     Ok([
-        Figure::new(name, in_page, "us", Some(here), "natively on one core, same run"),
+        Figure::beside(name, pair, "us", "natively on one core"),
         Figure::new(
             "page: verdict, WebAssembly over native",
-            in_page / here,
+            pair.ratio().get(),
             "times",
             Some(PAGE_BUDGET),
             "budget",

@@ -1,0 +1,172 @@
+//! A figure with its bound, or with a peer that was measured in the same run.
+
+use serde::Serialize;
+
+use super::peer::PeerError;
+
+/// One measured figure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// Its name.
+    pub name: String,
+    /// The figure.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Its budget, or the peer's figure; in the same unit. `None` if there is neither.
+    pub against: Option<f64>,
+    /// `value / against` if both were measured in this run: below 1 is better for a cost.
+    pub ratio: Option<Ratio>,
+    /// The source of `against`.
+    pub source: String,
+}
+
+/// The ratio of a [`Pair`], which alone can compute it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Ratio(f64);
+
+impl Ratio {
+    /// The number.
+    pub fn get(self) -> f64 {
+        self.0
+    }
+}
+
+/// A figure and its peer's, both measured in this run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    ours: f64,
+    peers: f64,
+}
+
+impl Pair {
+    /// Medians over rounds. Each round measures both, one after the other, so that other load of the machine
+    /// affects both. A round before that fills caches and is discarded.
+    ///
+    /// # Errors
+    /// Those of the measurements.
+    pub fn in_turns<E>(
+        rounds: usize,
+        mut ours: impl FnMut() -> Result<f64, E>,
+        mut peers: impl FnMut() -> Result<f64, E>,
+    ) -> Result<Self, E> {
+        (ours()?, peers()?);
+        let both: Vec<_> =
+            (0..rounds).map(|_| Ok((ours()?, peers()?))).collect::<Result<_, E>>()?;
+        let (ours, peers) = both.into_iter().unzip();
+        Ok(Self { ours: median(ours), peers: median(peers) })
+    }
+
+    /// Both as they are computed now, for figures that do not vary.
+    pub fn computed(ours: impl FnOnce() -> f64, peers: impl FnOnce() -> f64) -> Self {
+        Self { ours: ours(), peers: peers() }
+    }
+
+    /// The figure.
+    pub fn ours(&self) -> f64 {
+        self.ours
+    }
+
+    /// The figure over its peer's.
+    pub fn ratio(&self) -> Ratio {
+        Ratio(self.ours / self.peers)
+    }
+}
+
+impl Figure {
+    /// A figure with its budget, or alone: without a ratio.
+    pub fn new(
+        name: impl Into<String>,
+        value: f64,
+        unit: &'static str,
+        budget: Option<f64>,
+        source: impl Into<String>,
+    ) -> Self {
+        let (name, source) = (name.into(), source.into());
+        Self { name, value, unit, against: budget, ratio: None, source }
+    }
+
+    /// A figure with a peer of the same run; the source says so.
+    pub fn beside(
+        name: impl Into<String>,
+        pair: Pair,
+        unit: &'static str,
+        source: impl Into<String>,
+    ) -> Self {
+        let (ratio, source) = (Some(pair.ratio()), format!("{}, same run", source.into()));
+        Self { ratio, ..Self::new(name, pair.ours, unit, Some(pair.peers), source) }
+    }
+
+    /// This figure measured again, in turns with a peer; the same figure with its budget if the peer is not
+    /// available.
+    ///
+    /// # Errors
+    /// If the peer is available and fails.
+    pub fn again_beside(
+        &self,
+        peer: &str,
+        measured: Result<(Pair, String), PeerError>,
+    ) -> Result<Self, PeerError> {
+        let name = format!("{}: beside {peer}", self.name);
+        match measured {
+            Ok((pair, source)) => Ok(Self::beside(name, pair, self.unit, source)),
+            Err(PeerError::Unavailable(why)) => {
+                let why = why.lines().next().unwrap_or_default();
+                let source = format!("{}; {peer} is not available: {why}", self.source);
+                Ok(Self { name, source, ..self.clone() })
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// The median of some values; 0 without values.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+
+    use super::*;
+
+    #[test]
+    fn the_median_is_in_the_middle() {
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(Vec::new()), 0.0);
+    }
+
+    /// One after the other, and without the round that fills caches.
+    #[test]
+    fn a_pair_is_measured_in_turns() {
+        let log = RefCell::new(Vec::new());
+        let measure = |who: char, values: [f64; 4]| {
+            let (log, mut values) = (&log, values.into_iter());
+            move || {
+                log.borrow_mut().push(who);
+                values.next().ok_or("too many rounds")
+            }
+        };
+        let (ours, peers) =
+            (measure('o', [99.0, 3.0, 1.0, 2.0]), measure('p', [0.0, 4.0, 8.0, 6.0]));
+        let pair = Pair::in_turns(3, ours, peers).unwrap();
+        assert_eq!((pair.ours(), pair.ratio().get()), (2.0, 2.0 / 6.0));
+        assert_eq!(log.into_inner(), ['o', 'p', 'o', 'p', 'o', 'p', 'o', 'p']);
+    }
+
+    #[test]
+    fn a_missing_peer_leaves_the_budget_and_no_ratio() {
+        let alone = Figure::new("a step", 8.0, "ns", Some(10.0), "budget");
+        assert_eq!(alone.ratio, None);
+        let missing = Err(PeerError::Unavailable("no cc\n(a cause)".to_owned()));
+        let row = alone.again_beside("C", missing).unwrap();
+        assert_eq!((row.value, row.against, row.ratio), (8.0, Some(10.0), None));
+        assert_eq!(row.source, "budget; C is not available: no cc");
+        assert!(serde_json::to_value(&row).unwrap()["ratio"].is_null());
+        let broken = Err(PeerError::Wrong("another motion".to_owned()));
+        assert!(alone.again_beside("C", broken).is_err());
+    }
+}
