@@ -25,6 +25,7 @@ mod turn;
 use self::outbox::Outbox;
 use self::pending_replies::{Greeting, PendingReplies};
 use self::stream::Stream;
+pub use self::turn::MESSAGES_AHEAD;
 use self::turn::Turn;
 use super::PROTOCOL;
 use super::decoder::Decoder;

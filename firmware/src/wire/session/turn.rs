@@ -1,5 +1,9 @@
 //! The order in which frames leave.
 
+/// The largest number of other messages that are sent before the answer to an accepted request, once the servo
+/// has done it, and before a set is certified: one of each other kind, and the other two parts of a greeting.
+pub const MESSAGES_AHEAD: usize = Turn::COUNT - 1 + 2;
+
 /// The kinds of frames to the host. They take turns: after a frame, each other kind has its turn before the
 /// next frame of the same kind. The parts of a greeting follow one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,11 +7,8 @@ use super::*;
 
 /// Bytes that a line of 460800 bit/s carries in a tick of 1 ms.
 const BYTES_PER_TICK: usize = 46;
-/// The most messages before the answer to an accepted request: one of each other kind, and the other two parts
-/// of a greeting.
-const BEFORE: usize = Turn::COUNT - 1 + 2;
 /// Ticks in which the line carries these messages, the answer, and what was on its way.
-const ROUND: usize = (BEFORE + 2) * largest_frame(LONGEST_TO_HOST) / BYTES_PER_TICK + 2;
+const ROUND: usize = (MESSAGES_AHEAD + 2) * largest_frame(LONGEST_TO_HOST) / BYTES_PER_TICK + 2;
 
 fn frame(message: &ToBoard) -> Vec<u8> {
     let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
@@ -134,6 +131,42 @@ fn a_flood_of_requests_to_arm_or_to_disarm_keeps_no_set_from_its_answer() {
         let outcome = flooded.ask(3, &set(3, 7.0), 2 * ROUND + gap + 100);
         assert_eq!(outcome, Some(Outcome::Done));
     }
+}
+
+/// With messages of all other kinds but the answers to `Disarm`, which would overrule arming.
+#[test]
+fn an_answer_waits_for_no_more_messages_than_the_bound() {
+    let mut bench = Bench::new(Some(FaultRecord { fault: Fault::Watchdog, tick: 7, count: 8 }));
+    bench.run(500);
+    bench.tell(&ToBoard::Stream(core::num::NonZeroU32::new(1)));
+    let mut other = 1000;
+    let mut next = |bench: &mut Bench| -> Said {
+        for message in [
+            ToBoard::Hello,
+            ToBoard::Get,
+            ToBoard::Status,
+            ToBoard::Describe,
+            ToBoard::Align { id: other },
+            set(other, 1000.0),
+            set(other + 1, 1000.0),
+        ] {
+            bench.tell(&message);
+        }
+        other += 2;
+        (0..20).for_each(|_| bench.tick());
+        bench.session.poll();
+        let bytes = bench.session.outgoing().to_vec();
+        bench.session.sent(bytes.len());
+        bytes.iter().find_map(|&byte| bench.ear.push::<Said>(byte)).unwrap()
+    };
+    let mut ahead = |id| {
+        bench.tell(&ToBoard::Arm { id });
+        bench.tick();
+        (0..100).position(|_| next(&mut bench) == done(id)).unwrap()
+    };
+    // Each but the first comes just after its turn, and waits for the longest.
+    assert!(ahead(1) <= MESSAGES_AHEAD);
+    assert_eq!([2, 3, 4].map(ahead), [MESSAGES_AHEAD - 1; 3]);
 }
 
 /// A host that repeats `Hello` faster than a greeting takes still gets the end of one.
