@@ -3,8 +3,8 @@
 //! Runs below the servo's interrupt and without hardware. The task of the serial port passes received
 //! bytes to [`Session::receive`], calls [`Session::poll`], and sends the bytes of [`Session::outgoing`],
 //! in a loop. Nothing here waits, and each message causes a bounded amount of work: one request of each
-//! kind can be open, and one frame is on its way out. The kinds of replies take turns ([`turn`]), so that no
-//! flood of messages keeps another request from its answer.
+//! kind can be open, and one frame is on its way out. The kinds of replies take turns, so that no flood of
+//! messages keeps another request from its answer ([`MESSAGES_AHEAD`]).
 //!
 //! The path of a new set of parameters:
 //!

@@ -133,6 +133,15 @@ fn a_flood_of_requests_to_arm_or_to_disarm_keeps_no_set_from_its_answer() {
     }
 }
 
+#[test]
+fn every_kind_has_its_turn_once_in_a_round() {
+    let mut turns = std::vec![Turn::FIRST];
+    while turns.last().unwrap().next() != Turn::FIRST {
+        turns.push(turns.last().unwrap().next());
+    }
+    assert_eq!(turns.len(), Turn::COUNT);
+}
+
 /// With messages of all other kinds but the answers to `Disarm`, which would overrule arming.
 #[test]
 fn an_answer_waits_for_no_more_messages_than_the_bound() {
