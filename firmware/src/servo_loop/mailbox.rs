@@ -1,6 +1,6 @@
 //! Connects the servo's interrupt and the task below it. The task requests; the interrupt publishes its
 //! state, which the task compares with its requests. Neither side ever waits for the other, and a task that
-//! reads late misses nothing: what is published replaces what was published before.
+//! reads late misses nothing: a published value replaces the previous one.
 //!
 //! Each shared word has one writer, except `pending`, in which the task sets bits and which the interrupt
 //! clears as a whole. The order of the accesses:

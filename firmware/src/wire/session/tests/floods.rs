@@ -69,7 +69,7 @@ impl Flooded {
     /// The answer to a message in the flood, within so many ticks.
     fn ask(&mut self, id: Id, message: &ToBoard, ticks: usize) -> Option<Outcome> {
         self.to_board.extend(frame(message));
-        // What is in front of it on the line.
+        // The bytes in front of it on the line come first.
         let ticks = ticks + self.to_board.len().div_ceil(BYTES_PER_TICK);
         self.run(ticks).iter().find_map(|said| match said {
             ToHost::Answer { id: answered, outcome } if *answered == id => Some(*outcome),
