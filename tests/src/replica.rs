@@ -6,9 +6,7 @@ use haptic_servo::certificate::Parameter;
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::RawCount;
 use haptic_servo::servo::{OutputMode, PreparedServo, SupportsTiming};
-use haptic_servo::servo_loop::{
-    FrameQueue, Frames, Inbox, Mailbox, Notice, Requests, ServoLoop, State,
-};
+use haptic_servo::servo_loop::{FrameQueue, Frames, Inbox, Mailbox, Requests, ServoLoop, State};
 use haptic_servo::tuning::{self, Tunable};
 
 /// Timer counts in a period.
@@ -72,9 +70,7 @@ impl<E: Tunable<f32> + SupportsTiming<M>, M: OutputMode> Replica<E, M> {
     pub fn tick(&mut self, count: i32) -> (u16, State) {
         self.board.lines.count = count;
         self.servo_loop.run(&mut self.board, &mut self.inbox, &mut self.frames);
-        while let Some(notice) = self.requests.notice() {
-            assert!(matches!(notice, Notice::Armed | Notice::Applied), "{notice:?}");
-        }
+        assert_eq!(self.servo_loop.fault(), None);
         (self.board.lines.code.get(), self.servo_loop.state())
     }
 }

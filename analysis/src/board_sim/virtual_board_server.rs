@@ -14,6 +14,9 @@ use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 /// Bytes to the board with one sample: more than its port takes in a sample.
 const BYTES_PER_SAMPLE: usize = 1024;
 
+/// Most bytes that wait for a client that does not read. Later bytes are lost, as on a serial line.
+const WAITING: usize = 1 << 20;
+
 /// A virtual board and its device.
 pub enum DrivingBoard {
     /// By its DAC.
@@ -76,6 +79,7 @@ pub(super) fn serve(
     while !over.load(Ordering::Relaxed) {
         let bytes: Vec<u8> = to_board.drain(..to_board.len().min(BYTES_PER_SAMPLE)).collect();
         to_host.extend(board.sample(&bytes)?);
+        to_host.truncate(WAITING);
         to_board.extend(listener.carry_bytes(&mut to_host));
         if let Some(period) = period {
             next += period;

@@ -4,7 +4,8 @@ use std::io;
 use std::time::{Duration, Instant};
 
 use haptic_servo::current::TorqueSource;
-use haptic_servo::excitation::{SILENCE, SWEEP_PROTOCOL, SweepEnd, byte};
+use haptic_servo::excitation::{SILENCE, SWEEP_PROTOCOL, SweepEnd};
+use haptic_servo::wire::sweep::SweepRequest;
 use thiserror::Error;
 
 use super::torque_source;
@@ -12,10 +13,12 @@ use crate::link::{Address, LinkError, Transport, is_timeout, open};
 
 /// Timeout for a board's description, and between rows.
 const TIMEOUT: Duration = Duration::from_secs(2);
-/// Time between two keep-alive bytes of the host; the board waits five times as long.
+/// Time between two keep-alives of the host; the board waits five times as long.
 const LISTENING: Duration = Duration::from_millis((SILENCE * 200.0) as u64);
 /// Time in which a board whose sweep still ran falls silent.
 const SETTLE: Duration = Duration::from_millis(200);
+/// Longest line in bytes: the description of a bridge has less than half of it.
+const LONGEST_LINE: usize = 512;
 /// The record's first line.
 const HEADING: &str = "time,torque,counts";
 
@@ -87,6 +90,17 @@ pub enum PortError {
         address: Address,
         /// Rows so far.
         rows: u64,
+        /// Rows of the whole record.
+        ticks: u64,
+    },
+    /// More rows than the sweep has samples.
+    #[error(
+        "the board on {address} has sent more than the {ticks} rows of its sweep: check that no \
+         other program has the port open, and flash `identify` again"
+    )]
+    TooLong {
+        /// The address.
+        address: Address,
         /// Rows of the whole record.
         ticks: u64,
     },
@@ -176,7 +190,7 @@ pub struct SweepPort {
     transport: Box<dyn Transport>,
     /// Bytes of an incomplete line.
     rest: Vec<u8>,
-    /// When the last keep-alive byte was sent.
+    /// When the last request was sent.
     told: Instant,
     description: Description,
 }
@@ -199,7 +213,7 @@ impl SweepPort {
         };
         let (address, rest) = (address.clone(), Vec::new());
         let mut player = Self { address, transport, rest, told: Instant::now(), description };
-        player.send_byte(byte::STOP)?;
+        player.send(&SweepRequest::Stop)?;
         let settled = Instant::now() + SETTLE;
         while player.line(settled)?.is_some() {}
         player.rest.clear();
@@ -215,7 +229,7 @@ impl SweepPort {
     fn ask(&mut self) -> Result<(), PortError> {
         let end = Instant::now() + TIMEOUT;
         while Instant::now() < end {
-            self.send_byte(byte::DESCRIBE)?;
+            self.send(&SweepRequest::Describe)?;
             let again = Instant::now() + TIMEOUT / 8;
             while let Some(line) = self.line(again)? {
                 if let Some(fields) = line.strip_prefix("identify,") {
@@ -237,7 +251,7 @@ impl SweepPort {
     /// # Errors
     /// Where the link is lost, or the board ends with an unknown word.
     pub fn record(mut self, mut progress: impl FnMut()) -> Result<Recording, PortError> {
-        self.send_byte(byte::BEGIN)?;
+        self.send(&SweepRequest::BEGIN)?;
         let (mut text, mut rows) = (String::new(), 0);
         let ticks = self.description.ticks;
         loop {
@@ -255,6 +269,9 @@ impl SweepPort {
                 (text, rows) = (String::new(), 0);
             } else if text.is_empty() {
                 continue;
+            } else if rows == ticks {
+                let address = self.address.clone();
+                return Err(PortError::TooLong { address, ticks });
             } else {
                 rows += 1;
                 progress();
@@ -264,9 +281,10 @@ impl SweepPort {
         }
     }
 
-    fn send_byte(&mut self, byte: u8) -> Result<(), PortError> {
+    fn send(&mut self, request: &SweepRequest) -> Result<(), PortError> {
         self.told = Instant::now();
-        let sent = self.transport.write_all(&[byte]).and_then(|()| self.transport.flush());
+        let frame = request.frame();
+        let sent = self.transport.write_all(&frame).and_then(|()| self.transport.flush());
         sent.map_err(|source| self.lost(source))
     }
 
@@ -277,8 +295,12 @@ impl SweepPort {
                 let line: Vec<u8> = self.rest.drain(..=end).collect();
                 return Ok(Some(String::from_utf8_lossy(&line).trim_end().to_owned()));
             }
+            // Noise without an end of a line is not kept.
+            if self.rest.len() > LONGEST_LINE {
+                self.rest.clear();
+            }
             if self.told.elapsed() >= LISTENING {
-                self.send_byte(byte::LISTENING)?;
+                self.send(&SweepRequest::Listening)?;
             }
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {
@@ -330,6 +352,42 @@ fn describe(fields: &str) -> Option<Description> {
 mod tests {
     use super::*;
 
+    /// A line that never ends.
+    struct Noise;
+
+    impl io::Read for Noise {
+        fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+            bytes.fill(b'x');
+            Ok(bytes.len())
+        }
+    }
+
+    impl io::Write for Noise {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    impl Transport for Noise {
+        fn wait_at_most(&mut self, _: Duration) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn noise_without_an_end_is_not_kept() {
+        let description = describe("3,0.001,61440,52500,0.7,85").unwrap();
+        let address = Address::Tcp("board:1".to_owned());
+        let (transport, rest) = (Box::new(Noise), Vec::new());
+        let mut port = SweepPort { address, transport, rest, told: Instant::now(), description };
+        assert_eq!(port.line(Instant::now() + Duration::from_millis(50)).unwrap(), None);
+        assert!(port.rest.len() <= LONGEST_LINE + 4096, "{} bytes", port.rest.len());
+    }
+
     #[test]
     fn every_end_says_what_to_do() {
         let sentences = SweepEnd::ALL.map(|end| remedy(end, &0.7, &85.0));
@@ -340,16 +398,16 @@ mod tests {
 
     #[test]
     fn a_description_of_another_version_or_shape_is_none() {
-        assert!(describe("2,0.001,61440,52500,0.7,85").is_some_and(|it| it.source.is_none()));
+        assert!(describe("3,0.001,61440,52500,0.7,85").is_some_and(|it| it.source.is_none()));
         let bridge =
-            "2,0.001,61440,52500,0.7,85,0.0841,0.6,0.00012,0.25,0.000025,0.00253,0.00427,0.115";
+            "3,0.001,61440,52500,0.7,85,0.0841,0.6,0.00012,0.25,0.000025,0.00253,0.00427,0.115";
         assert!(describe(bridge).is_some_and(|it| it.source.is_some()));
         for wrong in [
-            "1,0.001,61440,52500,0.7,85",
-            "2,0.001,61440",
-            "2,0,61440,52500,0.7,85",
-            "2,0.001,61440,52500,0.7,85,",
-            "2,0.001,61440,52500,0.7,85,0.0841",
+            "2,0.001,61440,52500,0.7,85",
+            "3,0.001,61440",
+            "3,0,61440,52500,0.7,85",
+            "3,0.001,61440,52500,0.7,85,",
+            "3,0.001,61440,52500,0.7,85,0.0841",
             "",
         ] {
             assert_eq!(describe(wrong), None, "{wrong}");

@@ -1,6 +1,6 @@
 //! Requests and responses of HTTP, only as far as a page and its socket need them: one per connection.
 
-use std::io::{ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -147,7 +147,7 @@ impl HttpResponse {
     }
 
     /// Sends the response. If a client does not take it, it has gone.
-    pub fn send(&self, mut stream: &TcpStream) {
+    pub fn send(&self, stream: &TcpStream) {
         let Self { status, headers, kind, body } = self;
         let mut text = format!("HTTP/1.1 {status} {}\r\n", reason(*status));
         for header in headers {
@@ -158,13 +158,32 @@ impl HttpResponse {
              Referrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
             body.len()
         );
-        let sent =
-            stream.write_all(text.as_bytes()).and_then(|()| stream.write_all(body.as_bytes()));
+        text += body;
+        let sent = write(stream, text.as_bytes());
         // Closing with bytes unread would reset the connection, and the answer with it.
         if sent.is_ok() && stream.shutdown(std::net::Shutdown::Write).is_ok() {
             drain(stream);
         }
     }
+}
+
+/// Writes all bytes within the time that an answer may take, also to a client that takes few at a time.
+fn write(mut stream: &TcpStream, mut bytes: &[u8]) -> io::Result<()> {
+    let end = Instant::now() + TIMEOUT;
+    while !bytes.is_empty() {
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(ErrorKind::TimedOut.into());
+        }
+        stream.set_write_timeout(Some(left))?;
+        match stream.write(bytes) {
+            Ok(0) => return Err(ErrorKind::WriteZero.into()),
+            Ok(written) => bytes = &bytes[written..],
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
 }
 
 /// Reads the remaining bytes, for a while.

@@ -7,6 +7,7 @@
 
 mod access;
 mod client;
+mod connections;
 mod http;
 mod port;
 mod refusal;
@@ -16,21 +17,22 @@ mod shared;
 use std::io;
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
 use self::access::{Access, Token};
+use self::connections::{CONNECTIONS, Connection, Connections};
 use self::http::{Head, HttpResponse};
 pub use self::port::Port;
 pub use self::refusal::PageRefusal;
 pub use self::report::Report;
 use self::shared::Shared;
 
-/// Largest number of connections: a page uses two, and a browser opens some in advance.
-const CONNECTIONS: usize = 16;
+/// Time after the end of the server in which a page may confirm that its socket is closed.
+const GOODBYE: Duration = Duration::from_secs(2);
 /// Longest time between two checks whether the server ends.
 const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
@@ -104,7 +106,7 @@ impl Server {
             page,
             seats: seats.clone(),
             over: over.clone(),
-            connections: AtomicUsize::new(0),
+            connections: Arc::new(Connections::default()),
             report,
         });
         let (of_port, of_listener) = (shared.clone(), shared);
@@ -150,13 +152,19 @@ fn listen_at(listener: &TcpListener, shared: &Arc<Shared>) {
             Err(_) => thread::sleep(POLL_INTERVAL),
         }
     }
+    let end = Instant::now() + GOODBYE;
+    while Instant::now() < end && threads.iter().any(|thread| !thread.is_finished()) {
+        thread::sleep(POLL_INTERVAL);
+    }
+    // A client that takes a byte now and then would otherwise keep the server from its end.
+    shared.connections.close();
     for thread in threads {
         // As above.
         let _ = thread.join();
     }
 }
 
-/// Serves a connection in its own thread, if there are not too many.
+/// Serves a connection in its own thread, if there is room.
 fn connection(stream: TcpStream, shared: &Arc<Shared>) -> Option<JoinHandle<()>> {
     // The server does not wait for a client that does not read.
     let is_ready = stream.set_nonblocking(false).is_ok()
@@ -165,29 +173,29 @@ fn connection(stream: TcpStream, shared: &Arc<Shared>) -> Option<JoinHandle<()>>
     if !is_ready {
         return None;
     }
-    if shared.connections.fetch_add(1, Ordering::Relaxed) >= CONNECTIONS {
-        shared.connections.fetch_sub(1, Ordering::Relaxed);
+    let stream = Arc::new(stream);
+    let Some(connection) = shared.connections.open(&stream) else {
         let busy = format!(
             "there are {CONNECTIONS} connections already: close other pages of this server"
         );
         HttpResponse::refusal(503, busy).send(&stream);
         return None;
-    }
-    let shared = shared.clone();
-    let serve = move || {
-        serve(&stream, &shared);
-        shared.connections.fetch_sub(1, Ordering::Relaxed);
     };
-    Some(thread::spawn(serve))
+    let shared = shared.clone();
+    Some(thread::spawn(move || serve(&stream, &connection, &shared)))
 }
 
 /// Answers one request, or carries the wire of one page.
-fn serve(stream: &TcpStream, shared: &Shared) {
+fn serve(stream: &TcpStream, connection: &Connection, shared: &Shared) {
     let head = match Head::read(stream, &shared.over) {
         Ok(head) => head,
         Err(answer) => return answer.send(stream),
     };
-    match route(&head, shared) {
+    let route = route(&head, shared);
+    if matches!(route, Ok(Route::Page | Route::Wire { .. })) {
+        connection.trust();
+    }
+    match route {
         Ok(Route::Page) => HttpResponse::page(&shared.page).send(stream),
         Ok(Route::Nothing) => HttpResponse::nothing().send(stream),
         Ok(Route::Wire { key }) => client::carry(stream, head.rest, &key, shared),

@@ -16,6 +16,9 @@ use crate::link::{Address, LinkError, Transport, is_timeout, open};
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 /// Bytes that are read at a time.
 const BYTES: usize = 4096;
+/// Bytes that are written between two reads, and the rest of a page's message: a page that sends without pause
+/// must not keep the board's bytes from being read.
+const WRITTEN: usize = 256;
 /// Largest number of reads waiting for a page; with more, the page is too slow.
 const READS: usize = 256;
 /// Largest number of a page's messages waiting for the port.
@@ -203,9 +206,13 @@ fn carry(
     let mut bytes = [0; BYTES];
     transport.wait_at_most(POLL_INTERVAL)?;
     while !over.load(Ordering::Relaxed) {
-        while let Ok(bytes) = wire.try_recv() {
+        let mut written = 0;
+        while written < WRITTEN
+            && let Ok(bytes) = wire.try_recv()
+        {
             transport.write_all(&bytes)?;
             transport.flush()?;
+            written += bytes.len().max(1);
         }
         match transport.read(&mut bytes) {
             Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),

@@ -1,9 +1,10 @@
 //! The state that all threads of a server share.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize};
+use std::sync::atomic::AtomicBool;
 
 use super::access::Access;
+use super::connections::Connections;
 use super::port::Seats;
 use super::report::Report;
 
@@ -13,6 +14,6 @@ pub(super) struct Shared {
     pub page: String,
     pub seats: Seats,
     pub over: Arc<AtomicBool>,
-    pub connections: AtomicUsize,
+    pub connections: Arc<Connections>,
     pub report: Report,
 }

@@ -12,7 +12,8 @@ use analysis::program::damper_wall;
 use analysis::program::identify::{GUARD, LIMITS, PERIOD, SWEEP, TRANSDUCERS};
 use analysis::simulation::plant::Plant;
 use haptic_servo::dac::DacCode;
-use haptic_servo::excitation::{Exciter, SWEEP_PROTOCOL, SweepEnd, byte};
+use haptic_servo::excitation::{Exciter, SWEEP_PROTOCOL, SweepEnd};
+use haptic_servo::wire::sweep::{SweepReceiver, SweepRequest};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -27,6 +28,8 @@ struct Board {
     ends: Option<(u64, SweepEnd)>,
     /// Where it falls silent permanently.
     dies_at: Option<u64>,
+    /// Rows that it sends after the last one.
+    more: usize,
     /// Text that it sends in place of the description.
     says: Option<&'static str>,
 }
@@ -35,12 +38,14 @@ impl Board {
     /// Serves the only host that comes.
     fn serve(self, listener: &UnixListener) {
         let (mut host, _) = listener.accept().unwrap();
-        let mut bytes = [0; 1];
+        let (mut bytes, mut receiver) = ([0; 1], SweepReceiver::new());
         while matches!(host.read(&mut bytes), Ok(1)) {
-            let said = match (bytes[0], self.says) {
-                (byte::DESCRIBE, None) => host.write_all(self.description().as_bytes()),
-                (byte::DESCRIBE, Some(words)) => host.write_all(words.as_bytes()),
-                (byte::BEGIN, _) => self.play(&mut host),
+            let said = match (receiver.push(bytes[0]), self.says) {
+                (Some(SweepRequest::Describe), None) => {
+                    host.write_all(self.description().as_bytes())
+                }
+                (Some(SweepRequest::Describe), Some(words)) => host.write_all(words.as_bytes()),
+                (Some(SweepRequest::Begin { .. }), _) => self.play(&mut host),
                 _ => Ok(()),
             };
             if said.is_err() {
@@ -96,6 +101,7 @@ impl Board {
                 text.clear();
             }
         }
+        text += &"1,0,0\n".repeat(self.more);
         text += &format!("end,{},0\n", end.as_str());
         host.write_all(text.as_bytes())
     }
@@ -148,6 +154,13 @@ fn every_end_before_the_last_is_named_and_what_there_is_is_kept() {
     // A record that lost rows on the way is incomplete, too.
     let lost = Board { ends: Some((700, SweepEnd::Done)), ..Board::default() };
     assert!(lost.complaint().0.contains("ended with `lost-row` after 700"));
+}
+
+#[test]
+fn a_record_that_does_not_end_is_refused() {
+    let (sentence, record) = Board { more: 1, ..Board::default() }.complaint();
+    assert!(sentence.contains("has sent more than the 52500 rows"), "{sentence}");
+    assert_eq!(record, None);
 }
 
 #[test]

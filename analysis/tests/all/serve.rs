@@ -403,3 +403,105 @@ fn other_machines_are_not_served() {
         assert!(said.contains(part), "{said}");
     }
 }
+
+/// A client that opens a connection and sends only a part of a request.
+fn half_open(server: &Server) -> TcpStream {
+    let mut stream = TcpStream::connect(server.address()).unwrap();
+    stream.write_all(b"GET / HTTP/1.1\r\nHost").unwrap();
+    stream
+}
+
+#[test]
+fn clients_that_send_half_a_request_do_not_lock_the_page_out() {
+    let mut board = FakeBoard::new();
+    let mut socket = connect(&board.server);
+    text(&mut socket);
+    let (host, target) =
+        (board.server.address().to_string(), format!("/?token={}", board.server.token()));
+    // On a machine with other work one try may be slow.
+    let was_quick = (0..10).any(|_| {
+        let mut idle: Vec<TcpStream> = (0..40).map(|_| half_open(&board.server)).collect();
+        let start = Instant::now();
+        assert_eq!(get(&board.server, &target, &host, "").0, 200);
+        let took = start.elapsed();
+        // The oldest one had to go.
+        idle[0].set_read_timeout(Some(TIMEOUT)).unwrap();
+        assert!(matches!(idle[0].read(&mut [0]), Ok(0) | Err(_)));
+        took < Duration::from_secs(1)
+    });
+    assert!(was_quick);
+    // A page that has sent the token keeps its place.
+    board.stream.write_all(b"still").unwrap();
+    assert_eq!(bytes(&mut socket, 5), b"still");
+}
+
+/// The same of clients that have an answer and do not close.
+#[test]
+fn clients_without_the_token_do_not_lock_the_page_out() {
+    let board = FakeBoard::new();
+    let server = &board.server;
+    let (host, target) = (server.address().to_string(), format!("/?token={}", server.token()));
+    let refused: Vec<TcpStream> = (0..40)
+        .map(|_| {
+            let mut stream = TcpStream::connect(server.address()).unwrap();
+            stream.write_all(b"GET / HTTP/1.1\r\n\r\n").unwrap();
+            stream
+        })
+        .collect();
+    assert_eq!(get(server, &target, &host, "").0, 200);
+    drop(refused);
+}
+
+/// Waits for the end of a server, on a slow machine.
+fn assert_ends(server: Server) {
+    let (sender, ended) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        drop(server);
+        let _ = sender.send(());
+    });
+    assert!(ended.recv_timeout(TIMEOUT).is_ok(), "the server does not end");
+}
+
+#[test]
+fn a_page_that_reads_slowly_does_not_keep_the_server_from_its_end() {
+    let mut board = FakeBoard::new();
+    let mut slow = connect(&board.server);
+    text(&mut slow);
+    let chunk = vec![7; 1 << 20];
+    for _ in 0..16 {
+        board.stream.write_all(&chunk).unwrap();
+    }
+    let MaybeTlsStream::Plain(stream) = slow.get_ref() else { unreachable!() };
+    let mut stream = stream.try_clone().unwrap();
+    std::thread::spawn(move || {
+        while matches!(stream.read(&mut [0; 4096]), Ok(1..)) {
+            std::thread::sleep(Duration::from_millis(500));
+        }
+    });
+    assert_ends(board.server);
+}
+
+#[test]
+fn a_page_that_sends_without_pause_still_gets_the_bytes_of_the_board() {
+    let mut board = FakeBoard::new();
+    let mut socket = connect(&board.server);
+    text(&mut socket);
+    let MaybeTlsStream::Plain(stream) = socket.get_ref() else { unreachable!() };
+    let sending = stream.try_clone().unwrap();
+    std::thread::spawn(move || {
+        let role = tungstenite::protocol::Role::Client;
+        let mut socket = WebSocket::from_raw_socket(sending, role, None);
+        while socket.send(Message::binary(vec![1; 4096])).is_ok() {}
+    });
+    // The board takes bytes at the rate of a slow line, and no buffer is ever empty.
+    let mut slow = board.stream.try_clone().unwrap();
+    std::thread::spawn(move || {
+        while slow.read(&mut [0; 4096]).is_ok_and(|read| read > 0) {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    });
+    std::thread::sleep(Duration::from_millis(500));
+    board.stream.write_all(b"answer").unwrap();
+    assert_eq!(bytes(&mut socket, 6), b"answer");
+    assert_ends(board.server);
+}

@@ -1,23 +1,9 @@
 //! The end of a sweep, which is the last word of the record on the wire.
 
 /// Version of the protocol of a board that plays a sweep.
-pub const SWEEP_PROTOCOL: u32 = 2;
+pub const SWEEP_PROTOCOL: u32 = 3;
 
-/// Bytes that the host sends.
-pub mod byte {
-    /// Requests the description: `identify,PROTOCOL,period,counts per turn,ticks,travel,speed`, and, with the
-    /// board's own bridge, `,gain,resistance,inductance,feedback,instant,loss,step,crossing` of its
-    /// [`TorqueSource`](crate::current::TorqueSource).
-    pub const DESCRIBE: u8 = b'?';
-    /// Begins the sweep. The record follows, and after it `end,WORD,count`.
-    pub const BEGIN: u8 = b'g';
-    /// Keep-alive of the host; any byte except these three ends the sweep.
-    pub const LISTENING: u8 = b'k';
-    /// A byte that ends the sweep.
-    pub const STOP: u8 = b'x';
-}
-
-/// Time in s without a byte from the host after which an unsupervised sweep ends.
+/// Time in s without a request of the host after which an unsupervised sweep ends.
 pub const SILENCE: f64 = 0.5;
 
 /// The end of a sweep.
@@ -27,7 +13,7 @@ pub enum SweepEnd {
     Done,
     /// The host stopped it.
     Stopped,
-    /// The host has sent no byte for [`SILENCE`].
+    /// The host has sent no request for [`SILENCE`].
     Silent,
     /// A tick came late or not at all, so that a torque was held for too long.
     MissedTick,

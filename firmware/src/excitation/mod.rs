@@ -40,7 +40,7 @@ pub mod sine;
 
 use core::fmt;
 
-pub use end::{SILENCE, SWEEP_PROTOCOL, SweepEnd, byte};
+pub use end::{SILENCE, SWEEP_PROTOCOL, SweepEnd};
 pub use error::SweepError;
 pub use exciter::{Excitation, Exciter};
 pub use guard::{Guard, MotionLimits};

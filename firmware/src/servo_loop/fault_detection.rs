@@ -208,7 +208,8 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.fault = Some(fault);
         let count = self.rendering.servo().low_count();
         hardware.store_fault(&FaultRecord { fault, tick: self.tick, count }.encode());
-        inbox.notify(Notice::Stopped(fault));
+        // A stopped servo is disarmed, as requested.
+        inbox.off();
     }
 
     /// The present fault that would stop the servo immediately after arming.

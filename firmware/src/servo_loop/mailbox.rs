@@ -1,46 +1,99 @@
-//! Connects the servo's interrupt and the task below it: requests to the interrupt, notices to the task.
-//! Neither side ever waits for the other.
+//! Connects the servo's interrupt and the task below it. The task requests; the interrupt publishes its
+//! state, which the task compares with its requests. Neither side ever waits for the other, and a task that
+//! reads late misses nothing: a published value replaces the previous one.
+//!
+//! Each shared word has one writer, except `pending`, in which the task sets bits and which the interrupt
+//! clears as a whole. The order of the accesses:
+//!
+//! ```text
+//! task        a request: its number in `numbers`, then its bit in `pending` (release)
+//!             a set: into `sets`, then its bit in `pending` (release)
+//! interrupt   all of `pending` (acquire), the numbers of its bits, then the work
+//!             the result with the number of its request: `off`, `swapped`, `arming`, `alignment`, `status`
+//! task        reads the result; it is that of its last request if it has the number of that request
+//! ```
+//!
+//! An interrupt between number and bit may still find the bit of an earlier request of the same kind. It then
+//! answers both with the later number, and does the same work again for the later bit.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use heapless::spsc::{Consumer, Producer, Queue};
 
-use super::Notice;
+use super::published::Published;
+use super::state::{Reply, Status};
 
-/// Bits of the word of requests.
-const ARM: u32 = 1;
-const DISARM: u32 = 2;
-const STATUS: u32 = 4;
-const SET: u32 = 8;
-const HOST_ALIVE: u32 = 16;
-const ALIGN: u32 = 32;
+/// Bits of the word of requests; the first are those of [`Kind`].
+const SET: u32 = 1 << 4;
+const HOST_ALIVE: u32 = 1 << 5;
 
 /// Slots of the queue of sets: one set can wait, and a queue keeps one slot free.
 const SETS: usize = 2;
-/// Slots of the queue of notices, one of them kept free.
-const NOTICES: usize = 6;
+
+/// Numbered requests. Each has a bit in the word of requests.
+#[derive(Clone, Copy)]
+enum Kind {
+    Arm = 0,
+    Disarm = 1,
+    Align = 2,
+    Status = 3,
+}
+
+impl Kind {
+    const COUNT: usize = 4;
+
+    const fn bit(self) -> u32 {
+        1 << self as u32
+    }
+}
+
+/// The words that both ends share.
+#[derive(Debug)]
+struct Shared {
+    /// Pending requests; the interrupt reads nothing else in an ordinary tick.
+    pending: AtomicU32,
+    /// The number of the last request of each kind, from 1; wraps.
+    numbers: [AtomicU32; Kind::COUNT],
+    /// Sets swapped in since the start; wraps.
+    swapped: AtomicU32,
+    /// The last request to disarm after which the amplifier was off.
+    off: AtomicU32,
+    /// The last answered request to arm, and its reply.
+    arming: Published<{ 1 + Reply::WORDS }>,
+    /// The last answered request for an alignment, and its reply.
+    alignment: Published<{ 1 + Reply::WORDS }>,
+    /// The last answered request for the status, and the status.
+    status: Published<{ 1 + Status::WORDS }>,
+}
 
 /// Shared by both ends; `R` is the swapped servo, a [`PreparedServo`](crate::servo::PreparedServo).
 #[derive(Debug)]
 pub struct Mailbox<R> {
     sets: Queue<R, SETS>,
-    notices: Queue<Notice, NOTICES>,
-    /// Pending requests; the interrupt reads nothing else in an ordinary tick.
-    pending: AtomicU32,
+    shared: Shared,
 }
 
 impl<R> Mailbox<R> {
     /// An empty mailbox.
     pub const fn new() -> Self {
-        Self { sets: Queue::new(), notices: Queue::new(), pending: AtomicU32::new(0) }
+        let shared = Shared {
+            pending: AtomicU32::new(0),
+            numbers: [const { AtomicU32::new(0) }; Kind::COUNT],
+            swapped: AtomicU32::new(0),
+            off: AtomicU32::new(0),
+            arming: Published::new(),
+            alignment: Published::new(),
+            status: Published::new(),
+        };
+        Self { sets: Queue::new(), shared }
     }
 
     /// The task's end and the interrupt's end.
     pub fn split(&mut self) -> (Requests<'_, R>, Inbox<'_, R>) {
         let (submit, sets) = self.sets.split();
-        let (notice_sender, notices) = self.notices.split();
-        let pending = &self.pending;
-        (Requests { submit, notices, pending }, Inbox { sets, notice_sender, pending })
+        let shared = &self.shared;
+        let requests = Requests { submit, shared, submitted: 0 };
+        (requests, Inbox { sets, shared, swapped: 0, disarm: 0 })
     }
 }
 
@@ -50,34 +103,35 @@ impl<R> Default for Mailbox<R> {
     }
 }
 
-/// The low-priority end.
+/// The low-priority end. Requests have numbers, by which a reply is recognised.
 pub struct Requests<'a, R> {
     submit: Producer<'a, R>,
-    notices: Consumer<'a, Notice>,
-    pending: &'a AtomicU32,
+    shared: &'a Shared,
+    submitted: u32,
 }
 
 impl<R> Requests<'_, R> {
-    /// Requests arming; [`Notice::Armed`] or [`Notice::NotArmed`] answers.
-    pub fn arm(&self) {
-        self.post(ARM);
+    /// Requests arming; [`Requests::arming`] has the reply under the returned number. Do not request it
+    /// before a request to disarm has its reply: the servo would fade in again, and never be off.
+    pub fn arm(&self) -> u32 {
+        self.request(Kind::Arm)
     }
 
-    /// Requests to close the clamp and to switch the amplifier off; [`Notice::Disarmed`] answers.
-    /// If arming is requested as well, disarming wins.
-    pub fn disarm(&self) {
-        self.post(DISARM);
+    /// Requests to close the clamp and to switch the amplifier off; [`Requests::off`] then returns this
+    /// number or a later one. If arming is requested as well, disarming wins.
+    pub fn disarm(&self) -> u32 {
+        self.request(Kind::Disarm)
     }
 
-    /// Requests the alignment of a brushless motor, which moves the handle; [`Notice::Aligning`] or
-    /// [`Notice::NotAligning`] answers.
-    pub fn align(&self) {
-        self.post(ALIGN);
+    /// Requests the alignment of a brushless motor, which moves the handle; [`Requests::alignment`] has the
+    /// reply under the returned number.
+    pub fn align(&self) -> u32 {
+        self.request(Kind::Align)
     }
 
-    /// Requests a [`Notice::Status`].
-    pub fn request_status(&self) {
-        self.post(STATUS);
+    /// Requests the status; [`Requests::status`] has it under the returned number.
+    pub fn request_status(&self) -> u32 {
+        self.request(Kind::Status)
     }
 
     /// Reports a message from the host.
@@ -85,41 +139,81 @@ impl<R> Requests<'_, R> {
         self.post(HOST_ALIVE);
     }
 
-    /// Submits a set, which is swapped in as a whole; [`Notice::Applied`] answers. Its period must be that of
-    /// the board's timer; [`tuning`](crate::tuning) never changes the period.
+    /// Submits a set, which is swapped in as a whole; [`Requests::swapped`] then returns the number that this
+    /// function returns. Its period must be that of the board's timer; [`tuning`](crate::tuning) never changes
+    /// the period.
     ///
     /// # Errors
     /// Returns the set if the previous set is still waiting.
-    pub fn submit(&mut self, set: R) -> Result<(), R> {
+    pub fn submit(&mut self, set: R) -> Result<u32, R> {
         self.submit.enqueue(set)?;
+        self.submitted = self.submitted.wrapping_add(1);
         self.post(SET);
-        Ok(())
+        Ok(self.submitted)
     }
 
-    /// The next notice.
-    pub fn notice(&mut self) -> Option<Notice> {
-        self.notices.dequeue()
+    /// The number of sets swapped in since the start, which is the number of the running set; wraps.
+    pub fn swapped(&self) -> u32 {
+        self.shared.swapped.load(Ordering::Acquire)
+    }
+
+    /// The number of the last request to disarm after which the amplifier was off; 0 before the first.
+    pub fn off(&self) -> u32 {
+        self.shared.off.load(Ordering::Acquire)
+    }
+
+    /// The number of the last answered request to arm, and its reply. `None` before the first, or if a reply
+    /// was published during this call: poll again.
+    pub fn arming(&self) -> Option<(u32, Reply)> {
+        numbered(&self.shared.arming)
+    }
+
+    /// The same of the last answered request for an alignment.
+    pub fn alignment(&self) -> Option<(u32, Reply)> {
+        numbered(&self.shared.alignment)
+    }
+
+    /// The number of the last answered request for the status, and the status; `None` as above.
+    pub fn status(&self) -> Option<(u32, Status)> {
+        let [number, words @ ..] = self.shared.status.read()?;
+        (number != 0).then(|| (number, Status::from_words(words)))
+    }
+
+    fn request(&self, kind: Kind) -> u32 {
+        let place = &self.shared.numbers[kind as usize];
+        // 0 stands for no request.
+        let number = place.load(Ordering::Relaxed).wrapping_add(1).max(1);
+        place.store(number, Ordering::Relaxed);
+        self.post(kind.bit());
+        number
     }
 
     fn post(&self, request: u32) {
-        self.pending.fetch_or(request, Ordering::Release);
+        self.shared.pending.fetch_or(request, Ordering::Release);
     }
+}
+
+fn numbered(published: &Published<{ 1 + Reply::WORDS }>) -> Option<(u32, Reply)> {
+    let [number, words @ ..] = published.read()?;
+    Some((number, Reply::from_words(words)?)).filter(|_| number != 0)
 }
 
 /// The interrupt's end.
 pub struct Inbox<'a, R> {
     sets: Consumer<'a, R>,
-    notice_sender: Producer<'a, Notice>,
-    pending: &'a AtomicU32,
+    shared: &'a Shared,
+    swapped: u32,
+    /// The last request to disarm.
+    disarm: u32,
 }
 
-/// Requests since the last tick.
+/// Requests since the last tick, by their numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PendingRequests {
-    pub arm: bool,
+    pub arm: Option<u32>,
+    pub align: Option<u32>,
+    pub status: Option<u32>,
     pub disarm: bool,
-    pub align: bool,
-    pub status: bool,
     pub host_alive: bool,
 }
 
@@ -127,19 +221,34 @@ impl<R> Inbox<'_, R> {
     /// Pending requests as a word; zero if none.
     #[inline(always)]
     pub(super) fn pending(&self) -> u32 {
-        self.pending.load(Ordering::Relaxed)
+        self.shared.pending.load(Ordering::Relaxed)
     }
 
-    /// Takes the pending requests.
-    pub(super) fn take(&self) -> PendingRequests {
-        let pending = self.pending.swap(0, Ordering::Acquire);
-        PendingRequests {
-            arm: pending & (ARM | DISARM) == ARM,
-            disarm: pending & DISARM != 0,
-            align: pending & (ALIGN | DISARM) == ALIGN,
-            status: pending & STATUS != 0,
+    /// Takes the pending requests. A request to disarm overrules the others.
+    pub(super) fn take(&mut self) -> PendingRequests {
+        let pending = self.shared.pending.swap(0, Ordering::Acquire);
+        let number = |kind: Kind| {
+            let number = || self.shared.numbers[kind as usize].load(Ordering::Relaxed);
+            (pending & kind.bit() != 0).then(number)
+        };
+        let mut requests = PendingRequests {
+            arm: number(Kind::Arm),
+            align: number(Kind::Align),
+            status: number(Kind::Status),
+            disarm: false,
             host_alive: pending & HOST_ALIVE != 0,
+        };
+        if let Some(disarm) = number(Kind::Disarm) {
+            self.disarm = disarm;
+            requests.disarm = true;
+            if let Some(number) = requests.arm.take() {
+                self.reply_to_arm(number, Reply::Disarming);
+            }
+            if let Some(number) = requests.align.take() {
+                self.reply_to_align(number, Reply::Disarming);
+            }
         }
+        requests
     }
 
     /// Whether a set waits.
@@ -147,13 +256,39 @@ impl<R> Inbox<'_, R> {
         self.sets.ready()
     }
 
-    /// Takes the waiting set.
+    /// Takes the waiting set; [`Inbox::swapped`] follows.
     pub(super) fn set(&mut self) -> Option<R> {
         self.sets.dequeue()
     }
 
-    /// Sends a notice to the task; the notice is lost if the queue is full.
-    pub(super) fn notify(&mut self, notice: Notice) {
-        let _ = self.notice_sender.enqueue(notice);
+    /// Publishes that the taken set runs.
+    pub(super) fn swapped(&mut self) {
+        self.swapped = self.swapped.wrapping_add(1);
+        self.shared.swapped.store(self.swapped, Ordering::Release);
+    }
+
+    /// Publishes that the amplifier is off, as last requested.
+    pub(super) fn off(&self) {
+        self.shared.off.store(self.disarm, Ordering::Release);
+    }
+
+    /// Publishes the reply to a request to arm.
+    pub(super) fn reply_to_arm(&self, number: u32, reply: Reply) {
+        let [kind, code, a, b] = reply.to_words();
+        self.shared.arming.publish([number, kind, code, a, b]);
+    }
+
+    /// Publishes the reply to a request for an alignment.
+    pub(super) fn reply_to_align(&self, number: u32, reply: Reply) {
+        let [kind, code, a, b] = reply.to_words();
+        self.shared.alignment.publish([number, kind, code, a, b]);
+    }
+
+    /// Publishes the status.
+    pub(super) fn reply_with_status(&self, number: u32, status: &Status) {
+        let mut words = [number; 1 + Status::WORDS];
+        let [_, rest @ ..] = &mut words;
+        *rest = status.to_words();
+        self.shared.status.publish(words);
     }
 }

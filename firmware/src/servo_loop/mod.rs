@@ -17,6 +17,7 @@ mod isr;
 mod mailbox;
 mod options;
 mod period_clock;
+mod published;
 mod state;
 mod state_machine;
 mod swap;
@@ -28,7 +29,7 @@ pub use isr::{Endpoints, FRAMES, ServoIsr};
 pub use mailbox::{Inbox, Mailbox, Requests};
 pub use options::{Arming, LinkPolicy, Options, Reason};
 pub use period_clock::PeriodClock;
-pub use state::{Notice, State, Status};
+pub use state::{Reply, State, Status};
 pub use swap::longest_gap;
 
 pub use crate::output_timing::READ_WITHIN;

@@ -1,4 +1,4 @@
-//! The state of the servo, its status and its notices.
+//! The state of the servo, its status and its replies.
 
 use core::fmt;
 
@@ -91,23 +91,108 @@ pub struct Status {
     pub link_lost: bool,
 }
 
-/// A notice to the low-priority task.
+impl Status {
+    /// Words of a status in the mailbox.
+    pub(super) const WORDS: usize = 15;
+
+    pub(super) fn to_words(self) -> [u32; Self::WORDS] {
+        let state = u32::from(self.link_lost) << LINK_LOST | self.state as u32;
+        let [code, a, b] = fault_words(self.fault);
+        let [count, energy, deficit] = [self.count, self.energy, self.worst_deficit].map(halves);
+        [
+            state,
+            code,
+            a,
+            b,
+            self.tick,
+            count[0],
+            count[1],
+            self.period,
+            self.worst_slack,
+            self.missed,
+            self.dropped,
+            energy[0],
+            energy[1],
+            deficit[0],
+            deficit[1],
+        ]
+    }
+
+    pub(super) fn from_words(words: [u32; Self::WORDS]) -> Self {
+        let [state, code, a, b, tick, words @ ..] = words;
+        let [low, high, period, worst_slack, missed, dropped, words @ ..] = words;
+        let [energy_low, energy_high, deficit_low, deficit_high] = words;
+        Self {
+            state: State::ALL.get((state & 0xff) as usize).copied().unwrap_or_default(),
+            fault: Fault::decode(code, [a, b]),
+            tick,
+            count: whole(low, high),
+            period,
+            worst_slack,
+            missed,
+            dropped,
+            energy: whole(energy_low, energy_high),
+            worst_deficit: whole(deficit_low, deficit_high),
+            link_lost: state >> LINK_LOST != 0,
+        }
+    }
+}
+
+/// The bit of a lost link beside the state.
+const LINK_LOST: u32 = 8;
+
+/// A fault as words; no fault has the code 0.
+fn fault_words(fault: Option<Fault>) -> [u32; 3] {
+    let (code, [a, b]) = fault.map_or((0, [0; 2]), Fault::encode);
+    [code, a, b]
+}
+
+/// The low and the high half.
+const fn halves(value: i64) -> [u32; 2] {
+    let value = value.cast_unsigned();
+    [value as u32, (value >> 32) as u32]
+}
+
+const fn whole(low: u32, high: u32) -> i64 {
+    (((high as u64) << 32) | low as u64).cast_signed()
+}
+
+/// The servo's reply to a request to arm it or to align its motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Notice {
-    /// The reply to a request for the status.
-    Status(Status),
-    /// The servo is armed, or was armed already.
+pub enum Reply {
+    /// The servo is armed, also if it was armed before; or the alignment has begun, and [`State::Aligning`]
+    /// ends by itself.
+    Done,
+    /// Not done: this fault is present.
+    Fault(Fault),
+    /// The motor is not aligned, because the servo is armed.
     Armed,
-    /// The servo was not armed: this fault persists.
-    NotArmed(Fault),
-    /// The motor is being aligned; [`State::Aligning`] ends by itself.
-    Aligning,
-    /// The motor is not aligned: because of this fault, or because the servo is armed.
-    NotAligning(Option<Fault>),
-    /// The amplifier is off.
-    Disarmed,
-    /// The submitted set is running now.
-    Applied,
-    /// The servo has stopped.
-    Stopped(Fault),
+    /// Not done, because disarming was requested at the same time.
+    Disarming,
+}
+
+impl Reply {
+    /// Words of a reply in the mailbox.
+    pub(super) const WORDS: usize = 4;
+
+    pub(super) fn to_words(self) -> [u32; Self::WORDS] {
+        let (kind, fault) = match self {
+            Self::Done => (0, None),
+            Self::Fault(fault) => (1, Some(fault)),
+            Self::Armed => (2, None),
+            Self::Disarming => (3, None),
+        };
+        let [code, a, b] = fault_words(fault);
+        [kind, code, a, b]
+    }
+
+    pub(super) fn from_words([kind, code, a, b]: [u32; Self::WORDS]) -> Option<Self> {
+        match kind {
+            0 => Some(Self::Done),
+            1 => Fault::decode(code, [a, b]).map(Self::Fault),
+            2 => Some(Self::Armed),
+            3 => Some(Self::Disarming),
+            _ => None,
+        }
+    }
 }

@@ -20,11 +20,13 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.on_host_message();
         }
         self.check_link();
-        if requests.arm {
-            self.arm(hardware, inbox);
+        if let Some(number) = requests.arm {
+            let reply = self.arm(hardware);
+            inbox.reply_to_arm(number, reply);
         }
-        if requests.align {
-            self.align(hardware, inbox);
+        if let Some(number) = requests.align {
+            let reply = self.align(hardware);
+            inbox.reply_to_align(number, reply);
         }
         if requests.disarm {
             self.disarm(hardware, inbox);
@@ -35,22 +37,20 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             State::FadingOut => self.fade_out(hardware, inbox),
             State::Settling => self.settle(inbox),
             State::Disarmed | State::Faulted => self.idle(inbox),
-            State::Aligning => self.wait_for_alignment(hardware),
+            State::Aligning => self.wait_for_alignment(hardware, inbox),
         }
-        if requests.status {
-            inbox.notify(Notice::Status(self.status(dropped)));
+        if let Some(number) = requests.status {
+            inbox.reply_with_status(number, &self.status(dropped));
         }
     }
 
-    fn arm(&mut self, hardware: &mut impl Hardware, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
+    fn arm(&mut self, hardware: &mut impl Hardware) -> Reply {
         if self.state == State::Aligning {
-            return inbox.notify(Notice::NotArmed(Fault::Power(PowerFault::NotAligned {
-                by_index: false,
-            })));
+            return Reply::Fault(Fault::Power(PowerFault::NotAligned { by_index: false }));
         }
         if !self.state.is_armed() {
             if let Some(fault) = self.persistent_fault() {
-                return inbox.notify(Notice::NotArmed(fault));
+                return Reply::Fault(fault);
             }
             self.fault = None;
             hardware.store_fault(&FaultRecord::NOTHING);
@@ -62,40 +62,40 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.state = State::FadingIn;
         }
         match (self.state, self.after_fade) {
-            (State::FadingOut, AfterFade::Stop(fault)) => {
-                return inbox.notify(Notice::NotArmed(fault));
-            }
+            (State::FadingOut, AfterFade::Stop(fault)) => return Reply::Fault(fault),
             (State::FadingOut, AfterFade::Release) => self.state = State::FadingIn,
             _ => {}
         }
         self.after_fade = AfterFade::Render;
-        inbox.notify(Notice::Armed);
+        Reply::Done
     }
 
     /// Begins to align a brushless motor: its field turns the handle, and no scene is rendered.
-    fn align(
-        &mut self,
-        hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
-    ) {
+    fn align(&mut self, hardware: &mut impl Hardware) -> Reply {
         if self.state.is_armed() && self.state != State::Aligning {
-            return inbox.notify(Notice::NotAligning(None));
+            return Reply::Armed;
         }
         if let Some(fault) = self.persistent_fault() {
-            return inbox.notify(Notice::NotAligning(Some(fault)));
+            return Reply::Fault(fault);
         }
         if let Err(fault) = hardware.align() {
-            return inbox.notify(Notice::NotAligning(Some(fault)));
+            return Reply::Fault(fault);
         }
         self.fault = None;
         hardware.store_fault(&FaultRecord::NOTHING);
         self.rendering.servo_mut().shut();
         self.state = State::Aligning;
-        inbox.notify(Notice::Aligning);
+        Reply::Done
     }
 
-    /// Waits for the end of an alignment; a fault has stopped the servo before this call.
-    fn wait_for_alignment(&mut self, hardware: &mut impl Hardware) {
+    /// Waits for the end of an alignment; a fault has stopped the servo before this call. A set is swapped
+    /// meanwhile, because nothing is rendered.
+    fn wait_for_alignment(
+        &mut self,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+    ) {
+        self.swap(inbox);
         if !hardware.is_aligning() {
             hardware.amplifier(false);
             self.state = State::Disarmed;
@@ -115,7 +115,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.ramp = ARMING;
             self.begin_fading_out(AfterFade::Release);
         } else {
-            inbox.notify(Notice::Disarmed);
+            inbox.off();
         }
     }
 
@@ -157,7 +157,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             AfterFade::Release => {
                 hardware.amplifier(false);
                 self.state = State::Disarmed;
-                inbox.notify(Notice::Disarmed);
+                inbox.off();
             }
             AfterFade::Stop(fault) => self.stop(fault, hardware, inbox),
         }

@@ -11,7 +11,7 @@
 //!                  ^           ^                            ^          ^
 //!    a set waits:  |           shut: swapped between two    |          open: the new
 //!    the clamp closes          ticks, at rest where the     |          set is felt
-//!    from the torque           device is; Applied is told   |
+//!    from the torque           device is; then published    |
 //!    that is held                                           SETTLING ticks later the
 //!                                                           clamp opens
 //! ```
@@ -68,7 +68,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         set.servo_mut().take_position_from(self.rendering.servo());
         set.rest_here();
         self.rendering = set;
-        inbox.notify(Notice::Applied);
+        inbox.swapped();
         true
     }
 

@@ -139,7 +139,7 @@ pub enum Outcome {
 /// The reason why a request is refused. The host has the same code and computes the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Refusal {
-    /// Another set is pending.
+    /// The previous request of this kind is not finished.
     Busy,
     /// A request to disarm is pending; it has priority.
     Disarming,
@@ -155,7 +155,7 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Busy => f.write_str(
-                "the previous set of parameters is still being swapped in: wait for its answer",
+                "the board still works on the previous request of this kind: wait for its answer",
             ),
             Self::Disarming => f.write_str(
                 "not armed: the servo is being disarmed; arm it after \

@@ -1,6 +1,7 @@
 //! Protocol of a board and its host, as bytes on a serial line or a socket. [`message`] lists the messages,
 //! [`mod@frame`] and [`decoder`] carry it, [`telemetry`] packs ticks, [`session`] answers on the board. With
-//! a [`description`] of the running scene the host computes the text of a refusal. The host sends requests
+//! a [`description`] of the running scene the host computes the text of a refusal. [`sweep`] has the requests to
+//! a board that plays a sweep. The host sends requests
 //! and the board answers; without a request the board sends only telemetry, once a host has started it.
 
 mod changes;
@@ -10,6 +11,7 @@ pub mod frame;
 mod link;
 pub mod message;
 pub mod session;
+pub mod sweep;
 pub mod telemetry;
 
 pub use decoder::{Decoder, Discarded};

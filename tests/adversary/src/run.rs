@@ -286,8 +286,8 @@ where
                 for (at, request) in plan.requests.iter().flatten() {
                     if *at == period {
                         match *request {
-                            Request::Arm => requests.arm(),
-                            Request::Disarm => requests.disarm(),
+                            Request::Arm => _ = requests.arm(),
+                            Request::Disarm => _ = requests.disarm(),
                             Request::Submit(set) => {
                                 if let Some(set) = self.sets.get(set) {
                                     let _ = requests.submit(set.clone());
@@ -348,8 +348,6 @@ where
                         }
                         _ => {}
                     }
-                    // Notices would otherwise be kept for a reader.
-                    while requests.notice().is_some() {}
                 }
                 if in_a_row > normalized.tolerated && last.state.is_armed() && was.is_armed() {
                     outcome.went_on = true;

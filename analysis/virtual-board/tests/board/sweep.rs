@@ -4,7 +4,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use haptic_servo::excitation::{SILENCE, SweepEnd, byte};
+use haptic_servo::excitation::{SILENCE, SweepEnd};
+use haptic_servo::wire::sweep::SweepRequest;
 use virtual_board::chip::{Chip, STM32F405};
 use virtual_board::device::FixedDevice;
 use virtual_board::peripheral::pins::Level;
@@ -22,7 +23,7 @@ fn playing(samples: u64) -> Bench {
     let (chip, file) = file();
     let mut bench = Bench::boot_file(chip, file, FixedDevice);
     bench.run(5);
-    bench.machine.board_mut().send(&[byte::BEGIN]);
+    bench.machine.board_mut().send(&SweepRequest::BEGIN.frame());
     bench.run(samples);
     bench
 }
@@ -56,26 +57,63 @@ fn nothing_moves_before_the_host_begins_and_the_board_says_what_it_would_play() 
     let (chip, file) = file();
     let mut bench = Bench::boot_file(chip, file, FixedDevice);
     bench.run(50);
-    bench.machine.board_mut().send(&[byte::DESCRIBE, byte::LISTENING, byte::STOP]);
-    assert_eq!(lines(&mut bench), ["identify,2,0.001,61440,52500,0.7,85"]);
+    for request in [SweepRequest::Describe, SweepRequest::Listening, SweepRequest::Stop] {
+        bench.machine.board_mut().send(&request.frame());
+    }
+    assert_eq!(lines(&mut bench), ["identify,3,0.001,61440,52500,0.7,85"]);
+    assert_still(&bench);
+}
+
+/// The motor has had no torque so far, and its amplifier is off.
+fn assert_still(bench: &Bench) {
     assert_eq!(bench.amplifier_on(), None);
     assert!(
         bench.pins().samples.iter().all(|sample| matches!(sample.code, None | Some(MID_SCALE)))
     );
 }
 
+/// Every byte alone, and random bytes with zeros between them, which end frames; the next request is received.
+#[test]
+fn no_noise_begins_a_sweep() {
+    let (chip, file) = file();
+    let mut bench = Bench::boot_file(chip, file, FixedDevice);
+    bench.run(5);
+    // Of Numerical Recipes: the same bytes on every machine.
+    let mut random = 3_u32;
+    let mut random_byte = || {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (random >> 24) as u8
+    };
+    let noise = (0..=u8::MAX).chain((0..=u8::MAX).flat_map(|byte| [byte, 0]));
+    let noise = noise.chain(std::iter::repeat_with(&mut random_byte).take(4000));
+    let noise: Vec<u8> = noise.collect();
+    for piece in noise.chunks(20) {
+        bench.machine.board_mut().send(piece);
+        bench.run(1);
+    }
+    bench.run(20);
+    assert_still(&bench);
+    bench.machine.board_mut().send(&SweepRequest::BEGIN.frame());
+    bench.run(20);
+    assert_eq!(bench.machine.board().amplifier(), Level::High);
+    // A second request to begin ends it, and begins nothing afterwards.
+    bench.machine.board_mut().send(&SweepRequest::BEGIN.frame());
+    bench.run(3);
+    assert_ended(&mut bench, SweepEnd::Stopped, "begun twice");
+}
+
 #[test]
 fn a_sweep_ends_where_the_host_says_so_or_says_nothing() {
     let mut bench = playing(200);
     assert_eq!(bench.machine.board().amplifier(), Level::High);
-    bench.machine.board_mut().send(&[byte::STOP]);
+    bench.machine.board_mut().send(&SweepRequest::Stop.frame());
     bench.run(3);
     assert_ended(&mut bench, SweepEnd::Stopped, "stopped");
     // Half a second after the last byte, which is half a second of samples.
     let patience = (SILENCE * 1000.0) as u64;
     let mut bench = playing(patience - 10);
     assert_eq!(bench.machine.board().amplifier(), Level::High);
-    bench.machine.board_mut().send(&[byte::LISTENING]);
+    bench.machine.board_mut().send(&SweepRequest::Listening.frame());
     bench.run(patience - 10);
     assert_eq!(bench.machine.board().amplifier(), Level::High);
     bench.run(15);

@@ -1,8 +1,8 @@
 //! Plays a sweep on a real device and sends the measurement to the host as lines of text.
 //!
-//! The motor is driven open loop, so nothing is certified and nothing starts by itself: the host starts the
-//! sweep with a byte, sends keep-alive bytes, and ends it with another byte ([`byte`]). The sweep also ends
-//! if the device moves farther or faster than its limits.
+//! The motor is driven open loop, so nothing is certified and nothing starts by itself: the host begins the
+//! sweep, keeps it alive and ends it by requests with a checksum ([`SweepRequest`]). The sweep also ends at
+//! bytes that are no request, and if the device moves farther or faster than its limits.
 
 use core::fmt::Write;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -24,15 +24,14 @@ use crate::boot::Startup;
 use crate::current::TorqueSource;
 use crate::dac::DacCode;
 use crate::encoder::Position;
-use crate::excitation::{
-    Exciter, Guard, MotionLimits, SILENCE, SWEEP_PROTOCOL, Sweep, SweepEnd, byte,
-};
+use crate::excitation::{Exciter, Guard, MotionLimits, SILENCE, SWEEP_PROTOCOL, Sweep, SweepEnd};
 use crate::output_timing::OutputMode;
 use crate::servo::Transducers;
 use crate::servo_loop::{Frame, FrameQueue, FrameReader, FrameSink, Frames, Hardware, State};
 use crate::text::ShortF64;
 use crate::torque::LimitReason;
 use crate::wire::Port;
+use crate::wire::sweep::{SweepReceiver, SweepRequest};
 
 /// The state of the sweep's interrupt.
 pub type SweepCell = IsrCell<SweepIsr>;
@@ -124,7 +123,8 @@ impl SweepIsr {
         LISTENING.store(listening.saturating_sub(1), Ordering::Relaxed);
         if self.hardware.output_fault().is_some() {
             Some(SweepEnd::OutputFault)
-        } else if STOP.load(Ordering::Relaxed) {
+        } else if STOP.load(Ordering::Relaxed) || BEGIN.swap(false, Ordering::Relaxed) {
+            // A request to begin is not kept for the time after this sweep.
             Some(SweepEnd::Stopped)
         } else if listening == 0 {
             Some(SweepEnd::Silent)
@@ -186,8 +186,13 @@ pub fn measure<const N: usize>(
     unsafe { interrupt::TIM6_DAC.enable() };
     let step = sweep.full_scale_torque() / f64::from(DacCode::CODES_TO_FULL_SCALE);
     let mut writer = Writer { period: sweep.period(), step, line: String::new(), count: 0 };
+    let (mut receiver, mut describe) = (SweepReceiver::new(), false);
+    let patience = (SILENCE / sweep.period()) as u32;
     loop {
-        if listen(&mut serial, (SILENCE / sweep.period()) as u32) {
+        describe |= listen(&mut serial, &mut receiver, patience);
+        // Not into a line that is half sent.
+        if describe && writer.line.is_empty() {
+            describe = false;
             writer.describe(setup, sweep.ticks());
         }
         writer.send(&mut serial, &mut told);
@@ -196,19 +201,20 @@ pub fn measure<const N: usize>(
 }
 
 /// Handles the bytes of the host; returns whether it requested the description.
-fn listen(serial: &mut Serial, patience: u32) -> bool {
-    let mut bytes = [0; 8];
+fn listen(serial: &mut Serial, receiver: &mut SweepReceiver, patience: u32) -> bool {
+    let mut bytes = [0; 32];
     let count = serial.read(&mut bytes);
     let mut describe = false;
-    for &received in bytes.get(..count).unwrap_or_default() {
-        let (begin, stop) = match received {
-            byte::DESCRIBE => {
+    for &byte in bytes.get(..count).unwrap_or_default() {
+        let Some(request) = receiver.push(byte) else { continue };
+        let (begin, stop) = match request {
+            SweepRequest::Describe => {
                 describe = true;
                 continue;
             }
-            byte::LISTENING => (false, false),
-            byte::BEGIN => (true, false),
-            _ => (false, true),
+            SweepRequest::Listening => (false, false),
+            SweepRequest::Begin { .. } => (true, false),
+            SweepRequest::Stop => (false, true),
         };
         LISTENING.store(patience, Ordering::Relaxed);
         if stop || begin {
@@ -272,7 +278,6 @@ impl Writer {
     fn describe(&mut self, setup: &Setup, ticks: u64) {
         let (period, counts) = (ShortF64(self.period), ShortF64(setup.transducers.counts_per_turn));
         let (travel, speed) = (ShortF64(setup.limits.travel), ShortF64(setup.limits.speed));
-        self.line.clear();
         let _ = write!(
             self.line,
             "identify,{SWEEP_PROTOCOL},{period},{counts},{ticks},{travel},{speed}"

@@ -124,6 +124,28 @@ impl Startup for Board {
     }
 }
 
+/// A change of what the interrupt has published.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Notice {
+    Armed,
+    NotArmed(Fault),
+    Aligning,
+    NotAligning(Option<Fault>),
+    Disarmed,
+    Stopped(Fault),
+    Applied,
+}
+
+/// What the interrupt had published at the last look.
+#[derive(Default)]
+struct Seen {
+    arming: u32,
+    alignment: u32,
+    off: u32,
+    is_stopped: bool,
+    swapped: u32,
+}
+
 /// A board with its cycle, and both ends of its connection.
 pub struct Bench<E: Discretize<N> + 'static, N: Number, M: 'static> {
     pub board: Board,
@@ -135,6 +157,7 @@ pub struct Bench<E: Discretize<N> + 'static, N: Number, M: 'static> {
     pub reset: ResetCause,
     pub previous_fault: Option<FaultRecord>,
     pub arms_because: Option<Reason>,
+    noticed: Seen,
 }
 
 impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> Bench<E, N, M> {
@@ -154,6 +177,7 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> Bench<E, N, M>
             reset,
             previous_fault,
             arms_because,
+            noticed: Seen::default(),
         })
     }
 
@@ -178,19 +202,47 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> Bench<E, N, M>
         }
     }
 
-    /// All notices so far.
+    /// What has changed since the last call.
     pub fn notices(&mut self) -> Vec<Notice> {
-        core::iter::from_fn(|| self.requests.notice()).collect()
+        let (seen, requests, mut notices) = (&mut self.noticed, &self.requests, Vec::new());
+        if let Some((number, reply)) = requests.arming()
+            && number != core::mem::replace(&mut seen.arming, number)
+        {
+            notices.push(match reply {
+                Reply::Done => Notice::Armed,
+                Reply::Fault(fault) => Notice::NotArmed(fault),
+                Reply::Armed | Reply::Disarming => panic!("{reply:?}"),
+            });
+        }
+        if let Some((number, reply)) = requests.alignment()
+            && number != core::mem::replace(&mut seen.alignment, number)
+        {
+            notices.push(match reply {
+                Reply::Done => Notice::Aligning,
+                Reply::Fault(fault) => Notice::NotAligning(Some(fault)),
+                Reply::Armed => Notice::NotAligning(None),
+                Reply::Disarming => panic!("{reply:?}"),
+            });
+        }
+        if requests.off() != core::mem::replace(&mut seen.off, requests.off()) {
+            notices.push(Notice::Disarmed);
+        }
+        let is_stopped = self.servo_loop.state() == State::Faulted;
+        if !core::mem::replace(&mut seen.is_stopped, is_stopped) && is_stopped {
+            notices.extend(self.servo_loop.fault().map(Notice::Stopped));
+        }
+        if requests.swapped() != core::mem::replace(&mut seen.swapped, requests.swapped()) {
+            notices.push(Notice::Applied);
+        }
+        notices
     }
 
     /// The status, a tick later.
     pub fn status(&mut self) -> Status {
-        self.requests.request_status();
+        let requested = self.requests.request_status();
         self.tick(self.board.count);
-        let status = self.notices().into_iter().rev().find_map(|notice| match notice {
-            Notice::Status(status) => Some(status),
-            _ => None,
-        });
-        status.expect("an answer")
+        let (number, status) = self.requests.status().expect("an answer");
+        assert_eq!(number, requested);
+        status
     }
 }

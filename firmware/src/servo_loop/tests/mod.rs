@@ -4,12 +4,13 @@ mod alignment;
 mod board;
 mod faults;
 mod frames;
+mod mailbox;
 mod modes;
 mod phase;
 mod profiles;
 mod swap;
 
-use board::{Bench, Board, Event, PERIOD};
+use board::{Bench, Board, Event, Notice, PERIOD};
 
 use super::*;
 use crate::boot::Program;

@@ -39,8 +39,8 @@ where
             let _ = bench.requests.submit(set(&program, changes[k / 397 % 2]));
         }
         match k % 4999 {
-            3000 => bench.requests.disarm(),
-            3100 | 4000 => bench.requests.arm(),
+            3000 => _ = bench.requests.disarm(),
+            3100 | 4000 => _ = bench.requests.arm(),
             _ => {}
         }
         bench.tick(count);

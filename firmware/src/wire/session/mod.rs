@@ -3,7 +3,8 @@
 //! Runs below the servo's interrupt and without hardware. The task of the serial port passes received
 //! bytes to [`Session::receive`], calls [`Session::poll`], and sends the bytes of [`Session::outgoing`],
 //! in a loop. Nothing here waits, and each message causes a bounded amount of work: one request of each
-//! kind can be open, and one frame is on its way out.
+//! kind can be open, and one frame is on its way out. The kinds of replies take turns, so that no flood of
+//! messages keeps another request from its answer ([`MESSAGES_AHEAD`]).
 //!
 //! The path of a new set of parameters:
 //!
@@ -11,7 +12,7 @@
 //! ToBoard::Set -> on_message     kept in `requested`, or refused: busy
 //!         poll -> prepare_set    certified and built (`tuning::prepare`), or refused with the step
 //!                 submit         to the servo's interrupt, which swaps it in (`servo_loop::swap`)
-//! Notice::Applied -> on_notice   it is the active set; ToHost::Answer
+//! Requests::swapped -> compare   has its number: it is the active set; ToHost::Answer
 //! ```
 
 mod outbox;
@@ -19,10 +20,13 @@ mod pending_replies;
 mod stream;
 #[cfg(test)]
 mod tests;
+mod turn;
 
 use self::outbox::Outbox;
 use self::pending_replies::{Greeting, PendingReplies};
 use self::stream::Stream;
+pub use self::turn::MESSAGES_AHEAD;
+use self::turn::Turn;
 use super::PROTOCOL;
 use super::decoder::Decoder;
 use super::description::Description;
@@ -40,7 +44,7 @@ use crate::power_reading::PowerReading;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, PreparedServo, SupportsTiming};
-use crate::servo_loop::{self, FrameReader, Notice, Requests};
+use crate::servo_loop::{self, FrameReader, Requests};
 use crate::tuning::{self, Tunable};
 
 /// A board's own description.
@@ -60,14 +64,19 @@ pub struct BoardInfo {
     pub power: fn() -> Option<PowerReading>,
 }
 
-/// The largest number of notices that one poll takes: more than the queue holds.
-const NOTICES: usize = 16;
-
 /// A set of parameters with the damping that the device may lose while it runs.
 #[derive(Clone, Copy)]
 struct Set<E> {
     scene: Scene<E>,
     margin: Option<f64>,
+}
+
+/// A set on its way to the servo.
+struct Submitted<E> {
+    id: Id,
+    /// That of [`Requests::swapped`] once it runs.
+    number: u32,
+    set: Set<E>,
 }
 
 /// The board's end of the wire; `LENGTH` is the length of the servo's queue of frames.
@@ -80,14 +89,16 @@ pub struct Session<'a, E: Discretize<N>, N: Number, M, const LENGTH: usize> {
     outbox: Outbox,
     replies: PendingReplies,
     stream: Stream,
+    /// The kind of reply that is sent next, if there is one.
+    turn: Turn,
     /// The set that the servo renders.
     active: Set<E>,
-    /// The number of sets swapped in before the active set; wraps.
+    /// The number of the active set: sets swapped in since the start; wraps.
     revision: u32,
     /// Changes that are not certified yet.
     requested: Option<(Id, Changes)>,
     /// The set that was submitted to the servo and is not swapped in yet.
-    submitted: Option<(Id, Set<E>)>,
+    submitted: Option<Submitted<E>>,
 }
 
 impl<'a, E, N, M, const LENGTH: usize> Session<'a, E, N, M, LENGTH>
@@ -113,6 +124,7 @@ where
             outbox: Outbox::new(),
             replies: PendingReplies::default(),
             stream: Stream::new(program.scene.timing.period),
+            turn: Turn::FIRST,
             active: Set { scene: program.scene, margin },
             program,
             revision: 0,
@@ -131,24 +143,21 @@ where
         }
     }
 
-    /// Takes the servo's notices, and puts the next frame into the outbox after the previous frame is sent:
-    /// replies first, then the answer to a new set of parameters, then telemetry.
+    /// Compares the servo's state with the requests, and puts the next frame into the outbox after the
+    /// previous frame is sent. The kinds of frames take turns.
     ///
     /// Certifies at most one set, which takes most of a small board's stack.
     pub fn poll(&mut self) {
-        for _ in 0..NOTICES {
-            let Some(notice) = self.requests.notice() else { break };
-            self.on_notice(notice);
-        }
+        self.compare();
         self.stream.take(&mut self.frames);
-        if self.outbox.is_empty() {
-            self.send_reply();
-        }
-        if self.outbox.is_empty() {
-            self.prepare_set();
-        }
-        if self.outbox.is_empty() {
-            self.send_telemetry();
+        // In one round each kind has its turn, and a greeting has no more parts than that.
+        for _ in 0..Turn::COUNT {
+            if !self.outbox.is_empty() {
+                break;
+            }
+            let turn = self.turn;
+            self.turn = turn.next();
+            self.send(turn);
         }
     }
 
@@ -167,84 +176,121 @@ where
             ToBoard::Hello => self.replies.greet(),
             ToBoard::Get => self.replies.parameters = true,
             ToBoard::Describe => self.replies.description = true,
-            ToBoard::Status => self.requests.request_status(),
+            ToBoard::Status => {
+                self.replies.status_number.get_or_insert_with(|| self.requests.request_status());
+            }
             ToBoard::Stream(every) => self.stream.set(every),
-            ToBoard::Arm { id } => {
-                if self.replies.arm(id) {
-                    self.requests.arm();
-                }
-            }
-            ToBoard::Align { id } => {
-                self.replies.align(id);
-                self.requests.align();
-            }
-            ToBoard::Disarm { id } => {
-                self.replies.disarm(id);
-                self.requests.disarm();
-            }
-            ToBoard::Set { id, changes } => match (&self.requested, &self.submitted) {
-                (None, None) => self.requested = Some((id, changes)),
+            ToBoard::Arm { id } => self.replies.arm(id, || self.requests.arm()),
+            ToBoard::Align { id } => self.replies.align(id, || self.requests.align()),
+            ToBoard::Disarm { id } => self.replies.disarm(id, self.requests.disarm()),
+            ToBoard::Set { id, changes } => match self.open_set() {
+                None => self.requested = Some((id, changes)),
                 // A host repeats a request because the answer takes a while.
-                (Some((before, _)), _) | (_, Some((before, _))) if *before == id => {}
-                _ => self.replies.refuse(id, Refusal::Busy),
+                Some(open) if open == id => {}
+                Some(_) => self.replies.refuse(id, Refusal::Busy),
             },
         }
     }
 
-    fn on_notice(&mut self, notice: Notice) {
-        match notice {
-            Notice::Status(status) => self.replies.status = Some(status),
-            Notice::Armed => self.replies.switched(true, Ok(())),
-            Notice::NotArmed(fault) => self.replies.switched(true, Err(fault)),
-            Notice::Aligning => self.replies.aligning(Outcome::Done),
-            Notice::NotAligning(fault) => {
-                let refusal = Refusal::NotAligning(fault.map(FaultCode::from));
-                self.replies.aligning(Outcome::Refused(refusal));
+    /// The set whose answer is not on its way yet.
+    fn open_set(&self) -> Option<Id> {
+        let requested = self.requested.as_ref().map(|(id, _)| *id);
+        let submitted = self.submitted.as_ref().map(|submitted| submitted.id);
+        requested.or(submitted).or(self.replies.set.map(|(id, _)| id))
+    }
+
+    /// Compares what the servo has published with what was requested.
+    fn compare(&mut self) {
+        let Self { requests, replies, .. } = self;
+        replies.arming.compare(requests.arming(), |fault| match fault {
+            Some(fault) => Refusal::Fault(fault),
+            // Arming has no such reply.
+            None => Refusal::Busy,
+        });
+        replies.alignment.compare(requests.alignment(), Refusal::NotAligning);
+        replies.disarming.compare(requests.off());
+        if let Some((number, status)) = requests.status()
+            && replies.status_number.take_if(|requested| *requested == number).is_some()
+        {
+            replies.status = Some(status);
+        }
+        let swapped = requests.swapped();
+        if let Some(Submitted { id, set, .. }) =
+            self.submitted.take_if(|submitted| submitted.number == swapped)
+        {
+            self.active = set;
+            self.revision = swapped;
+            self.replies.set = Some((id, Outcome::Done));
+        }
+    }
+
+    /// Puts a reply of this kind into the outbox, if there is one.
+    fn send(&mut self, turn: Turn) {
+        let replies = &mut self.replies;
+        match turn {
+            Turn::Disarming => {
+                let answer = replies.disarming.answer();
+                self.send_answer(answer);
             }
-            // A stopped servo is disarmed, as requested.
-            Notice::Disarmed | Notice::Stopped(_) => {
-                self.replies.switched(false, Ok(()));
-                // Disarming has priority over the alignment.
-                self.replies.aligning(Outcome::Refused(Refusal::Disarming));
+            Turn::Arming => {
+                let answer = replies.arming.answer();
+                self.send_answer(answer);
             }
-            Notice::Applied => {
-                if let Some((id, set)) = self.submitted.take() {
-                    self.active = set;
-                    self.revision = self.revision.wrapping_add(1);
-                    self.replies.done(id);
+            Turn::Alignment => {
+                let answer = replies.alignment.answer();
+                self.send_answer(answer);
+            }
+            Turn::Refusal => {
+                let answer = replies.refusal();
+                self.send_answer(answer);
+            }
+            Turn::Set => {
+                self.prepare_set();
+                let answer = self.replies.set.take();
+                self.send_answer(answer);
+            }
+            Turn::Greeting => self.greet(),
+            Turn::Status => {
+                if let Some(status) = replies.status.take() {
+                    self.outbox.put(&ToHost::Status(self.status(&status)));
+                }
+            }
+            Turn::Parameters => {
+                if core::mem::take(&mut replies.parameters) {
+                    self.outbox.put(&ToHost::ActiveParameters(self.parameters()));
+                }
+            }
+            Turn::Description => {
+                if core::mem::take(&mut replies.description) {
+                    self.outbox.put(&ToHost::Described(self.description()));
+                }
+            }
+            Turn::Telemetry => {
+                if let Some(batch) = self.stream.batch() {
+                    self.outbox.put(&ToHost::Telemetry(batch));
                 }
             }
         }
     }
 
-    /// Puts the most urgent reply into the outbox.
-    fn send_reply(&mut self) {
-        if let Some(part) = self.replies.greeting() {
-            self.greet(part);
-        } else if let Some((id, outcome)) = self.replies.next_answer() {
+    fn send_answer(&mut self, answer: Option<(Id, Outcome)>) {
+        if let Some((id, outcome)) = answer {
             self.outbox.put(&ToHost::Answer { id, outcome });
-        } else if let Some(status) = self.replies.status.take() {
-            self.outbox.put(&ToHost::Status(self.status(&status)));
-        } else if core::mem::take(&mut self.replies.parameters) {
-            self.outbox.put(&ToHost::ActiveParameters(self.parameters()));
-        } else if core::mem::take(&mut self.replies.description) {
-            self.outbox.put(&ToHost::Described(self.description()));
         }
     }
 
-    fn send_telemetry(&mut self) {
-        if let Some(batch) = self.stream.batch() {
-            self.outbox.put(&ToHost::Telemetry(batch));
+    /// The next part of a greeting; its parts follow one another.
+    fn greet(&mut self) {
+        let Some((part, is_last)) = self.replies.greeting() else { return };
+        if !is_last {
+            self.turn = Turn::Greeting;
         }
-    }
-
-    fn greet(&mut self, part: Greeting) {
         let message = match (part, self.info.previous_fault) {
             (Greeting::Welcome, _) => {
                 ToHost::Welcome { protocol: PROTOCOL, program: self.info.name }
             }
             (Greeting::PreviousFault, Some(record)) => ToHost::PreviousFault(record.into()),
-            (Greeting::PreviousFault, None) => return self.send_reply(),
+            (Greeting::PreviousFault, None) => return,
             (Greeting::Board, _) => ToHost::Board(self.board()),
         };
         self.outbox.put(&message);
@@ -254,19 +300,20 @@ where
     fn prepare_set(&mut self) {
         let Some((id, changes)) = self.requested.take() else { return };
         let Program { transducers, rendering, .. } = &self.program;
-        match tuning::prepare(&self.active.scene, &changes, transducers, rendering) {
+        let refusal = match tuning::prepare(&self.active.scene, &changes, transducers, rendering) {
             Ok(prepared) => {
                 let set = Set { scene: prepared.scene, margin: prepared.margin };
                 match self.requests.submit(prepared.rendering) {
-                    Ok(()) => self.submitted = Some((id, set)),
-                    Err(_) => self.replies.refuse(id, Refusal::Busy),
+                    Ok(number) => {
+                        self.submitted = Some(Submitted { id, number, set });
+                        return;
+                    }
+                    Err(_) => Refusal::Busy,
                 }
             }
-            Err(step) => {
-                let outcome = Outcome::Refused(Refusal::Set(step));
-                self.outbox.put(&ToHost::Answer { id, outcome });
-            }
-        }
+            Err(step) => Refusal::Set(step),
+        };
+        self.replies.set = Some((id, Outcome::Refused(refusal)));
     }
 
     fn board(&self) -> BoardUnits {

@@ -2,11 +2,14 @@
 //! constants, and the client in Python has both.
 
 use haptic_servo::board::BAUD;
+use haptic_servo::excitation::SWEEP_PROTOCOL;
 use haptic_servo::fault::Fault;
 use haptic_servo::parameter::{Parameter, TUNABLE};
 use haptic_servo::servo_loop::State;
 use haptic_servo::torque::LimitReason;
 use haptic_servo::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, MAX_CHANGES, ToBoard};
+use haptic_servo::wire::session::MESSAGES_AHEAD;
+use haptic_servo::wire::sweep::SweepRequest;
 use haptic_servo::wire::telemetry::BATCH;
 use haptic_servo::wire::{PROTOCOL, encode, largest_frame};
 
@@ -93,6 +96,7 @@ fn every_variant_is_there_with_its_number() {
     for (path, name, heading, fields) in [
         (MESSAGES, "ToBoard", "## To the board", Some(2)),
         (MESSAGES, "ToHost", "## To the host", Some(2)),
+        ("firmware/src/wire/sweep.rs", "SweepRequest", "## A sweep", Some(2)),
         (MESSAGES, "Outcome", "### Outcome", None),
         (MESSAGES, "Refusal", "### Refusal", Some(2)),
         ("firmware/src/step.rs", "Step", "### Step", None),
@@ -171,18 +175,23 @@ fn limits_are_the_constants() {
         ("largest_frame(LONGEST_TO_BOARD)", largest_frame(LONGEST_TO_BOARD)),
         ("largest_frame(LONGEST_TO_HOST)", largest_frame(LONGEST_TO_HOST)),
         ("BATCH", BATCH),
+        ("MESSAGES_AHEAD", MESSAGES_AHEAD),
+        ("SWEEP_PROTOCOL", SWEEP_PROTOCOL as usize),
     ];
     assert_eq!(said, constants);
 }
 
 #[test]
-fn the_frame_of_the_example_is_the_one_that_is_sent() {
+fn the_frames_of_the_examples_are_those_that_are_sent() {
     let document = read(DOCUMENT);
-    let shown = document.split("<!-- hello -->\n```text\n").nth(1).unwrap().lines().next().unwrap();
     let mut buffer = [0; 16];
-    let frame = encode(&ToBoard::Hello, &mut buffer).unwrap();
-    let hex: Vec<_> = frame.iter().map(|byte| format!("{byte:02x}")).collect();
-    assert_eq!(shown, hex.join(" "));
+    let hello = encode(&ToBoard::Hello, &mut buffer).unwrap();
+    for (name, frame) in [("hello", hello), ("begin", &SweepRequest::BEGIN.frame())] {
+        let mark = format!("<!-- {name} -->\n```text\n");
+        let shown = document.split(&mark).nth(1).unwrap().lines().next().unwrap();
+        let hex: Vec<_> = frame.iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!(shown, hex.join(" "));
+    }
 }
 
 /// What the client shows by name it has from tables of its own.

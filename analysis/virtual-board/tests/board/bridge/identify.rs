@@ -5,9 +5,10 @@ use std::f64::consts::TAU;
 use analysis::identify::Estimate;
 use analysis::identify::{self, Correction, record, torque_source};
 use analysis::sampled_actuator::SampledActuator;
-use haptic_servo::excitation::{SWEEP_PROTOCOL, byte};
+use haptic_servo::excitation::SWEEP_PROTOCOL;
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::{Device as Mechanics, Latency};
+use haptic_servo::wire::sweep::SweepRequest;
 use virtual_board::device::{Device, Motion};
 use virtual_board::motor::Motor;
 
@@ -19,7 +20,7 @@ use super::bridge_wall::{DRIVE, SCENE};
 /// That of `bridge_wall`, which the program is for.
 const DEVICE: Mechanics = SCENE.device;
 
-/// Samples between two bytes of a host that listens.
+/// Samples between two requests of a host that listens.
 const LISTENING: u64 = 100;
 
 /// The device without a hand, whose motion is exact for a torque that stands still.
@@ -51,15 +52,15 @@ fn recorded(motor: Motor) -> String {
     let angle = 0.5 * TAU / TRANSDUCERS.counts_per_turn;
     let mut bench = boot_program("bridge_identify", motor, Free { angle, speed: 0.0, count: 0 });
     bench.run(20);
-    bench.machine.board_mut().send(&[byte::DESCRIBE]);
+    bench.machine.board_mut().send(&SweepRequest::Describe.frame());
     bench.run(LISTENING);
-    bench.machine.board_mut().send(&[byte::BEGIN]);
+    bench.machine.board_mut().send(&SweepRequest::BEGIN.frame());
     let mut sent = Vec::new();
     for _ in 0..SWEEP.ticks() / LISTENING + 2 {
         bench.run(LISTENING);
         let board = bench.machine.board_mut();
         sent.extend(board.serial.take_sent());
-        board.send(&[byte::LISTENING]);
+        board.send(&SweepRequest::Listening.frame());
     }
     String::from_utf8(sent).unwrap()
 }
