@@ -12,6 +12,7 @@ use super::margin::Limited;
 use super::model::{largest_solved, nonlinear_bound};
 use super::profile::is_motor_where_limited;
 use super::rules::{Rule, paper_limit};
+use super::static_law::{End, needed_at_port};
 use super::validity::first_invalid_number;
 use crate::coupling::Coupling;
 use crate::environment::{Environment, EnvironmentModel, Memory};
@@ -350,15 +351,19 @@ pub(super) const fn agree(
         }
         return Err(TimingError::Phase { scene: scene.latency.output_delay.middle(), board });
     }
-    if has_latency(scene) && !matches!(scene.coupling, Coupling::Matched) {
+    let is_rigid = matches!(scene.coupling, Coupling::Rigid);
+    if has_latency(scene) && !is_rigid && !matches!(scene.coupling, Coupling::Matched) {
         return Err(TimingError::Unmatched);
     }
     let is_on_a_board = !matches!(timing, OutputTiming::Simultaneous);
-    if is_on_a_board && !scene.latency.is_none() && !has_enough_jitter(scene) {
+    if is_on_a_board && !is_rigid && !scene.latency.is_none() && !has_enough_jitter(scene) {
         let jitter = scene.latency.output_jitter;
         return Err(TimingError::Jitter { jitter });
     }
     let n = &LoopIntervals::of(scene, assessment.format);
+    if matches!(scene.coupling, Coupling::Rigid) {
+        return at_port(timing, scene, n);
+    }
     let bound = limited_bound(scene, assessment.rule, assessment.bound, n);
     let limited = match bound {
         Some(bound) => Limited::of(scene, n, bound),
@@ -384,6 +389,32 @@ pub(super) const fn agree(
         bound: limited.bound.hi(),
         limit: read_late(&limited, n).lo(),
     })
+}
+
+/// The same of a scene without a coupling, whose torques come at the times of the board.
+const fn at_port(
+    timing: OutputTiming,
+    scene: &Scene,
+    n: &LoopIntervals,
+) -> Result<Limited, TimingError> {
+    let reading = reading_time(timing);
+    if scene.timing.period > reading
+        && !is_uneven::<Environment>(&scene.environment)
+        && let Some(limited) = Limited::at_port::<Environment>(scene, n, reading)
+    {
+        return Ok(limited);
+    }
+    let needed = needed_at_port::<Environment>(scene, n, reading, End::Upper);
+    Err(TimingError::Limited { bound: needed, limit: Some(n.delta.lo()) })
+}
+
+/// The time in s by which a count may be read late. Without a coupling a torque depends on it by its damper
+/// alone, because a position is no older for it.
+const fn reading_time(timing: OutputTiming) -> f64 {
+    match timing {
+        OutputTiming::Simultaneous => 0.0,
+        OutputTiming::Latched | OutputTiming::AtPhase(_) => READ_WITHIN,
+    }
 }
 
 /// Whether the board's torques come at the scene's time, to a part in a billion, far below the required
@@ -446,7 +477,7 @@ const fn read_late(limited: &Limited, n: &LoopIntervals) -> Interval {
 }
 
 /// Whether a torque limit may make it a motor.
-const fn is_uneven<E: EnvironmentModel>(environment: &Environment) -> bool {
+pub(super) const fn is_uneven<E: EnvironmentModel>(environment: &Environment) -> bool {
     match environment.profile() {
         Some(profile) => is_motor_where_limited::<E>(profile),
         None => false,
