@@ -129,7 +129,7 @@ const fn judge(
         out.paper = RuleAnswer::Fail;
         return Err(Rejection::Shortage {
             alpha: in_contact.minimum,
-            delta: exact_limit(n),
+            delta: n.delta,
             cos_theta: in_contact.cos_theta,
             remedies: Remedies::NONE,
         });

@@ -1,7 +1,7 @@
 //! The numbers of a scene as the certificate computes with them: enclosed, and rounded to a number format.
 
 use super::linearity::is_nonlinear;
-use crate::environment::{Environment, EnvironmentModel, Memory};
+use crate::environment::{Environment, EnvironmentModel};
 use crate::latency::Latency;
 use crate::matched::{MatchedCoupling, limit_behind_spring};
 use crate::number::{Format, Rounding};
@@ -186,7 +186,7 @@ impl LoopIntervals {
             is_matched: matches!(scene.coupling, Coupling::Matched),
             latency: None,
         };
-        if !matches!(E::MEMORY, Memory::None) && has_latency(scene) {
+        if E::MEMORY.is_stored() && has_latency(scene) {
             if E::MEMORY.has_updates() {
                 out.add_latency::<true>(scene);
             } else {

@@ -276,9 +276,8 @@ impl PassivityProblem {
         if !self.numbers.is_at_port || self.no_transfer.is_some() || !is_constant {
             return None;
         }
-        let coupled = self.coupled(None, &Precision::TIGHT);
-        match (coupled, self.exact(&coupled)) {
-            (Ok(found), RuleAnswer::Fail) => Some(found),
+        match self.at_port(&Precision::TIGHT) {
+            Ok(found) if found.minimum.lo() >= self.numbers.delta.hi() => Some(found),
             _ => None,
         }
     }

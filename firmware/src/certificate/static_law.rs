@@ -78,21 +78,10 @@ pub(super) const fn needed_at_port<E: EnvironmentModel>(
     reading: f64,
     end: End,
 ) -> Option<f64> {
-    let Some(law) = Law::of::<E>(&scene.environment, n) else { return None };
-    let Some(age) = Age::of(&scene.latency, n, end) else { return None };
-    let steepest = law.steepest;
-    let moved = law.rise.half().add(law.late).add(steepest.mul(age.mean));
-    let spread = steepest.mul(steepest).mul(age.variance);
-    let varies = n.misses_updates || reading > 0.0 || scene.latency.output_jitter > 0.0;
-    // A damper whose counts are not a period apart has its own share of the passivity.
-    let (within, beside) = if varies {
-        (moved, law.damping.mul(share_of_damper(scene, n, reading)))
-    } else {
-        (moved.add(law.damping), Interval::ZERO)
-    };
-    let root = within.mul(within).add(spread).sqrt();
-    let needed = within.add(root).half().add(beside).mul(n.period);
-    Some(end.of(needed).max(0.0))
+    match Law::of::<E>(&scene.environment, n) {
+        Some(law) => law.needed(scene, n, reading, end),
+        None => None,
+    }
 }
 
 /// The passivity that a switched damper takes at most beside a static law, over the damper: the root of the
@@ -164,6 +153,30 @@ impl Law {
             }
             _ => None,
         }
+    }
+
+    /// [`needed_at_port`] of the law in a scene.
+    const fn needed(
+        &self,
+        scene: &Scene,
+        n: &LoopIntervals,
+        reading: f64,
+        end: End,
+    ) -> Option<f64> {
+        let Some(age) = Age::of(&scene.latency, n, end) else { return None };
+        let steepest = self.steepest;
+        let moved = self.rise.half().add(self.late).add(steepest.mul(age.mean));
+        let spread = steepest.mul(steepest).mul(age.variance);
+        let varies = n.misses_updates || reading > 0.0 || scene.latency.output_jitter > 0.0;
+        // A damper whose counts are not a period apart has its own share of the passivity.
+        let (within, beside) = if varies {
+            (moved, self.damping.mul(share_of_damper(scene, n, reading)))
+        } else {
+            (moved.add(self.damping), Interval::ZERO)
+        };
+        let root = within.mul(within).add(spread).sqrt();
+        let needed = within.add(root).half().add(beside).mul(n.period);
+        Some(end.of(needed).max(0.0))
     }
 
     const fn of_wall(wall: &Wall, n: &LoopIntervals) -> Self {
@@ -384,3 +397,6 @@ impl Tail {
         if fractions.is_finite() { fractions.and(chord) } else { chord }
     }
 }
+
+#[cfg(test)]
+mod tests;

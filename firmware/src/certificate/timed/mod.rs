@@ -15,7 +15,7 @@ use super::rules::{Rule, paper_limit};
 use super::static_law::{End, needed_at_port};
 use super::validity::first_invalid_number;
 use crate::coupling::Coupling;
-use crate::environment::{Environment, EnvironmentModel, Memory};
+use crate::environment::{Environment, EnvironmentModel};
 use crate::latency::TimeRange;
 use crate::number::Format;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, SHORTEST_PHASE, longest_phase};
@@ -132,6 +132,9 @@ pub enum TimingError {
     },
     /// The torque lags, and the coupling does not absorb the lag.
     Unmatched,
+    /// The scene has no coupling, and its environment's type is not
+    /// [`Uncoupled`](crate::environment::Uncoupled).
+    Coupled,
     /// A board reads counts later than the scene allows.
     Jitter {
         /// The scene's output jitter in s.
@@ -194,6 +197,10 @@ impl TimingError {
             Self::Unmatched => t.push(
                 "where torques lag, a servo renders only environments behind the matched coupling: give the \
                  scene that, and its environment's type `Matched`",
+            ),
+            Self::Coupled => t.push(
+                "without a coupling a board renders environments of the type `Uncoupled`: give the scene \
+                 that, or a coupling",
             ),
             Self::Jitter { jitter } => {
                 t.push("a board reads a count up to ");
@@ -304,8 +311,11 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     if !M::TIMING.fits(scene.timing.period) || !is_at_its_phase(M::TIMING, scene) {
         return Err(Step::Certificate);
     }
+    if E::MEMORY.may_be_uncoupled() && matches!(scene.coupling, Coupling::Rigid) {
+        return judged_at_port::<E>(scene, M::TIMING, is_late, format);
+    }
     let is_matched = matches!(scene.coupling, Coupling::Matched);
-    if has_latency(scene) && (!is_matched || matches!(E::MEMORY, Memory::None)) {
+    if has_latency(scene) && !(is_matched && E::MEMORY.is_stored()) {
         return Err(Step::Certificate);
     }
     let n = &LoopIntervals::of_late::<E>(scene, is_late, format);
@@ -326,6 +336,29 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     match Limited::of_solved::<E>(scene, n, bound, solved) {
         Some(limited) if stands_counts_read_late(M::TIMING, &limited, scene, n) => Ok(limited),
         _ => Err(Step::Certificate),
+    }
+}
+
+/// The same of a scene without a coupling (theory, section 16).
+#[inline(never)]
+const fn judged_at_port<E: EnvironmentModel>(
+    scene: &Scene,
+    timing: OutputTiming,
+    is_late: bool,
+    format: Format,
+) -> Result<Limited, Step> {
+    let reading = reading_time(timing);
+    let is_in_time = is_late || !matches!(timing, OutputTiming::Latched);
+    if !is_in_time
+        || scene.timing.period <= reading
+        || E::PROFILE.exists && is_uneven::<E>(&scene.environment)
+    {
+        return Err(Step::Certificate);
+    }
+    let n = &LoopIntervals::of_late::<E>(scene, is_late, format);
+    match Limited::at_port::<E>(scene, n, reading) {
+        Some(limited) => Ok(limited),
+        None => Err(Step::Certificate),
     }
 }
 
