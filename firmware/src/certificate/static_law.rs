@@ -70,7 +70,7 @@ impl End {
     }
 }
 
-/// One end of [`IndexAtPort::sufficient`] (equation 54).
+/// One end of [`IndexAtPort::sufficient`] (equation 60).
 #[inline(never)]
 pub(super) const fn needed_at_port<E: EnvironmentModel>(
     scene: &Scene,
