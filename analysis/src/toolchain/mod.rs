@@ -22,7 +22,9 @@ mod version;
 
 pub use apt::AptError;
 pub use board::{BoardModel, TorqueOutput, UnknownBoard};
-pub use build::{BuildError, NumberFormat, Program, Toolchain, build_haptic_with, emulator, target_folder};
+pub use build::{
+    BuildError, NumberFormat, Program, Toolchain, build_haptic_with, emulator, target_folder,
+};
 pub use memory::Memory;
 pub use plan::Tools;
 pub use prepare::{SetupError, prepare, set_up_package, set_up_tool};

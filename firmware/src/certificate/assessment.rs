@@ -1,10 +1,11 @@
 //! The answers of both rules for a scene, with their numbers.
 
+use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
 use super::problem::PassivityProblem;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
-use super::rules::{Rule, RuleAnswer, exact_limit, is_nonlinear, paper_limit};
+use super::rules::{Rule, RuleAnswer, exact_limit, paper_limit};
 use super::validity::first_invalid;
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
@@ -120,6 +121,19 @@ const fn judge(
     out.bound = posed.bound;
     out.paper = posed.paper(&alone);
     let is_refused = matches!(out.rule, Rule::Nonlinear) && !matches!(out.paper, RuleAnswer::Pass);
+    if is_refused
+        && n.is_at_port
+        && matches!(out.paper, RuleAnswer::Undecided)
+        && let Some(in_contact) = posed.fails_in_contact()
+    {
+        out.paper = RuleAnswer::Fail;
+        return Err(Rejection::Shortage {
+            alpha: in_contact.minimum,
+            delta: n.delta,
+            cos_theta: in_contact.cos_theta,
+            remedies: Remedies::NONE,
+        });
+    }
     if is_refused && matches!(extent, Extent::OwnRule) {
         return nonlinear_outcome(n, &alone, out);
     }
@@ -240,7 +254,10 @@ const fn nonlinear_outcome(
     };
     let Some(bound) = out.bound else {
         return Err(Rejection::Undecided {
-            doubt: UndecidedReason::NoNonlinearBound,
+            doubt: match n.is_at_port {
+                true => UndecidedReason::NoBoundAtPort,
+                false => UndecidedReason::NoNonlinearBound,
+            },
             index: Some(found.minimum),
             limit: Some(n.delta),
             remedies: Remedies::NONE,
@@ -249,7 +266,10 @@ const fn nonlinear_outcome(
     match out.paper {
         RuleAnswer::Pass => Ok(()),
         RuleAnswer::Undecided => Err(Rejection::Undecided {
-            doubt: UndecidedReason::TooClose,
+            doubt: match bound.lo() >= n.delta.hi() {
+                true => UndecidedReason::NotBelowBound,
+                false => UndecidedReason::TooClose,
+            },
             index: Some(bound),
             limit: Some(n.delta),
             remedies: Remedies::NONE,

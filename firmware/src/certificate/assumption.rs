@@ -5,17 +5,17 @@ use core::f64::consts::PI;
 use core::fmt;
 
 use super::assessment::Assessment;
+use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
 use super::margin::Limited;
 use super::model::LoopTransfers;
 use super::quantization::{QuantizationBound, Resolution};
-use super::rules::is_nonlinear;
-use super::timed::limited_bound;
+use super::timed::{is_uneven, limited_bound};
 use crate::environment::{Environment, StatedModel};
 use crate::passivity::discrete::index;
 use crate::passivity::interval::Interval;
 use crate::passivity::transfer::Transfer;
-use crate::scene::{Latency, Scene, TimeRange};
+use crate::scene::{Coupling, Latency, Scene, TimeRange};
 use crate::text::{RoundUp3, ShortF64};
 
 /// An assumption of a verdict, or a condition that was checked.
@@ -410,9 +410,15 @@ fn passes_limited(scene: &Scene, assessment: &Assessment) -> Option<(Interval, f
     // Without an index its numbers may be out of range.
     assessment.alpha?;
     let numbers = LoopIntervals::of(scene, assessment.format);
-    let bound = limited_bound(scene, assessment.rule, assessment.bound, &numbers)?;
-    let limited = Limited::of(scene, &numbers, bound)?;
-    Some((bound, limited.margin(0.0)))
+    let limited = match scene.coupling {
+        Coupling::Rigid => Limited::at_port::<Environment>(scene, &numbers, 0.0)
+            .filter(|_| !is_uneven::<Environment>(&scene.environment))?,
+        _ => {
+            let bound = limited_bound(scene, assessment.rule, assessment.bound, &numbers)?;
+            Limited::of(scene, &numbers, bound)?
+        }
+    };
+    Some((limited.bound, limited.margin(0.0)))
 }
 
 fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Assumption {

@@ -26,6 +26,9 @@
 //! `K T be / (K T - 2 be)` in its magnitude where damping is added. If no damping is added, all of them are
 //! also convex in `T`.
 //!
+//! **Static laws at the port** (equation 60). The index is the norm of a sum of operators, one for each slope
+//! and damper, and convex in them.
+//!
 //! **Torque profiles** (equations 46 to 48). The bound grows with each slope and with the damper's magnitude,
 //! and the slopes grow with the torque of the table and with the stiffness of its end stops: with less of one
 //! of them a passing scene still passes, rounded or not, because rounding keeps the order. It is affine in
@@ -36,8 +39,8 @@
 //! a late wall, where the gain that solves a tick does not depend on the number. Otherwise coefficients that
 //! are rounded separately can leave a hole.
 
+use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
-use super::rules::is_nonlinear;
 use crate::environment::{AnyProfile, Composed, Environment};
 use crate::number::Format;
 use crate::parameter::Parameter;
@@ -74,6 +77,7 @@ pub(super) const fn between(
         Parameter::Residual => is_affine_in_residual(scene, &n),
         // An amplifier's response may take at most a period.
         Parameter::Period if !scene.latency.actuator_response.is_zero() => false,
+        Parameter::Period if n.is_at_port && n.latency.is_some() => false,
         Parameter::Period => return between_periods(scene, &n, value),
         _ => false,
     };
@@ -134,6 +138,7 @@ const fn is_affine_in_residual(scene: &Scene, n: &LoopIntervals) -> bool {
 /// - Behind a rigid coupling `T C` is affine in `T`, and at 0 that of the same scene without
 ///   stiffness.
 /// - In the nonlinear rule, an undelayed damper without a filter adds nothing to the bound.
+/// - At the port the index of a static law is affine in the period, and without a damper in proportion to it.
 const fn between_periods(scene: &Scene, n: &LoopIntervals, longest: f64) -> Between {
     let wall = scene.environment.wall();
     let cancels = !n.cancelled.is_zero();
@@ -142,6 +147,9 @@ const fn between_periods(scene: &Scene, n: &LoopIntervals, longest: f64) -> Betw
         None => 0.0,
     };
     let is_f64 = matches!(n.format, Format::F64);
+    if n.is_at_port && (damping != 0.0 || cancels) {
+        return if is_f64 { Between::Passes } else { Between::Unknown };
+    }
     if damping == 0.0 && !cancels {
         return if is_f64 || is_nonlinear(scene) || is_never_standard(n, longest) {
             Between::PassesDownToZero

@@ -1,6 +1,7 @@
 //! The numbers of a scene as the certificate computes with them: enclosed, and rounded to a number format.
 
-use crate::environment::{Environment, EnvironmentModel, Memory};
+use super::linearity::is_nonlinear;
+use crate::environment::{Environment, EnvironmentModel};
 use crate::latency::Latency;
 use crate::matched::{MatchedCoupling, limit_behind_spring};
 use crate::number::{Format, Rounding};
@@ -31,7 +32,9 @@ pub(super) struct LoopIntervals {
     pub format: Format,
     /// Whether the worst period differs from the period.
     pub misses_updates: bool,
-    /// Whether the index is that at the device's port, for a torque profile without a coupling.
+    /// Longest time between two updates over the period.
+    pub stretch: Interval,
+    /// Whether the index is that of a static law at the device's port, without a coupling.
     pub is_at_port: bool,
     /// Whether the coupling is the matched one.
     pub is_matched: bool,
@@ -104,6 +107,7 @@ impl LoopIntervals {
     pub const fn of(scene: &Scene, format: Format) -> Self {
         let is_late = scene.environment.is_late();
         let (mut out, written) = Self::with_compliance::<Environment>(scene, is_late, format);
+        out.is_at_port = matches!(scene.coupling, Coupling::Rigid) && is_nonlinear(scene);
         if let (Some(_), None) = (out.coupling, &out.latency) {
             out.is_standard = written.sub(standard(out.period, out.delta)).contains(0.0);
         }
@@ -176,13 +180,15 @@ impl LoopIntervals {
                 scene.timing.worst_period,
                 Some(worst) if worst != scene.timing.period
             ),
-            is_at_port: E::PROFILE.exists
-                && matches!(scene.coupling, Coupling::Rigid)
-                && scene.environment.profile().is_some(),
+            stretch: match scene.timing.worst_period {
+                Some(worst) if worst != scene.timing.period => Interval::decimal(worst).div(period),
+                _ => Interval::ONE,
+            },
+            is_at_port: false,
             is_matched: matches!(scene.coupling, Coupling::Matched),
             latency: None,
         };
-        if !matches!(E::MEMORY, Memory::None) && has_latency(scene) {
+        if E::MEMORY.is_stored() && has_latency(scene) {
             if E::MEMORY.has_updates() {
                 out.add_latency::<true>(scene);
             } else {

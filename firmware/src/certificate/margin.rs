@@ -8,6 +8,7 @@ use super::loop_intervals::{LoopIntervals, Missed};
 use super::model::{largest_gain, largest_solved};
 use super::problem::PassivityProblem;
 use super::rules::{Rule, RuleAnswer, paper_limit};
+use super::static_law::{End, needed_at_port, share_of_damper};
 use crate::environment::{Environment, EnvironmentModel};
 use crate::passivity::bernstein::Precision;
 use crate::passivity::interval::Interval;
@@ -25,7 +26,12 @@ impl Assessment {
         match (self.rule, &self.outcome, self.exact) {
             (Rule::Nonlinear, Ok(()), _) => match self.bound {
                 Some(bound) => {
-                    match Limited::of(scene, &LoopIntervals::of(scene, self.format), bound) {
+                    let n = &LoopIntervals::of(scene, self.format);
+                    let limited = match n.is_at_port {
+                        true => Limited::at_port::<Environment>(scene, n, 0.0),
+                        false => Limited::of(scene, n, bound),
+                    };
+                    match limited {
                         Some(limited) => Some(limited.margin(0.0)),
                         None => Some(0.0),
                     }
@@ -109,6 +115,9 @@ pub(super) struct Limited {
     /// Whether other torques may be added to its own; not for an environment that is solved in front of its
     /// coupling.
     takes_more: bool,
+    /// Whether there is no coupling, so that [`Limited::gain`] is the share of the passivity that a switched
+    /// damper takes, over the damper.
+    is_at_port: bool,
 }
 
 /// Whether it is a torque profile without delay, whose solution does not include added torques.
@@ -120,6 +129,33 @@ const fn is_solved_in_front(environment: &Environment) -> bool {
 }
 
 impl Limited {
+    /// The limits of a scene without a coupling, whose counts may be read late by `reading` s. `None` if no
+    /// bound below its passivity is known.
+    #[inline(never)]
+    pub const fn at_port<E: EnvironmentModel>(
+        scene: &Scene,
+        n: &LoopIntervals,
+        reading: f64,
+    ) -> Option<Self> {
+        let Some(needed) = needed_at_port::<E>(scene, n, reading, End::Upper) else { return None };
+        let bound = Interval::exact(needed);
+        if !bound.is_below(n.delta) {
+            return None;
+        }
+        Some(Self {
+            bound,
+            limit: n.delta,
+            gain: share_of_damper(scene, n, reading),
+            coupling: n.delta,
+            delta: n.delta,
+            missed: None,
+            lags: false,
+            snaps: false,
+            takes_more: !(E::PROFILE.is_prompt && is_solved_in_front(&scene.environment)),
+            is_at_port: true,
+        })
+    }
+
     /// The limits of a scene with this bound on its index. `None` if the bound is not below the limit, or no
     /// limit is known.
     pub const fn of(scene: &Scene, n: &LoopIntervals, bound: Interval) -> Option<Self> {
@@ -155,12 +191,18 @@ impl Limited {
             lags: n.latency.is_some(),
             snaps: E::PROFILE.snaps && scene.environment.snaps(),
             takes_more: !(E::PROFILE.is_prompt && is_solved_in_front(&scene.environment)),
+            is_at_port: false,
         })
     }
 
     /// Limit less bound, in N m s/rad.
     pub const fn injectable_damping(&self) -> f64 {
-        if self.takes_more { self.limit.sub(self.bound).lo() } else { 0.0 }
+        let left = self.limit.sub(self.bound);
+        match (self.takes_more, self.is_at_port) {
+            (false, _) => 0.0,
+            (true, true) => left.div(self.gain).lo(),
+            (true, false) => left.lo(),
+        }
     }
 
     /// The margin while a damper of `injected` N m s/rad may be switched on and off, one sample late, in
@@ -173,6 +215,10 @@ impl Limited {
     /// while `k - delta' < (k - alpha) / (1 + V g)^2` (equation 37).
     pub const fn margin(&self, injected: f64) -> f64 {
         let injected = Interval::exact(injected);
+        if self.is_at_port {
+            let left = self.limit.sub(self.bound).sub(injected.mul(self.gain));
+            return left.lo().max(0.0);
+        }
         let bound = self.bound.add(injected);
         // With lagging torques no loss is known to be allowed, because the coupling is designed for this
         // passivity.

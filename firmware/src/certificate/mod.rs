@@ -34,6 +34,7 @@ mod between;
 mod composed;
 mod deviation;
 mod digits;
+mod linearity;
 mod loop_intervals;
 mod margin;
 mod model;
@@ -47,6 +48,7 @@ mod remedy;
 mod remedy_search;
 mod rules;
 mod secant;
+mod static_law;
 mod timed;
 mod validity;
 mod varied;
@@ -242,8 +244,12 @@ impl<E: Copy> Certified<Scene<E>> {
     /// If they do not agree; see [`TimingError`].
     pub const fn time<M: OutputMode>(self) -> Result<TimingChecked<Scene<E>, M>, TimingError>
     where
-        E: SupportsTiming<M>,
+        E: SupportsTiming<M> + EnvironmentModel,
     {
+        let is_rigid = matches!(self.scene.coupling, crate::coupling::Coupling::Rigid);
+        if is_rigid && !E::MEMORY.may_be_uncoupled() {
+            return Err(TimingError::Coupled);
+        }
         let format = self.assessment.format;
         let of_modes = match tightest_mode(&self.data, format, M::TIMING) {
             Ok(of_modes) => of_modes,
@@ -269,7 +275,7 @@ impl<E: Copy> Certified<Scene<E>> {
     #[track_caller]
     pub const fn timing_checked<M: OutputMode>(self) -> TimingChecked<Scene<E>, M>
     where
-        E: SupportsTiming<M>,
+        E: SupportsTiming<M> + EnvironmentModel,
     {
         match self.time() {
             Ok(timed) => timed,
@@ -287,6 +293,7 @@ macro_rules! certify_for {
         $cancels:literal, $memory:ident, $profile:expr;
     )*) => {$(
         certify_for! { @ [$($generics)*] $environment }
+        certify_for! { @ [$($generics)*] Uncoupled<$environment> }
         certify_for! { @
             [const WHOLE: usize, const LAGS: usize, const UPDATES: bool, $($generics)*]
             Matched<$environment, WHOLE, LAGS, UPDATES>

@@ -178,7 +178,7 @@ const fn divided(p: &Polynomial, leading: Interval, n: &LoopIntervals) -> Polyno
 /// and coupling (equation 31); `None` if none is known.
 ///
 /// - Wall, `n >= 1`: `K T (n - 1/2) + abs(B)`; a velocity filter has the l1 norm 1 and does not change
-///   `sum abs(v(k)) abs(v(k - i))`.
+///   `sum abs(v(k)) abs(v(k - i))`. On both sides a filter counts: [`filtered_bound`].
 /// - Wall, undelayed: 0 for `B >= 0` without a filter, otherwise `abs(B)`.
 /// - A torque profile: [`profile_bound`]. A sum: the sum of the bounds (theory, section 14.3).
 /// - Canceller: the clipped torque is `g(k) (h * v)(k)` with `g` in `[0, 1]`, so by Young's
@@ -276,6 +276,10 @@ const fn exactly_solved_bound<E: EnvironmentModel>(
         None => Interval::ZERO,
     };
     match environment {
+        Environment::DamperWall(w) if w.filter.is_some() => Some(match filtered_bound(w, n) {
+            Some(filtered) => filtered.min(wall),
+            None => wall,
+        }),
         Environment::DelayedSpring(_) | Environment::DamperWall(_) => Some(wall),
         Environment::FreeMode { .. } | Environment::FreeModeWall { .. } if E::CANCELS_DAMPING => {
             match canceller_bound(n) {
@@ -366,7 +370,7 @@ const fn wall_gain(w: &Wall, n: &LoopIntervals) -> Interval {
 }
 
 /// Sum of the magnitudes of a wall's torques for a unit of velocity.
-const fn switched_damping(w: &Wall, n: &LoopIntervals) -> Interval {
+pub(super) const fn switched_damping(w: &Wall, n: &LoopIntervals) -> Interval {
     match n.format {
         Format::F64 => Interval::decimal(w.damping).abs(),
         _ => damper(w, n).l1_norm(),
@@ -384,7 +388,25 @@ const fn wall_bound(w: &Wall, n: &LoopIntervals) -> Interval {
     k.mul(n.period).mul(samples).add(damping)
 }
 
-const fn canceller_bound(n: &LoopIntervals) -> Option<Interval> {
+/// The same for a wall on both sides whose velocity is filtered: `(2 n - 1) B (1 - a) / (1 + a)` in place of
+/// `abs(B)`, and 0 without delay (equation 62). `None` if the wall or the filter is another.
+const fn filtered_bound(w: &Wall, n: &LoopIntervals) -> Option<Interval> {
+    let Washout { gain, pole } = damper(w, n);
+    let is_filter = gain.lo() >= 0.0 && pole.lo() >= 0.0 && pole.hi() < 1.0;
+    if w.one_sided || !is_filter {
+        return None;
+    }
+    if w.delay == 0 {
+        return Some(Interval::ZERO);
+    }
+    let samples = Interval::exact(w.delay as f64 - 0.5);
+    let k = n.coefficient(Interval::decimal(w.stiffness));
+    let damping = gain.double().div(Interval::ONE.add(pole));
+    Some(k.mul(n.period).add(damping).mul(samples))
+}
+
+/// Sum of the magnitudes of a canceller's torques for a unit of velocity; `None` if there is none.
+pub(super) const fn canceller_bound(n: &LoopIntervals) -> Option<Interval> {
     let be = n.cancelled;
     match (n.format, n.coupling) {
         (Format::F64, Some(k)) if be.lo() < 0.0 => {

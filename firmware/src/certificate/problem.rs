@@ -1,12 +1,13 @@
 //! A scene that can be judged, and the answers of the two rules without their numbers.
 
-use super::composed::composed_bound_at_port;
+use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
 use super::model::{largest_solved, nonlinear_bound, transfer};
-use super::profile::{ExtremeSlopes, is_motor, is_motor_where_limited, profile_bound_at_port};
+use super::profile::{ExtremeSlopes, is_motor, is_motor_where_limited};
 use super::rejection::Rejection;
 use super::remedy::Remedies;
-use super::rules::{Rule, RuleAnswer, compare, exact_limit, is_nonlinear, paper_limit};
+use super::rules::{Rule, RuleAnswer, compare, exact_limit, paper_limit};
+use super::static_law::{IndexAtPort, index_at_port};
 use super::validity::first_invalid;
 use crate::environment::{AnyProfile, Composed, Environment, FULL_SCALE, Wall};
 use crate::number::Format;
@@ -60,6 +61,9 @@ pub struct PassivityProblem {
     pub(super) rule: Rule,
     /// Bound on the index of a one-sided or limited scene.
     pub(super) bound: Option<Interval>,
+    /// Whether a scene whose bound fails is rejected. At the port it is undecided, unless less passivity than
+    /// the bound is known to be too little.
+    is_necessary: bool,
 }
 
 impl PassivityProblem {
@@ -111,18 +115,20 @@ impl PassivityProblem {
             return Err(Rejection::HiddenMode { cos_theta });
         }
         let loop_gain = Interval::ONE.add(environment.feedthrough().mul(numbers.compliance));
+        let at_port = if numbers.is_at_port { index_at_port(scene, &numbers, 0.0) } else { None };
         let (rule, bound, solvable) = if is_nonlinear(scene) {
             // A clipped or one-sided law has one solution with the coupling only if both slopes
             // agree.
-            let bound = match (&scene.environment, numbers.is_at_port) {
-                (Environment::Profile(profile), true) => profile_bound_at_port(profile, &numbers),
-                (Environment::Composed(composed), true) => {
-                    composed_bound_at_port(composed, &numbers)
+            let solved = match numbers.is_at_port {
+                true => None,
+                false => largest_solved::<Environment>(&scene.environment, &numbers),
+            };
+            let bound = match (at_port, solved) {
+                (Some(IndexAtPort { sufficient, .. }), _) => Some(sufficient),
+                (None, Some(solved)) => {
+                    nonlinear_bound::<Environment>(&scene.environment, solved, &numbers)
                 }
-                (environment, _) => match largest_solved::<Environment>(environment, &numbers) {
-                    Some(solved) => nonlinear_bound::<Environment>(environment, solved, &numbers),
-                    None => None,
-                },
+                (None, None) => None,
             };
             (Rule::Nonlinear, bound, loop_gain.is_positive())
         } else {
@@ -135,12 +141,16 @@ impl PassivityProblem {
         let no_transfer = match &scene.environment {
             environment if environment.snaps() => Some(UndecidedReason::NoSnapBound),
             Environment::Profile(_) | Environment::Composed(_) => {
-                Some(UndecidedReason::NoProfileBound)
+                Some(UndecidedReason::NoBoundAtPort)
             }
             environment if environment.has_transfer() => None,
             _ => Some(UndecidedReason::NoTransferFunction),
         };
-        Ok(Self { numbers, environment, stated, no_transfer, rule, bound })
+        let is_necessary = match at_port {
+            Some(index) => index.is_necessary,
+            None => !numbers.is_at_port,
+        };
+        Ok(Self { numbers, environment, stated, no_transfer, rule, bound, is_necessary })
     }
 
     /// The verdict: whether the deciding rule proves the scene, that is, whether the outcome of
@@ -166,9 +176,12 @@ impl PassivityProblem {
             Rule::Nonlinear => {
                 // The index must exist, with any value.
                 let alone = self.alone(&near(Interval::exact(f64::MAX)));
-                match (&alone, self.bound) {
-                    (Ok(_), None) => RuleAnswer::Undecided,
-                    _ => self.paper(&alone),
+                match (&alone, self.bound, self.paper(&alone)) {
+                    (Ok(_), None, _) => RuleAnswer::Undecided,
+                    (Ok(_), _, RuleAnswer::Undecided) if self.fails_in_contact().is_some() => {
+                        RuleAnswer::Fail
+                    }
+                    (_, _, answer) => answer,
                 }
             }
         }
@@ -235,7 +248,10 @@ impl PassivityProblem {
             (Err(IndexError::Undecided(_)), ..) => RuleAnswer::Undecided,
             (Err(_), ..) => RuleAnswer::Fail,
             (Ok(found), Rule::Exact, _) => compare(found.minimum, limit),
-            (Ok(_), Rule::Nonlinear, Some(bound)) => compare(bound, limit),
+            (Ok(_), Rule::Nonlinear, Some(bound)) => match compare(bound, limit) {
+                RuleAnswer::Fail if !self.is_necessary => RuleAnswer::Undecided,
+                answer => answer,
+            },
             (Ok(_), Rule::Nonlinear, None) => RuleAnswer::Undecided,
         }
     }
@@ -246,6 +262,23 @@ impl PassivityProblem {
             Ok(found) => compare(found.minimum, exact_limit(&self.numbers)),
             Err(IndexError::Undecided(_)) => RuleAnswer::Undecided,
             Err(_) => RuleAnswer::Fail,
+        }
+    }
+
+    /// The index of a scene at the port that is not proved, if small motions in contact and below the torque
+    /// limit show that it is not passive: they are those of the linear scene (theory, section 16.4).
+    #[inline(never)]
+    pub(super) const fn fails_in_contact(&self) -> Option<RealPart> {
+        let is_constant = match &self.numbers.latency {
+            Some(lagging) => lagging.latency.output_jitter == 0.0,
+            None => true,
+        };
+        if !self.numbers.is_at_port || self.no_transfer.is_some() || !is_constant {
+            return None;
+        }
+        match self.at_port(&Precision::TIGHT) {
+            Ok(found) if found.minimum.lo() >= self.numbers.delta.hi() => Some(found),
+            _ => None,
         }
     }
 
@@ -308,7 +341,6 @@ impl PassivityProblem {
                 Ok(found) => Some(found.minimum.midpoint()),
                 Err(_) => None,
             },
-            // With a delay of a part of a sample, a greater passivity lowers the bound.
             Rule::Nonlinear if self.numbers.is_at_port => match self.bound {
                 Some(bound) => Some(bound.hi()),
                 None => None,

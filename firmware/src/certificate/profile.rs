@@ -2,7 +2,6 @@
 
 use super::loop_intervals::LoopIntervals;
 use crate::environment::{AnyProfile, Ends, Environment, EnvironmentModel, SnapPoint};
-use crate::latency::{Latency, TimeRange};
 use crate::passivity::interval::Interval;
 
 /// The steepest slopes of a profile with rounded coefficients, in N m/rad, both not negative. For an
@@ -156,7 +155,10 @@ pub(super) const fn is_motor_where_limited<E: EnvironmentModel>(profile: &AnyPro
 }
 
 /// `B / T` in N m/rad of its damper.
-const fn damper<E: EnvironmentModel>(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
+pub(super) const fn damper<E: EnvironmentModel>(
+    profile: &AnyProfile,
+    n: &LoopIntervals,
+) -> Interval {
     if !E::PROFILE.is_damped {
         return Interval::ZERO;
     }
@@ -171,45 +173,4 @@ const fn parts_per_rad(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
 /// An interval around a number that was computed with a few roundings.
 const fn around(value: f64) -> Interval {
     Interval::exact(value).mul(Interval::new(1.0 - 4.0 * f64::EPSILON, 1.0 + 4.0 * f64::EPSILON))
-}
-
-/// Upper bound on the index at the device's port, without a coupling (equation 48): for a torque that is late
-/// by `n + eps` samples `T (L/2 + (n + eps) M) + eps (1 - eps) T^2 M^2 / (4 delta)`, to be below `delta`.
-/// `None` if none is known: with a damper, a lag, or missed updates.
-pub(super) const fn profile_bound_at_port(
-    profile: &AnyProfile,
-    n: &LoopIntervals,
-) -> Option<Interval> {
-    let Some(delay) = delay_at_port(n) else { return None };
-    if is_motor(profile) || n.misses_updates || profile.damping != 0.0 || profile.snap.is_some() {
-        return None;
-    }
-    let Some(slopes) = ExtremeSlopes::of::<Environment>(profile, n) else { return None };
-    let (rise, steepest) = (slopes.rise.mul(n.period), slopes.steepest().mul(n.period));
-    let late = Interval::exact(profile.delay as f64).add(delay);
-    let ripple = part_of_sample(delay).mul(steepest).mul(steepest).div(n.delta.double().double());
-    Some(rise.half().add(late.mul(steepest)).add(ripple))
-}
-
-/// The output delay in samples; `None` if there is other latency.
-pub(super) const fn delay_at_port(n: &LoopIntervals) -> Option<Interval> {
-    let Some(lagging) = &n.latency else { return Some(Interval::ZERO) };
-    let TimeRange { least, most } = lagging.latency.output_delay;
-    if !(Latency { output_delay: TimeRange::ZERO, ..lagging.latency }).is_none() {
-        return None;
-    }
-    let delay = Interval::new(Interval::decimal(least).lo(), Interval::decimal(most).hi());
-    Some(delay.div(n.period))
-}
-
-/// `eps (1 - eps)` for the fractional part `eps` of a delay in samples.
-pub(super) const fn part_of_sample(delay: Interval) -> Interval {
-    let quarter = Interval::new(0.0, 0.25);
-    let whole = delay.lo() as u32 as f64;
-    let eps = delay.sub(Interval::exact(whole));
-    if eps.lo() < 0.0 || eps.hi() > 1.0 {
-        return quarter;
-    }
-    let product = eps.mul(Interval::ONE.sub(eps));
-    Interval::new(product.lo().max(0.0), product.hi())
 }

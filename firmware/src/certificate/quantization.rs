@@ -16,10 +16,10 @@ use core::f64::consts::TAU;
 use core::fmt;
 
 use super::composed::{jump_at_face, peak_gain_beside};
+use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
 use super::model::{LoopTransfers, Washout, canceller, damper};
 use super::profile::{peak_gain, step_of_part};
-use super::rules::is_nonlinear;
 use crate::current::CurrentResolution;
 use crate::dac::DacCode;
 use crate::environment::{Environment, Rational};

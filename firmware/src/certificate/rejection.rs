@@ -326,9 +326,14 @@ const fn write_doubt(
         UndecidedReason::MissedWithLatency => {
             "no proof is known for updates that are missed where torques lag: leave out the worst period"
         }
-        UndecidedReason::NoProfileBound => {
-            "no bound is known for a torque profile that no coupling separates from a damper, a canceller, a lag, \
-             jitter or missed updates; couple it by a spring, or where torques lag by the matched coupling"
+        UndecidedReason::NoBoundAtPort => {
+            "without a coupling no bound is known for this environment with this limit, or with these times: updates \
+             that are missed beside two lags, or beside a lag and jitter; couple it by a spring or, where torques \
+             lag, by the matched coupling"
+        }
+        UndecidedReason::NotBelowBound => {
+            "without a coupling the bound on what the scene needs is not below delta, and it is not known whether it \
+             needs as much"
         }
         UndecidedReason::NoSnapBound => {
             "no proof is known for a snap point whose torque comes more than one sample late, without a coupling, or \

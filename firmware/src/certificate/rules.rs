@@ -4,7 +4,6 @@ use super::loop_intervals::LoopIntervals;
 #[cfg(doc)]
 use super::loop_intervals::Missed;
 use crate::passivity::interval::Interval;
-use crate::scene::Scene;
 
 /// Answer of one rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +21,8 @@ pub enum RuleAnswer {
 pub enum Rule {
     /// Theory, section 4.1: linear scenes.
     Exact,
-    /// Equations 17 to 19 with the nonlinear bound: one-sided or limited scenes.
+    /// Equations 17 to 19 with the nonlinear bound, or without a coupling the index of a static law at the
+    /// port: one-sided or limited scenes, and linear ones that the exact rule does not cover.
     Nonlinear,
 }
 
@@ -36,13 +36,6 @@ pub const fn gamma(stiffness: Interval, period: Interval, delta: Interval) -> Op
     }
     let gamma = delta.mul(k).div(delta.sub(k));
     Some(if gamma.is_finite() { gamma } else { Interval::new(f64::MAX, f64::INFINITY) })
-}
-
-/// Whether the scene is judged by the nonlinear bound.
-pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
-    scene.torque_limit.is_some()
-        || matches!(scene.environment.wall(), Some(w) if w.one_sided)
-        || !scene.environment.has_transfer()
 }
 
 /// Upper bound on the index by the paper's rule: `K_vc T / 2`, for the coupling spring to be output strictly

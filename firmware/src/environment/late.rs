@@ -2,7 +2,7 @@
 
 use super::{
     DampedProfile, DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, Matched,
-    OneSided, Placed, Profile, ProfileModes, Rational, SnapProfile, WallAndProfile,
+    OneSided, Placed, Profile, ProfileModes, Rational, SnapProfile, Uncoupled, WallAndProfile,
 };
 use crate::output_timing::{AtPhase, Latched, OutputMode, Simultaneous};
 
@@ -53,10 +53,13 @@ impl<E: Delayed, const WHOLE: usize, const LAGS: usize, const UPDATES: bool> Del
 {
 }
 
+impl<E: Delayed> Delayed for Uncoupled<E> {}
+
 impl<E> SupportsTiming<Simultaneous> for E {}
 impl<E, const WHOLE: usize, const LAGS: usize, const UPDATES: bool, const NANOSECONDS: u32>
     SupportsTiming<AtPhase<NANOSECONDS>> for Matched<E, WHOLE, LAGS, UPDATES>
 {
 }
+impl<E, const NANOSECONDS: u32> SupportsTiming<AtPhase<NANOSECONDS>> for Uncoupled<E> {}
 impl<const NANOSECONDS: u32> SupportsTiming<AtPhase<NANOSECONDS>> for Environment {}
 impl<E: Delayed> SupportsTiming<Latched> for E {}

@@ -85,6 +85,7 @@ mod profile;
 mod rational;
 mod stated;
 mod turn;
+mod uncoupled;
 mod velocity;
 mod wall_law;
 mod walls;
@@ -109,6 +110,7 @@ pub use profile::{
 pub use rational::{Coefficients, Rational, RationalLaw};
 pub use stated::{StatedBound, StatedModel};
 pub use turn::Turn;
+pub use uncoupled::Uncoupled;
 pub use velocity::{AnyVelocity, Difference, NoDamping, Velocity, Washout};
 pub use wall_law::{AnySide, Centred, Displaced, Face, Side, WallLaw};
 pub use walls::{DamperWall, DelayedSpring, FilteredWall, OneSided, Placed, Spring};

@@ -37,6 +37,8 @@ pub enum Memory {
         /// Whether the amplifier is updated several times in a period.
         updates: bool,
     },
+    /// None, because it has no coupling, as [`Uncoupled`].
+    Uncoupled,
     /// Those that the scene requires.
     Any,
 }
@@ -47,6 +49,7 @@ impl Memory {
         let is_matched = matches!(coupling, Coupling::Matched);
         match self {
             Self::None => !is_matched,
+            Self::Uncoupled => matches!(coupling, Coupling::Rigid),
             Self::Any => true,
             Self::Of { whole, lags, updates } => {
                 let is_updated = latency.actuator_updates != 0;
@@ -56,6 +59,18 @@ impl Memory {
                     && is_updated == updates
             }
         }
+    }
+
+    /// Whether it may be behind a coupling that stores torques. If not, the program omits the code for such
+    /// a coupling.
+    pub const fn is_stored(self) -> bool {
+        matches!(self, Self::Any | Self::Of { .. })
+    }
+
+    /// Whether a board renders it without a coupling. If not, the program omits the certificate's code for
+    /// that.
+    pub const fn may_be_uncoupled(self) -> bool {
+        matches!(self, Self::Any | Self::Uncoupled)
     }
 
     /// Whether the amplifier may be updated several times in a period. If not, the program omits the code for
@@ -182,6 +197,25 @@ macro_rules! known_models {
         impl<const WHOLE: usize, const LAGS: usize, const UPDATES: bool, $($generics)*>
             Matched<$environment, WHOLE, LAGS, UPDATES>
         {
+            /// The environment as data.
+            pub const fn as_data(&self) -> Environment {
+                self.environment.as_data()
+            }
+        }
+
+        impl<$($generics)*> sealed::Sealed for Uncoupled<$environment> {}
+
+        impl<$($generics)*> EnvironmentModel for Uncoupled<$environment> {
+            const CANCELS_DAMPING: bool = $cancels;
+            const PROFILE: ProfileUse = $profile;
+            const MEMORY: Memory = Memory::Uncoupled;
+
+            fn as_data(&self, _: &LawContext) -> Environment {
+                Self::as_data(self)
+            }
+        }
+
+        impl<$($generics)*> Uncoupled<$environment> {
             /// The environment as data.
             pub const fn as_data(&self) -> Environment {
                 self.environment.as_data()

@@ -73,8 +73,10 @@ pub enum UndecidedReason {
     NoTransferFunction,
     /// Updates may be missed and the torque lags.
     MissedWithLatency,
-    /// No bound is known for a torque profile with this damper, lag or missed updates.
-    NoProfileBound,
+    /// No bound is known for this scene without a coupling.
+    NoBoundAtPort,
+    /// A bound that is sufficient, and not known to be necessary, is not below the passivity.
+    NotBelowBound,
     /// No bound is known for snap points with this delay or without a coupling.
     NoSnapBound,
 }

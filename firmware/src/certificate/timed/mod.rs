@@ -12,9 +12,10 @@ use super::margin::Limited;
 use super::model::{largest_solved, nonlinear_bound};
 use super::profile::is_motor_where_limited;
 use super::rules::{Rule, paper_limit};
+use super::static_law::{End, needed_at_port};
 use super::validity::first_invalid_number;
 use crate::coupling::Coupling;
-use crate::environment::{Environment, EnvironmentModel, Memory};
+use crate::environment::{Environment, EnvironmentModel};
 use crate::latency::TimeRange;
 use crate::number::Format;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, SHORTEST_PHASE, longest_phase};
@@ -131,6 +132,9 @@ pub enum TimingError {
     },
     /// The torque lags, and the coupling does not absorb the lag.
     Unmatched,
+    /// The scene has no coupling, and its environment's type is not
+    /// [`Uncoupled`](crate::environment::Uncoupled).
+    Coupled,
     /// A board reads counts later than the scene allows.
     Jitter {
         /// The scene's output jitter in s.
@@ -193,6 +197,10 @@ impl TimingError {
             Self::Unmatched => t.push(
                 "where torques lag, a servo renders only environments behind the matched coupling: give the \
                  scene that, and its environment's type `Matched`",
+            ),
+            Self::Coupled => t.push(
+                "without a coupling a board renders environments of the type `Uncoupled`: give the scene \
+                 that, or a coupling",
             ),
             Self::Jitter { jitter } => {
                 t.push("a board reads a count up to ");
@@ -303,8 +311,11 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     if !M::TIMING.fits(scene.timing.period) || !is_at_its_phase(M::TIMING, scene) {
         return Err(Step::Certificate);
     }
+    if E::MEMORY.may_be_uncoupled() && matches!(scene.coupling, Coupling::Rigid) {
+        return judged_at_port::<E>(scene, M::TIMING, is_late, format);
+    }
     let is_matched = matches!(scene.coupling, Coupling::Matched);
-    if has_latency(scene) && (!is_matched || matches!(E::MEMORY, Memory::None)) {
+    if has_latency(scene) && !(is_matched && E::MEMORY.is_stored()) {
         return Err(Step::Certificate);
     }
     let n = &LoopIntervals::of_late::<E>(scene, is_late, format);
@@ -325,6 +336,29 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     match Limited::of_solved::<E>(scene, n, bound, solved) {
         Some(limited) if stands_counts_read_late(M::TIMING, &limited, scene, n) => Ok(limited),
         _ => Err(Step::Certificate),
+    }
+}
+
+/// The same of a scene without a coupling (theory, section 16).
+#[inline(never)]
+const fn judged_at_port<E: EnvironmentModel>(
+    scene: &Scene,
+    timing: OutputTiming,
+    is_late: bool,
+    format: Format,
+) -> Result<Limited, Step> {
+    let reading = reading_time(timing);
+    let is_in_time = is_late || !matches!(timing, OutputTiming::Latched);
+    if !is_in_time
+        || scene.timing.period <= reading
+        || E::PROFILE.exists && is_uneven::<E>(&scene.environment)
+    {
+        return Err(Step::Certificate);
+    }
+    let n = &LoopIntervals::of_late::<E>(scene, is_late, format);
+    match Limited::at_port::<E>(scene, n, reading) {
+        Some(limited) => Ok(limited),
+        None => Err(Step::Certificate),
     }
 }
 
@@ -350,15 +384,19 @@ pub(super) const fn agree(
         }
         return Err(TimingError::Phase { scene: scene.latency.output_delay.middle(), board });
     }
-    if has_latency(scene) && !matches!(scene.coupling, Coupling::Matched) {
+    let is_rigid = matches!(scene.coupling, Coupling::Rigid);
+    if has_latency(scene) && !is_rigid && !matches!(scene.coupling, Coupling::Matched) {
         return Err(TimingError::Unmatched);
     }
     let is_on_a_board = !matches!(timing, OutputTiming::Simultaneous);
-    if is_on_a_board && !scene.latency.is_none() && !has_enough_jitter(scene) {
+    if is_on_a_board && !is_rigid && !scene.latency.is_none() && !has_enough_jitter(scene) {
         let jitter = scene.latency.output_jitter;
         return Err(TimingError::Jitter { jitter });
     }
     let n = &LoopIntervals::of(scene, assessment.format);
+    if matches!(scene.coupling, Coupling::Rigid) {
+        return at_port(timing, scene, n);
+    }
     let bound = limited_bound(scene, assessment.rule, assessment.bound, n);
     let limited = match bound {
         Some(bound) => Limited::of(scene, n, bound),
@@ -384,6 +422,32 @@ pub(super) const fn agree(
         bound: limited.bound.hi(),
         limit: read_late(&limited, n).lo(),
     })
+}
+
+/// The same of a scene without a coupling, whose torques come at the times of the board.
+const fn at_port(
+    timing: OutputTiming,
+    scene: &Scene,
+    n: &LoopIntervals,
+) -> Result<Limited, TimingError> {
+    let reading = reading_time(timing);
+    if scene.timing.period > reading
+        && !is_uneven::<Environment>(&scene.environment)
+        && let Some(limited) = Limited::at_port::<Environment>(scene, n, reading)
+    {
+        return Ok(limited);
+    }
+    let needed = needed_at_port::<Environment>(scene, n, reading, End::Upper);
+    Err(TimingError::Limited { bound: needed, limit: Some(n.delta.lo()) })
+}
+
+/// The time in s by which a count may be read late. Without a coupling a torque depends on it by its damper
+/// alone, because a position is no older for it.
+const fn reading_time(timing: OutputTiming) -> f64 {
+    match timing {
+        OutputTiming::Simultaneous => 0.0,
+        OutputTiming::Latched | OutputTiming::AtPhase(_) => READ_WITHIN,
+    }
 }
 
 /// Whether the board's torques come at the scene's time, to a part in a billion, far below the required
@@ -446,7 +510,7 @@ const fn read_late(limited: &Limited, n: &LoopIntervals) -> Interval {
 }
 
 /// Whether a torque limit may make it a motor.
-const fn is_uneven<E: EnvironmentModel>(environment: &Environment) -> bool {
+pub(super) const fn is_uneven<E: EnvironmentModel>(environment: &Environment) -> bool {
     match environment.profile() {
         Some(profile) => is_motor_where_limited::<E>(profile),
         None => false,

@@ -14,7 +14,7 @@ use crate::environment::{
 };
 use crate::number::Format;
 use crate::passivity::interval::Interval;
-use crate::scene::{Coupling, Device, Latency, Scene, Timing};
+use crate::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use crate::servo::{AtPhase, Latched, Servo, Transducers};
 
 static ENDLESS: Knots<16> = Knots::of(&[Shape::detents(24, 0.02)]);
@@ -151,7 +151,7 @@ fn indices_add() {
     }
 }
 
-/// The rule at the port: `T (L/2 + (n + e) M)` and `K T (1/2 + n + e)`, and a ripple of both slopes.
+/// The index at the port: `c = T (L/2 + (n + e) M)` of both slopes, and their variance (equation 60).
 #[test]
 fn without_a_coupling_the_springs_add() {
     let (n, e) = (1.0, 0.3);
@@ -162,8 +162,9 @@ fn without_a_coupling_the_springs_add() {
     for (latency, e) in [(Latency::NONE, 0.0), (Latency::delayed(e * PERIOD), e)] {
         let found = certify(&at_port(latency)).unwrap_or_else(|why| panic!("{why}")).bound.unwrap();
         let slopes: f64 = 5.0 + 2.0;
-        let expected = PERIOD * (0.5 + n + e) * slopes
-            + e * (1.0 - e) * (PERIOD * slopes).powi(2) / (4.0 * DAMPING);
+        let within = (0.5 + n + e) * slopes;
+        let expected =
+            0.5 * PERIOD * (within + (within.powi(2) + e * (1.0 - e) * slopes.powi(2)).sqrt());
         assert!((found.midpoint() / expected - 1.0).abs() < 1e-9, "{found:?} {expected}");
     }
 }
@@ -192,18 +193,44 @@ fn what_has_no_proof_is_refused_with_a_sentence() {
     assert!(
         refusal(pulling.as_data(), spring).contains("pulls away at rest like a negative spring")
     );
-    let rigid = "no bound is known for a torque profile that no coupling separates from a damper, a canceller,";
-    for environment in [
-        FreeModeProfile { residual: 0.015, profile: knob::<1>() }.as_data(),
-        WallAndProfile { wall: WALL, profile: knob::<1>() }.as_data(),
-    ] {
-        let sentence = refusal(environment, Coupling::Rigid);
-        assert!(sentence.contains(rigid), "{sentence}");
-    }
+    let missing = Scene {
+        timing: Timing { period: PERIOD, worst_period: Some(2.0 * PERIOD) },
+        latency: Latency { sensor_lag: TimeRange::exactly(1e-5), ..Latency::delayed(0.0) }
+            .with_actuator_lag(1e-5),
+        coupling: Coupling::Rigid,
+        ..scene(WallAndProfile { wall: WALL, profile: knob::<1>() }.as_data())
+    };
+    let sentence = certify(&missing).unwrap_err().to_string();
+    assert!(sentence.contains("updates that are missed beside two lags"), "{sentence}");
     let mut soft = knob::<1>();
     soft.ends = Some(Ends { from: -2.0, to: 2.0, stiffness: -1.0 });
     let sentence = refusal(WallAndProfile { wall: WALL, profile: soft }.as_data(), spring);
     assert!(sentence.ends_with("must be greater than 0 beyond end stops"), "{sentence}");
+}
+
+/// Without a coupling a canceller and a damper add what they may give for a unit of velocity (theory, section
+/// 16.3).
+#[test]
+fn without_a_coupling_dampers_add() {
+    let late = 1.5 * PERIOD;
+    for (environment, expected) in [
+        (
+            FreeModeProfile { residual: 0.015, profile: knob::<1>() }.as_data(),
+            late * 5.0 + DAMPING - 0.015,
+        ),
+        (
+            WallAndProfile {
+                wall: DamperWall::<1> { stiffness: 2.0, damping: 0.003 },
+                profile: knob::<1>(),
+            }
+            .as_data(),
+            late * 7.0 + 0.003,
+        ),
+    ] {
+        let found = certify(&Scene { coupling: Coupling::Rigid, ..scene(environment) }).unwrap();
+        let bound = found.bound.unwrap();
+        assert!((bound.midpoint() / expected - 1.0).abs() < 1e-9, "{bound:?} {expected}");
+    }
 }
 
 /// Each remedy is certified, and the one of a sum is of its parts by name.

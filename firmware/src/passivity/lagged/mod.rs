@@ -112,7 +112,7 @@ impl Decay {
 
 /// The rest of a step after some time; zero at the lower end if the lag's range begins at 0 and the time is
 /// positive.
-const fn left(time: Interval, tau: Interval) -> Interval {
+pub const fn left(time: Interval, tau: Interval) -> Interval {
     let ratio = if tau.is_positive() {
         time.div(tau)
     } else {

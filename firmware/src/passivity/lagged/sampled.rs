@@ -43,7 +43,7 @@ impl SampledLag {
 
     /// The same less the integral of its square, `(h / 6) (1 + 4 p + p^2) / (1 - p^2)`: in partial fractions,
     /// each of which rises with `p`.
-    pub(super) const fn unspread(&self) -> Interval {
+    pub const fn unspread(&self) -> Interval {
         let near = Interval::exact(3.0).div(Interval::ONE.sub(self.left));
         let far = Interval::ONE.div(Interval::ONE.add(self.left));
         near.sub(far).sub(Interval::ONE).div(Interval::exact(6.0 * self.updates))

@@ -1,0 +1,34 @@
+//! Which scenes are judged by a bound in place of the exact rule.
+
+use crate::environment::Environment;
+use crate::scene::{Coupling, Scene};
+
+/// Whether the scene is judged by the nonlinear bound.
+pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
+    scene.torque_limit.is_some()
+        || matches!(scene.environment.wall(), Some(w) if w.one_sided)
+        || !scene.environment.has_transfer()
+        || replaces_exact_rule(scene)
+}
+
+/// Whether a scene without a coupling is judged by its index at the port although it is linear: the exact
+/// rule has no proof for missed updates beside latency, and none for jitter that costs a spring nothing.
+const fn replaces_exact_rule(scene: &Scene) -> bool {
+    let latency = &scene.latency;
+    if latency.is_none() || !matches!(scene.coupling, Coupling::Rigid) {
+        return false;
+    }
+    let (damping, pulls) = match (&scene.environment, scene.environment.wall()) {
+        (Environment::DelayedSpring(_) | Environment::DamperWall(_), Some(wall)) => {
+            (wall.damping, wall.stiffness < 0.0)
+        }
+        (Environment::FreeMode { .. }, _) => (f64::NAN, false),
+        (Environment::FreeModeWall { .. }, Some(wall)) => (f64::NAN, wall.stiffness < 0.0),
+        _ => return false,
+    };
+    let misses_updates = matches!(
+        scene.timing.worst_period,
+        Some(worst) if worst != scene.timing.period
+    );
+    !pulls && (misses_updates || damping == 0.0 && latency.output_jitter > 0.0)
+}

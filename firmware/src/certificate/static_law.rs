@@ -1,0 +1,402 @@
+//! Static laws at the device's port, without a coupling: springs, walls, torque profiles and sums of them
+//! (theory, section 16).
+//!
+//! Each torque depends on positions of the past, and only their largest age counts. All times in this module
+//! are in periods.
+
+use super::loop_intervals::LoopIntervals;
+use super::model::{canceller_bound, switched_damping};
+use super::profile::{ExtremeSlopes, damper, is_motor};
+use crate::environment::{AnyProfile, Composed, Environment, EnvironmentModel, Wall};
+use crate::latency::Latency;
+use crate::passivity::interval::Interval;
+use crate::passivity::lagged::{SampledLag, left};
+use crate::scene::Scene;
+
+/// The index of a scene without a coupling at the device's port.
+#[derive(Clone, Copy)]
+pub(super) struct IndexAtPort {
+    /// The passivity above which the scene is passive, scaled to the worst period; in N m s/rad.
+    pub sufficient: Interval,
+    /// Whether less is known to be too little.
+    pub is_necessary: bool,
+}
+
+/// The index of a scene without a coupling at the port, also with its torque limited at any level. `None` if
+/// none is known.
+///
+/// `reading` is the time in s by which a count may be read late.
+pub(super) const fn index_at_port(
+    scene: &Scene,
+    n: &LoopIntervals,
+    reading: f64,
+) -> Option<IndexAtPort> {
+    let (Some(highest), Some(lowest)) = (
+        needed_at_port::<Environment>(scene, n, reading, End::Upper),
+        needed_at_port::<Environment>(scene, n, reading, End::Lower),
+    ) else {
+        return None;
+    };
+    let is_necessary = match Law::of::<Environment>(&scene.environment, n) {
+        Some(law) => law.is_spring_somewhere && is_exact(&scene.latency, n),
+        None => false,
+    };
+    Some(IndexAtPort { sufficient: Interval::new(lowest, highest), is_necessary })
+}
+
+/// Which end of the enclosure of an index.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    Lower,
+    Upper,
+}
+
+impl End {
+    /// The index grows with every time and slope, so that each end of its enclosure is computed from the same
+    /// end of every time.
+    const fn of(self, enclosed: Interval) -> f64 {
+        match self {
+            Self::Lower => enclosed.lo(),
+            Self::Upper => enclosed.hi(),
+        }
+    }
+
+    /// The same end of a time in s, in periods.
+    const fn time(self, time: f64, n: &LoopIntervals) -> f64 {
+        if time == 0.0 {
+            return 0.0;
+        }
+        self.of(Interval::decimal(time).div(n.period)).max(0.0)
+    }
+}
+
+/// One end of [`IndexAtPort::sufficient`] (equation 60).
+#[inline(never)]
+pub(super) const fn needed_at_port<E: EnvironmentModel>(
+    scene: &Scene,
+    n: &LoopIntervals,
+    reading: f64,
+    end: End,
+) -> Option<f64> {
+    match Law::of::<E>(&scene.environment, n) {
+        Some(law) => law.needed(scene, n, reading, end),
+        None => None,
+    }
+}
+
+/// The passivity that a switched damper takes at most beside a static law, over the damper: the root of the
+/// longest time between two counts or two torques, in periods (theory, section 16.3).
+pub(super) const fn share_of_damper(scene: &Scene, n: &LoopIntervals, reading: f64) -> Interval {
+    let jitter = Interval::exact(End::Upper.time(scene.latency.output_jitter, n));
+    let reading = Interval::exact(End::Upper.time(reading, n));
+    Interval::ONE.add(jitter.double()).add(reading).sqrt()
+}
+
+/// Whether the index is known to be the least one for a spring.
+const fn is_exact(latency: &Latency, n: &LoopIntervals) -> bool {
+    let is_in_updates = latency.actuator_updates == 0 || latency.output_jitter == 0.0;
+    is_in_updates && (!n.misses_updates || latency.is_none())
+}
+
+/// A torque that depends on positions, limited at any level, plus parts that depend on steps of positions.
+///
+/// All are in N m/rad.
+#[derive(Clone, Copy)]
+struct Law {
+    /// The steepest rise, `L`.
+    rise: Interval,
+    /// The largest slope, `M`.
+    steepest: Interval,
+    /// The sum of the slopes times their whole samples of delay.
+    late: Interval,
+    /// What dampers and cancellers need, over the period.
+    damping: Interval,
+    /// Whether it is a spring of the stiffness `M`, with `L = M`, for small motions about some position.
+    is_spring_somewhere: bool,
+}
+
+impl Law {
+    const NONE: Self = Self {
+        rise: Interval::ZERO,
+        steepest: Interval::ZERO,
+        late: Interval::ZERO,
+        damping: Interval::ZERO,
+        is_spring_somewhere: true,
+    };
+
+    /// `None` if no bound is known: for rational and stated environments, negative springs, motors and snap
+    /// points.
+    const fn of<E: EnvironmentModel>(environment: &Environment, n: &LoopIntervals) -> Option<Self> {
+        let beside = match environment.wall() {
+            Some(wall) if wall.stiffness < 0.0 => return None,
+            Some(wall) => Self::of_wall(&wall, n),
+            None => Self::NONE,
+        };
+        match environment {
+            Environment::DelayedSpring(_) | Environment::DamperWall(_) => Some(beside),
+            Environment::FreeMode { .. } | Environment::FreeModeWall { .. } => {
+                beside.with_canceller::<E>(n)
+            }
+            Environment::Profile(profile) if E::PROFILE.exists => Self::of_profile::<E>(profile, n),
+            Environment::Composed(Composed { residual, profile, wall })
+                if E::PROFILE.is_composed =>
+            {
+                let sum = match Self::of_profile::<E>(profile, n) {
+                    Some(law) if wall.is_some() => law.plus(beside),
+                    Some(law) => law,
+                    None => return None,
+                };
+                match residual {
+                    Some(_) => sum.with_canceller::<E>(n),
+                    None => Some(sum),
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// [`needed_at_port`] of the law in a scene.
+    const fn needed(
+        &self,
+        scene: &Scene,
+        n: &LoopIntervals,
+        reading: f64,
+        end: End,
+    ) -> Option<f64> {
+        let Some(age) = Age::of(&scene.latency, n, end) else { return None };
+        let steepest = self.steepest;
+        let moved = self.rise.half().add(self.late).add(steepest.mul(age.mean));
+        let spread = steepest.mul(steepest).mul(age.variance);
+        let varies = n.misses_updates || reading > 0.0 || scene.latency.output_jitter > 0.0;
+        // A damper whose counts are not a period apart has its own share of the passivity.
+        let (within, beside) = if varies {
+            (moved, self.damping.mul(share_of_damper(scene, n, reading)))
+        } else {
+            (moved.add(self.damping), Interval::ZERO)
+        };
+        let root = within.mul(within).add(spread).sqrt();
+        let needed = within.add(root).half().add(beside).mul(n.period);
+        Some(end.of(needed).max(0.0))
+    }
+
+    const fn of_wall(wall: &Wall, n: &LoopIntervals) -> Self {
+        let spring = n.coefficient(Interval::decimal(wall.stiffness));
+        Self {
+            rise: spring,
+            steepest: spring,
+            late: spring.mul(Interval::exact(wall.delay as f64)),
+            damping: switched_damping(wall, n).div(n.period),
+            is_spring_somewhere: wall.damping == 0.0,
+        }
+    }
+
+    const fn of_profile<E: EnvironmentModel>(
+        profile: &AnyProfile,
+        n: &LoopIntervals,
+    ) -> Option<Self> {
+        if is_motor(profile) || E::PROFILE.snaps && profile.snap.is_some() {
+            return None;
+        }
+        let slopes = ExtremeSlopes::of_table::<E>(profile, n);
+        let steepest = slopes.steepest();
+        let damping = damper::<E>(profile, n).abs();
+        Some(Self {
+            rise: slopes.rise,
+            steepest,
+            late: steepest.mul(Interval::exact(profile.delay as f64)),
+            damping,
+            is_spring_somewhere: slopes.rise.hi() >= steepest.hi() && damping.is_zero(),
+        })
+    }
+
+    /// The sum, of which nothing is known to be necessary.
+    const fn plus(self, other: Self) -> Self {
+        Self {
+            rise: self.rise.add(other.rise),
+            steepest: self.steepest.add(other.steepest),
+            late: self.late.add(other.late),
+            damping: self.damping.add(other.damping),
+            is_spring_somewhere: false,
+        }
+    }
+
+    const fn with_canceller<E: EnvironmentModel>(self, n: &LoopIntervals) -> Option<Self> {
+        if !E::CANCELS_DAMPING {
+            return None;
+        }
+        match canceller_bound(n) {
+            Some(bound) => {
+                let damping = bound.div(n.period);
+                Some(self.plus(Self { damping, ..Self::NONE }))
+            }
+            None => None,
+        }
+    }
+}
+
+/// The ages of a torque in addition to the whole samples of its law: the mean of the folded envelope of the
+/// ages and its variance over a period (theory, section 16.1), scaled to the worst period.
+#[derive(Clone, Copy)]
+struct Age {
+    mean: Interval,
+    variance: Interval,
+}
+
+impl Age {
+    const NONE: Self = Self { mean: Interval::ZERO, variance: Interval::ZERO };
+
+    /// `None` if no bound is known: for updates that are missed beside two lags, or beside jitter and a lag.
+    const fn of(latency: &Latency, n: &LoopIntervals, end: End) -> Option<Self> {
+        if latency.is_none() {
+            return Some(Self::NONE);
+        }
+        let has_lag = !latency.actuator_lag.is_zero();
+        let has_filter = !latency.sensor_lag.is_zero();
+        let Some(oldest) = oldest(latency, n, end) else { return None };
+        let whole = oldest as u32 as f64;
+        // Exact, as a difference of doubles of the same order.
+        let part = Interval::exact(oldest - whole);
+        let lag = Tail::of(latency.actuator_lag.most, latency, n, part, end);
+        let filter = Tail::of(latency.sensor_lag.most, &Latency::NONE, n, part, end);
+        let mean = part.add(lag.mean).add(filter.mean);
+        let square = part.add(lag.square(part)).add(filter.square(part));
+        let square = match has_lag && has_filter {
+            true => square.add(lag.beside(&filter, part).double()),
+            false => square,
+        };
+        let whole = Interval::exact(whole);
+        if !n.misses_updates {
+            return Some(Self { mean: whole.add(mean), variance: variance(square, mean) });
+        }
+        if has_lag && has_filter || (has_lag || has_filter) && latency.output_jitter > 0.0 {
+            return None;
+        }
+        // The envelope in the rest of a tick that is longer than a period is no larger than at its beginning.
+        let later = lag.later.add(filter.later);
+        let longer = n.stretch.sub(Interval::ONE);
+        let mean = mean.add(longer.mul(later)).div(n.stretch);
+        let square = square.add(longer.mul(later).mul(later)).div(n.stretch);
+        Some(Self { mean: whole.add(mean), variance: variance(square, mean) })
+    }
+}
+
+/// `square - mean^2`, which is not negative.
+const fn variance(square: Interval, mean: Interval) -> Interval {
+    square.sub(mean.mul(mean)).max(Interval::ZERO)
+}
+
+/// The largest time from a count to its torque, without lags.
+const fn oldest(latency: &Latency, n: &LoopIntervals, end: End) -> Option<f64> {
+    let delay = match latency.actuator_updates {
+        0 => end.time(latency.output_delay.most, n),
+        _ => match latency.delay_in_updates(n.period.midpoint()) {
+            Some(delay) => end.of(delay),
+            None => return None,
+        },
+    };
+    let response = end.time(latency.actuator_response.most, n);
+    let jitter = end.time(latency.output_jitter, n);
+    let sum = Interval::exact(delay).add(Interval::exact(response)).add(Interval::exact(jitter));
+    Some(end.of(sum))
+}
+
+/// What a lag leaves of an age after the delay: `u(t)` with `u(0) = 1`, which each period multiplies by
+/// `tick`.
+#[derive(Clone, Copy)]
+struct Tail {
+    /// The integral of `u`.
+    mean: Interval,
+    /// The integral of `u^2`.
+    squared: Interval,
+    tick: Interval,
+    /// The integral of `u` from the end of the delay's tick on.
+    beyond: Interval,
+    /// The folded envelope after a period.
+    later: Interval,
+    /// For a lag that is not updated in the period: its time constant, and `u` at the end of the delay's tick.
+    tau: Interval,
+    rest: Interval,
+}
+
+impl Tail {
+    const NONE: Self = Self {
+        mean: Interval::ZERO,
+        squared: Interval::ZERO,
+        tick: Interval::ZERO,
+        beyond: Interval::ZERO,
+        later: Interval::ZERO,
+        tau: Interval::ZERO,
+        rest: Interval::ZERO,
+    };
+
+    /// The tail of a time constant in s after `part` of a period.
+    const fn of(tau: f64, latency: &Latency, n: &LoopIntervals, part: Interval, end: End) -> Self {
+        if tau == 0.0 {
+            return Self::NONE;
+        }
+        let tau = Interval::exact(end.time(tau, n));
+        let over = Interval::ONE.sub(part);
+        if latency.actuator_updates != 0 {
+            return Self::sampled(tau, latency, over);
+        }
+        let (tick, rest) = (left(Interval::ONE, tau), left(over, tau));
+        let later = rest.div(Interval::ONE.sub(tick));
+        Self { mean: tau, squared: tau.half(), tick, beyond: tau.mul(rest), later, tau, rest }
+    }
+
+    /// The tail of a current loop that is updated in the period. Beside jitter the tick may end between two
+    /// updates, and `u` is at most that at the update before.
+    #[inline(never)]
+    const fn sampled(tau: Interval, latency: &Latency, over: Interval) -> Self {
+        let updates = latency.actuator_updates;
+        let lag = SampledLag::of(updates, tau);
+        let over = if latency.output_jitter > 0.0 {
+            let whole = (over.lo() * updates as f64 * (1.0 - 1e-9)) as u32 as f64;
+            Interval::exact(whole).div(Interval::exact(updates as f64))
+        } else {
+            over
+        };
+        let (mean, tick, rest) = (lag.held(), lag.after(Interval::ONE), lag.after(over));
+        let squared = mean.sub(lag.unspread());
+        let later = rest.div(Interval::ONE.sub(tick));
+        Self { mean, squared, tick, beyond: mean.mul(rest), later, tau, rest }
+    }
+
+    /// What it adds to the mean square of the folded envelope, with the `part` before it.
+    const fn square(&self, part: Interval) -> Interval {
+        if self.mean.is_zero() {
+            return Interval::ZERO;
+        }
+        let kept = Interval::ONE.sub(self.tick);
+        let own = self.squared.mul(Interval::ONE.add(self.tick));
+        let in_part = self.beyond.sub(self.tick.mul(self.mean)).max(Interval::ZERO);
+        let in_part = if part.is_zero() { Interval::ZERO } else { in_part.double() };
+        own.add(in_part).div(kept)
+    }
+
+    /// The mean product of the folded envelopes of an amplifier and of a sensor, which are on the two sides of
+    /// the delay.
+    const fn beside(&self, sensor: &Self, part: Interval) -> Interval {
+        let over = Interval::ONE.sub(part);
+        let rests = self.rest.mul(sensor.rest);
+        let product = self.over(sensor, over).add(rests.mul(self.over(sensor, part)));
+        let kept = Interval::ONE.sub(self.tick).mul(Interval::ONE.sub(sensor.tick));
+        product.div(kept)
+    }
+
+    /// The integral over a `time` of one exponential forwards and the other backwards: in partial fractions,
+    /// and for time constants that are too nearly equal at most that of the chord, because it is convex.
+    const fn over(&self, other: &Self, time: Interval) -> Interval {
+        let (a, b) = (left(time, self.tau), left(time, other.tau));
+        let chord = Interval::new(0.0, time.mul(a.add(b)).half().hi().max(0.0));
+        let apart = self.tau.sub(other.tau);
+        if apart.contains(0.0) {
+            return chord;
+        }
+        let fractions = self.tau.mul(other.tau).mul(a.sub(b)).div(apart);
+        if fractions.is_finite() { fractions.and(chord) } else { chord }
+    }
+}
+
+#[cfg(test)]
+mod tests;
