@@ -24,16 +24,15 @@ pub struct Arguments {
     pub answer: JsonOption,
 }
 
-/// Judges the linear loop: the status is negative if it is unstable.
+/// Judges the linear loop: the status is negative if it is unstable or undecided.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let stability = judge(&Experiment::at_rest(&file), arguments.steps.integration())?;
     let name = titled(&file.name, [&file.scene.latency]);
     arguments.answer.print(&stability, |stability| text(&name, stability))?;
-    Ok(if stability.verdict == StabilityVerdict::Unstable {
-        CommandStatus::NegativeVerdict
-    } else {
-        CommandStatus::Success
+    Ok(match stability.verdict {
+        StabilityVerdict::Unstable | StabilityVerdict::Undecided => CommandStatus::NegativeVerdict,
+        StabilityVerdict::Stable | StabilityVerdict::Marginal => CommandStatus::Success,
     })
 }
 
@@ -42,14 +41,27 @@ fn text(name: &str, stability: &Stability) -> String {
         StabilityVerdict::Stable => "STABLE: a small motion decays",
         StabilityVerdict::Unstable => "UNSTABLE: a small motion grows",
         StabilityVerdict::Marginal => "MARGINAL: a small motion neither grows nor decays",
+        StabilityVerdict::Undecided => "UNDECIDED: rounding hides whether a small motion decays",
     };
-    let critical = match stability.critical_stiffness {
-        Some(stiffness) => format!("{} N m/rad", significant(stiffness, 12)),
-        None => "none".to_owned(),
+    let stiffness = |value: f64| format!("{} N m/rad", significant(value, 12));
+    let critical = match stability.stable_stiffness {
+        Some([Some(from), Some(to)]) => {
+            format!("{}; stable only from {} to it", stiffness(to), stiffness(from))
+        }
+        Some([Some(from), None]) => format!("none; stable only above {}", stiffness(from)),
+        _ => stability.critical_stiffness.map_or_else(|| "none".to_owned(), stiffness),
     };
     format!(
         "scene               {name}\nverdict             {meaning}\nspectral radius     {}\n\
          critical stiffness  {critical}\n",
-        significant(stability.spectral_radius, 12)
+        radius(stability)
     )
+}
+
+/// The spectral radius with the digits that are known, 12 at most.
+fn radius(stability: &Stability) -> String {
+    let [low, high] = stability.spectral_radius_enclosure;
+    let known = (1..=12).rev().map(|digits| [low, high].map(|end| significant(end, digits)));
+    let agreed = known.into_iter().find(|[low, high]| low == high);
+    agreed.map_or_else(|| format!("from {low:e} to {high:e}"), |[known, _]| known)
 }

@@ -1,7 +1,6 @@
 //! Assumptions of a verdict: only those that apply to the scene, each with its condition (theory, section 8)
 //! and the status of the condition.
 
-use core::f64::consts::PI;
 use core::fmt;
 
 use super::assessment::Assessment;
@@ -88,7 +87,8 @@ pub enum Assumption {
     FrictionOnly {
         /// Declared friction in N m.
         friction: f64,
-        /// Speed in rad/s below which friction dissipates more than the controller adds.
+        /// Mean speed in rad/s over a tick up to which friction and damping dissipate at least what the
+        /// controller adds (equation 33).
         speed: f64,
     },
 }
@@ -212,8 +212,8 @@ impl fmt::Display for Assumption {
             ),
             Self::FrictionOnly { friction, speed } => write!(
                 f,
-                "the device's friction of {} N m alone dissipates more than the controller \
-                 generates, but only below {} rad/s: the device rests until it is moved faster",
+                "as long as the mean speed over each tick is at most {1} rad/s, the device's friction of \
+                 {0} N m and its damping dissipate at least what the controller generates",
                 ShortF64(*friction),
                 ShortF64(*speed)
             ),
@@ -432,19 +432,19 @@ fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> A
 }
 
 /// For a scene without a certificate, the effect of its friction. A controller that needs `alpha` of damping
-/// with only `delta` present adds `pi (alpha - delta) omega A^2` per cycle of amplitude `A`, and friction
-/// dissipates `4 f_c A` (equation 33). The index is that of the whole controller one sample later, which is
-/// the condition without a coupling (theory, section 5).
+/// with only `delta` present adds at most `T (alpha - delta) v^2` more than damping dissipates in a tick of
+/// the mean speed `v`, and friction dissipates at least `T f_c |v|` (equation 33). The index is that of the
+/// whole controller one sample later, which is the condition without a coupling (theory, section 5).
 fn friction_only(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Option<Assumption> {
     let friction = steps.friction.filter(|&friction| friction > 0.0)?;
-    // The energy of a cycle is unknown if the torque lags.
+    // The torque of a tick is not constant if it lags.
     if assessment.outcome.is_ok() || !scene.latency.is_none() {
         return None;
     }
     let controller = LoopTransfers::in_format(scene, assessment.format).ok()?.controller;
     let later = Transfer { shift: controller.shift - 1, ..controller };
     let needed = index(later, Interval::decimal(scene.timing.period), false).ok()?.minimum;
-    let shortage = needed.midpoint() - assessment.delta.midpoint();
-    let speed = 4.0 * friction / (PI * shortage);
-    (shortage > 0.0).then_some(Assumption::FrictionOnly { friction, speed })
+    let shortage = needed.sub(assessment.delta);
+    let speed = Interval::decimal(friction).div(Interval::exact(shortage.hi())).lo();
+    (shortage.lo() > 0.0).then_some(Assumption::FrictionOnly { friction, speed })
 }

@@ -313,7 +313,10 @@ const fn write_doubt(
     limit: Option<Interval>,
 ) {
     t.push(match doubt {
-        UndecidedReason::PoleNearCircle => "a pole is so near the unit circle that rounding hides its side",
+        UndecidedReason::PoleNearCircle => {
+            "rounding hides whether all poles are inside the unit circle: one is near it, or several are close \
+             together"
+        }
         UndecidedReason::SeveralPolePairs => "the environment has several pole pairs on the unit circle",
         UndecidedReason::ResidueSign => {
             "rounding hides the sign of a residue on the unit circle; declare exact zeros at z = 1 as unit_zeros"

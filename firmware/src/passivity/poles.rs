@@ -57,7 +57,7 @@ pub enum IndexError {
 /// The reason why a condition could not be decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UndecidedReason {
-    /// A pole is so near the unit circle that its side is lost in rounding.
+    /// The side of a pole is lost in rounding: it is near the unit circle, or close to other poles.
     PoleNearCircle,
     /// Several complex pole pairs on the unit circle.
     SeveralPolePairs,

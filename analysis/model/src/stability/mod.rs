@@ -5,7 +5,9 @@
 //! One-sidedness, torque limit and quantisation are left out: the loop is that of the scene deep
 //! inside its wall.
 
+mod ball;
 mod borders;
+mod characteristic;
 mod eigenvalues;
 
 use haptic_servo::parameter::Parameter;
@@ -18,6 +20,8 @@ use crate::simulation::closed_loop::ClosedLoop;
 use crate::simulation::{Experiment, Integration, SimulationError};
 
 pub use eigenvalues::{eigenvalues, radius};
+
+pub use characteristic::Characteristic;
 
 use borders::Borders;
 
@@ -35,6 +39,8 @@ pub enum StabilityVerdict {
     /// It neither grows nor dies away. Most often this is the device that stays where it is left
     /// because no spring pulls it anywhere, the eigenvalue 1 of its position.
     Marginal,
+    /// Rounding hides whether it dies away.
+    Undecided,
 }
 
 impl fmt::Display for StabilityVerdict {
@@ -43,6 +49,7 @@ impl fmt::Display for StabilityVerdict {
             Self::Stable => "stable",
             Self::Unstable => "unstable",
             Self::Marginal => "marginal",
+            Self::Undecided => "undecided",
         })
     }
 }
@@ -50,14 +57,20 @@ impl fmt::Display for StabilityVerdict {
 /// The answer to "is this loop stable".
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Stability {
-    /// Largest modulus of the closed loop's eigenvalues: the factor by which motion grows a tick.
+    /// Largest modulus of the closed loop's eigenvalues: the factor by which motion grows a tick. The middle
+    /// of its enclosure.
     pub spectral_radius: f64,
+    /// Numbers between which the spectral radius is for certain.
+    pub spectral_radius_enclosure: [f64; 2],
     /// The verdict that follows from it.
     pub verdict: StabilityVerdict,
     /// Stiffness of the environment in N m/rad at which the loop stops being stable, everything
     /// else as it is: the upper end of the lowest range in which it is. `None` where there is no
     /// such range or it has no end, or where the environment has no stiffness.
     pub critical_stiffness: Option<f64>,
+    /// The ends in N m/rad of that range. The first is `None` where the loop is stable down to a stiffness of
+    /// 0, and the second is the critical stiffness. `None` where there is no such range.
+    pub stable_stiffness: Option<[Option<f64>; 2]>,
 }
 
 /// Judges the loop of an experiment, taken through each tick by `integration`.
@@ -70,10 +83,14 @@ pub fn judge(
 ) -> Result<Stability, SimulationError> {
     let closed = closed_loop(experiment, integration)?;
     let eigenvalues = eigenvalues(&closed.matrix)?;
+    let enclosure = Characteristic::of(experiment, integration)?.radius();
+    let stable_stiffness = stable_stiffness(experiment, integration)?;
     Ok(Stability {
-        spectral_radius: radius(&eigenvalues),
-        verdict: verdict(&closed.matrix, &eigenvalues),
-        critical_stiffness: critical_stiffness(experiment, integration)?,
+        spectral_radius: 0.5 * (enclosure[0] + enclosure[1]),
+        spectral_radius_enclosure: enclosure,
+        verdict: verdict(enclosure, &closed.matrix, &eigenvalues),
+        critical_stiffness: stable_stiffness.and_then(|[_, end]| end),
+        stable_stiffness,
     })
 }
 
@@ -88,14 +105,23 @@ pub fn closed_loop(
     Ok(ClosedLoop::new(&experiment.tick(integration)?, &experiment.scene)?)
 }
 
-fn verdict(matrix: &DMatrix<f64>, eigenvalues: &[Complex<f64>]) -> StabilityVerdict {
-    let radius = radius(eigenvalues);
-    if radius < 1.0 - ON_CIRCLE {
+fn verdict(
+    [low, high]: [f64; 2],
+    matrix: &DMatrix<f64>,
+    eigenvalues: &[Complex<f64>],
+) -> StabilityVerdict {
+    if high < 1.0 - ON_CIRCLE {
         return StabilityVerdict::Stable;
     }
-    let on_circle = eigenvalues.iter().filter(|z| z.norm() >= 1.0 - ON_CIRCLE);
-    let bounded = radius <= 1.0 + ON_CIRCLE
-        && on_circle.clone().all(|&z| is_simple(matrix, z, on_circle.clone()));
+    if low > 1.0 + ON_CIRCLE {
+        return StabilityVerdict::Unstable;
+    }
+    let found = radius(eigenvalues);
+    if high - low > ON_CIRCLE || (found - 1.0).abs() > 2.0 * ON_CIRCLE {
+        return StabilityVerdict::Undecided;
+    }
+    let on_circle = eigenvalues.iter().filter(|z| z.norm() >= 1.0 - 2.0 * ON_CIRCLE);
+    let bounded = on_circle.clone().all(|&z| is_simple(matrix, z, on_circle.clone()));
     if bounded { StabilityVerdict::Marginal } else { StabilityVerdict::Unstable }
 }
 
@@ -124,18 +150,30 @@ fn is_simple<'e>(
 /// Stiffness in N m/rad at which the loop stops being stable; see
 /// [`Stability::critical_stiffness`].
 ///
+/// # Errors
+/// Those of [`stable_stiffness`].
+pub fn critical_stiffness(
+    experiment: &Experiment,
+    integration: Integration,
+) -> Result<Option<f64>, SimulationError> {
+    Ok(stable_stiffness(experiment, integration)?.and_then(|[_, end]| end))
+}
+
+/// The lowest range of stiffnesses in N m/rad in which the loop is stable; see
+/// [`Stability::stable_stiffness`].
+///
 /// An eigenvalue crosses the unit circle at `z` where `1 + E (V + G) = 0` (theory, section 2). The
 /// environment is `E = E_0 + K E_1`, so that at every `z` there is one `K` that satisfies this, and
 /// the loop crosses where that `K` is real. All such `K` are found first; between two of them the
 /// loop is either stable or not.
 ///
 /// # Errors
-/// Where the scene has no closed loop, or its eigenvalues are not found.
-pub fn critical_stiffness(
+/// Where the scene has no closed loop.
+pub fn stable_stiffness(
     experiment: &Experiment,
     integration: Integration,
-) -> Result<Option<f64>, SimulationError> {
-    /// Error of the eigenvalues when the slowest of a heavy machine is next to 1.
+) -> Result<Option<[Option<f64>; 2]>, SimulationError> {
+    /// Growth that a position which nothing holds has by rounding of the scene's numbers.
     const ROUNDING: f64 = 1e-12;
     if experiment.scene.get(Parameter::Stiffness).is_none() {
         return Ok(None);
@@ -146,20 +184,22 @@ pub fn critical_stiffness(
             return Ok(false);
         };
         let changed = Experiment { scene, ..experiment.clone() };
-        let closed = closed_loop(&changed, integration)?;
-        Ok(radius(&eigenvalues(&closed.matrix)?) <= 1.0 + ROUNDING)
+        Ok(Characteristic::of(&changed, integration)?.is_within(1.0 + ROUNDING) == Some(true))
     };
-    let mut below = 0.0;
-    let mut was_stable = false;
-    let beyond = borders.last().map(|last| 3.0 * last);
-    for border in borders.iter().copied().chain(beyond) {
-        let is_stable = is_stable(0.5 * (below + border))?;
-        if was_stable && !is_stable {
-            return Ok(Some(below));
+    let mut below = None;
+    let mut start = None;
+    // Without a border there is one range, in which any stiffness stands for all.
+    let beyond = borders.last().map_or(1.0, |last| 3.0 * last);
+    for border in borders.iter().copied().chain([beyond]) {
+        let is_stable = is_stable(0.5 * (below.unwrap_or(0.0) + border))?;
+        match start {
+            None if is_stable => start = Some(below),
+            Some(start) if !is_stable => return Ok(Some([start, below])),
+            _ => {}
         }
-        (below, was_stable) = (border, is_stable);
+        below = Some(border);
     }
-    Ok(None)
+    Ok(start.map(|start| [start, None]))
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ use crate::chain::Chain;
 use crate::line_search::minimizing_angle;
 use crate::response::Response;
 use crate::simulation::{Experiment, Integration, SimulationError};
-use crate::stability::{closed_loop, eigenvalues};
+use crate::stability::{Characteristic, closed_loop, eigenvalues};
 
 use constructed::LaggingLoop;
 
@@ -111,19 +111,14 @@ fn worst(
     tried: &mut usize,
 ) -> Result<HandCase, SimulationError> {
     let mut search = HandSearch::new(scene, device, lighter)?;
-    let hands = search.impedance_grid(search.angle());
-    let found = hands.into_iter().map(|hand| search.of(hand));
-    let mut found = found.collect::<Result<Vec<HandCase>, _>>()?;
-    found.sort_by(|a, b| b.spectral_radius.total_cmp(&a.spectral_radius));
-    let mut worst = found[0].clone();
-    for start in starts(&found) {
-        let climbed = search.climb(start)?;
-        if climbed.spectral_radius > worst.spectral_radius {
-            worst = climbed;
-        }
+    let mut found = search.worst()?;
+    // Eigenvalues in doubles were wrong about it: then every hand is confirmed before it counts.
+    if found.grows() && !search.is_confirmed(&found)? {
+        search.confirms = true;
+        found = search.worst()?;
     }
     *tried += search.tried;
-    Ok(worst)
+    Ok(found)
 }
 
 /// The damping in N m s/rad below which some hand that does not vary in time destabilises a scene on a device
@@ -146,6 +141,7 @@ fn constructed(
         // A hand that is too fast to integrate over a tick is skipped.
         if let Ok(case) = search.of(hand)
             && case.grows()
+            && search.is_confirmed(&case)?
         {
             found = Some(case);
             break;
@@ -171,6 +167,8 @@ struct HandSearch<'d> {
     lighter: f64,
     experiment: Experiment,
     tried: usize,
+    /// Whether the growth in a hand counts only if it is confirmed.
+    confirms: bool,
 }
 
 impl<'d> HandSearch<'d> {
@@ -178,7 +176,30 @@ impl<'d> HandSearch<'d> {
         let experiment = Experiment::still(scene);
         // Reports an error of the scene before the search.
         eigenvalues(&closed_loop(&experiment, Integration::default())?.matrix)?;
-        Ok(Self { device, lighter, experiment, tried: 0 })
+        Ok(Self { device, lighter, experiment, tried: 0, confirms: false })
+    }
+
+    /// The worst of all hands that are tried.
+    fn worst(&mut self) -> Result<HandCase, SimulationError> {
+        let hands = self.impedance_grid(self.angle());
+        let found = hands.into_iter().map(|hand| self.of(hand));
+        let mut found = found.collect::<Result<Vec<HandCase>, _>>()?;
+        found.sort_by(|a, b| b.spectral_radius.total_cmp(&a.spectral_radius));
+        let mut worst = found[0].clone();
+        for start in starts(&found) {
+            let climbed = self.climb(start)?;
+            if climbed.spectral_radius > worst.spectral_radius {
+                worst = climbed;
+            }
+        }
+        Ok(worst)
+    }
+
+    /// Whether the characteristic polynomial, with bounds on its errors, has a root beyond the threshold, too.
+    fn is_confirmed(&mut self, case: &HandCase) -> Result<bool, SimulationError> {
+        self.experiment.plant = plant(self.device, self.lighter, &case.hand);
+        let polynomial = Characteristic::of(&self.experiment, Integration::default())?;
+        Ok(polynomial.is_within(1.0 + GROWTH_THRESHOLD) == Some(false))
     }
 
     /// Inertia in kg m^2 of the device, all of it.
@@ -220,12 +241,16 @@ impl<'d> HandSearch<'d> {
         let larger = |a: &&Complex<f64>, b: &&Complex<f64>| a.norm().total_cmp(&b.norm());
         let largest = all.iter().filter(matters).max_by(larger).copied().unwrap_or_default();
         let turns = largest.arg().abs() / (2.0 * PI);
-        Ok(HandCase {
+        let mut case = HandCase {
             device_inertia: self.inertia(),
             hand,
             spectral_radius: largest.norm(),
             frequency: turns / self.experiment.scene.timing.period,
-        })
+        };
+        if self.confirms && case.grows() && !self.is_confirmed(&case)? {
+            case.spectral_radius = 1.0;
+        }
+        Ok(case)
     }
 
     /// Changes one number at a time for as long as that makes it worse, by ever smaller factors.
