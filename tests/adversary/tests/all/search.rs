@@ -20,12 +20,11 @@ fn no_hand_takes_energy_out_of_a_certified_scene() {
         scenes: number("ADVERSARY_SCENES").unwrap_or(50_000),
         time: None,
         choice: Choice::ANY,
-        output: None,
         enough: 20,
         effort: Effort::USUAL,
     };
     let found = search.run();
-    println!("{found}");
+    println!("{found}\n{}", found.coverage);
     for counterexample in &found.counterexamples {
         println!("{counterexample}\n");
     }
