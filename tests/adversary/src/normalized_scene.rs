@@ -46,6 +46,8 @@ pub struct NormalizedScene {
     pub stored: f64,
     /// How much positions are off, in rad.
     pub off: f64,
+    /// Sides of zero on which an environment stores energy at once: a profile has two.
+    pub sides: f64,
     /// Part of a period by which a late tick outlasts its own, so that the next one reads its count
     /// so much later.
     pub overrun: f64,
@@ -171,6 +173,7 @@ impl NormalizedScene {
             unreported: drawn.actual.unreported,
             stored: stored / unit,
             off,
+            sides: if scene.environment.profile().is_some() { 2.0 } else { 1.0 },
             overrun: drawn.overrun,
             in_time: READ_WITHIN.max(match drawn.mode {
                 Mode::AtPhase(_) => scene.latency.output_jitter,

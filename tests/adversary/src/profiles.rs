@@ -44,18 +44,28 @@ fn mode(rng: &mut impl Rng) -> AnyProfile {
     ProfileModes::<1>::of(&KNOB_MODES).selecting(mode as f64).as_any()
 }
 
-/// A profile with slopes of about `unit` N m/rad.
+/// A profile with slopes of about `unit` N m/rad, or a mode of a knob: the tables of all modes are the
+/// program's, so that no number of one changes.
 pub fn draw(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize) -> AnyProfile {
-    let mut profile =
-        if rng.random_bool(0.2) { mode(rng) } else { TABLES[rng.random_range(0..TABLES.len())] };
+    if rng.random_bool(0.2) {
+        let mut mode = mode(rng);
+        mode.delay = delay;
+        return mode;
+    }
+    table(rng, unit, delta, delay)
+}
+
+/// A profile of one table with slopes of about `unit` N m/rad.
+pub fn table(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize) -> AnyProfile {
+    let mut profile = TABLES[rng.random_range(0..TABLES.len())];
     profile.delay = delay;
-    if profile.outline().wraps && profile.modes.is_none() {
+    if profile.outline().wraps && profile.ends.is_none() {
         profile.count = f64::from(rng.random_range(1..=16));
         if rng.random_bool(0.3) {
             profile.centre = rng.random_range(-1.0..1.0);
         }
     }
-    if profile.modes.is_none() && profile.snap.is_none() && rng.random_bool(0.25) {
+    if profile.snap.is_none() && rng.random_bool(0.25) {
         profile.damping = delta * log_uniform(rng, 0.01, 0.5);
     }
     let slope = crate::norm::slope(&profile);
@@ -69,11 +79,6 @@ pub fn scaled(profile: &mut AnyProfile, by: f64) {
     if let Some(ends) = &mut profile.ends {
         ends.stiffness *= by;
     }
-}
-
-/// The width of a profile in rad.
-pub fn width(profile: &AnyProfile) -> f64 {
-    profile.ends.map_or(TAU / profile.count, |ends| ends.to - ends.from)
 }
 
 /// The number of tables, by whether they have ends and snap points: so that none is missing.

@@ -5,7 +5,7 @@
 //! certificate claims that this is never above `H(0)` plus an allowance:
 //!
 //! - Each opening of the clamp may put in what the environment stores at its depth: the clamp's
-//!   level times the environment's distance from its face.
+//!   level times the environment's distance from its face, or from the other side of a profile.
 //! - A torque that is off by `e` puts in at most `e` times the travel; encoder and numbers act
 //!   where the environment is, whose travel is at most the device's and the coupling's.
 //! - A servo that is stopped for missed updates held its torque `u` for longer than the certificate
@@ -144,8 +144,8 @@ impl EnergyBalance {
     }
 
     fn allowed(&self, normalized: &NormalizedScene) -> f64 {
-        let NormalizedScene { bound, compliance, face, stored, .. } = *normalized;
-        let opening = bound * (self.farthest + face + compliance * bound);
+        let NormalizedScene { bound, compliance, face, stored, sides, .. } = *normalized;
+        let opening = bound * (sides * self.farthest + face + compliance * bound);
         f64::from(self.openings) * opening + stored + self.errors(normalized) + self.stops
     }
 }

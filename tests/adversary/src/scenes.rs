@@ -12,7 +12,6 @@ use rand::Rng;
 use tests::scenes::log_uniform;
 
 use crate::mode::{Actual, draw_latency, has_latency};
-use crate::norm::slope;
 use crate::planted::Planted;
 use crate::profiles;
 
@@ -155,6 +154,8 @@ enum Knob {
     Damping,
     Residual,
     Coupling,
+    /// Its inverse, of the device's damping and the coupling.
+    Device,
 }
 
 /// A scene with all that it runs with.
@@ -396,12 +397,13 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         }
         Kind::Profile => {
             let delay = rng.random_range(least..=2);
-            scene.environment = Environment::Profile(profiles::draw(rng, unit, delta, delay));
-            Knob::Gain
+            let profile = profiles::draw(rng, unit, delta, delay);
+            scene.environment = Environment::Profile(profile);
+            if profile.modes.is_some() { Knob::Device } else { Knob::Gain }
         }
         Kind::Sum => {
             let delay = rng.random_range(1..=2);
-            let profile = profiles::draw(rng, 0.5 * unit, delta, delay);
+            let profile = profiles::table(rng, 0.5 * unit, delta, delay);
             let which = if latched { 0 } else { rng.random_range(0..3) };
             let delay = rng.random_range(least..=2);
             let beside = wall(rng, 0.5 * unit, delta, delay, size);
@@ -486,7 +488,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let damping = if choice.bisected || choice.weakened.is_some() {
         let least = |scene: &Scene| least_damping(scene, format.format());
         let least = least(&scene)?.max(other.as_ref().and_then(least).unwrap_or(0.0));
-        let has = delta.min(damping);
+        let has = scene.device.passivity().min(scene.device.damping);
         Some(match choice.weakened {
             Some(share) => share * least,
             None => has - choice.taken * (has - least),
@@ -635,6 +637,15 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
         }
         return scene;
     }
+    if knob == Knob::Device {
+        let Device { damping, passivity, .. } = &mut scene.device;
+        *damping /= by;
+        *passivity = passivity.map(|passivity| passivity / by);
+        if let Coupling::Spring { stiffness } = &mut scene.coupling {
+            *stiffness /= by;
+        }
+        return scene;
+    }
     let damping = scene.device.damping;
     match &mut scene.environment {
         Environment::FreeModeWall { residual, .. } | Environment::FreeMode { residual, .. }
@@ -761,12 +772,8 @@ fn another(rng: &mut impl Rng, scene: &Scene, size: f64, format: Numbers) -> Opt
         Environment::Profile(profile) => {
             let mode = f64::from(rng.random_range(1..11_u8));
             match profile.selecting(mode) {
-                Some(mut selected) if rng.random_bool(0.7) => {
-                    let by = slope(profile) / slope(&selected).max(f64::MIN_POSITIVE);
-                    profiles::scaled(&mut selected, by * log_uniform(rng, 0.1, 1.0));
-                    *profile = selected;
-                }
-                _ => profiles::scaled(profile, log_uniform(rng, 0.1, 1.0)),
+                Some(selected) => *profile = selected,
+                None => profiles::scaled(profile, log_uniform(rng, 0.1, 1.0)),
             }
         }
         Environment::Composed(_) => other = scaled(&other, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
