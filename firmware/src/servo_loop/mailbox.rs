@@ -6,6 +6,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use heapless::spsc::{Consumer, Producer, Queue};
 
 use super::Notice;
+use interruption::may_interrupt;
 
 /// Bits of the word of requests.
 const ARM: u32 = 1;
@@ -91,6 +92,7 @@ impl<R> Requests<'_, R> {
     /// # Errors
     /// Returns the set if the previous set is still waiting.
     pub fn submit(&mut self, set: R) -> Result<(), R> {
+        may_interrupt();
         self.submit.enqueue(set)?;
         self.post(SET);
         Ok(())
@@ -98,11 +100,16 @@ impl<R> Requests<'_, R> {
 
     /// The next notice.
     pub fn notice(&mut self) -> Option<Notice> {
-        self.notices.dequeue()
+        may_interrupt();
+        let notice = self.notices.dequeue();
+        may_interrupt();
+        notice
     }
 
     fn post(&self, request: u32) {
+        may_interrupt();
         self.pending.fetch_or(request, Ordering::Release);
+        may_interrupt();
     }
 }
 
@@ -155,5 +162,41 @@ impl<R> Inbox<'_, R> {
     /// Sends a notice to the task; the notice is lost if the queue is full.
     pub(super) fn notify(&mut self, notice: Notice) {
         let _ = self.notice_sender.enqueue(notice);
+    }
+}
+
+/// The instants between two accesses of the task at which the interrupt may come.
+#[cfg(not(all(test, feature = "wire")))]
+mod interruption {
+    /// The hardware interrupts where it likes.
+    #[inline(always)]
+    pub(super) const fn may_interrupt() {}
+}
+
+/// The same for tests, which have no interrupt: a test's own is called at each of these instants.
+#[cfg(all(test, feature = "wire"))]
+pub(crate) mod interruption {
+    use core::cell::RefCell;
+    use std::boxed::Box;
+
+    std::thread_local! {
+        static INTERRUPT: RefCell<Option<Box<dyn FnMut()>>> = const { RefCell::new(None) };
+    }
+
+    /// Calls `interrupt` at each instant of this thread from now on.
+    pub(crate) fn set(interrupt: impl FnMut() + 'static) {
+        INTERRUPT.set(Some(Box::new(interrupt)));
+    }
+
+    /// Ends that.
+    pub(crate) fn clear() {
+        INTERRUPT.set(None);
+    }
+
+    pub(super) fn may_interrupt() {
+        // Taken out while it runs: an interrupt does not interrupt itself.
+        let Some(mut interrupt) = INTERRUPT.take() else { return };
+        interrupt();
+        INTERRUPT.set(Some(interrupt));
     }
 }

@@ -25,6 +25,8 @@ pub use frame::{Frame, FrameSink};
 pub use frame_queue::{FrameQueue, FrameReader, Frames};
 pub use hardware::{BEGAN_LATE, Hardware};
 pub use isr::{Endpoints, FRAMES, ServoIsr};
+#[cfg(all(test, feature = "wire"))]
+pub(crate) use mailbox::interruption;
 pub use mailbox::{Inbox, Mailbox, Requests};
 pub use options::{Arming, LinkPolicy, Options, Reason};
 pub use period_clock::PeriodClock;

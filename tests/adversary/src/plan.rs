@@ -9,6 +9,7 @@ use tests::scenes::log_uniform;
 
 use crate::device::State;
 use crate::normalized_scene::NormalizedScene;
+use crate::timing::LoopTiming;
 
 /// Timing of the tick of one period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,12 +144,15 @@ impl Signs {
 const LARGEST_OF_COUNTS: f64 = 0.45;
 
 impl Jitter {
-    fn draw(rng: &mut impl Rng, jitter: f64) -> Self {
+    fn draw(rng: &mut impl Rng, timing: &LoopTiming) -> Self {
+        let LoopTiming { jitter, updates, .. } = *timing;
         if jitter == 0.0 || rng.random_bool(0.1) {
             return Self::None;
         }
         let signs = Signs::draw(rng);
-        if jitter < LARGEST_OF_COUNTS && rng.random_bool(0.35) {
+        // An amplifier that is updated takes a torque over at an update, whatever its jitter.
+        let of_counts = updates > 0 || rng.random_bool(0.35);
+        if jitter < LARGEST_OF_COUNTS && of_counts {
             Self::Counts(signs)
         } else {
             Self::Torques(signs)
@@ -251,7 +255,7 @@ impl Plan {
             armed_by_boot,
             pattern: Pattern::draw(rng, most, normalized),
             delay: Self::delay(rng, normalized),
-            jitter: Jitter::draw(rng, normalized.timing.jitter),
+            jitter: Jitter::draw(rng, &normalized.timing),
             within: [Self::place_in_range(rng), Self::place_in_range(rng)],
             requests: [None; REQUESTS],
             again: rng.random_bool(0.7),
@@ -359,7 +363,7 @@ impl Plan {
         if pattern {
             plan.pattern = Pattern::draw(rng, normalized.tolerated, normalized);
             plan.delay = Self::delay(rng, normalized);
-            plan.jitter = Jitter::draw(rng, normalized.timing.jitter);
+            plan.jitter = Jitter::draw(rng, &normalized.timing);
             plan.within = [Self::place_in_range(rng), Self::place_in_range(rng)];
         }
         if requests {

@@ -1,5 +1,7 @@
 //! A host's side of a session, with a servo that runs behind it.
 
+mod interrupted;
+
 use std::boxed::Box;
 use std::string::{String, ToString};
 use std::vec::Vec;
