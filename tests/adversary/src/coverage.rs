@@ -70,7 +70,7 @@ impl Coverage {
             ("worst period", scene.timing.worst_period.is_some()),
             ("one-sided wall", scene.environment.wall().is_some_and(|wall| wall.one_sided)),
             ("other set", drawn.other.is_some()),
-            ("injected damping", drawn.rendering.injection.is_some()),
+            ("injected damping", drawn.injected.is_some()),
         ];
         let rigid = scene.coupling == Coupling::Rigid;
         let wall =

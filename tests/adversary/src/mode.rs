@@ -59,8 +59,6 @@ pub struct Actual {
     pub delay: Option<f64>,
     /// Whether the servo does not know of late ticks, so that the motor keeps a stale code.
     pub unreported: bool,
-    /// A limit of the motor's torque in N m of which the servo does not know.
-    pub clamp: Option<f64>,
 }
 
 /// Whether a scene's torques lag, or its coupling has memory.
@@ -77,6 +75,12 @@ fn about(rng: &mut impl Rng, time: f64) -> TimeRange {
     }
 }
 
+/// A part of the largest jitter, often most of it.
+fn share(rng: &mut impl Rng) -> f64 {
+    let least = if rng.random_bool(0.6) { 0.2 } else { 1e-3 };
+    log_uniform(rng, least, 1.0)
+}
+
 /// Draws the latency of a scene with this period in s, for a mode.
 pub fn draw_latency(rng: &mut impl Rng, mode: Mode, period: f64) -> Latency {
     match mode {
@@ -88,7 +92,7 @@ pub fn draw_latency(rng: &mut impl Rng, mode: Mode, period: f64) -> Latency {
 
 fn at_phase(rng: &mut impl Rng, phase: f64, period: f64) -> Latency {
     let mut latency = Latency::delayed(phase);
-    latency.output_jitter = (phase * log_uniform(rng, 1e-3, 1.0)).clamp(READ_WITHIN, phase);
+    latency.output_jitter = (phase * share(rng)).clamp(READ_WITHIN, phase);
     if rng.random_bool(0.5) {
         let lag = period * log_uniform(rng, 0.01, 1.0);
         latency.actuator_lag = about(rng, lag);
@@ -109,7 +113,7 @@ fn latched(rng: &mut impl Rng, period: f64) -> Latency {
         return latency;
     }
     latency.actuator_lag = about(rng, lag);
-    latency.output_jitter = (period * log_uniform(rng, 1e-3, 0.4)).max(READ_WITHIN);
+    latency.output_jitter = (0.4 * period * share(rng)).max(READ_WITHIN);
     if rng.random_bool(0.15) {
         latency.sensor_lag = TimeRange::exactly(period * log_uniform(rng, 0.02, 0.8));
     }
@@ -132,7 +136,7 @@ fn any(rng: &mut impl Rng, period: f64) -> Latency {
         let delay = period * log_uniform(rng, 0.01, 1.8);
         latency.output_delay = about(rng, delay);
         if rng.random_bool(0.7) {
-            let jitter = delay * log_uniform(rng, 1e-3, 1.0);
+            let jitter = delay * share(rng);
             latency.output_jitter = jitter.min(0.6 * period);
         }
     }

@@ -38,8 +38,6 @@ pub struct NormalizedScene {
     pub bare: bool,
     /// Whether its certificate excludes that a torque is limited.
     pub unlimited: bool,
-    /// Planted: a limit of the motor's torque of which the servo does not know.
-    pub clamp: Option<f64>,
     /// Planted: late ticks of which the servo does not know.
     pub unreported: bool,
     /// Energy that the environment stores where the servo starts.
@@ -169,7 +167,6 @@ impl NormalizedScene {
             segments: filters.segments(),
             bare: drawn.mode == Mode::Bare,
             unlimited: drawn.mode == Mode::Bare && scene.torque_limit.is_none(),
-            clamp: drawn.actual.clamp.map(|limit| limit / unit),
             unreported: drawn.actual.unreported,
             stored: stored / unit,
             off,
@@ -192,7 +189,10 @@ impl NormalizedScene {
             fastest: 0.9 * half * step / 8.0,
             size: drawn.size,
             reach: drawn.reach,
-            angles: if theta < SLOWEST {
+            angles: if timing.jitter > 0.0 {
+                // A pattern of two to four ticks resonates with the motions that it folds onto each other.
+                [theta, 0.97 * PI, PI / 2.0, PI / 3.0]
+            } else if theta < SLOWEST {
                 // As bad nearly up to there, and many times as fast.
                 [0.1, 0.2, 0.35, 0.6]
             } else if periods > 1.0 {

@@ -30,8 +30,6 @@ pub enum Planted {
     EarlyTorques,
     /// A late code at a phase is left out, and the servo goes on.
     StaleCode,
-    /// The torque is limited behind the coupling, so that coupling and environment do not know of it.
-    ClampBehindCoupling,
     /// A wall without a coupling has a tenth more than its limit, `K T / 2 + abs(B) < b`.
     RigidBeyondLimit,
     /// Missed updates cost the square root of what they cost.
@@ -40,14 +38,13 @@ pub enum Planted {
 
 impl Planted {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 8] = [
         Self::JitterIgnored,
         Self::JitterOfSprings,
         Self::LagIgnored,
         Self::DelayIgnored,
         Self::EarlyTorques,
         Self::StaleCode,
-        Self::ClampBehindCoupling,
         Self::RigidBeyondLimit,
         Self::MissedUpdates,
     ];
@@ -83,7 +80,6 @@ impl Planted {
                 taken: 0.0,
                 ..any
             },
-            Self::ClampBehindCoupling => Choice { latency: Some(true), ..bare },
             Self::RigidBeyondLimit => {
                 Choice { latency: Some(false), kind: Some(Kind::Wall), ..bare }
             }
@@ -135,7 +131,7 @@ impl Planted {
             Self::StaleCode => actual.unreported = true,
             Self::EarlyTorques => actual.delay = Some(0.005),
             Self::RigidBeyondLimit => scene.coupling = Coupling::Rigid,
-            Self::ClampBehindCoupling | Self::MissedUpdates => {}
+            Self::MissedUpdates => {}
         }
     }
 
@@ -147,13 +143,6 @@ impl Planted {
                 index.zip(former_limit(scene, &latency)).is_some_and(|(index, limit)| index < limit)
             }
             _ => true,
-        }
-    }
-
-    /// Limits the motor's torque, of which the servo does not know, to about this torque in N m.
-    pub fn limit(self, rng: &mut impl Rng, _: &Scene, actual: &mut Actual, torque: f64) {
-        if self == Self::ClampBehindCoupling {
-            actual.clamp = Some(torque * log_uniform(rng, 0.02, 0.5));
         }
     }
 

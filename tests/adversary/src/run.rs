@@ -325,8 +325,7 @@ impl<'a> Run<'a> {
         if !self.motor.powered {
             return 0.0;
         }
-        let torque = f64::from(self.motor.code) * self.normalized.torque_per_code;
-        self.normalized.clamp.map_or(torque, |limit| torque.clamp(-limit, limit))
+        f64::from(self.motor.code) * self.normalized.torque_per_code
     }
 
     /// From an instant to the next.

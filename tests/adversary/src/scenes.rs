@@ -480,9 +480,6 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     };
     let scale = taken_to_the_line(&scene, knob, accepted)?;
     let scene = scaled(&scene, knob, scale);
-    if let Some(planted) = choice.planted {
-        planted.limit(rng, &scene, &mut actual, unit * size);
-    }
     let judged_as = judged_as.map(|environment| Scene { environment, ..scene });
     let other = rng.random_bool(0.3).then(|| another(rng, &scene, size, format)).flatten();
     let damping = if choice.bisected || choice.weakened.is_some() {
