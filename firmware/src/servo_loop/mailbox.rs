@@ -20,6 +20,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use heapless::spsc::{Consumer, Producer, Queue};
 
+use super::interruption::may_interrupt;
 use super::published::Published;
 use super::state::{Reply, Status};
 
@@ -146,6 +147,7 @@ impl<R> Requests<'_, R> {
     /// # Errors
     /// Returns the set if the previous set is still waiting.
     pub fn submit(&mut self, set: R) -> Result<u32, R> {
+        may_interrupt();
         self.submit.enqueue(set)?;
         self.submitted = self.submitted.wrapping_add(1);
         self.post(SET);
@@ -154,11 +156,13 @@ impl<R> Requests<'_, R> {
 
     /// The number of sets swapped in since the start, which is the number of the running set; wraps.
     pub fn swapped(&self) -> u32 {
+        may_interrupt();
         self.shared.swapped.load(Ordering::Acquire)
     }
 
     /// The number of the last request to disarm after which the amplifier was off; 0 before the first.
     pub fn off(&self) -> u32 {
+        may_interrupt();
         self.shared.off.load(Ordering::Acquire)
     }
 
@@ -183,13 +187,16 @@ impl<R> Requests<'_, R> {
         let place = &self.shared.numbers[kind as usize];
         // 0 stands for no request.
         let number = place.load(Ordering::Relaxed).wrapping_add(1).max(1);
+        may_interrupt();
         place.store(number, Ordering::Relaxed);
         self.post(kind.bit());
         number
     }
 
     fn post(&self, request: u32) {
+        may_interrupt();
         self.shared.pending.fetch_or(request, Ordering::Release);
+        may_interrupt();
     }
 }
 

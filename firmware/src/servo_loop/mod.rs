@@ -13,6 +13,10 @@ mod fault_detection;
 mod frame;
 mod frame_queue;
 mod hardware;
+#[cfg(not(all(test, feature = "wire")))]
+mod interruption;
+#[cfg(all(test, feature = "wire"))]
+pub(crate) mod interruption;
 mod isr;
 mod mailbox;
 mod options;

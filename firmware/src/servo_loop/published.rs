@@ -2,6 +2,8 @@
 
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 
+use super::interruption::may_interrupt;
+
 /// The last published words; zeros before the first. One writer, which replaces them, and one reader.
 ///
 /// A sequence lock. The writer stores an odd version, the words, and the next even version, and never waits.
@@ -35,8 +37,10 @@ impl<const WORDS: usize> Published<WORDS> {
         let version = self.version.load(Ordering::Acquire);
         let mut words = [0; WORDS];
         for (word, place) in words.iter_mut().zip(&self.words) {
+            may_interrupt();
             *word = place.load(Ordering::Relaxed);
         }
+        may_interrupt();
         // The second load of the version after all words.
         fence(Ordering::Acquire);
         let is_whole = version % 2 == 0 && self.version.load(Ordering::Relaxed) == version;

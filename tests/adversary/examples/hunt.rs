@@ -1,10 +1,12 @@
 //! Searches among some scenes only: `hunt name=value ...`.
 //!
 //! Of the search: `seed`, `scenes`, `enough`, or one scene's `number`. Of the drawn scenes: `kind`,
-//! `worst_period`, `limited`, `latched`, `saturates`, `injected`, `overrun`. Of the device: `taken`,
+//! `worst_period`, `limited`, `latched`, `saturates`, `injected`, `overrun`, `latency`,
+//! `bare`, or `planted` for all that a planted rule judges. Of the device: `taken`,
 //! `bisected`, `weakened`. Of the effort: `drawn`, `climbed`, `periods`, `long`. `full=false` prints two
-//! lines each.
+//! lines each; `coverage=true` prints what was drawn.
 
+use adversary::planted::Planted;
 use adversary::scenes::{Choice, Kind};
 use adversary::search::{Effort, Search};
 
@@ -14,11 +16,10 @@ fn main() {
         scenes: 1000,
         time: None,
         choice: Choice::ANY,
-        output: None,
         enough: 5,
         effort: Effort::USUAL,
     };
-    let (mut full, mut number) = (true, None);
+    let (mut full, mut number, mut coverage) = (true, None, false);
     for argument in std::env::args().skip(1) {
         let (name, value) = argument.split_once('=').expect("name=value");
         let whole = || value.parse::<u64>().expect("a whole number");
@@ -43,6 +44,14 @@ fn main() {
             "periods" => search.effort.periods = whole() as u32,
             "long" => search.effort.long = whole() as u32,
             "injected" => search.choice.injected = yes(),
+            "latency" => search.choice.latency = yes(),
+            "bare" => search.choice.bare = yes(),
+            "planted" => {
+                let of = |planted: &Planted| format!("{planted:?}") == value;
+                let planted = Planted::ALL.into_iter().find(of).expect("a planted rule");
+                search.choice = planted.choice();
+            }
+            "coverage" => coverage = value.parse().expect("true or false"),
             "overrun" => search.choice.overrun = value.parse().expect("a number"),
             "saturates" => search.choice.saturates = value.parse().expect("true or false"),
             "full" => full = value.parse().expect("true or false"),
@@ -59,6 +68,9 @@ fn main() {
         found.ticks as f64 / seconds / 1e6,
         2e3 * seconds / found.scenes as f64
     );
+    if coverage {
+        println!("{}", found.coverage);
+    }
     for counterexample in &found.counterexamples {
         let text = counterexample.to_string();
         if full {

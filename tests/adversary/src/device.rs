@@ -1,5 +1,5 @@
-//! A rigid device in a passive hand, exactly: the torque is constant over a period or a part of
-//! one, and the motion and the energies over that time are matrices.
+//! A rigid device in a passive hand, exactly: the code is constant over a period or a part of one, and
+//! the motion and the energies over that time are matrices, with the lags of amplifier and sensor.
 //!
 //! Units are those of the loop: time in periods, angles in rad, damping in units of the declared
 //! passivity `delta`. A torque is then in `delta / T`, an inertia in `delta T`.
@@ -8,13 +8,21 @@ use std::ops::Range;
 
 use tests::hands::Hand;
 
-/// Places in a state: position and velocity of the device and of up to two masses of the hand, and
-/// the torque. The last is not used; eight are what a processor likes. A mass's position is that
+/// Places in a state: position and velocity of the device and of up to two masses of the hand, the
+/// torque, and the amplifier's current; eight are what a processor likes. A mass's position is that
 /// against the mass before it, so that nothing cancels where a hand is far from zero.
 pub const N: usize = 8;
 
-/// Where the torque is in a state.
+/// Where the torque of the code is in a state. With an amplifier that is updated some times a period: the
+/// rate of its torque.
 pub const TORQUE: usize = 6;
+
+/// Where the torque of an amplifier that lags is in a state.
+pub const AMPLIFIED: usize = 7;
+
+/// Where the filtered position is in a state, if the sensor lags: in the place of the second mass, so that
+/// the hand has one at most.
+pub const SENSED: usize = 4;
 
 /// Masses of a hand besides the device.
 pub const SEGMENTS: usize = 2;
@@ -32,6 +40,24 @@ const SMALL: f64 = 0.25;
 /// Terms of a series: `0.5^17 / 17!` is below the last place.
 const TERMS: u32 = 17;
 
+/// The lags of amplifier and sensor in periods; zero without one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lags {
+    /// Time constant of the amplifier.
+    pub amplifier: f64,
+    /// Updates of the amplifier in a period; 0 if its lag is continuous.
+    pub updates: u16,
+    /// Time constant of the filter between encoder and servo.
+    pub sensor: f64,
+}
+
+impl Lags {
+    /// Masses that a hand may have besides the device.
+    pub const fn segments(&self) -> usize {
+        if self.sensor > 0.0 { SEGMENTS - 1 } else { SEGMENTS }
+    }
+}
+
 /// Device and hand, as rates and energies.
 #[derive(Clone, Copy, Debug)]
 pub struct HeldDevice {
@@ -42,6 +68,8 @@ pub struct HeldDevice {
     hand: Matrix,
     /// Damping of the device.
     damping: f64,
+    /// Where the torque on the device is in a state.
+    force: usize,
 }
 
 /// What happens in some part of a period.
@@ -51,6 +79,8 @@ pub struct Step {
     transition: Matrix,
     /// Integral of the device's velocity squared.
     motion: Matrix,
+    /// The work of a torque that changes in this time.
+    work: Option<Box<Matrix>>,
     /// What the dampers of the hand take, where that is wanted.
     hand: Option<Box<Matrix>>,
 }
@@ -58,15 +88,22 @@ pub struct Step {
 impl HeldDevice {
     /// A device of this damping in a hand, whose inertia is that of both.
     pub fn new(hand: &Hand, damping: f64) -> Self {
+        Self::lagging(hand, damping, &Lags::default())
+    }
+
+    /// The same with an amplifier and a sensor that lag.
+    pub fn lagging(hand: &Hand, damping: f64, lags: &Lags) -> Self {
+        let most = lags.segments();
         let mut mass = [hand.inertia, 1.0, 1.0];
         let (mut link, mut ground) = ([(0.0, 0.0); 3], [(hand.stiffness, hand.damping); 3]);
-        for (i, segment) in hand.segments.iter().take(SEGMENTS).enumerate() {
+        for (i, segment) in hand.segments.iter().take(most).enumerate() {
             mass[i + 1] = segment.inertia;
             link[i + 1] = (segment.link_stiffness, segment.link_damping);
             ground[i + 1] = (segment.stiffness, segment.damping);
         }
-        let used = 1 + hand.segments.len().min(SEGMENTS);
-        let mut held = Self { rates: ZERO, energy: ZERO, hand: ZERO, damping };
+        let used = 1 + hand.segments.len().min(most);
+        let force = if lags.amplifier > 0.0 { AMPLIFIED } else { TORQUE };
+        let mut held = Self { rates: ZERO, energy: ZERO, hand: ZERO, damping, force };
         for i in 0..used {
             held.energy[2 * i + 1][2 * i + 1] = 0.5 * mass[i];
             held.rates[2 * i][2 * i + 1] = 1.0;
@@ -78,8 +115,24 @@ impl HeldDevice {
             }
         }
         held.rates[1][1] -= damping / mass[0];
-        held.rates[1][TORQUE] = 1.0 / mass[0];
+        held.rates[1][force] = 1.0 / mass[0];
+        held.lag(lags);
         held
+    }
+
+    fn lag(&mut self, lags: &Lags) {
+        if lags.amplifier > 0.0 {
+            if lags.updates > 0 {
+                self.rates[AMPLIFIED][TORQUE] = 1.0;
+            } else {
+                self.rates[AMPLIFIED][TORQUE] = 1.0 / lags.amplifier;
+                self.rates[AMPLIFIED][AMPLIFIED] = -1.0 / lags.amplifier;
+            }
+        }
+        if lags.sensor > 0.0 {
+            self.rates[SENSED][0] = 1.0 / lags.sensor;
+            self.rates[SENSED][SENSED] = -1.0 / lags.sensor;
+        }
     }
 
     /// A spring and a damper between two masses, or between one and the ground. `stretch`: what
@@ -122,15 +175,28 @@ impl HeldDevice {
 
     /// A part of a period, exactly.
     pub fn step(&self, part: f64) -> Step {
-        let (transition, [motion]) = integrate(&self.rates, [Self::device()], part);
-        Step { transition: transposed(&transition), motion, hand: None }
+        if self.force == TORQUE {
+            let (transition, [motion]) = integrate(&self.rates, [Self::device()], part);
+            return Step { transition: transposed(&transition), motion, work: None, hand: None };
+        }
+        let both = [Self::device(), self.power()];
+        let (transition, [motion, work]) = integrate(&self.rates, both, part);
+        let work = Some(Box::new(work));
+        Step { transition: transposed(&transition), motion, work, hand: None }
     }
 
     /// A part of a period with what the hand takes.
     pub fn audited(&self, part: f64) -> Step {
-        let both = [Self::device(), self.hand];
-        let (transition, [motion, hand]) = integrate(&self.rates, both, part);
-        Step { transition: transposed(&transition), motion, hand: Some(Box::new(hand)) }
+        let (_, [hand]) = integrate(&self.rates, [self.hand], part);
+        Step { hand: Some(Box::new(hand)), ..self.step(part) }
+    }
+
+    /// The power of the torque on the device.
+    fn power(&self) -> Matrix {
+        let mut power = ZERO;
+        power[1][self.force] = 0.5;
+        power[self.force][1] = 0.5;
+        power
     }
 
     /// The device's velocity squared.
@@ -142,12 +208,18 @@ impl HeldDevice {
 }
 
 impl Step {
-    /// Moves the state on; gives the integral of the device's velocity squared.
+    /// Moves the state on; returns the integral of the device's velocity squared, and the work of the torque.
     #[inline]
-    pub fn advance(&self, x: &mut State) -> f64 {
+    pub fn advance(&self, x: &mut State) -> (f64, f64) {
         let motion = form(&self.motion, x);
+        if let Some(work) = &self.work {
+            let work = form(work, x);
+            *x = times(&self.transition, x);
+            return (motion, work);
+        }
+        let start = x[0];
         *x = times(&self.transition, x);
-        motion
+        (motion, x[TORQUE] * (x[0] - start))
     }
 
     /// What the dampers of the hand take from this state on, where that was wanted.

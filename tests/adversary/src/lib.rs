@@ -6,15 +6,23 @@
 //! what little the assumptions allow. A search looks for a run in which they do.
 
 #[cfg(not(target_os = "none"))]
+pub mod coverage;
+#[cfg(not(target_os = "none"))]
 pub mod device;
 #[cfg(not(target_os = "none"))]
 pub mod hardware;
+#[cfg(not(target_os = "none"))]
+pub mod mode;
 #[cfg(not(target_os = "none"))]
 pub mod norm;
 #[cfg(not(target_os = "none"))]
 pub mod normalized_scene;
 #[cfg(not(target_os = "none"))]
 pub mod plan;
+#[cfg(not(target_os = "none"))]
+pub mod planted;
+#[cfg(not(target_os = "none"))]
+pub mod profiles;
 #[cfg(not(target_os = "none"))]
 pub mod refuted_scenes;
 #[cfg(not(target_os = "none"))]
@@ -25,3 +33,5 @@ pub mod run;
 pub mod scenes;
 #[cfg(not(target_os = "none"))]
 pub mod search;
+#[cfg(not(target_os = "none"))]
+pub mod timing;

@@ -1,7 +1,7 @@
 //! How much an error can become: norms of impulse responses.
 
 use haptic_servo::certificate::LoopTransfers;
-use haptic_servo::environment::{Environment, Rational, Wall};
+use haptic_servo::environment::{AnyProfile, Composed, Environment, FULL_SCALE, Rational, Wall};
 use haptic_servo::number::Format;
 use haptic_servo::passivity::polynomial::Polynomial;
 use haptic_servo::scene::{Coupling, Scene};
@@ -66,6 +66,46 @@ fn rounding(format: Format, size: f64) -> f64 {
     }
 }
 
+/// Compliances of a scene's coupling in rad/(N m), all together, or more: the matched coupling has one for
+/// each period and part of a period that a torque takes.
+pub fn compliance(scene: &Scene) -> f64 {
+    let (period, latency) = (scene.timing.period, &scene.latency);
+    match scene.coupling {
+        Coupling::Rigid => 0.0,
+        Coupling::Spring { stiffness } => 1.0 / stiffness,
+        Coupling::Matched => {
+            let delay = latency.torque_delay().most / period;
+            let lags = (latency.actuator_lag.most + latency.sensor_lag.most) / period;
+            let jitter = (4.0 + 2.0 * delay) * latency.output_jitter / period;
+            0.75 * period / scene.device.passivity() * (2.0 + delay + lags + jitter)
+        }
+    }
+}
+
+/// The steepest slope of a profile in N m/rad, or more.
+pub fn slope(profile: &AnyProfile) -> f64 {
+    let outline = profile.outline();
+    let step = f64::from(outline.rise.max(outline.fall)) / f64::from(FULL_SCALE);
+    let table = profile.torque.abs() * step * profile.knots_per_rad();
+    let layout = profile.layout();
+    // A line to a snap point half a pitch or more away.
+    let line = profile.snap.map_or(0.0, |snap| 4.0 * profile.torque.abs() / snap.pitch(&layout));
+    let ends = profile.ends.map_or(0.0, |ends| ends.stiffness);
+    (table + line).max(ends)
+}
+
+/// Parts of a profile's cell: its positions are whole parts.
+const PARTS: f64 = 16384.0;
+
+/// What is known of the errors of any environment behind any coupling.
+#[derive(Clone, Copy, Debug)]
+pub struct General {
+    /// Of its torques, in N m, within a turn of zero.
+    pub numbers: f64,
+    /// Of its positions, in rad.
+    pub off: f64,
+}
+
 /// How much positions that are off, and errors of the numbers, move a torque in N m.
 #[derive(Clone, Copy, Debug)]
 pub struct Errors {
@@ -86,15 +126,24 @@ impl Errors {
         self.position + self.numbers
     }
 
+    /// The errors of an environment that is passive wherever it is: positions that are off move it, and cost
+    /// what it turns them into by its torques. `None` of a rational environment.
+    pub fn general(scene: &Scene, format: Format, bound: f64) -> Option<General> {
+        let profile = scene.environment.profile();
+        let parts = profile.map_or(0.0, |profile| 1.0 / (PARTS * profile.knots_per_rad()));
+        let off = parts + 4.0 * rounding(format, std::f64::consts::TAU + compliance(scene) * bound);
+        let numbers = match Self::alone(scene, format, bound) {
+            Some(alone) => alone.numbers,
+            None => Self::through(scene, format, bound)?.numbers,
+        };
+        Some(General { numbers, off })
+    }
+
     /// The torque of the environment, at the position where it is: a wall that switches or is
     /// clipped included. `None`: of another environment.
     pub fn alone(scene: &Scene, format: Format, bound: f64) -> Option<Self> {
         let period = scene.timing.period;
-        let compliance = match scene.coupling {
-            Coupling::Rigid => 0.0,
-            Coupling::Matched => unreachable!("not drawn"),
-            Coupling::Spring { stiffness } => 1.0 / stiffness,
-        };
+        let compliance = compliance(scene);
         // A state follows by the share `rate` of the rest, and no closer than rounding allows.
         let washout = |damping: f64, rate: f64| {
             let gain = 2.0 * damping.abs() / period;
@@ -109,6 +158,10 @@ impl Errors {
             let rate = 1.0 / (1.0 + (cancelled * compliance / period).max(0.0));
             washout(cancelled, rate)
         };
+        let of_profile = |profile: &AnyProfile| {
+            let gain = slope(profile) + 2.0 * profile.damping.abs() / period;
+            (gain, gain)
+        };
         let (position, states) = match &scene.environment {
             Environment::DelayedSpring(w) => (w.stiffness.abs(), w.stiffness.abs()),
             Environment::DamperWall(w) => of(w),
@@ -117,10 +170,16 @@ impl Errors {
                 let (a, b) = (canceller(*residual), of(wall));
                 (a.0 + b.0, a.1 + b.1)
             }
-            Environment::Rational(_)
-            | Environment::Stated(_)
-            | Environment::Profile(_)
-            | Environment::Composed(_) => return None,
+            Environment::Profile(profile) => of_profile(profile),
+            Environment::Composed(Composed { residual, wall, profile }) => {
+                let parts = [
+                    residual.map_or((0.0, 0.0), canceller),
+                    wall.as_ref().map_or((0.0, 0.0), of),
+                    of_profile(profile),
+                ];
+                (parts.iter().map(|p| p.0).sum(), parts.iter().map(|p| p.1).sum())
+            }
+            Environment::Rational(_) | Environment::Stated(_) => return None,
         };
         let angle = rounding(format, std::f64::consts::TAU + compliance * bound);
         let numbers = 4.0 * states * angle + 8.0 * rounding(format, bound);

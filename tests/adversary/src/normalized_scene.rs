@@ -6,14 +6,17 @@ use std::f64::consts::{PI, TAU};
 use haptic_servo::certificate::{Assessment, QuantizationBound, Resolution, RuleAnswer};
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::CounterWidth;
+use haptic_servo::environment::AnyProfile;
 use haptic_servo::number::Format;
-use haptic_servo::scene::{Coupling, Scene};
+use haptic_servo::scene::{Scene, TimeRange};
 use haptic_servo::servo::Simultaneous;
 use haptic_servo::servo_loop::READ_WITHIN;
 use rand::Rng;
 
-use crate::norm::Errors;
-use crate::scenes::RandomScene;
+use crate::device::Lags;
+use crate::norm::{Errors, compliance, slope};
+use crate::scenes::{Mode, RandomScene};
+use crate::timing::LoopTiming;
 
 /// An accepted scene as numbers, in the loop's units: see [`crate::device`].
 #[derive(Clone, Copy, Debug)]
@@ -22,9 +25,27 @@ pub struct NormalizedScene {
     pub damping: f64,
     /// Updates that may be missed in a row.
     pub tolerated: u32,
-    /// Whether codes are latched: only then can one be late. A simultaneous one is there at its
+    /// Whether a timer puts codes out: only then can one be late. A simultaneous one is there at its
     /// count, however long it took.
     pub latched: bool,
+    /// When counts are read and codes put out.
+    pub timing: LoopTiming,
+    /// The latest part of a period at which a count may be read.
+    pub latest: f64,
+    /// Masses that a hand may have besides the device.
+    pub segments: usize,
+    /// Whether the servo runs without a board's loop.
+    pub bare: bool,
+    /// Whether its certificate excludes that a torque is limited.
+    pub unlimited: bool,
+    /// Planted: late ticks of which the servo does not know.
+    pub unreported: bool,
+    /// Energy that the environment stores where the servo starts.
+    pub stored: f64,
+    /// How much positions are off, in rad.
+    pub off: f64,
+    /// Sides of zero on which an environment stores energy at once: a profile has two.
+    pub sides: f64,
     /// Part of a period by which a late tick outlasts its own, so that the next one reads its count
     /// so much later.
     pub overrun: f64,
@@ -87,8 +108,10 @@ impl NormalizedScene {
         let step = TAU / transducers.counts_per_turn;
         // A rigid device has no more passivity than damping, whatever was declared.
         let has = declared.min(scene.device.damping);
-        let (mut bound, mut compliance, mut face) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let (mut bound, mut soft, mut face) = (0.0_f64, 0.0_f64, 0.0_f64);
         let (mut error, mut numbers, mut damping) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let (mut off, mut stored) = (0.0_f64, 0.0_f64);
+        let is_general = drawn.is_general();
         let scenes = std::iter::once((scene, drawn.judged_as.as_ref()))
             .chain(drawn.other.iter().map(|other| (other, None)));
         let mut sets = 0;
@@ -96,31 +119,33 @@ impl NormalizedScene {
             sets += 1;
             let judged = judged_as.unwrap_or(scene);
             let largest = scene.torque_limit.unwrap_or(transducers.full_scale_torque);
-            let whole = QuantizationBound::of(judged, format, &steps)
-                .map(|rest| Errors { position: rest.encoder.unwrap_or(0.0), numbers: rest.numbers })
-                .filter(|errors| errors.sum().is_finite());
-            let through = Errors::through(judged, format, largest).map(|e| e.over(0.5 * step));
-            // Where the rule allows any coupling that is as soft, no error has to come out through
-            // the coupling to be accounted for.
-            let alone = (assessment.paper == RuleAnswer::Pass)
-                .then(|| Errors::alone(judged, format, largest))
-                .flatten()
-                .map(|errors| errors.over(0.5 * step));
-            let off = [whole, through, alone].into_iter().flatten();
-            let off = off.min_by(|a, b| a.sum().total_cmp(&b.sum()))?;
+            let errors = if is_general {
+                let general = Errors::general(judged, format, largest)?;
+                off = off.max(general.off + 0.5 * step);
+                Errors { position: 0.0, numbers: general.numbers }
+            } else {
+                Self::accounted(judged, assessment, format, (largest, step), &steps)?
+            };
             let converter =
                 0.5 * transducers.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
             let injected = drawn.rendering.injection.unwrap_or(0.0) / scene.timing.period;
-            error = error.max(off.position + converter + injected * step);
-            numbers = numbers.max(off.numbers);
+            error = error.max(errors.position + converter + injected * step);
+            numbers = numbers.max(errors.numbers);
             bound = bound.max(largest);
-            if let Coupling::Spring { stiffness } = scene.coupling {
-                compliance = compliance.max(1.0 / stiffness);
-            }
+            soft = soft.max(compliance(scene));
             face = face.max(scene.environment.wall().map_or(0.0, |wall| wall.face.abs()));
             let lost = drawn.taken * margin(assessment, scene, drawn.rendering.injection);
             damping = damping.max(drawn.damping.unwrap_or(has - lost));
+            if drawn.mode == Mode::Bare {
+                stored = stored.max(Self::stored_at_zero(scene));
+            }
         }
+        let latency = drawn.actual.latency.unwrap_or(scene.latency);
+        let mut timing = LoopTiming::of(&Scene { latency, ..*scene }, drawn.mode.samples());
+        if let Some(delay) = drawn.actual.delay {
+            timing.delay = TimeRange::exactly(delay);
+        }
+        let filters = Lags { sensor: timing.sensor.most, ..Lags::default() };
         let half = match transducers.counter {
             CounterWidth::Bits16 => f64::from(1_u32 << 15),
             CounterWidth::Bits32 => f64::from(1_u32 << 31),
@@ -133,14 +158,29 @@ impl NormalizedScene {
         Some(Self {
             damping: (damping / declared).max(0.0),
             tolerated: ((periods + 1e-9) as u32).saturating_sub(1),
-            latched: drawn.latched,
+            latched: matches!(drawn.mode, Mode::Latched | Mode::AtPhase(_)),
+            timing,
+            latest: match drawn.mode {
+                Mode::AtPhase(_) => timing.delay.least,
+                _ => 0.55,
+            },
+            segments: filters.segments(),
+            bare: drawn.mode == Mode::Bare,
+            unlimited: drawn.mode == Mode::Bare && scene.torque_limit.is_none(),
+            unreported: drawn.actual.unreported,
+            stored: stored / unit,
+            off,
+            sides: if scene.environment.profile().is_some() { 2.0 } else { 1.0 },
             overrun: drawn.overrun,
-            in_time: READ_WITHIN / scene.timing.period,
+            in_time: READ_WITHIN.max(match drawn.mode {
+                Mode::AtPhase(_) => scene.latency.output_jitter,
+                _ => 0.0,
+            }) / scene.timing.period,
             torque_per_code: transducers.full_scale_torque
                 / f64::from(DacCode::CODES_TO_FULL_SCALE)
                 / unit,
             bound: bound / unit,
-            compliance: compliance * unit,
+            compliance: soft * unit,
             face,
             error: error / unit,
             numbers: numbers / unit,
@@ -149,7 +189,10 @@ impl NormalizedScene {
             fastest: 0.9 * half * step / 8.0,
             size: drawn.size,
             reach: drawn.reach,
-            angles: if theta < SLOWEST {
+            angles: if timing.jitter > 0.0 {
+                // A pattern of two to four ticks resonates with the motions that it folds onto each other.
+                [theta, 0.97 * PI, PI / 2.0, PI / 3.0]
+            } else if theta < SLOWEST {
                 // As bad nearly up to there, and many times as fast.
                 [0.1, 0.2, 0.35, 0.6]
             } else if periods > 1.0 {
@@ -160,6 +203,43 @@ impl NormalizedScene {
             injection: drawn.rendering.injection.unwrap_or(0.0),
             sets,
         })
+    }
+
+    /// The errors of a scene without latency: the least of what is known of them.
+    fn accounted(
+        scene: &Scene,
+        assessment: &Assessment,
+        format: Format,
+        (largest, step): (f64, f64),
+        steps: &Resolution,
+    ) -> Option<Errors> {
+        let whole = QuantizationBound::of(scene, format, steps)
+            .map(|rest| Errors { position: rest.encoder.unwrap_or(0.0), numbers: rest.numbers })
+            .filter(|errors| errors.sum().is_finite());
+        let through = Errors::through(scene, format, largest).map(|e| e.over(0.5 * step));
+        // Where the rule allows any coupling that is as soft, no error has to come out through
+        // the coupling to be accounted for.
+        let alone = (assessment.paper == RuleAnswer::Pass)
+            .then(|| Errors::alone(scene, format, largest))
+            .flatten()
+            .map(|errors| errors.over(0.5 * step));
+        let off = [whole, through, alone].into_iter().flatten();
+        off.min_by(|a, b| a.sum().total_cmp(&b.sum()))
+    }
+
+    /// The energy in N m rad that a servo's environment may release that is at rest at the servo's zero.
+    fn stored_at_zero(scene: &Scene) -> f64 {
+        let environment = &scene.environment;
+        let wall = environment.wall().map_or(0.0, |w| w.stiffness.abs() * w.face * w.face);
+        let of = |profile: &AnyProfile| {
+            let steepest = slope(profile);
+            let away = match profile.ends {
+                Some(ends) => ends.from.abs().max(ends.to.abs()),
+                None => TAU / profile.count,
+            };
+            profile.torque.abs() * away + steepest * away * away
+        };
+        wall + environment.profile().map_or(0.0, of)
     }
 
     /// A place for the board's zero, in rad.

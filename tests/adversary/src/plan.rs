@@ -7,8 +7,9 @@ use rand::Rng;
 use tests::hands::Hand;
 use tests::scenes::log_uniform;
 
-use crate::device::{SEGMENTS, State};
+use crate::device::State;
 use crate::normalized_scene::NormalizedScene;
+use crate::timing::LoopTiming;
 
 /// Timing of the tick of one period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +55,10 @@ impl Pattern {
 
     /// A plan that misses at most `most` updates in a row, if that is not zero; with late codes where they
     /// are latched.
-    pub fn draw(rng: &mut impl Rng, most: u32, latched: bool) -> Self {
+    pub fn draw(rng: &mut impl Rng, most: u32, normalized: &NormalizedScene) -> Self {
+        let NormalizedScene { latched, unreported, .. } = *normalized;
+        let most = if unreported { most.max(1) } else { most };
+        let latched = latched || unreported;
         let only_delays = most == 0 && latched && rng.random_bool(0.3);
         if !only_delays && (most == 0 || rng.random_bool(0.15)) {
             return Self::AllOnTime;
@@ -91,6 +95,80 @@ impl Pattern {
     }
 }
 
+/// The times that deviate from tick to tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Jitter {
+    /// None does.
+    None,
+    /// Those of the torques.
+    Torques(Signs),
+    /// Those of the counts.
+    Counts(Signs),
+}
+
+/// Deviations in units of the largest one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Signs {
+    /// The first so many of these, again and again.
+    Periodic([i8; Signs::LONGEST], usize),
+    /// By chance.
+    Random {
+        /// Where the numbers begin.
+        seed: u64,
+    },
+}
+
+impl Signs {
+    /// Longest periodic pattern.
+    pub const LONGEST: usize = 4;
+
+    fn draw(rng: &mut impl Rng) -> Self {
+        if rng.random_bool(0.15) {
+            return Self::Random { seed: rng.random::<u64>() | 1 };
+        }
+        let length = rng.random_range(2..=Self::LONGEST);
+        let mut signs = [1; Self::LONGEST];
+        loop {
+            for sign in &mut signs[..length] {
+                *sign = if rng.random_bool(0.5) { 1 } else { -1 };
+            }
+            // A constant deviation is a delay, which is the mildest pattern; now and then it is drawn.
+            if signs[..length].iter().any(|sign| *sign != signs[0]) || rng.random_bool(0.1) {
+                return Self::Periodic(signs, length);
+            }
+        }
+    }
+}
+
+/// Jitter of counts, in periods, from which two counts could change places.
+const LARGEST_OF_COUNTS: f64 = 0.45;
+
+impl Jitter {
+    fn draw(rng: &mut impl Rng, timing: &LoopTiming) -> Self {
+        let LoopTiming { jitter, updates, .. } = *timing;
+        if jitter == 0.0 || rng.random_bool(0.1) {
+            return Self::None;
+        }
+        let signs = Signs::draw(rng);
+        // An amplifier that is updated takes a torque over at an update, whatever its jitter.
+        let of_counts = updates > 0 || rng.random_bool(0.35);
+        if jitter < LARGEST_OF_COUNTS && of_counts {
+            Self::Counts(signs)
+        } else {
+            Self::Torques(signs)
+        }
+    }
+
+    /// The deviations of each.
+    pub const fn of_torques_and_counts(self) -> (Option<Signs>, Option<Signs>) {
+        match self {
+            Self::None => (None, None),
+            Self::Torques(signs) => (Some(signs), None),
+            Self::Counts(signs) => (None, Some(signs)),
+        }
+    }
+}
+
 /// A request to the servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
@@ -121,6 +199,10 @@ pub struct Plan {
     pub pattern: Pattern,
     /// The part of a period by which a delayed tick begins late.
     pub delay: f64,
+    /// The times that deviate.
+    pub jitter: Jitter,
+    /// Where in their ranges the delay and the lags are, from 0 to 1.
+    pub within: [f64; 2],
     /// The request and its period.
     pub requests: [Option<(u32, Request)>; REQUESTS],
     /// Whether the servo is armed again after each fault.
@@ -134,8 +216,8 @@ const LIGHTEST: f64 = 1e-3;
 const HEAVIEST: f64 = 3e3;
 const STIFFEST: f64 = 1e2;
 
-fn bounded(mut hand: Hand) -> Hand {
-    hand.segments.truncate(SEGMENTS);
+fn bounded(mut hand: Hand, segments: usize) -> Hand {
+    hand.segments.truncate(segments);
     hand.inertia = hand.inertia.clamp(LIGHTEST, HEAVIEST);
     hand.stiffness = hand.stiffness.min(STIFFEST);
     for segment in &mut hand.segments {
@@ -149,7 +231,7 @@ fn bounded(mut hand: Hand) -> Hand {
 impl Plan {
     /// A plan for a subject.
     pub fn draw(rng: &mut impl Rng, normalized: &NormalizedScene, periods: u32) -> Self {
-        let mut hand = bounded(Self::hand(rng, normalized));
+        let mut hand = bounded(Self::hand(rng, normalized), normalized.segments);
         // A limit cycle must deliver power: a damper in the hand absorbs it for ever.
         if hand.damping == 0.0 && rng.random_bool(0.7) {
             hand.damping = log_uniform(rng, 1e-5, 1e-2);
@@ -160,10 +242,10 @@ impl Plan {
             start[2 * i] = size * rng.random_range(-1.0..1.0);
             start[2 * i + 1] = size * rng.random_range(-1.0..1.0);
         }
-        let armed_by_boot = rng.random_bool(0.5);
+        let armed_by_boot = normalized.bare || rng.random_bool(0.5);
         let zero = if armed_by_boot { start[0] } else { normalized.place(rng) };
         let most = match rng.random_range(0..10) {
-            0 => normalized.tolerated + rng.random_range(1..=3),
+            0 if !normalized.bare => normalized.tolerated + rng.random_range(1..=3),
             _ => normalized.tolerated,
         };
         let mut plan = Self {
@@ -171,8 +253,10 @@ impl Plan {
             zero,
             start,
             armed_by_boot,
-            pattern: Pattern::draw(rng, most, normalized.latched),
+            pattern: Pattern::draw(rng, most, normalized),
             delay: Self::delay(rng, normalized),
+            jitter: Jitter::draw(rng, &normalized.timing),
+            within: [Self::place_in_range(rng), Self::place_in_range(rng)],
             requests: [None; REQUESTS],
             again: rng.random_bool(0.7),
             periods,
@@ -181,10 +265,25 @@ impl Plan {
         plan
     }
 
+    fn place_in_range(rng: &mut impl Rng) -> f64 {
+        match rng.random_range(0..3) {
+            0 => 0.0,
+            1 => 1.0,
+            _ => rng.random_range(0.0..1.0),
+        }
+    }
+
+    /// The period of the next request from a period on.
+    pub fn next_request(&self, from: u32) -> u32 {
+        let periods = self.requests.iter().flatten().map(|(period, _)| *period);
+        periods.filter(|period| *period >= from).min().unwrap_or(u32::MAX)
+    }
+
     /// Later than what counts as in time, or nearly as late as that is.
     fn delay(rng: &mut impl Rng, normalized: &NormalizedScene) -> f64 {
-        if rng.random_bool(0.5) {
-            rng.random_range(0.04..0.55)
+        let latest = normalized.latest.min(0.55);
+        if latest > 0.04 && rng.random_bool(0.5) {
+            rng.random_range(0.04..latest)
         } else {
             normalized.in_time * rng.random_range(0.9..1.0)
         }
@@ -245,7 +344,7 @@ impl Plan {
         let mut pick = |share: f64| all || rng.random_bool(share);
         let (hand, start, pattern, requests) = (pick(0.7), pick(0.5), pick(0.15), pick(0.15));
         if hand {
-            plan.hand = bounded(plan.hand.varied(rng, spread));
+            plan.hand = bounded(plan.hand.varied(rng, spread), normalized.segments);
         }
         if start {
             let moved = plan.start[0];
@@ -262,8 +361,10 @@ impl Plan {
             }
         }
         if pattern {
-            plan.pattern = Pattern::draw(rng, normalized.tolerated, normalized.latched);
+            plan.pattern = Pattern::draw(rng, normalized.tolerated, normalized);
             plan.delay = Self::delay(rng, normalized);
+            plan.jitter = Jitter::draw(rng, &normalized.timing);
+            plan.within = [Self::place_in_range(rng), Self::place_in_range(rng)];
         }
         if requests {
             plan.draw_requests(rng, normalized);

@@ -4,9 +4,10 @@ use std::fmt;
 
 use haptic_servo::torque::LimitReason;
 
+use crate::mode::Actual;
 use crate::normalized_scene::NormalizedScene;
 use crate::plan::Plan;
-use crate::run::{Outcome, Output};
+use crate::run::Outcome;
 use crate::scenes::RandomScene;
 
 /// A run in which a certified scene gave energy away.
@@ -22,15 +23,13 @@ pub struct Counterexample {
     pub normalized: NormalizedScene,
     /// The run.
     pub plan: Plan,
-    /// When the codes reached the motor.
-    pub output: Output,
     /// What became of it.
     pub outcome: Outcome,
 }
 
 impl fmt::Display for Counterexample {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { seed, number, drawn, normalized, plan, output, outcome } = self;
+        let Self { seed, number, drawn, normalized, plan, outcome } = self;
         let gain = outcome.gained - outcome.allowed;
         writeln!(f, "counterexample: ADVERSARY_SEED={seed}, scene {number}, {}", drawn.kind)?;
         if outcome.went_on {
@@ -53,7 +52,10 @@ impl fmt::Display for Counterexample {
             write!(f, " {reason} {ticks}")?;
         }
         writeln!(f)?;
-        writeln!(f, "  {:?} {output:?} {:?}", drawn.format, drawn.scene)?;
+        writeln!(f, "  {:?} {:?} {:?}", drawn.format, drawn.mode, drawn.scene)?;
+        if drawn.actual != Actual::default() {
+            writeln!(f, "  actual: {:?}", drawn.actual)?;
+        }
         if let Some(other) = &drawn.other {
             writeln!(f, "  other set: {other:?}")?;
         }

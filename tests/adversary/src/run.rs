@@ -5,7 +5,7 @@
 //! certificate claims that this is never above `H(0)` plus an allowance:
 //!
 //! - Each opening of the clamp may put in what the environment stores at its depth: the clamp's
-//!   level times the environment's distance from its face.
+//!   level times the environment's distance from its face, or from the other side of a profile.
 //! - A torque that is off by `e` puts in at most `e` times the travel; encoder and numbers act
 //!   where the environment is, whose travel is at most the device's and the coupling's.
 //! - A servo that is stopped for missed updates held its torque `u` for longer than the certificate
@@ -13,37 +13,21 @@
 
 use std::marker::PhantomData;
 
+use haptic_servo::boot::Startup;
+use haptic_servo::dac::DacCode;
 use haptic_servo::environment::{Discretize, Environment};
 use haptic_servo::number::Number;
-use haptic_servo::servo::{OutputMode, OutputTiming, PreparedServo, SupportsTiming};
-use haptic_servo::servo_loop::{Mailbox, ServoLoop, State as ServoState};
+use haptic_servo::servo::{OutputMode, PreparedServo, Servo, SupportsTiming};
+use haptic_servo::servo_loop::{
+    Hardware, Inbox, Mailbox, Requests, ServoLoop, State as ServoState,
+};
 use haptic_servo::tuning::Tunable;
 
-use crate::device::{HeldDevice, State, Step, TORQUE};
-use crate::hardware::{Board, Last, PERIOD};
+use crate::device::{AMPLIFIED, SENSED, State, Step, TORQUE};
+use crate::hardware::{Board, Last};
 use crate::normalized_scene::NormalizedScene;
-use crate::plan::{Pattern, Plan, Request, TickTiming};
-
-/// When a code reaches the motor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Output {
-    /// At the beginning of the next period.
-    Latched,
-    /// At its own count.
-    Simultaneous,
-    /// This part of a period after its count: not what any scene is certified for.
-    Early(f64),
-}
-
-impl Output {
-    /// That of a mode.
-    pub const fn of<M: OutputMode>() -> Self {
-        match M::TIMING {
-            OutputTiming::Simultaneous => Self::Simultaneous,
-            _ => Self::Latched,
-        }
-    }
-}
+use crate::plan::{Pattern, Plan, Request, Signs, TickTiming};
+use crate::timing::{Schedule, timer_counts};
 
 /// What became of a run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -92,14 +76,21 @@ impl Outcome {
     }
 }
 
-/// A booted servo and the sets that may be swapped in.
+/// What computes the codes.
+#[derive(Clone)]
+pub enum Control<N: Number, M> {
+    /// A booted servo loop of a board.
+    Board(ServoLoop<Environment, N, M>),
+    /// The servo alone: it renders scenes that no board does, and is armed from its first tick.
+    Bare(Servo<Environment, N>),
+}
+
+/// A servo and the sets that may be swapped in.
 pub struct Machine<N: Number, M> {
     /// The servo as it booted.
-    pub servo_loop: ServoLoop<Environment, N, M>,
+    pub control: Control<N, M>,
     /// The sets: its own and the other one.
     pub sets: Vec<PreparedServo<Environment, N, M>>,
-    /// When its codes reach the motor.
-    pub output: Output,
     mode: PhantomData<M>,
 }
 
@@ -123,26 +114,29 @@ struct EnergyBalance {
     openings: u32,
     /// What stops for missed updates allow.
     stops: f64,
+    /// Periods.
+    periods: u32,
 }
 
 impl EnergyBalance {
-    /// What torques that are off allow.
+    /// What torques and positions that are off allow.
     fn errors(&self, normalized: &NormalizedScene) -> f64 {
+        let NormalizedScene { compliance, off, .. } = *normalized;
         let turns = (self.farthest / std::f64::consts::TAU).max(1.0);
         let error = normalized.error + normalized.numbers * turns;
-        error * (2.0 * self.travel + normalized.compliance * self.changes)
+        let travel = 2.0 * self.travel + compliance * self.changes;
+        // A position that is off by `off` moves the environment by twice that from tick to tick, of which its
+        // torque and its index make energy.
+        let moved = travel + self.changes * (1.0 + compliance) + off * f64::from(self.periods);
+        error * travel + 4.0 * off * moved
     }
 
-    /// Moves the state on with this torque, and books what that takes and gives.
+    /// Moves the state on, and books what that takes and gives.
     #[inline]
-    fn advance(&mut self, x: &mut State, step: &Step, torque: f64, damping: f64) {
-        self.changes += (torque - x[TORQUE]).abs();
-        x[TORQUE] = torque;
-        let start = x[0];
+    fn advance(&mut self, x: &mut State, step: &Step, damping: f64) {
         self.taken += step.taken(x);
-        let squared = step.advance(x);
+        let (squared, work) = step.advance(x);
         let loss = squared * damping;
-        let work = torque * (x[0] - start);
         self.gained += work - loss;
         self.moved += work.abs();
         self.dissipated += loss;
@@ -150,9 +144,9 @@ impl EnergyBalance {
     }
 
     fn allowed(&self, normalized: &NormalizedScene) -> f64 {
-        let NormalizedScene { bound, compliance, face, .. } = *normalized;
-        let opening = bound * (self.farthest + face + compliance * bound);
-        f64::from(self.openings) * opening + self.errors(normalized) + self.stops
+        let NormalizedScene { bound, compliance, face, stored, sides, .. } = *normalized;
+        let opening = bound * (sides * self.farthest + face + compliance * bound);
+        f64::from(self.openings) * opening + stored + self.errors(normalized) + self.stops
     }
 }
 
@@ -207,209 +201,379 @@ impl Ticks {
     }
 }
 
+/// What happens to the times of torques or counts, tick by tick.
+struct Shifts {
+    signs: Signs,
+    at: usize,
+}
+
+impl Shifts {
+    fn next(&mut self) -> i8 {
+        match &mut self.signs {
+            Signs::Periodic(signs, length) => {
+                let sign = signs[self.at];
+                self.at = (self.at + 1) % *length;
+                sign
+            }
+            Signs::Random { seed } => match next(seed) % 5 {
+                0 | 1 => -1,
+                2 | 3 => 1,
+                _ => 0,
+            },
+        }
+    }
+}
+
+/// A code on its way to the motor.
+#[derive(Clone, Copy, Debug)]
+struct Sent {
+    tick: u32,
+    period: u32,
+    place: usize,
+    code: i16,
+}
+
+/// Codes on their way, at most.
+const ON_THE_WAY: usize = 16;
+
+/// The motor's end: codes on their way, and the code that it has.
+#[derive(Clone, Copy, Debug)]
+struct Motor {
+    sent: [Option<Sent>; ON_THE_WAY],
+    /// The tick of the code that it has.
+    newest: Option<u32>,
+    code: i16,
+    powered: bool,
+}
+
+impl Motor {
+    const OFF: Self = Self { sent: [None; ON_THE_WAY], newest: None, code: 0, powered: false };
+
+    fn send(&mut self, sent: Sent) {
+        if let Some(free) = self.sent.iter_mut().find(|slot| slot.is_none()) {
+            *free = Some(sent);
+        }
+    }
+
+    /// Takes the codes of an instant over. A code that a later one has overtaken is not put out.
+    fn take(&mut self, period: u32, place: usize) {
+        for slot in &mut self.sent {
+            let Some(sent) = *slot else { continue };
+            if (sent.period, sent.place) != (period, place) {
+                continue;
+            }
+            *slot = None;
+            if self.newest.is_none_or(|newest| sent.tick >= newest) {
+                (self.newest, self.code) = (Some(sent.tick), sent.code);
+            }
+        }
+    }
+}
+
+/// A run as it goes on.
+struct Run<'a> {
+    normalized: &'a NormalizedScene,
+    plan: &'a Plan,
+    schedule: &'a Schedule,
+    board: Board,
+    motor: Motor,
+    last: Last,
+    x: State,
+    balance: EnergyBalance,
+    outcome: Outcome,
+    /// Ticks skipped, ticks without a code in time, periods since the last code.
+    skipped: u32,
+    in_a_row: u32,
+    since: u32,
+    /// The largest torque in that time.
+    strongest: f64,
+    /// Whether the servo's torque has reached the full scale that its certificate excludes.
+    saturated: bool,
+}
+
+impl<'a> Run<'a> {
+    fn new(normalized: &'a NormalizedScene, plan: &'a Plan, schedule: &'a Schedule) -> Self {
+        let mut board = Board::new(normalized.counts_per_radian, !plan.armed_by_boot);
+        // As booting does it, with the device at the board's zero.
+        board.angle = plan.zero;
+        board.zero_encoder();
+        let mut x = plan.start;
+        if schedule.lags.sensor > 0.0 {
+            x[SENSED] = x[0];
+            x[SENSED + 1] = 0.0;
+        }
+        let start = schedule.held.energy(&x);
+        Self {
+            normalized,
+            plan,
+            schedule,
+            board,
+            motor: Motor::OFF,
+            last: Last::default(),
+            x,
+            balance: EnergyBalance::default(),
+            outcome: Outcome { score: -1.0, start, rate: -1.0, ..Outcome::default() },
+            skipped: 0,
+            in_a_row: 0,
+            since: 0,
+            strongest: 0.0,
+            saturated: false,
+        }
+    }
+
+    fn torque(&self) -> f64 {
+        if !self.motor.powered {
+            return 0.0;
+        }
+        f64::from(self.motor.code) * self.normalized.torque_per_code
+    }
+
+    /// From an instant to the next.
+    #[inline]
+    fn advance(&mut self, place: usize, step: &Step, target: &mut f64) {
+        let torque = self.torque();
+        self.strongest = self.strongest.max(torque.abs());
+        self.balance.changes += (torque - *target).abs();
+        *target = torque;
+        let Schedule { lags, held, .. } = self.schedule;
+        if lags.updates == 0 {
+            self.x[TORQUE] = torque;
+        } else if self.schedule.is_update(place) {
+            let updates = f64::from(lags.updates);
+            let share = 1.0 - (-1.0 / (updates * lags.amplifier)).exp();
+            self.x[TORQUE] = (torque - self.x[AMPLIFIED]) * share * updates;
+        }
+        self.balance.advance(&mut self.x, step, held.damping());
+    }
+
+    /// The tick of this period. `tick`: what happens to it; `shift`: when its torque begins.
+    fn tick<N: Number, M: OutputMode>(
+        &mut self,
+        control: &mut Control<N, M>,
+        inbox: &mut Inbox<'_, PreparedServo<Environment, N, M>>,
+        requests: &mut Requests<'_, PreparedServo<Environment, N, M>>,
+        (period, timing, shift): (u32, TickTiming, i8),
+    ) -> Option<bool>
+    where
+        Environment: Tunable<N> + SupportsTiming<M>,
+    {
+        let normalized = self.normalized;
+        let is_late = timing == TickTiming::Late;
+        let delayed = timing == TickTiming::Delayed && self.plan.delay > normalized.in_time;
+        self.board.angle = if self.schedule.lags.sensor > 0.0 { self.x[SENSED] } else { self.x[0] };
+        self.board.passed = self.skipped + 1;
+        self.board.late = is_late && !normalized.unreported;
+        self.board.delay = if delayed { timer_counts(self.plan.delay) } else { 0 };
+        self.skipped = 0;
+        let was = self.last.state;
+        match control {
+            Control::Board(servo_loop) => servo_loop.run(&mut self.board, inbox, &mut self.last),
+            Control::Bare(servo) => {
+                let output = servo.tick(self.board.count());
+                self.board.write(output.code);
+                self.board.amplifier = true;
+                let full = DacCode::CODES_TO_FULL_SCALE.cast_signed();
+                self.saturated |= normalized.unlimited && self.board.offset.abs() >= full;
+            }
+        }
+        let (wait, place) = self.schedule.torque(shift);
+        let sent = period + wait + u32::from(is_late);
+        self.motor.send(Sent { tick: period, period: sent, place, code: self.board.offset });
+        // The amplifier of a late tick is switched when that ends.
+        let mut overdue = None;
+        if is_late {
+            self.in_a_row += 1;
+            overdue = Some(self.board.amplifier);
+        } else {
+            self.motor.powered = self.board.amplifier;
+        }
+        if self.last.state != was {
+            self.changed_from(was);
+        }
+        let went_on = self.in_a_row > normalized.tolerated
+            && self.last.state.is_armed()
+            && was.is_armed()
+            && !normalized.unreported;
+        self.outcome.went_on |= went_on;
+        if !is_late {
+            (self.in_a_row, self.since, self.strongest) = (0, 0, 0.0);
+        }
+        if self.plan.again && self.last.state == ServoState::Faulted && period % 16 == 0 {
+            requests.arm();
+        }
+        overdue
+    }
+
+    fn changed_from(&mut self, was: ServoState) {
+        match self.last.state {
+            ServoState::FadingIn => self.balance.openings += 1,
+            // A clamp that opens within a tick.
+            ServoState::Running if was != ServoState::FadingIn => self.balance.openings += 1,
+            ServoState::Faulted => {
+                self.outcome.faults += 1;
+                let damping = self.schedule.held.damping().max(f64::MIN_POSITIVE);
+                let longest = f64::from(self.since.max(1) + 1);
+                self.balance.stops += longest * self.strongest * self.strongest / (4.0 * damping);
+            }
+            _ => {}
+        }
+    }
+
+    /// The energy balance at the end of a period.
+    fn look(&mut self, period: u32, audited: bool) {
+        let (balance, outcome) = (&self.balance, &mut self.outcome);
+        let allowed = balance.allowed(self.normalized);
+        let all = outcome.start + allowed;
+        let score = (balance.gained - allowed) / all.max(f64::MIN_POSITIVE);
+        if score > outcome.score || score.is_nan() {
+            (outcome.score, outcome.period) = (score, period);
+            (outcome.gained, outcome.allowed) = (balance.gained, allowed);
+        }
+        let largest = outcome.start + balance.gained;
+        outcome.largest = outcome.largest.max(largest);
+        outcome.openings = balance.openings;
+        outcome.limits = self.last.limits;
+        if audited {
+            let residual = self.schedule.held.energy(&self.x) + balance.taken - largest;
+            outcome.residual = outcome.residual.max(residual.abs());
+        }
+        outcome.periods = period + 1;
+    }
+
+    /// Whether the run cannot go on.
+    fn is_over(&self) -> bool {
+        let Outcome { largest, start, allowed, .. } = self.outcome;
+        // Beyond all numbers; faster than the transducers exclude, so that the counter might wrap unseen.
+        let beyond = largest > 1e12 * (start + allowed) || largest.is_nan();
+        beyond || self.saturated || self.x[1].abs() > self.normalized.fastest
+    }
+}
+
+/// The rate of gain over the windows of a run.
+struct Rate {
+    window: u32,
+    before: EnergyBalance,
+    last: f64,
+}
+
+impl Rate {
+    fn look(&mut self, period: u32, run: &mut Run<'_>) {
+        if period % self.window < self.window - LOOK {
+            return;
+        }
+        let (balance, before, normalized) = (&run.balance, &self.before, run.normalized);
+        let errors = balance.errors(normalized) - before.errors(normalized);
+        // With what rounds away, so that rest is no gain.
+        let rounded = ROUNDING * (balance.moved + balance.dissipated + run.outcome.start);
+        let took = (balance.dissipated - before.dissipated).max(0.0) + errors + rounded;
+        let gained = balance.gained - before.gained - errors - rounded;
+        let rate = gained / took.max(f64::MIN_POSITIVE);
+        run.outcome.rate = self.last.min(rate);
+        self.last = rate;
+        self.before = *balance;
+    }
+}
+
 impl<N: Number, M: OutputMode> Machine<N, M>
 where
     Environment: Tunable<N> + SupportsTiming<M>,
     <Environment as Discretize<N>>::Law: Clone,
 {
-    /// A booted servo and its sets.
-    pub fn new(
-        servo_loop: ServoLoop<Environment, N, M>,
-        sets: Vec<PreparedServo<Environment, N, M>>,
-        output: Output,
-    ) -> Self {
-        Self { servo_loop, sets, output, mode: PhantomData }
+    /// A servo and its sets.
+    pub fn new(control: Control<N, M>, sets: Vec<PreparedServo<Environment, N, M>>) -> Self {
+        Self { control, sets, mode: PhantomData }
     }
 
     /// Runs a plan. `audited`: with the energy of device and hand beside the account.
     pub fn run(&self, normalized: &NormalizedScene, plan: &Plan, audited: bool) -> Outcome {
-        let held = HeldDevice::new(&plan.hand, normalized.damping);
-        let step = |part: f64| if audited { held.audited(part) } else { held.step(part) };
-        let parts = match self.output {
-            Output::Early(part) => [Some(step(part)), Some(step(1.0 - part))],
-            _ => [None, Some(step(1.0))],
-        };
-        self.play(normalized, plan, &held, &parts, audited)
-    }
-
-    fn play(
-        &self,
-        normalized: &NormalizedScene,
-        plan: &Plan,
-        held: &HeldDevice,
-        parts: &[Option<Step>; 2],
-        audited: bool,
-    ) -> Outcome {
+        let NormalizedScene { damping, timing, overrun, .. } = normalized;
+        let schedule = Schedule::new(plan, *damping, timing, *overrun, audited);
         let mut mailbox = Mailbox::new();
         let (mut requests, mut inbox) = mailbox.split();
-        let mut servo_loop = self.servo_loop.clone();
-        let mut board = Board::new(normalized.counts_per_radian, !plan.armed_by_boot);
-        // As booting does it, with the device at the board's zero.
-        board.angle = plan.zero;
-        haptic_servo::boot::Startup::zero_encoder(&mut board);
         if plan.armed_by_boot {
             requests.arm();
         }
-        let mut x = plan.start;
-        let mut balance = EnergyBalance::default();
-        let mut outcome =
-            Outcome { score: -1.0, start: held.energy(&x), rate: -1.0, ..Outcome::default() };
-        let mut last = Last::default();
-        let (mut before, mut last_rate) = (EnergyBalance::default(), -1.0_f64);
+        let mut control = self.control.clone();
+        let mut run = Run::new(normalized, plan, &schedule);
+        if matches!(control, Control::Bare(_)) {
+            // What the environment stores where it is.
+            run.last.state = ServoState::Running;
+        }
         let window = (plan.periods / 4).max(LOOK);
+        let mut rate = Rate { window, before: EnergyBalance::default(), last: -1.0 };
         let mut ticks = Ticks { pattern: plan.pattern, at: 0, in_a_row: 0 };
-        // Codes above mid-scale: what the motor has, and what waits for the next period.
-        let (mut motor, mut waiting) = (0_i16, 0_i16);
-        let mut overdue = None;
-        let (mut skipped, mut in_a_row, mut since) = (0_u32, 0_u32, 0_u32);
-        let mut strongest = 0.0_f64;
-        let latched = self.output == Output::Latched;
-        let mut powered = false;
-        let torque = |motor: i16, powered: bool| {
-            if powered { f64::from(motor) * normalized.torque_per_code } else { 0.0 }
-        };
-        let split = |part: f64| [part, 1.0 - part].map(|part| held.audited(part));
-        let overrun = (latched && normalized.overrun > 0.0).then(|| split(normalized.overrun));
-        let delayed = plan.pattern.delays().then(|| split(plan.delay));
-        let mut was_late = false;
-        let first = plan.requests.iter().flatten().map(|(period, _)| *period).min();
-        let mut next_request = first.unwrap_or(u32::MAX);
+        let (torques, counts) = plan.jitter.of_torques_and_counts();
+        let mut torques = torques.map(|signs| Shifts { signs, at: 0 });
+        let mut counts = counts.map(|signs| Shifts { signs, at: 0 });
+        let (mut overdue, mut was_late, mut target) = (None, false, 0.0);
+        let mut next_request = plan.next_request(0);
         for period in 0..plan.periods {
-            motor = if latched { waiting } else { motor };
-            if let Some((code, on)) = overdue.take() {
-                waiting = code;
-                powered = on;
-                motor = if latched { motor } else { waiting };
+            if let Some(on) = overdue.take() {
+                run.motor.powered = on;
             }
             if period >= next_request {
-                next_request = u32::MAX;
-                for (at, request) in plan.requests.iter().flatten() {
-                    if *at == period {
-                        match *request {
-                            Request::Arm => _ = requests.arm(),
-                            Request::Disarm => _ = requests.disarm(),
-                            Request::Submit(set) => {
-                                if let Some(set) = self.sets.get(set) {
-                                    let _ = requests.submit(set.clone());
-                                }
-                            }
-                        }
-                    } else if *at > period {
-                        next_request = next_request.min(*at);
-                    }
-                }
+                self.submit(&mut requests, plan, period);
+                next_request = plan.next_request(period + 1);
             }
-            since += 1;
+            run.since += 1;
+            run.balance.periods += 1;
             let tick = ticks.next();
-            let mut switched = false;
-            // A tick that has to wait for the one before it reads its count when that has ended.
-            let waits = if tick == TickTiming::Delayed {
-                delayed.as_ref()
-            } else {
-                overrun.as_ref().filter(|_| was_late && tick != TickTiming::Missed)
-            };
-            was_late = tick == TickTiming::Late;
-            if let Some([first, _]) = waits {
-                balance.advance(&mut x, first, torque(motor, powered), held.damping());
+            let shift = torques.as_mut().map_or(0, Shifts::next);
+            let (_, mut at) = schedule.count(counts.as_mut().map_or(0, Shifts::next));
+            let [delayed, after_late] = schedule.delayed();
+            match tick {
+                TickTiming::Delayed => at = delayed.1,
+                // A tick that has to wait for the one before it reads its count when that has ended.
+                TickTiming::OnTime | TickTiming::Late if was_late => at = after_late.1,
+                _ => {}
             }
+            was_late = tick == TickTiming::Late && normalized.overrun > 0.0;
             if tick == TickTiming::Missed {
-                skipped += 1;
-                in_a_row += 1;
-            } else {
-                let was = last.state;
-                board.angle = x[0];
-                board.passed = skipped + 1;
-                board.late = tick == TickTiming::Late;
-                board.delay = if tick == TickTiming::Delayed && plan.delay > normalized.in_time {
-                    (plan.delay * f64::from(PERIOD)) as u32
-                } else {
-                    0
-                };
-                skipped = 0;
-                servo_loop.run(&mut board, &mut inbox, &mut last);
-                if board.late {
-                    in_a_row += 1;
-                    overdue = Some((board.offset, board.amplifier));
-                } else {
-                    waiting = board.offset;
-                    powered = board.amplifier;
-                    switched = true;
-                }
-                if last.state != was {
-                    match last.state {
-                        ServoState::FadingIn => balance.openings += 1,
-                        // A clamp that opens within a tick.
-                        ServoState::Running if was != ServoState::FadingIn => balance.openings += 1,
-                        ServoState::Faulted => {
-                            outcome.faults += 1;
-                            let damping = held.damping().max(f64::MIN_POSITIVE);
-                            let longest = f64::from(since.max(1) + 1);
-                            balance.stops += longest * strongest * strongest / (4.0 * damping);
-                        }
-                        _ => {}
-                    }
-                }
-                if in_a_row > normalized.tolerated && last.state.is_armed() && was.is_armed() {
-                    outcome.went_on = true;
-                }
-                if !board.late {
-                    in_a_row = 0;
-                    since = 0;
-                    strongest = 0.0;
-                }
-                if plan.again && last.state == ServoState::Faulted && period % 16 == 0 {
-                    requests.arm();
-                }
+                run.skipped += 1;
+                run.in_a_row += 1;
+                at = usize::MAX;
             }
-            for (i, part) in parts.iter().enumerate() {
-                let Some(part) = part else { continue };
-                let part = waits.map_or(part, |[_, rest]| rest);
-                if i == 1 && !latched && switched {
-                    motor = waiting;
+            for (place, step) in schedule.steps().iter().enumerate() {
+                if place == at {
+                    let timed = (period, tick, shift);
+                    overdue = run.tick(&mut control, &mut inbox, &mut requests, timed);
                 }
-                let torque = torque(motor, powered);
-                strongest = strongest.max(torque.abs());
-                balance.advance(&mut x, part, torque, held.damping());
+                run.motor.take(period, place);
+                run.advance(place, step, &mut target);
             }
-            balance.farthest = balance.farthest.max((x[0] - plan.zero).abs());
+            let balance = &mut run.balance;
+            balance.farthest = balance.farthest.max((run.x[0] - plan.zero).abs());
             if period % LOOK == LOOK - 1 {
-                let allowed = balance.allowed(normalized);
-                let all = outcome.start + allowed;
-                let score = (balance.gained - allowed) / all.max(f64::MIN_POSITIVE);
-                if score > outcome.score || score.is_nan() {
-                    (outcome.score, outcome.period) = (score, period);
-                    (outcome.gained, outcome.allowed) = (balance.gained, allowed);
-                }
-                let largest = outcome.start + balance.gained;
-                outcome.largest = outcome.largest.max(largest);
-                outcome.openings = balance.openings;
-                outcome.limits = last.limits;
-                if audited {
-                    let residual = held.energy(&x) + balance.taken - largest;
-                    outcome.residual = outcome.residual.max(residual.abs());
-                }
-                if period % window >= window - LOOK {
-                    let errors = balance.errors(normalized) - before.errors(normalized);
-                    // With what rounds away, so that rest is no gain.
-                    let rounded = ROUNDING * (balance.moved + balance.dissipated + outcome.start);
-                    let took = (balance.dissipated - before.dissipated).max(0.0) + errors + rounded;
-                    let rate = (balance.gained - before.gained - errors - rounded)
-                        / took.max(f64::MIN_POSITIVE);
-                    outcome.rate = last_rate.min(rate);
-                    last_rate = rate;
-                    before = balance;
-                }
-                outcome.periods = period + 1;
-                // Beyond all numbers.
-                if outcome.largest > 1e12 * all || outcome.largest.is_nan() {
+                run.look(period, audited);
+                rate.look(period, &mut run);
+                if run.is_over() {
                     break;
                 }
             }
-            // The transducers exclude that; in a fraction of it the counter cannot wrap unseen.
-            if x[1].abs() > normalized.fastest {
+            if run.saturated || run.x[1].abs() > normalized.fastest {
                 break;
             }
         }
-        outcome
+        run.outcome
+    }
+
+    /// Makes the requests of a period.
+    fn submit(
+        &self,
+        requests: &mut Requests<'_, PreparedServo<Environment, N, M>>,
+        plan: &Plan,
+        period: u32,
+    ) {
+        for (_, request) in plan.requests.iter().flatten().filter(|(at, _)| *at == period) {
+            match *request {
+                Request::Arm => _ = requests.arm(),
+                Request::Disarm => _ = requests.disarm(),
+                Request::Submit(set) => {
+                    if let Some(set) = self.sets.get(set) {
+                        let _ = requests.submit(set.clone());
+                    }
+                }
+            }
+        }
     }
 }

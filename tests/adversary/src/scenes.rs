@@ -4,12 +4,18 @@ use std::f64::consts::{PI, TAU};
 
 use haptic_servo::certificate::{PassivityProblem, TimingError, assess_in};
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::environment::{Coefficients, Composed, Environment, Rational, Wall};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
 use rand::Rng;
 use tests::scenes::log_uniform;
+
+use crate::mode::{Actual, draw_latency, has_latency};
+use crate::planted::Planted;
+use crate::profiles;
+
+pub use crate::mode::Mode;
 
 /// Number format of the servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,11 +68,15 @@ pub enum Kind {
     Hidden,
     /// A wall on a device whose passivity is declared to be more than its damping.
     Overstated,
+    /// A torque profile: with ends and without, with snap points, a mode of a knob.
+    Profile,
+    /// A sum of a profile with a wall, a canceller, or both.
+    Sum,
 }
 
 impl Kind {
     /// All values.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Wall,
         Self::FreeMode,
         Self::FreeModeWall,
@@ -74,6 +84,8 @@ impl Kind {
         Self::Unstable,
         Self::Hidden,
         Self::Overstated,
+        Self::Profile,
+        Self::Sum,
     ];
 }
 
@@ -100,6 +112,12 @@ pub struct Choice {
     pub injected: Option<bool>,
     /// Part of a period by which late ticks outlast their own.
     pub overrun: f64,
+    /// Whether all, none or some scenes have a latency.
+    pub latency: Option<bool>,
+    /// Whether all, none or some scenes run by the servo alone.
+    pub bare: Option<bool>,
+    /// A wrong rule that scenes are accepted by.
+    pub planted: Option<Planted>,
     /// Share of the margin that the device loses.
     pub taken: f64,
     /// Whether the margin is not what the assessment states, but how much less damping would still
@@ -120,6 +138,9 @@ impl Choice {
         saturates: true,
         injected: None,
         overrun: 0.0,
+        latency: None,
+        bare: None,
+        planted: None,
         taken: 0.9,
         bisected: false,
         weakened: None,
@@ -133,6 +154,8 @@ enum Knob {
     Damping,
     Residual,
     Coupling,
+    /// Its inverse, of the device's damping and the coupling.
+    Device,
 }
 
 /// A scene with all that it runs with.
@@ -152,8 +175,10 @@ pub struct RandomScene {
     pub rendering: RenderingOptions,
     /// Number format.
     pub format: Numbers,
-    /// Whether codes are latched.
-    pub latched: bool,
+    /// What runs it.
+    pub mode: Mode,
+    /// How that differs from what the scene states.
+    pub actual: Actual,
     /// Angles in rad at which the runs are large.
     pub size: f64,
     /// The farthest place to arm at, in rad.
@@ -170,7 +195,7 @@ pub struct RandomScene {
 
 impl RandomScene {
     /// A scene with sensor and motor so fine that they hardly matter, at angles of about `size` rad.
-    pub fn of(kind: Kind, scene: Scene, format: Numbers, latched: bool, size: f64) -> Self {
+    pub fn of(kind: Kind, scene: Scene, format: Numbers, mode: Mode, size: f64) -> Self {
         let unit = scene.device.damping / scene.timing.period;
         let transducers = Transducers {
             counts_per_turn: f64::from(1_u32 << 22),
@@ -186,7 +211,8 @@ impl RandomScene {
             transducers,
             rendering: RenderingOptions { fade: 50.0 * scene.timing.period, injection: None },
             format,
-            latched,
+            mode,
+            actual: Actual::default(),
             size,
             reach: size,
             taken: 0.9,
@@ -194,6 +220,15 @@ impl RandomScene {
             overrun: 0.0,
             injected: None,
         }
+    }
+}
+
+impl RandomScene {
+    /// Whether it has more than the errors of scenes without latency are known for.
+    pub fn is_general(&self) -> bool {
+        let actual = self.actual.latency.is_some();
+        let profile = self.scene.environment.profile().is_some();
+        self.mode == Mode::Bare || has_latency(&self.scene) || actual || profile
     }
 }
 
@@ -217,16 +252,18 @@ fn sometimes(rng: &mut impl Rng, wanted: Option<bool>, probability: f64) -> bool
     wanted.unwrap_or_else(|| rng.random_bool(probability))
 }
 
-/// Draws a scene and takes it to the line; `None` where it has none near.
-pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
-    let kind = choice.kind.unwrap_or_else(|| match rng.random_range(0..20) {
+/// The kind, the number format and the mode of a scene.
+fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool) {
+    let kind = choice.kind.unwrap_or_else(|| match rng.random_range(0..25) {
         0..=7 => Kind::Wall,
         8..=9 => Kind::FreeMode,
         10..=11 => Kind::FreeModeWall,
         12..=15 => Kind::Rational,
         16..=17 => Kind::Unstable,
         18 => Kind::Hidden,
-        _ => Kind::Overstated,
+        19 => Kind::Overstated,
+        20..=22 => Kind::Profile,
+        _ => Kind::Sum,
     });
     let format = match rng.random_range(0..10) {
         0..=4 => Numbers::F32,
@@ -234,28 +271,74 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         6..=7 => Numbers::Q24,
         _ => Numbers::Q20,
     };
+    let lags = !matches!(kind, Kind::Unstable | Kind::Hidden | Kind::Overstated)
+        && sometimes(rng, choice.latency, 0.5);
+    if sometimes(rng, choice.bare, if lags { 0.5 } else { 0.08 }) {
+        return (kind, format, Mode::Bare, lags);
+    }
     // The canceller in front of a wall is undelayed, and so is never latched.
     let latched = sometimes(rng, choice.latched, 0.6) && kind != Kind::FreeModeWall;
-    let period = log_uniform(rng, 1e-4, 4e-3);
+    if !lags {
+        let mode = if latched { Mode::Latched } else { Mode::Simultaneous };
+        return (kind, format, mode, false);
+    }
+    if latched && rng.random_bool(0.6) {
+        return (kind, format, Mode::Latched, true);
+    }
+    // Boards with a phase are built in two number formats.
+    let format = if rng.random_bool(0.7) { Numbers::F32 } else { Numbers::Q24 };
+    let phase = Mode::PHASES[rng.random_range(0..Mode::PHASES.len())];
+    (kind, format, Mode::AtPhase(phase), true)
+}
+
+/// A coupling of about the standard stiffness; behind a latency also the one that absorbs it.
+fn draw_coupling(rng: &mut impl Rng, mode: Mode, lags: bool, standard: f64) -> Coupling {
+    if lags && (mode != Mode::Bare || rng.random_bool(0.4)) {
+        return Coupling::Matched;
+    }
+    let rigid = if mode == Mode::Bare { 3 } else { 1 };
+    if rng.random_range(0..10) < rigid {
+        return Coupling::Rigid;
+    }
+    Coupling::Spring {
+        stiffness: match rng.random_range(1..10) {
+            1..=4 => standard,
+            5..=7 => standard * log_uniform(rng, 0.05, 1.0),
+            _ => standard * log_uniform(rng, 1.0, 10.0),
+        },
+    }
+}
+
+/// Draws a scene and takes it to the line; `None` where it has none near.
+pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
+    let (kind, format, mode, lags) = draw_kind(rng, choice);
+    let latched = mode == Mode::Latched;
+    let shortest = match mode {
+        Mode::AtPhase(nanoseconds) => (f64::from(nanoseconds) / 0.9e9).max(1e-4),
+        _ => 1e-4,
+    };
+    let period = log_uniform(rng, shortest, 4e-3);
     let delta = log_uniform(rng, 2e-3, 0.5);
     let unit = delta / period;
-    let worst = if sometimes(rng, choice.worst_period, 0.25) {
+    let worst = if !lags && mode != Mode::Bare && sometimes(rng, choice.worst_period, 0.25) {
         [1.5, 2.0, 2.0, 3.0, 4.0][rng.random_range(0..5)]
     } else {
         1.0
     };
     let standard = 2.0 * unit / worst;
-    let coupling = match rng.random_range(0..10) {
-        0 => Coupling::Rigid,
-        1..=4 => Coupling::Spring { stiffness: standard },
-        5..=7 => Coupling::Spring { stiffness: standard * log_uniform(rng, 0.05, 1.0) },
-        _ => Coupling::Spring { stiffness: standard * log_uniform(rng, 1.0, 10.0) },
-    };
-    let size = log_uniform(rng, 1e-3, 1.0);
+    let coupling = draw_coupling(rng, mode, lags, standard);
+    let is_general = lags || mode == Mode::Bare || matches!(kind, Kind::Profile | Kind::Sum);
+    let size = log_uniform(rng, if is_general { 2e-2 } else { 1e-3 }, 1.0);
     let full_scale = (unit * size * log_uniform(rng, 0.1, 10.0)).min(100.0);
     let rational = matches!(kind, Kind::Rational | Kind::Unstable | Kind::Hidden);
     let limited = sometimes(rng, choice.limited, if rational { 0.1 } else { 0.5 });
-    let full_scale = if limited || choice.saturates { full_scale } else { 10.0 * unit * size };
+    // The servo alone is certified for torques that never saturate, or for its scene's limit.
+    let unlimited = mode == Mode::Bare && !limited;
+    let full_scale = match (unlimited, limited || choice.saturates) {
+        (true, _) => 40.0 * unit * size,
+        (_, true) => full_scale,
+        _ => 10.0 * unit * size,
+    };
     let passivity = match kind {
         Kind::Overstated => Some(delta),
         _ => rng.random_bool(0.1).then_some(delta),
@@ -270,7 +353,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         timing: Timing { period, worst_period: (worst > 1.0).then_some(worst * period) },
         coupling,
         environment: Environment::FreeMode { residual: 0.0, delay: 0 },
-        latency: Latency::NONE,
+        latency: if lags { draw_latency(rng, mode, period) } else { Latency::NONE },
         torque_limit: limited.then(|| full_scale * log_uniform(rng, 0.05, 0.999)),
     };
     let mut face = 0.0;
@@ -312,6 +395,27 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             scene.environment = rational_with(rng, unit, least, kind == Kind::Unstable);
             Knob::Gain
         }
+        Kind::Profile => {
+            let delay = rng.random_range(least..=2);
+            let profile = profiles::draw(rng, unit, delta, delay);
+            scene.environment = Environment::Profile(profile);
+            if profile.modes.is_some() { Knob::Device } else { Knob::Gain }
+        }
+        Kind::Sum => {
+            let delay = rng.random_range(1..=2);
+            let profile = profiles::table(rng, 0.5 * unit, delta, delay);
+            let which = if latched { 0 } else { rng.random_range(0..3) };
+            let delay = rng.random_range(least..=2);
+            let beside = wall(rng, 0.5 * unit, delta, delay, size);
+            face = beside.face;
+            let residual = damping * rng.random_range(0.3..1.0);
+            scene.environment = Environment::Composed(Composed {
+                residual: (which > 0).then_some(residual),
+                wall: (which < 2).then_some(Wall { filter: None, ..beside }),
+                profile,
+            });
+            Knob::Gain
+        }
         Kind::Hidden => {
             let (hidden, plain) = hidden(rng, unit, least);
             scene.environment = hidden;
@@ -329,9 +433,18 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         let stiffness = standard * log_uniform(rng, 0.01, 0.7);
         scene.coupling = Coupling::Spring { stiffness };
     }
+    if mode == Mode::Bare {
+        // What it rests at is at rest.
+        if let Some(wall) = scene.environment.wall_mut() {
+            wall.face = if wall.one_sided { wall.face.abs().min(0.5 * size) } else { 0.0 };
+            face = wall.face;
+        }
+    }
     let exponent = rng.random_range(16..=22);
-    let exponent = if rng.random_bool(0.1) { rng.random_range(12..=22) } else { exponent };
-    let (counter, half, exponent) = if reach <= 5.0 * size && rng.random_bool(0.25) {
+    let exponent = if is_general { rng.random_range(23..=25) } else { exponent };
+    let exponent =
+        if !is_general && rng.random_bool(0.1) { rng.random_range(12..=22) } else { exponent };
+    let (counter, half, exponent) = if !is_general && reach <= 5.0 * size && rng.random_bool(0.25) {
         // Coarse enough for so few bits to follow it.
         let most = (4e3 / size).log2().max(10.0) as u32;
         (CounterWidth::Bits16, f64::from(1_u32 << 15), exponent.min(most))
@@ -340,7 +453,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     };
     let counts_per_turn = f64::from(1_u32 << exponent);
     // A device that its program takes for slower than it is stops for what it takes for a jump.
-    let largest_speed = if rng.random_bool(0.1) {
+    let largest_speed = if !is_general && rng.random_bool(0.1) {
         size / period * log_uniform(rng, 0.1, 3.0)
     } else {
         0.9 * half * TAU / counts_per_turn / (8.0 * period)
@@ -357,20 +470,28 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             w.one_sided = false;
         }
     }
-    let scale = taken_to_the_line(&scene, knob, format.format(), latched)?;
+    let mut actual = Actual::default();
+    if let Some(planted) = choice.planted {
+        planted.plant(rng, &mut scene, &mut actual);
+    }
+    let accepted = |scene: &Scene| {
+        accepted(scene, format.format(), mode)
+            && choice.planted.is_none_or(|planted| planted.accepts(scene, &actual))
+    };
+    let scale = taken_to_the_line(&scene, knob, accepted)?;
     let scene = scaled(&scene, knob, scale);
     let judged_as = judged_as.map(|environment| Scene { environment, ..scene });
     let other = rng.random_bool(0.3).then(|| another(rng, &scene, size, format)).flatten();
     let damping = if choice.bisected || choice.weakened.is_some() {
         let least = |scene: &Scene| least_damping(scene, format.format());
         let least = least(&scene)?.max(other.as_ref().and_then(least).unwrap_or(0.0));
-        let has = delta.min(damping);
+        let has = scene.device.passivity().min(scene.device.damping);
         Some(match choice.weakened {
             Some(share) => share * least,
             None => has - choice.taken * (has - least),
         })
     } else {
-        None
+        choice.planted.and_then(|planted| planted.damping(&scene, format.format()))
     };
     // The room is known only once the scene is certified.
     let injected = sometimes(rng, choice.injected, 0.15).then(|| 1.0 - log_uniform(rng, 1e-6, 0.9));
@@ -382,7 +503,8 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         transducers,
         rendering: RenderingOptions { fade, injection: None },
         format,
-        latched,
+        mode,
+        actual,
         size,
         reach: reach.max(face.abs()),
         taken: choice.taken,
@@ -512,6 +634,15 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
         }
         return scene;
     }
+    if knob == Knob::Device {
+        let Device { damping, passivity, .. } = &mut scene.device;
+        *damping /= by;
+        *passivity = passivity.map(|passivity| passivity / by);
+        if let Coupling::Spring { stiffness } = &mut scene.coupling {
+            *stiffness /= by;
+        }
+        return scene;
+    }
     let damping = scene.device.damping;
     match &mut scene.environment {
         Environment::FreeModeWall { residual, .. } | Environment::FreeMode { residual, .. }
@@ -520,7 +651,14 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
             // The cancelled damping is scaled.
             *residual = damping - (damping - *residual) * by;
         }
-        Environment::FreeMode { .. } | Environment::Stated(_) | Environment::Composed(_) => {}
+        Environment::FreeMode { .. } | Environment::Stated(_) => {}
+        Environment::Composed(sum) => {
+            profiles::scaled(&mut sum.profile, by);
+            if let Some(wall) = &mut sum.wall {
+                wall.stiffness *= by;
+                wall.damping *= by;
+            }
+        }
         Environment::DelayedSpring(wall)
         | Environment::DamperWall(wall)
         | Environment::FreeModeWall { wall, .. } => match knob {
@@ -533,7 +671,7 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
         }
         Environment::Profile(profile) => match knob {
             Knob::Damping => profile.damping *= by,
-            _ => profile.torque *= by,
+            _ => profiles::scaled(profile, by),
         },
     }
     scene
@@ -544,21 +682,29 @@ fn passes(scene: &Scene, format: Format) -> bool {
     PassivityProblem::in_format(scene, format).is_ok_and(|posed| posed.is_certified())
 }
 
-/// Whether a board takes a scene that the certificate has passed: where its torques are latched, it may ask
-/// for a little more. Scenes that no board takes are handled later.
-fn accepted(scene: &Scene, format: Format, latched: bool) -> bool {
-    passes(scene, format)
-        && !(latched
-            && matches!(
-                assess_in(scene, format).renders_in::<Latched>(scene),
-                Err(TimingError::ReadLate { .. })
-            ))
+/// Whether a mode takes a scene that the certificate has passed: where its torques are latched, a board may
+/// ask for a little more. Scenes without latency that no board takes are handled later.
+fn accepted(scene: &Scene, format: Format, mode: Mode) -> bool {
+    if !passes(scene, format) {
+        return false;
+    }
+    match mode {
+        Mode::Bare | Mode::Simultaneous => true,
+        Mode::Latched if !has_latency(scene) => !matches!(
+            assess_in(scene, format).renders_in::<Latched>(scene),
+            Err(TimingError::ReadLate { .. })
+        ),
+        Mode::Latched | Mode::AtPhase(_) => {
+            let assessment = assess_in(scene, format);
+            mode.timing().is_some_and(|timing| assessment.renders_at(scene, timing).is_ok())
+        }
+    }
 }
 
 /// The scale of a number at which a scene only just passes, to a millionth; any in a wide range
 /// where it passes throughout.
-fn taken_to_the_line(scene: &Scene, knob: Knob, format: Format, latched: bool) -> Option<f64> {
-    let passes = |by: f64| accepted(&scaled(scene, knob, by), format, latched);
+fn taken_to_the_line(scene: &Scene, knob: Knob, accepted: impl Fn(&Scene) -> bool) -> Option<f64> {
+    let passes = |by: f64| accepted(&scaled(scene, knob, by));
     let (mut inside, mut outside);
     if passes(1.0) {
         (inside, outside) = (1.0, 4.0);
@@ -620,8 +766,15 @@ fn another(rng: &mut impl Rng, scene: &Scene, size: f64, format: Numbers) -> Opt
             other = scaled(&other, Knob::Residual, log_uniform(rng, 0.1, 1.0));
         }
         Environment::Rational(_) => other = scaled(&other, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
-        Environment::Profile(profile) => profile.torque *= log_uniform(rng, 0.1, 1.0),
-        Environment::Stated(_) | Environment::Composed(_) => {}
+        Environment::Profile(profile) => {
+            let mode = f64::from(rng.random_range(1..11_u8));
+            match profile.selecting(mode) {
+                Some(selected) => *profile = selected,
+                None => profiles::scaled(profile, log_uniform(rng, 0.1, 1.0)),
+            }
+        }
+        Environment::Composed(_) => other = scaled(&other, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
+        Environment::Stated(_) => {}
     }
     passes(&other, format.format()).then_some(other)
 }

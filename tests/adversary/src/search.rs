@@ -10,18 +10,21 @@ use haptic_servo::certificate::{Assessment, certify_in};
 use haptic_servo::environment::Environment;
 use haptic_servo::number::Number;
 use haptic_servo::scene::Scene;
-use haptic_servo::servo::{Latched, OutputMode, PreparedServo, Simultaneous, SupportsTiming};
+use haptic_servo::servo::{
+    AtPhase, Latched, OutputMode, PreparedServo, Servo, Simultaneous, SupportsTiming,
+};
 use haptic_servo::servo_loop::{Mailbox, Options};
 use haptic_servo::tuning::Tunable;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use crate::coverage::Coverage;
 use crate::hardware::Board;
 use crate::normalized_scene::NormalizedScene;
 use crate::plan::Plan;
 use crate::report::Counterexample;
-use crate::run::{Machine, Outcome, Output};
-use crate::scenes::{self, Choice, Numbers, RandomScene};
+use crate::run::{Control, Machine, Outcome};
+use crate::scenes::{self, Choice, Mode, Numbers, RandomScene};
 
 /// How long a search is, and what it draws.
 #[derive(Clone, Copy, Debug)]
@@ -34,8 +37,6 @@ pub struct Search {
     pub time: Option<Duration>,
     /// The drawn scenes.
     pub choice: Choice,
-    /// When codes reach the motor, where that is not as the mode has it.
-    pub output: Option<Output>,
     /// After so many counterexamples it ends.
     pub enough: usize,
     /// How thoroughly each scene is searched.
@@ -77,6 +78,8 @@ pub struct Found {
     pub largest: f64,
     /// The largest rate of any run; see [`Outcome::rate`].
     pub rate: f64,
+    /// What was drawn of what kind.
+    pub coverage: Coverage,
     /// Runs that refute a certificate.
     pub counterexamples: Vec<Counterexample>,
 }
@@ -90,6 +93,7 @@ impl Found {
         self.ticks += other.ticks;
         self.largest = self.largest.max(other.largest);
         self.rate = self.rate.max(other.rate);
+        self.coverage.add(&other.coverage);
         self.counterexamples.extend(other.counterexamples);
     }
 }
@@ -114,7 +118,6 @@ pub trait Task {
         self,
         machine: Machine<N, M>,
         normalized: NormalizedScene,
-        program: &Program<Environment>,
     ) -> Self::Result
     where
         Environment: Tunable<N> + SupportsTiming<M>;
@@ -133,26 +136,63 @@ pub enum Unjudged {
 ///
 /// # Errors
 /// The reason.
-pub fn booted<T: Task>(
-    drawn: &RandomScene,
-    output: Option<Output>,
-    task: T,
-) -> Result<T::Result, Unjudged> {
-    match (drawn.format, drawn.latched) {
-        (Numbers::F32, true) => with::<f32, Latched, T>(drawn, output, task),
-        (Numbers::F32, false) => with::<f32, Simultaneous, T>(drawn, output, task),
-        (Numbers::F64, true) => with::<f64, Latched, T>(drawn, output, task),
-        (Numbers::F64, false) => with::<f64, Simultaneous, T>(drawn, output, task),
-        (Numbers::Q24, true) => with::<I8F24, Latched, T>(drawn, output, task),
-        (Numbers::Q24, false) => with::<I8F24, Simultaneous, T>(drawn, output, task),
-        (Numbers::Q20, true) => with::<I12F20, Latched, T>(drawn, output, task),
-        (Numbers::Q20, false) => with::<I12F20, Simultaneous, T>(drawn, output, task),
+pub fn booted<T: Task>(drawn: &RandomScene, task: T) -> Result<T::Result, Unjudged> {
+    match (drawn.format, drawn.mode) {
+        (Numbers::F32, Mode::AtPhase(phase)) => at_phase::<f32, T>(drawn, phase, task),
+        (Numbers::Q24, Mode::AtPhase(phase)) => at_phase::<I8F24, T>(drawn, phase, task),
+        (_, Mode::AtPhase(_)) => Err(Unjudged::Refused),
+        (Numbers::F32, Mode::Latched) => on_board::<f32, Latched, T>(drawn, task),
+        (Numbers::F32, Mode::Simultaneous) => on_board::<f32, Simultaneous, T>(drawn, task),
+        (Numbers::F64, Mode::Latched) => on_board::<f64, Latched, T>(drawn, task),
+        (Numbers::F64, Mode::Simultaneous) => on_board::<f64, Simultaneous, T>(drawn, task),
+        (Numbers::Q24, Mode::Latched) => on_board::<I8F24, Latched, T>(drawn, task),
+        (Numbers::Q24, Mode::Simultaneous) => on_board::<I8F24, Simultaneous, T>(drawn, task),
+        (Numbers::Q20, Mode::Latched) => on_board::<I12F20, Latched, T>(drawn, task),
+        (Numbers::Q20, Mode::Simultaneous) => on_board::<I12F20, Simultaneous, T>(drawn, task),
+        (Numbers::F32, Mode::Bare) => alone::<f32, T>(drawn, task),
+        (Numbers::F64, Mode::Bare) => alone::<f64, T>(drawn, task),
+        (Numbers::Q24, Mode::Bare) => alone::<I8F24, T>(drawn, task),
+        (Numbers::Q20, Mode::Bare) => alone::<I12F20, T>(drawn, task),
     }
 }
 
-fn with<N: Number, M: OutputMode, T: Task>(
+/// A board's type has its phase.
+fn at_phase<N: Number, T: Task>(
     drawn: &RandomScene,
-    output: Option<Output>,
+    phase: u32,
+    task: T,
+) -> Result<T::Result, Unjudged>
+where
+    Environment: Tunable<N>,
+{
+    const PHASES: [u32; 3] = Mode::PHASES;
+    match phase {
+        phase if phase == PHASES[0] => on_board::<N, AtPhase<{ PHASES[0] }>, T>(drawn, task),
+        phase if phase == PHASES[1] => on_board::<N, AtPhase<{ PHASES[1] }>, T>(drawn, task),
+        phase if phase == PHASES[2] => on_board::<N, AtPhase<{ PHASES[2] }>, T>(drawn, task),
+        _ => Err(Unjudged::Refused),
+    }
+}
+
+/// The servo alone.
+fn alone<N: Number, T: Task>(drawn: &RandomScene, task: T) -> Result<T::Result, Unjudged>
+where
+    Environment: Tunable<N>,
+{
+    certify_quickly(&drawn.scene, drawn.format).ok_or(Unjudged::Refused)?;
+    let certified = drawn.scene.certify_in(N::FORMAT).map_err(|_| Unjudged::Refused)?;
+    let servo = Servo::<_, N>::new(&certified, &drawn.transducers);
+    let servo = servo.map_err(|_| Unjudged::Refused)?;
+    let mut drawn = drawn.clone();
+    (drawn.other, drawn.rendering.injection) = (None, None);
+    let normalized = NormalizedScene::of(&drawn, &[*certified.assessment()], N::FORMAT);
+    let normalized = normalized.ok_or(Unjudged::Unbounded)?;
+    let machine = Machine::<N, Simultaneous>::new(Control::Bare(servo), Vec::new());
+    Ok(task.with(machine, normalized))
+}
+
+fn on_board<N: Number, M: OutputMode, T: Task>(
+    drawn: &RandomScene,
     task: T,
 ) -> Result<T::Result, Unjudged>
 where
@@ -198,8 +238,8 @@ where
     let (requests, _inbox) = mailbox.split();
     let Booted { servo_loop, .. } =
         boot::<_, N, M>(&program, &mut board, &requests).map_err(|_| Unjudged::Refused)?;
-    let machine = Machine::new(servo_loop, sets, output.unwrap_or(Output::of::<M>()));
-    Ok(task.with(machine, normalized, &program))
+    let machine = Machine::new(Control::Board(servo_loop), sets);
+    Ok(task.with(machine, normalized))
 }
 
 fn certify_quickly(scene: &Scene, format: Numbers) -> Option<()> {
@@ -231,17 +271,18 @@ impl Task for Climb<'_> {
         mut self,
         machine: Machine<N, M>,
         normalized: NormalizedScene,
-        _: &Program<Environment>,
     ) -> Found
     where
         Environment: Tunable<N> + SupportsTiming<M>,
     {
         let effort = self.search.effort;
         let mut found = Found { accepted: 1, largest: -1.0, rate: -1.0, ..Found::default() };
+        found.coverage.scene(self.drawn);
         let rng = &mut self.rng;
         let run = |found: &mut Found, plan: &Plan, audited: bool| -> Outcome {
             let outcome = machine.run(&normalized, plan, audited);
             found.runs += 1;
+            found.coverage.run(plan);
             found.ticks += u64::from(outcome.periods);
             outcome
         };
@@ -306,7 +347,6 @@ impl Task for Climb<'_> {
                     drawn: self.drawn.clone(),
                     normalized,
                     plan,
-                    output: machine.output,
                     outcome,
                 });
             }
@@ -330,7 +370,7 @@ impl Search {
     pub fn climb(&self, number: u64, drawn: &RandomScene, rng: ChaCha8Rng) -> Found {
         let climb = Climb { search: self, number, drawn, rng };
         let nothing = Found { largest: -1.0, rate: -1.0, ..Found::default() };
-        match booted(drawn, self.output, climb) {
+        match booted(drawn, climb) {
             Ok(found) => Found { scenes: 1, ..found },
             Err(Unjudged::Refused) => Found { scenes: 1, ..nothing },
             Err(Unjudged::Unbounded) => Found { scenes: 1, unbounded: 1, ..nothing },

@@ -1,6 +1,7 @@
 //! A host's side of a session, with a servo that runs behind it.
 
 mod floods;
+mod interrupted;
 
 use std::boxed::Box;
 use std::string::{String, ToString};

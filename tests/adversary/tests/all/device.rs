@@ -48,7 +48,7 @@ fn a_held_device_moves_as_the_reference_does() {
         held.step(0.7).advance(&mut pieces);
         let (whole, start) = (held.audited(1.0), x);
         let taken = whole.taken(&x);
-        let squared = whole.advance(&mut x);
+        let (squared, _) = whole.advance(&mut x);
         let size = 1.0 + expected.amax();
         for moved in [x, pieces] {
             let error = (absolute(&moved) - &expected).amax();

@@ -2,5 +2,6 @@
 //! `cargo test -p adversary --test all NAME::` runs those of one file.
 
 mod device;
+mod planted;
 mod search;
 mod teeth;

@@ -17,15 +17,14 @@ fn no_hand_takes_energy_out_of_a_certified_scene() {
     // A number of scenes, not a time: the same ones on every machine.
     let search = Search {
         seed: number("ADVERSARY_SEED").unwrap_or(1),
-        scenes: number("ADVERSARY_SCENES").unwrap_or(50_000),
+        scenes: number("ADVERSARY_SCENES").unwrap_or(8000),
         time: None,
         choice: Choice::ANY,
-        output: None,
         enough: 20,
         effort: Effort::USUAL,
     };
     let found = search.run();
-    println!("{found}");
+    println!("{found}\n{}", found.coverage);
     for counterexample in &found.counterexamples {
         println!("{counterexample}\n");
     }
@@ -57,6 +56,10 @@ fn no_scene_has_more_damping_to_spare_than_could_be_taken_from_it() {
         rng.set_stream(number);
         let Some(drawn) = scenes::draw(&mut rng, &Choice::ANY) else { continue };
         let (scene, format) = (&drawn.scene, drawn.format.format());
+        // A profile is not linear, and the certificate's least damping is not the least there is.
+        if scene.environment.profile().is_some() {
+            continue;
+        }
         let Some(least) = scenes::least_damping(&linear(scene), format) else { continue };
         accepted += 1;
         let stated = margin(&assess_in(scene, format), scene, None);

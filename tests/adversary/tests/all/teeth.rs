@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
+use adversary::mode::Actual;
 use adversary::normalized_scene::NormalizedScene;
-use adversary::plan::{Pattern, Plan, REQUESTS};
+use adversary::plan::{Jitter, Pattern, Plan, REQUESTS};
 use adversary::refuted_scenes::{self, RefutedScene};
-use adversary::run::{Machine, Outcome, Output};
-use adversary::scenes::{Choice, Kind, Numbers, RandomScene};
+use adversary::run::{Machine, Outcome};
+use adversary::scenes::{Choice, Kind, Mode, Numbers, RandomScene};
 use adversary::search::{Effort, Search, Task, booted};
-use haptic_servo::boot::Program;
 use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::number::Number;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
@@ -30,7 +30,6 @@ impl Task for Once {
         self,
         machine: Machine<N, M>,
         normalized: NormalizedScene,
-        _: &Program<Environment>,
     ) -> Outcome
     where
         Environment: Tunable<N> + SupportsTiming<M>,
@@ -70,6 +69,8 @@ fn springy(stiffness: f64) -> Plan {
         armed_by_boot: true,
         pattern: Pattern::AllOnTime,
         delay: 0.0,
+        jitter: Jitter::None,
+        within: [0.0; 2],
         requests: [None; REQUESTS],
         again: false,
         periods: 65_536,
@@ -85,43 +86,24 @@ fn springy(stiffness: f64) -> Plan {
 fn a_torque_that_comes_early_shakes_a_springy_finger() {
     for (one_sided, torque_limit) in [(false, None), (false, Some(1.0)), (true, Some(1.0))] {
         let scene = readme(one_sided, torque_limit);
-        let mut drawn = RandomScene::of(Kind::Wall, scene, Numbers::F32, true, 0.1);
+        let mut drawn = RandomScene::of(Kind::Wall, scene, Numbers::F32, Mode::Latched, 0.1);
         // The device is as it was declared.
         drawn.taken = 0.0;
         let mut shakes = 0;
         for stiffness in [20.0, 35.0, 60.0, 100.0, 150.0, 205.0] {
             let plan = springy(stiffness);
-            let run = |output| booted(&drawn, output, Once { plan: plan.clone() }).unwrap();
-            let (early, latched) = (run(Some(Output::Early(0.005))), run(None));
+            let run = |delay| {
+                let actual = Actual { delay, ..Actual::default() };
+                let drawn = RandomScene { actual, ..drawn.clone() };
+                booted(&drawn, Once { plan: plan.clone() }).unwrap()
+            };
+            let (early, latched) = (run(Some(0.005)), run(None));
             assert!(!latched.is_violation(), "{stiffness} N m/rad, as certified: {latched:?}");
             shakes += u32::from(early.score > 0.0);
             println!("{stiffness} N m/rad: {:.3e}, latched {:.3e}", early.score, latched.score);
         }
         assert!(shakes > 0, "one-sided {one_sided}, limit {torque_limit:?}: nothing shook");
     }
-}
-
-/// The search itself finds that, too.
-#[test]
-fn the_search_finds_torques_that_come_early() {
-    let search = Search {
-        seed: 1,
-        scenes: 2000,
-        time: None,
-        choice: Choice {
-            kind: Some(Kind::Wall),
-            latched: Some(true),
-            worst_period: Some(false),
-            taken: 0.0,
-            ..Choice::ANY
-        },
-        output: Some(Output::Early(0.005)),
-        enough: 20,
-        effort: Effort::USUAL,
-    };
-    let found = search.run();
-    println!("{found} counterexamples={}", found.counterexamples.len());
-    assert!(found.counterexamples.len() >= 20);
 }
 
 /// A device with a twentieth less damping than its scene needs, by the certificate's own account,
@@ -140,11 +122,12 @@ fn a_device_with_less_damping_than_its_scene_needs_gives_energy_away() {
             choice: Choice {
                 kind: Some(kind),
                 worst_period: Some(false),
+                latency: Some(false),
+                bare: Some(false),
                 weakened: Some(0.95),
                 saturates: false,
                 ..Choice::ANY
             },
-            output: None,
             enough: usize::MAX,
             effort: Effort::USUAL,
         };
@@ -155,20 +138,19 @@ fn a_device_with_less_damping_than_its_scene_needs_gives_energy_away() {
 }
 
 /// What becomes of a scene that shook once: refused, or not to be shaken.
-fn judge(refuted: &RefutedScene, format: Numbers, latched: bool) -> Result<&'static str, String> {
+fn judge(refuted: &RefutedScene, format: Numbers, mode: Mode) -> Result<&'static str, String> {
     let scene = refuted.scene;
     let search = Search {
         seed: 3,
         scenes: 1,
         time: None,
         choice: Choice::ANY,
-        output: None,
         enough: 1,
         effort: Effort { drawn: 200, climbed: 200, ..Effort::USUAL },
     };
     // Against the torque of a DAC that saturates rarely, sometimes and nearly always.
     for full_scale in [4.0, 1.0, 20.0] {
-        let mut drawn = RandomScene::of(Kind::Wall, scene, format, latched, 0.1);
+        let mut drawn = RandomScene::of(Kind::Wall, scene, format, mode, 0.1);
         drawn.judged_as = refuted.judged_as;
         if scene.torque_limit.is_none() {
             drawn.transducers.full_scale_torque *= 0.25 * full_scale;
@@ -189,10 +171,10 @@ fn scenes_that_shook_once_are_refused_or_come_to_rest() {
     let mut shook = Vec::new();
     for refuted in refuted_scenes::all() {
         for format in [Numbers::F32, Numbers::F64, Numbers::Q24] {
-            for latched in [false, true] {
-                let judged = judge(&refuted, format, latched);
+            for mode in [Mode::Simultaneous, Mode::Latched] {
+                let judged = judge(&refuted, format, mode);
                 let text = judged.as_ref().map_or("SHAKES", |text| text);
-                println!("{}, {format:?}, latched {latched}: {text}", refuted.name);
+                println!("{}, {format:?}, {}: {text}", refuted.name, mode.name());
                 shook.extend(judged.err().map(|why| format!("{}: {why}", refuted.name)));
             }
         }

@@ -1,0 +1,156 @@
+//! What a drawn scene runs on, and how that may differ from what the scene states.
+
+use haptic_servo::latency::Latency;
+use haptic_servo::output_timing::{OutputTiming, READ_WITHIN};
+use haptic_servo::scene::{Coupling, Scene, TimeRange};
+use rand::Rng;
+use tests::scenes::log_uniform;
+
+/// What runs a scene's servo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// A board's loop whose codes are latched.
+    Latched,
+    /// A board's loop whose codes are there at their counts.
+    Simultaneous,
+    /// A board's loop whose codes are put out so many nanoseconds after their counts.
+    AtPhase(u32),
+    /// The servo alone, whose codes are put out after the scene's output delay: for scenes that no board
+    /// renders.
+    Bare,
+}
+
+impl Mode {
+    /// The phases in nanoseconds of which there are boards.
+    pub const PHASES: [u32; 3] = [10_000, 60_000, 250_000];
+
+    /// The same as the certificate has it; `None` without a board.
+    pub const fn timing(self) -> Option<OutputTiming> {
+        match self {
+            Self::Latched => Some(OutputTiming::Latched),
+            Self::Simultaneous => Some(OutputTiming::Simultaneous),
+            Self::AtPhase(nanoseconds) => Some(OutputTiming::AtPhase(nanoseconds)),
+            Self::Bare => None,
+        }
+    }
+
+    /// Whole periods from a count to its code beside the scene's output delay.
+    pub const fn samples(self) -> f64 {
+        if matches!(self, Self::Latched) { 1.0 } else { 0.0 }
+    }
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Latched => "latched",
+            Self::Simultaneous => "simultaneous",
+            Self::AtPhase(_) => "at a phase",
+            Self::Bare => "servo alone",
+        }
+    }
+}
+
+/// What differs from what the scene states: nothing, unless a fault is planted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Actual {
+    /// The latency.
+    pub latency: Option<Latency>,
+    /// The time from a count to its code, in periods.
+    pub delay: Option<f64>,
+    /// Whether the servo does not know of late ticks, so that the motor keeps a stale code.
+    pub unreported: bool,
+}
+
+/// Whether a scene's torques lag, or its coupling has memory.
+pub fn has_latency(scene: &Scene) -> bool {
+    !scene.latency.is_none() || scene.coupling == Coupling::Matched
+}
+
+/// A time that is exactly known, or now and then in a range.
+fn about(rng: &mut impl Rng, time: f64) -> TimeRange {
+    if rng.random_bool(0.2) {
+        TimeRange::between(time, time * log_uniform(rng, 1.001, 1.4))
+    } else {
+        TimeRange::exactly(time)
+    }
+}
+
+/// A part of the largest jitter, often most of it.
+fn share(rng: &mut impl Rng) -> f64 {
+    let least = if rng.random_bool(0.6) { 0.2 } else { 1e-3 };
+    log_uniform(rng, least, 1.0)
+}
+
+/// Draws the latency of a scene with this period in s, for a mode.
+pub fn draw_latency(rng: &mut impl Rng, mode: Mode, period: f64) -> Latency {
+    match mode {
+        Mode::AtPhase(nanoseconds) => at_phase(rng, f64::from(nanoseconds) / 1e9, period),
+        Mode::Latched => latched(rng, period),
+        Mode::Simultaneous | Mode::Bare => any(rng, period),
+    }
+}
+
+fn at_phase(rng: &mut impl Rng, phase: f64, period: f64) -> Latency {
+    let mut latency = Latency::delayed(phase);
+    latency.output_jitter = (phase * share(rng)).clamp(READ_WITHIN, phase);
+    if rng.random_bool(0.5) {
+        let lag = period * log_uniform(rng, 0.01, 1.0);
+        latency.actuator_lag = about(rng, lag);
+    }
+    if rng.random_bool(0.15) {
+        latency.sensor_lag = TimeRange::exactly(period * log_uniform(rng, 0.02, 0.8));
+    }
+    latency
+}
+
+fn latched(rng: &mut impl Rng, period: f64) -> Latency {
+    let lag = period * log_uniform(rng, 0.02, 1.0);
+    let mut latency = Latency::NONE;
+    if rng.random_bool(0.35) {
+        latency = Latency::sampled(rng.random_range(1..=4), lag, period);
+        latency.output_jitter =
+            if rng.random_bool(0.5) { period * log_uniform(rng, 1e-3, 0.2) } else { 0.0 };
+        return latency;
+    }
+    latency.actuator_lag = about(rng, lag);
+    latency.output_jitter = (0.4 * period * share(rng)).max(READ_WITHIN);
+    if rng.random_bool(0.15) {
+        latency.sensor_lag = TimeRange::exactly(period * log_uniform(rng, 0.02, 0.8));
+    }
+    latency
+}
+
+fn any(rng: &mut impl Rng, period: f64) -> Latency {
+    let lag = period * log_uniform(rng, 0.01, 1.5);
+    if rng.random_bool(0.15) {
+        let updates = rng.random_range(1..=4);
+        let mut latency = Latency::sampled(updates, lag, period);
+        let delay = f64::from(rng.random_range(0..=2 * updates)) * period / f64::from(updates);
+        latency.output_delay = TimeRange::exactly(delay);
+        latency.output_jitter =
+            if rng.random_bool(0.4) { delay * log_uniform(rng, 1e-3, 0.5) } else { 0.0 };
+        return latency;
+    }
+    let mut latency = Latency::NONE;
+    if rng.random_bool(0.8) {
+        let delay = period * log_uniform(rng, 0.01, 1.8);
+        latency.output_delay = about(rng, delay);
+        if rng.random_bool(0.7) {
+            let jitter = delay * share(rng);
+            latency.output_jitter = jitter.min(0.6 * period);
+        }
+    }
+    if rng.random_bool(0.35) {
+        latency.actuator_lag = about(rng, lag);
+    }
+    if rng.random_bool(0.2) {
+        let lag = period * log_uniform(rng, 0.02, 1.0);
+        latency.sensor_lag = about(rng, lag);
+    }
+    if latency.actuator_lag.is_zero() && rng.random_bool(0.15) {
+        let begin = period * rng.random_range(0.0..0.5);
+        latency.actuator_response =
+            TimeRange::between(begin, begin + period * rng.random_range(0.01..0.5));
+    }
+    latency
+}
