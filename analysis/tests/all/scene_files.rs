@@ -152,8 +152,9 @@ fn a_bad_time_is_named_with_its_line_value_and_bound() {
         device(&both, "6:21", &["stands beside `device.actuator_lag` or `device.sensor_lag`"]);
     }
     let least = "more than the least `servo.output_delay` = 0.000004 s";
-    servo("output_delay = [4e-6, 9e-6]\noutput_jitter = 5e-6", "8:17", &["5e-6", least]);
-    servo("output_jitter = 5e-6", "7:17", &["`servo.output_delay` = 0 s"]);
+    let late = format!("{least} and `servo.period`");
+    servo("output_delay = [4e-6, 9e-6]\noutput_jitter = 1.1e-3", "8:17", &["1.1e-3", &late]);
+    servo("output_jitter = 1.1e-3", "7:17", &["`servo.output_delay` = 0 s and"]);
     assert!(
         toml(&WALL.replacen("period = 0.001", "period = 0.001\noutput_delay = 0.008", 1)).is_ok()
     );

@@ -148,12 +148,12 @@ fn latency_of(
     let actuator_lag = within(&key::ACTUATOR_LAG, &device.actuator_lag, LONGEST_LAG);
     let sensor_lag = within(&key::SENSOR_LAG, &device.sensor_lag, LONGEST_LAG);
     let actuator_response = within(&key::ACTUATOR_RESPONSE, &device.actuator_response, 1.0);
-    let largest = match (&output_delay, &actuator_lag) {
-        (&Ok(output_delay), &Ok(actuator_lag)) => {
-            Latency { output_delay, actuator_lag, ..Latency::NONE }.largest_jitter(is_late, period)
+    let largest = match &output_delay {
+        &Ok(output_delay) => {
+            Latency { output_delay, ..Latency::NONE }.largest_jitter(is_late, period)
         }
-        // If the times could not be read, any jitter is small enough.
-        _ => f64::INFINITY,
+        // If the time could not be read, any jitter is small enough.
+        Err(_) => f64::INFINITY,
     };
     let output_jitter = jitter_of(top, servo, largest);
     let updates = &device.actuator_updates;
@@ -177,8 +177,9 @@ fn jitter_of(top: &Section<'_>, servo: &Servo, largest: f64) -> Read<f64> {
         return Ok(*value);
     }
     let least = servo.output_delay.as_ref().map_or(0.0, |delay| delay.value.least);
+    let late = if largest > least { format!(" and `{}`", key::PERIOD.path) } else { String::new() };
     let reason = format!(
-        "is more than the least `{}` = {least} s: no torque comes before its count",
+        "is more than the least `{}` = {least} s{late}: no torque comes before its count",
         key::OUTPUT_DELAY.path
     );
     Err(top.conflict(&key::OUTPUT_JITTER, span.clone(), reason))
