@@ -22,7 +22,7 @@ pub enum Rule {
     /// Theory, section 4.1: linear scenes.
     Exact,
     /// Equations 17 to 19 with the nonlinear bound, or without a coupling the index of a static law at the
-    /// port: one-sided or limited scenes, and linear ones that the exact rule does not cover.
+    /// port: one-sided or limited scenes, and linear scenes beyond the exact rule.
     Nonlinear,
 }
 
