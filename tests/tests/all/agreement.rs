@@ -78,8 +78,7 @@ fn with_the_servo(experiment: &Experiment) -> Option<[f64; 2]> {
     };
     let mut servo: Servo<_, f64> = Servo::new(&scene.certify().ok()?, &transducers).ok()?;
     let tick = experiment.tick(Integration::default()).ok()?;
-    let mut x: DVector<f64> =
-        experiment.plant.state_at(0.01, 1.0).resize_vertically(tick.transition.nrows(), 0.0);
+    let mut x: DVector<f64> = experiment.machine().state_at(0.01, 1.0);
     let mut torques: VecDeque<f64> = std::iter::repeat_n(0.0, tick.whole + 2).collect();
     let mut speeds = Vec::with_capacity(TICKS);
     for _ in 0..TICKS {

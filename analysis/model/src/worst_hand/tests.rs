@@ -151,7 +151,7 @@ fn a_device_that_is_not_collocated_oscillates_under_a_certified_spring() {
     assert!(search(&scene, &apart).unwrap().oscillates);
 }
 
-/// Nothing holds the position of a pure damper, whose eigenvalue 1 doubles move to 1 + 3.5e-9 in a heavy hand.
+/// Nothing holds the position of a pure damper: doubles move its eigenvalue 1 to 1 + 3.5e-9 in a heavy hand.
 #[test]
 fn a_position_that_nothing_holds_does_not_oscillate() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
