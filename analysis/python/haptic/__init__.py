@@ -130,9 +130,10 @@ def simulate(scene: Scene, *, method: str = "exact", substeps: int = 1) -> Motio
 def stability(scene: Scene, *, method: str = "exact", substeps: int = 1) -> dict[str, Any]:
     """Judge whether a small motion dies away on this device in the hand of the table ``human``.
 
-    Returns the object of ``haptic stability --json``: ``verdict`` (stable, unstable, marginal),
-    ``spectral_radius`` and ``critical_stiffness`` in N m/rad, None where there is none. This is about one
-    hand; the certificate is about all passive hands.
+    Returns the object of ``haptic stability --json``: ``verdict`` (stable, unstable, marginal, undecided),
+    ``spectral_radius`` with ``spectral_radius_enclosure``, and ``critical_stiffness`` and both ends
+    ``stable_stiffness`` of the stable range in N m/rad, None where there is none. This is about one hand; the
+    certificate is about all passive hands.
     """
     return _object(_native.stability(_source(scene), method, substeps))
 

@@ -2,6 +2,7 @@
 //! an emulator others compute. `cargo test -p tests --test all NAME::` runs those of one file.
 
 mod actuator_response;
+mod agreement;
 mod bits;
 mod boards;
 mod bridge;

@@ -23,7 +23,7 @@ const SAMPLES: usize = 4_000;
 
 /// A scene of any environment and coupling, some one-sided or limited, with a longest period, a
 /// passivity that may exceed the damping, or a chain for a device.
-fn drawn(rng: &mut ChaCha8Rng) -> SceneFile {
+pub(super) fn drawn(rng: &mut ChaCha8Rng) -> SceneFile {
     let mut scene = match rng.random_range(0..5) {
         0 | 1 => scenes::wall(rng),
         2 | 3 => scenes::free(rng),
@@ -80,7 +80,7 @@ fn drawn(rng: &mut ChaCha8Rng) -> SceneFile {
 
 /// Whether nothing pulls a device anywhere that is displaced and at rest: the only certified loops
 /// that are not asymptotically stable are these, and theirs is the eigenvalue 1 of the position.
-fn stays_anywhere(scene: &Scene) -> bool {
+pub(super) fn stays_anywhere(scene: &Scene) -> bool {
     match scene.environment {
         Environment::DelayedSpring(wall)
         | Environment::DamperWall(wall)
@@ -94,7 +94,7 @@ fn stays_anywhere(scene: &Scene) -> bool {
 }
 
 /// Largest magnitude among some samples.
-fn largest(samples: &[f64]) -> f64 {
+pub(super) fn largest(samples: &[f64]) -> f64 {
     samples.iter().fold(0.0, |largest: f64, sample| largest.max(sample.abs()))
 }
 

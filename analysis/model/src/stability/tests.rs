@@ -169,3 +169,45 @@ fn the_crossing_is_the_first_that_a_scan_sees() {
         }
     }
 }
+
+fn of_text(text: &str) -> Experiment {
+    use crate::file::{Format, Purpose, parse_for};
+    let file = parse_for(Purpose::Simulate, "", Format::Json, text);
+    Experiment::at_rest(&file.unwrap_or_else(|why| panic!("{why}")))
+}
+
+/// A band-pass of order 4 from 2 to 8 Hz at 1 kHz: of its clustered poles eigenvalues in doubles keep three
+/// digits. The radius was computed from the same numbers at 80 digits by the roots of the polynomial.
+#[test]
+fn the_radius_of_clustered_poles_is_enclosed() {
+    let experiment = of_text(
+        r#"{"name": "band-pass", "device": {"inertia": 0.0001, "damping": 0.02},
+        "servo": {"period": 0.001}, "environment": {"type": "rational", "numerator":
+        [2.4046232418060113e-08, 0.0, -9.618492967224045e-08, 0.0, 1.4427739450836068e-07, 0.0,
+        -9.618492967224045e-08, 0.0, 2.4046232418060113e-08], "denominator": [1.0, -7.898994631738863,
+        27.30046716057528, -53.923584135572014, 66.57573592027406, -52.611633221006294, 25.988205357868814,
+        -7.336374597210256, 0.9061781468094346], "delay": 0},
+        "human": {"inertia": 0.0, "damping": 0.001, "stiffness": 0.5}}"#,
+    );
+    let found = judge(&experiment, Integration::default()).unwrap();
+    assert_eq!(found.verdict, StabilityVerdict::Stable);
+    let [low, high] = found.spectral_radius_enclosure;
+    assert!(low <= 0.998_460_940_873_483_1 && high >= 0.998_460_940_873_483, "{low} {high}");
+    assert!(high - low < 1e-14);
+}
+
+/// A negative damper that only a spring holds: both ends were computed at 80 digits by bisection.
+#[test]
+fn both_ends_of_the_stable_stiffnesses_are_given() {
+    let experiment = of_text(
+        r#"{"name": "two", "device": {"inertia": 0.15538308190117617, "damping": 3.828832126199168},
+        "servo": {"period": 0.001}, "environment": {"type": "damper-wall", "stiffness": 3224.0618253567386,
+        "damping": -71.92385590529695, "delay": 0, "filter": 0.99}}"#,
+    );
+    let found = judge(&experiment, Integration::default()).unwrap();
+    let Some([Some(from), Some(to)]) = found.stable_stiffness else { panic!("{found:?}") };
+    near(from, 980.155_891_898_41, 1e-6);
+    near(to, 8_103.979_412_043, 1e-5);
+    assert_eq!(found.critical_stiffness, Some(to));
+    near(found.spectral_radius, 0.993_203_861_408_720_8, 1e-15);
+}

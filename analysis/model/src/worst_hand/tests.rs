@@ -150,3 +150,20 @@ fn a_device_that_is_not_collocated_oscillates_under_a_certified_spring() {
     let apart = chain.with_encoder(EncoderPlace::Hand);
     assert!(search(&scene, &apart).unwrap().oscillates);
 }
+
+/// Nothing holds the position of a pure damper: doubles move its eigenvalue 1 to 1 + 3.5e-9 in a heavy hand.
+#[test]
+fn a_position_that_nothing_holds_does_not_oscillate() {
+    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+    for period in [1e-4, 5e-5] {
+        let damper = Scene {
+            device,
+            timing: Timing { period, worst_period: None },
+            ..scene(0.0, 0.1, 1, Coupling::Rigid)
+        };
+        assert!(certify(&damper).is_ok());
+        let chain = Chain::rigid(device.inertia, device.damping).unwrap();
+        let found = search(&damper, &chain).unwrap();
+        assert!(!found.oscillates && found.lighter.is_none(), "{found:?}");
+    }
+}
