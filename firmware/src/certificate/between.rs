@@ -26,7 +26,7 @@
 //! `K T be / (K T - 2 be)` in its magnitude where damping is added. If no damping is added, all of them are
 //! also convex in `T`.
 //!
-//! **Static laws at the port** (equation 54). The index is the norm of a sum of operators, one for each slope
+//! **Static laws at the port** (equation 59). The index is the norm of a sum of operators, one for each slope
 //! and damper, and convex in them.
 //!
 //! **Torque profiles** (equations 46 to 48). The bound grows with each slope and with the damper's magnitude,

@@ -389,7 +389,7 @@ const fn wall_bound(w: &Wall, n: &LoopIntervals) -> Interval {
 }
 
 /// The same for a wall on both sides whose velocity is filtered: `(2 n - 1) B (1 - a) / (1 + a)` in place of
-/// `abs(B)`, and 0 without delay (equation 56). `None` if the wall or the filter is another.
+/// `abs(B)`, and 0 without delay (equation 61). `None` if the wall or the filter is another.
 const fn filtered_bound(w: &Wall, n: &LoopIntervals) -> Option<Interval> {
     let Washout { gain, pole } = damper(w, n);
     let is_filter = gain.lo() >= 0.0 && pole.lo() >= 0.0 && pole.hi() < 1.0;

@@ -70,7 +70,7 @@ impl End {
     }
 }
 
-/// One end of [`IndexAtPort::sufficient`] (equation 54; for a delay alone, equation 48).
+/// One end of [`IndexAtPort::sufficient`] (equation 59; for a delay alone, equation 48).
 #[inline(never)]
 pub(super) const fn needed_at_port<E: EnvironmentModel>(
     scene: &Scene,
@@ -234,7 +234,7 @@ impl Law {
     }
 }
 
-/// The ages of a torque in addition to the whole samples of its law (equation 55): the mean of the folded
+/// The ages of a torque in addition to the whole samples of its law (equation 60): the mean of the folded
 /// envelope of the ages and its variance over a period (theory, section 16.1), scaled to the worst period.
 #[derive(Clone, Copy)]
 struct Age {

@@ -151,7 +151,7 @@ fn indices_add() {
     }
 }
 
-/// The index at the port: `c = T (L/2 + (n + e) M)` of both slopes, and their variance (equation 54).
+/// The index at the port: `c = T (L/2 + (n + e) M)` of both slopes, and their variance (equation 59).
 #[test]
 fn without_a_coupling_the_springs_add() {
     let (n, e) = (1.0, 0.3);
