@@ -43,7 +43,7 @@ impl<const WORDS: usize> Published<WORDS> {
         may_interrupt();
         // The second load of the version after all words.
         fence(Ordering::Acquire);
-        let is_whole = version % 2 == 0 && self.version.load(Ordering::Relaxed) == version;
+        let is_whole = version.is_multiple_of(2) && self.version.load(Ordering::Relaxed) == version;
         is_whole.then_some(words)
     }
 }
