@@ -195,6 +195,19 @@ impl Limited {
         })
     }
 
+    /// The tighter limits of two scenes that only differ in their environment: a loss or an addition that they
+    /// allow is allowed by both.
+    pub const fn tighter(&self, other: &Self) -> Self {
+        Self {
+            bound: self.bound.max(other.bound),
+            limit: self.limit.min(other.limit),
+            gain: self.gain.max(other.gain),
+            snaps: self.snaps || other.snaps,
+            takes_more: self.takes_more && other.takes_more,
+            ..*self
+        }
+    }
+
     /// Limit less bound, in N m s/rad.
     pub const fn injectable_damping(&self) -> f64 {
         let left = self.limit.sub(self.bound);

@@ -63,8 +63,8 @@ pub const fn first_refused_mode(scene: &Scene, format: Format) -> Option<Refused
     None
 }
 
-/// The limits of a certified scene's modes on a board: those of the mode with the least injectable damping,
-/// because any mode may be selected. `None` if there are no other modes.
+/// The limits of a certified scene's modes on a board, the tightest of each kind, because any mode may be
+/// selected. `None` if there are no other modes.
 ///
 /// # Errors
 /// The first mode that a board cannot render.
@@ -81,11 +81,10 @@ pub(super) const fn tightest_mode(
                 Ok(limited) => limited,
                 Err(reason) => return Err(RefusedMode { mode, name, reason }),
             };
-            let is_tighter = match &tightest {
-                Some(other) => limited.injectable_damping() < other.injectable_damping(),
-                None => true,
-            };
-            tightest = if is_tighter { Some(limited) } else { tightest };
+            tightest = Some(match tightest {
+                Some(other) => limited.tighter(&other),
+                None => limited,
+            });
         }
         mode += 1;
     }

@@ -260,7 +260,7 @@ fn behind_the_matched_coupling_a_board_computes_as_the_host_does() {
     board.finish().unwrap();
     let [most, with_a_lag] = contact_instructions(&elf).unwrap();
     println!("in contact: {most} instructions, {with_a_lag} with one lag");
-    assert!(most <= 50 && with_a_lag <= 60, "{most}, {with_a_lag}");
+    assert!(most <= 51 && with_a_lag <= 60, "{most}, {with_a_lag}");
 }
 
 /// What the servo leaves of a board's memory: 128 KiB of flash, 22 KiB of RAM.

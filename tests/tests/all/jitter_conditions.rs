@@ -163,6 +163,10 @@ fn the_largest_wall_is_that_of_the_best_condition() {
     let mut rng = ChaCha8Rng::seed_from_u64(57);
     for _ in 0..80 {
         let drawn = Loop::draw(&mut rng);
+        // Springs without a coupling are judged by their index at the port, which no jitter changes.
+        if drawn.damping == 0.0 && drawn.coupling.is_none() {
+            continue;
+        }
         let angles: Vec<_> =
             (1..=ANGLES).map(|n| drawn.at(PI * n as f64 / ANGLES as f64)).collect();
         let wanted = largest(|factor| drawn.passes(factor, &angles));

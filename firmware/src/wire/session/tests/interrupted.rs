@@ -161,7 +161,7 @@ impl End {
             let found = answers(&self.said, id);
             // A host that repeats a request which is refused has as many refusals.
             let repeated = id == SETS[1].0 && found == [Outcome::Refused(Refusal::Busy); 2];
-            // A later request to disarm takes the place of one that is not done yet.
+            // A later request to disarm replaces an unfinished one.
             let superseded = id == 2 && found.is_empty();
             if found.len() != 1 && !repeated && !superseded {
                 wrong.push(std::format!("request {id} has the answers {found:?}"));
