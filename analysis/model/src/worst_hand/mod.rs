@@ -112,10 +112,15 @@ fn worst(
 ) -> Result<HandCase, SimulationError> {
     let mut search = HandSearch::new(scene, device, lighter)?;
     let mut found = search.worst()?;
-    // Eigenvalues in doubles were wrong about it: then every hand is confirmed before it counts.
-    if found.grows() && !search.is_confirmed(&found)? {
-        search.confirms = true;
-        found = search.worst()?;
+    if found.grows() {
+        found = match search.confirmed(&found)? {
+            Some(confirmed) => confirmed,
+            // Eigenvalues in doubles were wrong about it: then every hand is confirmed before it counts.
+            None => {
+                search.confirms = true;
+                search.worst()?
+            }
+        };
     }
     *tried += search.tried;
     Ok(found)
@@ -141,9 +146,9 @@ fn constructed(
         // A hand that is too fast to integrate over a tick is skipped.
         if let Ok(case) = search.of(hand)
             && case.grows()
-            && search.is_confirmed(&case)?
+            && let Some(confirmed) = search.confirmed(&case)?
         {
-            found = Some(case);
+            found = Some(confirmed);
             break;
         }
     }
@@ -195,11 +200,16 @@ impl<'d> HandSearch<'d> {
         Ok(worst)
     }
 
-    /// Whether the characteristic polynomial, with bounds on its errors, has a root beyond the threshold, too.
-    fn is_confirmed(&mut self, case: &HandCase) -> Result<bool, SimulationError> {
+    /// The case with the radius that the characteristic polynomial has, if that grows, too: its errors have
+    /// bounds.
+    fn confirmed(&mut self, case: &HandCase) -> Result<Option<HandCase>, SimulationError> {
         self.experiment.plant = plant(self.device, self.lighter, &case.hand);
         let polynomial = Characteristic::of(&self.experiment, Integration::default())?;
-        Ok(polynomial.is_within(1.0 + GROWTH_THRESHOLD) == Some(false))
+        if polynomial.is_within(1.0 + GROWTH_THRESHOLD) != Some(false) {
+            return Ok(None);
+        }
+        let [low, high] = polynomial.radius();
+        Ok(Some(HandCase { spectral_radius: 0.5 * (low + high), ..case.clone() }))
     }
 
     /// Inertia in kg m^2 of the device, all of it.
@@ -241,14 +251,15 @@ impl<'d> HandSearch<'d> {
         let larger = |a: &&Complex<f64>, b: &&Complex<f64>| a.norm().total_cmp(&b.norm());
         let largest = all.iter().filter(matters).max_by(larger).copied().unwrap_or_default();
         let turns = largest.arg().abs() / (2.0 * PI);
-        let mut case = HandCase {
+        let case = HandCase {
             device_inertia: self.inertia(),
             hand,
             spectral_radius: largest.norm(),
             frequency: turns / self.experiment.scene.timing.period,
         };
-        if self.confirms && case.grows() && !self.is_confirmed(&case)? {
-            case.spectral_radius = 1.0;
+        if self.confirms && case.grows() {
+            let refuted = HandCase { spectral_radius: 1.0, ..case.clone() };
+            return Ok(self.confirmed(&case)?.unwrap_or(refuted));
         }
         Ok(case)
     }
