@@ -331,9 +331,9 @@ fn lagging(rounds: Rounds) -> [Figure; 4] {
             "latched, lag as a whole sample",
         ),
         Figure::new(
-            "certified spring at h = 0.01 T: index allowed over delta",
+            "certified spring at h = 0.01 T: index allowed",
             bench::spring_with_jitter(),
-            "",
+            "of delta",
             Some(JITTER_BUDGET),
             "budget, at least",
         ),

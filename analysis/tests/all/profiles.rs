@@ -494,11 +494,13 @@ fn every_command_answers_or_says_why_not() {
     assert_eq!(count.status.code(), Some(2));
 }
 
-/// Without a coupling there is no linear bound for a profile beside a lag; the message names the remedy.
+/// Without a coupling there is no bound for a profile where updates are missed and two lags follow each other;
+/// the message names the remedy.
 #[test]
 fn a_profile_without_a_bound_is_undecided_by_every_rule() {
     let lagging = text(DETENTS)
-        .replace("damping = 0.022", "damping = 0.022\nactuator_lag = 1e-4")
+        .replace("damping = 0.022", "damping = 0.022\nactuator_lag = 1e-4\nsensor_lag = 2e-4")
+        .replace("period = 0.001", "period = 0.001\nworst_period = 0.002")
         .replace("[coupling]\nstiffness = 44.0\n", "");
     let judged = haptic_reading(&["certify", "-", "--json"], lagging.as_bytes());
     assert_eq!(judged.status.code(), Some(1));
@@ -508,7 +510,7 @@ fn a_profile_without_a_bound_is_undecided_by_every_rule() {
     assert_eq!(judged["alpha"], serde_json::json!({"lo": null, "hi": null}));
     let message = judged["message"].as_str().unwrap();
     assert!(
-        message.contains("torque profile") && message.contains("matched coupling"),
+        message.contains("without a coupling no bound") && message.contains("matched coupling"),
         "{message}"
     );
 }

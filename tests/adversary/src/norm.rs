@@ -97,7 +97,7 @@ pub fn slope(profile: &AnyProfile) -> f64 {
 /// Parts of a profile's cell: its positions are whole parts.
 const PARTS: f64 = 16384.0;
 
-/// What is known of the errors of any environment behind any coupling.
+/// Bounds on the errors of any environment behind any coupling.
 #[derive(Clone, Copy, Debug)]
 pub struct General {
     /// Of its torques, in N m, within a turn of zero.

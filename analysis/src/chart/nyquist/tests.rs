@@ -142,7 +142,9 @@ fn the_drawn_side_of_the_line_is_the_verdict() {
                 assert!(clearance.is_nan() || clearance <= 0.0, "{clearance} {scene:?}");
             }
             Err(rejection) => {
-                assert!(clearance < 0.0, "{clearance} {rejection} {scene:?}");
+                // Without a coupling a limited scene is rejected for its small motions, and has no line.
+                let is_at_port = scene.coupling == Coupling::Rigid && clearance.is_nan();
+                assert!(clearance < 0.0 || is_at_port, "{clearance} {rejection} {scene:?}");
                 failed += 1;
             }
         }
