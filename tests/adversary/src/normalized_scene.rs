@@ -205,7 +205,7 @@ impl NormalizedScene {
         })
     }
 
-    /// The errors of a scene without latency: the least of what is known of them.
+    /// The errors of a scene without latency: the least of the known bounds.
     fn accounted(
         scene: &Scene,
         assessment: &Assessment,

@@ -51,7 +51,8 @@ impl Pair {
         mut ours: impl FnMut() -> Result<f64, E>,
         mut peers: impl FnMut() -> Result<f64, E>,
     ) -> Result<Self, E> {
-        (ours()?, peers()?);
+        ours()?;
+        peers()?;
         let both: Vec<_> =
             (0..rounds).map(|_| Ok((ours()?, peers()?))).collect::<Result<_, E>>()?;
         let (ours, peers) = both.into_iter().unzip();
