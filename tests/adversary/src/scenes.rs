@@ -291,7 +291,7 @@ fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool)
     (kind, format, Mode::AtPhase(phase), true)
 }
 
-/// A coupling of about the standard stiffness; behind a latency also the the one which absorbs it.
+/// A coupling of about the standard stiffness; behind a latency also the coupling which absorbs it.
 fn draw_coupling(rng: &mut impl Rng, mode: Mode, lags: bool, standard: f64) -> Coupling {
     if lags && (mode != Mode::Bare || rng.random_bool(0.4)) {
         return Coupling::Matched;

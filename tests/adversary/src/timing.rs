@@ -80,7 +80,7 @@ pub struct Schedule {
     steps: Vec<Step>,
     /// The instants of a count: early, in time, late.
     counts: [Instant; 3],
-    /// The same of a tick that begins late in its period, and of the one which follows a late one.
+    /// The same of a tick that begins late in its period, and of the tick after a late one.
     delayed: [Instant; 2],
     /// The instants of a torque: early, in time, late.
     torques: [Instant; 3],
@@ -153,7 +153,7 @@ impl Schedule {
         place(&self.counts, shift)
     }
 
-    /// When a tick reads its count that begins late, and the one which follows a late one.
+    /// When a tick reads its count that begins late, and the tick after a late one.
     pub const fn delayed(&self) -> [Instant; 2] {
         self.delayed
     }
