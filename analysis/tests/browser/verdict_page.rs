@@ -137,8 +137,12 @@ pub fn the_rows_of_the_page_are_those_of_the_program() {
         "{start}type = \"profile\"\ndelay = 1\n[[environment.shape]]\ntype = \"detents\"\ncount = 24\n\
          torque = 0.05\n"
     );
-    let undecided =
-        [lag, no_coupling].iter().fold(detents, |text, (from, to)| text.replace(from, to));
+    // Updates that are missed beside two lags.
+    let sensor = ("damping = 0.022", "damping = 0.022\nsensor_lag = 2e-4");
+    let missed = ("period = 0.001", "period = 0.001\nworst_period = 0.002");
+    let undecided = [lag, sensor, missed, no_coupling]
+        .iter()
+        .fold(detents, |text, (from, to)| text.replace(from, to));
     let scenes = [
         ("certified", format!("{WALL}{MOTION}")),
         ("certified", wall(&[("damping = 0.022", "damping = 0.022\nactuator_lag = 1e-5")])),
