@@ -1,7 +1,7 @@
 //! The coupling that absorbs latency and jitter (theory, sections 13.3 to 13.5).
 //!
 //! A coupling behind which any passive environment, linear or not, is passive with a lagging torque. Its
-//! compliances are those of a [`ResponseWindow`] (equations 40 and 54). Without latency it is the standard coupling
+//! compliances are those of a `ResponseWindow` (equations 40 and 54). Without latency it is the standard coupling
 //! `T / (2 delta)`. A delay of `(n + e) T` adds a spring in series for each tick and part of a tick that a
 //! torque takes,
 //!
@@ -56,7 +56,7 @@ impl MatchedCoupling {
     /// between two updates (s) if updates may be missed.
     ///
     /// `None` if a number is out of range, if two lags are so nearly equal that their difference cannot be
-    /// distinguished from zero, or if no [window](ResponseWindow::of) exists.
+    /// distinguished from zero, or if no window of torques exists.
     pub const fn of(
         period: f64,
         worst_period: Option<f64>,
