@@ -56,6 +56,17 @@ pub struct Timing {
     pub worst_period: Option<f64>,
 }
 
+impl Timing {
+    /// The longest tolerated time in s between two updates, if it differs from the period: updates may then be
+    /// missed.
+    pub const fn longer_period(&self) -> Option<f64> {
+        match self.worst_period {
+            Some(worst) if worst != self.period => Some(worst),
+            _ => None,
+        }
+    }
+}
+
 impl Device {
     /// Output strict passivity `delta` in N m s/rad: the damping unless another value is declared.
     pub const fn passivity(&self) -> f64 {

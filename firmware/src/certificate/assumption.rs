@@ -328,7 +328,7 @@ impl Assumptions {
         let mut list = Self { all: [None; MOST] };
         let delta = scene.device.passivity.unwrap_or(scene.device.damping);
         list.push(Some(Assumption::DevicePassivity { delta }));
-        let worst = scene.timing.worst_period.filter(|&worst| worst != scene.timing.period);
+        let worst = scene.timing.longer_period();
         let period = worst.is_none().then_some(scene.timing.period);
         let latency = scene.latency;
         list.push(Some(Assumption::Hold { period, at_once: latency.is_none() }));

@@ -26,9 +26,6 @@ const fn replaces_exact_rule(scene: &Scene) -> bool {
         (Environment::FreeModeWall { .. }, Some(wall)) => (f64::NAN, wall.stiffness < 0.0),
         _ => return false,
     };
-    let misses_updates = matches!(
-        scene.timing.worst_period,
-        Some(worst) if worst != scene.timing.period
-    );
-    !pulls && (misses_updates || damping == 0.0 && latency.output_jitter > 0.0)
+    !pulls
+        && (scene.timing.longer_period().is_some() || damping == 0.0 && latency.output_jitter > 0.0)
 }

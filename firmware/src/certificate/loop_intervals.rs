@@ -140,13 +140,13 @@ impl LoopIntervals {
             Some(passivity) => passivity,
             None => scene.device.damping,
         });
-        let (delta, missed) = match scene.timing.worst_period {
-            Some(worst) if worst != scene.timing.period => {
+        let (delta, missed) = match scene.timing.longer_period() {
+            Some(worst) => {
                 let worst = Interval::decimal(worst);
                 let missed = Missed { stretch: worst.div(period), declared: delta };
                 (delta.mul(period).div(worst), if is_late { Some(missed) } else { None })
             }
-            _ => (delta, None),
+            None => (delta, None),
         };
         let cancelled = match scene.environment.residual() {
             Some(residual) => {
@@ -176,13 +176,10 @@ impl LoopIntervals {
             compliance,
             is_standard: false,
             format,
-            misses_updates: matches!(
-                scene.timing.worst_period,
-                Some(worst) if worst != scene.timing.period
-            ),
-            stretch: match scene.timing.worst_period {
-                Some(worst) if worst != scene.timing.period => Interval::decimal(worst).div(period),
-                _ => Interval::ONE,
+            misses_updates: scene.timing.longer_period().is_some(),
+            stretch: match scene.timing.longer_period() {
+                Some(worst) => Interval::decimal(worst).div(period),
+                None => Interval::ONE,
             },
             is_at_port: false,
             is_matched: matches!(scene.coupling, Coupling::Matched),

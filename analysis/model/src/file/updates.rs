@@ -45,7 +45,7 @@ impl Places {
         if !latency.sensor_lag.is_zero() {
             return no(own, &here, format!("stands beside `{}`", key::SENSOR_LAG.path));
         }
-        if let Some(worst) = timing.worst_period.filter(|&worst| worst != timing.period) {
+        if let Some(worst) = timing.longer_period() {
             let reason = format!("is {worst} s, which may not be missed beside `{}`", own.path);
             return no(&key::WORST_PERIOD, &self.worst_period, reason);
         }

@@ -41,7 +41,7 @@ impl Formula {
     /// standard one the paper's rule has no limit.
     fn of(scene: &Scene) -> Option<Self> {
         let posed = PassivityProblem::of(scene).ok()?;
-        let misses = scene.timing.worst_period.is_some_and(|worst| worst != scene.timing.period);
+        let misses = scene.timing.longer_period().is_some();
         match (scene.coupling, is_linear(scene)) {
             (Coupling::Rigid, true) if !misses && scene.latency.is_none() => {
                 Some(Self::SampleLater)
