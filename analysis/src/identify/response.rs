@@ -55,6 +55,8 @@ pub struct FrequencyPoint {
     pub deviation: f64,
     /// Amplitude of the motion in counts.
     pub counts: f64,
+    /// Amplitude of the velocity in rad/s.
+    pub speed: f64,
 }
 
 impl FrequencyPoint {
@@ -95,6 +97,7 @@ pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Opti
         admittance,
         deviation,
         counts: counts.norm(),
+        speed: velocity.norm(),
     })
 }
 

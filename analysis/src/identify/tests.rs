@@ -202,4 +202,5 @@ fn a_tone_that_is_left_out_is_named_with_the_reason() {
     assert!(said[1].starts_with("the tone of 64 Hz") && said[1].contains("counts"), "{said:?}");
 }
 
+mod friction;
 mod latency;

@@ -149,6 +149,10 @@ impl TakenOut {
 struct Report<'a> {
     inertia: Estimate,
     damping: Estimate,
+    /// Coulomb friction in N m.
+    friction: Estimate,
+    /// Whether friction can be told from damping.
+    friction_told: bool,
     /// Mean delay of the torque's step response in s: the sum of lag and delay.
     skew: Estimate,
     skew_significant: bool,
@@ -264,6 +268,8 @@ fn report<'a>(
     Report {
         inertia: found.inertia,
         damping: found.damping,
+        friction: found.friction,
+        friction_told: found.tells_friction,
         skew: found.mean_delay,
         skew_significant: found.mean_delay.is_significant(),
         latency: found.latency.ok(),
@@ -309,7 +315,22 @@ fn notes(found: &Identification) -> Vec<String> {
             significant(found.misfit.sqrt(), 2),
         ));
     }
-    if found.disk.delta <= 0.0 || found.is_rigid() && found.passivity().is_none() {
+    if found.is_rigid() && !found.tells_friction {
+        let [least, most] = found.speeds.map(|speed| significant(speed, 3));
+        notes.push(format!(
+            "no passivity is stated from one amplitude: all sines move at {least} to {most} rad/s, where \
+             Coulomb friction of up to {} N m looks like damping. Record the same frequencies again at a \
+             second amplitude of torque, for example half, in the same file",
+            significant(found.friction.hi, 3),
+        ));
+    } else if found.is_rigid() && found.damping.hi > 0.0 && found.passivity().is_none() {
+        notes.push(format!(
+            "the device has no passivity: its damping may be as low as {} N m s/rad. Record the same \
+             frequencies again at a second amplitude of torque, for example twice, in the same file, so that \
+             friction is told from damping",
+            significant(found.damping.lo, 3),
+        ));
+    } else if found.disk.delta <= 0.0 || found.is_rigid() && found.passivity().is_none() {
         notes.push(format!(
             "the device has no passivity: Re(1/J) is {} N m s/rad at {} Hz. Check the sign of \
              torque and counts, the declared delays, and that motor and encoder are on the same \
@@ -380,18 +401,20 @@ pub fn device_table(found: &Identification) -> String {
         Some(passivity) => format!(
             "passivity = {} # N m s/rad, lower end of the damping{less}; valid if the device is rigid \
              from motor to hand\n",
-            significant(passivity, 4),
+            // Rounded down.
+            significant(passivity * (1.0 - 5e-4), 4),
         ),
         None => "# passivity: none; do not certify with this device\n".to_owned(),
     };
     let latency = latency_lines(found);
     format!(
         "[device]\ninertia = {} # kg m^2, {} at 95 %\ndamping = {} # N m s/rad, {} at 95 %\n\
-         {passivity}{latency}",
+         {passivity}# Coulomb friction: {} N m at 95 %\n{latency}",
         significant(found.inertia.value, 5),
         range(&found.inertia),
         significant(found.damping.value.max(0.0), 5),
         range(&found.damping),
+        range(&found.friction),
     )
 }
 
@@ -417,6 +440,14 @@ fn text(
     };
     let mut rows = vec![
         ("damping", estimate(&found.damping, "N m s/rad")),
+        (
+            "friction",
+            format!(
+                "{} to {} N m",
+                significant(found.friction.lo, 3),
+                significant(found.friction.hi, 3)
+            ),
+        ),
         ("inertia", estimate(&found.inertia, "kg m^2")),
         ("lag + delay", estimate(&found.mean_delay, "s")),
         ("disk", disk),

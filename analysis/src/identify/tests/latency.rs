@@ -100,7 +100,13 @@ fn damping_is_unbiased_where_the_real_part_is_not() {
         };
         let responses: Vec<FrequencyPoint> = found.responses.iter().map(again).collect();
         let period = SENSING.period;
-        let measured = Measured { responses: &responses, period, declared: 0.0, source: None };
+        let measured = Measured {
+            responses: &responses,
+            period,
+            declared: 0.0,
+            source: None,
+            with_friction: false,
+        };
         let model = measured.fit(0.0, Delay::From(2e-4)).unwrap().model;
         model.inertia
     };
@@ -112,7 +118,7 @@ fn damping_is_unbiased_where_the_real_part_is_not() {
 
 impl From<Output> for Model {
     fn from(Output { lag, delay }: Output) -> Self {
-        Self { damping: 0.0, inertia: 0.0, delay, lag, source: None }
+        Self { damping: 0.0, inertia: 0.0, friction: 0.0, delay, lag, source: None }
     }
 }
 
