@@ -68,7 +68,7 @@ fn distortion(
     let (counts, deviation) = harmonics(&record.counts[rows], angle)?;
     let amplitude = torque[0].norm();
     // The harmonics of Coulomb friction, of which the third is the largest.
-    let friction = found.friction.hi * 4.0 / (3.0 * std::f64::consts::PI);
+    let friction = friction(found) * 4.0 / (3.0 * std::f64::consts::PI);
     // Torque that moves the device by so many counts at a multiple of the frequency.
     let felt = |order: usize, counts: f64| {
         let omega = order as f64 * step.omega;
@@ -87,6 +87,11 @@ fn distortion(
         .fold(0.0, f64::max);
     let frequency = step.omega / std::f64::consts::TAU;
     Some(Distortion { frequency, amplitude, harmonic })
+}
+
+/// Friction in N m: where it cannot be told from damping, there may be as much as the upper end.
+fn friction(found: &Identification) -> f64 {
+    if found.tells_friction { found.friction.value } else { found.friction.hi }
 }
 
 /// Number of harmonics that are examined, the fundamental included.

@@ -1,15 +1,16 @@
 //! Results from the responses: the disk that contains them, and the rigid device behind a late torque that
 //! fits them.
 
+use std::f64::consts::TAU;
+
 use super::error::IdentifyError;
 use super::estimate::Estimate;
 use super::latency::{Latency, NoLatency};
 use super::least_squares::{Delay, Measured};
+use super::left_out::{LeftOut, Reason};
 use super::model::{Model, friction_damping};
 use super::profile::{Profile, student};
 use super::response::{Correction, FrequencyPoint};
-use super::step::LeftOut;
-use crate::quantity::significant;
 
 /// Least motion in counts: below it the encoder's steps do not act as noise any more.
 const LEAST_COUNTS: f64 = 1.5;
@@ -30,6 +31,10 @@ const MOST_FRICTION: f64 = 0.4;
 /// friction takes: the third harmonic of the velocity is at most `4/(3 pi)` of that part and moves the zeros
 /// of the velocity, which turns friction by as much.
 const DESCRIBED: f64 = 0.5;
+
+/// Intervals of the damping that its lower bound for a certificate is below it: the end of one interval is above
+/// the truth in a fortieth of all measurements, that of two in one of ten thousand.
+const BOUND: f64 = 2.0;
 
 /// Number of fits in which the part of the friction is found.
 const ROUNDS: usize = 4;
@@ -91,12 +96,13 @@ impl Identification {
         self.model.source.map_or(0.0, |source| source.loss)
     }
 
-    /// `delta` to certify with, in N m s/rad: the lower end of the damping of a rigid device, less the
+    /// `delta` to certify with, in N m s/rad: the damping of a rigid device less twice its uncertainty, less the
     /// damping that motion loses through the board's own current loop. `None` where that is not positive, and
     /// for a device that is not rigid: no hand held it, and its damping in a hand cannot be measured from the
     /// motor alone (theory, section 3.2), and where friction may be part of what looks like damping.
     pub fn passivity(&self) -> Option<f64> {
-        let passivity = self.damping.lo - self.motion_loss();
+        let Estimate { value, lo, .. } = self.damping;
+        let passivity = value - BOUND * (value - lo) - self.motion_loss();
         (self.is_rigid() && self.tells_friction && passivity > 0.0).then_some(passivity)
     }
 }
@@ -115,7 +121,7 @@ pub fn identify(
     let stands_out =
         |r: &FrequencyPoint| r.counts >= LEAST_COUNTS && r.deviation < 0.5 * r.impedance().norm();
     let (responses, lost): (Vec<_>, Vec<_>) = responses.into_iter().partition(stands_out);
-    left_out.extend(lost.iter().map(lost_in_noise));
+    left_out.extend(lost.iter().map(|r| without(r, Reason::Noise(r.counts))));
     let (usable, speeds) = (responses.len(), speeds(&responses));
     let too_few = |left_out: Vec<LeftOut>| IdentifyError::TooFew { found, usable, left_out };
     if usable < 3 {
@@ -143,11 +149,7 @@ pub fn identify(
             None => return Err(too_few(left_out)),
         }
     }
-    left_out.extend(held.iter().map(|(r, part)| {
-        let percent = significant(100.0 * part, 2);
-        let reason = format!("friction takes {percent} % of its torque: use a larger torque");
-        LeftOut::new(r.omega, reason)
-    }));
+    left_out.extend(held.iter().map(|(r, part)| without(r, Reason::Friction(*part))));
     let (responses, profile) = (slipping, profile_found);
     let measured = Measured { responses: &responses, ..nothing };
     let model = profile.best.model;
@@ -197,13 +199,9 @@ fn friction(profile: &Profile, is_told: bool, speed: f64) -> Estimate {
     }
 }
 
-fn lost_in_noise(response: &FrequencyPoint) -> LeftOut {
-    let counts = significant(response.counts, 2);
-    let reason = format!(
-        "its motion of {counts} counts is below quantisation and noise: use a larger torque, or a \
-         longer tone"
-    );
-    LeftOut::new(response.omega, reason)
+/// A response that is not used.
+fn without(response: &FrequencyPoint, reason: Reason) -> LeftOut {
+    LeftOut { frequency: response.omega / TAU, row: response.row + 1, reason }
 }
 
 /// The responses without the images of the held torque, which are known once the device is.

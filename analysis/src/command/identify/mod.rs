@@ -24,8 +24,9 @@ use target::Origin;
 /// Arguments of `haptic identify`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Record of stepped sines: CSV with the columns `time` in s, `torque` in N m, `counts`, and
-    /// optionally `frequency` in Hz; `-` is standard input. With --target: scene file, or a file
+    /// Record of stepped sines, each frequency at two amplitudes of torque: CSV with the columns `time` in s,
+    /// `torque` in N m, `counts`, and optionally `frequency` in Hz; or with units, as `time [ms]`, `torque
+    /// (mNm)`, `angle (deg)`. `,`, `;` or tabs separate; `-` is standard input. With --target: scene file, or a file
     /// with a table `device` alone
     #[arg(value_name = "FILE", required_unless_present_any = ["target", "port"])]
     pub file: Option<PathBuf>,
@@ -229,7 +230,7 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
         let (record, origin) = (measured.record, Some(origin));
         return Ok(Measured { record, origin, counts_per_turn, torque_source: None });
     }
-    let record = load(file.unwrap_or(Path::new("-")))?;
+    let record = load(file.unwrap_or(Path::new("-")), counts_per_turn)?;
     Ok(Measured { record, origin: None, counts_per_turn, torque_source: None })
 }
 
@@ -239,14 +240,18 @@ pub fn of_file(
     counts_per_turn: f64,
     reading: &Reading,
 ) -> Result<Identification, CommandError> {
-    Ok(identify::identify(&load(file)?, &reading.correction(counts_per_turn, SETTLE))?)
+    Ok(identify::identify(
+        &load(file, counts_per_turn)?,
+        &reading.correction(counts_per_turn, SETTLE),
+    )?)
 }
 
 /// A record from a file or, as `-`, from standard input.
-fn load(file: &Path) -> Result<Record, CommandError> {
+fn load(file: &Path, counts_per_turn: f64) -> Result<Record, CommandError> {
+    let count_angle = std::f64::consts::TAU / counts_per_turn;
     let record = match file == Path::new("-") {
-        true => identify::record::parse("<stdin>", io::stdin().lock()),
-        false => identify::record::load(file),
+        true => identify::record::parse("<stdin>", io::stdin().lock(), count_angle),
+        false => identify::record::load(file, count_angle),
     };
     Ok(record.map_err(identify::IdentifyError::from)?)
 }
@@ -291,7 +296,7 @@ fn report<'a>(
 
 /// Warnings about the identified numbers.
 fn notes(found: &Identification) -> Vec<String> {
-    let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
+    let mut notes: Vec<String> = identify::left_out::grouped(&found.left_out);
     // If no rigid device explains the responses, the fitted times are meaningless.
     if found.is_rigid() && found.mean_delay.is_significant() {
         notes.push(format!(
@@ -399,7 +404,7 @@ pub fn device_table(found: &Identification) -> String {
     };
     let passivity = match found.passivity() {
         Some(passivity) => format!(
-            "passivity = {} # N m s/rad, lower end of the damping{less}; valid if the device is rigid \
+            "passivity = {} # N m s/rad, the damping less twice its uncertainty{less}; valid if the device is rigid \
              from motor to hand\n",
             // Rounded down.
             significant(passivity * (1.0 - 5e-4), 4),

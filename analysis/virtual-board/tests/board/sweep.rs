@@ -57,7 +57,7 @@ fn nothing_moves_before_the_host_begins_and_the_board_says_what_it_would_play() 
     let mut bench = Bench::boot_file(chip, file, FixedDevice);
     bench.run(50);
     bench.machine.board_mut().send(&[byte::DESCRIBE, byte::LISTENING, byte::STOP]);
-    assert_eq!(lines(&mut bench), ["identify,2,0.001,61440,52500,0.7,85"]);
+    assert_eq!(lines(&mut bench), ["identify,2,0.001,61440,58000,0.7,85"]);
     assert_eq!(bench.amplifier_on(), None);
     assert!(
         bench.pins().samples.iter().all(|sample| matches!(sample.code, None | Some(MID_SCALE)))
