@@ -2,8 +2,7 @@
 
 use thiserror::Error;
 
-use super::left_out::{LeftOut, grouped};
-use super::step::LEAST_PERIODS;
+use super::left_out::{LEAST_PERIODS, LeftOut, grouped};
 use crate::quantity::significant;
 use crate::table::TableError;
 

@@ -1,8 +1,6 @@
 //! Results from the responses: the disk that contains them, and the rigid device behind a late torque that
 //! fits them.
 
-use std::f64::consts::TAU;
-
 use super::error::IdentifyError;
 use super::estimate::Estimate;
 use super::latency::{Latency, NoLatency};
@@ -201,7 +199,7 @@ fn friction(profile: &Profile, is_told: bool, speed: f64) -> Estimate {
 
 /// A response that is not used.
 fn without(response: &FrequencyPoint, reason: Reason) -> LeftOut {
-    LeftOut { frequency: response.omega / TAU, row: response.row + 1, reason }
+    LeftOut::new(response.omega, response.row, reason)
 }
 
 /// The responses without the images of the held torque, which are known once the device is.

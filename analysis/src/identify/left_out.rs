@@ -3,8 +3,10 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use super::step::{LEAST_PERIODS, Step};
 use crate::quantity::significant;
+
+/// Fewest periods of a stretch of sine that is used.
+pub const LEAST_PERIODS: usize = 4;
 
 /// A tone that is not used, and why.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,9 +42,9 @@ pub enum Reason {
 }
 
 impl LeftOut {
-    /// A stretch of sine.
-    pub fn new(step: &Step, reason: Reason) -> Self {
-        Self { frequency: step.omega / TAU, row: step.rows.start + 1, reason }
+    /// A tone of this angular frequency in rad/s from this row on, counted from 0.
+    pub fn new(omega: f64, row: usize, reason: Reason) -> Self {
+        Self { frequency: omega / TAU, row: row + 1, reason }
     }
 
     /// The number of its reason.

@@ -52,7 +52,7 @@ pub fn identify(record: &Record, correction: &Correction) -> Result<Identificati
     for step in &steps {
         match response::single_bin(record, step, correction) {
             Ok(response) => responses.push(response),
-            Err(reason) => left_out.push(LeftOut::new(step, reason)),
+            Err(reason) => left_out.push(LeftOut::new(step.omega, step.rows.start, reason)),
         }
     }
     input_check::polarity(&responses)?;

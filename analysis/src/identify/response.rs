@@ -151,16 +151,19 @@ struct FittedSine {
 }
 
 /// Deviation of a phasor, from the residuals at the neighbouring frequencies: the noise of a free device is a
-/// random walk, so that its mean over all frequencies does not apply to one of them.
+/// random walk, so that its mean over all frequencies does not apply to one of them. Its amplitude falls with the
+/// frequency, by which each neighbour's is corrected.
 fn deviation(residual: &[f64], angle: f64, amplitude: f64) -> f64 {
     /// In steps of one period over the whole stretch; nearer than the first is the sine itself.
     const NEIGHBOURS: [f64; 8] = [-4.5, -3.5, -2.5, -1.5, 1.5, 2.5, 3.5, 4.5];
+    /// Steps from zero below which the fitted parabola has taken most of the noise.
+    const DRIFT: f64 = 2.0;
     let n = residual.len() as f64;
     let step = std::f64::consts::TAU / n;
     let neighbours = NEIGHBOURS.iter().map(|offset| angle + offset * step);
     let powers: Vec<f64> = neighbours
-        .filter(|&near| near > step && near < std::f64::consts::PI)
-        .map(|near| (2.0 / n * bin(residual, near)).norm_sqr())
+        .filter(|&near| near > DRIFT * step && near < std::f64::consts::PI)
+        .map(|near| (2.0 / n * near / angle * bin(residual, near)).norm_sqr())
         .collect();
     // Two degrees of freedom a neighbour. A quotient by a variance that was estimated from so few is larger
     // than by the true variance.

@@ -3,11 +3,8 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-use super::left_out::{LeftOut, Reason};
+use super::left_out::{LEAST_PERIODS, LeftOut, Reason};
 use super::record::Record;
-
-/// Fewest periods of a stretch.
-pub const LEAST_PERIODS: usize = 4;
 
 /// Largest relative change of the length from one period to the next in the same stretch.
 const STEADY: f64 = 0.05;
@@ -35,7 +32,7 @@ pub fn steps(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
     for step in steps.iter().flat_map(|step| split(step, record)) {
         match why_not(&step, record.period) {
             None => used.push(step),
-            Some(reason) => left_out.push(LeftOut::new(&step, reason)),
+            Some(reason) => left_out.push(LeftOut::new(step.omega, step.rows.start, reason)),
         }
     }
     (used, left_out)
@@ -118,7 +115,9 @@ fn crossings(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
             let rows = times[first].ceil() as usize..times[last].ceil() as usize;
             let step = Step { rows, omega: TAU / (period * record.period) };
             match sweep(&times[first..=last]) {
-                Some(ratio) => sweeps.push(LeftOut::new(&step, Reason::Sweep(ratio))),
+                Some(ratio) => {
+                    sweeps.push(LeftOut::new(step.omega, step.rows.start, Reason::Sweep(ratio)))
+                }
                 None => steps.push(step),
             }
         }
