@@ -3,35 +3,95 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::table::{Column, Table, TableError};
+use crate::identify::record::{SECONDS, WHOLE};
+use crate::table::{Column, FoundColumn, Row, Table, TableError};
+use crate::tick_gaps::TickGaps;
 
 const COUNT: Column =
     Column { names: &["count", "counts"], bound: "a whole number from -2147483648 to 2147483647" };
 
-/// Reads the column `count` of a CSV file with a header; other columns are passed over.
+const TICK: Column = Column { names: &["tick", "ticks"], bound: "a whole number, 0 or more" };
+const TIME: Column = Column { names: &["time"], bound: "a finite number of seconds" };
+
+/// Recorded counts, and the ticks that are missing between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Counts, one a row.
+    pub counts: Vec<i32>,
+    /// Missing ticks; `None` where the file has neither ticks nor times.
+    pub gaps: Option<TickGaps>,
+}
+
+/// Reads the column `count` of a CSV file with a header, and `tick` or `time` (s), which state the ticks that
+/// are missing; other columns are passed over. `period` in s is that of a tick.
 ///
 /// # Errors
 /// Where the file cannot be read, has no such column or no row, or has a field that is not a count.
-pub fn load(path: &Path) -> Result<Vec<i32>, TableError> {
-    counts(Table::open(path)?)
+pub fn load(path: &Path, period: f64) -> Result<Recording, TableError> {
+    read(Table::open(path)?, period)
 }
 
-fn counts<R: Read>(mut table: Table<R>) -> Result<Vec<i32>, TableError> {
-    let column = table.column(COUNT)?;
-    let mut counts = Vec::new();
+fn read<R: Read>(mut table: Table<R>, period: f64) -> Result<Recording, TableError> {
+    let column = table.column_in(COUNT, WHOLE)?;
+    let clock = match table.find(TICK) {
+        Some(tick) => Some(Clock::Ticks(tick)),
+        None => table.find_in(TIME, SECONDS)?.map(|column| Clock::Seconds { column, first: None }),
+    };
+    let (mut counts, mut gaps, mut clock) = (Vec::new(), TickGaps::default(), clock);
     while let Some(row) = table.row()? {
         counts.push(row.number(column, |_| true)?);
+        if let Some(clock) = &mut clock {
+            gaps.add(clock.tick(&row, period)?, 1);
+        }
     }
     table.at_least(1)?;
-    Ok(counts)
+    Ok(Recording { counts, gaps: clock.map(|_| gaps) })
+}
+
+/// The column that numbers the ticks.
+enum Clock {
+    Ticks(FoundColumn),
+    Seconds { column: FoundColumn, first: Option<f64> },
+}
+
+impl Clock {
+    fn tick(&mut self, row: &Row<'_>, period: f64) -> Result<u64, TableError> {
+        match self {
+            Self::Ticks(column) => row.number(*column, |_| true),
+            Self::Seconds { column, first } => {
+                let time = row.in_si(*column, |time| time.is_finite())?;
+                let first = *first.get_or_insert(time);
+                // A time before the first is a restart, as a tick before the last is.
+                Ok(((time - first) / period).round().max(0.0) as u64)
+            }
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn recording(text: &[u8]) -> Result<Recording, String> {
+        let table = Table::new("x.csv", text);
+        table.and_then(|table| super::read(table, 1e-3)).map_err(|error| error.to_string())
+    }
+
     fn read(text: &[u8]) -> Result<Vec<i32>, String> {
-        Table::new("x.csv", text).and_then(counts).map_err(|error| error.to_string())
+        recording(text).map(|recording| recording.counts)
+    }
+
+    #[test]
+    fn missing_ticks_are_those_of_ticks_or_times() {
+        let gaps = |text: &[u8]| recording(text).unwrap().gaps.map(|gaps| gaps.to_string());
+        assert_eq!(gaps(b"count\n1\n2\n"), None);
+        let none = Some("no tick is missing".to_owned());
+        assert_eq!(gaps(b"tick,count\n4,1\n5,2\n"), none);
+        assert_eq!(gaps(b"time [ms];count\n0,0;1\n1,0;2\n2,0;2\n"), none);
+        let two = Some("2 ticks are missing in 1 gaps; the first is after tick 5".to_owned());
+        assert_eq!(gaps(b"tick,count\n4,1\n5,2\n8,3\n"), two);
+        let timed = gaps(b"time,count\n0.25,1\n0.251,2\n0.254,3\n").unwrap();
+        assert_eq!(timed, "2 ticks are missing in 1 gaps; the first is after tick 1");
     }
 
     #[test]
@@ -56,9 +116,9 @@ mod tests {
     #[test]
     fn a_folder_cannot_be_read() {
         let folder = tempfile::tempdir().unwrap();
-        let message = load(folder.path()).unwrap_err().to_string();
+        let message = load(folder.path(), 1e-3).unwrap_err().to_string();
         assert!(message.contains("cannot be read"), "{message}");
-        let message = load(&folder.path().join("none.csv")).unwrap_err().to_string();
+        let message = load(&folder.path().join("none.csv"), 1e-3).unwrap_err().to_string();
         assert!(message.contains("none.csv: cannot be read"), "{message}");
     }
 }

@@ -62,6 +62,7 @@ pub mod date;
 pub mod progress;
 pub mod terminal;
 pub mod text_table;
+pub mod tick_gaps;
 
 /// The scene file of the guide to certifying a wall, as this library reads it.
 ///

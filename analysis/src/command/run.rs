@@ -27,6 +27,7 @@ use crate::lockstep::{Difference, SimulatedDevice};
 use crate::program::Program;
 use crate::progress;
 use crate::shaft::{HandHeldShaft, RecordedShaft};
+use crate::tick_gaps::TickGaps;
 use crate::toolchain::{self, BoardModel, NumberFormat, Tools, UnknownBoard};
 use crate::{counts_csv, lockstep, verdict};
 
@@ -93,7 +94,8 @@ pub struct Arguments {
     /// is for the board's own bridge)
     #[arg(long, default_value_t = Target::Host)]
     pub target: Target,
-    /// Replay recorded counts, one for each tick (column `count`), instead of simulating the device
+    /// Replay recorded counts, one for each tick (column `count`), instead of simulating the device. Ticks
+    /// that are missing by the column `tick` or `time` are counted and named
     #[arg(long, value_name = "FILE.csv")]
     pub replay: Option<PathBuf>,
     /// Encoder counts per turn; default: those of the scene
@@ -138,6 +140,8 @@ struct Summary<'a> {
     target: String,
     format: &'a str,
     ticks: usize,
+    /// Ticks that a replayed recording lacks; `None` where it has neither ticks nor times.
+    replay_gaps: Option<TickGaps>,
     peak_torque: f64,
     energy: Option<Energy>,
     codes_equal: Option<usize>,
@@ -156,8 +160,18 @@ struct Instructions {
 
 /// Runs a scene and prints the result. The status is negative if a code of the board differs from the host's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let counts = arguments.replay.as_deref().map(counts_csv::load).transpose()?;
     let mut setup = setup(arguments)?;
+    let period = setup.scene.timing.period;
+    let recording = arguments.replay.as_deref().map(|path| counts_csv::load(path, period));
+    let recording = recording.transpose()?;
+    let gaps = recording.as_ref().and_then(|recording| recording.gaps);
+    if let Some(gaps) = gaps.filter(|gaps| !gaps.is_none()) {
+        writeln!(
+            io::stderr(),
+            "note: {gaps}; the replay plays the rows as successive ticks, so the motion jumps there"
+        )?;
+    }
+    let counts = recording.map(|recording| recording.counts);
     let built = build(&setup, arguments)?;
     let ticks = match &counts {
         Some(counts) => arguments.ticks.map_or(counts.len(), |ticks| ticks.min(counts.len())),
@@ -166,7 +180,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let bar = progress::bar(ticks as u64, &setup.name);
     let outcome = ran(&mut setup, &built, counts.as_deref(), ticks, progress::stepper(&bar))?;
     bar.finish_and_clear();
-    print(arguments, &setup, &outcome)?;
+    print(arguments, &setup, &outcome, gaps)?;
     Ok(if outcome.run.difference.is_none() {
         CommandStatus::Success
     } else {
@@ -324,12 +338,13 @@ fn print(
     arguments: &Arguments,
     setup: &RunSetup,
     outcome: &RunOutcome,
+    gaps: Option<TickGaps>,
 ) -> Result<(), CommandError> {
     let mut out = io::BufWriter::new(io::stdout().lock());
     if arguments.csv {
         csv(&mut out, &outcome.run)?;
     } else if arguments.answer.json {
-        json(&mut out, &summary(arguments, &setup.name, outcome))?;
+        json(&mut out, &summary(arguments, &setup.name, outcome, gaps))?;
     } else if let (Target::Board(_), Some(program)) = (arguments.target, setup.program) {
         let report = verdict::judge(program.name, &setup.scene);
         write!(out, "{}", section(program, &report, outcome))?;
@@ -343,13 +358,19 @@ fn print(
     Ok(())
 }
 
-fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &RunOutcome) -> Summary<'a> {
+fn summary<'a>(
+    arguments: &Arguments,
+    name: &'a str,
+    outcome: &RunOutcome,
+    gaps: Option<TickGaps>,
+) -> Summary<'a> {
     let on_board = outcome.board.is_some();
     Summary {
         scene: name,
         target: arguments.target.to_string(),
         format: arguments.format.name(),
         ticks: outcome.run.ticks.len(),
+        replay_gaps: gaps,
         peak_torque: outcome.run.peak_torque(),
         energy: outcome.energy,
         codes_equal: on_board.then_some(outcome.run.equal),

@@ -53,13 +53,13 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         // A pipe or a file gets rows.
         None => !io::stdout().is_terminal() || terminal::is_dumb(),
     };
-    let mut recorder = match (&arguments.csv, to_output) {
-        (_, true) => Some(Recorder::new(Box::new(io::stdout()))),
-        (Some(path), false) => Some(Recorder::new(Box::new(create(path)?))),
-        (None, false) => None,
-    };
     let link = Link::open(&arguments.port)?;
     let every = arguments.every.unwrap_or_else(|| stream_every(link.board().period));
+    let mut recorder = match (&arguments.csv, to_output) {
+        (_, true) => Some(Recorder::new(Box::new(io::stdout()), every)),
+        (Some(path), false) => Some(Recorder::new(Box::new(create(path)?), every)),
+        (None, false) => None,
+    };
     let mut session = Session {
         scope: Scope::new(arguments.port.to_string(), arguments.window.as_secs_f64()),
         poller: BoardPoller::start(link, every),
@@ -73,9 +73,15 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         ratatui::try_restore()?;
         shown?;
     }
-    if let (Some(recorder), false) = (&mut recorder, to_output) {
+    if let Some(recorder) = &mut recorder {
         recorder.flush()?;
-        writeln!(io::stderr(), "{} ticks recorded", recorder.count())?;
+        let (count, gaps) = (recorder.count(), recorder.gaps());
+        if !gaps.is_none() {
+            writeln!(io::stderr(), "note: {gaps}")?;
+        }
+        if !to_output {
+            writeln!(io::stderr(), "{count} ticks recorded")?;
+        }
     }
     Ok(CommandStatus::Success)
 }

@@ -25,7 +25,7 @@ struct Distortion {
     frequency: f64,
     amplitude: f64,
     /// The larger of the second and the third harmonic that the device felt, less the parts that were
-    /// commanded or come from the zero crossings of a bridge's current.
+    /// commanded or come from friction or the zero crossings of a bridge's current.
     harmonic: f64,
 }
 
@@ -67,6 +67,8 @@ fn distortion(
     let (torque, _) = harmonics(&record.torque[rows.clone()], angle)?;
     let (counts, deviation) = harmonics(&record.counts[rows], angle)?;
     let amplitude = torque[0].norm();
+    // The harmonics of Coulomb friction, of which the third is the largest.
+    let friction = friction(found) * 4.0 / (3.0 * std::f64::consts::PI);
     // Torque that moves the device by so many counts at a multiple of the frequency.
     let felt = |order: usize, counts: f64| {
         let omega = order as f64 * step.omega;
@@ -79,11 +81,17 @@ fn distortion(
         .filter(|order| *order as f64 * angle < 0.95 * std::f64::consts::PI)
         .filter(|order| counts[order - 1].norm() > OUT_OF_NOISE * deviation)
         .map(|order| {
-            felt(order, counts[order - 1].norm()) - torque[order - 1].norm() - known(order)
+            let third = if order == 3 { friction } else { 0.0 };
+            felt(order, counts[order - 1].norm()) - torque[order - 1].norm() - known(order) - third
         })
         .fold(0.0, f64::max);
     let frequency = step.omega / std::f64::consts::TAU;
     Some(Distortion { frequency, amplitude, harmonic })
+}
+
+/// Friction in N m: where it cannot be told from damping, there may be as much as the upper end.
+fn friction(found: &Identification) -> f64 {
+    if found.tells_friction { found.friction.value } else { found.friction.hi }
 }
 
 /// Number of harmonics that are examined, the fundamental included.

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::step::{LEAST_PERIODS, LeftOut};
+use super::left_out::{LEAST_PERIODS, LeftOut, grouped};
 use crate::quantity::significant;
 use crate::table::TableError;
 
@@ -12,6 +12,45 @@ pub enum IdentifyError {
     /// The file.
     #[error(transparent)]
     Record(#[from] TableError),
+    /// The counter wrapped.
+    #[error(
+        "the counter wraps: in row {row}, at {} s, the counts jump from {from} to {to}, the range of a counter \
+         of {range} counts ({jumps} such jumps in the record). Add or subtract {range} at each, or record the \
+         position as a number that does not wrap",
+        significant(*.time, 6)
+    )]
+    Wrapped {
+        /// The row with the first jump, counted from 1.
+        row: usize,
+        /// Its time after the first row in s.
+        time: f64,
+        /// Counts before the jump.
+        from: f64,
+        /// Counts after it.
+        to: f64,
+        /// The counter's range.
+        range: f64,
+        /// Number of jumps.
+        jumps: usize,
+    },
+    /// Torque and motion have opposite signs.
+    #[error(
+        "torque and counts have opposite signs: from row {row} on, at {} Hz, Re(1/J) is {} N m s/rad, and the \
+         {sines} slowest sines all turn against their torque. Change the sign of one of the two columns; on a \
+         board, exchange the encoder's channels or the motor's wires",
+        significant(*.frequency, 3),
+        significant(*.re, 3)
+    )]
+    Reversed {
+        /// Frequency of the slowest sine in Hz.
+        frequency: f64,
+        /// Real part of `1/J` there in N m s/rad.
+        re: f64,
+        /// Its first row, counted from 1.
+        row: usize,
+        /// Number of sines.
+        sines: usize,
+    },
     /// No stretch of steady sine.
     #[error(
         "the torque has no steady sine of at least {} periods{}",
@@ -51,14 +90,7 @@ pub enum IdentifyError {
     },
 }
 
-/// Largest number of tones that an error names.
-const MOST: usize = 6;
-
-/// Why tones were left out, as the end of a sentence.
+/// Why tones were left out, as the end of a sentence: once for each reason.
 fn reasons(left_out: &[LeftOut]) -> String {
-    let named = left_out.iter().take(MOST).map(|tone| format!("; {tone}")).collect::<String>();
-    match left_out.len().saturating_sub(MOST) {
-        0 => named,
-        more => format!("{named}; and {more} more"),
-    }
+    grouped(left_out).iter().map(|group| format!("; {group}")).collect()
 }

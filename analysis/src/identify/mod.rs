@@ -7,7 +7,8 @@
 //!
 //! [`record`] reads a CSV file, [`step`] finds the stretches of steady sine in it, [`response`] takes one bin
 //! of each, [`fit`] draws the conclusions, and [`clipping`] refuses them where the motor did not give the
-//! torques. A conclusion is a [`model`] of the device and of its torque's latency; [`least_squares`] finds
+//! torques. [`input_check`] refuses wrapped counters and reversed signs; [`left_out`] says which tones are not
+//! used. A conclusion is a [`model`] of the device and of its torque's latency; [`least_squares`] finds
 //! the nearest one for a lag, [`profile`] the intervals over all lags, and [`latency`] derives lag and delay
 //! from them. [`torque_source`] is `Z`, the impedance that the current loop of a board's own bridge adds to
 //! the device. [`port`] records a board's measurement; [`rig`] simulates a measured device, with the errors
@@ -17,8 +18,10 @@ pub mod clipping;
 mod error;
 mod estimate;
 pub mod fit;
+mod input_check;
 pub mod latency;
 pub mod least_squares;
+pub mod left_out;
 pub mod measurement;
 pub mod model;
 pub mod port;
@@ -33,13 +36,14 @@ pub use error::IdentifyError;
 pub use estimate::{CONFIDENCE, Estimate};
 pub use fit::{Disk, Identification};
 pub use latency::{Latency, NoLatency};
+pub use left_out::LeftOut;
 pub use model::Model;
 pub use record::Record;
 pub use response::{Correction, FrequencyPoint};
-pub use step::LeftOut;
 
 /// Identifies a rigid device, or at least its passivity, from a record.
 pub fn identify(record: &Record, correction: &Correction) -> Result<Identification, IdentifyError> {
+    input_check::wraps(record, correction)?;
     let (steps, mut left_out) = step::steps(record);
     if steps.is_empty() {
         return Err(IdentifyError::NoSteps(left_out));
@@ -47,10 +51,11 @@ pub fn identify(record: &Record, correction: &Correction) -> Result<Identificati
     let mut responses = Vec::new();
     for step in &steps {
         match response::single_bin(record, step, correction) {
-            Some(response) => responses.push(response),
-            None => left_out.push(LeftOut::new(step.omega, "it has no torque, or nothing moves")),
+            Ok(response) => responses.push(response),
+            Err(reason) => left_out.push(LeftOut::new(step.omega, step.rows.start, reason)),
         }
     }
+    input_check::polarity(&responses)?;
     let found = fit::identify(record.period, correction, steps.len(), responses, left_out)?;
     clipping::check(record, &steps, correction, &found)?;
     Ok(found)

@@ -1,6 +1,6 @@
 //! A rigid device behind an amplifier that lags and a torque that is late.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_4, TAU};
 
 use haptic_servo::current::TorqueSource;
 use nalgebra::Complex;
@@ -20,6 +20,8 @@ pub struct Model {
     pub inertia: f64,
     /// Delay `d` in s from the command to its torque.
     pub delay: f64,
+    /// Coulomb friction in N m.
+    pub friction: f64,
     /// Time constant `tau` in s of the amplifier.
     pub lag: f64,
     /// The current loop of a board's own bridge, which makes `Z`; `None` for an external amplifier.
@@ -30,6 +32,12 @@ impl Model {
     /// The inverse response in N m s/rad at an angular frequency in rad/s.
     pub fn impedance(&self, omega: f64) -> Complex<f64> {
         self.device(omega) * self.output(omega)
+    }
+
+    /// The inverse response that a sine sees whose velocity has this amplitude in rad/s: the first harmonic of
+    /// Coulomb friction is `4/pi` of it, in phase with the velocity (theory, section 3.4).
+    pub fn impedance_at(&self, omega: f64, speed: f64) -> Complex<f64> {
+        self.impedance(omega) + friction_damping(self.friction, speed) * self.output(omega)
     }
 
     /// The device's factor of it, with the torque that its motion causes through the current loop.
@@ -65,6 +73,11 @@ impl Model {
     }
 }
 
+/// Damping in N m s/rad that friction in N m looks like, at an amplitude of the velocity in rad/s.
+pub fn friction_damping(friction: f64, speed: f64) -> f64 {
+    friction / (FRAC_PI_4 * speed)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -73,7 +86,8 @@ mod tests {
     #[test]
     fn images_add_up_to_the_sampled_response() {
         let (b, m, period) = (0.022, 2.2e-5, 1e-3);
-        let model = Model { damping: b, inertia: m, delay: 0.0, lag: 0.0, source: None };
+        let model =
+            Model { damping: b, inertia: m, friction: 0.0, delay: 0.0, lag: 0.0, source: None };
         for hertz in [1.0, 30.0, 240.0] {
             let (omega, pole) = (TAU * hertz, (-period * b / m).exp());
             let z = Complex::from_polar(1.0, omega * period);

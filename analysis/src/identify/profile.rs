@@ -84,7 +84,11 @@ impl Profile {
     }
 
     fn within(squares: &Squares<'_>) -> Option<Self> {
-        let freedom = 2.0 * squares.measured.responses.len() as f64 - UNKNOWNS;
+        let friction = f64::from(u8::from(squares.measured.with_friction));
+        let freedom = 2.0 * squares.measured.responses.len() as f64 - UNKNOWNS - friction;
+        if freedom <= 0.0 {
+            return None;
+        }
         let quantile = student(freedom);
         let threshold = |least: f64| quantile * quantile * (least / freedom).max(1.0);
         let (tried, reached) = squares.tried(threshold);
@@ -130,6 +134,13 @@ impl Profile {
         }
     }
 
+    /// Coulomb friction in N m.
+    pub fn friction(&self) -> Estimate {
+        let found =
+            self.estimate(|model| model.friction, |fit| fit.deviations[3], |_| f64::NEG_INFINITY);
+        Estimate { lo: found.lo.max(0.0), ..found }
+    }
+
     /// Delay in s.
     pub fn delay(&self) -> Estimate {
         self.estimate(|model| model.delay, |fit| fit.deviations[2], |_| 0.0)
@@ -164,7 +175,7 @@ impl Profile {
     }
 }
 
-/// Damping, inertia, lag and delay.
+/// Damping, inertia, lag and delay; friction is one more.
 const UNKNOWNS: f64 = 4.0;
 
 /// Two-sided quantile of Student's distribution.

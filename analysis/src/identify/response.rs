@@ -3,6 +3,7 @@
 use haptic_servo::current::TorqueSource;
 use nalgebra::{Complex, DMatrix, DVector};
 
+use super::left_out::Reason;
 use super::record::Record;
 use super::step::Step;
 use super::torque_source;
@@ -55,6 +56,10 @@ pub struct FrequencyPoint {
     pub deviation: f64,
     /// Amplitude of the motion in counts.
     pub counts: f64,
+    /// Amplitude of the velocity in rad/s.
+    pub speed: f64,
+    /// The first of its rows in the record, counted from 0.
+    pub row: usize,
 }
 
 impl FrequencyPoint {
@@ -64,19 +69,30 @@ impl FrequencyPoint {
     }
 }
 
-/// The response over one stretch. `None` where there is no torque or no motion to speak of.
+/// Largest part of a torque, as a root mean square, that may be something else than its sine.
+const MOST_ELSE: f64 = 0.1;
+
+/// The response over one stretch, or why it has none.
 ///
 /// The torque is held from tick to tick, which makes the sine that the device feels smaller by
 /// `sinc(w T/2)` and late by `T/2`; both are taken out, as are the declared delays. The images of
 /// the held sine, which sampling folds back, stay in: see [`Model::images`].
 ///
 /// [`Model::images`]: super::model::Model::images
-pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Option<FrequencyPoint> {
+pub fn single_bin(
+    record: &Record,
+    step: &Step,
+    correction: &Correction,
+) -> Result<FrequencyPoint, Reason> {
     let skipped = (correction.settle * step.rows.len() as f64) as usize;
     let rows = step.rows.start + skipped..step.rows.end;
     let angle = step.omega * record.period;
-    let (torque, _) = phasor(&record.torque[rows.clone()], angle)?;
-    let (counts, deviation) = phasor(&record.counts[rows], angle)?;
+    let of_torque = phasor(&record.torque[rows.clone()], angle).ok_or(Reason::Still)?;
+    let of_counts = phasor(&record.counts[rows], angle).ok_or(Reason::Still)?;
+    let (torque, counts, deviation) = (of_torque.phasor, of_counts.phasor, of_counts.deviation);
+    if of_torque.rest > MOST_ELSE * torque.norm() {
+        return Err(Reason::NotOneSine(of_torque.rest / torque.norm()));
+    }
     let half = 0.5 * angle;
     let late = half + step.omega * correction.delay();
     let applied = torque * (half.sin() / half) * Complex::from_polar(1.0, -late);
@@ -90,17 +106,20 @@ pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Opti
         .map_or(0.0, |source| torque_source::deviation(&source, step.omega, amplitude) / amplitude);
     let deviation = impedance.norm() * (deviation / counts.norm()).hypot(of_torque);
     let usable = impedance.is_finite() && deviation.is_finite() && admittance.is_finite();
-    usable.then(|| FrequencyPoint {
+    let point = FrequencyPoint {
         omega: step.omega,
         admittance,
         deviation,
         counts: counts.norm(),
-    })
+        speed: velocity.norm(),
+        row: step.rows.start,
+    };
+    if usable { Ok(point) } else { Err(Reason::Still) }
 }
 
 /// `Re(p e^(j angle k))` fitted to the samples together with a parabola, which a free device drifts
-/// along: the phasor `p`, and the standard deviation of its real and imaginary parts.
-fn phasor(samples: &[f64], angle: f64) -> Option<(Complex<f64>, f64)> {
+/// along.
+fn phasor(samples: &[f64], angle: f64) -> Option<FittedSine> {
     const UNKNOWNS: usize = 5;
     let n = samples.len();
     if n <= UNKNOWNS {
@@ -117,20 +136,34 @@ fn phasor(samples: &[f64], angle: f64) -> Option<(Complex<f64>, f64)> {
     let solution = normal.solve(&(regressors.transpose() * &values));
     let residual = values - regressors * &solution;
     let phasor = Complex::new(solution[3], solution[4]);
-    Some((phasor, deviation(residual.as_slice(), angle, phasor.norm())))
+    let rest = (2.0 * residual.norm_squared() / n as f64).sqrt();
+    let deviation = deviation(residual.as_slice(), angle, phasor.norm());
+    Some(FittedSine { phasor, deviation, rest })
+}
+
+/// A sine fitted to samples.
+struct FittedSine {
+    phasor: Complex<f64>,
+    /// Standard deviation of its real and imaginary parts.
+    deviation: f64,
+    /// Amplitude of a sine with the power of the residual.
+    rest: f64,
 }
 
 /// Deviation of a phasor, from the residuals at the neighbouring frequencies: the noise of a free device is a
-/// random walk, so that its mean over all frequencies does not apply to one of them.
+/// random walk, so that its mean over all frequencies does not apply to one of them. Its amplitude falls with the
+/// frequency, by which each neighbour's is corrected.
 fn deviation(residual: &[f64], angle: f64, amplitude: f64) -> f64 {
     /// In steps of one period over the whole stretch; nearer than the first is the sine itself.
     const NEIGHBOURS: [f64; 8] = [-4.5, -3.5, -2.5, -1.5, 1.5, 2.5, 3.5, 4.5];
+    /// Steps from zero below which the fitted parabola has taken most of the noise.
+    const DRIFT: f64 = 2.0;
     let n = residual.len() as f64;
     let step = std::f64::consts::TAU / n;
     let neighbours = NEIGHBOURS.iter().map(|offset| angle + offset * step);
     let powers: Vec<f64> = neighbours
-        .filter(|&near| near > step && near < std::f64::consts::PI)
-        .map(|near| (2.0 / n * bin(residual, near)).norm_sqr())
+        .filter(|&near| near > DRIFT * step && near < std::f64::consts::PI)
+        .map(|near| (2.0 / n * near / angle * bin(residual, near)).norm_sqr())
         .collect();
     // Two degrees of freedom a neighbour. A quotient by a variance that was estimated from so few is larger
     // than by the true variance.

@@ -1,14 +1,10 @@
 //! Stretches of steady sine in a record.
 
 use std::f64::consts::{PI, TAU};
-use std::fmt;
 use std::ops::Range;
 
+use super::left_out::{LEAST_PERIODS, LeftOut, Reason};
 use super::record::Record;
-use crate::quantity::significant;
-
-/// Fewest periods of a stretch.
-pub const LEAST_PERIODS: usize = 4;
 
 /// Largest relative change of the length from one period to the next in the same stretch.
 const STEADY: f64 = 0.05;
@@ -25,29 +21,6 @@ pub struct Step {
     pub omega: f64,
 }
 
-/// A tone that is not used, and why.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LeftOut {
-    /// Its frequency in Hz.
-    pub frequency: f64,
-    /// Why it is not used.
-    pub reason: String,
-}
-
-impl fmt::Display for LeftOut {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { frequency, reason } = self;
-        write!(f, "the tone of {} Hz is left out: {reason}", significant(*frequency, 4))
-    }
-}
-
-impl LeftOut {
-    /// A tone of that angular frequency in rad/s.
-    pub fn new(omega: f64, reason: impl Into<String>) -> Self {
-        Self { frequency: omega / TAU, reason: reason.into() }
-    }
-}
-
 /// The stretches of a record, as its column `frequency` states, or else where the torque crosses zero at
 /// steady intervals; and the stretches that cannot be used, with the reason.
 pub fn steps(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
@@ -55,23 +28,55 @@ pub fn steps(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
         Some(frequency) => (labelled(frequency), Vec::new()),
         None => crossings(record),
     };
-    let (used, others): (Vec<Step>, Vec<Step>) =
-        steps.into_iter().partition(|step| why_not(step, record.period).is_none());
-    let reasons = others.iter().filter_map(|step| why_not(step, record.period));
-    left_out.extend(others.iter().zip(reasons).map(|(step, why)| LeftOut::new(step.omega, why)));
+    let mut used = Vec::new();
+    for step in steps.iter().flat_map(|step| split(step, record)) {
+        match why_not(&step, record.period) {
+            None => used.push(step),
+            Some(reason) => left_out.push(LeftOut::new(step.omega, step.rows.start, reason)),
+        }
+    }
     (used, left_out)
 }
 
 /// Why a stretch cannot be used, if it cannot.
-fn why_not(step: &Step, period: f64) -> Option<String> {
+fn why_not(step: &Step, period: f64) -> Option<Reason> {
     let periods = step.omega * period * step.rows.len() as f64 / TAU;
     // Above half the sampling rate a sine looks like a slower one.
     if step.omega * period >= PI {
-        return Some(format!("half the sampling rate is {} Hz", significant(0.5 / period, 4)));
+        return Some(Reason::Aliased { half_rate: 0.5 / period });
     }
-    (periods < LEAST_PERIODS as f64).then(|| {
-        format!("{} of its periods are fewer than {LEAST_PERIODS}", significant(periods, 2))
-    })
+    (periods < LEAST_PERIODS as f64).then_some(Reason::FewPeriods(periods))
+}
+
+/// Rows of a block in which an amplitude is taken, and at least one period.
+const BLOCK: f64 = 16.0;
+
+/// Largest relative change of the amplitude in the same stretch.
+const SAME_AMPLITUDE: f64 = 0.1;
+
+/// The parts of a stretch with the same amplitude: a record may have the same frequency at one amplitude after
+/// the other. A block in which the amplitude changes belongs to none.
+fn split(step: &Step, record: &Record) -> Vec<Step> {
+    let period = TAU / (step.omega * record.period);
+    let length = ((BLOCK / period).ceil().max(1.0) * period).round() as usize;
+    let blocks: Vec<Range<usize>> = (0..step.rows.len() / length.max(1))
+        .map(|block| step.rows.start + block * length..step.rows.start + (block + 1) * length)
+        .collect();
+    let amplitude = |rows: &Range<usize>| {
+        let squares: f64 = record.torque[rows.clone()].iter().map(|torque| torque * torque).sum();
+        (2.0 * squares / rows.len() as f64).sqrt()
+    };
+    let is_same = |a: &Range<usize>, b: &Range<usize>| {
+        let (a, b) = (amplitude(a), amplitude(b));
+        (a - b).abs() <= SAME_AMPLITUDE * a.max(b)
+    };
+    let parts: Vec<&[Range<usize>]> = blocks.chunk_by(is_same).collect();
+    if parts.len() < 2 {
+        return vec![step.clone()];
+    }
+    let long = parts.into_iter().filter(|part| part.len() > 1);
+    long.map(|part| Step { rows: part[0].start..part[part.len() - 1].end, ..step.clone() })
+        .collect()
 }
 
 fn labelled(frequency: &[f64]) -> Vec<Step> {
@@ -110,7 +115,9 @@ fn crossings(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
             let rows = times[first].ceil() as usize..times[last].ceil() as usize;
             let step = Step { rows, omega: TAU / (period * record.period) };
             match sweep(&times[first..=last]) {
-                Some(ratio) => sweeps.push(LeftOut::new(step.omega, sweeping(ratio))),
+                Some(ratio) => {
+                    sweeps.push(LeftOut::new(step.omega, step.rows.start, Reason::Sweep(ratio)))
+                }
                 None => steps.push(step),
             }
         }
@@ -127,12 +134,4 @@ fn sweep(times: &[f64]) -> Option<f64> {
     let (before, after) = (mean(&times[..=middle])?, mean(&times[middle..])?);
     let is_steady = (after - before).abs() <= STEADY * before.max(SHORT);
     (!is_steady).then_some(before / after)
-}
-
-fn sweeping(ratio: f64) -> String {
-    format!(
-        "its frequency changes by a factor of {} from its first half to its second; a sweep (chirp) is \
-         not a steady sine. Record one frequency after the other",
-        significant(ratio, 3)
-    )
 }

@@ -139,7 +139,7 @@ fn malformed_rows_are_named() {
     let rows = |bad: &str| {
         let good = |k: usize| format!("{:.4},{},{k}\n", k as f64 * 1e-3, 0.5);
         let rows: String = (0..20).map(|k| if k == 7 { bad.to_owned() } else { good(k) }).collect();
-        parse("x.csv", format!("time,torque,counts\n{rows}").as_bytes())
+        parse("x.csv", format!("time,torque,counts\n{rows}").as_bytes(), 1e-4)
     };
     let good = rows("0.007,0.5,7\n").unwrap();
     assert!((good.period - 1e-3).abs() < 1e-12 && good.counts.len() == 20);
@@ -147,7 +147,9 @@ fn malformed_rows_are_named() {
         ("0.007,much,7\n", "x.csv:9: column 2, `torque`: `much`"),
         ("0.007,inf,7\n", "x.csv:9: column 2, `torque`: `inf`"),
         ("0.007,0.5,7.5\n", "x.csv:9: column 3, `counts`: `7.5`"),
-        ("0.008,0.5,7\n", "x.csv:9: column 1, `time`: `0.008`"),
+        ("0.0074,0.5,7\n", "x.csv:9: column 1, `time`: `0.0074`"),
+        ("0.005,0.5,7\n", "x.csv:9: column 1, `time`: `0.005`"),
+        ("", "x.csv:9: the time goes from 0.006 s to 0.008 s"),
         ("NaN,0.5,7\n", "x.csv:9: column 1, `time`: `NaN`"),
         ("0.007,0.5\n", "x.csv:9: 2 fields"),
         (",,\n", "x.csv:9: column 1, `time`: ``"),
@@ -155,11 +157,65 @@ fn malformed_rows_are_named() {
         let error = rows(bad).unwrap_err().to_string();
         assert!(error.starts_with(named), "{error}");
     }
-    let error = |text: &str| parse("x.csv", text.as_bytes()).unwrap_err().to_string();
+    let error = |text: &str| parse("x.csv", text.as_bytes(), 1e-4).unwrap_err().to_string();
     assert!(error("time,torque\n").contains("no column `counts`"));
     assert!(error("time,torque,counts\n0,0,0\n").contains("1 rows"));
     assert!(error("time,torque,counts\n1,0,0\n1,0,0\n").contains("x.csv:3: column 1"));
     assert!(error("").contains("no column"));
+}
+
+#[test]
+fn units_separators_and_decimal_commas_are_read() {
+    let record = |header: &str, row: &dyn Fn(f64) -> String| {
+        let rows: String = (0..20).map(|k| row(f64::from(k)) + "\n").collect();
+        parse("x.csv", format!("{header}\n{rows}").as_bytes(), 1e-3)
+            .map_err(|error| error.to_string())
+    };
+    let si = record("time,torque,counts", &|k| format!("{},{},{k}", 1e-3 * k, 0.25 * k)).unwrap();
+    let comma = |number: f64| format!("{number}").replace('.', ",");
+    for (header, separator) in [
+        ("time [ms];torque (mNm);angle [mrad]", ';'),
+        ("Time (ms)\tTorque [mN m]\tposition (mrad)", '\t'),
+        ("time_ms;torque_mNm;angle_mrad", ';'),
+    ] {
+        let row =
+            |k: f64| format!("{}{separator}{}{separator}{}", comma(k), comma(250.0 * k), comma(k));
+        let read = record(header, &row).unwrap();
+        assert!((read.period - si.period).abs() < 1e-15, "{header}");
+        for (a, b) in read.torque.iter().zip(&si.torque).chain(read.counts.iter().zip(&si.counts)) {
+            assert!((a - b).abs() < 1e-9 * (1.0 + b.abs()), "{header}: {a} {b}");
+        }
+    }
+    for (header, said) in [
+        (
+            "time,torque [MNm],counts",
+            "x.csv:1: the column `torque [MNm]` has the unit `MNm`; the units of `torque`",
+        ),
+        ("time,torque,angle", "x.csv:1: the column `angle` has no unit: name it `angle (rad)`"),
+        (
+            "time,torque,torque (mNm),counts",
+            "x.csv:1: `torque` and `torque (mNm)` are both `torque`",
+        ),
+        ("time;torque,counts", "x.csv:1: `time;torque,counts` has `;` beside `,`"),
+    ] {
+        let error = record(header, &|k| format!("{k},{k},{k},{k}")).unwrap_err();
+        assert!(error.starts_with(said), "{error}");
+    }
+    let mixed = |k: f64| format!("{k};{};{k}", if k < 9.0 { "0,5" } else { "0.5" });
+    let error = record("time [ms];torque;counts", &mixed).unwrap_err();
+    let said = "x.csv:11: column 2, `torque`: `0.5` is out of bounds; it must be a finite number in N m with";
+    assert!(error.starts_with(said), "{error}");
+}
+
+#[test]
+fn rows_that_are_missing_are_counted_together() {
+    let times = [0, 1, 2, 3, 7, 8, 9, 10, 12, 13, 14, 15, 16, 17, 18, 19, 20];
+    let rows: String =
+        times.iter().map(|k| format!("{},0.5,{k}\n", 1e-3 * f64::from(*k))).collect();
+    let error = parse("x.csv", format!("time,torque,counts\n{rows}").as_bytes(), 1e-3).unwrap_err();
+    let said = error.to_string();
+    assert!(said.starts_with("x.csv:6: the time goes from 0.003 s to 0.007 s"), "{said}");
+    assert!(said.contains("(4 rows in 2 gaps in the file)"), "{said}");
 }
 
 /// A paddle's counts under a torque, both over time at 1 kHz.
@@ -196,10 +252,14 @@ fn a_tone_that_is_left_out_is_named_with_the_reason() {
     tones[7].amplitude *= 5e-3;
     let record = rig.measure(&tones).unwrap();
     let found = identify(&record, &Correction::of_encoder(61_440.0)).unwrap();
-    let said: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
+    let said = left_out::grouped(&found.left_out);
     assert_eq!(said.len(), 2, "{said:?}");
-    assert_eq!(said[0], "the tone of 2 Hz is left out: 2 of its periods are fewer than 4");
+    assert_eq!(
+        said[0],
+        "the tone of 2 Hz (row 60001) is left out: 2 of its periods are fewer than 4"
+    );
     assert!(said[1].starts_with("the tone of 64 Hz") && said[1].contains("counts"), "{said:?}");
 }
 
+mod friction;
 mod latency;

@@ -1,20 +1,25 @@
 //! Ticks as a table that other programs read.
 
 use std::io::{self, BufWriter, Write};
+use std::num::NonZeroU32;
 
 use super::sample::{COLUMNS, Row, Sample};
+use crate::tick_gaps::TickGaps;
 
 /// Writes ticks as CSV: tick, time, count, position, code, torque, state, limit, slack; in s, rad
 /// and N m.
 pub struct Recorder {
     rows: BufWriter<Box<dyn Write>>,
     count: u64,
+    every: u64,
+    gaps: TickGaps,
 }
 
 impl Recorder {
-    /// Writes to this stream.
-    pub fn new(to: Box<dyn Write>) -> Self {
-        Self { rows: BufWriter::new(to), count: 0 }
+    /// Writes every `every`th tick to this stream.
+    pub fn new(to: Box<dyn Write>, every: NonZeroU32) -> Self {
+        let (rows, every) = (BufWriter::new(to), u64::from(every.get()));
+        Self { rows, count: 0, every, gaps: TickGaps::default() }
     }
 
     /// Adds a tick.
@@ -26,6 +31,7 @@ impl Recorder {
             writeln!(self.rows, "{COLUMNS}")?;
         }
         self.count += 1;
+        self.gaps.add(sample.tick, self.every);
         writeln!(self.rows, "{}", Row::from(sample))
     }
 
@@ -35,6 +41,11 @@ impl Recorder {
     /// Where it cannot be written.
     pub fn flush(&mut self) -> io::Result<()> {
         self.rows.flush()
+    }
+
+    /// Ticks that are missing between those that were added.
+    pub fn gaps(&self) -> &TickGaps {
+        &self.gaps
     }
 
     /// Ticks that were added.

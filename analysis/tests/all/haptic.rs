@@ -363,6 +363,30 @@ fn a_recording_runs_on_the_host_tick_by_tick() {
 }
 
 #[test]
+fn a_replay_states_the_ticks_that_its_recording_lacks() {
+    let folder = tempfile::tempdir().unwrap();
+    let recording = folder.path().join("counts.csv");
+    let path = recording.to_str().unwrap();
+    let replay = |text: &str| {
+        std::fs::write(&recording, text).unwrap();
+        let output = haptic(&["run", "damper_wall", "--replay", path, "--json"], b"");
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let gaps = serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap();
+        (String::from_utf8(output.stderr).unwrap(), gaps["replay_gaps"].clone())
+    };
+    let (said, gaps) = replay("tick,count\n10,1\n11,2\n14,3\n15,4\n17,4\n");
+    let note = "note: 3 ticks are missing in 2 gaps; the first is after tick 11; the replay plays";
+    assert!(said.starts_with(note), "{said}");
+    assert_eq!((&gaps["missing"], &gaps["first_after"]), (&3.into(), &11.into()), "{gaps}");
+    assert!(
+        replay("time,count\n0,1\n0.001,2\n0.003,3\n").0.starts_with("note: 1 ticks are missing")
+    );
+    let (said, gaps) = replay("tick,count\n10,1\n11,2\n");
+    assert_eq!((said.as_str(), &gaps["missing"]), ("", &0.into()));
+    assert!(replay("count\n1\n2\n").1.is_null());
+}
+
+#[test]
 fn a_bad_option_is_named_with_its_value_and_bound() {
     for number in ["-5", "0", "nan", "1e400"] {
         let question = ["run", "free_mode", "--counts-per-rev", number];

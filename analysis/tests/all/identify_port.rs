@@ -139,7 +139,7 @@ fn a_board_is_begun_recorded_and_identified() {
     };
     near("/damping/value", 0.022);
     near("/inertia/value", 2.2e-5);
-    assert_eq!(found["responses"].as_array().unwrap().len(), 10);
+    assert_eq!(found["responses"].as_array().unwrap().len(), 20);
     assert_eq!(record.unwrap().lines().count() as u64, 1 + SWEEP.ticks());
 }
 
@@ -147,7 +147,7 @@ fn a_board_is_begun_recorded_and_identified() {
 fn every_end_before_the_last_is_named_and_what_there_is_is_kept() {
     for end in SweepEnd::ALL.into_iter().filter(|end| *end != SweepEnd::Done) {
         let (sentence, record) = Board { ends: Some((700, end)), ..Board::default() }.complaint();
-        let begins = format!("the sweep ended with `{}` after 700 of 52500 rows: ", end.as_str());
+        let begins = format!("the sweep ended with `{}` after 700 of 58000 rows: ", end.as_str());
         assert!(sentence.contains(&begins), "{sentence}");
         assert_eq!(record.unwrap().lines().count(), 701);
     }
@@ -179,7 +179,7 @@ fn a_port_without_a_sweep_says_what_to_flash() {
         (Board { says: Some("identify,9,1\n"), ..Board::default() }, "flash `identify` again"),
         (
             Board { dies_at: Some(5000), ..Board::default() },
-            "has sent nothing for 2 s after 5000 of 52500",
+            "has sent nothing for 2 s after 5000 of 58000",
         ),
     ] {
         let (sentence, record) = board.complaint();

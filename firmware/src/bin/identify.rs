@@ -8,7 +8,7 @@
 mod device;
 
 pub use device::TRANSDUCERS;
-use haptic_servo::excitation::{MotionLimits, Sweep, Tone};
+use haptic_servo::excitation::{MotionLimits, Sweep, Tone, at_two_amplitudes};
 
 /// Sampling period in s: that of the device's later scenes.
 pub const PERIOD: f64 = 0.001;
@@ -23,28 +23,29 @@ const fn part(part: f64) -> f64 {
     part * TRANSDUCERS.full_scale_torque
 }
 
-/// The tones, up to a quarter of the sampling rate, for a device with about 2e-5 kg m^2, 0.02 N m s/rad and 2
-/// N m: at low frequencies the torque for a fifth of a radian, at high frequencies as much as the motor
-/// allows, because damping and skew can be distinguished only where inertia dominates. A heavier device needs
-/// more torque or lower frequencies; the host reports motion that is too small for the encoder.
+/// The tones at two amplitudes, of which the larger is given, up to a quarter of the sampling rate, for a
+/// device with about 2e-5 kg m^2, 0.02 N m s/rad and 2 N m: at low frequencies the torque for a fifth of a
+/// radian, at high frequencies as much as the motor allows, because damping and skew can be distinguished only
+/// where inertia dominates. A heavier device needs more torque or lower frequencies; the host reports motion
+/// that is too small for the encoder.
 ///
 /// A torque outside the DAC range, or a part of a tone that is not a whole number of samples, is a
 /// compile error here.
-pub static SWEEP: Sweep<10> = Sweep::planned(
+pub static SWEEP: Sweep<20> = Sweep::planned(
     PERIOD,
     &TRANSDUCERS,
-    [
-        Tone { frequency: 1.0, amplitude: part(0.015), settle: 1, measured: 8 },
-        Tone { frequency: 2.0, amplitude: part(0.03), settle: 1, measured: 12 },
-        Tone { frequency: 4.0, amplitude: part(0.055), settle: 2, measured: 20 },
-        Tone { frequency: 8.0, amplitude: part(0.11), settle: 4, measured: 32 },
-        Tone { frequency: 16.0, amplitude: part(0.225), settle: 8, measured: 64 },
-        Tone { frequency: 32.0, amplitude: part(0.45), settle: 16, measured: 128 },
-        Tone { frequency: 64.0, amplitude: part(0.8), settle: 32, measured: 256 },
-        Tone { frequency: 100.0, amplitude: part(0.8), settle: 50, measured: 400 },
-        Tone { frequency: 160.0, amplitude: part(0.8), settle: 80, measured: 640 },
-        Tone { frequency: 240.0, amplitude: part(0.8), settle: 120, measured: 960 },
-    ],
+    at_two_amplitudes([
+        Tone { frequency: 1.0, amplitude: part(0.015), settle: 1, measured: 4 },
+        Tone { frequency: 2.0, amplitude: part(0.03), settle: 1, measured: 6 },
+        Tone { frequency: 4.0, amplitude: part(0.055), settle: 2, measured: 10 },
+        Tone { frequency: 8.0, amplitude: part(0.11), settle: 4, measured: 16 },
+        Tone { frequency: 16.0, amplitude: part(0.225), settle: 8, measured: 32 },
+        Tone { frequency: 32.0, amplitude: part(0.45), settle: 16, measured: 64 },
+        Tone { frequency: 64.0, amplitude: part(0.8), settle: 32, measured: 128 },
+        Tone { frequency: 100.0, amplitude: part(0.8), settle: 50, measured: 200 },
+        Tone { frequency: 160.0, amplitude: part(0.8), settle: 80, measured: 320 },
+        Tone { frequency: 240.0, amplitude: part(0.8), settle: 120, measured: 480 },
+    ]),
 );
 
 haptic_servo::sweep_program!(SWEEP, TRANSDUCERS, LIMITS);

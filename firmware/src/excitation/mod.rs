@@ -70,6 +70,29 @@ pub struct Tone {
     pub measured: u32,
 }
 
+/// Tones at their amplitude, and then all of them again at half of it, so that Coulomb friction is told from
+/// damping: a sine sees `b + 4 f_c/(pi v_a)` at an amplitude `v_a` of the velocity (theory, section 3.4). `M` is
+/// twice `N`.
+///
+/// ```
+/// use haptic_servo::excitation::{Tone, at_two_amplitudes};
+/// const TONES: [Tone; 2] = at_two_amplitudes([
+///     Tone { frequency: 64.0, amplitude: 0.5, settle: 8, measured: 16 },
+/// ]);
+/// assert_eq!(TONES[1], Tone { amplitude: 0.25, ..TONES[0] });
+/// ```
+pub const fn at_two_amplitudes<const N: usize, const M: usize>(tones: [Tone; N]) -> [Tone; M] {
+    const { assert!(M == 2 * N, "there are not twice as many tones") };
+    let mut all = [Tone { frequency: 0.0, amplitude: 0.0, settle: 0, measured: 0 }; M];
+    let mut i = 0;
+    while i < N {
+        all[i] = tones[i];
+        all[N + i] = Tone { amplitude: 0.5 * tones[i].amplitude, ..tones[i] };
+        i += 1;
+    }
+    all
+}
+
 /// A checked sequence of tones: each within the DAC's range and a whole number of samples long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep<const N: usize> {

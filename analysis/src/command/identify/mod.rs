@@ -24,8 +24,9 @@ use target::Origin;
 /// Arguments of `haptic identify`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Record of stepped sines: CSV with the columns `time` in s, `torque` in N m, `counts`, and
-    /// optionally `frequency` in Hz; `-` is standard input. With --target: scene file, or a file
+    /// Record of stepped sines, each frequency at two amplitudes of torque: CSV with the columns `time` in s,
+    /// `torque` in N m, `counts`, and optionally `frequency` in Hz; or with units, as `time [ms]`, `torque
+    /// (mNm)`, `angle (deg)`. `,`, `;` or tabs separate; `-` is standard input. With --target: scene file, or a file
     /// with a table `device` alone
     #[arg(value_name = "FILE", required_unless_present_any = ["target", "port"])]
     pub file: Option<PathBuf>,
@@ -149,6 +150,10 @@ impl TakenOut {
 struct Report<'a> {
     inertia: Estimate,
     damping: Estimate,
+    /// Coulomb friction in N m.
+    friction: Estimate,
+    /// Whether friction can be told from damping.
+    friction_told: bool,
     /// Mean delay of the torque's step response in s: the sum of lag and delay.
     skew: Estimate,
     skew_significant: bool,
@@ -225,7 +230,7 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
         let (record, origin) = (measured.record, Some(origin));
         return Ok(Measured { record, origin, counts_per_turn, torque_source: None });
     }
-    let record = load(file.unwrap_or(Path::new("-")))?;
+    let record = load(file.unwrap_or(Path::new("-")), counts_per_turn)?;
     Ok(Measured { record, origin: None, counts_per_turn, torque_source: None })
 }
 
@@ -235,14 +240,18 @@ pub fn of_file(
     counts_per_turn: f64,
     reading: &Reading,
 ) -> Result<Identification, CommandError> {
-    Ok(identify::identify(&load(file)?, &reading.correction(counts_per_turn, SETTLE))?)
+    Ok(identify::identify(
+        &load(file, counts_per_turn)?,
+        &reading.correction(counts_per_turn, SETTLE),
+    )?)
 }
 
 /// A record from a file or, as `-`, from standard input.
-fn load(file: &Path) -> Result<Record, CommandError> {
+fn load(file: &Path, counts_per_turn: f64) -> Result<Record, CommandError> {
+    let count_angle = std::f64::consts::TAU / counts_per_turn;
     let record = match file == Path::new("-") {
-        true => identify::record::parse("<stdin>", io::stdin().lock()),
-        false => identify::record::load(file),
+        true => identify::record::parse("<stdin>", io::stdin().lock(), count_angle),
+        false => identify::record::load(file, count_angle),
     };
     Ok(record.map_err(identify::IdentifyError::from)?)
 }
@@ -264,6 +273,8 @@ fn report<'a>(
     Report {
         inertia: found.inertia,
         damping: found.damping,
+        friction: found.friction,
+        friction_told: found.tells_friction,
         skew: found.mean_delay,
         skew_significant: found.mean_delay.is_significant(),
         latency: found.latency.ok(),
@@ -285,7 +296,7 @@ fn report<'a>(
 
 /// Warnings about the identified numbers.
 fn notes(found: &Identification) -> Vec<String> {
-    let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
+    let mut notes: Vec<String> = identify::left_out::grouped(&found.left_out);
     // If no rigid device explains the responses, the fitted times are meaningless.
     if found.is_rigid() && found.mean_delay.is_significant() {
         notes.push(format!(
@@ -309,7 +320,22 @@ fn notes(found: &Identification) -> Vec<String> {
             significant(found.misfit.sqrt(), 2),
         ));
     }
-    if found.disk.delta <= 0.0 || found.is_rigid() && found.passivity().is_none() {
+    if found.is_rigid() && !found.tells_friction {
+        let [least, most] = found.speeds.map(|speed| significant(speed, 3));
+        notes.push(format!(
+            "no passivity is stated from one amplitude: all sines move at {least} to {most} rad/s, where \
+             Coulomb friction of up to {} N m looks like damping. Record the same frequencies again at a \
+             second amplitude of torque, for example half, in the same file",
+            significant(found.friction.hi, 3),
+        ));
+    } else if found.is_rigid() && found.damping.hi > 0.0 && found.passivity().is_none() {
+        notes.push(format!(
+            "the device has no passivity: its damping may be as low as {} N m s/rad. Record the same \
+             frequencies again at a second amplitude of torque, for example twice, in the same file, so that \
+             friction is told from damping",
+            significant(found.damping.lo, 3),
+        ));
+    } else if found.disk.delta <= 0.0 || found.is_rigid() && found.passivity().is_none() {
         notes.push(format!(
             "the device has no passivity: Re(1/J) is {} N m s/rad at {} Hz. Check the sign of \
              torque and counts, the declared delays, and that motor and encoder are on the same \
@@ -378,20 +404,22 @@ pub fn device_table(found: &Identification) -> String {
     };
     let passivity = match found.passivity() {
         Some(passivity) => format!(
-            "passivity = {} # N m s/rad, lower end of the damping{less}; valid if the device is rigid \
+            "passivity = {} # N m s/rad, the damping less twice its uncertainty{less}; valid if the device is rigid \
              from motor to hand\n",
-            significant(passivity, 4),
+            // Rounded down.
+            significant(passivity * (1.0 - 5e-4), 4),
         ),
         None => "# passivity: none; do not certify with this device\n".to_owned(),
     };
     let latency = latency_lines(found);
     format!(
         "[device]\ninertia = {} # kg m^2, {} at 95 %\ndamping = {} # N m s/rad, {} at 95 %\n\
-         {passivity}{latency}",
+         {passivity}# Coulomb friction: {} N m at 95 %\n{latency}",
         significant(found.inertia.value, 5),
         range(&found.inertia),
         significant(found.damping.value.max(0.0), 5),
         range(&found.damping),
+        range(&found.friction),
     )
 }
 
@@ -417,6 +445,14 @@ fn text(
     };
     let mut rows = vec![
         ("damping", estimate(&found.damping, "N m s/rad")),
+        (
+            "friction",
+            format!(
+                "{} to {} N m",
+                significant(found.friction.lo, 3),
+                significant(found.friction.hi, 3)
+            ),
+        ),
         ("inertia", estimate(&found.inertia, "kg m^2")),
         ("lag + delay", estimate(&found.mean_delay, "s")),
         ("disk", disk),

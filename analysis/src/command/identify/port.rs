@@ -23,6 +23,7 @@ pub fn measure(
         std::fs::write(path, &recording.text).map_err(unwritable)?;
     }
     recording.check_complete()?;
-    let read = record::parse(&address.to_string(), recording.text.as_bytes());
+    let count_angle = std::f64::consts::TAU / recording.description.counts_per_turn;
+    let read = record::parse(&address.to_string(), recording.text.as_bytes(), count_angle);
     Ok((read.map_err(IdentifyError::from)?, recording.description))
 }

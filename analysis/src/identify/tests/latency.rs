@@ -62,7 +62,8 @@ fn each_interval_holds_the_truth_in_95_of_100_records() {
         // No interval is wide because of that.
         for found in &all {
             let reach = |e: Estimate| 0.5 * (e.hi - e.lo);
-            assert!(reach(found.damping) < 2e-3 * KNOB.damping, "{:?}", found.damping);
+            // Friction is fitted too, and its share is not known better.
+            assert!(reach(found.damping) < 3e-3 * KNOB.damping, "{:?}", found.damping);
             assert!(reach(found.inertia) < 8e-3 * KNOB.inertia, "{:?}", found.inertia);
             assert!(reach(found.mean_delay) < 5e-6, "{:?}", found.mean_delay);
         }
@@ -91,7 +92,9 @@ fn damping_is_unbiased_where_the_real_part_is_not() {
     assert!((raw / foreseen - 1.0).abs() < 0.01, "{raw} {foreseen}");
     let (damping, deviation) = mean(&|found| found.damping.value);
     println!("raw {raw:e}, fitted {:e} +- {deviation:e}", damping - KNOB.damping);
-    assert!((damping - KNOB.damping).abs() < 3.0 * deviation + 1e-6, "{damping} {deviation}");
+    // Friction is not below zero, so its mean is a little above, and that of the damping as much below.
+    let off = damping - KNOB.damping;
+    assert!(-3e-4 * KNOB.damping < off && off < 3.0 * deviation, "{damping} {deviation}");
     // A delay alone in the place of lag and delay leaves the inertia wrong.
     let delayed = |found: &Identification| {
         let again = |r: &FrequencyPoint| {
@@ -100,7 +103,13 @@ fn damping_is_unbiased_where_the_real_part_is_not() {
         };
         let responses: Vec<FrequencyPoint> = found.responses.iter().map(again).collect();
         let period = SENSING.period;
-        let measured = Measured { responses: &responses, period, declared: 0.0, source: None };
+        let measured = Measured {
+            responses: &responses,
+            period,
+            declared: 0.0,
+            source: None,
+            with_friction: false,
+        };
         let model = measured.fit(0.0, Delay::From(2e-4)).unwrap().model;
         model.inertia
     };
@@ -112,7 +121,7 @@ fn damping_is_unbiased_where_the_real_part_is_not() {
 
 impl From<Output> for Model {
     fn from(Output { lag, delay }: Output) -> Self {
-        Self { damping: 0.0, inertia: 0.0, delay, lag, source: None }
+        Self { damping: 0.0, inertia: 0.0, friction: 0.0, delay, lag, source: None }
     }
 }
 

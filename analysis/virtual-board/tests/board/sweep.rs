@@ -60,7 +60,7 @@ fn nothing_moves_before_the_host_begins_and_the_board_says_what_it_would_play() 
     for request in [SweepRequest::Describe, SweepRequest::Listening, SweepRequest::Stop] {
         bench.machine.board_mut().send(&request.frame());
     }
-    assert_eq!(lines(&mut bench), ["identify,3,0.001,61440,52500,0.7,85"]);
+    assert_eq!(lines(&mut bench), ["identify,3,0.001,61440,58000,0.7,85"]);
     assert_still(&bench);
 }
 

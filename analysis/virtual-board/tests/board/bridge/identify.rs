@@ -91,7 +91,9 @@ fn the_host_measures_the_device_and_how_late_its_torque_is() {
     let numbers = description.strip_prefix(&head).unwrap_or_else(|| panic!("{description}"));
     let (rows, end) = rest.trim_end().rsplit_once('\n').unwrap();
     assert!(end.starts_with("end,done,"), "{end}");
-    let record = record::parse("bridge_identify", rows.as_bytes()).unwrap();
+    let record =
+        record::parse("bridge_identify", rows.as_bytes(), TAU / TRANSDUCERS.counts_per_turn)
+            .unwrap();
     assert_eq!(record.torque.len() as u64, SWEEP.ticks());
     let source = torque_source::parse(numbers);
     assert!(source.is_some(), "{numbers}");
