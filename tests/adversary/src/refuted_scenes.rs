@@ -42,6 +42,12 @@ fn rational(numerator: &[f64], denominator: &[f64]) -> Environment {
     })
 }
 
+/// A rational environment without its delay, times `z - 1`.
+fn at_rest(environment: Environment) -> Environment {
+    let Environment::Rational(rational) = environment else { return environment };
+    Environment::Rational(Rational { delay: 0, unit_zeros: 1, ..rational })
+}
+
 /// All values.
 pub fn all() -> Vec<RefutedScene> {
     let damper = |k, b, n| Environment::DamperWall(wall(k, b, n));
@@ -51,6 +57,17 @@ pub fn all() -> Vec<RefutedScene> {
         scene: scene(44.0, rational(numerator, denominator)),
         judged_as: Some(scene(44.0, rational(&[3.0], &[1.0]))),
     };
+    let jitters = |name, delay, jitter, lag, coupling, environment| {
+        let latency = Latency { output_jitter: jitter, ..Latency::delayed(delay) };
+        let latency = latency.with_actuator_lag(lag);
+        let torque_limit = (coupling != Coupling::Rigid).then_some(1.0);
+        let scene = scene(44.0, environment);
+        refuted(name, Scene { latency, coupling, torque_limit, ..scene })
+    };
+    // A controller with poles at 0.7 and -0.98, the first of which falls, in units of `delta / T`.
+    let crossing = [-0.258, -0.3234].map(|c| c * 0.867553 * 22.0);
+    let crossing = at_rest(rational(&crossing, &[1.0, 0.28, -0.686]));
+    let spring = |stiffness| Coupling::Spring { stiffness };
     let eight = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
     let four = [1.0, 4.0, 6.0, 4.0, 1.0];
     let twice = Timing { period: 0.001, worst_period: Some(0.002) };
@@ -75,6 +92,31 @@ pub fn all() -> Vec<RefutedScene> {
         refuted(
             "a fade that locks an unstable environment",
             scene(4.4, rational(&[2.42, 0.0], &[1.0, -1.05])),
+        ),
+        jitters(
+            "jitter and lag behind the matched coupling",
+            1e-4,
+            1e-4,
+            2e-5,
+            Coupling::Matched,
+            damper(29.5, 0.0, 1),
+        ),
+        jitters(
+            "little jitter behind the matched coupling",
+            1e-5,
+            1e-6,
+            0.0,
+            Coupling::Matched,
+            damper(42.5, 0.0, 1),
+        ),
+        jitters("jitter across counts", 1e-3, 3e-4, 0.0, Coupling::Rigid, crossing),
+        jitters(
+            "jitter behind a coupling spring",
+            1e-4,
+            1e-4,
+            0.0,
+            spring(6.0),
+            damper(5.6, 0.0, 1),
         ),
         refuted("half of the damping to spare", scene(44.0, damper(22.0, 0.0, 1))),
         refuted("more than all of the damping to spare", scene(44.0, damper(1000.0, 0.0, 0))),

@@ -300,6 +300,11 @@ fn draw_coupling(rng: &mut impl Rng, mode: Mode, lags: bool, standard: f64) -> C
     if rng.random_range(0..10) < rigid {
         return Coupling::Rigid;
     }
+    if lags {
+        // What a torque takes longer for has to be in the spring, too.
+        let stiffness = standard / (1.0 + log_uniform(rng, 0.3, 10.0));
+        return Coupling::Spring { stiffness };
+    }
     Coupling::Spring {
         stiffness: match rng.random_range(1..10) {
             1..=4 => standard,
@@ -331,7 +336,15 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let size = log_uniform(rng, if is_general { 2e-2 } else { 1e-3 }, 1.0);
     let full_scale = (unit * size * log_uniform(rng, 0.1, 10.0)).min(100.0);
     let rational = matches!(kind, Kind::Rational | Kind::Unstable | Kind::Hidden);
-    let limited = sometimes(rng, choice.limited, if rational { 0.1 } else { 0.5 });
+    let limited = sometimes(
+        rng,
+        choice.limited,
+        match (rational, lags) {
+            (true, _) => 0.1,
+            (_, true) => 0.7,
+            _ => 0.5,
+        },
+    );
     // The servo alone is certified for torques that never saturate, or for its scene's limit.
     let unlimited = mode == Mode::Bare && !limited;
     let full_scale = match (unlimited, limited || choice.saturates) {

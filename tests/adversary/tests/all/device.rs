@@ -1,7 +1,7 @@
 //! The held device against an independent exponential of the same chain, and its energies against
 //! each other.
 
-use adversary::device::{HeldDevice, TORQUE};
+use adversary::device::{AMPLIFIED, HeldDevice, Lags, SENSED, TORQUE};
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -59,5 +59,44 @@ fn a_held_device_moves_as_the_reference_does() {
         let gained = held.energy(&x) - held.energy(&start);
         let lost = work - gained - taken - squared;
         assert!(lost.abs() <= 1e-9 * (held.energy(&start) + 1.0), "{lost} {hand:?}");
+    }
+}
+
+/// The lags against their solutions in closed form, the position that the sensor follows by quadrature.
+#[test]
+fn amplifier_and_sensor_lag_as_their_time_constants_say() {
+    const PIECES: u32 = 2000;
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    for _ in 0..30 {
+        let mut hand = draw(&mut rng);
+        hand.segments.truncate(1);
+        let (amplifier, sensor) = (rng.random_range(0.05..2.0), rng.random_range(0.05..2.0));
+        let held = HeldDevice::lagging(&hand, 1.0, &Lags { amplifier, updates: 0, sensor });
+        let mut x = [0.0; 8];
+        x.fill_with(|| rng.random_range(-1.0..1.0));
+        x[SENSED + 1] = 0.0;
+        let (start, mut fine) = (x, x);
+        // exp(-(1 - t) / sensor) x(t) / sensor, by Simpson's rule.
+        let (step, part) = (held.step(0.5 / f64::from(PIECES)), 1.0 / f64::from(PIECES));
+        let weigh = |x: &[f64; 8], t: f64| ((t - 1.0) / sensor).exp() * x[0] / sensor;
+        let mut sensed = start[SENSED] * (-1.0 / sensor).exp();
+        for i in 0..PIECES {
+            let t = f64::from(i) * part;
+            let mut sum = weigh(&fine, t);
+            step.advance(&mut fine);
+            sum += 4.0 * weigh(&fine, t + 0.5 * part);
+            step.advance(&mut fine);
+            sensed += (sum + weigh(&fine, t + part)) * part / 6.0;
+        }
+        let whole = held.audited(1.0);
+        let taken = whole.taken(&x);
+        let (squared, work) = whole.advance(&mut x);
+        let left = (-1.0 / amplifier).exp();
+        let amplified = start[TORQUE] + (start[AMPLIFIED] - start[TORQUE]) * left;
+        let size = 1.0 + x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+        assert!((x[AMPLIFIED] - amplified).abs() <= 1e-9 * size, "{amplifier} {hand:?}");
+        assert!((x[SENSED] - sensed).abs() <= 1e-6 * size, "{sensor} {hand:?}");
+        let lost = work - (held.energy(&x) - held.energy(&start)) - taken - squared;
+        assert!(lost.abs() <= 1e-9 * size * size * (1.0 + held.energy(&start)), "{lost} {hand:?}");
     }
 }

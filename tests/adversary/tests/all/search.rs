@@ -51,7 +51,7 @@ fn linear(scene: &Scene) -> Scene {
 #[test]
 fn no_scene_has_more_damping_to_spare_than_could_be_taken_from_it() {
     let (mut accepted, mut stating, mut overstated) = (0_u32, 0_u32, Vec::new());
-    for number in 0..4000 {
+    for number in 0..6000 {
         let mut rng = ChaCha8Rng::seed_from_u64(1);
         rng.set_stream(number);
         let Some(drawn) = scenes::draw(&mut rng, &Choice::ANY) else { continue };
