@@ -6,6 +6,7 @@
 
 mod circuit;
 pub mod gate_log;
+pub mod parts;
 #[cfg(test)]
 mod tests;
 
@@ -315,7 +316,7 @@ impl PowerStage {
         let legs = legs(&self.gates);
         for phase in 0..3 {
             let is_wired = is_analog(around.ports, SHUNTS[phase]);
-            inputs[COMPARATOR[phase]] = is_wired.then(|| circuit.shunt(phase, legs[phase]));
+            inputs[COMPARATOR[phase]] = is_wired.then(|| circuit.compared(phase, legs[phase]));
         }
         inputs
     }

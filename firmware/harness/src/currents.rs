@@ -22,7 +22,7 @@ const STAGE: PowerStage = PowerStage {
     current_lowers_count: true,
     volts_per_count: 0.0084,
     largest_current: 40.0,
-    offset_counts: (1900, 2300),
+    offset_counts: (2390, 2716),
     supply: Supply { lowest: 10.0, highest: 34.0 },
     dead_time: 0.2e-6,
     shortest_low: 1.5e-6,
@@ -47,7 +47,7 @@ static BRUSHED: CurrentLoop = design(Winding::Brushed);
 static BRUSHLESS: CurrentLoop = design(Winding::Brushless { pole_pairs: 7 });
 
 /// Counts without a current.
-pub const OFFSET: u16 = 2048;
+pub const OFFSET: u16 = 2553;
 /// Counts that the handle turns in an instant.
 const SPEED: u32 = 3;
 /// Codes of a step of an input.

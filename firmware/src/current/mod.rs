@@ -18,6 +18,7 @@
 mod alignment;
 mod controller;
 mod current_loop;
+mod current_sense;
 mod duty_current;
 mod encoder_index;
 mod error;

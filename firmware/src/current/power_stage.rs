@@ -1,5 +1,6 @@
 //! The power stage of a board, from its data sheets and its schematic.
 
+use super::current_sense::CurrentSense;
 use super::motor::Supply;
 use super::thermistor::{LARGEST_COUNT, Thermistor};
 
@@ -36,23 +37,42 @@ impl PowerStage {
     pub const LARGEST_COUNT: u16 = LARGEST_COUNT;
 }
 
+/// The current sense of the B-G431B-ESC1.
+///
+/// The three resistors are those of the schematic of MB1419, as a reader of it states and computes with in
+/// community.simplefoc.com/t/b-g431b-esc1-current-control/521; without a current they give 0.1286 V, and 2.057 V
+/// behind the gain, which is the offset in ST's motor-control configuration of this board. From memory, not read
+/// in the parts list or the data sheet: resistors of 1 %, and of the amplifier (DS12589) 2 % for the gain and
+/// 3 mV for the offset over the temperature. The amplifiers also offer gains of 32 and 64, which would put the
+/// lifted voltage at the output's rail.
+const B_G431B_ESC1_SENSE: CurrentSense = CurrentSense {
+    shunt: 0.003,
+    series: 1.5e3,
+    to_ground: 2.2e3,
+    to_supply: 22e3,
+    resistor_tolerance: 0.01,
+    gain: 16.0,
+    gain_tolerance: 0.02,
+    amplifier_offset: 3e-3,
+    reference: 3.3,
+};
+
 /// The power stage of the B-G431B-ESC1, by its user manual (UM2516), the schematic of MB1419, and the data sheet
 /// of its gate drivers (L6387E).
 ///
-/// The shunts are of 3 mΩ. Behind them a divider leaves 4/7 and lifts the voltage to the middle of an
-/// amplifier with a gain of 16, whose output the converters count: 64/7 together, so that a count is 29.4 mA.
-/// The amplifiers also offer gains of 32 and 64, but these would also amplify the lifted voltage, and the
-/// output would be at its rail without a current.
+/// A count of a converter is 29.4 mA. Without a current it is 2553, nearer to the upper end of the range: a
+/// current out of the bridge into the motor lowers it and is measured to 75 A, and a current into the bridge
+/// raises it and is measured to 45 A, with the nominal parts.
 pub const B_G431B_ESC1: PowerStage = PowerStage {
     clock: 170e6,
-    amps_per_count: 3.3 / 4096.0 / (0.003 * 64.0 / 7.0),
+    amps_per_count: B_G431B_ESC1_SENSE.amps_per_count(),
     current_lowers_count: true,
     // 169 kΩ over 18 kΩ.
     volts_per_count: 3.3 / 4096.0 * (169.0 + 18.0) / 18.0,
-    // The shunts tolerate 40 A; half of the converters' range in each direction is 60 A; the rest is a margin
-    // for a step.
+    // UM2516 tested the board with a peak of 40 A; with the parts at their worst the smaller half of the
+    // converters' range ends at 40.5 A; the rest is a margin for a step.
     largest_current: 30.0,
-    offset_counts: (1848, 2248),
+    offset_counts: B_G431B_ESC1_SENSE.zero_counts(),
     // Up to a battery of six cells; below 7 V the supply of the gate drivers may be too low.
     supply: Supply { lowest: 7.0, highest: 25.2 },
     dead_time: 0.5e-6,

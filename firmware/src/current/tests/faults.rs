@@ -18,13 +18,13 @@ fn does_not_start_without_offsets_in_range() {
     let mut rig = Rig::off(&BRUSHED);
     let none = PowerFault::CurrentOffset { phase: 0, count: 0 };
     assert_eq!(rig.controller.start(), Err(none));
-    rig.offsets[1] = 2400.0;
+    rig.offsets[1] = 2048.0;
     for _ in 0..256 {
         rig.controller.measure_offset(&rig.sample());
     }
-    let broken = PowerFault::CurrentOffset { phase: 1, count: 2400 };
+    let broken = PowerFault::CurrentOffset { phase: 1, count: 2048 };
     assert_eq!(rig.controller.start(), Err(broken));
-    rig.offsets[1] = 2040.0;
+    rig.offsets[1] = 2540.0;
     for _ in 0..256 {
         rig.controller.measure_offset(&rig.sample());
     }
@@ -162,7 +162,7 @@ proptest! {
         for (currents, bus, temperature, position, code) in samples {
             let mut sample = Sample { currents, bus, temperature, position: RawCount::from(position) };
             if near {
-                sample.currents = currents.map(|count| 1970 + count % 160);
+                sample.currents = currents.map(|count| 2470 + count % 160);
                 sample.bus = 2700 + bus % 300;
                 sample.temperature = temperature % 3000;
             }

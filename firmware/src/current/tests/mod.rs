@@ -23,7 +23,7 @@ const STAGE: PowerStage = PowerStage {
     current_lowers_count: true,
     volts_per_count: 0.0084,
     largest_current: 40.0,
-    offset_counts: (1900, 2300),
+    offset_counts: (2390, 2716),
     supply: Supply { lowest: 10.0, highest: 34.0 },
     dead_time: 0.2e-6,
     shortest_low: 1.5e-6,
