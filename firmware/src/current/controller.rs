@@ -181,13 +181,18 @@ impl CurrentController {
         [self.offset[0] as u16, self.offset[1] as u16]
     }
 
-    /// The fault of a comparator that has turned the gates off, with the larger of the two currents of the
+    /// The fault of a comparator that has turned the gates off, with the largest of the currents of the
     /// next instant, and at least the limit of the current interrupt.
     #[cold]
     pub fn over_current(&self, sample: &Sample) -> PowerFault {
+        let limits = &self.design.limits;
         let counts = |phase: usize| (f32::from(sample.currents[phase]) - self.offset[phase]).abs();
-        let tripped = f32::from(self.design.limits.over_current);
-        self.design.limits.over_current(counts(0).max(counts(1)).max(tripped))
+        let third = match self.design.winding {
+            Winding::Brushed => 0.0,
+            Winding::Brushless { .. } => limits.third_current(sample, self.offset),
+        };
+        let tripped = f32::from(limits.over_current);
+        limits.over_current(counts(0).max(counts(1)).max(third).max(tripped))
     }
 
     /// One instant of an alignment. At its end the phase is stored, if one was found.
@@ -272,6 +277,7 @@ impl CurrentController {
     ) -> Result<Duties, PowerFault> {
         let CurrentLoop { law, output, limits, timing, .. } = &self.design;
         limits.check_currents(sample, self.offset)?;
+        limits.check_third_current(sample, self.offset)?;
         let bus = self.surroundings.observe(limits, sample)?;
         let [u, v] = sample.currents.map(f32::from);
         let amps = |count: f32, offset: f32| law.amps_per_count * (count - offset);

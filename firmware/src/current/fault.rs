@@ -35,6 +35,20 @@ pub enum PowerFault {
         /// The largest, in tenths of a degree Celsius.
         largest: i32,
     },
+    /// The converter's count of the thermistor is that of an open or of a shorted one.
+    Thermistor {
+        /// The count.
+        count: u32,
+        /// The count at the end of the thermistor's range.
+        limit: u32,
+    },
+    /// A comparator of the over-current protection does not trip where a working one does without a current.
+    Comparator {
+        /// The phase: 0 is U, 1 is V, 2 is W.
+        phase: u32,
+        /// The threshold in codes of its converter that did not separate the two outputs.
+        threshold: u32,
+    },
     /// The count of a phase without a current is that of a broken amplifier, or was not measured.
     CurrentOffset {
         /// The phase: 0 is U, 1 is V.
@@ -88,6 +102,8 @@ impl PowerFault {
             Self::UnderVoltage { .. } => "under-voltage",
             Self::OverTemperature { .. } => "over-temperature",
             Self::CurrentOffset { .. } => "current-offset",
+            Self::Thermistor { .. } => "thermistor",
+            Self::Comparator { .. } => "comparator",
             Self::CurrentNotFollowing { .. } => "current-not-following",
             Self::SaturatedDuty { .. } => "saturated-duty",
             Self::IndexMismatch { .. } => "index-mismatch",
@@ -113,6 +129,8 @@ impl PowerFault {
             Self::CurrentInterruptLate { late, allowed } => (22, [late, allowed]),
             Self::NotAligned { by_index } => (23, [by_index as u32, 0]),
             Self::Alignment(error) => error.encode(),
+            Self::Thermistor { count, limit } => (29, [count, limit]),
+            Self::Comparator { phase, threshold } => (30, [phase, threshold]),
         }
     }
 
@@ -130,11 +148,22 @@ impl PowerFault {
             21 => Self::IndexMismatch { count: a, aligned: b },
             22 => Self::CurrentInterruptLate { late: a, allowed: b },
             23 => Self::NotAligned { by_index: a != 0 },
+            29 => Self::Thermistor { count: a, limit: b },
+            30 => Self::Comparator { phase: a, threshold: b },
             _ => match AlignmentError::decode(code, numbers) {
                 Some(error) => Self::Alignment(error),
                 None => return None,
             },
         })
+    }
+}
+
+/// The name of a phase.
+const fn name(phase: u32) -> &'static str {
+    match phase {
+        0 => "U",
+        1 => "V",
+        _ => "W",
     }
 }
 
@@ -166,7 +195,19 @@ impl fmt::Display for PowerFault {
                 f,
                 "the converter reads {count} for phase {} without a current, which no working amplifier \
                  gives: check the power stage, then arm again",
-                if *phase == 0 { "U" } else { "V" }
+                name(*phase)
+            ),
+            Self::Thermistor { count, limit } => write!(
+                f,
+                "the converter reads {count} for the thermistor, and {limit} at the end of its range: it is \
+                 disconnected or shorted; repair it, then arm again"
+            ),
+            Self::Comparator { phase, threshold } => write!(
+                f,
+                "the over-current comparator of phase {} does not trip as a working one does without a \
+                 current, at the threshold {threshold}: keep the handle at rest, check the power stage, then \
+                 arm again",
+                name(*phase)
             ),
             Self::CurrentNotFollowing { deviation, largest } => write!(
                 f,
