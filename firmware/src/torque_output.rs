@@ -17,6 +17,12 @@ pub trait TorqueOutput {
     /// fail with a [fault](Self::fault).
     fn switch(&mut self, on: bool);
 
+    /// Periods after switching on for which the code must be that of zero torque, because the output is not ready
+    /// to follow another.
+    fn start_up_ticks(&self) -> u32 {
+        0
+    }
+
     /// Begins to align a brushless motor whose gates are off.
     ///
     /// # Errors

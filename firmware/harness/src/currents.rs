@@ -2,7 +2,7 @@
 
 use haptic_servo::current::{
     CurrentController, CurrentLoop, Drive, Motor, PhaseAlignment, PowerStage, Sample, Supply,
-    Thermistor, Winding,
+    Thermistor, TripRange, Winding,
 };
 use haptic_servo::encoder::{CounterWidth, RawCount};
 use haptic_servo::servo::Transducers;
@@ -23,6 +23,9 @@ const STAGE: PowerStage = PowerStage {
     volts_per_count: 0.0084,
     largest_current: 40.0,
     offset_counts: (2390, 2716),
+    trip_range: TripRange { lowest: 140, highest: 180, amps_per_code: 0.5 },
+    trip_margin: 8.0,
+    charging: 10e-3,
     supply: Supply { lowest: 10.0, highest: 34.0 },
     dead_time: 0.2e-6,
     shortest_low: 1.5e-6,

@@ -129,6 +129,23 @@ impl CurrentController {
         Ok(Alignment::new(&self.design, self.turn))
     }
 
+    /// An instant in which all low sides conduct, before a start: checks the currents and the surroundings.
+    ///
+    /// # Errors
+    /// Faults, after which the gates are to be switched off.
+    #[cold]
+    pub fn charge(&mut self, sample: &Sample) -> Result<(), PowerFault> {
+        let limits = &self.design.limits;
+        limits.check_currents(sample, self.offset)?;
+        if matches!(self.design.winding, Winding::Brushless { .. }) {
+            limits.check_third_current(sample, self.offset)?;
+        }
+        self.surroundings.observe(limits, sample)?;
+        self.move_to(sample.position);
+        self.last = Some(*sample);
+        Ok(())
+    }
+
     const fn not_aligned(&self) -> PowerFault {
         PowerFault::NotAligned { by_index: self.design.index_offset().is_some() }
     }
@@ -173,12 +190,6 @@ impl CurrentController {
         } else {
             self.step_brushed(sample, code_offset)
         }
-    }
-
-    /// Counts of the phases U and V without a current, stored at the last start.
-    pub const fn offsets(&self) -> [u16; 2] {
-        // The casts round positive numbers down.
-        [self.offset[0] as u16, self.offset[1] as u16]
     }
 
     /// The fault of a comparator that has turned the gates off, with the largest of the currents of the

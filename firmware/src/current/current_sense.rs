@@ -1,6 +1,7 @@
 //! The network between a shunt and its amplifier, and the counts that follow from its parts.
 
 use super::thermistor::LARGEST_COUNT;
+use super::trip_search::TripRange;
 
 /// A shunt, a resistor from it to an amplifier's non-inverting input, and two more from that input to ground
 /// and to the converter's supply, which lift the voltage so that both directions of the current are in range.
@@ -22,6 +23,10 @@ pub(super) struct CurrentSense {
     pub gain_tolerance: f64,
     /// Largest offset in V of the amplifier's input, of either sign.
     pub amplifier_offset: f64,
+    /// Largest offset in V of the comparator at the same input, of either sign.
+    pub comparator_offset: f64,
+    /// Largest error in V of the comparator's threshold.
+    pub threshold_error: f64,
     /// The converter's supply in V, which is also its reference.
     pub reference: f64,
 }
@@ -39,13 +44,18 @@ impl CurrentSense {
         1.0 / (self.counts_per_volt() * self.gain * left * self.shunt)
     }
 
-    /// The count without a current if these parts deviate by so many times their tolerances, each in the
-    /// direction that moves the count by the sign of `times`.
-    const fn zero(&self, times: f64) -> f64 {
+    /// Voltage at the amplifier's input without a current if the resistors deviate by so many times their
+    /// tolerance, each in the direction that moves the voltage by the sign of `times`.
+    const fn input(&self, times: f64) -> f64 {
         let off = times * self.resistor_tolerance;
         let up = 1.0 / (self.to_supply * (1.0 - off));
         let down = 1.0 / (self.to_ground * (1.0 + off)) + 1.0 / (self.series * (1.0 + off));
-        let input = self.reference * up / (up + down) + times * self.amplifier_offset;
+        self.reference * up / (up + down)
+    }
+
+    /// The count without a current, likewise for all parts.
+    const fn zero(&self, times: f64) -> f64 {
+        let input = self.input(times) + times * self.amplifier_offset;
         self.counts_per_volt() * self.gain * (1.0 + times * self.gain_tolerance) * input
     }
 
@@ -61,5 +71,17 @@ impl CurrentSense {
         let off = (self.zero(1.0) - middle).max(middle - self.zero(-1.0));
         let width = off as u16 + 1;
         (self.zero_count() - width, self.zero_count() + width)
+    }
+
+    /// The codes of a threshold, of as many bits as a count, at which a working comparator trips without a
+    /// current.
+    pub const fn trip_range(&self) -> TripRange {
+        let off = self.comparator_offset + self.threshold_error;
+        TripRange {
+            // The casts round positive numbers down.
+            lowest: (self.counts_per_volt() * (self.input(-1.0) - off)) as u16,
+            highest: (self.counts_per_volt() * (self.input(1.0) + off)) as u16 + 1,
+            amps_per_code: self.amps_per_count() * self.gain,
+        }
     }
 }

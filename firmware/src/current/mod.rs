@@ -42,6 +42,7 @@ mod supervision;
 mod surroundings;
 mod thermistor;
 mod timing;
+mod trip_search;
 mod vector;
 
 pub use alignment::{Alignment, AlignmentError, AlignmentStep};
@@ -60,6 +61,7 @@ pub use sample::{Duties, Sample};
 pub use sine_table::sine_and_cosine;
 pub use thermistor::Thermistor;
 pub use timing::PwmTiming;
+pub use trip_search::{TripCodes, TripRange, TripSearch};
 
 #[cfg(test)]
 mod tests;

@@ -3,6 +3,7 @@
 use super::current_sense::CurrentSense;
 use super::motor::Supply;
 use super::thermistor::{LARGEST_COUNT, Thermistor};
+use super::trip_search::TripRange;
 
 /// The numbers of a board's power stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,13 @@ pub struct PowerStage {
     pub largest_current: f64,
     /// Lowest and highest count of a working amplifier without a current.
     pub offset_counts: (u16, u16),
+    /// The range in which a working comparator of the over-current protection trips without a current.
+    pub trip_range: TripRange,
+    /// Smallest current in A between that trip and the threshold, so that switching does not trip.
+    pub trip_margin: f64,
+    /// Time in s for which all low sides must conduct before the first high side, to charge the supplies of the
+    /// high sides' gates.
+    pub charging: f64,
     /// The supply range of the board.
     pub supply: Supply,
     /// Time in s for which both sides of a phase are off at a switching.
@@ -41,9 +49,10 @@ impl PowerStage {
 ///
 /// The three resistors are those of the schematic of MB1419, as a reader of it states and computes with in
 /// community.simplefoc.com/t/b-g431b-esc1-current-control/521; without a current they give 0.1286 V, and 2.057 V
-/// behind the gain, which is the offset in ST's motor-control configuration of this board. From memory, not read
-/// in the parts list or the data sheet: resistors of 1 %, and of the amplifier (DS12589) 2 % for the gain and
-/// 3 mV for the offset over the temperature. The amplifiers also offer gains of 32 and 64, which would put the
+/// behind the gain, which is the offset in ST's motor-control configuration of this board. The comparators' offset
+/// is from -9 to +3 mV (DS12589). From memory, not read in the parts list or the data sheet: resistors of 1 %; of
+/// the amplifier (DS12589) 2 % for the gain and 3 mV for the offset over the temperature; 3 mV for the
+/// thresholds' converter. The amplifiers also offer gains of 32 and 64, which would put the
 /// lifted voltage at the output's rail.
 const B_G431B_ESC1_SENSE: CurrentSense = CurrentSense {
     shunt: 0.003,
@@ -54,6 +63,8 @@ const B_G431B_ESC1_SENSE: CurrentSense = CurrentSense {
     gain: 16.0,
     gain_tolerance: 0.02,
     amplifier_offset: 3e-3,
+    comparator_offset: 9e-3,
+    threshold_error: 3e-3,
     reference: 3.3,
 };
 
@@ -73,6 +84,11 @@ pub const B_G431B_ESC1: PowerStage = PowerStage {
     // converters' range ends at 40.5 A; the rest is a margin for a step.
     largest_current: 30.0,
     offset_counts: B_G431B_ESC1_SENSE.zero_counts(),
+    trip_range: B_G431B_ESC1_SENSE.trip_range(),
+    // 15 mV at the comparator.
+    trip_margin: 8.75,
+    // As in ST's motor-control software (`M1_CHARGE_BOOT_CAP_MS`).
+    charging: 10e-3,
     // Up to a battery of six cells; below 7 V the supply of the gate drivers may be too low.
     supply: Supply { lowest: 7.0, highest: 25.2 },
     dead_time: 0.5e-6,

@@ -24,6 +24,11 @@ pub trait Hardware {
     fn output_fault(&mut self) -> Option<Fault> {
         None
     }
+    /// Ticks after switching the amplifier on in which it does not follow the code yet; the servo's torque is zero
+    /// for so long.
+    fn start_up_ticks(&self) -> u32 {
+        0
+    }
     /// Begins to align a brushless motor, which moves the handle.
     ///
     /// # Errors

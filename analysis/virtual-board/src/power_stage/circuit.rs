@@ -2,7 +2,7 @@
 //! the supply, the shunts, and the sensors.
 
 use super::REFERENCE;
-use super::parts::Parts;
+use super::parts::{BOOTSTRAP_ENOUGH, BOOTSTRAP_LOSS, Parts};
 use crate::device::{Device, Motion};
 use crate::motor::{Leg, Motor};
 
@@ -46,6 +46,11 @@ pub struct Circuit {
     pub temperature: f64,
     /// What a fault adds to each amplifier's output, in V.
     pub amplifier_errors: [f64; 3],
+    /// Current in A from the supply into each output, as through a resistor of a short circuit: through the low
+    /// side to ground while it conducts.
+    pub leaks: [f64; 3],
+    /// Charge of the supply of each high side's gate, as a part of the full one.
+    bootstraps: [f64; 3],
     /// Whether the encoder's two wires are swapped.
     pub encoder_is_reversed: bool,
     /// Whether the motor's shaft is held.
@@ -66,6 +71,8 @@ impl Default for Circuit {
             supply: Supply::stiff(24.0),
             temperature: 25.0,
             amplifier_errors: [0.0; 3],
+            leaks: [0.0; 3],
+            bootstraps: [0.0; 3],
             encoder_is_reversed: false,
             is_blocked: false,
             motion: Motion::default(),
@@ -88,11 +95,23 @@ impl Circuit {
 
     /// Time passes, in s.
     pub(super) fn advance(&mut self, legs: [Leg; 3], seconds: f64) {
+        for (charge, leg) in self.bootstraps.iter_mut().zip(legs) {
+            let (end, lag) = match leg {
+                Leg::Low => (1.0, self.parts.bootstrap),
+                Leg::High | Leg::Off => (0.0, BOOTSTRAP_LOSS),
+            };
+            *charge = end + (*charge - end) * (-seconds / lag).exp();
+        }
         if let Some(motor) = &mut self.motor {
             let totals = motor.advance(legs, self.supply.volts, seconds);
             self.supply.deliver(totals.charge);
             self.torque += totals.torque;
         }
+    }
+
+    /// Whether a high side's gate has the voltage to conduct.
+    pub(super) fn is_charged(&self, phase: usize) -> bool {
+        self.bootstraps[phase] >= BOOTSTRAP_ENOUGH
     }
 
     /// The device goes on by the time since the last step, in s; the counts that the encoder shows of it.
@@ -120,7 +139,9 @@ impl Circuit {
 
     /// Voltage at a shunt's pin of the chip: a current into the motor pulls it down.
     pub(super) fn shunt(&self, phase: usize, leg: Leg) -> f64 {
-        let current = self.motor.map_or(0.0, |motor| motor.low_side_current(phase, leg));
+        let motor = self.motor.map_or(0.0, |motor| motor.low_side_current(phase, leg));
+        let leak = if leg == Leg::Low { self.leaks[phase] } else { 0.0 };
+        let current = motor - leak;
         self.parts.senses[phase].pin(current, REFERENCE)
     }
 

@@ -48,6 +48,14 @@ pub const BETA: Part = Part::percent(3455.0, 1.0);
 /// From the thermistor to ground, Ω [M], 1 % [A].
 pub const THERMISTOR_TO_GROUND: Part = Part::percent(4.7e3, 1.0);
 
+/// Time constant in s with which a low side that conducts charges the supply of its high side's gate: the driver's
+/// internal diode with 125 Ω [M] (L6387E) and the capacitor, 1 µF [A].
+pub const BOOTSTRAP: Part = Part { least: 5e-5, nominal: 1.25e-4, most: 1e-3 };
+/// Time constant in s with which it discharges [A].
+pub const BOOTSTRAP_LOSS: f64 = 0.1;
+/// The part of its voltage from which on the high side conducts [A].
+pub const BOOTSTRAP_ENOUGH: f64 = 0.9;
+
 /// The parts of the current sense of a phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sense {
@@ -131,6 +139,8 @@ pub struct Parts {
     pub divider: [f64; 2],
     /// [`THERMISTOR`], [`BETA`] and [`THERMISTOR_TO_GROUND`].
     pub thermistor: [f64; 3],
+    /// [`BOOTSTRAP`].
+    pub bootstrap: f64,
 }
 
 impl Parts {
@@ -139,14 +149,15 @@ impl Parts {
         senses: [Sense::NOMINAL; 3],
         divider: [DIVIDER_UPPER.nominal, DIVIDER_LOWER.nominal],
         thermistor: [THERMISTOR.nominal, BETA.nominal, THERMISTOR_TO_GROUND.nominal],
+        bootstrap: BOOTSTRAP.nominal,
     };
 
     const fn sensing(senses: [Sense; 3]) -> Self {
-        Self { senses, ..Self::NOMINAL }
+        Self { senses, bootstrap: BOOTSTRAP.most, ..Self::NOMINAL }
     }
 
     /// Boards with parts at the ends of their tolerances: the lowest and the highest counts without a current,
-    /// the comparators that trip earliest and latest, alone and against each other.
+    /// the comparators that trip earliest and latest, alone and against each other; all with slow bootstraps.
     pub const CORNERS: [(&str, Self); 4] = {
         const EARLY: f64 = COMPARATOR_OFFSET.least;
         const LATE: f64 = COMPARATOR_OFFSET.most;

@@ -266,10 +266,28 @@ fn brushless(pole_pairs: u32) -> Motor {
 fn driving(motor: Motor, device: impl Device + Send + 'static) -> Driver {
     let mut driver = Driver::new(motor, device);
     driver.start();
+    driver.set_duties([0.0; 3]);
     driver.periods(2);
     driver.gates_on();
+    // The supplies of the high sides' gates are charged.
+    driver.periods(60);
+    driver.set_duties([0.5; 3]);
     driver.periods(2);
+    assert_eq!(driver.0.power_stage.uncharged(), None);
     driver
+}
+
+/// The drivers supply the gates of the high sides from capacitors, which only the low sides charge.
+#[test]
+fn a_high_side_whose_supply_is_not_charged_does_not_conduct() {
+    let mut driver = Driver::new(brushed(), FixedDevice);
+    driver.start();
+    driver.set_duties([1.0, 0.0, 0.5]);
+    driver.periods(2);
+    driver.gates_on();
+    driver.periods(4);
+    assert!(driver.0.power_stage.uncharged().is_some());
+    assert_eq!(driver.currents()[0], 0.0);
 }
 
 fn counts(amps: f64) -> f64 {

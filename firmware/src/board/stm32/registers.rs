@@ -62,6 +62,10 @@ impl Hardware for Registers {
         self.output.fault()
     }
 
+    fn start_up_ticks(&self) -> u32 {
+        self.output.start_up_ticks()
+    }
+
     fn align(&mut self) -> Result<(), Fault> {
         self.output.align()
     }

@@ -32,6 +32,7 @@ pub struct Board {
     pub passed: u32,
     pub elapsed: u32,
     pub output_fault: Option<Fault>,
+    pub start_up_ticks: u32,
     /// Ticks that an alignment still takes; `None`: there is no motor for one.
     pub alignment: Option<u32>,
     pub stored: [u32; FaultRecord::WORDS],
@@ -45,6 +46,7 @@ impl Board {
             count: 0,
             passed: 1,
             elapsed: 300,
+            start_up_ticks: 0,
             output_fault: None,
             alignment: None,
             stored: FaultRecord::NOTHING,
@@ -81,6 +83,10 @@ impl Hardware for Board {
     fn amplifier(&mut self, on: bool) {
         self.events.push(Event::Amplifier(on));
     }
+    fn start_up_ticks(&self) -> u32 {
+        self.start_up_ticks
+    }
+
     fn output_fault(&mut self) -> Option<Fault> {
         self.output_fault.take()
     }

@@ -83,7 +83,8 @@ static FAULT_NUMBERS: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
 enum State {
     /// All gates are low.
     Off,
-    /// The current interrupt shall drive them from its next instant on.
+    /// The current interrupt shall drive them: it finds the comparators' thresholds, and the low sides charge
+    /// the supplies of the high sides' gates.
     Starting,
     /// The servo drives them.
     On,
@@ -97,6 +98,8 @@ enum State {
 #[derive(Debug)]
 pub struct Output {
     is_brushless: bool,
+    /// Periods of the servo from switching on until the current follows the code.
+    start_up: u32,
 }
 
 impl Output {
@@ -116,8 +119,11 @@ impl Output {
         }
         (setup.fill)(timing);
         let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
-        let is_brushless = current_loop.is_brushless();
-        Ok((Self { is_brushless }, Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
+        let output = Self {
+            is_brushless: current_loop.is_brushless(),
+            start_up: current_loop.start_up_ticks(),
+        };
+        Ok((output, Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
     }
 
     /// Starts the current interrupt, with the gates low.
@@ -136,7 +142,7 @@ impl TorqueOutput for Output {
         WAITING.store(code.get(), Ordering::Relaxed);
     }
 
-    /// Off at once; on at the next update, if the power stage finds no fault. The current interrupt has a
+    /// Off at once; on after [`start_up_ticks`](TorqueOutput::start_up_ticks), if the power stage finds no fault. The current interrupt has a
     /// higher priority than this one, and turns the gates on only after a request.
     #[inline(always)]
     fn switch(&mut self, on: bool) {
@@ -146,6 +152,10 @@ impl TorqueOutput for Output {
         if STATE.load(Ordering::Relaxed) == State::Off as u8 {
             STATE.store(State::Starting as u8, Ordering::Relaxed);
         }
+    }
+
+    fn start_up_ticks(&self) -> u32 {
+        self.start_up
     }
 
     fn align(&mut self) -> Result<(), Fault> {
