@@ -89,9 +89,12 @@ pub const B_G431B_ESC1: PowerStage = PowerStage {
     trip_margin: 8.75,
     // As in ST's motor-control software (`M1_CHARGE_BOOT_CAP_MS`).
     charging: 10e-3,
-    // Up to a battery of six cells; below 7 V the supply of the gate drivers may be too low.
-    supply: Supply { lowest: 7.0, highest: 25.2 },
-    dead_time: 0.5e-6,
+    // Up to a battery of six cells; below 8 to 9 V the gate drivers are outside of their specification, and the
+    // under-voltage limit of ST's motor-control configurations is 8 V.
+    supply: Supply { lowest: 9.0, highest: 25.2 },
+    // ST's motor-control configurations have 0.75 us (`SW_DEADTIME_NS`); nobody has measured how much less the
+    // switches need. 0.74 us are 126 counts, as long as the timer's register is linear.
+    dead_time: 0.74e-6,
     // Half of it is for the settling of the shunts' voltage, 1.3 us, and the sampling itself.
     shortest_low: 3.2e-6,
     // 10 kΩ from the 3.3 V, 4.7 kΩ to ground.
