@@ -2,6 +2,7 @@
 
 use super::encoder_index::EncoderIndex;
 use super::error::DriveError;
+use super::heating::{HeatLimit, TIME};
 use super::motion::TorqueSource;
 use super::motor::{Drive, Winding};
 use super::phase::Turn;
@@ -71,6 +72,8 @@ pub struct CurrentLoop {
     pub(super) turn: Turn,
     /// The index of the encoder, where the program states one.
     pub(super) index: Option<EncoderIndex>,
+    /// `None` if the full-scale current may last for ever.
+    pub(super) heat: Option<HeatLimit>,
     trip_range: TripRange,
     /// Codes between the trip of a comparator without a current and its threshold.
     trip_margin: u16,
@@ -263,6 +266,11 @@ impl CurrentLoop {
         if threshold < PowerStage::LARGEST_COUNT { threshold } else { PowerStage::LARGEST_COUNT }
     }
 
+    /// Whether the full-scale current is more than the board bears for ever without a flow of air.
+    pub const fn needs_air(&self) -> bool {
+        self.heat.is_some()
+    }
+
     /// Instants in which the low sides conduct before the first high side.
     pub const fn charging_instants(&self) -> u32 {
         self.charging
@@ -344,7 +352,8 @@ impl<'a> Design<'a> {
         if let Err(error) = self.check_supply() {
             return Err(error);
         }
-        let (lowest, highest) = (Thermistor::LOWEST as f64, Thermistor::HIGHEST as f64);
+        let highest = self.stage.largest_temperature.min(Thermistor::HIGHEST as f64);
+        let lowest = Thermistor::LOWEST as f64;
         let temperature = self.drive.largest_temperature;
         // Written so that NaN is refused.
         if temperature >= lowest && temperature <= highest {
@@ -474,6 +483,7 @@ impl<'a> Design<'a> {
             limits: self.limits(),
             turn: self.turn(),
             index: None,
+            heat: self.heat_limit(),
             trip_range: stage.trip_range,
             trip_margin: self.trip_margin(),
             charging: (stage.charging / self.instant) as u32 + 1,
@@ -490,6 +500,18 @@ impl<'a> Design<'a> {
             #[cfg(not(target_os = "none"))]
             drive: *drive,
         }
+    }
+
+    const fn heat_limit(&self) -> Option<HeatLimit> {
+        let most = self.stage.continuous_current;
+        if self.current <= most {
+            return None;
+        }
+        Some(HeatLimit {
+            square: (most * most) as f32,
+            codes: (most / self.amps_per_code()) as f32,
+            weight: (self.instant * self.timing.updates as f64 / TIME) as f32,
+        })
     }
 
     const fn trip_margin(&self) -> u16 {

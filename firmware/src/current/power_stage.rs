@@ -20,6 +20,10 @@ pub struct PowerStage {
     pub volts_per_count: f64,
     /// Largest current in A of a phase that can be measured and that the board tolerates.
     pub largest_current: f64,
+    /// Current in A that the board bears for ever without a flow of air; a larger current is for a short time.
+    pub continuous_current: f64,
+    /// Highest temperature in degrees Celsius at the board's sensor for which a drive may be designed.
+    pub largest_temperature: f64,
     /// Lowest and highest count of a working amplifier without a current.
     pub offset_counts: (u16, u16),
     /// The range in which a working comparator of the over-current protection trips without a current.
@@ -83,6 +87,12 @@ pub const B_G431B_ESC1: PowerStage = PowerStage {
     // UM2516 tested the board with a peak of 40 A; with the parts at their worst the smaller half of the
     // converters' range ends at 40.5 A; the rest is a margin for a step.
     largest_current: 30.0,
+    // An estimate, not measured and not in UM2516: at 10 A switches, shunts and switching take about 4 W, which the
+    // small board gives away at some 60 degrees above the room. UM2516's 40 A are with a propeller's flow of air.
+    continuous_current: 10.0,
+    // The sensor is beside the switches, which are hotter. The limit of ST's motor-control configurations is 70
+    // to 90; the components are rated for more.
+    largest_temperature: 90.0,
     offset_counts: B_G431B_ESC1_SENSE.zero_counts(),
     trip_range: B_G431B_ESC1_SENSE.trip_range(),
     // 15 mV at the comparator.

@@ -128,7 +128,7 @@ impl SweepIsr {
         let listening = LISTENING.load(Ordering::Relaxed);
         // The task below cannot write between the load and the store.
         LISTENING.store(listening.saturating_sub(1), Ordering::Relaxed);
-        if self.hardware.output_fault().is_some() {
+        if self.hardware.output_event().is_some() {
             Some(SweepEnd::OutputFault)
         } else if STOP.load(Ordering::Relaxed) {
             Some(SweepEnd::Stopped)

@@ -79,7 +79,7 @@ fn refusals_name_the_value_and_its_bound() {
     );
     assert_eq!(
         refused(Drive { largest_temperature: 150.0, ..DRIVE }),
-        "the largest temperature of 150 degrees Celsius is not between -20 and 140"
+        "the largest temperature of 150 degrees Celsius is not between -20 and 120"
     );
     assert_eq!(
         with(DRIVE, PowerStage { largest_current: 60.0, ..STAGE }, TRANSDUCERS, PERIOD),

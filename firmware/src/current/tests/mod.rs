@@ -8,6 +8,7 @@ mod design;
 mod duty_current;
 mod faults;
 mod follower;
+mod heating;
 mod index;
 mod rig;
 mod three_phases;
@@ -24,6 +25,8 @@ const STAGE: PowerStage = PowerStage {
     volts_per_count: 0.0084,
     largest_current: 40.0,
     offset_counts: (2390, 2716),
+    continuous_current: 40.0,
+    largest_temperature: 120.0,
     trip_range: TripRange { lowest: 140, highest: 180, amps_per_code: 0.5 },
     trip_margin: 8.0,
     charging: 10e-3,

@@ -6,10 +6,13 @@ use core::sync::atomic::Ordering;
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
-use super::{STATE, State, WAITING, index, latest, off, over_current, pace, pwm, sense, tell};
+use super::{
+    STATE, State, WAITING, index, latest, off, over_current, pace, pwm, sense, tell, tell_heat,
+};
 use crate::board::stm32::output::periods::now;
 use crate::current::{
-    Alignment, AlignmentStep, CurrentController, CurrentLoop, PowerFault, Sample, TripSearch,
+    Alignment, AlignmentStep, CurrentController, CurrentLoop, Heating, PowerFault, Sample,
+    TripSearch,
 };
 use crate::dac::DacCode;
 use crate::output_timing::OutputTiming;
@@ -40,6 +43,7 @@ pub struct CurrentIsr<const BRUSHLESS: bool> {
     latest: u32,
     last: u32,
     start_up: StartUp,
+    heating: Heating,
     /// The running alignment.
     alignment: Option<Alignment>,
     /// The code's torque that the current follows, as [`DacCode::offset`].
@@ -58,6 +62,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             latest: 3 * u32::from(current_loop.timer_counts()),
             last: 0,
             start_up: StartUp::Waiting,
+            heating: Heating::new(current_loop),
             alignment: None,
             reference: 0,
         }
@@ -93,7 +98,12 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         }
         // Bookkeeping: the host, and the servo, both below this.
         if begins {
-            latest::keep(&sample, self.controller.current());
+            let current = self.controller.current();
+            latest::keep(&sample, current);
+            if let Some(step) = self.heating.observe(current, self.reference) {
+                cold_path();
+                tell_heat(step);
+            }
         }
         self.instant += 1;
         if self.instant == self.updates {

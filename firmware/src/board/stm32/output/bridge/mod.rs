@@ -41,11 +41,11 @@ pub use pace::Pace;
 use crate::board::isr_cell::IsrCell;
 use crate::board::stm32::wiring::GATES;
 use crate::build_error::BuildError;
-use crate::current::{AlignmentError, CurrentLoop, PowerFault, TorqueSource};
+use crate::current::{AlignmentError, CurrentLoop, HeatStep, PowerFault, TorqueSource};
 use crate::dac::DacCode;
 use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
-use crate::torque_output::TorqueOutput;
+use crate::torque_output::{OutputEvent, TorqueOutput};
 
 /// The state of the current interrupt.
 pub type CurrentCell<const BRUSHLESS: bool> = IsrCell<CurrentIsr<BRUSHLESS>>;
@@ -72,6 +72,10 @@ static WAITING: AtomicU16 = AtomicU16::new(DacCode::MID_SCALE.get());
 
 /// Whether the gates are driven: see [`State`].
 static STATE: AtomicU8 = AtomicU8::new(State::Off as u8);
+
+/// Steps of the torque limit, in the place of a fault's code.
+const LOWER: u32 = u32::MAX;
+const RAISE: u32 = u32::MAX - 1;
 
 /// The code and the numbers of a fault that the servo has not read yet; a code of 0: no fault.
 static FAULT: AtomicU32 = AtomicU32::new(0);
@@ -114,6 +118,12 @@ impl Output {
         over_current::prepare();
         sense::prepare();
         latest::of(current_loop);
+        if current_loop.needs_air() {
+            defmt::warn!(
+                "full-scale torque takes more current than the board bears for long without a flow of air: the \
+                 torque is limited after some seconds"
+            );
+        }
         if current_loop.has_index() {
             index::capture();
         }
@@ -174,17 +184,34 @@ impl TorqueOutput for Output {
     }
 
     #[inline(always)]
-    fn fault(&mut self) -> Option<Fault> {
-        if FAULT.load(Ordering::Acquire) == 0 { None } else { take_fault() }
+    fn event(&mut self) -> Option<OutputEvent> {
+        if FAULT.load(Ordering::Acquire) == 0 { None } else { take_event() }
     }
 }
 
-/// Takes the pending fault.
+/// Takes the pending event.
 #[cold]
 #[inline(never)]
-fn take_fault() -> Option<Fault> {
+fn take_event() -> Option<OutputEvent> {
     let numbers = [0, 1].map(|i| FAULT_NUMBERS[i].load(Ordering::Relaxed));
-    Fault::decode(FAULT.swap(0, Ordering::Relaxed), numbers)
+    match FAULT.swap(0, Ordering::Relaxed) {
+        LOWER => Some(OutputEvent::Heat(HeatStep::Lower)),
+        RAISE => Some(OutputEvent::Heat(HeatStep::Raise)),
+        code => Fault::decode(code, numbers).map(OutputEvent::Fault),
+    }
+}
+
+/// Passes a step of the torque limit to the servo, which takes it in the tick that follows; a fault goes first.
+#[cold]
+#[inline(never)]
+fn tell_heat(step: HeatStep) {
+    let code = match step {
+        HeatStep::Lower => LOWER,
+        HeatStep::Raise => RAISE,
+    };
+    if FAULT.load(Ordering::Relaxed) == 0 {
+        FAULT.store(code, Ordering::Release);
+    }
 }
 
 /// Reports a fault to the servo. The gates are off.
