@@ -42,6 +42,9 @@ pub fn prepare(current_loop: &CurrentLoop) {
         }
     });
     pac::SYSCFG.cfgr2().modify(|w| w.set_cll(true));
+    // While a debugger halts the core the counter stops, and the outputs are off as without the main output
+    // (RM0440, advanced-control timers, debug mode): a breakpoint leaves no duty on the bridge.
+    pac::DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));
     // With the main output off, each gate that the timer drives is low.
     off();
     TIMER.cr1().write(|w| {
