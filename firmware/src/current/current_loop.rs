@@ -5,6 +5,7 @@ use super::error::DriveError;
 use super::heating::{HeatLimit, TIME};
 use super::motion::TorqueSource;
 use super::motor::{Drive, Winding};
+use super::offset_check::OffsetCheck;
 use super::phase::Turn;
 use super::plant::{Plant, lag_of};
 use super::power_stage::PowerStage;
@@ -277,10 +278,14 @@ impl CurrentLoop {
     }
 
     /// Periods of the servo from switching on until the current follows the code: the search for the
-    /// comparators' thresholds, and the charging.
+    /// comparators' thresholds, the charging, and the check of a stated offset of the index.
     pub const fn start_up_ticks(&self) -> u32 {
         // Two instants for the beginnings of both, and one tick until the request is seen.
-        let instants = self.trip_range.instants() + self.charging + 2;
+        let checking = match self.index_offset() {
+            Some(_) => OffsetCheck::instants(self.instant) + 2,
+            None => 0,
+        };
+        let instants = self.trip_range.instants() + self.charging + checking + 2;
         instants.div_ceil(self.timing.updates as u32) + 1
     }
 

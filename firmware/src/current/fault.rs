@@ -49,6 +49,13 @@ pub enum PowerFault {
         /// The threshold in codes of its converter that did not separate the two outputs.
         threshold: u32,
     },
+    /// The stated phase at the encoder's index is not that of the motor: the handle did not move as its torque.
+    IndexOffset {
+        /// Counts that it moved by a current across the magnets.
+        across: i32,
+        /// Counts that it moved by a current along them.
+        along: i32,
+    },
     /// The count of a phase without a current is that of a broken amplifier, or was not measured.
     CurrentOffset {
         /// The phase: 0 is U, 1 is V.
@@ -104,6 +111,7 @@ impl PowerFault {
             Self::CurrentOffset { .. } => "current-offset",
             Self::Thermistor { .. } => "thermistor",
             Self::Comparator { .. } => "comparator",
+            Self::IndexOffset { .. } => "index-offset",
             Self::CurrentNotFollowing { .. } => "current-not-following",
             Self::SaturatedDuty { .. } => "saturated-duty",
             Self::IndexMismatch { .. } => "index-mismatch",
@@ -131,6 +139,9 @@ impl PowerFault {
             Self::Alignment(error) => error.encode(),
             Self::Thermistor { count, limit } => (29, [count, limit]),
             Self::Comparator { phase, threshold } => (30, [phase, threshold]),
+            Self::IndexOffset { across, along } => {
+                (31, [across.cast_unsigned(), along.cast_unsigned()])
+            }
         }
     }
 
@@ -150,6 +161,7 @@ impl PowerFault {
             23 => Self::NotAligned { by_index: a != 0 },
             29 => Self::Thermistor { count: a, limit: b },
             30 => Self::Comparator { phase: a, threshold: b },
+            31 => Self::IndexOffset { across: a.cast_signed(), along: b.cast_signed() },
             _ => match AlignmentError::decode(code, numbers) {
                 Some(error) => Self::Alignment(error),
                 None => return None,
@@ -196,6 +208,12 @@ impl fmt::Display for PowerFault {
                 "the converter reads {count} for phase {} without a current, which no working amplifier \
                  gives: check the power stage, then arm again",
                 name(*phase)
+            ),
+            Self::IndexOffset { across, along } => write!(
+                f,
+                "a pulse of torque moved the handle by {across} counts, and a current without torque by \
+                 {along}: keep the hand off; if it comes again, the offset in the program is not this motor's: \
+                 align it, and state the offset that the board tells; then arm again"
             ),
             Self::Thermistor { count, limit } => write!(
                 f,

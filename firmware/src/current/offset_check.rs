@@ -52,9 +52,10 @@ impl OffsetCheck {
     /// to the current of full-scale torque, and `None` at the end.
     pub(super) const fn step(&mut self, moved: i32) -> Option<Vector> {
         let place = self.time / self.stretch;
-        if place < STRETCHES {
+        // Only the way forward: inertia takes the handle further during the second half, damping takes it back.
+        if place == 0 {
             self.across += moved;
-        } else {
+        } else if place == STRETCHES {
             self.along += moved;
         }
         self.time += 1;

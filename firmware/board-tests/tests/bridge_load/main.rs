@@ -206,7 +206,7 @@ fn no_duty() -> Result<(), Failure> {
     bench.check_off()
 }
 
-/// A tenth of the supply in both directions, and off again.
+/// That part of the supply in both directions, and off again.
 fn ten_per_cent() -> Result<(), Failure> {
     let mut bench = Bench::new()?;
     defmt::info!(
@@ -268,7 +268,7 @@ mod tests {
 
     #[test]
     #[timeout(5)]
-    fn a_tenth_of_the_supply_gives_the_current_of_the_load() -> Result<(), Failure> {
+    fn a_part_of_the_supply_gives_the_current_of_the_load() -> Result<(), Failure> {
         super::ten_per_cent()
     }
 

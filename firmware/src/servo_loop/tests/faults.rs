@@ -277,21 +277,21 @@ fn a_host_that_falls_silent_may_also_be_missed_in_silence() {
 /// The limit falls by a step of the clamp, a hundredth, with the reason; it is no fault, and rises again.
 #[test]
 fn a_hot_bridge_lowers_the_limit_and_does_not_stop() {
-    let mut bench = running(&SPRING, 500);
-    bench.stand(30_000, 20);
-    let full = bench.tick(30_000);
+    let mut bench = running(&SPRING, 900);
+    bench.stand(1_800, 20);
+    let full = bench.tick(1_800);
     assert_eq!((full.limit, full.state), (LimitReason::Torque, State::Running));
     let offset = |frame: Frame| frame.code.offset().unsigned_abs();
     for _ in 0..50 {
         bench.board.output_event = Some(OutputEvent::Heat(HeatStep::Lower));
-        bench.tick(30_000);
+        bench.tick(1_800);
     }
-    let hot = bench.tick(30_000);
+    let hot = bench.tick(1_800);
     assert_eq!((hot.limit, hot.state), (LimitReason::Heat, State::Running));
     assert!(offset(hot).abs_diff(offset(full) / 2) <= offset(full) / 50, "{hot:?}, {full:?}");
     for _ in 0..60 {
         bench.board.output_event = Some(OutputEvent::Heat(HeatStep::Raise));
-        bench.tick(30_000);
+        bench.tick(1_800);
     }
-    assert_eq!(bench.tick(30_000).code, full.code);
+    assert_eq!(bench.tick(1_800).code, full.code);
 }

@@ -129,6 +129,7 @@ fn the_current_interrupt_computes_what_the_host_computes() {
         } else {
             host.measure_offset(&sample);
             if instant.switched == Some(true) {
+                host.start().unwrap();
                 charging = Some(CURRENT_LOOP.charging_instants());
             }
         }

@@ -11,8 +11,8 @@ use super::{
 };
 use crate::board::stm32::output::periods::now;
 use crate::current::{
-    Alignment, AlignmentStep, CurrentController, CurrentLoop, Heating, PowerFault, Sample,
-    TripSearch,
+    Alignment, AlignmentStep, CurrentController, CurrentLoop, Heating, OffsetCheck, PowerFault,
+    Sample, TripSearch,
 };
 use crate::dac::DacCode;
 use crate::output_timing::OutputTiming;
@@ -25,6 +25,8 @@ enum StartUp {
     Searching(TripSearch),
     /// The low sides conduct for so many more instants.
     Charging(u32),
+    /// Pulses show whether the stated phase at the index is the motor's.
+    Checking(OffsetCheck),
 }
 
 /// State of the current interrupt for a brushless or a brushed motor: a program only has the code for its
@@ -90,7 +92,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             self.drive(&sample, since_last);
         } else {
             cold_path();
-            self.otherwise(&sample);
+            self.otherwise(&sample, since_last);
         }
         if BRUSHLESS && index::has_come() {
             cold_path();
@@ -154,18 +156,32 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     /// All instants except those in which the servo drives the motor.
     #[cold]
     #[inline(never)]
-    fn otherwise(&mut self, sample: &Sample) {
+    fn otherwise(&mut self, sample: &Sample, since_last: u32) {
         let state = STATE.load(Ordering::Relaxed);
         if BRUSHLESS && state == State::Aligning as u8 {
-            return self.align(sample);
+            return self.align(sample, since_last);
         }
         let is_requested =
             state == State::Starting as u8 || BRUSHLESS && state == State::StartingAlignment as u8;
         if !is_requested {
             self.start_up = StartUp::Waiting;
         }
-        if let StartUp::Charging(left) = self.start_up {
-            return self.charge(sample, left, state);
+        match &mut self.start_up {
+            StartUp::Charging(left) => {
+                let left = *left;
+                return self.charge(sample, left, state);
+            }
+            StartUp::Checking(check) if BRUSHLESS => {
+                if pwm::broke() {
+                    return stop(self.controller.over_current(sample));
+                }
+                return match self.controller.check_offset(sample, check) {
+                    Ok(Some(duties)) => pwm::set(self.current_loop, duties),
+                    Ok(None) => self.finish_start(state),
+                    Err(fault) => stop(fault),
+                };
+            }
+            _ => {}
         }
         // With the gates low, measures the offsets of the amplifiers. The first duties of the low sides are set
         // in time for the gates that are switched on.
@@ -216,6 +232,21 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             return charged.unwrap_or_else(stop);
         }
         match charged.and_then(|()| self.start(state)) {
+            Ok(State::On) if BRUSHLESS => match self.controller.start_offset_check() {
+                Some(check) => {
+                    pwm::set(self.current_loop, self.current_loop.no_voltage());
+                    self.start_up = StartUp::Checking(check);
+                }
+                None => self.finish_start(state),
+            },
+            Ok(_) => self.finish_start(state),
+            Err(fault) => stop(fault),
+        }
+    }
+
+    /// The next instant is the first of the requested state.
+    fn finish_start(&mut self, state: u8) {
+        match self.start(state) {
             Ok(state) => {
                 pwm::set(self.current_loop, self.current_loop.no_voltage());
                 self.start_up = StartUp::Waiting;
@@ -226,13 +257,21 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     }
 
     /// An instant of an alignment.
-    fn align(&mut self, sample: &Sample) {
+    fn align(&mut self, sample: &Sample, since_last: u32) {
         if pwm::broke() {
             return stop(self.controller.over_current(sample));
         }
+        if since_last > self.latest {
+            return stop(self.late(since_last));
+        }
         let Some(alignment) = &mut self.alignment else { return off() };
         match self.controller.align(sample, alignment) {
-            Ok(AlignmentStep::Turning(duties)) => pwm::set(self.current_loop, duties),
+            Ok(AlignmentStep::Turning(duties)) => {
+                pwm::set(self.current_loop, duties);
+                if pwm::updated() {
+                    stop(self.late(now().wrapping_sub(self.last)));
+                }
+            }
             Ok(AlignmentStep::Ended(result)) => {
                 latest::keep_index(self.controller.index_offset());
                 match result {
