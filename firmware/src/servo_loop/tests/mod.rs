@@ -90,7 +90,7 @@ fn the_clamp_stays_shut_until_the_output_has_started_up() {
     bench.requests.arm();
     for tick in 0..=12 {
         let frame = bench.tick(500);
-        let state = if tick == 12 { State::FadingIn } else { State::Settling };
+        let state = if tick >= 11 { State::FadingIn } else { State::Settling };
         assert_eq!((frame.code.get(), bench.servo_loop.state()), (2048, state), "tick {tick}");
     }
     bench.stand(500, 3);
