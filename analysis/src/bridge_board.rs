@@ -86,7 +86,7 @@ impl BridgeBoard {
     }
 
     /// Aligns the motor if it is brushless, with the scene's device on it that nobody holds, and turns it
-    /// back to zero as a hand would; then arms the servo there, and runs until the clamp has opened.
+    /// back to zero as a hand would; then arms the servo there, and runs until the bridge has started up and the clamp has opened.
     ///
     /// # Errors
     /// Where the board stops, or the motor is not aligned or not armed.
@@ -100,7 +100,8 @@ impl BridgeBoard {
             self.align(scene)?;
         }
         self.arm(&mut still)?;
-        for _ in 0..fading_samples(period) {
+        let starting = self.current_loop.start_up_ticks() as usize;
+        for _ in 0..starting + fading_samples(period) {
             self.period(&mut still, &[])?;
         }
         Ok(())

@@ -4,6 +4,7 @@
 use core::fmt;
 use core::hint::cold_path;
 
+use crate::current::HeatStep;
 use crate::number::Number;
 
 /// The reason why a tick's output is below the environment's torque. This is telemetry, not a fault.
@@ -24,12 +25,21 @@ pub enum LimitReason {
     NotANumber = 4,
     /// The clamp is opening, closing or shut.
     Ramp = 5,
+    /// The continuous current of the board's bridge, after more current for a time.
+    Heat = 6,
 }
 
 impl LimitReason {
     /// All reasons, in the order of their numbers.
-    pub const ALL: [Self; 6] =
-        [Self::None, Self::Torque, Self::DacRange, Self::Angle, Self::NotANumber, Self::Ramp];
+    pub const ALL: [Self; 7] = [
+        Self::None,
+        Self::Torque,
+        Self::DacRange,
+        Self::Angle,
+        Self::NotANumber,
+        Self::Ramp,
+        Self::Heat,
+    ];
 
     /// The reason in one word, for tables.
     pub const fn as_str(self) -> &'static str {
@@ -40,6 +50,7 @@ impl LimitReason {
             Self::Angle => "angle",
             Self::NotANumber => "not-a-number",
             Self::Ramp => "ramp",
+            Self::Heat => "heat",
         }
     }
 }
@@ -152,6 +163,17 @@ impl<N: Number> Limiter<N> {
         self.is_shut()
     }
 
+    /// Moves the level of an open limiter by a step, because of the heat of the torque output.
+    pub(crate) fn step_by_heat(&mut self, step: HeatStep) {
+        match step {
+            HeatStep::Lower => _ = self.close(),
+            HeatStep::Raise => _ = self.open(),
+        }
+        if self.level < self.bound {
+            self.because = LimitReason::Heat;
+        }
+    }
+
     fn set(&mut self, level: N) {
         self.level = level;
         self.because = if level < self.bound { LimitReason::Ramp } else { self.reason };
@@ -161,6 +183,16 @@ impl<N: Number> Limiter<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn heat_moves_the_level_and_is_the_reason() {
+        let mut limiter = Limiter::new(2.0_f32, LimitReason::Torque).stepping(0.25);
+        limiter.step_by_heat(HeatStep::Lower);
+        assert_eq!(limiter.limit(2.0, LimitReason::None), (1.75, LimitReason::Heat));
+        limiter.step_by_heat(HeatStep::Raise);
+        limiter.step_by_heat(HeatStep::Raise);
+        assert_eq!(limiter.limit(3.0, LimitReason::None), (2.0, LimitReason::Torque));
+    }
 
     #[test]
     fn says_what_it_did() {
@@ -213,7 +245,7 @@ mod tests {
 
     #[test]
     fn has_a_word_for_every_reason() {
-        let words = ["none", "torque", "converter", "angle", "not-a-number", "ramp"];
+        let words = ["none", "torque", "converter", "angle", "not-a-number", "ramp", "heat"];
         assert_eq!(LimitReason::ALL.map(LimitReason::as_str), words);
         for (number, reason) in LimitReason::ALL.into_iter().enumerate() {
             assert_eq!((reason as usize, reason.to_string()), (number, words[number].to_owned()));

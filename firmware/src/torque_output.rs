@@ -3,9 +3,18 @@
 //! The servo uses both through the same calls. They differ in the latency of a torque, which the scene states
 //! ([`Latency`](crate::scene::Latency)) and the compiler compares with the output's own.
 
-use crate::current::{AlignmentError, PowerFault};
+use crate::current::{AlignmentError, HeatStep, PowerFault};
 use crate::dac::DacCode;
 use crate::fault::Fault;
+
+/// An event of a torque output for the servo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputEvent {
+    /// A fault: the output has already removed the torque.
+    Fault(Fault),
+    /// The torque's limit moves by a step, because of the heat of the current.
+    Heat(HeatStep),
+}
 
 /// A torque output; each method is one or two accesses to registers or memory.
 pub trait TorqueOutput {
@@ -14,8 +23,14 @@ pub trait TorqueOutput {
     fn set(&mut self, code: DacCode);
 
     /// Switches the motor on or off. Off removes the torque at once; on may take until the next code, and may
-    /// fail with a [fault](Self::fault).
+    /// fail with a [fault](Self::event).
     fn switch(&mut self, on: bool);
+
+    /// Periods after switching on for which the code must be that of zero torque, because the output is not ready
+    /// to follow another.
+    fn start_up_ticks(&self) -> u32 {
+        0
+    }
 
     /// Begins to align a brushless motor whose gates are off.
     ///
@@ -30,6 +45,6 @@ pub trait TorqueOutput {
         false
     }
 
-    /// A fault of the output since the last call. The output has already removed the torque.
-    fn fault(&mut self) -> Option<Fault>;
+    /// An event of the output since the last call.
+    fn event(&mut self) -> Option<OutputEvent>;
 }

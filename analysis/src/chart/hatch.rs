@@ -40,7 +40,7 @@ impl Fill {
             TickStatus::Ran(LimitReason::DacRange) => Some(Self::Rising),
             TickStatus::Ran(LimitReason::Angle) => Some(Self::Falling),
             TickStatus::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
-            TickStatus::Ran(LimitReason::Ramp) => Some(Self::Upright),
+            TickStatus::Ran(LimitReason::Ramp | LimitReason::Heat) => Some(Self::Upright),
             TickStatus::Missed => Some(Self::Level),
         }
     }

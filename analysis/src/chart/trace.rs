@@ -267,7 +267,9 @@ fn write_fill_legend(area: &Area<'_>, reasons: &[(TickStatus, Fill)]) -> Drawn<(
 
 /// The meaning of a fill.
 fn name(status: TickStatus) -> &'static str {
-    use haptic_servo::torque::LimitReason::{Angle, DacRange, None, NotANumber, Ramp, Torque};
+    use haptic_servo::torque::LimitReason::{
+        Angle, DacRange, Heat, None, NotANumber, Ramp, Torque,
+    };
     match status {
         TickStatus::Ran(None) => "not limited",
         TickStatus::Ran(Torque) => "torque limit",
@@ -275,6 +277,7 @@ fn name(status: TickStatus) -> &'static str {
         TickStatus::Ran(Angle) => "angle out of range",
         TickStatus::Ran(NotANumber) => "not a number",
         TickStatus::Ran(Ramp) => "fading in or out",
+        TickStatus::Ran(Heat) => "heat limit",
         TickStatus::Missed => "tick missed",
     }
 }

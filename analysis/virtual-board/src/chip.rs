@@ -115,6 +115,11 @@ const fn ungated(base: u32, name: &'static str, unit: Unit) -> MapEntry {
 pub const WATCHDOG_FREEZES: u32 = 1 << 12;
 /// Offset of that register in the unit for debugging.
 pub const FREEZE: u32 = 0x08;
+/// The G4's register for TIM1, and its bit: the counter stops with the core, and the outputs are then off (RM0440,
+/// 28.4).
+pub const FREEZE_TIM1: u32 = 0x10;
+/// That bit.
+pub const TIM1_FREEZES: u32 = 1 << 11;
 
 /// Offset of the G4's CFGR2 in the system configuration; one of its bits makes a locked-up core break the
 /// outputs of TIM1 (RM0440, 10.2.8).
@@ -123,8 +128,12 @@ pub const BREAKS: u32 = 0x1C;
 pub const LOCK_UP_BREAKS: u32 = 1;
 
 /// The debug unit: the chip's identity, and the clocks while the core sleeps.
-static DEBUG_G4: &[(u32, u32, u32)] =
-    &[(0x00, 0x2001_6469, 0), (0x04, 0, 0b111), (FREEZE, 0, WATCHDOG_FREEZES)];
+static DEBUG_G4: &[(u32, u32, u32)] = &[
+    (0x00, 0x2001_6469, 0),
+    (0x04, 0, 0b111),
+    (FREEZE, 0, WATCHDOG_FREEZES),
+    (FREEZE_TIM1, 0, TIM1_FREEZES),
+];
 static DEBUG_F405: &[(u32, u32, u32)] =
     &[(0x00, 0x1007_6413, 0), (0x04, 0, 0b111), (FREEZE, 0, WATCHDOG_FREEZES)];
 

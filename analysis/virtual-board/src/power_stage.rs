@@ -6,6 +6,7 @@
 
 mod circuit;
 pub mod gate_log;
+pub mod parts;
 #[cfg(test)]
 mod tests;
 
@@ -88,6 +89,8 @@ pub struct PowerStage {
     stepped: u64,
     /// Both switches of a leg were on: when, and which leg.
     shoot_through: Option<(u64, usize)>,
+    /// A high side was switched on whose gate's supply was not charged: when, and of which leg.
+    uncharged: Option<(u64, usize)>,
 }
 
 impl Default for PowerStage {
@@ -106,6 +109,7 @@ impl Default for PowerStage {
             broken: None,
             stepped: 0,
             shoot_through: None,
+            uncharged: None,
         }
     }
 }
@@ -131,6 +135,11 @@ impl PowerStage {
     /// When both switches of a leg were on, and of which.
     pub fn shoot_through(&self) -> Option<(u64, usize)> {
         self.shoot_through
+    }
+
+    /// When a high side was switched on whose gate's supply was not charged, and of which leg.
+    pub fn uncharged(&self) -> Option<(u64, usize)> {
+        self.uncharged
     }
 
     /// When something happens next.
@@ -245,7 +254,8 @@ impl PowerStage {
     fn flow(&mut self, to: u64, around: &Surroundings<'_>) {
         if to > self.now {
             let seconds = seconds(to - self.now, around);
-            self.circuit.advance(legs(&self.gates), seconds);
+            let legs = self.legs();
+            self.circuit.advance(legs, seconds);
             self.now = to;
         }
     }
@@ -312,10 +322,10 @@ impl PowerStage {
     /// Voltages at the comparators' pins.
     fn inputs(&self, circuit: &Circuit, around: &Surroundings<'_>) -> Inputs {
         let mut inputs = Inputs::default();
-        let legs = legs(&self.gates);
+        let legs = self.legs();
         for phase in 0..3 {
             let is_wired = is_analog(around.ports, SHUNTS[phase]);
-            inputs[COMPARATOR[phase]] = is_wired.then(|| circuit.shunt(phase, legs[phase]));
+            inputs[COMPARATOR[phase]] = is_wired.then(|| circuit.compared(phase, legs[phase]));
         }
         inputs
     }
@@ -325,7 +335,7 @@ impl PowerStage {
         let ports = around.ports;
         let amplified = |phase: usize| {
             let is_on = self.op_amps.is_on(phase) && is_analog(ports, SHUNTS[phase]);
-            let leg = legs(&self.gates)[phase];
+            let leg = self.legs()[phase];
             (is_on && is_analog(ports, AMPLIFIED[phase]))
                 .then(|| self.circuit.amplified(phase, leg))
         };
@@ -360,6 +370,20 @@ impl PowerStage {
         if let Some(leg) = shorted {
             self.shoot_through.get_or_insert((self.now, leg));
         }
+        let uncharged = (0..3).find(|&leg| is_on(gates[leg]) && !self.circuit.is_charged(leg));
+        if let Some(leg) = uncharged {
+            self.uncharged.get_or_insert((self.now, leg));
+        }
+    }
+
+    /// What the gates switch: a gate that floats is off, by its driver's own resistor, and so is a high side whose
+    /// gate has no supply.
+    fn legs(&self) -> [Leg; 3] {
+        [0, 1, 2].map(|leg| match (is_on(self.gates[leg]), is_on(self.gates[leg + 3])) {
+            (true, _) if self.circuit.is_charged(leg) => Leg::High,
+            (false, true) => Leg::Low,
+            (true, _) | (false, false) => Leg::Off,
+        })
     }
 
     /// When something happens next.
@@ -401,7 +425,7 @@ impl PowerStage {
         }
         let breaks = |at: u64| {
             let mut circuit = self.circuit;
-            circuit.advance(legs(&self.gates), seconds(at - self.now, around));
+            circuit.advance(self.legs(), seconds(at - self.now, around));
             let mut comparators = self.comparators;
             comparators.compare(self.inputs(&circuit, around), self.references());
             self.timer.is_broken_by(comparators.outputs())
@@ -427,15 +451,6 @@ fn is_analog(ports: &[Pins], (port, pin): (usize, u32)) -> bool {
 
 fn is_on(level: Level) -> bool {
     level == Level::High
-}
-
-/// What the gates switch: a gate that floats is off, by its driver's own resistor.
-fn legs(gates: &Gates) -> [Leg; 3] {
-    [0, 1, 2].map(|leg| match (is_on(gates[leg]), is_on(gates[leg + 3])) {
-        (true, _) => Leg::High,
-        (false, true) => Leg::Low,
-        (false, false) => Leg::Off,
-    })
 }
 
 /// A converter's code: the nearest.

@@ -2,7 +2,7 @@
 
 use haptic_servo::current::{
     CurrentController, CurrentLoop, Drive, Motor, PhaseAlignment, PowerStage, Sample, Supply,
-    Thermistor, Winding,
+    Thermistor, TripRange, Winding,
 };
 use haptic_servo::encoder::{CounterWidth, RawCount};
 use haptic_servo::servo::Transducers;
@@ -22,7 +22,12 @@ const STAGE: PowerStage = PowerStage {
     current_lowers_count: true,
     volts_per_count: 0.0084,
     largest_current: 40.0,
-    offset_counts: (1900, 2300),
+    offset_counts: (2390, 2716),
+    continuous_current: 40.0,
+    largest_temperature: 120.0,
+    trip_range: TripRange { lowest: 140, highest: 180, amps_per_code: 0.5 },
+    trip_margin: 8.0,
+    charging: 10e-3,
     supply: Supply { lowest: 10.0, highest: 34.0 },
     dead_time: 0.2e-6,
     shortest_low: 1.5e-6,
@@ -47,7 +52,7 @@ static BRUSHED: CurrentLoop = design(Winding::Brushed);
 static BRUSHLESS: CurrentLoop = design(Winding::Brushless { pole_pairs: 7 });
 
 /// Counts without a current.
-pub const OFFSET: u16 = 2048;
+pub const OFFSET: u16 = 2553;
 /// Counts that the handle turns in an instant.
 const SPEED: u32 = 3;
 /// Codes of a step of an input.

@@ -15,6 +15,10 @@ pub trait SimIo {
     fn write(&mut self, code: DacCode);
     /// Switches the amplifier.
     fn amplifier(&mut self, _on: bool) {}
+    /// Ticks after that in which it does not follow the code yet.
+    fn start_up_ticks(&self) -> u32 {
+        0
+    }
 }
 
 /// A board after power-on, without a watchdog, whose ticks take no time.
@@ -44,6 +48,10 @@ impl<L: SimIo> Hardware for SimHardware<L> {
 
     fn amplifier(&mut self, on: bool) {
         self.lines.amplifier(on);
+    }
+
+    fn start_up_ticks(&self) -> u32 {
+        self.lines.start_up_ticks()
     }
 
     fn periods_since_last(&mut self) -> u32 {

@@ -10,6 +10,7 @@ use super::follower::{Follower, Wanted};
 use super::index_check::IndexCheck;
 use super::motor::Winding;
 use super::offset::Offsets;
+use super::offset_check::OffsetCheck;
 use super::phase::{PhaseAlignment, Turn};
 use super::sample::{Duties, Sample};
 use super::speed::Speed;
@@ -33,6 +34,8 @@ pub struct CurrentController {
     along: Follower,
     turn: Turn,
     phase: Option<PhaseAlignment>,
+    /// Whether the phase is one that the program states, and no torque has shown yet that it is the motor's.
+    is_unchecked: bool,
     index: IndexCheck,
     speed: Speed,
     supervision: Supervision,
@@ -53,6 +56,7 @@ impl CurrentController {
             along: Follower::AT_REST,
             turn: design.turn,
             phase: None,
+            is_unchecked: false,
             index: IndexCheck::NOT_SEEN,
             speed: Speed::new(design.counter),
             supervision: Supervision::NONE,
@@ -89,7 +93,7 @@ impl CurrentController {
             return Err(fault);
         }
         if let (None, Some(offset)) = (self.phase, self.design.index_offset()) {
-            self.phase = Some(offset.phase(at));
+            (self.phase, self.is_unchecked) = (Some(offset.phase(at)), true);
         }
         Ok(())
     }
@@ -101,7 +105,37 @@ impl CurrentController {
 
     /// Stores the result of an alignment.
     pub const fn set_phase(&mut self, phase: PhaseAlignment) {
-        self.phase = Some(phase);
+        (self.phase, self.is_unchecked) = (Some(phase), false);
+    }
+
+    /// The check of a phase that the program states, before its first torque; `None` if none is needed.
+    pub fn start_offset_check(&self) -> Option<OffsetCheck> {
+        self.is_unchecked.then(|| OffsetCheck::new(&self.design))
+    }
+
+    /// One instant of that check; `None` at its end, if the phase is the motor's.
+    ///
+    /// # Errors
+    /// Faults, after which the gates are to be switched off.
+    #[cold]
+    pub fn check_offset(
+        &mut self,
+        sample: &Sample,
+        check: &mut OffsetCheck,
+    ) -> Result<Option<Duties>, PowerFault> {
+        let Some(phase) = self.phase else { return Err(self.not_aligned()) };
+        let step = self.move_to(sample.position);
+        let speed = phase.sign() * self.speed.update(step);
+        let Some(current) = check.step(step) else {
+            check.result()?;
+            self.is_unchecked = false;
+            return Ok(None);
+        };
+        let amps = self.design.law.amps_per_code * f32::from(DacCode::CODES_TO_FULL_SCALE);
+        // Forward for the handle is backward for the magnets of a reversed motor.
+        let wanted =
+            Vector { along: amps * current.along, across: phase.sign() * amps * current.across };
+        self.step_vector(sample, phase.angle(self.turn.angle()), wanted, speed).map(Some)
     }
 
     /// Prepares for gates that are switched on before the next instant, with no current and no voltage. The
@@ -127,6 +161,23 @@ impl CurrentController {
         // Counts lost before do not affect this alignment.
         self.index = IndexCheck::NOT_SEEN;
         Ok(Alignment::new(&self.design, self.turn))
+    }
+
+    /// An instant in which all low sides conduct, before a start: checks the currents and the surroundings.
+    ///
+    /// # Errors
+    /// Faults, after which the gates are to be switched off.
+    #[cold]
+    pub fn charge(&mut self, sample: &Sample) -> Result<(), PowerFault> {
+        let limits = &self.design.limits;
+        limits.check_currents(sample, self.offset)?;
+        if matches!(self.design.winding, Winding::Brushless { .. }) {
+            limits.check_third_current(sample, self.offset)?;
+        }
+        self.surroundings.observe(limits, sample)?;
+        self.move_to(sample.position);
+        self.last = Some(*sample);
+        Ok(())
     }
 
     const fn not_aligned(&self) -> PowerFault {
@@ -175,19 +226,18 @@ impl CurrentController {
         }
     }
 
-    /// Counts of the phases U and V without a current, stored at the last start.
-    pub const fn offsets(&self) -> [u16; 2] {
-        // The casts round positive numbers down.
-        [self.offset[0] as u16, self.offset[1] as u16]
-    }
-
-    /// The fault of a comparator that has turned the gates off, with the larger of the two currents of the
+    /// The fault of a comparator that has turned the gates off, with the largest of the currents of the
     /// next instant, and at least the limit of the current interrupt.
     #[cold]
     pub fn over_current(&self, sample: &Sample) -> PowerFault {
+        let limits = &self.design.limits;
         let counts = |phase: usize| (f32::from(sample.currents[phase]) - self.offset[phase]).abs();
-        let tripped = f32::from(self.design.limits.over_current);
-        self.design.limits.over_current(counts(0).max(counts(1)).max(tripped))
+        let third = match self.design.winding {
+            Winding::Brushed => 0.0,
+            Winding::Brushless { .. } => limits.third_current(sample, self.offset),
+        };
+        let tripped = f32::from(limits.over_current);
+        limits.over_current(counts(0).max(counts(1)).max(third).max(tripped))
     }
 
     /// One instant of an alignment. At its end the phase is stored, if one was found.
@@ -202,7 +252,7 @@ impl CurrentController {
         let step = self.move_to(sample.position);
         let Some(Field { angle, current }) = alignment.step(step) else {
             let result = alignment.result();
-            self.phase = result.ok();
+            (self.phase, self.is_unchecked) = (result.ok(), false);
             return Ok(AlignmentStep::Ended(result));
         };
         let amps = self.design.law.amps_per_code * f32::from(DacCode::CODES_TO_FULL_SCALE);
@@ -272,6 +322,7 @@ impl CurrentController {
     ) -> Result<Duties, PowerFault> {
         let CurrentLoop { law, output, limits, timing, .. } = &self.design;
         limits.check_currents(sample, self.offset)?;
+        limits.check_third_current(sample, self.offset)?;
         let bus = self.surroundings.observe(limits, sample)?;
         let [u, v] = sample.currents.map(f32::from);
         let amps = |count: f32, offset: f32| law.amps_per_count * (count - offset);

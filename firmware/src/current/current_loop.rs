@@ -2,8 +2,10 @@
 
 use super::encoder_index::EncoderIndex;
 use super::error::DriveError;
+use super::heating::{HeatLimit, TIME};
 use super::motion::TorqueSource;
 use super::motor::{Drive, Winding};
+use super::offset_check::OffsetCheck;
 use super::phase::Turn;
 use super::plant::{Plant, lag_of};
 use super::power_stage::PowerStage;
@@ -11,6 +13,7 @@ use super::resolution::{CurrentResolution, Quanta};
 use super::sample::Duties;
 use super::thermistor::{Thermistor, ThermistorTable};
 use super::timing::PwmTiming;
+use super::trip_search::TripRange;
 use crate::dac::DacCode;
 use crate::encoder::CounterWidth;
 use crate::passivity::interval::Interval;
@@ -19,6 +22,10 @@ use crate::transducers::Transducers;
 /// Over-current, as a multiple of the current of full-scale torque: a step stays below it in a motor whose
 /// resistance and inductance differ by a third.
 pub const OVER_CURRENT: f64 = 1.25;
+
+/// Ratio of the current at which a comparator trips to the current at which the current interrupt turns the gates
+/// off: a sample in the middle of the low side's time has the mean of the ripple, and a comparator sees the peak.
+const TRIP_ABOVE: f64 = 1.2;
 
 /// A longer deviation from the model above this is a fault; relative to the current of full-scale torque.
 const LARGEST_DEVIATION: f64 = 0.25;
@@ -66,6 +73,13 @@ pub struct CurrentLoop {
     pub(super) turn: Turn,
     /// The index of the encoder, where the program states one.
     pub(super) index: Option<EncoderIndex>,
+    /// `None` if the full-scale current may last for ever.
+    pub(super) heat: Option<HeatLimit>,
+    trip_range: TripRange,
+    /// Codes between the trip of a comparator without a current and its threshold.
+    trip_margin: u16,
+    /// Instants in which the low sides charge the supplies of the high sides' gates.
+    charging: u32,
     /// Period of the modulation in s.
     pub(super) instant: f64,
     amps_per_code: f64,
@@ -240,6 +254,41 @@ impl CurrentLoop {
         self.limits.over_current
     }
 
+    /// The range in which a working comparator trips without a current.
+    pub const fn trip_range(&self) -> &TripRange {
+        &self.trip_range
+    }
+
+    /// The threshold of comparators that trip at these codes without a current: 6/5 of the over-current above
+    /// the last of them to trip, and at least [`PowerStage::trip_margin`](super::PowerStage).
+    pub const fn trip_threshold(&self, [a, b]: [u16; 2]) -> u16 {
+        let trips = if a > b { a } else { b };
+        let threshold = trips.saturating_add(self.trip_margin);
+        if threshold < PowerStage::LARGEST_COUNT { threshold } else { PowerStage::LARGEST_COUNT }
+    }
+
+    /// Whether the full-scale current is more than the board bears for ever without a flow of air.
+    pub const fn needs_air(&self) -> bool {
+        self.heat.is_some()
+    }
+
+    /// Instants in which the low sides conduct before the first high side.
+    pub const fn charging_instants(&self) -> u32 {
+        self.charging
+    }
+
+    /// Periods of the servo from switching on until the current follows the code: the search for the
+    /// comparators' thresholds, the charging, and the check of a stated offset of the index.
+    pub const fn start_up_ticks(&self) -> u32 {
+        // Two instants for the beginnings of both, and one tick until the request is seen.
+        let checking = match self.index_offset() {
+            Some(_) => OffsetCheck::instants(self.instant) + 2,
+            None => 0,
+        };
+        let instants = self.trip_range.instants() + self.charging + checking + 2;
+        instants.div_ceil(self.timing.updates as u32) + 1
+    }
+
     /// Lowest and highest count of the supply.
     pub const fn bus_counts(&self) -> (u16, u16) {
         self.limits.bus
@@ -308,7 +357,8 @@ impl<'a> Design<'a> {
         if let Err(error) = self.check_supply() {
             return Err(error);
         }
-        let (lowest, highest) = (Thermistor::LOWEST as f64, Thermistor::HIGHEST as f64);
+        let highest = self.stage.largest_temperature.min(Thermistor::HIGHEST as f64);
+        let lowest = Thermistor::LOWEST as f64;
         let temperature = self.drive.largest_temperature;
         // Written so that NaN is refused.
         if temperature >= lowest && temperature <= highest {
@@ -438,6 +488,10 @@ impl<'a> Design<'a> {
             limits: self.limits(),
             turn: self.turn(),
             index: None,
+            heat: self.heat_limit(),
+            trip_range: stage.trip_range,
+            trip_margin: self.trip_margin(),
+            charging: (stage.charging / self.instant) as u32 + 1,
             instant: self.instant,
             amps_per_code: self.amps_per_code(),
             torque_constant: drive.motor.torque_constant,
@@ -451,6 +505,23 @@ impl<'a> Design<'a> {
             #[cfg(not(target_os = "none"))]
             drive: *drive,
         }
+    }
+
+    const fn heat_limit(&self) -> Option<HeatLimit> {
+        let most = self.stage.continuous_current;
+        if self.current <= most {
+            return None;
+        }
+        Some(HeatLimit {
+            square: (most * most) as f32,
+            codes: (most / self.amps_per_code()) as f32,
+            weight: (self.instant * self.timing.updates as f64 / TIME) as f32,
+        })
+    }
+
+    const fn trip_margin(&self) -> u16 {
+        let current = (self.current * OVER_CURRENT * TRIP_ABOVE).max(self.stage.trip_margin);
+        rounded_up(current / self.stage.trip_range.amps_per_code)
     }
 
     const fn turn(&self) -> Turn {

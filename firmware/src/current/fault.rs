@@ -35,6 +35,27 @@ pub enum PowerFault {
         /// The largest, in tenths of a degree Celsius.
         largest: i32,
     },
+    /// The converter's count of the thermistor is that of an open or of a shorted one.
+    Thermistor {
+        /// The count.
+        count: u32,
+        /// The count at the end of the thermistor's range.
+        limit: u32,
+    },
+    /// A comparator of the over-current protection does not trip where a working one does without a current.
+    Comparator {
+        /// The phase: 0 is U, 1 is V, 2 is W.
+        phase: u32,
+        /// The threshold in codes of its converter that did not separate the two outputs.
+        threshold: u32,
+    },
+    /// The stated phase at the encoder's index is not that of the motor: the handle did not move as its torque.
+    IndexOffset {
+        /// Counts that it moved by a current across the magnets.
+        across: i32,
+        /// Counts that it moved by a current along them.
+        along: i32,
+    },
     /// The count of a phase without a current is that of a broken amplifier, or was not measured.
     CurrentOffset {
         /// The phase: 0 is U, 1 is V.
@@ -88,6 +109,9 @@ impl PowerFault {
             Self::UnderVoltage { .. } => "under-voltage",
             Self::OverTemperature { .. } => "over-temperature",
             Self::CurrentOffset { .. } => "current-offset",
+            Self::Thermistor { .. } => "thermistor",
+            Self::Comparator { .. } => "comparator",
+            Self::IndexOffset { .. } => "index-offset",
             Self::CurrentNotFollowing { .. } => "current-not-following",
             Self::SaturatedDuty { .. } => "saturated-duty",
             Self::IndexMismatch { .. } => "index-mismatch",
@@ -113,6 +137,11 @@ impl PowerFault {
             Self::CurrentInterruptLate { late, allowed } => (22, [late, allowed]),
             Self::NotAligned { by_index } => (23, [by_index as u32, 0]),
             Self::Alignment(error) => error.encode(),
+            Self::Thermistor { count, limit } => (29, [count, limit]),
+            Self::Comparator { phase, threshold } => (30, [phase, threshold]),
+            Self::IndexOffset { across, along } => {
+                (31, [across.cast_unsigned(), along.cast_unsigned()])
+            }
         }
     }
 
@@ -130,11 +159,23 @@ impl PowerFault {
             21 => Self::IndexMismatch { count: a, aligned: b },
             22 => Self::CurrentInterruptLate { late: a, allowed: b },
             23 => Self::NotAligned { by_index: a != 0 },
+            29 => Self::Thermistor { count: a, limit: b },
+            30 => Self::Comparator { phase: a, threshold: b },
+            31 => Self::IndexOffset { across: a.cast_signed(), along: b.cast_signed() },
             _ => match AlignmentError::decode(code, numbers) {
                 Some(error) => Self::Alignment(error),
                 None => return None,
             },
         })
+    }
+}
+
+/// The name of a phase.
+const fn name(phase: u32) -> &'static str {
+    match phase {
+        0 => "U",
+        1 => "V",
+        _ => "W",
     }
 }
 
@@ -166,7 +207,25 @@ impl fmt::Display for PowerFault {
                 f,
                 "the converter reads {count} for phase {} without a current, which no working amplifier \
                  gives: check the power stage, then arm again",
-                if *phase == 0 { "U" } else { "V" }
+                name(*phase)
+            ),
+            Self::IndexOffset { across, along } => write!(
+                f,
+                "a pulse of torque moved the handle by {across} counts, and a current without torque by \
+                 {along}: keep the hand off; if it comes again, the offset in the program is not this motor's: \
+                 align it, and state the offset that the board tells; then arm again"
+            ),
+            Self::Thermistor { count, limit } => write!(
+                f,
+                "the converter reads {count} for the thermistor, and {limit} at the end of its range: it is \
+                 disconnected or shorted; repair it, then arm again"
+            ),
+            Self::Comparator { phase, threshold } => write!(
+                f,
+                "the over-current comparator of phase {} does not trip as a working one does without a \
+                 current, at the threshold {threshold}: keep the handle at rest, check the power stage, then \
+                 arm again",
+                name(*phase)
             ),
             Self::CurrentNotFollowing { deviation, largest } => write!(
                 f,

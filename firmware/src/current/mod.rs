@@ -18,16 +18,19 @@
 mod alignment;
 mod controller;
 mod current_loop;
+mod current_sense;
 mod duty_current;
 mod encoder_index;
 mod error;
 mod fault;
 mod follower;
+mod heating;
 mod index_check;
 mod indexed_loop;
 mod motion;
 mod motor;
 mod offset;
+mod offset_check;
 mod phase;
 mod plant;
 mod power_stage;
@@ -41,6 +44,7 @@ mod supervision;
 mod surroundings;
 mod thermistor;
 mod timing;
+mod trip_search;
 mod vector;
 
 pub use alignment::{Alignment, AlignmentError, AlignmentStep};
@@ -50,8 +54,10 @@ pub use duty_current::{DutyCurrent, DutyError};
 pub use encoder_index::{EncoderIndex, IndexOffset};
 pub use error::DriveError;
 pub use fault::PowerFault;
+pub use heating::{HeatStep, Heating};
 pub use motion::TorqueSource;
 pub use motor::{Drive, Motor, Supply, Winding};
+pub use offset_check::OffsetCheck;
 pub use phase::PhaseAlignment;
 pub use power_stage::{B_G431B_ESC1, PowerStage};
 pub use resolution::CurrentResolution;
@@ -59,6 +65,7 @@ pub use sample::{Duties, Sample};
 pub use sine_table::sine_and_cosine;
 pub use thermistor::Thermistor;
 pub use timing::PwmTiming;
+pub use trip_search::{TripCodes, TripRange, TripSearch};
 
 #[cfg(test)]
 mod tests;

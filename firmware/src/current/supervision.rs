@@ -66,11 +66,36 @@ impl Limits {
         Ok(())
     }
 
-    /// Checks that the supply and the temperature are in their range.
+    /// Checks the current of phase W, which no converter samples: the currents of a winding in a star add up
+    /// to zero.
+    #[inline(always)]
+    pub(super) fn check_third_current(
+        &self,
+        sample: &Sample,
+        offset: [f32; 2],
+    ) -> Result<(), PowerFault> {
+        let counts = self.third_current(sample, offset);
+        if counts > f32::from(self.over_current) {
+            cold_path();
+            return Err(self.over_current(counts));
+        }
+        Ok(())
+    }
+
+    /// Current of phase W in counts, without its sign.
+    #[inline(always)]
+    pub(super) fn third_current(&self, sample: &Sample, offset: [f32; 2]) -> f32 {
+        let [u, v] = sample.currents.map(f32::from);
+        ((u + v) - (offset[0] + offset[1])).abs()
+    }
+
+    /// Checks that the supply and the temperature are in their range. A thermistor that is open reads as very
+    /// cold, and one that is shorted as very hot.
     #[inline(always)]
     pub(super) fn check_surroundings(&self, sample: &Sample) -> Result<(), PowerFault> {
         let is_good = sample.bus >= self.bus.0
             && sample.bus <= self.bus.1
+            && sample.temperature >= self.thermistor.lowest()
             && sample.temperature <= self.temperature;
         if is_good {
             return Ok(());
@@ -99,6 +124,12 @@ impl Limits {
         }
         if sample.bus > self.bus.1 {
             return PowerFault::OverVoltage { voltage, highest: millivolts(self.bus.1) };
+        }
+        let (count, lowest, highest) =
+            (sample.temperature, self.thermistor.lowest(), self.thermistor.highest());
+        if count < lowest || count > highest {
+            let (count, limit) = (count.into(), if count < lowest { lowest } else { highest });
+            return PowerFault::Thermistor { count, limit: limit.into() };
         }
         PowerFault::OverTemperature {
             temperature: self.thermistor.tenths(sample.temperature),

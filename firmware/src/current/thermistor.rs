@@ -55,6 +55,17 @@ impl Thermistor {
 pub(super) struct ThermistorTable([u16; Thermistor::STEPS]);
 
 impl ThermistorTable {
+    /// The count at the lowest temperature: below it the thermistor is open.
+    #[inline(always)]
+    pub(super) const fn lowest(&self) -> u16 {
+        self.0[0]
+    }
+
+    /// The count at the highest temperature: above it the thermistor is shorted.
+    pub(super) const fn highest(&self) -> u16 {
+        self.0[Thermistor::STEPS - 1]
+    }
+
     /// The temperature of a count in tenths of a degree Celsius, by linear interpolation, clamped to the ends
     /// of the table.
     pub(super) const fn tenths(&self, count: u16) -> i32 {

@@ -2,6 +2,7 @@
 
 use super::Servo;
 use crate::build_error::BuildError;
+use crate::current::HeatStep;
 use crate::environment::{Discretize, Law};
 use crate::number::Number;
 
@@ -30,6 +31,11 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// Opens the clamp by a step; returns whether it is now open.
     pub(crate) fn open(&mut self) -> bool {
         self.limiter.open()
+    }
+
+    /// Moves the open clamp by a step, because of the heat of the torque output.
+    pub(crate) fn step_by_heat(&mut self, step: HeatStep) {
+        self.limiter.step_by_heat(step);
     }
 
     /// Closes the clamp by a step; returns whether it is now shut.

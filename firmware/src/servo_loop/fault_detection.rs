@@ -6,6 +6,7 @@ use crate::encoder::RawCount;
 use crate::environment::MAX_DELAY;
 use crate::fault::FaultRecord;
 use crate::output_timing::OutputTiming;
+use crate::torque_output::OutputEvent;
 
 /// Ticks in a row without a fault before the servo may be armed.
 const FAULT_FREE_TICKS: u32 = MAX_DELAY as u32 + 2;
@@ -111,16 +112,23 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.fail(Fault::NotANumber, hardware, inbox);
     }
 
-    /// Stops the servo after the torque output reported a fault and has taken the torque away.
+    /// Stops the servo after the torque output reported a fault and has taken the torque away, or moves the torque
+    /// limit of a running servo. The clamp of the other states moves by itself.
     #[cold]
     #[inline(never)]
-    pub(super) fn stop_by_output(
+    pub(super) fn on_output_event(
         &mut self,
-        fault: Fault,
+        event: OutputEvent,
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) {
-        self.fail(fault, hardware, inbox);
+        match event {
+            OutputEvent::Fault(fault) => self.fail(fault, hardware, inbox),
+            OutputEvent::Heat(step) if self.state == State::Running => {
+                self.rendering.servo_mut().step_by_heat(step);
+            }
+            OutputEvent::Heat(_) => {}
+        }
     }
 
     /// Handles a tick that took longer than any before, and returns its slack. With a slack of zero the code

@@ -6,6 +6,7 @@ use crate::encoder::RawCount;
 use crate::fault::{Fault, FaultRecord};
 #[cfg(doc)]
 use crate::output_timing::READ_WITHIN;
+use crate::torque_output::OutputEvent;
 
 /// The result of [`Hardware::periods_since_last`] for one period whose tick began later than [`READ_WITHIN`].
 pub const BEGAN_LATE: u32 = 0;
@@ -19,10 +20,14 @@ pub trait Hardware {
     fn write(&mut self, code: DacCode);
     /// Switches the motor's amplifier, or the board's bridge.
     fn amplifier(&mut self, on: bool);
-    /// A fault of the torque output since the last call; the output has already removed the torque. A DAC has
-    /// no faults.
-    fn output_fault(&mut self) -> Option<Fault> {
+    /// An event of the torque output since the last call. A DAC has none.
+    fn output_event(&mut self) -> Option<OutputEvent> {
         None
+    }
+    /// Ticks after switching the amplifier on in which it does not follow the code yet; the servo's torque is zero
+    /// for so long.
+    fn start_up_ticks(&self) -> u32 {
+        0
     }
     /// Begins to align a brushless motor, which moves the handle.
     ///

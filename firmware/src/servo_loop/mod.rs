@@ -170,8 +170,8 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if self.rendering.timing_limits().is_too_far(step) {
             self.check_jump(passed, step, hardware, inbox);
         }
-        if let Some(fault) = hardware.output_fault() {
-            self.stop_by_output(fault, hardware, inbox);
+        if let Some(event) = hardware.output_event() {
+            self.on_output_event(event, hardware, inbox);
         }
         if output.limit == LimitReason::NotANumber {
             self.stop_on_nan(hardware, inbox);

@@ -18,7 +18,7 @@ pub enum State {
     Running = 2,
     /// The clamp is closing, to disarm or to swap a set of parameters in.
     FadingOut = 3,
-    /// The clamp is shut while samples fill the memory of a new set.
+    /// The clamp is shut while samples fill the memory of a new set, or the torque output starts up.
     Settling = 4,
     /// A fault stopped it; the amplifier is off.
     Faulted = 5,

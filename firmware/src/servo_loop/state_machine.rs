@@ -1,6 +1,6 @@
 //! The rare work of a tick: requests, ramps and swaps. Not inlined, so that it costs the usual tick nothing.
 
-use super::swap::ARMING;
+use super::swap::{ARMING, SETTLING};
 use super::*;
 use crate::current::PowerFault;
 use crate::fault::FaultRecord;
@@ -59,7 +59,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.rendering.rest_here();
             hardware.amplifier(true);
             self.ramp = ARMING;
-            self.state = State::FadingIn;
+            self.begin_settling(hardware.start_up_ticks());
         }
         match (self.state, self.after_fade) {
             (State::FadingOut, AfterFade::Stop(fault)) => return Reply::Fault(fault),
@@ -152,7 +152,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         match self.after_fade {
             AfterFade::Render => {
                 self.swap(inbox);
-                self.begin_settling();
+                self.begin_settling(SETTLING);
             }
             AfterFade::Release => {
                 hardware.amplifier(false);

@@ -41,7 +41,7 @@ const SWAPPING: u32 = 10;
 /// Ticks that a new set runs without torque before its clamp opens. It starts at rest at the device's
 /// position; after these ticks its delay line, and the velocity that is delayed with it, hold the present
 /// motion of the device.
-const SETTLING: u32 = MAX_DELAY as u32 + 2;
+pub(super) const SETTLING: u32 = MAX_DELAY as u32 + 2;
 
 /// The longest time in s for which a swap reduces the torque of a running servo. `period` in s.
 pub fn longest_gap(options: &RenderingOptions, period: f64) -> f64 {
@@ -72,16 +72,17 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         true
     }
 
-    /// Keeps the clamp shut until the new set has samples of the device's motion.
-    pub(super) fn begin_settling(&mut self) {
-        self.settling = SETTLING;
-        self.state = State::Settling;
+    /// Keeps the clamp shut for so many ticks: until a new set has samples of the device's motion, or a torque
+    /// output that was switched on is ready.
+    pub(super) fn begin_settling(&mut self, ticks: u32) {
+        self.settling = ticks;
+        self.state = if ticks == 0 { State::FadingIn } else { State::Settling };
     }
 
     /// A tick of settling; another set may arrive meanwhile.
     pub(super) fn settle(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         if self.swap(inbox) {
-            self.settling = SETTLING;
+            self.settling = self.settling.max(SETTLING);
         }
         self.settling = self.settling.saturating_sub(1);
         if self.settling == 0 {

@@ -2,19 +2,10 @@
 //! the supply, the shunts, and the sensors.
 
 use super::REFERENCE;
+use super::parts::{BOOTSTRAP_ENOUGH, BOOTSTRAP_LOSS, Parts};
 use crate::device::{Device, Motion};
 use crate::motor::{Leg, Motor};
 
-/// A shunt in Ω, between each low side and ground.
-const SHUNT: f64 = 0.003;
-/// What the network between a shunt and an amplifier leaves of its voltage.
-const DIVIDED: f64 = 4.0 / 7.0;
-/// The amplifiers' gain.
-const GAIN: f64 = 16.0;
-/// The divider of the supply.
-const SUPPLY_DIVIDER: f64 = 18.0 / (169.0 + 18.0);
-/// The thermistor: its resistance in Ω at 25 °C, its constant in K, and the resistor to ground in Ω.
-const THERMISTOR: (f64, f64, f64) = (10e3, 3455.0, 4.7e3);
 const ZERO_CELSIUS: f64 = 273.15;
 
 /// The supply at the bridge.
@@ -47,12 +38,19 @@ impl Supply {
 pub struct Circuit {
     /// The motor, where one is wired.
     pub motor: Option<Motor>,
+    /// The parts around the chip.
+    pub parts: Parts,
     /// The supply.
     pub supply: Supply,
     /// Temperature in °C at the board's sensor.
     pub temperature: f64,
-    /// The error of each amplifier's output, in V.
+    /// What a fault adds to each amplifier's output, in V.
     pub amplifier_errors: [f64; 3],
+    /// Current in A from the supply into each output, as through a resistor of a short circuit: through the low
+    /// side to ground while it conducts.
+    pub leaks: [f64; 3],
+    /// Charge of the supply of each high side's gate, as a part of the full one.
+    bootstraps: [f64; 3],
     /// Whether the encoder's two wires are swapped.
     pub encoder_is_reversed: bool,
     /// Whether the motor's shaft is held.
@@ -69,9 +67,12 @@ impl Default for Circuit {
     fn default() -> Self {
         Self {
             motor: None,
+            parts: Parts::NOMINAL,
             supply: Supply::stiff(24.0),
             temperature: 25.0,
             amplifier_errors: [0.0; 3],
+            leaks: [0.0; 3],
+            bootstraps: [0.0; 3],
             encoder_is_reversed: false,
             is_blocked: false,
             motion: Motion::default(),
@@ -94,11 +95,23 @@ impl Circuit {
 
     /// Time passes, in s.
     pub(super) fn advance(&mut self, legs: [Leg; 3], seconds: f64) {
+        for (charge, leg) in self.bootstraps.iter_mut().zip(legs) {
+            let (end, lag) = match leg {
+                Leg::Low => (1.0, self.parts.bootstrap),
+                Leg::High | Leg::Off => (0.0, BOOTSTRAP_LOSS),
+            };
+            *charge = end + (*charge - end) * (-seconds / lag).exp();
+        }
         if let Some(motor) = &mut self.motor {
             let totals = motor.advance(legs, self.supply.volts, seconds);
             self.supply.deliver(totals.charge);
             self.torque += totals.torque;
         }
+    }
+
+    /// Whether a high side's gate has the voltage to conduct.
+    pub(super) fn is_charged(&self, phase: usize) -> bool {
+        self.bootstraps[phase] >= BOOTSTRAP_ENOUGH
     }
 
     /// The device goes on by the time since the last step, in s; the counts that the encoder shows of it.
@@ -120,24 +133,32 @@ impl Circuit {
     /// How far the voltage at a shunt's pin can change within a time, in V and s, while no leg is switched.
     pub(super) fn largest_shunt_change(&self, seconds: f64) -> f64 {
         let change = |motor: &Motor| motor.largest_change(self.supply.volts, seconds);
-        DIVIDED * SHUNT * self.motor.as_ref().map_or(0.0, change)
+        let per_amp = self.parts.senses.map(|sense| sense.pin_per_amp()).into_iter();
+        per_amp.fold(0.0, f64::max) * self.motor.as_ref().map_or(0.0, change)
     }
 
     /// Voltage at a shunt's pin of the chip: a current into the motor pulls it down.
     pub(super) fn shunt(&self, phase: usize, leg: Leg) -> f64 {
-        let current = self.motor.map_or(0.0, |motor| motor.low_side_current(phase, leg));
-        0.5 * REFERENCE / GAIN - DIVIDED * SHUNT * current
+        let motor = self.motor.map_or(0.0, |motor| motor.low_side_current(phase, leg));
+        let leak = if leg == Leg::Low { self.leaks[phase] } else { 0.0 };
+        let current = motor - leak;
+        self.parts.senses[phase].pin(current, REFERENCE)
+    }
+
+    /// Voltage that a shunt's comparator compares: at its pin, without the comparator's offset.
+    pub(super) fn compared(&self, phase: usize, leg: Leg) -> f64 {
+        self.shunt(phase, leg) - self.parts.senses[phase].comparator_offset
     }
 
     /// Voltage at its amplifier's output, which ends at the rails.
     pub(super) fn amplified(&self, phase: usize, leg: Leg) -> f64 {
-        let volts = GAIN * self.shunt(phase, leg) + self.amplifier_errors[phase];
-        volts.clamp(0.0, REFERENCE)
+        let volts = self.parts.senses[phase].amplified(self.shunt(phase, leg));
+        (volts + self.amplifier_errors[phase]).clamp(0.0, REFERENCE)
     }
 
     /// Voltage of the thermistor against its resistor to ground.
     pub(super) fn thermistor(&self) -> f64 {
-        let (resistance, beta, to_ground) = THERMISTOR;
+        let [resistance, beta, to_ground] = self.parts.thermistor;
         let inverse = |celsius: f64| 1.0 / (celsius + ZERO_CELSIUS);
         let resistance = resistance * (beta * (inverse(self.temperature) - inverse(25.0))).exp();
         REFERENCE * to_ground / (to_ground + resistance)
@@ -145,6 +166,7 @@ impl Circuit {
 
     /// Voltage of the supply's divider.
     pub(super) fn divided(&self) -> f64 {
-        (self.supply.volts * SUPPLY_DIVIDER).min(REFERENCE)
+        let [upper, lower] = self.parts.divider;
+        (self.supply.volts * lower / (upper + lower)).min(REFERENCE)
     }
 }

@@ -29,10 +29,14 @@ const SUPPLY: f64 = 24.0;
 const RESISTANCE: f64 = 1.0;
 const INDUCTANCE: f64 = 0.5e-3;
 const CONSTANT: f64 = 0.05;
-/// The DAC's code of the threshold at 35 A in a phase, and that current.
-const THRESHOLD: u32 = 202;
+/// The DAC's code of a threshold near 35 A in a phase.
+const THRESHOLD: u32 = 234;
 /// Volts of a current at the converters.
 const VOLTS_PER_AMP: f64 = 0.003 * 64.0 / 7.0;
+/// Volts at a shunt's pin without a current: 0.9/7 V, from Kirchhoff's law with 1.5, 2.2 and 22 kΩ.
+const NO_CURRENT: f64 = 0.9 / 7.0;
+/// Its count of a converter behind the gain of 16.
+const IDLE: u16 = 2553;
 
 /// A motor with a moment of inertia and some friction.
 #[derive(Clone, Copy)]
@@ -262,10 +266,28 @@ fn brushless(pole_pairs: u32) -> Motor {
 fn driving(motor: Motor, device: impl Device + Send + 'static) -> Driver {
     let mut driver = Driver::new(motor, device);
     driver.start();
+    driver.set_duties([0.0; 3]);
     driver.periods(2);
     driver.gates_on();
+    // The supplies of the high sides' gates are charged.
+    driver.periods(60);
+    driver.set_duties([0.5; 3]);
     driver.periods(2);
+    assert_eq!(driver.0.power_stage.uncharged(), None);
     driver
+}
+
+/// The drivers supply the gates of the high sides from capacitors, which only the low sides charge.
+#[test]
+fn a_high_side_whose_supply_is_not_charged_does_not_conduct() {
+    let mut driver = Driver::new(brushed(), FixedDevice);
+    driver.start();
+    driver.set_duties([1.0, 0.0, 0.5]);
+    driver.periods(2);
+    driver.gates_on();
+    driver.periods(4);
+    assert!(driver.0.power_stage.uncharged().is_some());
+    assert_eq!(driver.currents()[0], 0.0);
 }
 
 fn counts(amps: f64) -> f64 {
@@ -307,7 +329,7 @@ fn legs_switch_with_their_dead_time_and_never_together() {
 fn the_sampled_current_is_that_of_the_duties() {
     let mut driver = driving(brushed(), FixedDevice);
     let idle = driver.periods(1);
-    assert_eq!(idle, [2048; 2]);
+    assert_eq!(idle, [IDLE; 2]);
     for duty in [0.6, 0.35] {
         driver.set_duties([duty, 1.0 - duty, 0.5]);
         let [u, v] = driver.periods(200);
@@ -315,8 +337,8 @@ fn the_sampled_current_is_that_of_the_duties() {
         let wanted = 2.0 * duty - 1.0;
         let current = SUPPLY * (wanted - dead * wanted.signum()) / RESISTANCE;
         let expected = counts(current);
-        assert_near(2048.0 - f64::from(u), expected, 1.0 + 0.01 * expected.abs());
-        assert_near(f64::from(v) - 2048.0, expected, 1.0 + 0.01 * expected.abs());
+        assert_near(f64::from(IDLE) - f64::from(u), expected, 1.0 + 0.01 * expected.abs());
+        assert_near(f64::from(v) - f64::from(IDLE), expected, 1.0 + 0.01 * expected.abs());
         let mean = driver.0.power_stage.circuit.mean_torque();
         assert_near(mean, CONSTANT * current, 0.01 * mean.abs());
     }
@@ -372,8 +394,7 @@ fn a_short_breaks_the_gates_within_the_period() {
 #[test]
 fn a_break_comes_at_the_clock_at_which_the_current_reaches_the_threshold() {
     let mut driver = driving(brushed(), FixedDevice);
-    let threshold =
-        (f64::from(THRESHOLD) / 4096.0 * REFERENCE - 0.5 * REFERENCE / 16.0) * 16.0 / VOLTS_PER_AMP;
+    let threshold = (f64::from(THRESHOLD) / 4096.0 * REFERENCE - NO_CURRENT) * 16.0 / VOLTS_PER_AMP;
     // 1 for U, nearly 0 for V: its low side conducts but for some clocks.
     driver.motor().resistance = 0.1;
     driver.set_duties([1.0, 0.0, 0.5]);
@@ -415,10 +436,10 @@ fn supply_and_temperature_are_sampled() {
 fn an_amplifier_with_an_error_and_an_open_wire_are_seen() {
     let mut driver = driving(brushed(), FixedDevice);
     driver.0.power_stage.circuit.amplifier_errors[1] = 0.2;
-    assert_eq!(driver.periods(2), [2048, 2048 + 248]);
+    assert_eq!(driver.periods(2), [IDLE, IDLE + 249]);
     driver.motor().open[0] = true;
     driver.set_duties([0.8, 0.2, 0.5]);
-    assert_eq!(driver.periods(50), [2048, 2048 + 248]);
+    assert_eq!(driver.periods(50), [IDLE, IDLE + 249]);
 }
 
 #[test]

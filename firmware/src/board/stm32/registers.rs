@@ -17,7 +17,7 @@ use crate::output_timing::OutputTiming;
 use crate::period;
 use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
-use crate::torque_output::TorqueOutput;
+use crate::torque_output::{OutputEvent, TorqueOutput};
 
 /// The registers of the servo's interrupt.
 pub struct Registers {
@@ -58,8 +58,12 @@ impl Hardware for Registers {
     }
 
     #[inline(always)]
-    fn output_fault(&mut self) -> Option<Fault> {
-        self.output.fault()
+    fn output_event(&mut self) -> Option<OutputEvent> {
+        self.output.event()
+    }
+
+    fn start_up_ticks(&self) -> u32 {
+        self.output.start_up_ticks()
     }
 
     fn align(&mut self) -> Result<(), Fault> {

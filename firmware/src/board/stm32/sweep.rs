@@ -71,6 +71,8 @@ pub struct SweepIsr {
     /// Samples of the sweep, and the remaining samples.
     samples: u64,
     left: u64,
+    /// Ticks until the torque output follows the code.
+    starting: u32,
     guard: Guard,
     tick: u32,
     position: Position,
@@ -98,11 +100,14 @@ impl SweepIsr {
             self.left = 0;
             tell_end(end);
         }
-        let playing = self.left > 0;
+        let is_on = self.left > 0;
+        let playing = is_on && self.starting == 0;
         let code = if playing { self.exciter.next().code } else { DacCode::MID_SCALE };
         self.hardware.write(code);
-        self.hardware.amplifier(playing);
-        if playing {
+        self.hardware.amplifier(is_on);
+        if is_on && !playing {
+            self.starting -= 1;
+        } else if playing {
             self.tell(count);
             self.left -= 1;
             if self.left == 0 {
@@ -111,6 +116,7 @@ impl SweepIsr {
         } else if BEGIN.swap(false, Ordering::Relaxed) {
             (self.exciter, self.left, self.tick) = (self.beginning.clone(), self.samples, 0);
             (self.start, self.dropped) = (count, self.rows.dropped());
+            self.starting = self.hardware.start_up_ticks();
         }
         self.held = code;
         self.hardware.feed_watchdog();
@@ -121,7 +127,7 @@ impl SweepIsr {
         let listening = LISTENING.load(Ordering::Relaxed);
         // The task below cannot write between the load and the store.
         LISTENING.store(listening.saturating_sub(1), Ordering::Relaxed);
-        if self.hardware.output_fault().is_some() {
+        if self.hardware.output_event().is_some() {
             Some(SweepEnd::OutputFault)
         } else if STOP.load(Ordering::Relaxed) || BEGIN.swap(false, Ordering::Relaxed) {
             // A request to begin is not kept for the time after this sweep.
@@ -170,6 +176,7 @@ pub fn measure<const N: usize>(
         exciter,
         samples: sweep.ticks(),
         left: 0,
+        starting: 0,
         guard: setup.guard,
         tick: 0,
         position: Position::new(width(ENCODER)),

@@ -158,7 +158,7 @@ fn a_settled_current_stays_within_its_resolution() {
     let (mut random, mut most) = (Random(1), 0.0_f64);
     for _ in 0..60 {
         let mut rig = Rig::started(&BRUSHED);
-        rig.offsets = [2050.0 + random.next(), 2041.0 + random.next()];
+        rig.offsets = [2550.0 + random.next(), 2541.0 + random.next()];
         rig = rig.restarted();
         let code = (random.next() * 3582.0) as i16;
         for instant in 0..700 {

@@ -79,11 +79,11 @@ fn refusals_name_the_value_and_its_bound() {
     );
     assert_eq!(
         refused(Drive { largest_temperature: 150.0, ..DRIVE }),
-        "the largest temperature of 150 degrees Celsius is not between -20 and 140"
+        "the largest temperature of 150 degrees Celsius is not between -20 and 120"
     );
     assert_eq!(
         with(DRIVE, PowerStage { largest_current: 60.0, ..STAGE }, TRANSDUCERS, PERIOD),
-        "the board's largest current of 60 A is above the 53.85 A that its converter can measure"
+        "the board's largest current of 60 A is above the 41.37 A that its converter can measure"
     );
     assert_eq!(
         with(DRIVE, STAGE, TRANSDUCERS, 40e-6),
@@ -127,4 +127,26 @@ fn the_thermistor_is_the_one_of_its_formula() {
         );
     }
     assert_eq!((table.tenths(0), table.tenths(4095)), (-200, 1400));
+}
+
+/// By Kirchhoff's law at the amplifier's input, for each combination of parts at the ends of their tolerances.
+#[test]
+fn the_counts_without_a_current_are_those_of_the_resistors() {
+    let (lowest, highest) = B_G431B_ESC1.offset_counts;
+    assert_eq!((u32::from(lowest) + u32::from(highest)) / 2, 2553, "{lowest} to {highest}");
+    let (mut least, mut most) = (f64::MAX, f64::MIN);
+    for corner in 0..32 {
+        let end = |part: i32| if corner >> part & 1 == 0 { -1.0 } else { 1.0 };
+        let ohm = |part: i32, value: f64| value * (1.0 + 0.01 * end(part));
+        let (series, ground, supply) = (ohm(0, 1.5e3), ohm(1, 2.2e3), ohm(2, 22e3));
+        // Series and ground resistors are in parallel where the shunt has no voltage.
+        let below = series * ground / (series + ground);
+        let input = 3.3 * below / (below + supply) + 3e-3 * end(3);
+        let count = input * 16.0 * (1.0 + 0.02 * end(4)) / 3.3 * 4096.0;
+        (least, most) = (least.min(count), most.max(count));
+    }
+    assert!(f64::from(lowest) <= least && f64::from(highest) >= most, "{least} to {most}");
+    // No wider than the worse of the two ends.
+    let width = (2553.4 - least).max(most - 2553.4);
+    assert!(f64::from(highest - lowest) <= 2.0 * width + 3.0, "{lowest} to {highest}");
 }

@@ -18,13 +18,13 @@ fn does_not_start_without_offsets_in_range() {
     let mut rig = Rig::off(&BRUSHED);
     let none = PowerFault::CurrentOffset { phase: 0, count: 0 };
     assert_eq!(rig.controller.start(), Err(none));
-    rig.offsets[1] = 2400.0;
+    rig.offsets[1] = 2048.0;
     for _ in 0..256 {
         rig.controller.measure_offset(&rig.sample());
     }
-    let broken = PowerFault::CurrentOffset { phase: 1, count: 2400 };
+    let broken = PowerFault::CurrentOffset { phase: 1, count: 2048 };
     assert_eq!(rig.controller.start(), Err(broken));
-    rig.offsets[1] = 2040.0;
+    rig.offsets[1] = 2540.0;
     for _ in 0..256 {
         rig.controller.measure_offset(&rig.sample());
     }
@@ -87,6 +87,56 @@ fn a_supply_out_of_its_range_is_found_at_the_second_sample() {
     }
 }
 
+/// A single phase above the limit, by counts: of W the sum of the two others, each below it.
+#[test]
+fn an_over_current_of_each_phase_is_found() {
+    let limit = i32::from(BRUSHLESS.over_current_counts());
+    for (part, is_fault) in [(0.9, false), (1.1, true)] {
+        let most = (part * f64::from(limit)) as i32;
+        for phase in 0..3 {
+            for sign in [-1, 1] {
+                let mut rig = ThreePhases::started(&BRUSHLESS);
+                // The other two share its current.
+                let share = |of: usize| if of == phase { sign * most } else { -sign * most / 2 };
+                let rest = rig.sample();
+                let currents = [0, 1].map(|of| {
+                    (i32::from(rest.currents[of]) + share(of)).try_into().expect("a count")
+                });
+                let step = rig.controller.step(&Sample { currents, ..rest }, 0);
+                let is_over = matches!(step, Err(PowerFault::OverCurrent { .. }));
+                assert_eq!(is_over, is_fault, "phase {phase}, {sign}, {part}: {step:?}");
+            }
+        }
+    }
+}
+
+/// By the counts of the converter's ends, and a temperature near each end of the range.
+#[test]
+fn a_thermistor_that_is_open_or_shorted_is_a_fault() {
+    let told = |temperature: u16| {
+        let mut rig = Rig::started(&BRUSHED);
+        let sample = Sample { temperature, ..rig.sample() };
+        rig.controller.measure_offset(&sample);
+        rig.controller.start().err().map(PowerFault::as_str)
+    };
+    // The divider's counts at -15, 30 and 130 degrees, by the thermistor's formula.
+    let count = |celsius: f64| {
+        let ohm = 10e3 * (3380.0 * (1.0 / (celsius + 273.15) - 1.0 / 298.15)).exp();
+        (4095.0 * 4.7e3 / (4.7e3 + ohm)) as u16
+    };
+    for (count, fault) in [
+        (0, Some("thermistor")),
+        (count(-25.0), Some("thermistor")),
+        (count(-15.0), None),
+        (count(30.0), None),
+        (count(130.0), Some("over-temperature")),
+        (count(150.0), Some("thermistor")),
+        (4095, Some("thermistor")),
+    ] {
+        assert_eq!(told(count), fault, "{count}");
+    }
+}
+
 #[test]
 fn a_short_circuit_is_over_current() {
     let mut rig = Rig::started(&BRUSHED);
@@ -126,7 +176,7 @@ fn a_hand_that_is_too_fast_for_the_supply_is_a_saturated_duty() {
 
 #[test]
 fn every_fault_comes_back_from_its_code() {
-    for code in 14..=22 {
+    for code in (14..=22).chain(29..=31) {
         let fault = PowerFault::decode(code, [7, 9]).unwrap();
         assert_eq!(fault.encode(), (code, [7, 9]));
         assert!(!fault.as_str().is_empty() && fault.to_string().ends_with("again"), "{fault}");
@@ -141,9 +191,11 @@ fn every_fault_comes_back_from_its_code() {
         assert_eq!(fault.encode(), (23, [by_index.into(), 0]));
         assert_eq!(fault.to_string().contains("past the encoder's index"), by_index);
     }
-    // Codes from there on are those of an alignment.
-    assert!(matches!(PowerFault::decode(24, [0; 2]), Some(PowerFault::Alignment(_))));
-    assert_eq!(PowerFault::decode(29, [0; 2]), None);
+    // The next codes are those of an alignment.
+    for code in 24..=28 {
+        assert!(matches!(PowerFault::decode(code, [0; 2]), Some(PowerFault::Alignment(_))));
+    }
+    assert_eq!(PowerFault::decode(32, [0; 2]), None);
 }
 
 proptest! {
@@ -162,7 +214,7 @@ proptest! {
         for (currents, bus, temperature, position, code) in samples {
             let mut sample = Sample { currents, bus, temperature, position: RawCount::from(position) };
             if near {
-                sample.currents = currents.map(|count| 1970 + count % 160);
+                sample.currents = currents.map(|count| 2470 + count % 160);
                 sample.bus = 2700 + bus % 300;
                 sample.temperature = temperature % 3000;
             }

@@ -89,6 +89,46 @@ fn the_offset_is_the_angle_of_the_magnets_at_the_index() {
     }
 }
 
+/// With the offset of another motor, or of other wires, no torque follows the pulses of the check.
+#[test]
+fn a_stated_offset_is_checked_before_its_first_torque() {
+    let mut first = rig(WIRES[0], 1.0, Some(HANDLE));
+    align(&mut first).unwrap();
+    pass(&mut first, 1.0, 5.0, 0).unwrap();
+    let right = first.controller.index_offset().unwrap();
+    for (degrees, is_right) in [
+        (0.0, true),
+        (30.0, true),
+        (-30.0, true),
+        (65.0, false),
+        (-65.0, false),
+        (90.0, false),
+        (-130.0, false),
+        (180.0, false),
+    ] {
+        let off = (f64::from(right.counts) + ELECTRICAL * degrees / 360.0).rem_euclid(ELECTRICAL);
+        let offset = IndexOffset { counts: off as u32, ..right };
+        let design = BRUSHLESS.with_index(EncoderIndex { offset: Some(offset) });
+        let mut rig = reset_at(0.7, &first, &design);
+        pass(&mut rig, 0.3, -5.0, 0).unwrap();
+        (rig.handle, rig.speed) = (Some(HANDLE), 0.0);
+        rig.controller.start().unwrap();
+        let mut check = rig.controller.start_offset_check().expect("it is not checked yet");
+        let ended = loop {
+            match rig.controller.check_offset(&rig.sample(), &mut check) {
+                Ok(Some(duties)) => rig.pass_with(duties),
+                Ok(None) => break Ok(()),
+                Err(fault) => break Err(fault),
+            }
+        };
+        assert_eq!(ended.is_ok(), is_right, "{degrees} degrees: {ended:?}");
+        assert_eq!(rig.controller.start_offset_check().is_none(), is_right);
+        if let Err(fault) = ended {
+            assert!(matches!(fault, PowerFault::IndexOffset { .. }), "{degrees}: {fault:?}");
+        }
+    }
+}
+
 #[test]
 fn every_offset_comes_back_as_it_was_stated() {
     let angles = (0..2000_u32).map(|part| part.wrapping_mul(2_654_435_761));

@@ -8,6 +8,7 @@ mod design;
 mod duty_current;
 mod faults;
 mod follower;
+mod heating;
 mod index;
 mod rig;
 mod three_phases;
@@ -23,7 +24,12 @@ const STAGE: PowerStage = PowerStage {
     current_lowers_count: true,
     volts_per_count: 0.0084,
     largest_current: 40.0,
-    offset_counts: (1900, 2300),
+    offset_counts: (2390, 2716),
+    continuous_current: 40.0,
+    largest_temperature: 120.0,
+    trip_range: TripRange { lowest: 140, highest: 180, amps_per_code: 0.5 },
+    trip_margin: 8.0,
+    charging: 10e-3,
     supply: Supply { lowest: 10.0, highest: 34.0 },
     dead_time: 0.2e-6,
     shortest_low: 1.5e-6,

@@ -48,7 +48,7 @@ impl Rig {
             speed: 0.0,
             angle: 0.0,
             current: 0.0,
-            offsets: [2050.0, 2041.0],
+            offsets: [2550.0, 2541.0],
             celsius: 30.0,
             extremes: (0.0, 0.0),
             loaded: design.no_voltage(),

@@ -112,7 +112,7 @@ impl ThreePhases {
     pub fn sample(&self) -> Sample {
         let count = |value: f64| value.round().clamp(0.0, 4095.0) as u16;
         let currents = phases(self.current);
-        let of = |phase: usize| count(2048.0 - currents[self.wires[phase]] / STAGE.amps_per_count);
+        let of = |phase: usize| count(2553.0 - currents[self.wires[phase]] / STAGE.amps_per_count);
         let position = self.encoder * self.angle / TAU * TRANSDUCERS.counts_per_turn;
         Sample {
             currents: [of(0), of(1)],

@@ -3,6 +3,7 @@
 use super::board::NO_MOTOR;
 use super::*;
 use crate::current::PowerFault;
+use crate::torque_output::OutputEvent;
 
 /// A board whose motor is being aligned, for so many ticks.
 fn aligning(ticks: u32) -> Bench<Spring, f32, Latched> {
@@ -30,7 +31,7 @@ fn ends_by_itself_without_a_torque_of_the_scene() {
 fn a_fault_ends_it_and_takes_the_gates_away() {
     let mut bench = aligning(100);
     let fault = Fault::Power(PowerFault::OverCurrent { current: 9000, largest: 8000 });
-    bench.board.output_fault = Some(fault);
+    bench.board.output_event = Some(OutputEvent::Fault(fault));
     bench.stand(0, 1);
     assert_eq!((bench.servo_loop.state(), bench.servo_loop.fault()), (State::Faulted, Some(fault)));
     assert_eq!(bench.notices(), [Notice::Stopped(fault)]);

@@ -7,6 +7,7 @@ use crate::encoder::RawCount;
 use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
 use crate::servo::{Step, SupportsTiming};
+use crate::torque_output::OutputEvent;
 use crate::tuning::Tunable;
 
 /// Timer counts in a period of every board here.
@@ -31,7 +32,8 @@ pub struct Board {
     /// What the next tick finds; in time and without trouble again after it.
     pub passed: u32,
     pub elapsed: u32,
-    pub output_fault: Option<Fault>,
+    pub output_event: Option<OutputEvent>,
+    pub start_up_ticks: u32,
     /// Ticks that an alignment still takes; `None`: there is no motor for one.
     pub alignment: Option<u32>,
     pub stored: [u32; FaultRecord::WORDS],
@@ -45,7 +47,8 @@ impl Board {
             count: 0,
             passed: 1,
             elapsed: 300,
-            output_fault: None,
+            start_up_ticks: 0,
+            output_event: None,
             alignment: None,
             stored: FaultRecord::NOTHING,
             reset: ResetCause::PowerOn,
@@ -81,8 +84,12 @@ impl Hardware for Board {
     fn amplifier(&mut self, on: bool) {
         self.events.push(Event::Amplifier(on));
     }
-    fn output_fault(&mut self) -> Option<Fault> {
-        self.output_fault.take()
+    fn start_up_ticks(&self) -> u32 {
+        self.start_up_ticks
+    }
+
+    fn output_event(&mut self) -> Option<OutputEvent> {
+        self.output_event.take()
     }
     fn align(&mut self) -> Result<(), Fault> {
         self.alignment.map(|_| ()).ok_or(NO_MOTOR)

@@ -1,8 +1,9 @@
 //! What stops the servo, one test each; and that arming again is refused while the cause is there.
 
 use super::*;
-use crate::current::PowerFault;
+use crate::current::{HeatStep, PowerFault};
 use crate::reset::ResetCause;
+use crate::torque_output::OutputEvent;
 
 /// The servo has just been stopped by this fault: no torque, amplifier off, a record of it.
 fn assert_stopped(bench: &mut Bench<Spring, f32, Latched>, fault: Fault) {
@@ -57,7 +58,7 @@ const OVER_CURRENT: Fault = Fault::Power(PowerFault::OverCurrent { current: 9000
 #[test]
 fn a_bridge_that_took_the_torque_away() {
     let mut bench = running(&SPRING, 500);
-    bench.board.output_fault = Some(OVER_CURRENT);
+    bench.board.output_event = Some(OutputEvent::Fault(OVER_CURRENT));
     let frame = bench.tick(500);
     assert_eq!((frame.code.get(), frame.state), (2048, State::Faulted));
     assert_stopped(&mut bench, OVER_CURRENT);
@@ -68,7 +69,7 @@ fn a_bridge_that_took_the_torque_away() {
 #[test]
 fn a_bridge_that_cannot_start_is_not_armed_until_it_can() {
     let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, Board::new()).unwrap();
-    bench.board.output_fault = Some(OVER_CURRENT);
+    bench.board.output_event = Some(OutputEvent::Fault(OVER_CURRENT));
     bench.stand(0, 1);
     assert_eq!(bench.notices(), []);
     bench.requests.arm();
@@ -271,4 +272,26 @@ fn a_host_that_falls_silent_may_also_be_missed_in_silence() {
         bench.requests.host_alive();
         assert!(!bench.status().link_lost);
     }
+}
+
+/// The limit falls by a step of the clamp, a hundredth, with the reason; it is no fault, and rises again.
+#[test]
+fn a_hot_bridge_lowers_the_limit_and_does_not_stop() {
+    let mut bench = running(&SPRING, 900);
+    bench.stand(1_800, 20);
+    let full = bench.tick(1_800);
+    assert_eq!((full.limit, full.state), (LimitReason::Torque, State::Running));
+    let offset = |frame: Frame| frame.code.offset().unsigned_abs();
+    for _ in 0..50 {
+        bench.board.output_event = Some(OutputEvent::Heat(HeatStep::Lower));
+        bench.tick(1_800);
+    }
+    let hot = bench.tick(1_800);
+    assert_eq!((hot.limit, hot.state), (LimitReason::Heat, State::Running));
+    assert!(offset(hot).abs_diff(offset(full) / 2) <= offset(full) / 50, "{hot:?}, {full:?}");
+    for _ in 0..60 {
+        bench.board.output_event = Some(OutputEvent::Heat(HeatStep::Raise));
+        bench.tick(1_800);
+    }
+    assert_eq!(bench.tick(1_800).code, full.code);
 }

@@ -82,6 +82,23 @@ fn boots_in_an_order_in_which_nothing_can_move() {
     assert_eq!(bench.notices(), [Notice::Armed]);
 }
 
+/// A bridge charges the supplies of its high sides first: no torque, and then the clamp opens.
+#[test]
+fn the_clamp_stays_shut_until_the_output_has_started_up() {
+    let mut board = Board::new();
+    board.start_up_ticks = 12;
+    let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
+    bench.requests.arm();
+    for tick in 0..=12 {
+        let frame = bench.tick(500);
+        let state = if tick >= 11 { State::FadingIn } else { State::Settling };
+        assert_eq!((frame.code.get(), bench.servo_loop.state()), (2048, state), "tick {tick}");
+    }
+    bench.stand(500, 3);
+    assert_ne!(bench.tick(500).code.get(), 2048);
+    assert!(bench.board.is_on());
+}
+
 #[test]
 fn a_scene_that_fails_the_self_check_leaves_the_amplifier_off() {
     let mut program = SPRING;

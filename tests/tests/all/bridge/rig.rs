@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, DVector};
 pub const STAGE: PowerStage = PowerStage { dead_time: 0.0, ..B_G431B_ESC1 };
 
 /// Count of a current sensor without a current, and the supply in V.
-const OFFSET: f64 = 2048.0;
+const OFFSET: f64 = 2553.0;
 const BUS: f64 = 24.0;
 
 /// From an angle in rad at a count to the code that the current loop takes over at that count.

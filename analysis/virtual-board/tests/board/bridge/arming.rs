@@ -1,25 +1,32 @@
 //! What keeps the gates from being switched on, and what does not keep the motor from its torque.
 
-use haptic_servo::wire::message::{FaultCode, Outcome};
+use haptic_servo::dac::DacCode;
+use haptic_servo::wire::message::{FaultCode, Outcome, ToBoard};
 use virtual_board::power_stage::gate_log::{any_high, off_since};
+use virtual_board::power_stage::parts::Parts;
 use virtual_board::power_stage::{Circuit, Supply};
 
-use super::bench::{INSTANT, armed, boot, circuit, gates, run_to_valley, running};
+use super::bench::{INSTANT, armed, boot, circuit, code, gates, run_to_valley, running};
 use super::bridge_wall::{SCENE, TRANSDUCERS};
+use super::brushless::{Held, wired};
 use super::gates::{INTO, pushing};
 use super::paddle::Paddle;
+use crate::bench::Bench;
 use crate::stub::{Masks, hold_up};
 
 /// No gate is high in any of them, not for a clock.
 #[test]
 fn a_stage_that_is_not_in_order_is_never_switched_on() {
     type Cause = (&'static str, fn(&mut Circuit));
-    let causes: [Cause; 5] = [
+    let causes: [Cause; 7] = [
         ("over-voltage", |circuit| circuit.supply = Supply::stiff(27.0)),
         ("under-voltage", |circuit| circuit.supply = Supply::stiff(12.0)),
         ("over-temperature", |circuit| circuit.temperature = 95.0),
         ("current-offset", |circuit| circuit.amplifier_errors[0] = 0.3),
         ("current-offset", |circuit| circuit.amplifier_errors[1] = -1.6),
+        // Open, and shorted.
+        ("thermistor", |circuit| circuit.parts.thermistor[0] = 1e9),
+        ("thermistor", |circuit| circuit.parts.thermistor[0] = 1.0),
     ];
     for (fault, cause) in causes {
         let mut bench = boot(Paddle::still());
@@ -33,12 +40,84 @@ fn a_stage_that_is_not_in_order_is_never_switched_on() {
         assert!(!any_high(gates(&bench), 0, bench.machine.board().now), "{fault}");
         // And once it is in order again, it is switched on.
         circuit(&mut bench).supply = Supply::stiff(24.0);
+        circuit(&mut bench).parts = Parts::NOMINAL;
         (circuit(&mut bench).temperature, circuit(&mut bench).amplifier_errors) = (25.0, [0.0; 3]);
         bench.run(20);
         assert_eq!(bench.arm(), Outcome::Done, "{fault}");
         bench.run(2);
         assert!(bench.machine.board().power_stage.timer.is_on(), "{fault}");
     }
+}
+
+/// A comparator that does not trip within its range has a fault with its phase's name, and no gate is high.
+#[test]
+fn a_comparator_that_cannot_protect_is_refused() {
+    for (phase, name) in ["U", "V", "W"].into_iter().enumerate() {
+        for volts in [-0.03, 0.03] {
+            let mut bench = boot(Paddle::still());
+            circuit(&mut bench).parts.senses[phase].comparator_offset = volts;
+            bench.run(20);
+            bench.arm();
+            bench.run(20);
+            let told = bench.status().fault.and_then(FaultCode::fault).expect("there is a fault");
+            assert_eq!(told.as_str(), "comparator", "{told}");
+            assert!(told.to_string().contains(&format!("phase {name} ")), "{told}");
+            assert!(!any_high(gates(&bench), 0, bench.machine.board().now), "{told}");
+        }
+    }
+}
+
+/// With parts at the ends of their tolerances each comparator alone breaks the outputs, while no program runs: not
+/// at 8 A, and at 15 A at the latest, which are 9 A above the measured trip, and of V and W the difference of their
+/// offsets. The low sides of all three phases conduct while they charge the supplies of the high sides.
+#[test]
+fn each_comparator_trips_by_current_with_parts_at_the_ends_of_their_tolerances() {
+    for (name, parts) in Parts::CORNERS.into_iter().chain([("nominal", Parts::NOMINAL)]) {
+        for phase in 0..3 {
+            let what = format!("{name}, phase {phase}");
+            let mut held = Held::new("brushless_wall", wired([0, 1, 2], 0.7));
+            let bench = &mut held.bench;
+            circuit(bench).parts = parts;
+            bench.run(200);
+            bench.say(&ToBoard::Align { id: 9 });
+            bench.run(40);
+            assert!(is_on(bench), "{what}: {:?}", bench.status().fault);
+            hold_up(bench, 12 * INSTANT, Masks::All);
+            circuit(bench).leaks[phase] = 8.0;
+            bench.run_for(3 * INSTANT);
+            assert!(is_on(bench), "{what}: a break at 8 A");
+            circuit(bench).leaks[phase] = 15.0;
+            bench.run_for(2 * INSTANT);
+            assert!(!is_on(bench), "{what}: no break at 15 A");
+        }
+    }
+}
+
+/// With the same parts the scene is felt, and no high side is switched on before its gate has a supply.
+#[test]
+fn boards_with_parts_at_the_ends_of_their_tolerances_give_their_torque() {
+    for (name, parts) in Parts::CORNERS {
+        let mut bench = boot(Paddle::still());
+        circuit(&mut bench).parts = parts;
+        armed(&mut bench);
+        bench.run(125);
+        circuit(&mut bench).is_blocked = true;
+        bench.pins().turns.push_back(INTO);
+        bench.run(200);
+        assert!(is_on(&bench), "{name}: {:?}", bench.status().fault);
+        let wanted = (f64::from(code(&mut bench)) - 2048.0) * TRANSDUCERS.full_scale_torque
+            / f64::from(DacCode::CODES_TO_FULL_SCALE);
+        let made = circuit(&mut bench).mean_torque();
+        println!("{name}: {made:.4} N m of {wanted:.4}");
+        // Shunt and gain, and the three resistors, which the divider weakens: 1, 2 and 1 per cent.
+        assert!(wanted < -0.2 && (made / wanted - 1.0).abs() < 0.045, "{name}: {made} of {wanted}");
+        assert_eq!(bench.machine.board().power_stage.uncharged(), None, "{name}");
+        assert_eq!(bench.machine.board().power_stage.shoot_through(), None, "{name}");
+    }
+}
+
+fn is_on(bench: &Bench) -> bool {
+    bench.machine.board().power_stage.timer.is_on()
 }
 
 /// The comparators need no program.
@@ -49,10 +128,12 @@ fn a_short_is_broken_while_all_interrupts_are_masked() {
     run_to_valley(&mut bench);
     let began = bench.machine.board().now;
     circuit(&mut bench).motor.as_mut().unwrap().short = Some((0.01, 0.5e-6));
-    bench.run_for(INSTANT);
+    // At nearly equal duties the current rises from edge to edge, to 9 A above the level at which the comparators
+    // trip without a current.
+    bench.run_for(4 * INSTANT);
     let off = off_since(gates(&bench)).expect("no gate is high");
     println!("{} clocks behind the short", off - began);
-    assert!(off - began < INSTANT);
+    assert!(off - began < 4 * INSTANT);
     bench.run(10);
     assert_eq!(off_since(gates(&bench)), Some(off), "and it stays so");
     assert!(bench.status().fault.is_some());

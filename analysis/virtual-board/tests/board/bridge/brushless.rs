@@ -11,10 +11,11 @@ use virtual_board::motor::{Motor, Winding};
 use virtual_board::power_stage::Circuit;
 use virtual_board::power_stage::gate_log::any_high;
 
-use super::bench::{boot_program, circuit, code, motor};
+use super::bench::{INSTANT, boot_program, circuit, code, motor, run_to_valley};
 use super::brushless_wall::{DRIVE, TRANSDUCERS};
 use super::paddle::Paddle;
 use crate::bench::{Bench, MID_SCALE};
+use crate::stub::{Masks, hold_up};
 use analysis::link::Message;
 
 /// Samples within which an alignment ends: ten seconds.
@@ -79,6 +80,8 @@ pub fn aligned(motor: Motor, change: impl Fn(&mut Circuit)) -> (Held, Option<Fau
 /// A hand that leans against the wall comes to rest: the torque is that of the code, and the hand's.
 pub fn check_torque(held: &mut Held, what: &str) {
     assert_eq!(held.bench.arm(), Outcome::Done, "{what}");
+    // After the pulses that check a stated phase.
+    held.bench.run(600);
     // Into the wall as the encoder has it.
     let direction = if circuit(&mut held.bench).encoder_is_reversed { -1.0 } else { 1.0 };
     held.push(direction * LEANS);
@@ -147,6 +150,23 @@ pub fn check_stays_off(bench: &mut Bench) {
     bench.run(50);
     assert!(bench.status().fault.is_some());
     assert!(!any_high(bench.machine.board().gates.as_deref().unwrap(), 0, u64::MAX));
+}
+
+/// As an instant of the servo's torque is: for five sixths of a period, over an update.
+#[test]
+fn an_alignment_whose_instant_is_late_ends() {
+    let mut held = Held::new("brushless_wall", wired([0, 1, 2], 0.7));
+    let bench = &mut held.bench;
+    bench.run(200);
+    bench.say(&ToBoard::Align { id: 9 });
+    bench.run(1000);
+    assert_eq!(bench.status().state, State::Aligning);
+    run_to_valley(bench);
+    hold_up(bench, INSTANT * 5 / 6, Masks::All);
+    bench.run(20);
+    let told = bench.status().fault.and_then(FaultCode::fault).map(Fault::as_str);
+    assert_eq!(told, Some("current-interrupt-late"));
+    assert!(!bench.machine.board().power_stage.timer.is_on());
 }
 
 #[test]

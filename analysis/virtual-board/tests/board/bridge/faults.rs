@@ -42,7 +42,7 @@ const CASES: &[Case] = &[
     Case {
         fault: "over-current",
         cause: "a short between the motor's wires",
-        bound: 1.0,
+        bound: 2.0,
         begin: pushing,
         provoke: |bench| motor(bench).short = Some((0.01, 0.5e-6)),
         resets: false,

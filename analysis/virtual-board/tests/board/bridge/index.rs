@@ -73,6 +73,28 @@ pub fn leaning() -> Held {
     held
 }
 
+/// The offset of the program is that of another motor: the board says so at the first arming, and the shaft has
+/// hardly moved.
+#[test]
+fn an_offset_of_another_motor_does_not_spin_the_shaft_away() {
+    for degrees in [90.0, 180.0, -120.0_f64] {
+        let motor = wired([0, 1, 2], magnets(f64::from(OFFSET.counts)) + degrees.to_radians());
+        let mut held = Held::new("brushless_index", motor);
+        held.bench.machine.board_mut().index = Some(index());
+        held.bench.run(200);
+        assert_eq!(turn_past(&mut held), Some(OFFSET));
+        let before = held.bench.status().count;
+        held.bench.arm();
+        held.bench.run(3000);
+        let status = held.bench.status();
+        let told = status.fault.and_then(FaultCode::fault);
+        assert_eq!(told.map(Fault::as_str), Some("index-offset"), "{degrees}: {told:?}");
+        let turned = (status.count - before).unsigned_abs() as f64 / COUNTS;
+        println!("{degrees} degrees: {turned:.3} turns");
+        assert!(turned < 0.25, "{degrees} degrees: {turned} turns");
+    }
+}
+
 /// The encoder's counter has lost counts, and the index comes.
 pub fn comes_elsewhere(bench: &mut Bench) {
     let board = bench.machine.board_mut();

@@ -13,9 +13,9 @@ use virtual_board::semihosting::{CallError, Guest};
 
 /// The tests, as they are named in the file.
 const NO_DUTY: &str = "outputs_at_half_give_no_current";
-const TENTH: &str = "a_tenth_of_the_supply_gives_the_current_of_the_load";
+const PART: &str = "a_part_of_the_supply_gives_the_current_of_the_load";
 const BREAK: &str = "a_break_takes_the_gates_away";
-const ALL: [&str; 3] = [NO_DUTY, TENTH, BREAK];
+const ALL: [&str; 3] = [NO_DUTY, PART, BREAK];
 
 /// Core clocks that a test may take: a quarter of a second.
 const LONGEST: u64 = 170_000_000 / 4;
@@ -82,13 +82,13 @@ type Cause = (&'static str, fn(&mut Circuit));
 #[test]
 fn each_finds_what_is_wrong_with_load_and_supply() {
     let causes: [Cause; 7] = [
-        (TENTH, |circuit| circuit.motor = None),
-        (TENTH, |circuit| circuit.motor = Some(load(2.5))),
-        (TENTH, |circuit| circuit.motor = Some(load(0.4))),
+        (PART, |circuit| circuit.motor = None),
+        (PART, |circuit| circuit.motor = Some(load(2.5))),
+        (PART, |circuit| circuit.motor = Some(load(0.4))),
         // Its wires are between the outputs 1 and 3.
-        (TENTH, |circuit| circuit.motor.as_mut().unwrap().wires = [0, 2, 1]),
+        (PART, |circuit| circuit.motor.as_mut().unwrap().wires = [0, 2, 1]),
         // A short: the comparators take the gates away.
-        (TENTH, |circuit| circuit.motor.as_mut().unwrap().short = Some((0.01, 1e-6))),
+        (PART, |circuit| circuit.motor.as_mut().unwrap().short = Some((0.01, 1e-6))),
         (NO_DUTY, |circuit| circuit.supply = Supply::stiff(0.2)),
         (BREAK, |circuit| circuit.amplifier_errors[0] = 0.5),
     ];

@@ -101,7 +101,7 @@ fn the_current_interrupt_computes_what_the_host_computes() {
     let instants = instants(&take_accesses(&mut bench));
     let mut host = CurrentController::new(&CURRENT_LOOP);
     let (mut is_on, mut begun, mut compared, mut moved) = (false, 0_usize, 0_usize, 0_usize);
-    let mut reference = 0;
+    let (mut reference, mut charging) = (0, None::<u32>);
     for instant in &instants[..instants.len() - 1] {
         if instant.begins {
             // The first request is the first sample's.
@@ -119,11 +119,18 @@ fn the_current_interrupt_computes_what_the_host_computes() {
             }
             compared += 1;
             moved += usize::from(reference != 0);
+        } else if let Some(left) = &mut charging {
+            host.charge(&sample).unwrap();
+            if *left == 0 {
+                host.start().unwrap();
+                is_on = true;
+            }
+            *left = left.saturating_sub(1);
         } else {
             host.measure_offset(&sample);
             if instant.switched == Some(true) {
                 host.start().unwrap();
-                is_on = true;
+                charging = Some(CURRENT_LOOP.charging_instants());
             }
         }
     }
@@ -147,8 +154,12 @@ fn the_servo_gives_the_host_s_codes() {
         transducers: TRANSDUCERS,
         rendering: RenderingOptions::DEFAULT,
         options: Options::DEFAULT,
-    });
+    })
+    .starting_up(CURRENT_LOOP.start_up_ticks());
     host.arm();
+    // The gates go on after the search for the comparators' thresholds.
+    let armed =
+        armed - (CURRENT_LOOP.trip_range().instants() / u32::from(CURRENT_LOOP.updates())) as usize;
     let samples = bench.pins().samples[armed..].to_vec();
     let mut torques = 0;
     for (tick, sample) in samples.iter().enumerate() {

@@ -6,10 +6,9 @@ use crate::board::stm32::wiring::{AMPLIFIER, DAC};
 use crate::build_error::BuildError;
 use crate::current::TorqueSource;
 use crate::dac::DacCode;
-use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
 use crate::power_reading::PowerReading;
-use crate::torque_output::TorqueOutput;
+use crate::torque_output::{OutputEvent, TorqueOutput};
 
 /// The properties of a program that this output needs: whether the program is for this output.
 #[derive(Clone, Copy, Debug)]
@@ -68,9 +67,9 @@ impl TorqueOutput for Output {
         AMPLIFIER.set(on);
     }
 
-    /// An external amplifier does not report faults.
+    /// An external amplifier reports nothing.
     #[inline(always)]
-    fn fault(&mut self) -> Option<Fault> {
+    fn event(&mut self) -> Option<OutputEvent> {
         None
     }
 }

@@ -6,13 +6,28 @@ use core::sync::atomic::Ordering;
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
-use super::{STATE, State, WAITING, index, latest, off, over_current, pace, pwm, sense, tell};
+use super::{
+    STATE, State, WAITING, index, latest, off, over_current, pace, pwm, sense, tell, tell_heat,
+};
 use crate::board::stm32::output::periods::now;
 use crate::current::{
-    Alignment, AlignmentStep, CurrentController, CurrentLoop, PowerFault, Sample,
+    Alignment, AlignmentStep, CurrentController, CurrentLoop, Heating, OffsetCheck, PowerFault,
+    Sample, TripSearch,
 };
 use crate::dac::DacCode;
 use crate::output_timing::OutputTiming;
+
+/// The progress from a request to gates that are driven.
+enum StartUp {
+    /// Nothing is requested, or the request is new.
+    Waiting,
+    /// The gates are low, and the comparators' thresholds are searched.
+    Searching(TripSearch),
+    /// The low sides conduct for so many more instants.
+    Charging(u32),
+    /// Pulses show whether the stated phase at the index is the motor's.
+    Checking(OffsetCheck),
+}
 
 /// State of the current interrupt for a brushless or a brushed motor: a program only has the code for its
 /// kind.
@@ -29,6 +44,8 @@ pub struct CurrentIsr<const BRUSHLESS: bool> {
     /// instant.
     latest: u32,
     last: u32,
+    start_up: StartUp,
+    heating: Heating,
     /// The running alignment.
     alignment: Option<Alignment>,
     /// The code's torque that the current follows, as [`DacCode::offset`].
@@ -46,6 +63,8 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             due: current_loop.instants_in(timing),
             latest: 3 * u32::from(current_loop.timer_counts()),
             last: 0,
+            start_up: StartUp::Waiting,
+            heating: Heating::new(current_loop),
             alignment: None,
             reference: 0,
         }
@@ -73,7 +92,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             self.drive(&sample, since_last);
         } else {
             cold_path();
-            self.otherwise(&sample);
+            self.otherwise(&sample, since_last);
         }
         if BRUSHLESS && index::has_come() {
             cold_path();
@@ -81,7 +100,12 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         }
         // Bookkeeping: the host, and the servo, both below this.
         if begins {
-            latest::keep(&sample, self.controller.current());
+            let current = self.controller.current();
+            latest::keep(&sample, current);
+            if let Some(step) = self.heating.observe(current, self.reference) {
+                cold_path();
+                tell_heat(step);
+            }
         }
         self.instant += 1;
         if self.instant == self.updates {
@@ -132,43 +156,122 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     /// All instants except those in which the servo drives the motor.
     #[cold]
     #[inline(never)]
-    fn otherwise(&mut self, sample: &Sample) {
+    fn otherwise(&mut self, sample: &Sample, since_last: u32) {
         let state = STATE.load(Ordering::Relaxed);
         if BRUSHLESS && state == State::Aligning as u8 {
-            return self.align(sample);
+            return self.align(sample, since_last);
         }
-        // With the gates low, measures the offsets of the amplifiers.
+        let is_requested =
+            state == State::Starting as u8 || BRUSHLESS && state == State::StartingAlignment as u8;
+        if !is_requested {
+            self.start_up = StartUp::Waiting;
+        }
+        match &mut self.start_up {
+            StartUp::Charging(left) => {
+                let left = *left;
+                return self.charge(sample, left, state);
+            }
+            StartUp::Checking(check) if BRUSHLESS => {
+                if pwm::broke() {
+                    return stop(self.controller.over_current(sample));
+                }
+                return match self.controller.check_offset(sample, check) {
+                    Ok(Some(duties)) => pwm::set(self.current_loop, duties),
+                    Ok(None) => self.finish_start(state),
+                    Err(fault) => stop(fault),
+                };
+            }
+            _ => {}
+        }
+        // With the gates low, measures the offsets of the amplifiers. The first duties of the low sides are set
+        // in time for the gates that are switched on.
         self.controller.measure_offset(sample);
-        pwm::set(self.current_loop, self.current_loop.no_voltage());
-        let started = if state == State::Starting as u8 {
-            self.controller.start().map(|()| State::On)
-        } else if BRUSHLESS && state == State::StartingAlignment as u8 {
-            self.controller.start_alignment().map(|alignment| {
-                self.alignment = Some(alignment);
-                State::Aligning
-            })
-        } else {
-            return;
-        };
-        match started {
-            Ok(state) => {
-                let zero = self.controller.offsets();
-                over_current::set(zero, self.current_loop.over_current_counts());
-                STATE.store(state as u8, Ordering::Relaxed);
+        pwm::low_sides_only(self.current_loop);
+        if is_requested && let Err(fault) = self.prepare_to_start(state) {
+            stop(fault);
+        }
+    }
+
+    /// An instant between a request and the low sides, with the gates low.
+    fn prepare_to_start(&mut self, state: u8) -> Result<(), PowerFault> {
+        if let StartUp::Searching(search) = &mut self.start_up {
+            let found = search.step(over_current::tripped())?;
+            over_current::search(search.threshold());
+            if let Some(trips) = found {
+                over_current::set(self.current_loop, trips);
+                self.start_up = StartUp::Charging(self.current_loop.charging_instants());
                 pwm::on();
+            }
+            return Ok(());
+        }
+        // Refusals come before anything is switched.
+        self.start(state)?;
+        let search = TripSearch::new(self.current_loop.trip_range());
+        over_current::search(search.threshold());
+        self.start_up = StartUp::Searching(search);
+        Ok(())
+    }
+
+    /// Prepares the controller for the requested state.
+    fn start(&mut self, state: u8) -> Result<State, PowerFault> {
+        if BRUSHLESS && state == State::StartingAlignment as u8 {
+            self.alignment = Some(self.controller.start_alignment()?);
+            return Ok(State::Aligning);
+        }
+        self.controller.start().map(|()| State::On)
+    }
+
+    /// An instant in which the low sides charge the supplies of the high sides' gates.
+    fn charge(&mut self, sample: &Sample, left: u32, state: u8) {
+        if pwm::broke() {
+            return stop(self.controller.over_current(sample));
+        }
+        let charged = self.controller.charge(sample);
+        self.start_up = StartUp::Charging(left.saturating_sub(1));
+        if left > 0 {
+            return charged.unwrap_or_else(stop);
+        }
+        match charged.and_then(|()| self.start(state)) {
+            Ok(State::On) if BRUSHLESS => match self.controller.start_offset_check() {
+                Some(check) => {
+                    pwm::set(self.current_loop, self.current_loop.no_voltage());
+                    self.start_up = StartUp::Checking(check);
+                }
+                None => self.finish_start(state),
+            },
+            Ok(_) => self.finish_start(state),
+            Err(fault) => stop(fault),
+        }
+    }
+
+    /// The next instant is the first of the requested state.
+    fn finish_start(&mut self, state: u8) {
+        match self.start(state) {
+            Ok(state) => {
+                pwm::set(self.current_loop, self.current_loop.no_voltage());
+                self.start_up = StartUp::Waiting;
+                STATE.store(state as u8, Ordering::Relaxed);
             }
             Err(fault) => stop(fault),
         }
     }
 
     /// An instant of an alignment.
-    fn align(&mut self, sample: &Sample) {
+    fn align(&mut self, sample: &Sample, since_last: u32) {
         if pwm::broke() {
             return stop(self.controller.over_current(sample));
         }
+        if since_last > self.latest {
+            return stop(self.late(since_last));
+        }
         let Some(alignment) = &mut self.alignment else { return off() };
         match self.controller.align(sample, alignment) {
-            Ok(AlignmentStep::Turning(duties)) => pwm::set(self.current_loop, duties),
+            Ok(AlignmentStep::Turning(duties)) => {
+                pwm::set(self.current_loop, duties);
+                if pwm::updated() {
+                    stop(self.late(now().wrapping_sub(self.last)));
+                }
+            }
             Ok(AlignmentStep::Ended(result)) => {
                 latest::keep_index(self.controller.index_offset());
                 match result {

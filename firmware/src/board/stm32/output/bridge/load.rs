@@ -7,7 +7,7 @@ use embassy_stm32::pac;
 use super::{over_current, pace, pwm, sense};
 use crate::board::stm32::output::gates::Gate;
 use crate::board::stm32::wiring::GATES;
-use crate::current::{CurrentLoop, Duties, Sample};
+use crate::current::{CurrentLoop, Duties, PowerFault, Sample, TripSearch};
 
 /// The number of polls after which an instant counts as missed: much longer than a period of the modulation.
 const PATIENCE: u32 = 100_000;
@@ -40,12 +40,26 @@ impl Load {
         })
     }
 
-    /// Switches the gates on at zero voltage, with the comparators' trip levels of the current loop. `zero`
-    /// has the counts of the phases U and V without a current.
-    pub fn on(&mut self, zero: [u16; 2]) {
-        over_current::set(zero, self.current_loop.over_current_counts());
-        self.set(self.current_loop.no_voltage());
+    /// Finds the comparators' thresholds of the current loop with the gates low, lets the low sides conduct as long
+    /// as a start does, and then switches the gates at zero voltage. `None` if an instant is missed.
+    pub fn on(&mut self) -> Option<Result<(), PowerFault>> {
+        pwm::low_sides_only(self.current_loop);
+        let mut search = TripSearch::new(self.current_loop.trip_range());
+        loop {
+            over_current::search(search.threshold());
+            self.next()?;
+            match search.step(over_current::tripped()) {
+                Ok(None) => {}
+                Ok(Some(trips)) => break over_current::set(self.current_loop, trips),
+                Err(fault) => return Some(Err(fault)),
+            }
+        }
         pwm::on();
+        for _ in 0..self.current_loop.charging_instants() {
+            self.next()?;
+        }
+        self.set(self.current_loop.no_voltage());
+        Some(Ok(()))
     }
 
     /// Sets the duties from the next instant on.

@@ -41,11 +41,11 @@ pub use pace::Pace;
 use crate::board::isr_cell::IsrCell;
 use crate::board::stm32::wiring::GATES;
 use crate::build_error::BuildError;
-use crate::current::{AlignmentError, CurrentLoop, PowerFault, TorqueSource};
+use crate::current::{AlignmentError, CurrentLoop, HeatStep, PowerFault, TorqueSource};
 use crate::dac::DacCode;
 use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
-use crate::torque_output::TorqueOutput;
+use crate::torque_output::{OutputEvent, TorqueOutput};
 
 /// The state of the current interrupt.
 pub type CurrentCell<const BRUSHLESS: bool> = IsrCell<CurrentIsr<BRUSHLESS>>;
@@ -73,6 +73,10 @@ static WAITING: AtomicU16 = AtomicU16::new(DacCode::MID_SCALE.get());
 /// Whether the gates are driven: see [`State`].
 static STATE: AtomicU8 = AtomicU8::new(State::Off as u8);
 
+/// Steps of the torque limit, in the place of a fault's code.
+const LOWER: u32 = u32::MAX;
+const RAISE: u32 = u32::MAX - 1;
+
 /// The code and the numbers of a fault that the servo has not read yet; a code of 0: no fault.
 static FAULT: AtomicU32 = AtomicU32::new(0);
 static FAULT_NUMBERS: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
@@ -83,7 +87,8 @@ static FAULT_NUMBERS: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
 enum State {
     /// All gates are low.
     Off,
-    /// The current interrupt shall drive them from its next instant on.
+    /// The current interrupt shall drive them: it finds the comparators' thresholds, and the low sides charge
+    /// the supplies of the high sides' gates.
     Starting,
     /// The servo drives them.
     On,
@@ -97,6 +102,8 @@ enum State {
 #[derive(Debug)]
 pub struct Output {
     is_brushless: bool,
+    /// Periods of the servo from switching on until the current follows the code.
+    start_up: u32,
 }
 
 impl Output {
@@ -111,13 +118,22 @@ impl Output {
         over_current::prepare();
         sense::prepare();
         latest::of(current_loop);
+        if current_loop.needs_air() {
+            defmt::warn!(
+                "full-scale torque takes more current than the board bears for long without a flow of air: the \
+                 torque is limited after some seconds"
+            );
+        }
         if current_loop.has_index() {
             index::capture();
         }
         (setup.fill)(timing);
         let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
-        let is_brushless = current_loop.is_brushless();
-        Ok((Self { is_brushless }, Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
+        let output = Self {
+            is_brushless: current_loop.is_brushless(),
+            start_up: current_loop.start_up_ticks(),
+        };
+        Ok((output, Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
     }
 
     /// Starts the current interrupt, with the gates low.
@@ -136,7 +152,7 @@ impl TorqueOutput for Output {
         WAITING.store(code.get(), Ordering::Relaxed);
     }
 
-    /// Off at once; on at the next update, if the power stage finds no fault. The current interrupt has a
+    /// Off at once; on after [`start_up_ticks`](TorqueOutput::start_up_ticks), if the power stage finds no fault. The current interrupt has a
     /// higher priority than this one, and turns the gates on only after a request.
     #[inline(always)]
     fn switch(&mut self, on: bool) {
@@ -146,6 +162,10 @@ impl TorqueOutput for Output {
         if STATE.load(Ordering::Relaxed) == State::Off as u8 {
             STATE.store(State::Starting as u8, Ordering::Relaxed);
         }
+    }
+
+    fn start_up_ticks(&self) -> u32 {
+        self.start_up
     }
 
     fn align(&mut self) -> Result<(), Fault> {
@@ -164,17 +184,34 @@ impl TorqueOutput for Output {
     }
 
     #[inline(always)]
-    fn fault(&mut self) -> Option<Fault> {
-        if FAULT.load(Ordering::Acquire) == 0 { None } else { take_fault() }
+    fn event(&mut self) -> Option<OutputEvent> {
+        if FAULT.load(Ordering::Acquire) == 0 { None } else { take_event() }
     }
 }
 
-/// Takes the pending fault.
+/// Takes the pending event.
 #[cold]
 #[inline(never)]
-fn take_fault() -> Option<Fault> {
+fn take_event() -> Option<OutputEvent> {
     let numbers = [0, 1].map(|i| FAULT_NUMBERS[i].load(Ordering::Relaxed));
-    Fault::decode(FAULT.swap(0, Ordering::Relaxed), numbers)
+    match FAULT.swap(0, Ordering::Relaxed) {
+        LOWER => Some(OutputEvent::Heat(HeatStep::Lower)),
+        RAISE => Some(OutputEvent::Heat(HeatStep::Raise)),
+        code => Fault::decode(code, numbers).map(OutputEvent::Fault),
+    }
+}
+
+/// Passes a step of the torque limit to the servo, which takes it in the tick that follows; a fault goes first.
+#[cold]
+#[inline(never)]
+fn tell_heat(step: HeatStep) {
+    let code = match step {
+        HeatStep::Lower => LOWER,
+        HeatStep::Raise => RAISE,
+    };
+    if FAULT.load(Ordering::Relaxed) == 0 {
+        FAULT.store(code, Ordering::Release);
+    }
 }
 
 /// Reports a fault to the servo. The gates are off.

@@ -42,6 +42,9 @@ pub fn prepare(current_loop: &CurrentLoop) {
         }
     });
     pac::SYSCFG.cfgr2().modify(|w| w.set_cll(true));
+    // While a debugger halts the core the counter stops, and the outputs are off as without the main output
+    // (RM0440, advanced-control timers, debug mode): a breakpoint leaves no duty on the bridge.
+    pac::DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));
     // With the main output off, each gate that the timer drives is low.
     off();
     TIMER.cr1().write(|w| {
@@ -58,9 +61,8 @@ pub fn prepare(current_loop: &CurrentLoop) {
             w.set_ocm(phase % 2, Ocm::PWM_MODE2);
             w.set_ocpe(phase % 2, true);
         });
-        // At the reload value only the low side conducts.
-        TIMER.ccr(phase).write(|w| w.set_ccr(reload));
     }
+    low_sides_only(current_loop);
     TIMER.ccer().write(|w| {
         for phase in 0..phases {
             w.set_cce(phase, true);
@@ -133,5 +135,13 @@ pub fn updated() -> bool {
 pub fn set(current_loop: &CurrentLoop, duties: Duties) {
     for (phase, duty) in duties.0.into_iter().enumerate() {
         TIMER.ccr(phase).write(|w| w.set_ccr(current_loop.timer_counts().wrapping_sub(duty)));
+    }
+}
+
+/// Has only the low sides conduct from the next update on: a compare value above the reload value is never
+/// reached.
+pub fn low_sides_only(current_loop: &CurrentLoop) {
+    for phase in 0..current_loop.phases() {
+        TIMER.ccr(phase).write(|w| w.set_ccr(u16::MAX));
     }
 }

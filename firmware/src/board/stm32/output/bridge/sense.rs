@@ -39,7 +39,9 @@ pub fn prepare() {
         amplifier.csr().write(|w| {
             w.set_vp_sel(VpSel::VINP0);
             w.set_vm_sel(VmSel::PGA);
-            // The board also biases the inverting input, so that zero current is half of the scale.
+            // The foot of the gain's resistors is at the pin of the inverting input, which the board connects
+            // to the shunt's ground (schematic of MB1419, from memory): the gain is 16, and what lifts a
+            // current of zero to 2.057 V is at the non-inverting input.
             w.set_pga_gain(PgaGain::GAIN16_INPUT_VINM0);
             w.set_opahsm(true);
         });
