@@ -4,6 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::servo_loop::published::Published;
+use crate::torque_output::OutputEvent;
 
 /// A task that reads late misses nothing: twelve requests and their replies before the first look.
 #[test]
@@ -21,7 +22,7 @@ fn replies_without_a_reader_are_replaced_by_the_last() {
     }
     let disarmed = bench.requests.disarm();
     bench.stand(500, 110);
-    bench.board.output_fault = Some(Fault::ClockLost);
+    bench.board.output_event = Some(OutputEvent::Fault(Fault::ClockLost));
     bench.tick(500);
     let armed = bench.requests.arm();
     bench.tick(500);

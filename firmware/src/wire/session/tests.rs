@@ -24,6 +24,7 @@ use crate::number::Format;
 use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
 use crate::servo_loop::{Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, ServoLoop, State};
+use crate::torque_output::OutputEvent;
 use crate::tuning::RenderError;
 use crate::wire::message::LONGEST_TO_HOST;
 use crate::wire::{Discarded, encode, largest_frame};
@@ -57,7 +58,7 @@ fn program() -> Program<Wall> {
 struct Still {
     code: DacCode,
     /// What the next tick finds.
-    output_fault: Option<Fault>,
+    output_event: Option<OutputEvent>,
     /// Ticks that an alignment still takes; `None`: there is no motor for one.
     alignment: Option<u32>,
 }
@@ -70,8 +71,8 @@ impl Hardware for Still {
         self.code = code;
     }
     fn amplifier(&mut self, _: bool) {}
-    fn output_fault(&mut self) -> Option<Fault> {
-        self.output_fault.take()
+    fn output_event(&mut self) -> Option<OutputEvent> {
+        self.output_event.take()
     }
     fn align(&mut self) -> Result<(), Fault> {
         self.alignment.map(|_| ()).ok_or(Fault::ClockLost)
@@ -94,7 +95,7 @@ impl Hardware for Still {
 
 impl Still {
     const fn new() -> Self {
-        Self { code: DacCode::MID_SCALE, output_fault: None, alignment: None }
+        Self { code: DacCode::MID_SCALE, output_event: None, alignment: None }
     }
 }
 

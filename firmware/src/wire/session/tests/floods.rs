@@ -281,7 +281,7 @@ fn flood(bench: &mut Bench, journal: &mut Journal, random: &mut Random) {
                 journal.said.extend(said);
             }
             _ => match random.below(6) {
-                0 => bench.hardware.output_fault = Some(Fault::ClockLost),
+                0 => bench.hardware.output_event = Some(OutputEvent::Fault(Fault::ClockLost)),
                 1 => bench.hardware.alignment = Some(random.below(20) as u32),
                 _ => {}
             },
