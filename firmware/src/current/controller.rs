@@ -110,7 +110,7 @@ impl CurrentController {
 
     /// The check of a phase that the program states, before its first torque; `None` if none is needed.
     pub fn start_offset_check(&self) -> Option<OffsetCheck> {
-        self.is_unchecked.then(|| OffsetCheck::new(&self.design))
+        self.is_unchecked.then(|| OffsetCheck::new(self.design.instant))
     }
 
     /// One instant of that check; `None` at its end, if the phase is the motor's.

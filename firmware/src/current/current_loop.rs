@@ -2,7 +2,7 @@
 
 use super::encoder_index::EncoderIndex;
 use super::error::DriveError;
-use super::heating::{HeatLimit, TIME};
+use super::heating::{HeatLimit, Heating, TIME};
 use super::motion::TorqueSource;
 use super::motor::{Drive, Winding};
 use super::offset_check::OffsetCheck;
@@ -270,6 +270,11 @@ impl CurrentLoop {
     /// Whether the full-scale current is more than the board bears for ever without a flow of air.
     pub const fn needs_air(&self) -> bool {
         self.heat.is_some()
+    }
+
+    /// The heat of a cold power stage under this loop.
+    pub const fn heating(&self) -> Heating {
+        Heating::new(self.heat)
     }
 
     /// Instants in which the low sides conduct before the first high side.

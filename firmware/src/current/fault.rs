@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::alignment::AlignmentError;
+use super::alignment_error::AlignmentError;
 
 /// The fault that switched a power stage off, with its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,6 @@
 //! current at its own heat: there the two stay, because a current at its own heat does not change the heat. The
 //! servo's limit moves by the steps of its clamp, which the certificate covers at any rate.
 
-use super::current_loop::CurrentLoop;
 use crate::dac::DacCode;
 
 /// Time constant in s of the heat: chosen, not from a data sheet, so that twice the continuous current lasts a
@@ -47,8 +46,8 @@ pub struct Heating {
 
 impl Heating {
     /// A cold power stage.
-    pub const fn new(design: &CurrentLoop) -> Self {
-        Self { limit: design.heat, mean_square: 0.0, lowered: 0 }
+    pub(super) const fn new(limit: Option<HeatLimit>) -> Self {
+        Self { limit, mean_square: 0.0, lowered: 0 }
     }
 
     /// Takes the current in A of a period of the servo and its code by

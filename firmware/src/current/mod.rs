@@ -16,6 +16,7 @@
 //! after a delay of one instant ([`TorqueResponse`]).
 
 mod alignment;
+mod alignment_error;
 mod controller;
 mod current_loop;
 mod current_sense;
@@ -47,7 +48,8 @@ mod timing;
 mod trip_search;
 mod vector;
 
-pub use alignment::{Alignment, AlignmentError, AlignmentStep};
+pub use alignment::{Alignment, AlignmentStep};
+pub use alignment_error::AlignmentError;
 pub use controller::CurrentController;
 pub use current_loop::{CurrentLoop, OVER_CURRENT, TorqueResponse};
 pub use duty_current::{DutyCurrent, DutyError};

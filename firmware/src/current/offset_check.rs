@@ -14,7 +14,6 @@
 //! motions are as its cosine and its sine. So a phase is accepted within 45 degrees, for any inertia. With a larger
 //! error the torque is weak or has the wrong sign, and the motor could run away.
 
-use super::current_loop::CurrentLoop;
 use super::fault::PowerFault;
 use super::vector::Vector;
 
@@ -39,11 +38,12 @@ pub struct OffsetCheck {
 }
 
 impl OffsetCheck {
-    pub(super) const fn new(design: &CurrentLoop) -> Self {
-        Self { stretch: Self::instants(design.instant) / ALL, time: 0, across: 0, along: 0 }
+    /// A check with periods of the modulation in s.
+    pub(super) const fn new(instant: f64) -> Self {
+        Self { stretch: Self::instants(instant) / ALL, time: 0, across: 0, along: 0 }
     }
 
-    /// Instants of a check with periods of the modulation in s.
+    /// Instants of a check.
     pub(super) const fn instants(instant: f64) -> u32 {
         ALL * (TIME / instant) as u32
     }

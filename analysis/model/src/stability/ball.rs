@@ -5,8 +5,9 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+use nalgebra::Complex;
 use num_bigint::{BigInt, Sign};
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Signed, ToPrimitive, Zero};
 
 /// Bits behind the point.
 const BITS: usize = 1024;
@@ -62,6 +63,19 @@ impl Ball {
     /// The size, of which all numbers are at least 0.
     pub fn abs(&self) -> Self {
         Self { middle: self.middle.abs(), error: self.error.clone() }
+    }
+
+    /// The number in the middle, without the error.
+    fn middle(&self) -> Self {
+        Self { middle: self.middle.clone(), error: BigInt::zero() }
+    }
+
+    /// The number in the middle, rounded.
+    fn to_f64(&self) -> f64 {
+        /// Bits behind the point that are kept.
+        const KEPT: usize = 128;
+        let kept = (&self.middle >> (BITS - KEPT)).to_f64();
+        kept.map_or(f64::NAN, |kept| kept * 2_f64.powi(-(KEPT as i32)))
     }
 
     /// The quotient; `None` if the divisor may be 0.
@@ -234,6 +248,47 @@ pub fn roots_within(polynomial: &[Ball], radius: f64) -> Option<bool> {
     Some(true)
 }
 
+/// A polynomial and its derivative at a complex place.
+fn with_slope(polynomial: &[Ball], [x, y]: &[Ball; 2]) -> [[Ball; 2]; 2] {
+    let times = |[a, b]: &[Ball; 2]| [&(a * x) - &(b * y), &(a * y) + &(b * x)];
+    let zero = || [Ball::zero(), Ball::zero()];
+    polynomial.iter().rev().fold([zero(), zero()], |[value, slope], coefficient| {
+        let ([a, b], [c, d]) = (times(&value), times(&slope));
+        [[&a + coefficient, b], [&c + &value[0], &d + &value[1]]]
+    })
+}
+
+/// The size of a root next to `near` that is larger than `radius`, to a thousandth of what it is larger by;
+/// `None` where none is found or the errors of the coefficients leave it open.
+///
+/// Newton's steps lead to a place `z`; a polynomial `p` of degree `n` has a root within `n |p(z)/p'(z)|` of it
+/// (its roots `r` have `p'/p = sum 1/(z - r)`).
+pub fn root_beyond(polynomial: &[Ball], radius: f64, near: Complex<f64>) -> Option<f64> {
+    const STEPS: usize = 12;
+    /// Of the distance to the circle, within which the root has to be.
+    const PART: f64 = 1e-3;
+    let square = |[a, b]: &[Ball; 2]| &(a * a) + &(b * b);
+    let mut z = [Ball::of(near.re), Ball::of(near.im)];
+    for _ in 0..STEPS {
+        let [[a, b], slope] = with_slope(polynomial, &z);
+        let [c, d] = &slope;
+        let size = square(&slope);
+        let step = [&(&a * c) + &(&b * d), &(&b * c) - &(&a * d)];
+        for (z, step) in z.iter_mut().zip(step) {
+            *z = (&*z - &step.over(&size)?).middle();
+        }
+    }
+    let [value, slope] = with_slope(polynomial, &z);
+    let found = square(&z).to_f64().sqrt();
+    let off = Ball::of(PART * (found - radius).max(0.0));
+    let degree = Ball::of(polynomial.len() as f64 - 1.0);
+    let least = &Ball::of(radius) + &off;
+    let is_larger = (&square(&z) - &(&least * &least)).sign() == Some(Sign::Plus);
+    let reach = &(&off * &off) * &square(&slope);
+    let is_near = (&reach - &(&(&degree * &degree) * &square(&value))).sign() == Some(Sign::Plus);
+    (is_larger && is_near).then_some(found)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -251,6 +306,18 @@ mod tests {
         assert_eq!(roots_within(&cluster, 0.998 * (1.0 + 1e-15)), Some(true));
         assert_eq!(roots_within(&cluster, 0.998 * (1.0 - 1e-15)), Some(false));
         assert_eq!(roots_within(&cluster, 0.998), None);
+    }
+
+    /// A root a millionth outside of the circle, among seven that are as much inside.
+    #[test]
+    fn a_root_among_others_is_found_and_none_where_there_is_none() {
+        let inside = [0.999_999, 0.999_998_9, 0.999_998, 0.999_997, 0.999_996, 0.999_995, 0.99];
+        let near = Complex::new(1.000_000_98, 1e-9);
+        let found = root_beyond(&polynomial(&[&[1.000_001], &inside[..]].concat()), 1.0, near);
+        assert!(found.is_some_and(|found| (found - 1.000_001).abs() < 1e-12), "{found:?}");
+        assert_eq!(root_beyond(&polynomial(&inside), 1.0, near), None);
+        // On the circle itself.
+        assert_eq!(root_beyond(&polynomial(&[1.0, 0.9]), 1.0, near), None);
     }
 
     #[test]

@@ -4,9 +4,9 @@
 //! simulation: a position that nothing holds is a root at 1, and the roots next to it keep their digits.
 
 use haptic_servo::passivity::polynomial::Polynomial;
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
-use super::ball::{Ball, BallMatrix, product, roots_within, sum};
+use super::ball::{Ball, BallMatrix, product, root_beyond, roots_within, sum};
 use super::closed_loop;
 use crate::simulation::closed_loop::transfers;
 use crate::simulation::method::{Method, balance};
@@ -38,6 +38,11 @@ impl Characteristic {
     /// Whether all roots are smaller than `radius`; `None` where that is not known.
     pub fn is_within(&self, radius: f64) -> Option<bool> {
         roots_within(&self.0, radius)
+    }
+
+    /// The size of a root next to `near` that is larger than `radius`; `None` where none is known.
+    pub fn root_beyond(&self, radius: f64, near: Complex<f64>) -> Option<f64> {
+        root_beyond(&self.0, radius, near)
     }
 
     /// An enclosure of the largest size of a root, as narrow as two doubles allow or the errors do.

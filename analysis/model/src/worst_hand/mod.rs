@@ -200,16 +200,15 @@ impl<'d> HandSearch<'d> {
         Ok(worst)
     }
 
-    /// The case with the radius that the characteristic polynomial has, if that grows, too: its errors have
+    /// The case with the size of its root of the characteristic polynomial, if that grows, too: its errors have
     /// bounds.
     fn confirmed(&mut self, case: &HandCase) -> Result<Option<HandCase>, SimulationError> {
         self.experiment.plant = plant(self.device, self.lighter, &case.hand);
         let polynomial = Characteristic::of(&self.experiment, Integration::default())?;
-        if polynomial.is_within(1.0 + GROWTH_THRESHOLD) != Some(false) {
-            return Ok(None);
-        }
-        let [low, high] = polynomial.radius();
-        Ok(Some(HandCase { spectral_radius: 0.5 * (low + high), ..case.clone() }))
+        let angle = 2.0 * PI * case.frequency * self.experiment.scene.timing.period;
+        let eigenvalue = Complex::from_polar(case.spectral_radius, angle);
+        let size = polynomial.root_beyond(1.0 + GROWTH_THRESHOLD, eigenvalue);
+        Ok(size.map(|spectral_radius| HandCase { spectral_radius, ..case.clone() }))
     }
 
     /// Inertia in kg m^2 of the device, all of it.

@@ -32,7 +32,7 @@ fn currents(heating: &mut Heating, limit: &mut f64, wanted: f64, seconds: usize)
 
 #[test]
 fn the_peak_falls_to_the_continuous_current_and_comes_back_after_a_rest() {
-    let (mut heating, mut limit) = (Heating::new(&HOT), 20.0);
+    let (mut heating, mut limit) = (HOT.heating(), 20.0);
     let hot = currents(&mut heating, &mut limit, 20.0, 60);
     // From cold the square of 20 A reaches nine tenths of that of 10 A after 4 s times ln(400/310).
     assert!(hot[0] > 19.9 && hot[4] < 15.0, "{hot:?}");
@@ -46,10 +46,10 @@ fn the_peak_falls_to_the_continuous_current_and_comes_back_after_a_rest() {
 
 #[test]
 fn the_continuous_current_is_never_limited() {
-    let (mut heating, mut limit) = (Heating::new(&HOT), 20.0);
+    let (mut heating, mut limit) = (HOT.heating(), 20.0);
     currents(&mut heating, &mut limit, 9.9, 60);
     assert_eq!(limit, 20.0);
     // Nor any current of a loop whose full scale the board bears.
-    let mut heating = Heating::new(&BRUSHED);
+    let mut heating = BRUSHED.heating();
     assert!((0..100_000).all(|_| heating.observe(4.0, 1791).is_none()));
 }

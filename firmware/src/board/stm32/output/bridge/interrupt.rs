@@ -64,7 +64,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             latest: 3 * u32::from(current_loop.timer_counts()),
             last: 0,
             start_up: StartUp::Waiting,
-            heating: Heating::new(current_loop),
+            heating: current_loop.heating(),
             alignment: None,
             reference: 0,
         }
