@@ -259,9 +259,13 @@ impl Sources {
 }
 
 /// The text of a scene of the project, with the user's device in place of the paddle: the new scene is
-/// certified against that device.
+/// certified against that device. Scenes of other devices keep them.
 fn on_own_device(text: &str) -> String {
-    text.replace("mod paddle;", "mod device;").replace("paddle::", "device::")
+    const PADDLE: &str = "mod paddle;";
+    if !text.contains(PADDLE) {
+        return text.to_owned();
+    }
+    text.replace(PADDLE, "mod device;").replace("paddle::", "device::")
 }
 
 /// Checks the name of a new scene.
@@ -282,6 +286,14 @@ fn check(name: &str) -> Result<(), BadName> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_the_paddle_without_a_bridge_is_replaced_by_the_user_s_device() {
+        let paddle = "mod paddle;\nuse paddle::PERIOD;";
+        assert_eq!(on_own_device(paddle), "mod device;\nuse device::PERIOD;");
+        let bridge = "mod bridge_paddle;\nuse bridge_paddle::PERIOD;";
+        assert_eq!(on_own_device(bridge), bridge);
+    }
 
     #[test]
     fn a_scene_is_called_what_a_module_and_a_program_can_be_called() {

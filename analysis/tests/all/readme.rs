@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::common::{answer, haptic, program, read, root};
 
 /// The documents that name commands of the program.
-const DOCUMENTS: [&str; 20] = [
+const DOCUMENTS: [&str; 21] = [
     "README.md",
     "ARCHITECTURE.md",
     "CHANGELOG.md",
@@ -20,6 +20,7 @@ const DOCUMENTS: [&str; 20] = [
     "docs/rate-and-format.md",
     "docs/set-up.md",
     "docs/torque-profiles.md",
+    "docs/hardware-report.md",
     "firmware/boards.md",
     "firmware/PROTOCOL.md",
     "firmware/THEORY.md",

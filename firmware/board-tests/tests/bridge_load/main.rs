@@ -207,7 +207,7 @@ fn no_duty() -> Result<(), Failure> {
 }
 
 /// That part of the supply in both directions, and off again.
-fn ten_per_cent() -> Result<(), Failure> {
+fn part_of_the_supply() -> Result<(), Failure> {
     let mut bench = Bench::new()?;
     defmt::info!(
         "{} to {} mA are expected",
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     #[timeout(5)]
     fn a_part_of_the_supply_gives_the_current_of_the_load() -> Result<(), Failure> {
-        super::ten_per_cent()
+        super::part_of_the_supply()
     }
 
     #[test]

@@ -37,6 +37,30 @@ fn a_load_takes_the_current_of_its_duty() {
     }
 }
 
+/// The numbers of the first power-on in `boards.md`, in mA.
+#[test]
+fn the_instructions_state_the_bounds_of_their_loads() {
+    let load = |resistance, lowest, highest| Drive {
+        motor: Motor { resistance, ..LOAD.motor },
+        supply: Supply { lowest, highest },
+        ..LOAD
+    };
+    let resistor = load(1.05, 11.4, 12.6);
+    for (duty, bounds) in [
+        (0.10, [110, 938]),
+        (0.15, [604, 1605]),
+        (0.20, [1097, 2272]),
+        (0.30, [2084, 3605]),
+        (0.40, [3071, 4938]),
+    ] {
+        let expected = resistor.current_at_duty(&B_G431B_ESC1, INSTANT, duty, 0.1).unwrap();
+        let milliamps = |amps: f64| (amps * 1e3) as i32;
+        assert_eq!([expected.least, expected.most].map(milliamps), bounds, "{duty}");
+    }
+    let trips = load(0.55, 14.2, 15.8).current_at_duty(&B_G431B_ESC1, INSTANT, 0.70, 0.1);
+    assert!(trips.is_ok_and(|current| current.least > 10.0), "{trips:?}");
+}
+
 /// Without a tolerance but that of the dead time the middle of the bounds is the current itself.
 #[test]
 fn the_bounds_are_on_both_sides_of_the_current() {
