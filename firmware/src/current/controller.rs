@@ -34,7 +34,7 @@ pub struct CurrentController {
     along: Follower,
     turn: Turn,
     phase: Option<PhaseAlignment>,
-    /// Whether the phase is one that the program states, and no torque has shown yet that it is the motor's.
+    /// Whether the program states the phase, and no torque has shown yet that it is the motor's.
     is_unchecked: bool,
     index: IndexCheck,
     speed: Speed,
