@@ -90,7 +90,7 @@ impl Limits {
     }
 
     /// Checks that the supply and the temperature are in their range. A thermistor that is open reads as very
-    /// cold, and one that is shorted as very hot.
+    /// cold, and a shorted one as very hot.
     #[inline(always)]
     pub(super) fn check_surroundings(&self, sample: &Sample) -> Result<(), PowerFault> {
         let is_good = sample.bus >= self.bus.0
