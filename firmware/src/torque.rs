@@ -163,11 +163,13 @@ impl<N: Number> Limiter<N> {
         self.is_shut()
     }
 
-    /// Moves the level of an open limiter by a step, because of the heat of the torque output.
-    pub(crate) fn step_by_heat(&mut self, step: HeatStep) {
+    /// Moves the level of an open limiter by a step, because of the heat of the torque output. It rises only
+    /// above a `torque` (N m) that it did not limit, so that a spring at rest gives nothing that it did not take.
+    pub(crate) fn step_by_heat(&mut self, step: HeatStep, torque: N) {
         match step {
             HeatStep::Lower => _ = self.close(),
-            HeatStep::Raise => _ = self.open(),
+            HeatStep::Raise if torque.larger(torque.negated()) < self.level => _ = self.open(),
+            HeatStep::Raise => {}
         }
         if self.level < self.bound {
             self.because = LimitReason::Heat;
@@ -187,10 +189,14 @@ mod tests {
     #[test]
     fn heat_moves_the_level_and_is_the_reason() {
         let mut limiter = Limiter::new(2.0_f32, LimitReason::Torque).stepping(0.25);
-        limiter.step_by_heat(HeatStep::Lower);
+        limiter.step_by_heat(HeatStep::Lower, 2.0);
         assert_eq!(limiter.limit(2.0, LimitReason::None), (1.75, LimitReason::Heat));
-        limiter.step_by_heat(HeatStep::Raise);
-        limiter.step_by_heat(HeatStep::Raise);
+        for pressed in [1.75, -1.75] {
+            limiter.step_by_heat(HeatStep::Raise, pressed);
+            assert_eq!(limiter.limit(2.0, LimitReason::None), (1.75, LimitReason::Heat));
+        }
+        limiter.step_by_heat(HeatStep::Raise, -1.5);
+        limiter.step_by_heat(HeatStep::Raise, 0.0);
         assert_eq!(limiter.limit(3.0, LimitReason::None), (2.0, LimitReason::Torque));
     }
 

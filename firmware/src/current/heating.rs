@@ -3,7 +3,7 @@
 //! The mean of the squared current, over the time constant of a first-order lag, is the heat. From nine tenths of
 //! the continuous current's heat on, the allowed current falls in a straight line, from full scale to the continuous
 //! current at its own heat: there the two stay, because a current at its own heat does not change the heat. The
-//! servo's limit moves by the steps of its clamp, which the certificate covers at any rate.
+//! servo's limit moves by the steps of its clamp, and rises only above a torque that it did not limit.
 
 use crate::dac::DacCode;
 
@@ -11,9 +11,11 @@ use crate::dac::DacCode;
 /// second from cold.
 pub(super) const TIME: f64 = 4.0;
 
-/// Parts of the continuous current's heat at which the limit begins to fall, and below which it rises again.
+/// Parts of the continuous current's heat at which the limit begins to fall, below which it rises again, and below
+/// which it has risen: the heat takes longer from one to the other than a servo's limit takes to open.
 const FALLS: f32 = 0.9;
 const RISES: f32 = 0.8;
+const RISEN: f32 = 0.25;
 
 /// The limit of a current loop whose full-scale current is above the continuous current.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,14 +42,14 @@ pub enum HeatStep {
 pub struct Heating {
     limit: Option<HeatLimit>,
     mean_square: f32,
-    /// Steps down that no step up has followed.
-    lowered: u16,
+    /// Whether the limit may not have risen since it last fell.
+    is_lowered: bool,
 }
 
 impl Heating {
     /// A cold power stage.
     pub(super) const fn new(limit: Option<HeatLimit>) -> Self {
-        Self { limit, mean_square: 0.0, lowered: 0 }
+        Self { limit, mean_square: 0.0, is_lowered: false }
     }
 
     /// Takes the current in A of a period of the servo and its code by
@@ -56,10 +58,10 @@ impl Heating {
     pub fn observe(&mut self, current: f32, code_offset: i16) -> Option<HeatStep> {
         let limit = self.limit.as_ref()?;
         self.mean_square += (current * current - self.mean_square) * limit.weight;
-        if self.mean_square < FALLS * limit.square && self.lowered == 0 {
+        if self.mean_square < FALLS * limit.square && !self.is_lowered {
             return None;
         }
-        Self::step(limit, self.mean_square, &mut self.lowered, code_offset)
+        Self::step(limit, self.mean_square, &mut self.is_lowered, code_offset)
     }
 
     #[cold]
@@ -67,17 +69,17 @@ impl Heating {
     fn step(
         limit: &HeatLimit,
         mean_square: f32,
-        lowered: &mut u16,
+        is_lowered: &mut bool,
         code_offset: i16,
     ) -> Option<HeatStep> {
         let full = f32::from(DacCode::CODES_TO_FULL_SCALE);
         let left = (1.0 - mean_square / limit.square) / (1.0 - FALLS);
         let allowed = limit.codes + (full - limit.codes) * left.clamp(0.0, 1.0);
         if f32::from(code_offset).abs() > allowed {
-            *lowered = lowered.saturating_add(1);
+            *is_lowered = true;
             Some(HeatStep::Lower)
-        } else if mean_square < RISES * limit.square && *lowered > 0 {
-            *lowered -= 1;
+        } else if mean_square < RISES * limit.square && *is_lowered {
+            *is_lowered = mean_square > RISEN * limit.square;
             Some(HeatStep::Raise)
         } else {
             None

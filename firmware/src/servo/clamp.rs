@@ -35,7 +35,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
 
     /// Moves the open clamp by a step, because of the heat of the torque output.
     pub(crate) fn step_by_heat(&mut self, step: HeatStep) {
-        self.limiter.step_by_heat(step);
+        self.limiter.step_by_heat(step, self.torque);
     }
 
     /// Closes the clamp by a step; returns whether it is now shut.
