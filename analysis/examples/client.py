@@ -17,7 +17,7 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 7
+PROTOCOL = 8
 BAUD = 460800
 
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
@@ -103,6 +103,7 @@ FIELDS = {
         ("discarded", DISCARDED),
         ("stack_left", ("option", "u")),
         ("reset", "u"),
+        ("low_brown_out", "bool"),
         ("power", ("option", POWER)),
     ],
     "remembered": [("fault", FAULT), ("tick", "u"), ("count", "i")],

@@ -87,6 +87,7 @@ impl Bench {
             name: "wall",
             timer_counts: 1000,
             reset: booted.reset,
+            low_brown_out: false,
             previous_fault: booted.previous_fault,
             stack_left: || None,
             power: || None,

@@ -188,7 +188,9 @@ where
     let (reset, previous_fault) = (booted.reset, booted.previous_fault);
     let (stack_left, power) = (|| None, || None);
     let timer_counts = TIMER_COUNTS;
-    let info = BoardInfo { name, timer_counts, reset, previous_fault, stack_left, power };
+    let low_brown_out = false;
+    let info =
+        BoardInfo { name, timer_counts, reset, low_brown_out, previous_fault, stack_left, power };
     let mut session = Session::new(program, margin, info, requests, ticks);
     let period = Duration::from_secs_f64(program.scene.timing.period);
     let mut next = Instant::now();

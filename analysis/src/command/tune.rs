@@ -65,6 +65,8 @@ struct Report<'a> {
     remembered: Option<String>,
     /// The cause of the board's last reset, in one word.
     reset: &'static str,
+    /// Whether the option bytes let the chip run at a supply that is too low.
+    low_brown_out: bool,
     missed: u32,
     worst_slack: Option<f64>,
     energy: f64,
@@ -193,6 +195,7 @@ fn report<'a>(
         fault: status.fault.map(|fault| fault.to_string()),
         remembered: link.previous_fault().as_ref().map(formatting::previous_fault),
         reset: status.reset.as_str(),
+        low_brown_out: status.low_brown_out,
         missed: status.missed,
         worst_slack: formatting::worst_slack(status, board),
         energy: status.energy as f64 * board.energy_step,

@@ -40,6 +40,7 @@ const STATUS: Status = Status {
     discarded: Discarded { broken: 1, too_long: 2, checksum: 3, unknown: 2 },
     stack_left: None,
     reset: ResetCause::PowerOn,
+    low_brown_out: false,
     power: None,
 };
 

@@ -79,6 +79,7 @@ fn status() -> Status {
         discarded: Discarded { broken: 7, too_long: 8, checksum: 9, unknown: 10 },
         stack_left: Some(2048),
         reset: haptic_servo::reset::ResetCause::Pin,
+        low_brown_out: true,
         power: Some(PowerReading {
             current: -412,
             reference: i32::MIN,
@@ -165,7 +166,7 @@ fn reads_every_message_to_the_host() {
                     "count": -70_000_000_000_i64, "sets": 3, "missed": 4, "worst_slack": 170_000,
                     "energy": i64::MIN, "worst_deficit": i64::MAX, "dropped": 5, "thinned": 6,
                     "discarded": {"broken": 7, "too_long": 8, "checksum": 9, "unknown": 10},
-                    "stack_left": 2048, "reset": 3,
+                    "stack_left": 2048, "reset": 3, "low_brown_out": true,
                     "power": {"current": -412, "reference": i32::MIN, "voltage": u32::MAX,
                               "temperature": -15,
                               "index": {"counts": 16_777_215, "is_reversed": true}}}],

@@ -178,6 +178,7 @@ where
         name: "any",
         timer_counts: 1000,
         reset: ResetCause::PowerOn,
+        low_brown_out: false,
         previous_fault: None,
         stack_left: || None,
         power: || None,

@@ -76,6 +76,7 @@ where
         name,
         timer_counts: hardware.period(),
         reset,
+        low_brown_out: false,
         previous_fault,
         stack_left: || None,
         power: || None,

@@ -209,6 +209,8 @@ pub struct Status {
     pub stack_left: Option<u32>,
     /// The cause of the last reset.
     pub reset: ResetCause,
+    /// Whether the chip's option bytes let it run at a supply that is too low for its work.
+    pub low_brown_out: bool,
     /// The measurements of the power stage; `None` without a bridge on the board.
     pub power: Option<PowerReading>,
 }

@@ -29,9 +29,14 @@ pub fn previous_fault(previous_fault: &PreviousFault) -> String {
     format!("before the last reset, in tick {}: {}", previous_fault.tick, previous_fault.fault)
 }
 
-/// Why the board was last reset.
+/// Why the board was last reset, and whether it is reset by a supply that is too low.
 pub fn reset(status: &Status) -> String {
-    format!("last reset: {}", status.reset)
+    let warning = if status.low_brown_out {
+        "; warning: the option byte BOR_LEV lets the chip run at a supply that is too low (boards.md, Resets)"
+    } else {
+        ""
+    };
+    format!("last reset: {}{warning}", status.reset)
 }
 
 /// The reserves of the certificate (margin) and of the time (slack); `slack` in s is that of the last tick.

@@ -186,6 +186,7 @@ fn a_brown_out_level_that_is_too_low_is_said_with_the_way_to_set_it() {
             let log = bench.log();
             let warns = |line: &String| line.contains("brown-out") && line.contains("-ob BOR_LEV=");
             assert_eq!(log.iter().any(warns), !is_enough, "{}: {log:?}", chip.name);
+            assert_eq!(bench.status().low_brown_out, !is_enough, "{}", chip.name);
         }
     });
 }

@@ -137,6 +137,7 @@ where
         name,
         timer_counts,
         reset,
+        low_brown_out: false,
         previous_fault,
         stack_left: || Some(stack::unused()),
         power: || None,

@@ -37,11 +37,12 @@ pub fn keep_watchdog_running() {
     DBGMCU.apb1fzr().modify(|w| w.set_iwdg(false));
 }
 
-/// Warns of a brown-out level below the 2.7 V that 168 MHz with five wait states need (RM0090, 3.5.1). A new
-/// chip has no brown-out level set.
-pub fn check_brown_out() {
+/// Whether the brown-out level is below the 2.7 V that 168 MHz with five wait states need (RM0090, 3.5.1); then
+/// it is a warning in the log, too. A new chip has no brown-out level set.
+pub fn has_low_brown_out() -> bool {
     let level = FLASH.optcr().read().bor_lev();
-    if level != 0 {
+    let is_low = level != 0;
+    if is_low {
         defmt::warn!(
             "brown-out level {=u8} lets the core run at 168 MHz below the 2.7 V that this needs: \
              set the option byte BOR_LEV to 0 (2.7 V) with STM32_Programmer_CLI -c port=SWD \
@@ -49,4 +50,5 @@ pub fn check_brown_out() {
             level
         );
     }
+    is_low
 }

@@ -38,14 +38,15 @@ pub fn keep_watchdog_running() {
     DBGMCU.apb1lfzr().modify(|w| w.set_iwdg(false));
 }
 
-/// Warns of a brown-out level that is too low for the board. The core may run at 170 MHz down to the lowest
-/// level, but the DAC's buffer only works down to 1.8 V (DS12288).
-pub fn check_brown_out() {
-    let level = FLASH.optr().read().bor_lev();
-    if level == 0 {
+/// Whether the brown-out level is too low for the board; then it is a warning in the log, too. The core may run
+/// at 170 MHz down to the lowest level, but the DAC's buffer only works down to 1.8 V (DS12288).
+pub fn has_low_brown_out() -> bool {
+    let is_low = FLASH.optr().read().bor_lev() == 0;
+    if is_low {
         defmt::warn!(
             "brown-out level 0 lets the chip run down to 1.6 V; its DAC needs 1.8 V: set the \
              option byte BOR_LEV to 4 (2.8 V) with STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4"
         );
     }
+    is_low
 }

@@ -119,6 +119,7 @@ where
         name,
         timer_counts,
         reset,
+        low_brown_out: family::has_low_brown_out(),
         previous_fault,
         stack_left: || Some(stack::unused()),
         power: output::power_reading,
@@ -147,11 +148,10 @@ pub fn registers(setup: output::Setup, seconds: f64, timing: OutputTiming) -> Re
     })
 }
 
-/// Logs the program's name, the board and the free stack, and checks the brown-out level.
+/// Logs the program's name, the board and the free stack.
 fn log_banner(name: &str) {
     let (free, size) = (stack::unused(), stack::size());
     defmt::info!("{=str} on {=str}, stack: {} of {} bytes left", name, wiring::NAME, free, size);
-    family::check_brown_out();
 }
 
 /// The reason of the reset, and its consequence.

@@ -56,6 +56,8 @@ pub struct BoardInfo {
     pub timer_counts: u32,
     /// Cause of the last reset.
     pub reset: ResetCause,
+    /// Whether the chip's option bytes let it run at a supply that is too low for its work.
+    pub low_brown_out: bool,
     /// The fault that stopped the board before that reset.
     pub previous_fault: Option<FaultRecord>,
     /// Bytes of the stack that were never used; returns `None` if the board does not measure this.
@@ -359,6 +361,7 @@ where
             discarded: self.decoder.discarded(),
             stack_left: (self.info.stack_left)(),
             reset: self.info.reset,
+            low_brown_out: self.info.low_brown_out,
             power: (self.info.power)(),
         }
     }

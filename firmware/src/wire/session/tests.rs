@@ -137,6 +137,7 @@ impl Bench {
             name: "wall",
             timer_counts: 1000,
             reset,
+            low_brown_out: true,
             previous_fault,
             stack_left: || Some(77),
             power: || Some(READING),
@@ -238,6 +239,7 @@ fn longest_status(fault: FaultCode) -> Status {
         },
         stack_left: Some(u32::MAX),
         reset: ResetCause::OptionBytes,
+        low_brown_out: true,
         power: Some(READING),
     }
 }
@@ -374,7 +376,8 @@ fn a_refused_set_changes_nothing_and_its_host_has_the_compilers_sentence() {
 
 #[test]
 fn a_status_has_what_the_board_itself_knows() {
-    let Status { stack_left, power, reset, .. } = Bench::new(None).status();
+    let Status { stack_left, power, reset, low_brown_out, .. } = Bench::new(None).status();
+    assert!(low_brown_out);
     assert_eq!((stack_left, power, reset), (Some(77), Some(READING), ResetCause::Pin));
 }
 
