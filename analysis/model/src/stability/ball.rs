@@ -193,18 +193,29 @@ impl BallMatrix {
 
     /// `det(z - matrix)`, ascending, by the recursion of Faddeev and LeVerrier.
     pub fn characteristic(&self) -> Vec<Ball> {
+        self.with_adjugates(0, &[]).0
+    }
+
+    /// The same, and a row of the adjugate of `z - matrix` times each column, ascending.
+    pub fn with_adjugates(&self, row: usize, columns: &[Vec<Ball>]) -> (Vec<Ball>, Vec<Vec<Ball>>) {
         let mut coefficients = vec![Ball::zero(); self.size + 1];
         coefficients[self.size] = Ball::one();
+        let mut adjugates = vec![vec![Ball::zero(); self.size]; columns.len()];
         let mut product = Self::from_fn(self.size, |_, _| Ball::zero());
         for k in 1..=self.size {
             let last = coefficients[self.size + 1 - k].clone();
+            // The adjugate's coefficient of this power.
             let inner = product.plus(&Self::identity(self.size).scaled(&last));
+            for (adjugate, column) in adjugates.iter_mut().zip(columns) {
+                let terms = (0..self.size).map(|i| inner.at(row, i) * &column[i]);
+                adjugate[self.size - k] = terms.fold(Ball::zero(), |sum, term| &sum + &term);
+            }
             product = self.times(&inner);
             let trace = (0..self.size).fold(Ball::zero(), |sum, i| &sum + product.at(i, i));
             let quotient = trace.over(&Ball::of(k as f64)).unwrap_or_else(Ball::zero);
             coefficients[self.size - k] = -&quotient;
         }
-        coefficients
+        (coefficients, adjugates)
     }
 }
 

@@ -114,18 +114,11 @@ impl SampledPlant {
         let measured = plant.measured();
         let gain = Ball::of(scales[measured]).over(&Ball::of(factor))?;
         let states = BallMatrix::from_fn(n, |i, j| whole.at(i, j).clone());
-        let p = states.characteristic();
-        // c adj(z - A) m = det(z - A) - det(z - A + ... ) with the column m in the encoder's place.
-        let through = |effect: &dyn Fn(usize) -> Ball| {
-            let fed = BallMatrix::from_fn(n, |i, j| {
-                let entry = states.at(i, j).clone();
-                if j == measured { &entry + &(&effect(i) * &gain) } else { entry }
-            });
-            let minus: Vec<Ball> = fed.characteristic().iter().map(|it| -it).collect();
-            sum(&p, &minus)
-        };
-        let late_effect = |i: usize| whole.at(i, n) - after.at(i, n);
-        let q = [through(&|i| after.at(i, n).clone()), through(&late_effect)];
+        let column = |effect: &dyn Fn(usize) -> Ball| (0..n).map(|i| &effect(i) * &gain).collect();
+        let after_change = column(&|i| after.at(i, n).clone());
+        let before_change = column(&|i| whole.at(i, n) - after.at(i, n));
+        let (p, q) = states.with_adjugates(measured, &[after_change, before_change]);
+        let q = q.try_into().ok()?;
         Some(Self { p, q, whole: discretization.whole })
     }
 
