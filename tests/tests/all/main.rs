@@ -18,6 +18,7 @@ mod every_float;
 mod exact;
 mod examples;
 mod failures;
+mod filtered;
 mod foreign;
 mod interval;
 mod jitter;
