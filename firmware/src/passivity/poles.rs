@@ -120,11 +120,16 @@ pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, IndexError> {
     })
 }
 
-/// `G` with its exact common factors at 0, 1 and -1 cancelled and other such factors moved to the exponents;
-/// coefficients as the decimals they stand for.
+/// `G` with its exact common factors at 0, 1 and -1 cancelled and other such factors moved to the exponents, as
+/// are zeros at 1, which decimals would not sum to; coefficients as the decimals they stand for.
 #[inline(never)]
 pub const fn cancelled(g: &Transfer) -> Transfer {
-    if g.numerator.is_zero() { *g } else { Work::new(g, true).wide }
+    if g.numerator.is_zero() {
+        return *g;
+    }
+    let mut work = Work::new(g, true);
+    work.strip_unit_root(UnitRoot::Plus, true);
+    work.wide
 }
 
 /// The same with the exact coefficients.
@@ -198,16 +203,16 @@ impl Work {
         self.wide.shift = self.exact.shift;
     }
 
-    /// Moves the exact factors `z - root` of the denominator, and of the numerator if they cancel poles, into
-    /// the exponents.
-    const fn strip_unit_root(&mut self, root: UnitRoot, declared_pole: bool) {
+    /// Moves the exact factors `z - root` of the denominator, and of the numerator if they cancel poles or on
+    /// request, into the exponents.
+    const fn strip_unit_root(&mut self, root: UnitRoot, strips_zeros: bool) {
         let mut change = 0;
         while self.exact.denominator.vanishes_at(root) {
             self.exact.denominator = self.exact.denominator.over_unit_root(root);
             self.wide.denominator = self.wide.denominator.over_unit_root(root);
             change -= 1;
         }
-        if declared_pole || change < 0 {
+        if strips_zeros || change < 0 {
             while self.exact.numerator.vanishes_at(root) {
                 self.exact.numerator = self.exact.numerator.over_unit_root(root);
                 self.wide.numerator = self.wide.numerator.over_unit_root(root);
