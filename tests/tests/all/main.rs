@@ -10,6 +10,7 @@ mod closed_forms;
 mod composed;
 mod contact;
 mod continuous;
+mod crowded;
 mod current;
 mod decision;
 mod documents;
