@@ -132,20 +132,26 @@ pub const fn minimum(
     let mut root = Pieces { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree) };
     root.r[0] = root.r[0].and(ends[0]);
     root.r[degree] = root.r[degree].and(ends[1]);
-    minimum_in(&mut root, degree, closeness)
+    minimum_in(&mut root, degree, false, closeness)
 }
 
 /// The same from Bernstein coefficients.
 #[inline(never)]
 pub(super) const fn minimum_of(function: &Bernstein, closeness: &Precision) -> Minimum {
     let mut root = Pieces { p: function.p, r: function.r };
-    minimum_in(&mut root, function.degree, closeness)
+    minimum_in(&mut root, function.degree, true, closeness)
 }
 
-const fn minimum_in(root: &mut Pieces, degree: usize, closeness: &Precision) -> Minimum {
+const fn minimum_in(
+    root: &mut Pieces,
+    degree: usize,
+    is_rounded: bool,
+    closeness: &Precision,
+) -> Minimum {
     let border = closeness.border;
     let mut search = Search {
         degree,
+        is_rounded,
         clearly_below: border.lo() - CLEARANCE * border.lo().abs(),
         clearly_above: border.hi() + CLEARANCE * border.hi().abs(),
         tolerance: closeness.tolerance,
@@ -173,6 +179,9 @@ const fn upper_bound(p: Interval, r: Interval) -> f64 {
 
 struct Search {
     degree: usize,
+    /// Whether the coefficients of the first box are so inexact that halving makes up for rounding, other than at
+    /// the ends, where coefficients are values.
+    is_rounded: bool,
     /// The search ends at a value below this bound, or if all boxes are above the other bound.
     clearly_below: f64,
     clearly_above: f64,
@@ -251,7 +260,9 @@ impl Search {
             }
             let lower = div_down(p.lo(), if p.lo() >= 0.0 { r.hi() } else { r.lo() });
             if lower < bound.lower {
-                bound = Bound { lower, rounding: upper_bound(p, r) - lower };
+                let improves = self.is_rounded && i != 0 && i != n;
+                let rounding = if improves { 0.0 } else { upper_bound(p, r) - lower };
+                bound = Bound { lower, rounding };
             }
             i += 1;
         }

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use haptic_servo::certificate::{Rejection, RuleAnswer, assess};
+use haptic_servo::certificate::{Rejection, assess};
 use haptic_servo::environment::{Coefficients, Environment, Rational};
 use haptic_servo::passivity::poles::strictly_schur;
 use haptic_servo::passivity::polynomial::Polynomial;
@@ -87,8 +87,11 @@ fn low_pass_filters_far_below_the_nyquist_frequency_are_decided() {
         let assessment = assess(&drawn.scene);
         agreement::check(&assessment, &drawn.exact)
             .unwrap_or_else(|why| panic!("seed {seed}: {why} {:?}", drawn.scene));
-        let undecided = assessment.exact == RuleAnswer::Undecided;
-        assert!(!undecided, "seed {seed}: order {order} at {cutoff}, {:?} {:?} {:?}", assessment.alpha, assessment.alpha_coupled, drawn.scene);
+        let found =
+            assessment.alpha.unwrap_or_else(|| panic!("seed {seed}: order {order} at {cutoff}"));
+        // Decimals leave this much, of eight poles at a fiftieth of the Nyquist frequency.
+        let width = agreement::relative_width(found);
+        assert!(width < 2e-3, "seed {seed}: order {order} at {cutoff}, {width}");
         *(if assessment.outcome.is_ok() { &mut passed } else { &mut failed }) += 1;
         assert!(!matches!(assessment.outcome, Err(Rejection::Undecided { .. })));
     }
