@@ -1,4 +1,5 @@
-//! Debian's packages: installed as root, or unpacked into a folder by any user. Neither ever removes a package.
+//! Debian's packages: installed as root, or unpacked into a folder by any user. Neither ever removes a
+//! package.
 
 use std::fmt;
 use std::fs;
@@ -165,7 +166,7 @@ impl Apt {
         progress(&format!("unpacks {} into {folder}: {}", names.len(), names.join(" ")));
         let archives = root.join("archives");
         let source = |source| AptError::Folder { path: archives.clone(), source };
-        // One that was interrupted has left archives, perhaps of other versions.
+        // An interrupted run has left archives, perhaps of other versions.
         if archives.exists() {
             fs::remove_dir_all(&archives).map_err(source)?;
         }

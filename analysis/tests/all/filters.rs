@@ -1,5 +1,5 @@
-//! Filters as design tools print them: second-order sections, and zeros, poles and a gain, are the numerator and
-//! denominator that an independent computation in rationals gives, and are certified.
+//! Filters as design tools print them: second-order sections, and zeros, poles and a gain, are the numerator
+//! and denominator that an independent computation in rationals gives, and are certified.
 
 use analysis::file::{self, FileError, Format, SceneFile};
 use analysis::simulation::{Experiment, Integration};
@@ -8,8 +8,8 @@ use analysis::worst_hand::search;
 use haptic_servo::certificate::{Rejection, certify};
 use haptic_servo::environment::{Environment, Rational};
 
-/// A Butterworth filter of order 8 at 0.02 of the Nyquist frequency, by SciPy 1.17: `butter(8, 0.02, output="sos")`
-/// and `output="zpk"`.
+/// A Butterworth filter of order 8 at 0.02 of the Nyquist frequency, by SciPy 1.17: `butter(8, 0.02,
+/// output="sos")` and `output="zpk"`.
 const SECTIONS: &str = "type = \"sections\"\nsections = [
     [8.098259786747707e-13, 1.6196519573495413e-12, 8.098259786747707e-13, 1.0, -1.8802595219238372, 0.8839771204173436],
     [1.0, 2.0, 1.0, 1.0, -1.8970134052508192, 0.9007641290712767],
@@ -92,7 +92,8 @@ fn a_filter_is_read_certified_and_judged() {
     }
 }
 
-/// `butter(3, 0.1, "high", output="sos")`: three zeros at 1, which rounded coefficients would not sum to 0 for.
+/// `butter(3, 0.1, "high", output="sos")`: three zeros at 1, which rounded coefficients would not sum to 0
+/// for.
 #[test]
 fn zeros_at_one_stay_exact() {
     let high_pass = rational(

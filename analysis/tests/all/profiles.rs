@@ -517,8 +517,8 @@ fn every_command_answers_or_says_why_not() {
     assert_eq!(count.status.code(), Some(2));
 }
 
-/// Without a coupling there is no bound for a profile where updates are missed and two lags follow each other;
-/// the message names the remedy.
+/// Without a coupling there is no bound for a profile where updates are missed and two lags follow each
+/// other; the message names the remedy.
 #[test]
 fn a_profile_without_a_bound_is_undecided_by_every_rule() {
     let lagging = text(DETENTS)

@@ -30,7 +30,8 @@ impl Deviation {
         if latency.output_jitter == 0.0 && !n.misses_updates {
             return match proof {
                 0 => Some(Self::NONE),
-                // The ripple of an amplifier of no known shape is that of the worst, and the window may be better.
+                // The ripple of an amplifier of no known shape is that of the worst, and the window may be
+                // better.
                 1 if !latency.actuator_response.is_zero() => Self::within_window(lagging, n),
                 _ => None,
             };

@@ -405,8 +405,8 @@ mod tests {
         }
     }
 
-    /// A high-pass filter holds nothing at rest: coefficients that sum to 0 are a zero at 1, declared or not, behind
-    /// any coupling.
+    /// A high-pass filter holds nothing at rest: coefficients that sum to 0 are a zero at 1, declared or not,
+    /// behind any coupling.
     #[test]
     fn a_zero_at_one_needs_no_declaration() {
         let written = rational(&[0.7547627247472144, -0.7547627247472144], &[1.0, -0.51], 0);

@@ -84,8 +84,8 @@ pub(super) struct Bernstein {
 }
 
 impl Minimum {
-    /// Whether no other computation of `p` and `r` would tell more: it is as tight as requested, or clearly on one
-    /// side of the border.
+    /// Whether no other computation of `p` and `r` would tell more: it is as tight as requested, or clearly
+    /// on one side of the border.
     pub(super) const fn is_precise(&self, closeness: &Precision) -> bool {
         let Precision { border, .. } = *closeness;
         let is_clear = self.value.hi() < border.lo() - CLEARANCE * border.lo().abs()
@@ -179,8 +179,8 @@ const fn upper_bound(p: Interval, r: Interval) -> f64 {
 
 struct Search {
     degree: usize,
-    /// Whether the coefficients of the first box are so inexact that halving makes up for rounding, other than at
-    /// the ends, where coefficients are values.
+    /// Whether the coefficients of the first box are so inexact that halving makes up for rounding, other
+    /// than at the ends, where coefficients are values.
     is_rounded: bool,
     /// The search ends at a value below this bound, or if all boxes are above the other bound.
     clearly_below: f64,

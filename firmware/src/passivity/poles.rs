@@ -121,8 +121,8 @@ pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, IndexError> {
     })
 }
 
-/// `G` with its exact common factors at 0, 1 and -1 cancelled and other such factors moved to the exponents, as
-/// are zeros at 1, which decimals would not sum to; coefficients as the decimals they stand for.
+/// `G` with its exact common factors at 0, 1 and -1 cancelled and other such factors moved to the exponents,
+/// as are zeros at 1, which decimals would not sum to; coefficients as the decimals they stand for.
 #[inline(never)]
 pub const fn cancelled(g: &Transfer) -> Transfer {
     if g.numerator.is_zero() {

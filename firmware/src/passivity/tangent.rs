@@ -1,10 +1,10 @@
 //! Functions on the unit circle in the tangent of half the angle: `z = (1 + s)/(1 - s)`, `s = j tan(theta/2)`
 //! (theory, section 7).
 //!
-//! Poles that crowd at `z = 1` leave nothing of the sums that a Chebyshev series is made of: eight of them at a
-//! distance of 0.06 give a squared magnitude of `1e-20` from products of about 1000. In powers of `s` each
-//! coefficient has the size that belongs to such poles, and is the only sum that cancels: it is computed without
-//! rounding. All sums after that are of numbers of one size.
+//! Poles that crowd at `z = 1` leave nothing of the sums that a Chebyshev series is made of: eight of them at
+//! a distance of 0.06 give a squared magnitude of `1e-20` from products of about 1000. In powers of `s` each
+//! coefficient has the size that belongs to such poles, and is the only sum that cancels: it is computed
+//! without rounding. All sums after that are of numbers of one size.
 
 use super::bernstein::{Bernstein, Precision, SIZE, binomial, minimum_of};
 use super::chebyshev::Kernel;
@@ -15,8 +15,8 @@ use super::polynomial::Polynomial;
 /// Coefficients in ascending powers, of `s` or of its square.
 type Coefficients = [Interval; SIZE];
 
-/// `2 Re(K(z) z^shift n(z) conj(d(z)))` and `abs(d(z))^2`, over a common factor, in Bernstein form. `None` for
-/// other kernels than 1 and that of a pole at 1, and beyond the largest degree.
+/// `2 Re(K(z) z^shift n(z) conj(d(z)))` and `abs(d(z))^2`, over a common factor, in Bernstein form. `None`
+/// for other kernels than 1 and that of a pole at 1, and beyond the largest degree.
 #[inline(never)]
 pub(super) const fn real_part(
     kernel: Kernel,
@@ -42,9 +42,9 @@ pub(super) const fn real_part(
     Some(Bernstein { p: p.in_bernstein(degree), r: r.in_bernstein(degree), degree })
 }
 
-/// Whether all roots are proved to be inside of the unit circle: those of the middle of its coefficients are, and
-/// no root crosses the circle on the way to others, because the polynomial is nowhere on it as small as they change
-/// it (the theorem of Rouché).
+/// Whether all roots are proved to be inside of the unit circle: those of the middle of its coefficients are,
+/// and no root crosses the circle on the way to others, because the polynomial is nowhere on it as small as
+/// they change it (the theorem of Rouché).
 #[inline(never)]
 pub(super) const fn has_all_roots_inside(p: &Polynomial) -> bool {
     let mut middle = [Interval::ZERO; SIZE];

@@ -113,8 +113,8 @@ fn with_the_servo(experiment: &Experiment) -> Option<[f64; 2]> {
     Some([largest(&speeds[..quarter]), largest(&speeds[TICKS - quarter..])])
 }
 
-/// In a hand the loop is stable, if it has eigenvalues, and its simulated motion does not grow. Returns what was
-/// simulated.
+/// In a hand the loop is stable, if it has eigenvalues, and its simulated motion does not grow. Returns what
+/// was simulated.
 fn in_a_hand(
     chain: &Chain,
     scene: &Scene,
@@ -241,11 +241,13 @@ fn nor_of_any_kind_in_any_number_format() {
         let of = || format!("seed {seed}, {:?}, {scene:?}", drawn.format);
         let assessment = assess_in(scene, drawn.format.format());
         assert!(assessment.outcome.is_ok(), "{}", of());
-        // The conditions for times that deviate are not necessary, and without a coupling a static law needs less.
+        // The conditions for times that deviate are not necessary, and without a coupling a static law needs
+        // less.
         let deviates = scene.latency.output_jitter > 0.0 && scene.coupling == Coupling::Rigid;
         assert!(assessment.exact != RuleAnswer::Fail || deviates, "{}", of());
         seen.count(&drawn);
-        // Eigenvalues and simulation have the numbers of the scene as they are, which may be worse than rounded.
+        // Eigenvalues and simulation have the numbers of the scene as they are, which may be worse than
+        // rounded.
         if assess(scene).outcome.is_ok() {
             let Device { inertia, damping, .. } = scene.device;
             let chain = Chain::rigid(inertia, damping).expect("one mass");

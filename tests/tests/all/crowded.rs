@@ -1,5 +1,5 @@
-//! Environments whose poles crowd at `z = 1`, as those of low-pass filters far below the Nyquist frequency do, in
-//! coefficients that are doubles: the exact reference agrees, and almost all of them are decided.
+//! Environments whose poles crowd at `z = 1`, as those of low-pass filters far below the Nyquist frequency
+//! do, in coefficients that are doubles: the exact reference agrees, and almost all of them are decided.
 
 use std::f64::consts::PI;
 

@@ -1,5 +1,5 @@
-//! Rational environments as the design tools of filters print them: second-order sections, or zeros, poles and a
-//! gain.
+//! Rational environments as the design tools of filters print them: second-order sections, or zeros, poles
+//! and a gain.
 //!
 //! Their product is formed exactly and each coefficient is rounded once, to the double that is certified,
 //! simulated and run. Zeros that are exactly 1 are declared, since rounded coefficients would not sum to 0.
@@ -144,7 +144,8 @@ impl Function {
         let below = self.denominator.len() - 1;
         if above.max(below) > MAX_DEGREE {
             let reason = format!(
-                "have a product with {above} zeros and {below} poles; there may be at most {MAX_DEGREE} of each"
+                "have a product with {above} zeros and {below} poles; there may be at most {MAX_DEGREE} of \
+                 each"
             );
             return Err(section.conflict(key, span, reason));
         }

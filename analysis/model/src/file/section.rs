@@ -269,8 +269,8 @@ impl<'t> Section<'t> {
         Ok(Some(Found { value, span: node.span }))
     }
 
-    /// The lists of finite numbers of that key with their places, if it is there. Each has one of these lengths; a
-    /// number is a list of one. `bound` is what one must be.
+    /// The lists of finite numbers of that key with their places, if it is there. Each has one of these
+    /// lengths; a number is a list of one. `bound` is what one must be.
     pub fn rows(
         &mut self,
         key: &Key,
