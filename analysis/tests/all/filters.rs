@@ -78,7 +78,7 @@ fn a_filter_is_read_certified_and_judged() {
         let stability = judge(&Experiment::at_rest(&file), Integration::default()).unwrap();
         assert_eq!(stability.verdict, StabilityVerdict::Stable);
         assert!(!search(&file.scene, &file.chain).unwrap().oscillates);
-        // What is written is the form that was judged.
+        // The written form is the judged one.
         let written = file::write::toml(&file);
         let again = file::parse("again.toml", Format::Toml, &written).unwrap();
         assert_eq!(again.scene, file.scene);

@@ -99,7 +99,7 @@ fn low_pass_filters_far_below_the_nyquist_frequency_are_decided() {
     assert!(passed > SCENES / 6 && failed > SCENES / 6, "{passed} {failed}");
 }
 
-/// Poles crowd inside of the circle or across it; what is proved agrees with rationals.
+/// Poles crowd inside of the circle or across it; proofs agree with rationals.
 #[test]
 fn crowded_roots_are_inside_where_that_is_proved() {
     let (mut inside, mut outside, mut open) = (0, 0, 0);

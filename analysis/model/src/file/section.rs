@@ -35,6 +35,9 @@ pub struct Found<T> {
     pub span: Span,
 }
 
+/// Numbers with their place.
+pub type Row = Found<Vec<f64>>;
+
 /// Two numbers, each with its place.
 pub type Pair = [Found<f64>; 2];
 
@@ -276,7 +279,7 @@ impl<'t> Section<'t> {
         key: &Key,
         lengths: &[usize],
         bound: &str,
-    ) -> Read<Option<Found<Vec<Found<Vec<f64>>>>>> {
+    ) -> Read<Option<Found<Vec<Row>>>> {
         let Some(node) = self.take(key) else { return Ok(None) };
         let Value::List(items) = &node.value else {
             return Err(self.wrong_kind(key, &node.span, &node.value));
