@@ -57,7 +57,10 @@ pub(super) const fn has_all_roots_inside(p: &Polynomial) -> bool {
         i += 1;
     }
     let middle = Polynomial::ascending(&middle);
-    is_hurwitz(&middle) && (change.is_zero() || is_larger_on_circle(&middle, change))
+    // The theorem counts roots inside: all of them only if the degree is the same.
+    middle.degree() == p.degree()
+        && is_hurwitz(&middle)
+        && (change.is_zero() || is_larger_on_circle(&middle, change))
 }
 
 /// Whether all roots are proved to be inside of the unit circle: those in `s` are in the left half-plane, by
@@ -236,4 +239,29 @@ const fn krawtchouk(degree: usize, i: usize, power: usize) -> f64 {
         m += 1;
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_root_that_comes_from_infinity_is_not_inside() {
+        let about_zero = Interval::new(-1e-20, 1e-20);
+        assert!(!has_all_roots_inside(&Polynomial::ascending(&[Interval::ONE, about_zero])));
+        let near = Interval::new(1.0 - 1e-12, 1.0 + 1e-12);
+        for (root, is_inside) in [(-0.5, true), (-0.999_999, true), (-1.0, false), (-2.0, false)] {
+            let p = Polynomial::ascending(&[Interval::exact(root), near]);
+            assert_eq!(has_all_roots_inside(&p), is_inside, "{root}");
+        }
+    }
+
+    /// `1e300 - 1e300 + 1` and the like.
+    #[test]
+    fn coefficients_are_sums_without_rounding() {
+        let p = Polynomial::descending(&[1e300, 1.0, -1e300, 0.25], false);
+        assert_eq!(in_tangent(&p, 0, 3, 0), Interval::exact(1.25));
+        // At z = -1: -1e300 + 1 + 1e300 + 0.25, the leading coefficient times -1 to the degree.
+        assert_eq!(in_tangent(&p, 0, 3, 3), Interval::exact(-1.25));
+    }
 }
