@@ -92,13 +92,22 @@ impl Index {
         if f.is_zero() {
             return Ordering::Equal;
         }
-        let ends = [f.at(&Q::one()), f.at(&-Q::one())];
-        if ends.iter().any(Signed::is_negative) || changes_sign(&f) {
+        if is_negative_somewhere(&f) {
             return Ordering::Greater;
         }
-        let touches = ends.iter().any(Zero::is_zero) || roots_inside(&f) > 0;
+        let mut ends = ends(&f).into_iter();
+        let touches = ends.any(|end| end.is_zero()) || roots_inside(&f) > 0;
         if touches { Ordering::Equal } else { Ordering::Less }
     }
+}
+
+/// Whether `f` is negative anywhere on `[-1, 1]`.
+pub fn is_negative_somewhere(f: &Poly) -> bool {
+    !f.is_zero() && (ends(f).iter().any(Signed::is_negative) || changes_sign(f))
+}
+
+fn ends(f: &Poly) -> [Q; 2] {
+    [f.at(&Q::one()), f.at(&-Q::one())]
 }
 
 /// Whether `f` is negative anywhere in the open interval: a root of odd multiplicity there, or
@@ -130,7 +139,7 @@ fn is_negative_inside(f: &Poly) -> bool {
 }
 
 /// `Re(P(z) / D(z)) |D|^2` on the circle, as a polynomial in the cosine.
-fn real_part(p: &Poly, d: &Poly) -> Poly {
+pub fn real_part(p: &Poly, d: &Poly) -> Poly {
     let longest = p.degree().max(d.degree());
     let mut by_distance = vec![Q::zero(); longest + 1];
     for (i, a) in p.coefficients().iter().enumerate() {

@@ -15,9 +15,15 @@ pub fn rows(report: &VerdictReport) -> Vec<(&'static str, String)> {
         ("scene", report.name.clone()),
         ("verdict", format!("{:?}", report.verdict).to_uppercase()),
         ("", report.message.clone()),
+    ];
+    // Nothing was computed where a number is out of range.
+    if report.delta.is_nan() {
+        return rows;
+    }
+    rows.extend([
         ("alpha", enclosure(report.alpha)),
         ("alpha, coupled", enclosure(report.alpha_coupled)),
-    ];
+    ]);
     if let Some(port) = report.alpha_port {
         rows.push(("alpha, at the port", enclosure(port)));
     }

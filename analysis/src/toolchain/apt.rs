@@ -1,4 +1,5 @@
-//! Debian's packages: installed as root, or unpacked into a folder by any user. Neither ever removes a package.
+//! Debian's packages: installed as root, or unpacked into a folder by any user. Neither ever removes a
+//! package.
 
 use std::fmt;
 use std::fs;
@@ -164,12 +165,16 @@ impl Apt {
         let folder = root.display();
         progress(&format!("unpacks {} into {folder}: {}", names.len(), names.join(" ")));
         let archives = root.join("archives");
+        let source = |source| AptError::Folder { path: archives.clone(), source };
+        // An interrupted run has left archives, perhaps of other versions.
+        if archives.exists() {
+            fs::remove_dir_all(&archives).map_err(source)?;
+        }
         make(&archives)?;
         let exact: Vec<_> =
             wanted.iter().map(|NewPackage { name, version }| format!("{name}={version}")).collect();
         let exact: Vec<_> = exact.iter().map(String::as_str).collect();
         self.run(&["download"], &exact, &archives)?;
-        let source = |source| AptError::Folder { path: archives.clone(), source };
         for archive in fs::read_dir(&archives).map_err(source)? {
             let archive = archive.map_err(source)?.path();
             if archive.extension().is_some_and(|extension| extension == "deb") {
@@ -355,6 +360,9 @@ Conf lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])
         let apt = fake(folder.path(), REMOVES);
         let root = folder.path().join("root");
         let said = RefCell::new(String::new());
+        // What an interrupted one has left is not unpacked with it.
+        make(&root.join("archives")).unwrap();
+        fs::write(root.join("archives/lld=1:14.0-55.6.deb"), "half of it").unwrap();
         apt.unpack(&["lld"], &root, |step| said.borrow_mut().push_str(step)).unwrap();
         assert!(said.borrow().ends_with(": lld-14 lld"), "{said:?}");
         let done = done(folder.path());
@@ -370,6 +378,7 @@ Conf lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])
                 format!("dpkg-deb -x lld=1:14.0-55.7.deb {root}"),
             ]
         );
+        assert!(!folder.path().join("root/archives").exists());
         // Nothing was asked to be installed or removed.
         assert!(!done.contains("install"), "{done}");
     }

@@ -8,6 +8,7 @@ mod closed_loop;
 mod common;
 mod composed;
 mod device_files;
+mod filters;
 mod haptic;
 #[cfg(unix)]
 mod identify_port;

@@ -334,6 +334,29 @@ fn a_bad_file_has_exit_status_2_and_one_that_is_too_steep_1() {
     assert_eq!(status("delay = 1\nknots = [[0, 0], [0, 1]]\n"), Some(2));
 }
 
+/// A turn has room for 65536 cells; a number that is out of range leaves nothing to compute.
+#[test]
+fn a_piece_that_is_too_narrow_for_a_table_is_refused_where_it_stands() {
+    let step = |width: f64| {
+        let knots = format!("[[-0.06, -5], [-{width}, -5], [0, 0], [0.06, 0]]");
+        format!("delay = 1\nfrom = -0.06\nto = 0.06\nstiffness = 100\nknots = {knots}\n")
+    };
+    let refused = read(&step(1e-4)).unwrap_err().to_string();
+    let said = "`environment.cells`: would be 4096 for the narrowest straight piece, 0.0001 rad from \
+                `environment.knots[1]` to [2], or 214309 in a turn, and a turn has at most 65536: the \
+                piece must be at least about 0.000235 rad wide";
+    assert!(refused.contains(said), "{refused}");
+    assert!(read(&step(2.4e-4)).is_ok());
+    let often = run(&["certify", "-"], &format!("count = 5000\n{DETENTS}"));
+    let text = String::from_utf8(often.stdout).unwrap();
+    assert_eq!(often.status.code(), Some(1), "{text}");
+    assert!(
+        text.contains("repetitions in a turn is 5000, and must be") && text.contains("4096"),
+        "{text}"
+    );
+    assert!(!text.contains("NaN") && !text.contains("alpha") && !text.contains("delta"), "{text}");
+}
+
 /// The keys of a wall's answer, and the remedies of a profile.
 #[test]
 fn the_answer_in_json_has_the_keys_of_every_scene() {
@@ -494,8 +517,8 @@ fn every_command_answers_or_says_why_not() {
     assert_eq!(count.status.code(), Some(2));
 }
 
-/// Without a coupling there is no bound for a profile where updates are missed and two lags follow each other;
-/// the message names the remedy.
+/// Without a coupling there is no bound for a profile where updates are missed and two lags follow each
+/// other; the message names the remedy.
 #[test]
 fn a_profile_without_a_bound_is_undecided_by_every_rule() {
     let lagging = text(DETENTS)

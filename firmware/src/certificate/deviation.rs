@@ -28,7 +28,13 @@ impl Deviation {
     pub const fn of(proof: usize, lagging: &Lagging, n: &LoopIntervals) -> Option<Self> {
         let latency = &lagging.latency;
         if latency.output_jitter == 0.0 && !n.misses_updates {
-            return if proof == 0 { Some(Self::NONE) } else { None };
+            return match proof {
+                0 => Some(Self::NONE),
+                // The ripple of an amplifier of no known shape is that of the worst, and the window may be
+                // better.
+                1 if !latency.actuator_response.is_zero() => Self::within_window(lagging, n),
+                _ => None,
+            };
         }
         let h = Interval::decimal(latency.output_jitter).div(n.period);
         // A jitter of counts is one of torques with the lags of amplifier and sensor exchanged.

@@ -1,6 +1,6 @@
 //! The valid range of each number of a scene.
 
-use crate::environment::{AnyProfile, Composed, Environment, ProfileUse, StatedModel};
+use crate::environment::{AnyProfile, Composed, Environment, MOST_KNOTS, ProfileUse, StatedModel};
 use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
 use crate::parameter::{Parameter, Range};
 use crate::scene::Scene;
@@ -240,7 +240,7 @@ const fn profile_conflict(
 ) -> Option<InvalidParameter> {
     let outline = profile.outline();
     let cell = 1.0 / profile.knots_per_rad();
-    let most = MOST_KNOTS / outline.knots as f64;
+    let most = MOST_KNOTS as f64 / outline.knots as f64;
     let (bound, limit) = match (parameter, profile.ends) {
         (Parameter::Count, _) if value > most => ("finite, greater than 0 and at most", Some(most)),
         (Parameter::Count, None) if value as u32 as f64 != value => {
@@ -250,9 +250,9 @@ const fn profile_conflict(
             ("of a magnitude up to", Some(LARGEST_ANGLE))
         }
         (Parameter::From | Parameter::To, _)
-            if (value - profile.centre).abs() > MOST_KNOTS * cell =>
+            if (value - profile.centre).abs() > MOST_KNOTS as f64 * cell =>
         {
-            ("no farther from the profile's centre than, in rad,", Some(MOST_KNOTS * cell))
+            ("no farther from the profile's centre than, in rad,", Some(MOST_KNOTS as f64 * cell))
         }
         (Parameter::From, Some(ends)) if value >= ends.to => {
             ("below the upper end stop:", Some(ends.to))
@@ -298,8 +298,6 @@ const fn holds_nothing(profile: &AnyProfile) -> bool {
     }
 }
 
-/// Largest distance of a place of a profile from its centre, in knots.
-const MOST_KNOTS: f64 = 65536.0;
 /// In rad: beyond a few turns, a centre is equivalent to another centre of the same profile.
 const LARGEST_ANGLE: f64 = 100.0;
 

@@ -104,8 +104,8 @@ pub use matched::{CouplingMemory, Matched, MatchedLaw};
 pub use model::{EnvironmentModel, Memory, ProfileUse, StatedEnvironment};
 pub use profile::{
     AnyProfile, AnySnap, Cell, DampedProfile, Ends, FULL_SCALE, Holding, KNOB_MODES, KnotTable,
-    Knots, Layout, MODES, Mode, ModeSelection, ModeTable, NoSnap, Outline, Profile, ProfileLaw,
-    ProfileMode, ProfileModes, Shape, ShapeError, Snap, SnapPoint, SnapProfile,
+    Knots, Layout, MODES, MOST_KNOTS, Mode, ModeSelection, ModeTable, NoSnap, Outline, Profile,
+    ProfileLaw, ProfileMode, ProfileModes, Shape, ShapeError, Snap, SnapPoint, SnapProfile,
 };
 pub use rational::{Coefficients, Rational, RationalLaw};
 pub use stated::{StatedBound, StatedModel};

@@ -405,6 +405,25 @@ mod tests {
         }
     }
 
+    /// A high-pass filter holds nothing at rest: coefficients that sum to 0 are a zero at 1, declared or not,
+    /// behind any coupling.
+    #[test]
+    fn a_zero_at_one_needs_no_declaration() {
+        let written = rational(&[0.7547627247472144, -0.7547627247472144], &[1.0, -0.51], 0);
+        let declared = rational(&[0.7547627247472144], &[1.0, -0.51], 1);
+        for coupling in [Coupling::Rigid, Coupling::Spring { stiffness: 30.0 }, Coupling::Matched] {
+            for environment in [written, declared] {
+                for delay in [0, 1] {
+                    let scene = Scene { coupling, ..scene(Rational { delay, ..environment }) };
+                    assert_eq!(certify(&scene).map(|_| ()), Ok(()), "{scene:?}");
+                }
+            }
+        }
+        // They do not sum to 0 in binary: the pole at 1 stays, with a residue that may have either sign.
+        let near = rational(&[0.1, 0.2, -0.3], &[1.0, -0.5, 0.0], 0);
+        assert!(certify(&scene(near)).is_err());
+    }
+
     #[test]
     fn a_common_pair_on_the_circle_is_refused() {
         let pair = rational(&[2.5, -3.125, 2.5], &[1.0, -1.25, 1.0], 0);

@@ -11,7 +11,7 @@ use super::interval::Interval;
 use super::polynomial::MAX_DEGREE;
 use super::rounding::{div_down, div_up};
 
-const SIZE: usize = MAX_DEGREE + 2;
+pub(super) const SIZE: usize = MAX_DEGREE + 2;
 /// The pool of waiting boxes: five of the largest degree, more of smaller degrees. Few boxes wait, because a
 /// half that cannot contain the minimum is settled at once, and the working memory must fit a small target's
 /// stack.
@@ -76,6 +76,25 @@ struct Pieces {
     r: [Interval; SIZE],
 }
 
+/// Bernstein coefficients on `[-1, 1]` of `p` and `r`, of the same degree.
+pub(super) struct Bernstein {
+    pub p: [Interval; SIZE],
+    pub r: [Interval; SIZE],
+    pub degree: usize,
+}
+
+impl Minimum {
+    /// Whether no other computation of `p` and `r` would tell more: it is as tight as requested, or clearly
+    /// on one side of the border.
+    pub(super) const fn is_precise(&self, closeness: &Precision) -> bool {
+        let Precision { border, .. } = *closeness;
+        let is_clear = self.value.hi() < border.lo() - CLEARANCE * border.lo().abs()
+            || self.value.lo() > border.hi() + CLEARANCE * border.hi().abs();
+        let width = self.value.hi() - self.value.lo();
+        is_clear || width.is_finite() && width <= CLEARANCE * self.value.magnitude()
+    }
+}
+
 #[derive(Clone, Copy)]
 struct Waiting {
     left: f64,
@@ -109,10 +128,30 @@ pub const fn minimum(
     ends: [Interval; 2],
     closeness: &Precision,
 ) -> Minimum {
-    let border = closeness.border;
     let degree = if p.degree() > r.degree() { p.degree() } else { r.degree() };
+    let mut root = Pieces { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree) };
+    root.r[0] = root.r[0].and(ends[0]);
+    root.r[degree] = root.r[degree].and(ends[1]);
+    minimum_in(&mut root, degree, false, closeness)
+}
+
+/// The same from Bernstein coefficients.
+#[inline(never)]
+pub(super) const fn minimum_of(function: &Bernstein, closeness: &Precision) -> Minimum {
+    let mut root = Pieces { p: function.p, r: function.r };
+    minimum_in(&mut root, function.degree, true, closeness)
+}
+
+const fn minimum_in(
+    root: &mut Pieces,
+    degree: usize,
+    is_rounded: bool,
+    closeness: &Precision,
+) -> Minimum {
+    let border = closeness.border;
     let mut search = Search {
         degree,
+        is_rounded,
         clearly_below: border.lo() - CLEARANCE * border.lo().abs(),
         clearly_above: border.hi() + CLEARANCE * border.hi().abs(),
         tolerance: closeness.tolerance,
@@ -120,12 +159,9 @@ pub const fn minimum(
         at: Interval::ZERO,
         lower: f64::INFINITY,
     };
-    let mut root = Pieces { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree) };
-    root.r[0] = root.r[0].and(ends[0]);
-    root.r[degree] = root.r[degree].and(ends[1]);
     let left = upper_bound(root.p[0], root.r[0]);
     let right = upper_bound(root.p[degree], root.r[degree]);
-    search.run(&mut root);
+    search.run(root);
     let lower = search.lower.min(search.upper);
     let flat = left.max(right) <= search.upper + 1e-12 * search.upper.abs();
     let at = if flat { Interval::new(-1.0, 1.0) } else { search.at };
@@ -143,6 +179,9 @@ const fn upper_bound(p: Interval, r: Interval) -> f64 {
 
 struct Search {
     degree: usize,
+    /// Whether the coefficients of the first box are so inexact that halving makes up for rounding, other
+    /// than at the ends, where coefficients are values.
+    is_rounded: bool,
     /// The search ends at a value below this bound, or if all boxes are above the other bound.
     clearly_below: f64,
     clearly_above: f64,
@@ -221,7 +260,9 @@ impl Search {
             }
             let lower = div_down(p.lo(), if p.lo() >= 0.0 { r.hi() } else { r.lo() });
             if lower < bound.lower {
-                bound = Bound { lower, rounding: upper_bound(p, r) - lower };
+                let improves = self.is_rounded && i != 0 && i != n;
+                let rounding = if improves { 0.0 } else { upper_bound(p, r) - lower };
+                bound = Bound { lower, rounding };
             }
             i += 1;
         }
@@ -374,7 +415,7 @@ const fn from_chebyshev(series: &Series, degree: usize) -> [Interval; SIZE] {
 }
 
 /// `C(n, k)` for `n <= 34`: below 2^53, so exact.
-const fn binomial(n: usize, k: usize) -> f64 {
+pub(super) const fn binomial(n: usize, k: usize) -> f64 {
     let k = if k > n - k { n - k } else { k };
     let mut value: u64 = 1;
     let mut i = 0;

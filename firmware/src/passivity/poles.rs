@@ -2,6 +2,7 @@
 
 use super::interval::Interval;
 use super::polynomial::{Polynomial, UnitRoot};
+use super::tangent;
 use super::transfer::Transfer;
 
 /// A transfer function with separated circle poles, whose other poles are proved inside:
@@ -120,11 +121,16 @@ pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, IndexError> {
     })
 }
 
-/// `G` with its exact common factors at 0, 1 and -1 cancelled and other such factors moved to the exponents;
-/// coefficients as the decimals they stand for.
+/// `G` with its exact common factors at 0, 1 and -1 cancelled and other such factors moved to the exponents,
+/// as are zeros at 1, which decimals would not sum to; coefficients as the decimals they stand for.
 #[inline(never)]
 pub const fn cancelled(g: &Transfer) -> Transfer {
-    if g.numerator.is_zero() { *g } else { Work::new(g, true).wide }
+    if g.numerator.is_zero() {
+        return *g;
+    }
+    let mut work = Work::new(g, true);
+    work.strip_unit_root(UnitRoot::Plus, true);
+    work.wide
 }
 
 /// The same with the exact coefficients.
@@ -198,16 +204,16 @@ impl Work {
         self.wide.shift = self.exact.shift;
     }
 
-    /// Moves the exact factors `z - root` of the denominator, and of the numerator if they cancel poles, into
-    /// the exponents.
-    const fn strip_unit_root(&mut self, root: UnitRoot, declared_pole: bool) {
+    /// Moves the exact factors `z - root` of the denominator, and of the numerator if they cancel poles or on
+    /// request, into the exponents.
+    const fn strip_unit_root(&mut self, root: UnitRoot, strips_zeros: bool) {
         let mut change = 0;
         while self.exact.denominator.vanishes_at(root) {
             self.exact.denominator = self.exact.denominator.over_unit_root(root);
             self.wide.denominator = self.wide.denominator.over_unit_root(root);
             change -= 1;
         }
-        if declared_pole || change < 0 {
+        if strips_zeros || change < 0 {
             while self.exact.numerator.vanishes_at(root) {
                 self.exact.numerator = self.exact.numerator.over_unit_root(root);
                 self.wide.numerator = self.wide.numerator.over_unit_root(root);
@@ -325,9 +331,18 @@ const fn is_palindrome(p: &Polynomial) -> bool {
     true
 }
 
-/// Schur-Cohn recursion: proves that all roots are inside the unit circle, or that a root is outside.
+/// Proves that all roots are inside the unit circle, or that a root is outside.
 #[inline(never)]
 pub const fn strictly_schur(p: &Polynomial) -> Result<(), IndexError> {
+    match schur_cohn(p) {
+        // Where roots crowd at 1, rounding loses less in the tangent of half the angle.
+        Err(IndexError::Undecided(_)) if tangent::has_all_roots_inside(p) => Ok(()),
+        decided => decided,
+    }
+}
+
+/// The Schur-Cohn recursion.
+const fn schur_cohn(p: &Polynomial) -> Result<(), IndexError> {
     let mut p = *p;
     while p.degree() > 0 {
         let n = p.degree();

@@ -1,5 +1,6 @@
 //! Polynomials with interval coefficients, up to the degree of a scene.
 
+use super::exact_sum::ExactSum;
 use super::interval::Interval;
 
 /// Largest degree: eight of the environment, eight of the delay.
@@ -268,45 +269,14 @@ impl Polynomial {
         if self.len == 0 || !self.is_exact() || !self.is_finite() {
             return false;
         }
-        // Shewchuk's expansion: the partial sums' rounding errors are kept, so the sum is exact.
-        let mut parts = [0.0f64; CAPACITY];
-        let mut used = 0;
+        let mut sum = ExactSum::<CAPACITY>::EMPTY;
         let mut i = 0;
         while i < self.len {
-            let mut x = self.coefficients[i].lo();
-            if matches!(root, UnitRoot::Minus) && i % 2 == 1 {
-                x = -x;
-            }
-            let mut kept = 0;
-            let mut k = 0;
-            while k < used {
-                let y = parts[k];
-                let sum = x + y;
-                if !sum.is_finite() {
-                    return false;
-                }
-                let y_seen = sum - x;
-                let error = (x - (sum - y_seen)) + (y - y_seen);
-                if error != 0.0 {
-                    parts[kept] = error;
-                    kept += 1;
-                }
-                x = sum;
-                k += 1;
-            }
-            parts[kept] = x;
-            used = kept + 1;
+            let x = self.coefficients[i].lo();
+            sum.add(if matches!(root, UnitRoot::Minus) && i % 2 == 1 { -x } else { x });
             i += 1;
         }
-        // The parts do not overlap: their sum is zero only if each is.
-        let mut k = 0;
-        while k < used {
-            if parts[k] != 0.0 {
-                return false;
-            }
-            k += 1;
-        }
-        true
+        sum.is_finite && sum.is_zero()
     }
 }
 

@@ -214,3 +214,30 @@ fn responses_that_are_none_are_refused_with_value_and_bound() {
         assert!(message.contains("0 beside a lag of amplifier or sensor"), "{message}");
     }
 }
+
+/// Behind the coupling that absorbs latency an environment needs an index below that of the window of all
+/// responses (equation 57), which is the bound that a torque limit has.
+#[test]
+fn a_linear_scene_behind_the_matched_coupling_passes_where_the_limited_one_does() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    for _ in 0..60 {
+        let (period, delta) = (1e-3, 0.022);
+        let mut ends = [rng.random_range(0.0..1.0), rng.random_range(0.0..1.0)];
+        ends.sort_by(f64::total_cmp);
+        let [begin, end] = ends.map(|end| end * period);
+        let delay = period * rng.random_range(0.0..1.0);
+        let left = delta / (1.0 + (end - begin) / period);
+        let scene = |share: f64, torque_limit| Scene {
+            device: Device { inertia: 2.2e-5, damping: delta, passivity: None },
+            timing: Timing { period, worst_period: None },
+            coupling: Coupling::Matched,
+            environment: Environment::FreeMode { residual: delta - share * left, delay: 0 },
+            latency: Latency::delayed(delay).with_actuator_response(begin, end),
+            torque_limit,
+        };
+        for limit in [None, Some(0.1)] {
+            assert!(certify(&scene(0.999, limit)).is_ok(), "{begin} {end} {delay} {limit:?}");
+        }
+        assert!(certify(&scene(1.001, Some(0.1))).is_err(), "{begin} {end} {delay}");
+    }
+}

@@ -24,7 +24,7 @@ const CHANGES: usize = 150;
 /// The smallest motion in periods of the profile.
 const SMALLEST: f64 = 1e-4;
 /// Turns of a closed motion after which a canceller has forgotten how it began.
-const SETTLED: usize = 60;
+pub(super) const SETTLED: usize = 60;
 
 /// A sum, by the numbers from which its torque is computed here.
 #[derive(Debug)]
@@ -269,10 +269,12 @@ fn taken_at_port(sum: &Sum, damping: f64, motion: &[f64]) -> f64 {
 
 /// A closed motion that needs much: changed at random as long as that makes it need more. Slow ones, to which
 /// a canceller and a delay give the most, begin as a circle.
-fn worst(sum: &Sum, random: &mut ChaCha8Rng, needed: impl Fn(&[f64]) -> f64) -> f64 {
+///
+/// `pitch` is the size in rad of the largest.
+pub(super) fn worst(pitch: f64, random: &mut ChaCha8Rng, needed: impl Fn(&[f64]) -> f64) -> f64 {
     let length = [2, 2, 3, 4, 6, 12, 24, 48][random.random_range(0..8)];
-    let size = sum.pitch * log_uniform(random, 1e-3, 1.0);
-    let middle = sum.pitch * random.random_range(-2.0..2.0);
+    let size = pitch * log_uniform(random, 1e-3, 1.0);
+    let middle = pitch * random.random_range(-2.0..2.0);
     let phase = std::f64::consts::TAU / length as f64;
     let mut motion: Vec<f64> =
         (0..length).map(|i| middle + size * (phase * f64::from(i)).cos()).collect();
@@ -283,8 +285,7 @@ fn worst(sum: &Sum, random: &mut ChaCha8Rng, needed: impl Fn(&[f64]) -> f64) -> 
         match random.random_range(0..4) {
             0 => {
                 // All of it moves to another place.
-                let by =
-                    sum.pitch * log_uniform(random, 1e-3, 1.0) * random.random_range(-1.0..1.0);
+                let by = pitch * log_uniform(random, 1e-3, 1.0) * random.random_range(-1.0..1.0);
                 motion.iter_mut().for_each(|angle| *angle += by);
             }
             1 => {
@@ -315,7 +316,7 @@ fn no_closed_motion_takes_more_energy_than_the_bound_allows() {
         let damping = 1.01 * sum.least_damping();
         let bound = PassivityProblem::of(&sum.scene(damping)).unwrap().bound().unwrap().hi();
         let of_sum = |motion: &[f64]| needed(&sum, damping, motion);
-        let worst = (0..MOTIONS).map(|_| worst(&sum, &mut random, of_sum));
+        let worst = (0..MOTIONS).map(|_| worst(sum.pitch, &mut random, of_sum));
         let worst = worst.fold(f64::MIN, f64::max);
         assert!(worst <= bound * (1.0 + 1e-9), "{worst} of {bound}: {sum:?}");
         shares.push(worst / bound);
@@ -342,7 +343,7 @@ fn no_closed_motion_at_the_port_takes_more_than_the_damping() {
         sum.at_port = Some(if random.random_bool(0.3) { 0.0 } else { random.random() });
         let damping = sum.least_damping();
         let taken = |motion: &[f64]| taken_at_port(&sum, damping, motion);
-        let worst = (0..MOTIONS).map(|_| worst(&sum, &mut random, taken));
+        let worst = (0..MOTIONS).map(|_| worst(sum.pitch, &mut random, taken));
         let worst = worst.fold(f64::MIN, f64::max);
         assert!(worst <= 1.0 + 1e-9, "{worst}: {sum:?}");
         shares.push(worst);

@@ -33,6 +33,10 @@ pub enum Form {
     Numbers,
     /// A list of pairs of numbers.
     Pairs,
+    /// A list of second-order sections.
+    Sections,
+    /// A list of real or complex numbers.
+    Roots,
     /// A table.
     Table,
     /// A list of tables.
@@ -174,6 +178,15 @@ const DELAYED_POLYNOMIAL: Bound = Bound::Other(
      delay, and may be 8 more, together with `delay`",
 );
 
+const SECOND_ORDER: Bound = Bound::Other(
+    Form::Sections,
+    "a list of lists of six finite numbers, [b0, b1, b2, a0, a1, a2], a0 not 0, with at most 8 poles in all",
+);
+const ROOTS: Bound = Bound::Other(
+    Form::Roots,
+    "a list of up to 8 finite numbers or pairs, [real part, imaginary part], with the conjugate of each",
+);
+
 const KNOTS_IN_ORDER: Bound = Bound::Other(
     Form::Pairs,
     "a list of 2 to 2048 pairs, [angle in rad, torque in N m], the angles in rising order",
@@ -229,14 +242,14 @@ keys! {
     SENSOR_LAG = Key { bound: TIME, ..of(Parameter::SensorLag) },
         Default(0.0), "2.0e-5";
 
-    /// In place of `actuator_lag`, of an amplifier whose step response never falls: when it begins and when it
-    /// has ended, at most a period; any shape between is covered.
+    /// In place of `actuator_lag`, of an amplifier whose step response never falls: when it begins and when
+    /// it has ended, at most a period; any shape between is covered.
     ACTUATOR_RESPONSE = Key { bound: TIME, ..of(Parameter::ActuatorResponse) },
         Default(0.0), "[2.0e-5, 2.5e-4]";
 
     /// How often in a period the amplifier's current loop is updated, a whole number of times: the torque is
-    /// what the lag makes of a step at each update, and goes in a straight line between two. The output delay is
-    /// then a whole number of the times between updates, mostly one; 0: the lag is continuous.
+    /// what the lag makes of a step at each update, and goes in a straight line between two. The output delay
+    /// is then a whole number of the times between updates, mostly one; 0: the lag is continuous.
     ACTUATOR_UPDATES = other("device.actuator_updates", "", whole(0, u16::MAX as u32)),
         Default(0.0), "4";
 
@@ -276,7 +289,8 @@ keys! {
     /// Which environment.
     TYPE = other("environment.type", "", Bound::Other(
         Form::OneOf(&[]),
-        "\"delayed-spring\", \"damper-wall\", \"free-mode\", \"free-mode-wall\", \"rational\" or \"profile\""
+        "\"delayed-spring\", \"damper-wall\", \"free-mode\", \"free-mode-wall\", \"rational\", \"sections\", \
+         \"zeros-poles-gain\" or \"profile\""
     )),
         Needed, "\"damper-wall\"";
     /// Stiffness of the spring or wall; of a torque profile, that beyond its end stops.
@@ -298,7 +312,8 @@ keys! {
     /// Whether the wall is felt only beyond its face.
     ONE_SIDED = other("environment.one_sided", "", Bound::Other(Form::Boolean, "true or false")),
         Optional("false: the wall pulls as well as it pushes"), "true";
-    /// Damping that free mode leaves in the hand; beside a torque profile, of an undelayed one, if it is there.
+    /// Damping that free mode leaves in the hand; beside a torque profile, of an undelayed one, if it is
+    /// there.
     RESIDUAL = of(Parameter::Residual),
         Needed, "0.018";
     /// Numerator of the environment, from position to torque.
@@ -310,6 +325,21 @@ keys! {
     /// Zeros at z = 1 that multiply the numerator. With them its degree is at most 8.
     UNIT_ZEROS = of(Parameter::UnitZeros),
         Default(0.0), "0";
+    /// Second-order sections whose product is the environment, each `(b0 + b1/z + b2/z^2)/(a0 + a1/z +
+    /// a2/z^2)`, as design tools of filters print them. A first-order section has `b2` and `a2` of 0. The
+    /// servo runs the product: one numerator and one denominator, each coefficient rounded once.
+    SECTIONS = other("environment.sections", "", SECOND_ORDER),
+        Needed, "[[0.0025, 0.005, 0.0025, 1.0, -1.6, 0.65], [1.0, 0.0, 0.0, 1.0, -0.5, 0.0]]";
+    /// Zeros of the environment: `gain` times the product of all `z - zero`, over that of all `z - pole`. The
+    /// servo runs numerator and denominator, each coefficient rounded once.
+    ZEROS = other("environment.zeros", "", ROOTS),
+        Needed, "[-1.0, -1.0]";
+    /// Poles of the environment, at least as many as zeros.
+    POLES = other("environment.poles", "", ROOTS),
+        Needed, "[[0.8, 0.1], [0.8, -0.1]]";
+    /// Factor of the environment's zeros and poles.
+    GAIN = other("environment.gain", "", Bound::Number(Range::Finite)),
+        Needed, "0.005";
     /// Knots of a torque profile, joined by straight lines; a positive torque pushes back from a positive
     /// angle. They add to the shapes.
     KNOTS = other("environment.knots", "", KNOTS_IN_ORDER),

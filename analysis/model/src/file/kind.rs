@@ -30,6 +30,9 @@ const ZERO: Coefficients = match Coefficients::new(&[0.0]) {
     None => panic!("one coefficient fits"),
 };
 
+const BLANK: Environment =
+    Environment::Rational(Rational { numerator: ZERO, denominator: ZERO, delay: 0, unit_zeros: 0 });
+
 /// All types, in the order of the documentation.
 pub const ALL: &[Kind] = &[
     Kind {
@@ -69,12 +72,23 @@ pub const ALL: &[Kind] = &[
         doc: "Any rational transfer function from position to torque.",
         needed: &[&key::NUMERATOR, &key::DENOMINATOR],
         optional: &[&key::DELAY_SAMPLES, &key::UNIT_ZEROS],
-        blank: Environment::Rational(Rational {
-            numerator: ZERO,
-            denominator: ZERO,
-            delay: 0,
-            unit_zeros: 0,
-        }),
+        blank: BLANK,
+        values: &[],
+    },
+    Kind {
+        name: SECTIONS,
+        doc: "A rational transfer function as a product of second-order sections.",
+        needed: &[&key::SECTIONS],
+        optional: &[&key::DELAY_SAMPLES],
+        blank: BLANK,
+        values: &[],
+    },
+    Kind {
+        name: ZEROS_POLES_GAIN,
+        doc: "A rational transfer function by its zeros, its poles and a gain.",
+        needed: &[&key::ZEROS, &key::POLES, &key::GAIN],
+        optional: &[&key::DELAY_SAMPLES],
+        blank: BLANK,
         values: &[],
     },
     Kind {
@@ -101,6 +115,10 @@ pub const ALL: &[Kind] = &[
     },
 ];
 
+/// The type of second-order sections.
+pub const SECTIONS: &str = "sections";
+/// The type of zeros, poles and gain.
+pub const ZEROS_POLES_GAIN: &str = "zeros-poles-gain";
 /// The type with shapes.
 pub const PROFILE: &str = "profile";
 

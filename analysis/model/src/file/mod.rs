@@ -19,6 +19,7 @@ pub mod simulation;
 pub mod write;
 
 mod faults;
+mod filter;
 mod json;
 mod problem;
 mod section;

@@ -1,7 +1,10 @@
 //! The torque profile of a file: knots and named shapes, which add up to one table.
 
-use haptic_servo::environment::{AnyProfile, Composed, Ends, Environment, Shape, ShapeError, Wall};
+use haptic_servo::environment::{
+    AnyProfile, Composed, Ends, Environment, MOST_KNOTS as MOST_IN_A_TURN, Shape, ShapeError, Wall,
+};
 use haptic_servo::parameter::Parameter;
+use std::f64::consts::TAU;
 
 use super::faults::{Read, Reported, all};
 use super::key::{self, Key, Presence};
@@ -136,6 +139,9 @@ pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
     }
     let mut profile =
         shapes.sampled(delay).map_err(|error| refused(section, &shapes, &places, &error))?;
+    if count.is_none() {
+        fine_enough(section, &shapes, &places, &profile)?;
+    }
     if !profile.outline().wraps {
         for (key, found) in [(&key::COUNT, &count), (&key::CENTRE, &centre)] {
             if let Some(Found { span, .. }) = found {
@@ -372,6 +378,31 @@ fn refused(
         }
         ShapeError::Flat | ShapeError::Empty => whole(&key::SHAPE, places[0].span.clone()),
     }
+}
+
+/// Checks that a turn has room for the cells that the narrowest straight piece takes.
+fn fine_enough(
+    section: &Section<'_>,
+    shapes: &Shapes,
+    places: &[Place],
+    profile: &AnyProfile,
+) -> Read<()> {
+    let in_a_turn = TAU * profile.knots_per_rad();
+    if in_a_turn <= f64::from(MOST_IN_A_TURN) {
+        return Ok(());
+    }
+    let (piece, span) = narrowest_of(shapes, places);
+    let (cells, in_a_turn) = (profile.outline().knots, in_a_turn.round());
+    // Their number is halved until they fit.
+    let halvings = (in_a_turn / f64::from(MOST_IN_A_TURN)).log2().ceil();
+    let wide = CELLS_OF_A_PIECE * halvings.exp2() / profile.knots_per_rad();
+    let wide = significant(wide, 3);
+    let reason = format!(
+        "would be {cells} for the narrowest straight piece, {piece}, or {in_a_turn} in a turn, and a turn has \
+         at most {MOST_IN_A_TURN}: the piece must be at least about {wide} rad wide"
+    );
+    let key = section.name_of(&key::CELLS);
+    Err(section.report(span, Problem::Shapes { key, reason }))
 }
 
 /// The narrowest straight piece of all shapes, in words, and where it stands.

@@ -7,8 +7,9 @@ use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange, Timing};
 
 use super::device::{self, DeviceTable, Purpose};
 use super::faults::{Faults, Read, all};
+use super::filter;
 use super::key::{self, Key};
-use super::kind::Kind;
+use super::kind::{self, Kind};
 use super::profile::{self, ProfileTable, Shapes};
 use super::section::{Found, Section};
 use super::simulation::{self, Simulation};
@@ -254,7 +255,12 @@ fn environment_of(mut section: Section<'_>) -> Read<EnvironmentTable> {
 
 fn of_kind(kind: &Kind, section: &mut Section<'_>) -> Read<Environment> {
     if matches!(kind.blank, Environment::Rational(_)) {
-        return rational(section).map(Environment::Rational);
+        let read = match kind.name {
+            kind::SECTIONS => filter::sections(section),
+            kind::ZEROS_POLES_GAIN => filter::zeros_poles_gain(section),
+            _ => rational(section),
+        };
+        return read.map(Environment::Rational);
     }
     let numbers = kind.keys().filter_map(|key| Some((key, key.parameter?)));
     let numbers = all(numbers.map(|(key, parameter)| Ok((parameter, section.value(key)?))));

@@ -111,6 +111,19 @@ fn property(key: &Key) -> Value {
                 });
                 json!({ "type": "array", "minItems": 2, "items": pair })
             }
+            Form::Sections => {
+                let section = json!({
+                    "type": "array", "items": { "type": "number" }, "minItems": 6, "maxItems": 6
+                });
+                json!({ "type": "array", "minItems": 1, "items": section })
+            }
+            Form::Roots => {
+                let complex = json!({
+                    "type": "array", "items": { "type": "number" }, "minItems": 1, "maxItems": 2
+                });
+                let root = json!({ "anyOf": [{ "type": "number" }, complex] });
+                json!({ "type": "array", "maxItems": 8, "items": root })
+            }
             Form::Time => {
                 let time = json!({ "type": "number", "minimum": 0 });
                 let range = json!({

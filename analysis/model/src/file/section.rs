@@ -35,6 +35,9 @@ pub struct Found<T> {
     pub span: Span,
 }
 
+/// Numbers with their place.
+pub type Row = Found<Vec<f64>>;
+
 /// Two numbers, each with its place.
 pub type Pair = [Found<f64>; 2];
 
@@ -266,6 +269,47 @@ impl<'t> Section<'t> {
             Ok([a?, b?])
         };
         let value = all(items.iter().enumerate().map(pair))?;
+        Ok(Some(Found { value, span: node.span }))
+    }
+
+    /// The lists of finite numbers of that key with their places, if it is there. Each has one of these
+    /// lengths; a number is a list of one. `bound` is what one must be.
+    pub fn rows(
+        &mut self,
+        key: &Key,
+        lengths: &[usize],
+        bound: &str,
+    ) -> Read<Option<Found<Vec<Row>>>> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let Value::List(items) = &node.value else {
+            return Err(self.wrong_kind(key, &node.span, &node.value));
+        };
+        let row = |(index, item): (usize, &Node)| {
+            let name = format!("{}[{index}]", self.name_of(key));
+            let (value, span) = (&item.value, item.span.clone());
+            let numbers = match value {
+                Value::Number(_) => std::slice::from_ref(item),
+                Value::List(numbers) => numbers,
+                _ => &[],
+            };
+            if !lengths.contains(&numbers.len()) {
+                let written = excerpt(&self.text[span.clone()]);
+                let found = match value {
+                    Value::List(_) => "a list of another length",
+                    other => other.kind(),
+                };
+                let bound = bound.to_owned();
+                let problem = Problem::WrongKind { key: name, value: written, found, bound };
+                return Err(self.report(span, problem));
+            }
+            let number = |(place, node): (usize, &Node)| match node.value {
+                Value::Number(value) if value.is_finite() => Ok(value),
+                ref other => Err(self.no_finite(format!("{name}[{place}]"), &node.span, other)),
+            };
+            let value = all(numbers.iter().enumerate().map(number))?;
+            Ok(Found { value, span })
+        };
+        let value = all(items.iter().enumerate().map(row))?;
         Ok(Some(Found { value, span: node.span }))
     }
 

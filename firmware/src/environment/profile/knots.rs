@@ -6,6 +6,10 @@ use super::layout::{Layout, PART_BITS};
 /// fits 16 bits, too.
 pub const FULL_SCALE: i16 = (1 << 14) - 1;
 
+/// The most knots that a table may have in a turn, all of its repetitions together, so that places in it fit
+/// 32 bits. A narrower cell is out of range.
+pub const MOST_KNOTS: u32 = 1 << 16;
+
 /// Knots of a torque profile in parts of its torque, with [`FULL_SCALE`] for the whole torque, over cells of
 /// equal width. After the last knot the first follows again.
 ///

@@ -26,7 +26,7 @@ mod sum;
 
 pub use any::AnyProfile;
 pub(super) use any::AnyProfileLaw;
-pub use knots::{Cell, FULL_SCALE, KnotTable, Knots, Outline};
+pub use knots::{Cell, FULL_SCALE, KnotTable, Knots, MOST_KNOTS, Outline};
 pub use law::ProfileLaw;
 pub use layout::{Ends, Layout, SnapPoint};
 pub use mode_table::{ModeTable, ProfileMode};
