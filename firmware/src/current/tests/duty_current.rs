@@ -40,7 +40,7 @@ fn a_load_takes_the_current_of_its_duty() {
 /// Without a tolerance but that of the dead time the middle of the bounds is the current itself.
 #[test]
 fn the_bounds_are_on_both_sides_of_the_current() {
-    let supply = Supply { lowest: 24.0, highest: 24.0 };
+    let supply = Supply::sinking(24.0, 24.0);
     let load = Drive { supply, ..LOAD };
     let expected = load.current_at_duty(&STAGE, INSTANT, DUTY, 0.0).unwrap();
     let current = settled(&load, load.motor.resistance, 24.0, DUTY);
