@@ -8,7 +8,7 @@ use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-use haptic_servo::current::{Drive, Motor, Winding};
+use haptic_servo::current::{Drive, Motor, Regeneration, Winding};
 use haptic_servo::dac::DacCode;
 use haptic_servo::servo::RenderingOptions;
 use haptic_servo::wire::message::{LONGEST_TO_BOARD, ToBoard};
@@ -115,17 +115,20 @@ pub fn fading_samples(period: f64) -> usize {
     (RenderingOptions::DEFAULT.fade / period).ceil() as usize + 2
 }
 
-/// A drive as the virtual board reads it: its supply in the middle of the range.
-fn words(drive: &Drive) -> [String; 5] {
+/// A drive as the virtual board reads it. Its supply takes energy back only if the drive says so.
+fn words(drive: &Drive) -> [String; 6] {
     let Motor { winding, resistance, inductance, torque_constant } = drive.motor;
     let winding = match winding {
         Winding::Brushed => "brushed".to_owned(),
         Winding::Brushless { pole_pairs } => pole_pairs.to_string(),
     };
-    let supply = 0.5 * (drive.supply.lowest + drive.supply.highest);
-    let [resistance, inductance, torque_constant, supply] =
-        [resistance, inductance, torque_constant, supply].map(|number| number.to_string());
-    [winding, resistance, inductance, torque_constant, supply]
+    let numbers = [resistance, inductance, torque_constant, drive.supply.open_voltage()];
+    let [resistance, inductance, torque_constant, supply] = numbers.map(|it| it.to_string());
+    let capacitance = match drive.supply.regeneration {
+        Regeneration::Sinks => "sinks".to_owned(),
+        Regeneration::Stores { capacitance, .. } => capacitance.to_string(),
+    };
+    [winding, resistance, inductance, torque_constant, supply, capacitance]
 }
 
 /// A running board.

@@ -2,7 +2,7 @@
 
 use haptic_model::file::SceneFile;
 use haptic_model::remedy_change::{RemedyChange, remedy_changes};
-use haptic_model::verdict::{self, VerdictReport, judge_in};
+use haptic_model::verdict::{self, VerdictReport, judge_file};
 use haptic_model::verdict_text::rows;
 use haptic_servo::number::Format;
 use serde::Serialize;
@@ -53,7 +53,7 @@ fn judged(text: &str, report: impl FnOnce(&SceneFile) -> VerdictReport) -> PageR
 }
 
 fn report(file: &SceneFile) -> VerdictReport {
-    judge_in(&file.name, &file.scene, Format::F64, &file.steps())
+    judge_file(file, Format::F64)
 }
 
 /// As JSON.

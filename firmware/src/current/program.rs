@@ -2,7 +2,7 @@
 
 use super::current_loop::{CurrentLoop, OVER_CURRENT};
 use super::motor::Winding;
-use super::regeneration::Push;
+use super::regeneration::{Bus, Push};
 use crate::latency::Latency;
 use crate::output_timing::OutputTiming;
 use crate::passivity::interval::Interval;
@@ -112,8 +112,25 @@ impl CurrentLoop {
         transducers: &Transducers,
         injection: Option<f64>,
     ) {
-        let Some(bus) = self.bus else { return };
-        let push = Push {
+        let Some(bus) = self.bus() else { return };
+        if let Err(error) = bus.check(scene, &self.push(scene, transducers, injection)) {
+            error.refuse()
+        }
+    }
+
+    /// The capacitance at the bridge; `None` if its supply takes energy back.
+    pub const fn bus(&self) -> Option<&Bus> {
+        self.bus.as_ref()
+    }
+
+    /// The largest push into a scene.
+    pub const fn push(
+        &self,
+        scene: &Scene,
+        transducers: &Transducers,
+        injection: Option<f64>,
+    ) -> Push {
+        Push {
             torque: match scene.torque_limit {
                 Some(limit) => limit,
                 None => transducers.full_scale_torque,
@@ -124,9 +141,6 @@ impl CurrentLoop {
                 None => 0.0,
             },
             winding: self.winding_energy(),
-        };
-        if let Err(error) = bus.check(scene, &push) {
-            error.refuse()
         }
     }
 
