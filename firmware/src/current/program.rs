@@ -140,7 +140,7 @@ impl CurrentLoop {
                 Some(damping) => damping,
                 None => 0.0,
             },
-            winding: self.winding_energy(),
+            stored: self.winding_energy(),
         }
     }
 

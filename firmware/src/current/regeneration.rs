@@ -20,7 +20,7 @@ const STEPS: u32 = 60;
 /// Relative distance of a remedy from its bound, more than its last written digit.
 const MARGIN: f64 = 1e-8;
 
-/// The largest push of a hand, and the winding that it charges.
+/// The largest push of a hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
     /// The torque limit in N m.
@@ -29,8 +29,9 @@ pub struct Push {
     pub speed: f64,
     /// Damping in N m s/rad that is injected.
     pub injected: f64,
-    /// Energy in J of the motor's winding at full-scale current; zero if the motor is not known.
-    pub winding: f64,
+    /// Energy in J that the motor's winding stores at full-scale current, and a flexible device at the torque
+    /// limit; zero of what is not known.
+    pub stored: f64,
 }
 
 /// The largest energies in J that a scene returns after a push, rounded up (equation 62).
@@ -40,8 +41,8 @@ pub struct ReturnedEnergy {
     pub pushed: f64,
     /// The kinetic energy of the device at its largest speed.
     pub kinetic: f64,
-    /// The energy of the motor's winding.
-    pub winding: f64,
+    /// What winding and device store.
+    pub stored: f64,
 }
 
 impl ReturnedEnergy {
@@ -51,12 +52,12 @@ impl ReturnedEnergy {
         let Some(pushed) = pushed(scene, push) else { return None };
         let speed = Interval::decimal(push.speed);
         let kinetic = Interval::decimal(scene.device.inertia).half().mul(speed).mul(speed);
-        Some(Self { pushed: pushed.hi(), kinetic: kinetic.hi(), winding: push.winding })
+        Some(Self { pushed: pushed.hi(), kinetic: kinetic.hi(), stored: push.stored })
     }
 
     /// The sum, rounded up.
     pub const fn total(&self) -> f64 {
-        let moved = Interval::exact(self.kinetic).add(Interval::exact(self.winding));
+        let moved = Interval::exact(self.kinetic).add(Interval::exact(self.stored));
         Interval::exact(self.pushed).add(moved).hi()
     }
 }
@@ -192,7 +193,7 @@ impl Bus {
             }
             step += 1;
         }
-        // The winding's energy is that of the larger torque.
+        // What is stored is that of the larger torque.
         least * (1.0 - MARGIN)
     }
 
