@@ -366,3 +366,27 @@ impl RemoteServo for VirtualBoard {
         Ok(self.sample()?.applied_code())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use haptic_servo::current::Supply;
+
+    use super::*;
+
+    /// A supply sinks only if the drive says so.
+    #[test]
+    fn the_words_have_the_drive_s_supply() {
+        let motor = Motor {
+            winding: Winding::Brushed,
+            resistance: 0.6,
+            inductance: 1.2e-4,
+            torque_constant: 0.29,
+        };
+        let supply = Supply::sinking(23.0, 25.0);
+        let drive = Drive { motor, supply, bandwidth: 1e3, largest_temperature: 80.0 };
+        assert_eq!(words(&drive), ["brushed", "0.6", "0.00012", "0.29", "24", "sinks"]);
+        let regeneration = Regeneration::Stores { voltage: 23.5, capacitance: 0.01 };
+        let drive = Drive { supply: Supply { regeneration, ..supply }, ..drive };
+        assert_eq!(words(&drive)[4..], ["23.5", "0.01"]);
+    }
+}

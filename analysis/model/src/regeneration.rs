@@ -254,6 +254,21 @@ mod tests {
             .expect("the spring reaches the limit")
     }
 
+    /// A knob without end is turned on by a detent at most, and one with end stops over its range.
+    #[test]
+    fn no_simulated_turn_of_a_knob_returns_more() {
+        let endless = "[environment]\ntype = \"profile\"\ndelay = 1\n[[environment.shape]]\n\
+                       type = \"detents\"\ncount = 24\ntorque = 0.04\n";
+        let file = scene("[coupling]\nstiffness = 44.0\n", endless, &stores(12.0, 1e-3));
+        let energy = judged(&file).energy.unwrap();
+        let detent = std::f64::consts::TAU / 24.0;
+        let depth = detent + 1.0 / 44.0;
+        assert!((energy / (depth + 0.006_875) - 1.0).abs() < 1e-9, "{energy}");
+        for speed in [1.0, 10.0, 24.0] {
+            assert!(returned(&file, speed, detent) < energy);
+        }
+    }
+
     /// The servo itself, with a motor that has no losses: no push returns more than equation 62 says, and one
     /// returns more than two fifths of it.
     #[test]

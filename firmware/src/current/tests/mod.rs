@@ -10,6 +10,7 @@ mod faults;
 mod follower;
 mod heating;
 mod index;
+mod regeneration;
 mod rig;
 mod three_phases;
 
