@@ -104,7 +104,10 @@ macro_rules! scene_program {
         pub const PROGRAM: $crate::boot::Program<$environment> = $crate::boot::Program {
             scene: *$certified.scene(),
             transducers: $transducers,
-            rendering: $crate::or_default!($crate::servo::RenderingOptions $(, $rendering)?),
+            rendering: $crate::servo::RenderingOptions {
+                $(returned: $current_loop.returned(),)?
+                ..$crate::or_default!($crate::servo::RenderingOptions $(, $rendering)?)
+            },
             options: $crate::or_default!($crate::servo_loop::Options $(, $options)?),
         };
 

@@ -130,17 +130,18 @@ impl CurrentLoop {
         transducers: &Transducers,
         injection: Option<f64>,
     ) -> Push {
-        Push {
-            torque: match scene.torque_limit {
-                Some(limit) => limit,
-                None => transducers.full_scale_torque,
-            },
-            speed: transducers.largest_speed,
-            injected: match injection {
-                Some(damping) => damping,
-                None => 0.0,
-            },
-            stored: self.winding_energy(),
+        Push::of(scene, transducers, injection, self.winding_energy())
+    }
+
+    /// Largest energy in J that a push may return besides that of the winding, rounded down; `None` if the
+    /// supply takes energy back.
+    pub const fn returned(&self) -> Option<f64> {
+        match self.bus {
+            Some(bus) => {
+                let winding = Interval::exact(self.winding_energy());
+                Some(Interval::exact(bus.room()).sub(winding).lo())
+            }
+            None => None,
         }
     }
 

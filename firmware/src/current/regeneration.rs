@@ -13,6 +13,7 @@ use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::scene::{Coupling, Scene};
 use crate::text::Text;
+use crate::transducers::Transducers;
 
 /// Steps of the search for the torque limit: its relative error is below that of a double.
 const STEPS: u32 = 60;
@@ -32,6 +33,27 @@ pub struct Push {
     /// Energy in J that the motor's winding stores at full-scale current, and a flexible device at the torque
     /// limit; zero of what is not known.
     pub stored: f64,
+}
+
+impl Push {
+    /// The push into a scene with these transducers, this injected damping in N m s/rad and this stored energy
+    /// in J.
+    pub const fn of<E>(
+        scene: &Scene<E>,
+        transducers: &Transducers,
+        injection: Option<f64>,
+        stored: f64,
+    ) -> Self {
+        let torque = match scene.torque_limit {
+            Some(limit) => limit,
+            None => transducers.full_scale_torque,
+        };
+        let injected = match injection {
+            Some(damping) => damping,
+            None => 0.0,
+        };
+        Self { torque, speed: transducers.largest_speed, injected, stored }
+    }
 }
 
 /// The largest energies in J that a scene returns after a push, rounded up (equation 62).
