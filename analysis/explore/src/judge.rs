@@ -39,7 +39,9 @@ pub fn judge(text: &str, _: &mut Vec<f64>) -> PageResult {
 
 /// The same without remedies, which take long if times are ranges.
 pub fn judge_without_remedies(text: &str, _: &mut Vec<f64>) -> PageResult {
-    judged(text, |file| verdict::judge_without_remedies(&file.name, &file.scene, &file.steps()))
+    judged(text, |file| {
+        verdict::judge_without_remedies(&file.name, &file.scene, &file.steps()).with_supply_of(file)
+    })
 }
 
 fn judged(text: &str, report: impl FnOnce(&SceneFile) -> VerdictReport) -> PageResult {

@@ -178,6 +178,15 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_file_is_written_with_its_supply() {
+        for supply in ["sinks = true\n", &stores(24.0, 1e-3)] {
+            let file = scene("", SPRING, supply);
+            let text = file::write::toml(&file);
+            assert_eq!(parse("a.toml", file::Format::Toml, &text).unwrap(), file, "{text}");
+        }
+    }
+
     /// Without a spring that ends the push, nothing is known.
     #[test]
     fn an_environment_without_a_known_end_of_the_push_is_not_certified_for_a_supply() {

@@ -209,12 +209,7 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -
 
 /// Judges the scene of a file as a number format rounds its coefficients, and the supply that the file states.
 pub fn judge_file(file: &SceneFile, format: Format) -> VerdictReport {
-    let mut report = judge_in(&file.name, &file.scene, format, &file.steps());
-    report.supply = regeneration::judge(file);
-    if report.supply.as_ref().is_some_and(|supply| !supply.sinks) {
-        report.assumptions.push(regeneration::ASSUMPTION.to_owned());
-    }
-    report
+    judge_in(&file.name, &file.scene, format, &file.steps()).with_supply_of(file)
 }
 
 /// The same without the search for remedies, which takes many times as long where times are known to lie in
@@ -288,6 +283,16 @@ fn in_sentences(remedies: &Remedies) -> Vec<String> {
 }
 
 impl VerdictReport {
+    /// With the answer for the supply that the file states, if it states one.
+    #[must_use]
+    pub fn with_supply_of(mut self, file: &SceneFile) -> Self {
+        self.supply = regeneration::judge(file);
+        if self.supply.as_ref().is_some_and(|supply| !supply.sinks) {
+            self.assumptions.push(regeneration::ASSUMPTION.to_owned());
+        }
+        self
+    }
+
     /// Whether the scene is certified, and the supply, where one is stated, bears its energy.
     pub fn passes(&self) -> bool {
         let bears = self.supply.as_ref().is_none_or(|supply| supply.stays_below == Some(true));
