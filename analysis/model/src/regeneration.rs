@@ -34,7 +34,7 @@ pub struct SupplyReport {
 pub const ASSUMPTION: &str = "supply: a hand pushes in one direction, no farther than where the scene at rest has \
                               its torque limit, over one period of a torque profile or its range, and lets go; \
                               a hand that goes on turning against the torque feeds the supply for as long, \
-                              which only one that sinks bears";
+                              which only a sinking supply bears";
 
 /// The answer for the supply of a scene file; `None` if the file states none.
 pub fn judge(file: &SceneFile) -> Option<SupplyReport> {

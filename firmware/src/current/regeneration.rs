@@ -31,7 +31,7 @@ pub struct Push {
     /// Damping in N m s/rad that is injected.
     pub injected: f64,
     /// Energy in J that the motor's winding stores at full-scale current, and a flexible device at the torque
-    /// limit; zero of what is not known.
+    /// limit; zero if not known.
     pub stored: f64,
 }
 
@@ -215,7 +215,7 @@ impl Bus {
             }
             step += 1;
         }
-        // What is stored is that of the larger torque.
+        // The stored energy is that of the larger torque.
         least * (1.0 - MARGIN)
     }
 

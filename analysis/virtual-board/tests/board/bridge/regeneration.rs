@@ -78,7 +78,7 @@ const DEEPER: f64 = 1.3;
 
 /// The highest voltage of a supply, and the fault, in a push.
 fn pushed(supply: Supply) -> (f64, Option<&'static str>) {
-    // Of equation 62, what is pushed is the torque limit over the depth.
+    // Of equation 62, the pushed energy is the torque limit over the depth.
     let limit = SCENE.torque_limit.expect("the scene has a limit");
     let mut bench: Bench = boot(Pushed::to(DEEPER * energy().pushed / limit));
     circuit(&mut bench).supply = supply;
