@@ -113,7 +113,7 @@ FIELDS = {
         ("scene", SCENE),
         ("transducers", [("counts_per_turn", "f64"), ("counter", ("enum", [("32", []), ("16", [])])),
                          ("full_scale_torque", "f64"), ("largest_speed", "f64")]),
-        ("rendering", [("fade", "f64"), ("injection", ("option", "f64"))]),
+        ("rendering", [("fade", "f64"), ("injection", ("option", "f64")), ("returned", ("option", "f64"))]),
         ("format", ("enum", [("f32", []), ("f64", []), ("fixed", [("fraction_bits", "u")]),
                              ("truncated", [("fraction_bits", "u")])])),
         ("timing", ("enum", [("simultaneous", []), ("latched", []),

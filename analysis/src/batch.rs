@@ -166,5 +166,5 @@ fn judge(
     let text = file::text_of(file, number, bytes)?;
     let scene = file::parse_at(file, number, file::Format::Json, text)?;
     number::fits(&scene.scene, format)?;
-    Ok(verdict::judge_in(&scene.name, &scene.scene, format, &scene.steps()))
+    Ok(verdict::judge_file(&scene, format))
 }

@@ -213,7 +213,7 @@ mod tests {
             inductance: 0.12e-3,
             torque_constant: 0.29,
         };
-        let supply = Supply { lowest: 23.5, highest: 25.2 };
+        let supply = Supply::sinking(23.5, 25.2);
         let drive = Drive { motor, supply, bandwidth: 2000.0, largest_temperature: 80.0 };
         CurrentLoop::design(&drive, &B_G431B_ESC1, &TRANSDUCERS, PERIOD).unwrap()
     }

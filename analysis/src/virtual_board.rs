@@ -8,7 +8,7 @@ use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-use haptic_servo::current::{Drive, Motor, Winding};
+use haptic_servo::current::{Drive, Motor, Regeneration, Winding};
 use haptic_servo::dac::DacCode;
 use haptic_servo::servo::RenderingOptions;
 use haptic_servo::wire::message::{LONGEST_TO_BOARD, ToBoard};
@@ -115,17 +115,20 @@ pub fn fading_samples(period: f64) -> usize {
     (RenderingOptions::DEFAULT.fade / period).ceil() as usize + 2
 }
 
-/// A drive as the virtual board reads it: its supply in the middle of the range.
-fn words(drive: &Drive) -> [String; 5] {
+/// A drive as the virtual board reads it. Its supply takes energy back only if the drive says so.
+fn words(drive: &Drive) -> [String; 6] {
     let Motor { winding, resistance, inductance, torque_constant } = drive.motor;
     let winding = match winding {
         Winding::Brushed => "brushed".to_owned(),
         Winding::Brushless { pole_pairs } => pole_pairs.to_string(),
     };
-    let supply = 0.5 * (drive.supply.lowest + drive.supply.highest);
-    let [resistance, inductance, torque_constant, supply] =
-        [resistance, inductance, torque_constant, supply].map(|number| number.to_string());
-    [winding, resistance, inductance, torque_constant, supply]
+    let numbers = [resistance, inductance, torque_constant, drive.supply.open_voltage()];
+    let [resistance, inductance, torque_constant, supply] = numbers.map(|it| it.to_string());
+    let capacitance = match drive.supply.regeneration {
+        Regeneration::Sinks => "sinks".to_owned(),
+        Regeneration::Stores { capacitance, .. } => capacitance.to_string(),
+    };
+    [winding, resistance, inductance, torque_constant, supply, capacitance]
 }
 
 /// A running board.
@@ -361,5 +364,29 @@ impl RemoteServo for VirtualBoard {
     fn exchange(&mut self, raw: i32) -> Result<u16, VirtualBoardError> {
         self.answer(raw, &[])?;
         Ok(self.sample()?.applied_code())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use haptic_servo::current::Supply;
+
+    use super::*;
+
+    /// A supply sinks only if the drive says so.
+    #[test]
+    fn the_words_have_the_drive_s_supply() {
+        let motor = Motor {
+            winding: Winding::Brushed,
+            resistance: 0.6,
+            inductance: 1.2e-4,
+            torque_constant: 0.29,
+        };
+        let supply = Supply::sinking(23.0, 25.0);
+        let drive = Drive { motor, supply, bandwidth: 1e3, largest_temperature: 80.0 };
+        assert_eq!(words(&drive), ["brushed", "0.6", "0.00012", "0.29", "24", "sinks"]);
+        let regeneration = Regeneration::Stores { voltage: 23.5, capacitance: 0.01 };
+        let drive = Drive { supply: Supply { regeneration, ..supply }, ..drive };
+        assert_eq!(words(&drive)[4..], ["23.5", "0.01"]);
     }
 }

@@ -86,6 +86,13 @@ pub enum BuildError {
         /// Its upper bound in N m s/rad.
         room: f64,
     },
+    /// A push into the scene returns more energy to the supply than it takes.
+    Returned {
+        /// The energy in J; infinite if no bound is known.
+        energy: f64,
+        /// The largest energy in J that the supply takes below its fault level.
+        largest: f64,
+    },
     /// The encoder's counter could wrap undetected at the largest speed.
     Speed {
         /// Counts between two ticks at the largest speed.
@@ -236,6 +243,16 @@ impl BuildError {
                 );
                 t.push_number(*room);
                 t.push(" N m s/rad: inject less, or make the scene softer");
+            }
+            Self::Returned { energy, largest } => {
+                t.push("a hand that pushes and lets go returns up to ");
+                t.push_number(*energy);
+                t.push(" J to the supply, which takes less than ");
+                t.push_number(*largest);
+                t.push(
+                    " J below its fault level: make the wall stiffer or its torque limit lower, or state a \
+                     supply that takes more in the program",
+                );
             }
             Self::Speed { counts, half } => {
                 t.push("at the largest speed the encoder may move by ");

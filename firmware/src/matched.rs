@@ -147,12 +147,20 @@ impl MatchedCoupling {
         }
     }
 
-    /// Sum of the magnitudes of all compliances: the largest deflection in rad for torques of up to 1 N m
-    /// each.
-    pub(crate) fn largest_deflection(&self) -> f64 {
-        let lasts = |trail: &Trail| trail.gain.abs() / (1.0 - trail.decay);
-        let held = self.held * self.whole as f64 + self.arriving.abs();
-        self.compliance + held + self.trails.iter().map(lasts).sum::<f64>()
+    /// Sum of the magnitudes of all compliances in rad/(N m): the largest deflection for torques of up to 1 N m
+    /// each, which is that of a torque that stays.
+    pub(crate) const fn compliance_at_rest(&self) -> Interval {
+        let held = Interval::exact(self.held).mul(Interval::exact(self.whole as f64));
+        let mut sum = Interval::exact(self.compliance).add(held);
+        sum = sum.add(Interval::exact(self.arriving).abs());
+        let mut i = 0;
+        while i < TRAILS {
+            let Trail { gain, decay } = self.trails[i];
+            let lasts = Interval::ONE.sub(Interval::exact(decay));
+            sum = sum.add(Interval::exact(gain).abs().div(lasts));
+            i += 1;
+        }
+        sum
     }
 
     /// Sum over the taps of `(2 m + 1)` times the rounding error, except the first. Where the window is around

@@ -2,7 +2,7 @@
 
 use haptic_model::file::SceneFile;
 use haptic_model::remedy_change::{RemedyChange, remedy_changes};
-use haptic_model::verdict::{self, VerdictReport, judge_in};
+use haptic_model::verdict::{self, VerdictReport, judge_file};
 use haptic_model::verdict_text::rows;
 use haptic_servo::number::Format;
 use serde::Serialize;
@@ -39,7 +39,9 @@ pub fn judge(text: &str, _: &mut Vec<f64>) -> PageResult {
 
 /// The same without remedies, which take long if times are ranges.
 pub fn judge_without_remedies(text: &str, _: &mut Vec<f64>) -> PageResult {
-    judged(text, |file| verdict::judge_without_remedies(&file.name, &file.scene, &file.steps()))
+    judged(text, |file| {
+        verdict::judge_without_remedies(&file.name, &file.scene, &file.steps()).with_supply_of(file)
+    })
 }
 
 fn judged(text: &str, report: impl FnOnce(&SceneFile) -> VerdictReport) -> PageResult {
@@ -53,7 +55,7 @@ fn judged(text: &str, report: impl FnOnce(&SceneFile) -> VerdictReport) -> PageR
 }
 
 fn report(file: &SceneFile) -> VerdictReport {
-    judge_in(&file.name, &file.scene, Format::F64, &file.steps())
+    judge_file(file, Format::F64)
 }
 
 /// As JSON.

@@ -76,7 +76,11 @@ impl Bench {
         let program = Program {
             scene: scene(22.0),
             transducers: TRANSDUCERS,
-            rendering: RenderingOptions { fade: 0.02, injection: None },
+            rendering: RenderingOptions {
+                fade: 0.02,
+                injection: None,
+                ..RenderingOptions::DEFAULT
+            },
             options: servo_loop::Options::DEFAULT,
         };
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();

@@ -55,6 +55,7 @@ pub mod limits;
 pub mod nyquist;
 pub mod open_loop;
 pub mod profile_curve;
+pub mod regeneration;
 pub mod remedy_change;
 pub mod response;
 pub mod simulation;

@@ -12,8 +12,10 @@ use haptic_servo::scene::{Coupling, Scene};
 use haptic_servo::servo::OutputTiming;
 use serde::Serialize;
 
+use crate::file::SceneFile;
 use crate::line_search::minimizing_angle;
 use crate::quantity::significant;
+use crate::regeneration::{self, SupplyReport};
 use crate::response::Response;
 
 /// The answer to "is this scene safe".
@@ -171,6 +173,9 @@ pub struct VerdictReport {
     /// Why no board renders a scene that is certified; `None` where one does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub board: Option<String>,
+    /// Whether the bridge's supply stays below its fault level; only of a file that states a supply.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub supply: Option<SupplyReport>,
     /// The assumptions of the verdict.
     pub assumptions: Vec<String>,
     /// The assumptions that do not hold.
@@ -200,6 +205,11 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -
         Err(rejection) => (assess_in(scene, format), Some(rejection)),
     };
     reported(name, scene, format, steps, &assessment, rejection)
+}
+
+/// Judges the scene of a file as a number format rounds its coefficients, and the supply that the file states.
+pub fn judge_file(file: &SceneFile, format: Format) -> VerdictReport {
+    judge_in(&file.name, &file.scene, format, &file.steps()).with_supply_of(file)
 }
 
 /// The same without the search for remedies, which takes many times as long where times are known to lie in
@@ -257,6 +267,7 @@ fn reported(
             .ok()
             .and_then(|()| assessment.renders_at(scene, timing_on_a_board(scene)).err())
             .map(|error| error.to_string()),
+        supply: None,
         warnings: failing.map(ToString::to_string).collect(),
         assumptions: assumptions.iter().map(ToString::to_string).collect(),
         message,
@@ -272,6 +283,22 @@ fn in_sentences(remedies: &Remedies) -> Vec<String> {
 }
 
 impl VerdictReport {
+    /// With the answer for the supply that the file states, if it states one.
+    #[must_use]
+    pub fn with_supply_of(mut self, file: &SceneFile) -> Self {
+        self.supply = regeneration::judge(file);
+        if self.supply.as_ref().is_some_and(|supply| !supply.sinks) {
+            self.assumptions.push(regeneration::ASSUMPTION.to_owned());
+        }
+        self
+    }
+
+    /// Whether the scene is certified, and the supply, where one is stated, bears its energy.
+    pub fn passes(&self) -> bool {
+        let bears = self.supply.as_ref().is_none_or(|supply| supply.stays_below == Some(true));
+        self.verdict == Verdict::Certified && bears
+    }
+
     /// The margin in words; `None` if it does not exist.
     pub fn margin_in_words(&self) -> Option<String> {
         Some(in_words(self.margin?, self.is_margin_known))

@@ -45,6 +45,7 @@ pub fn rows(report: &VerdictReport) -> Vec<(&'static str, String)> {
     rows.extend(report.format.clone().map(|format| ("rounded to", format)));
     rows.extend(report.board.clone().map(|why| ("not on a board", why)));
     list(&mut rows, "remedies", &report.remedies);
+    rows.extend(report.supply.iter().map(|supply| ("supply", supply.message.clone())));
     list(&mut rows, "WARNING", &report.warnings);
     let holding = report.assumptions.iter().filter(|one| !report.warnings.contains(one));
     list(&mut rows, "assumes", &holding.cloned().collect::<Vec<_>>());

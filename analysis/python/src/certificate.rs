@@ -2,7 +2,7 @@
 
 use haptic_model::file::Purpose;
 use haptic_model::number;
-use haptic_model::verdict::judge_in;
+use haptic_model::verdict::judge_file;
 use haptic_servo::certificate::assess_in;
 use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
@@ -79,5 +79,5 @@ pub fn format_of(name: &str) -> Result<Format, Refusal> {
 fn verdict(scene: &Source, format: Format) -> Result<String, Refusal> {
     let file = scene.read(Purpose::Certify)?;
     number::fits(&file.scene, format)?;
-    Ok(serde_json::to_string(&judge_in(&file.name, &file.scene, format, &file.steps()))?)
+    Ok(serde_json::to_string(&judge_file(&file, format))?)
 }

@@ -1,4 +1,5 @@
-//! `haptic certify`: whether a scene is passive in every hand, and with what margin.
+//! `haptic certify`: whether a scene is passive in every hand, with what margin, and whether its supply bears the
+//! energy that a hand returns.
 
 use std::io;
 
@@ -9,7 +10,6 @@ use super::status::{CommandError, CommandStatus};
 use crate::batch;
 use crate::terminal;
 use crate::text_width;
-use crate::verdict::Verdict;
 use crate::verdict_text::text;
 
 /// Arguments of `haptic certify`.
@@ -41,11 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let report = arguments.arithmetic.judge(&arguments.scene.load()?)?;
     let width = terminal::output_width();
     arguments.answer.print(&report, |report| text_width::wrapped(&text(report), width, VALUES))?;
-    Ok(if report.verdict == Verdict::Certified {
-        CommandStatus::Success
-    } else {
-        CommandStatus::NegativeVerdict
-    })
+    Ok(if report.passes() { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
 /// Column at which values begin.

@@ -18,7 +18,6 @@ use crate::stability_map::MapError;
 use crate::terminal;
 use crate::text_width;
 use crate::trace::Trace;
-use crate::verdict::Verdict;
 
 /// Arguments of `haptic report`.
 #[derive(Debug, Args)]
@@ -89,11 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let said = format!("{}: {}\n", arguments.output.display(), report.message);
     let said = text_width::wrapped(&said, terminal::output_width(), 0);
     io::stdout().lock().write_all(said.as_bytes())?;
-    Ok(if report.verdict == Verdict::Certified {
-        CommandStatus::Success
-    } else {
-        CommandStatus::NegativeVerdict
-    })
+    Ok(if report.passes() { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
 fn missing(why: &str) -> Figure {

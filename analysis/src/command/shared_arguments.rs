@@ -13,7 +13,7 @@ use crate::file::{self, Purpose, SceneFile};
 use crate::number;
 use crate::simulation::Integration;
 use crate::simulation::method::Method;
-use crate::verdict::{VerdictReport, judge_in};
+use crate::verdict::{VerdictReport, judge_file};
 
 /// The scene of a command.
 #[derive(Debug, Args)]
@@ -77,7 +77,7 @@ impl CoefficientFormat {
     /// The verdict on a file's scene.
     pub fn judge(&self, file: &SceneFile) -> Result<VerdictReport, CommandError> {
         number::fits(&file.scene, self.format)?;
-        Ok(judge_in(&file.name, &file.scene, self.format, &file.steps()))
+        Ok(judge_file(file, self.format))
     }
 }
 

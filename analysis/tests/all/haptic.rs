@@ -29,6 +29,35 @@ fn yes_no_and_a_bad_question_have_their_exit_status() {
     assert_eq!(haptic(&["conjure"], b"").status.code(), Some(2));
 }
 
+/// A supply that takes nothing back and rises to its fault level is a negative verdict, with what would be enough.
+#[test]
+fn a_supply_that_rises_too_far_has_its_exit_status() {
+    let supply = |capacitance: &str| {
+        let scene = WALL.strip_suffix('}').expect("an object");
+        format!(
+            r#"{scene}, "limits": {{"torque": 1}}, "supply": {{"voltage": 24, "fault_voltage": 25.2,
+            "capacitance": {capacitance}, "largest_speed": 25}}}}"#
+        )
+    };
+    for (capacitance, status, stays) in [("1e-3", Some(1), false), ("1e-2", Some(0), true)] {
+        let text = supply(capacitance);
+        let output = haptic(&["certify", "--json", "-"], text.as_bytes());
+        assert_eq!(output.status.code(), status);
+        let report = &lines(&output)[0];
+        assert_eq!(report["verdict"], "certified");
+        assert_eq!(report["supply"]["stays_below"], stays, "{report}");
+    }
+    let output = haptic(&["certify", "-"], supply("1e-3").as_bytes());
+    let said = String::from_utf8(output.stdout).unwrap();
+    for part in
+        ["take at least", "a supply of at most", "a torque limit of at most", "brake resistor"]
+    {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let said = complaint(haptic(&["certify", "-"], supply("-1.0").as_bytes()));
+    assert!(said.contains("`supply.capacitance` = -1.0 is out of bounds"), "{said}");
+}
+
 /// The program with a standard output that takes nothing, opened by a shell.
 fn status_into(output: &str, arguments: &[&str]) -> Option<i32> {
     let words = format!("exec \"$@\" {output}");

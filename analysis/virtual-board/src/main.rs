@@ -1,7 +1,8 @@
 //! A virtual board for another program, in lockstep with the process at standard input and output:
 //! `virtual-board BOARD PROGRAM.elf` for a program that drives a DAC, and with a motor behind it,
-//! `WINDING RESISTANCE INDUCTANCE TORQUE_CONSTANT SUPPLY`, for a program that drives the board's own bridge:
-//! `brushed` or the number of pole pairs, ohm, H, N m/A, V.
+//! `WINDING RESISTANCE INDUCTANCE TORQUE_CONSTANT SUPPLY CAPACITANCE`, for a program that drives the board's
+//! own bridge: `brushed` or the number of pole pairs, ohm, H, N m/A, V, and F or `sinks` for a supply that takes
+//! energy back.
 //!
 //! All numbers are little-endian. At the end of each sample the board writes the sample, and waits for the
 //! reply:
@@ -87,8 +88,8 @@ fn run() -> Result<(), Failure> {
 /// Connects a motor to the bridge; returns the addresses of the program's state.
 fn wire(machine: &mut Machine, motor: &[String]) -> Result<BridgeMemory, Failure> {
     let Ok(words) = motor.try_into() else {
-        let wanted = "WINDING RESISTANCE INDUCTANCE TORQUE_CONSTANT SUPPLY";
-        return Err(format!("a motor has five words, {wanted}, and not {}", motor.len()).into());
+        let wanted = "WINDING RESISTANCE INDUCTANCE TORQUE_CONSTANT SUPPLY CAPACITANCE";
+        return Err(format!("a motor has six words, {wanted}, and not {}", motor.len()).into());
     };
     let (motor, supply) = wired_motor::parse(words)?;
     let board = machine.board_mut();

@@ -70,7 +70,7 @@ fn program<E>(environment: E, torque_limit: Option<f64>) -> Program<E> {
             torque_limit,
         },
         transducers: TRANSDUCERS,
-        rendering: RenderingOptions { fade: 0.004, injection: None },
+        rendering: RenderingOptions { fade: 0.004, injection: None, ..RenderingOptions::DEFAULT },
         options: Options::DEFAULT,
     }
 }

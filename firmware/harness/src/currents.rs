@@ -2,7 +2,7 @@
 
 use haptic_servo::current::{
     CurrentController, CurrentLoop, Drive, Motor, PhaseAlignment, PowerStage, Sample, Supply,
-    Thermistor, TripRange, Winding,
+    SupplyRange, Thermistor, TripRange, Winding,
 };
 use haptic_servo::encoder::{CounterWidth, RawCount};
 use haptic_servo::servo::Transducers;
@@ -21,6 +21,7 @@ const STAGE: PowerStage = PowerStage {
     amps_per_count: 0.03,
     current_lowers_count: true,
     volts_per_count: 0.0084,
+    volts_tolerance: 0.02,
     largest_current: 40.0,
     offset_counts: (2390, 2716),
     continuous_current: 40.0,
@@ -28,7 +29,7 @@ const STAGE: PowerStage = PowerStage {
     trip_range: TripRange { lowest: 140, highest: 180, amps_per_code: 0.5 },
     trip_margin: 8.0,
     charging: 10e-3,
-    supply: Supply { lowest: 10.0, highest: 34.0 },
+    supply: SupplyRange { lowest: 10.0, highest: 34.0 },
     dead_time: 0.2e-6,
     shortest_low: 1.5e-6,
     thermistor: Thermistor { resistance: 10e3, beta: 3380.0, to_ground: 4.7e3 },
@@ -43,7 +44,7 @@ const TRANSDUCERS: Transducers = Transducers {
 
 const fn design(winding: Winding) -> CurrentLoop {
     let motor = Motor { winding, resistance: 0.3, inductance: 0.15e-3, torque_constant: 0.05 };
-    let supply = Supply { lowest: 22.0, highest: 26.0 };
+    let supply = Supply::sinking(22.0, 26.0);
     let drive = Drive { motor, supply, bandwidth: 1000.0, largest_temperature: 90.0 };
     CurrentLoop::checked(&drive, &STAGE, &TRANSDUCERS, 1e-3)
 }

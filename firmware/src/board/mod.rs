@@ -104,7 +104,10 @@ macro_rules! scene_program {
         pub const PROGRAM: $crate::boot::Program<$environment> = $crate::boot::Program {
             scene: *$certified.scene(),
             transducers: $transducers,
-            rendering: $crate::or_default!($crate::servo::RenderingOptions $(, $rendering)?),
+            rendering: $crate::servo::RenderingOptions {
+                $(returned: $current_loop.returned(),)?
+                ..$crate::or_default!($crate::servo::RenderingOptions $(, $rendering)?)
+            },
             options: $crate::or_default!($crate::servo_loop::Options $(, $options)?),
         };
 
@@ -129,7 +132,7 @@ macro_rules! scene_program {
         $(const _: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
             CERTIFIED_AS_IT_RUNS.timing_checked::<$mode>();)?
 
-        $crate::bridge_checked!([$($current_loop)?] [$($mode)?] $scene, $transducers);
+        $crate::bridge_checked!([$($current_loop)?] [$($mode)?] $scene, $certified, $transducers);
 
         /// The current loop of the board's bridge; `None` with a DAC and an external amplifier.
         #[cfg(not(target_os = "none"))]
@@ -177,21 +180,30 @@ macro_rules! scene_program {
     };
 }
 
-/// The current loop of a program, where it has one, is that of its scene, its transducers and its output.
+/// The current loop of a program, where it has one, is that of its scene, its transducers and its output, and
+/// its supply bears the energy that the scene returns.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! bridge_checked {
-    ([] $mode:tt $scene:ident, $transducers:ident) => {};
-    ([$current_loop:ident] [] $scene:ident, $transducers:ident) => {
-        $crate::bridge_checked!([$current_loop] [$crate::servo::Latched] $scene, $transducers);
+    ([] $mode:tt $scene:ident, $certified:ident, $transducers:ident) => {};
+    ([$current_loop:ident] [] $scene:ident, $certified:ident, $transducers:ident) => {
+        $crate::bridge_checked!(
+            [$current_loop] [$crate::servo::Latched] $scene, $certified, $transducers
+        );
     };
-    ([$current_loop:ident] [$mode:ty] $scene:ident, $transducers:ident) => {
+    ([$current_loop:ident] [$mode:ty] $scene:ident, $certified:ident, $transducers:ident) => {
         const _: () = $current_loop.check_serves(
             &$scene.latency,
             $scene.timing.period,
             &$transducers,
             &$scene.device,
             <$mode as $crate::servo::OutputMode>::TIMING,
+        );
+
+        const _: () = $current_loop.check_regeneration(
+            $certified.as_data(),
+            &$transducers,
+            PROGRAM.rendering.injection,
         );
     };
 }

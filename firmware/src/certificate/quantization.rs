@@ -248,7 +248,7 @@ fn peak(scene: &Scene, format: Format) -> Option<Peak> {
 /// Largest deflection of the coupling in rad for torques of up to 1 N m each.
 fn compliance(scene: &Scene, format: Format) -> f64 {
     let n = LoopIntervals::of(scene, format);
-    matched(&n).map_or_else(|| n.compliance.hi(), |coupling| coupling.largest_deflection())
+    matched(&n).map_or_else(|| n.compliance.hi(), |coupling| coupling.compliance_at_rest().hi())
 }
 
 /// The matched coupling, if the scene has one.

@@ -4,11 +4,12 @@ use super::encoder_index::EncoderIndex;
 use super::error::DriveError;
 use super::heating::{HeatLimit, Heating, TIME};
 use super::motion::TorqueSource;
-use super::motor::{Drive, Winding};
+use super::motor::{Drive, Regeneration, Winding};
 use super::offset_check::OffsetCheck;
 use super::phase::Turn;
 use super::plant::{Plant, lag_of};
 use super::power_stage::PowerStage;
+use super::regeneration::Bus;
 use super::resolution::{CurrentResolution, Quanta};
 use super::sample::Duties;
 use super::thermistor::{Thermistor, ThermistorTable};
@@ -87,6 +88,8 @@ pub struct CurrentLoop {
     response: TorqueResponse,
     resolution: CurrentResolution,
     torque_source: TorqueSource,
+    /// `None` for a supply that takes energy back.
+    pub(super) bus: Option<Bus>,
     /// Not in the program of a board, which does not use it: each controller has a copy of this structure.
     #[cfg(not(target_os = "none"))]
     drive: Drive,
@@ -431,7 +434,12 @@ impl<'a> Design<'a> {
         let (supply, board) = (self.drive.supply, self.stage.supply);
         let is_ordered = supply.lowest <= supply.highest;
         if !is_ordered || supply.lowest < board.lowest || supply.highest > board.highest {
-            return Err(DriveError::Supply { supply, board });
+            return Err(DriveError::Supply { supply: supply.range(), board });
+        }
+        if let Regeneration::Stores { voltage, .. } = supply.regeneration
+            && !(voltage >= supply.lowest && voltage <= supply.highest)
+        {
+            return Err(DriveError::OpenVoltage { voltage, supply: supply.range() });
         }
         let (needed, part) = (self.needed_voltage(), self.part_of_supply());
         let available = supply.lowest * part;
@@ -507,9 +515,21 @@ impl<'a> Design<'a> {
             },
             resolution,
             torque_source: TorqueSource::of(&drive.motor, &self.plant, self.instant, &resolution),
+            bus: self.bus(),
             #[cfg(not(target_os = "none"))]
             drive: *drive,
         }
+    }
+
+    /// The capacitance at the bridge, up to the lowest voltage that may be measured as too high.
+    const fn bus(&self) -> Option<Bus> {
+        let Regeneration::Stores { voltage, capacitance } = self.drive.supply.regeneration else {
+            return None;
+        };
+        let counts = self.limits().bus.1 as f64;
+        let measured = Interval::exact(counts).mul(Interval::decimal(self.stage.volts_per_count));
+        let largest = Interval::ONE.add(Interval::decimal(self.stage.volts_tolerance));
+        Some(Bus { voltage, capacitance, fault_level: measured.div(largest).lo() })
     }
 
     const fn heat_limit(&self) -> Option<HeatLimit> {
@@ -616,7 +636,12 @@ const fn check_positive(drive: &Drive, transducers: &Transducers) -> Result<(), 
         }
         i += 1;
     }
-    Ok(())
+    match drive.supply.regeneration {
+        Regeneration::Stores { capacitance, .. } => {
+            DriveError::unless_positive("supply's capacitance", capacitance)
+        }
+        Regeneration::Sinks => Ok(()),
+    }
 }
 
 /// A positive number, rounded up to a whole number.

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::motor::Supply;
+use super::motor::SupplyRange;
 use crate::text::Text;
 
 /// The reason why there is no current loop, with the value and its bound.
@@ -82,9 +82,16 @@ pub enum DriveError {
     /// The supply is outside the board's range.
     Supply {
         /// The drive's.
-        supply: Supply,
+        supply: SupplyRange,
         /// The board's.
-        board: Supply,
+        board: SupplyRange,
+    },
+    /// The voltage that the supply itself delivers is not within its range.
+    OpenVoltage {
+        /// The voltage in V.
+        voltage: f64,
+        /// The range.
+        supply: SupplyRange,
     },
     /// The voltage is insufficient for the largest step at the largest speed.
     Voltage {
@@ -208,6 +215,15 @@ impl DriveError {
                 t.push_number(board.lowest);
                 t.push(" to ");
                 t.push_number(board.highest);
+                t.push(" V");
+            }
+            Self::OpenVoltage { voltage, supply } => {
+                t.push("the supply itself delivers up to ");
+                t.push_number(*voltage);
+                t.push(" V, which must be between its lowest and its highest voltage, ");
+                t.push_number(supply.lowest);
+                t.push(" and ");
+                t.push_number(supply.highest);
                 t.push(" V");
             }
             Self::Voltage { needed, available, enough } => {

@@ -37,13 +37,58 @@ impl Motor {
     }
 }
 
-/// The range of a supply's voltage in V, under load and when the motor feeds it.
+/// A range of a supply's voltage in V.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Supply {
+pub struct SupplyRange {
     /// The lowest.
     pub lowest: f64,
     /// The highest.
     pub highest: f64,
+}
+
+/// A supply: the range of its voltage in V, and what becomes of the energy that the motor returns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Supply {
+    /// The lowest voltage, under load.
+    pub lowest: f64,
+    /// The highest voltage, when the motor feeds it: above this, over-voltage is a fault.
+    pub highest: f64,
+    /// What becomes of the energy that the motor returns.
+    pub regeneration: Regeneration,
+}
+
+/// What becomes of the energy that a motor returns to its supply.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Regeneration {
+    /// The supply takes it and keeps its voltage: a battery, or a brake resistor with its own switch.
+    Sinks,
+    /// The supply takes nothing: the energy stays in the capacitance at the bridge, and its voltage rises.
+    Stores {
+        /// The highest voltage in V that the supply itself delivers, with its tolerance.
+        voltage: f64,
+        /// The least capacitance in F, with its tolerance and at the end of its life.
+        capacitance: f64,
+    },
+}
+
+impl Supply {
+    /// A supply that takes energy back, with this lowest and highest voltage in V.
+    pub const fn sinking(lowest: f64, highest: f64) -> Self {
+        Self { lowest, highest, regeneration: Regeneration::Sinks }
+    }
+
+    /// The range of its voltage.
+    pub const fn range(&self) -> SupplyRange {
+        SupplyRange { lowest: self.lowest, highest: self.highest }
+    }
+
+    /// Voltage in V while the motor returns nothing: the supply's own, or the middle of its range.
+    pub const fn open_voltage(&self) -> f64 {
+        match self.regeneration {
+            Regeneration::Sinks => 0.5 * (self.lowest + self.highest),
+            Regeneration::Stores { voltage, .. } => voltage,
+        }
+    }
 }
 
 /// The motor at a power stage, and the required speed of the current loop.

@@ -1,7 +1,7 @@
 //! The power stage of a board, from its data sheets and its schematic.
 
 use super::current_sense::CurrentSense;
-use super::motor::Supply;
+use super::motor::SupplyRange;
 use super::thermistor::{LARGEST_COUNT, Thermistor};
 use super::trip_search::TripRange;
 
@@ -18,6 +18,8 @@ pub struct PowerStage {
     pub current_lowers_count: bool,
     /// Supply voltage in V of a count of the converter.
     pub volts_per_count: f64,
+    /// Largest relative error of that.
+    pub volts_tolerance: f64,
     /// Largest current in A of a phase that can be measured and that the board tolerates.
     pub largest_current: f64,
     /// Current in A that the board bears for ever without a flow of air; a larger current is for a short time.
@@ -34,7 +36,7 @@ pub struct PowerStage {
     /// high sides' gates.
     pub charging: f64,
     /// The supply range of the board.
-    pub supply: Supply,
+    pub supply: SupplyRange,
     /// Time in s for which both sides of a phase are off at a switching.
     pub dead_time: f64,
     /// Shortest time in s for which each low side must conduct in a period, to sample its current and to
@@ -84,6 +86,8 @@ pub const B_G431B_ESC1: PowerStage = PowerStage {
     current_lowers_count: true,
     // 169 kΩ over 18 kΩ.
     volts_per_count: 3.3 / 4096.0 * (169.0 + 18.0) / 18.0,
+    // Two resistors of 1 % in the divider, from memory, and a little for the converter's reference.
+    volts_tolerance: 0.022,
     // UM2516 tested the board with a peak of 40 A; with the parts at their worst the smaller half of the
     // converters' range ends at 40.5 A; the rest is a margin for a step.
     largest_current: 30.0,
@@ -101,7 +105,7 @@ pub const B_G431B_ESC1: PowerStage = PowerStage {
     charging: 10e-3,
     // Up to a battery of six cells; below 8 to 9 V the gate drivers are outside of their specification, and the
     // under-voltage limit of ST's motor-control configurations is 8 V.
-    supply: Supply { lowest: 9.0, highest: 25.2 },
+    supply: SupplyRange { lowest: 9.0, highest: 25.2 },
     // ST's motor-control configurations have 0.75 us (`SW_DEADTIME_NS`); nobody has measured how much less the
     // switches need. 0.74 us are 126 counts, as long as the timer's register is linear.
     dead_time: 0.74e-6,

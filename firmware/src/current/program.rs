@@ -1,11 +1,12 @@
 //! Checks a current loop against its program.
 
-use super::current_loop::CurrentLoop;
+use super::current_loop::{CurrentLoop, OVER_CURRENT};
 use super::motor::Winding;
+use super::regeneration::{Bus, Push};
 use crate::latency::Latency;
 use crate::output_timing::OutputTiming;
 use crate::passivity::interval::Interval;
-use crate::scene::Device;
+use crate::scene::{Device, Scene};
 use crate::text::Sentence;
 use crate::transducers::Transducers;
 
@@ -97,6 +98,60 @@ impl CurrentLoop {
             i += 1;
         }
         self.check_device(device);
+    }
+
+    /// For constants: checks that the supply of this loop stays below its fault level after a push into a
+    /// scene, with these transducers and this injected damping in N m s/rad (theory, section 17).
+    ///
+    /// # Panics
+    /// If it does not; in a constant this is a compile error with the numbers and the remedies.
+    #[track_caller]
+    pub const fn check_regeneration(
+        &self,
+        scene: &Scene,
+        transducers: &Transducers,
+        injection: Option<f64>,
+    ) {
+        let Some(bus) = self.bus() else { return };
+        if let Err(error) = bus.check(scene, &self.push(scene, transducers, injection)) {
+            error.refuse()
+        }
+    }
+
+    /// The capacitance at the bridge; `None` if its supply takes energy back.
+    pub const fn bus(&self) -> Option<&Bus> {
+        self.bus.as_ref()
+    }
+
+    /// The largest push into a scene.
+    pub const fn push(
+        &self,
+        scene: &Scene,
+        transducers: &Transducers,
+        injection: Option<f64>,
+    ) -> Push {
+        Push::of(scene, transducers, injection, self.winding_energy())
+    }
+
+    /// Largest energy in J that a push may return besides that of the winding, rounded down; `None` if the
+    /// supply takes energy back.
+    pub const fn returned(&self) -> Option<f64> {
+        match self.bus {
+            Some(bus) => {
+                let winding = Interval::exact(self.winding_energy());
+                Some(Interval::exact(bus.room()).sub(winding).lo())
+            }
+            None => None,
+        }
+    }
+
+    /// Energy in J of the winding at the current at which the bridge is switched off, rounded up.
+    const fn winding_energy(&self) -> f64 {
+        let current = Interval::decimal(self.full_scale_current() * OVER_CURRENT);
+        let one = Interval::decimal(self.torque_source().inductance).half();
+        // Of three phases the squares of the currents add up to 3/2 of the amplitude's.
+        let share = Interval::exact(if self.is_brushless() { 1.5 } else { 1.0 });
+        one.mul(share).mul(current).mul(current).hi()
     }
 
     /// Checks that the device's damping covers its passivity and the loss by motion through this loop.

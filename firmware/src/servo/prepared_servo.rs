@@ -24,11 +24,15 @@ pub struct RenderingOptions {
     /// Damping in N m s/rad that is injected while the net energy into the hand is positive; `None`: the
     /// energy is only monitored.
     pub injection: Option<f64>,
+    /// Largest energy in J that a push may return to the supply of a board's own bridge (theory, section 17);
+    /// `None`: the supply takes all of it, or a DAC drives the motor. `scene_program!` takes it from the
+    /// current loop.
+    pub returned: Option<f64>,
 }
 
 impl RenderingOptions {
     /// Fades within a tenth of a second: too slow to feel like a step, and a short wait. Injects no damping.
-    pub const DEFAULT: Self = Self { fade: 0.1, injection: None };
+    pub const DEFAULT: Self = Self { fade: 0.1, injection: None, returned: None };
 }
 
 impl RenderingOptions {

@@ -12,7 +12,9 @@ pub use render_error::RenderError;
 
 use core::fmt;
 
-use crate::certificate::{Parameter, certify_scene, timing_checked};
+use crate::build_error::BuildError;
+use crate::certificate::{Parameter, certify_scene, scene_data, timing_checked};
+use crate::current::{Push, ReturnedEnergy};
 use crate::environment::{Discretize, EnvironmentModel, SupportsTiming};
 use crate::number::Number;
 use crate::output_timing::OutputMode;
@@ -163,12 +165,31 @@ where
 {
     let scene = apply(scene, changes).map_err(|_| Step::Change)?;
     let timed = timing_checked(scene, N::FORMAT)?;
+    check_returned(&scene, transducers, options).map_err(|_| Step::Servo)?;
     let rendering = PreparedServo::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
     Ok(Prepared {
         scene,
         margin: Some(timed.margin_with(options.injection.unwrap_or(0.0))),
         rendering,
     })
+}
+
+/// Whether the program may be for a board's own bridge. The programs of other boards have no code for the energy
+/// that it returns.
+const MAY_HAVE_BRIDGE: bool = cfg!(any(not(target_os = "none"), feature = "bridge"));
+
+/// Checks that the supply takes the energy of a push into the scene.
+#[inline(never)]
+fn check_returned<E: EnvironmentModel>(
+    scene: &Scene<E>,
+    transducers: &Transducers,
+    options: &RenderingOptions,
+) -> Result<(), BuildError> {
+    let Some(largest) = options.returned.filter(|_| MAY_HAVE_BRIDGE) else { return Ok(()) };
+    let push = Push::of(scene, transducers, options.injection, 0.0);
+    let returned = ReturnedEnergy::of(&scene_data(scene), &push);
+    let energy = returned.map_or(f64::INFINITY, |energy| energy.total());
+    if energy < largest { Ok(()) } else { Err(BuildError::Returned { energy, largest }) }
 }
 
 /// The reason why [`prepare`] refuses a changed scene, with remedies. This is too large for a small board;
@@ -187,7 +208,9 @@ where
     N: Number,
     M: OutputMode,
 {
-    let timed = certify_scene(apply(scene, changes)?, N::FORMAT)?.time()?;
+    let changed = apply(scene, changes)?;
+    let timed = certify_scene(changed, N::FORMAT)?.time()?;
+    check_returned(&changed, transducers, options)?;
     PreparedServo::<E, N, M>::build(&timed, transducers, options)?;
     Ok(())
 }

@@ -194,3 +194,26 @@ fn a_set_is_judged_as_a_whole_and_by_the_compilers_own_sentence() {
     );
     assert!(refusal(&[(Parameter::Stiffness, f64::NAN)]).contains("the stiffness is NaN"));
 }
+
+/// A softer wall and a higher limit return more energy to a supply that takes 40 mJ: at the first values
+/// `L^2 (1/22 + 1/44)` = 34 mJ with a limit of 0.7 N m, and 0.11 J of the device at 100 rad/s.
+#[test]
+fn a_change_that_returns_more_than_the_supply_takes_is_refused() {
+    let mut limited = WALL;
+    limited.torque_limit = Some(0.7);
+    let options = |largest| RenderingOptions { returned: largest, ..RenderingOptions::DEFAULT };
+    let prepared = |changes: &[(Parameter, f64)], options| {
+        prepare::<_, f32, Latched>(&limited, changes, &TRANSDUCERS, &options).map(|_| ())
+    };
+    let takes = options(Some(0.11 + 0.040));
+    assert_eq!(prepared(&[], takes), Ok(()));
+    for changes in [[(Parameter::Stiffness, 15.0)], [(Parameter::TorqueLimit, 0.8)]] {
+        assert_eq!(prepared(&changes, takes), Err(Step::Servo));
+        assert_eq!(prepared(&changes, options(None)), Ok(()));
+        let told = explain::<_, f32, Latched>(&limited, &changes, &TRANSDUCERS, &takes);
+        let told = told.unwrap_err().to_string();
+        assert!(told.contains("J to the supply, which takes less than 0.15 J"), "{told}");
+    }
+    let stiffer = [(Parameter::TorqueLimit, 0.75)];
+    assert_eq!(prepared(&stiffer, takes), Ok(()));
+}

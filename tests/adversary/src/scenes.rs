@@ -209,7 +209,11 @@ impl RandomScene {
             other: None,
             judged_as: None,
             transducers,
-            rendering: RenderingOptions { fade: 50.0 * scene.timing.period, injection: None },
+            rendering: RenderingOptions {
+                fade: 50.0 * scene.timing.period,
+                injection: None,
+                ..RenderingOptions::DEFAULT
+            },
             format,
             mode,
             actual: Actual::default(),
@@ -514,7 +518,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         other,
         judged_as,
         transducers,
-        rendering: RenderingOptions { fade, injection: None },
+        rendering: RenderingOptions { fade, injection: None, ..RenderingOptions::DEFAULT },
         format,
         mode,
         actual,

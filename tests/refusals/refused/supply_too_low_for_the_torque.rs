@@ -3,7 +3,7 @@
 use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Supply};
 use refusals::{DRIVE, MOTORISED};
 
-const CHANGED: Drive = Drive { supply: Supply { lowest: 12.0, highest: 25.2 }, ..DRIVE };
+const CHANGED: Drive = Drive { supply: Supply::sinking(12.0, 25.2), ..DRIVE };
 
 const _: CurrentLoop = CurrentLoop::checked(&CHANGED, &B_G431B_ESC1, &MOTORISED, 0.001);
 

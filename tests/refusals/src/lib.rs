@@ -59,7 +59,7 @@ pub const DRIVE: Drive = Drive {
         inductance: 0.12e-3,
         torque_constant: 0.29,
     },
-    supply: Supply { lowest: 23.5, highest: 25.2 },
+    supply: Supply::sinking(23.5, 25.2),
     bandwidth: 2000.0,
     largest_temperature: 80.0,
 };

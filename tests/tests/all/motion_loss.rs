@@ -27,7 +27,7 @@ fn design(ratio: f64, feedback: f64, winding: Winding) -> CurrentLoop {
     };
     let drive = Drive {
         motor,
-        supply: Supply { lowest: 24.0, highest: 25.0 },
+        supply: Supply::sinking(24.0, 25.0),
         bandwidth: -(-feedback).ln_1p() / (TAU * INSTANT),
         largest_temperature: 80.0,
     };

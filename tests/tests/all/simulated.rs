@@ -74,6 +74,7 @@ pub(super) fn drawn(rng: &mut ChaCha8Rng) -> SceneFile {
         encoder_step: None,
         full_scale: None,
         friction: None,
+        supply: None,
         shapes: None,
     }
 }

@@ -26,7 +26,18 @@ fn file(scene: Scene) -> SceneFile {
     let (simulation, hand) = (None, None);
     let (encoder_step, full_scale, friction) = (None, None, None);
     let shapes = None;
-    SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction, shapes }
+    SceneFile {
+        name,
+        scene,
+        chain,
+        simulation,
+        hand,
+        encoder_step,
+        full_scale,
+        friction,
+        supply: None,
+        shapes,
+    }
 }
 
 /// The scene, written to a file and read back.

@@ -38,11 +38,17 @@ pub fn toml(name: &str) -> Option<String> {
     })?;
     let mut lines = vec![format!("name = \"{name} example\"")];
     for table in key::ALL.iter().filter(|key| key.table().is_empty() && **key != &key::NAME) {
-        lines.extend(["".to_owned(), format!("# {}", table.doc), format!("[{}]", table.path)]);
+        // A supply that is stated needs values, and most scenes are not for a bridge.
+        let comment = if *table == &key::SUPPLY { "# " } else { "" };
+        let header = format!("{comment}[{}]", table.path);
+        lines.push("".to_owned());
+        lines.extend(textwrap::wrap(table.doc, WIDTH).iter().map(|line| format!("# {line}")));
+        lines.push(header);
         let keys = || key::ALL.iter().filter(|key| key.table() == table.path).copied();
         match table.path {
             "environment" => environment(&mut lines, kind, name == COMPOSED),
             "device" => device(&mut lines, keys(), is_chain),
+            "supply" => keys().for_each(|key| line(&mut lines, key, key.example, false)),
             _ => keys().for_each(|key| line(&mut lines, key, key.example, is_set(key))),
         }
     }

@@ -534,6 +534,27 @@ keys! {
     /// Torque of the motor at the largest code of the DAC.
     FULL_SCALE = other("limits.full_scale", "N m", POSITIVE),
         Optional("not known: `run` takes the torque limit, or 5 N m"), "2.0";
+
+    /// The supply of a bridge that drives the motor. A hand that pushes into a wall and lets go returns energy
+    /// to it.
+    SUPPLY = other("supply", "", TABLE),
+        Optional("nothing is said of the supply"), "";
+    /// Whether the supply takes energy back and keeps its voltage, as a battery or a brake resistor does. If
+    /// not, the voltages, the capacitance and a torque limit must be there.
+    SINKS = other("supply.sinks", "", Bound::Other(Form::Boolean, "true or false")),
+        Optional("false"), "false";
+    /// Highest voltage that the supply itself delivers, with its tolerance.
+    SUPPLY_VOLTAGE = other("supply.voltage", "V", POSITIVE),
+        Optional("an error where the supply does not sink"), "15.0";
+    /// Lowest voltage at which the bridge may switch itself off, with the error of its measurement.
+    FAULT_VOLTAGE = other("supply.fault_voltage", "V", POSITIVE),
+        Optional("an error where the supply does not sink"), "24.6";
+    /// Least capacitance at the bridge, with its tolerance.
+    CAPACITANCE = other("supply.capacitance", "F", POSITIVE),
+        Optional("an error where the supply does not sink"), "0.001";
+    /// Largest speed of the device, above which the servo has a fault.
+    LARGEST_SPEED = other("supply.largest_speed", "rad/s", POSITIVE),
+        Default(100.0), "25.0";
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@ pub mod scene;
 pub mod schema;
 pub mod shape;
 pub mod simulation;
+pub mod supply;
 pub mod write;
 
 mod faults;

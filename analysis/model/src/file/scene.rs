@@ -13,6 +13,7 @@ use super::kind::{self, Kind};
 use super::profile::{self, ProfileTable, Shapes};
 use super::section::{Found, Section};
 use super::simulation::{self, Simulation};
+use super::supply::{FileSupply, supply};
 use super::tree::{Node, Value};
 use super::updates::Places;
 use crate::chain::Chain;
@@ -38,6 +39,8 @@ pub struct SceneFile {
     pub full_scale: Option<f64>,
     /// Dry friction of the device in N m.
     pub friction: Option<f64>,
+    /// The supply of the bridge that drives the motor.
+    pub supply: Option<FileSupply>,
     /// The shapes that the scene's torque profile was sampled from.
     pub shapes: Option<Shapes>,
 }
@@ -56,8 +59,9 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let name = top.needed_text(&key::NAME);
     let [device, servo, environment] =
         [&key::DEVICE, &key::SERVO, &key::ENVIRONMENT].map(|key| top.needed_table(key));
-    let [coupling, simulation, human, limits] =
-        [&key::COUPLING, &key::SIMULATION, &key::HUMAN, &key::LIMITS].map(|key| top.table(key));
+    let [coupling, simulation, human, limits, supplied] =
+        [&key::COUPLING, &key::SIMULATION, &key::HUMAN, &key::LIMITS, &key::SUPPLY]
+            .map(|key| top.table(key));
     top.finish();
     let device = device.and_then(|table| device::device(table, purpose));
     let servo = servo.and_then(servo_of);
@@ -70,6 +74,9 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         .and_then(|table| table.map(|it| simulation::simulation(it, period, rubs)).transpose());
     let hand = human.and_then(|table| table.map(simulation::hand).transpose());
     let limits = limits.and_then(|table| table.map_or(Ok([None; 3]), limits_of));
+    // If the limits could not be read, there may be a torque limit.
+    let largest = limits.as_ref().map_or(Some(f64::INFINITY), |[torque, _, full]| torque.or(*full));
+    let supply = supplied.and_then(|table| table.map(|it| supply(it, largest)).transpose());
     let (name, table) = (name?.value, device?);
     let [torque_limit, encoder_step, full_scale] = limits?;
     let (servo, coupling, environment) = (servo?, coupling?, environment?);
@@ -84,7 +91,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let DeviceTable { chain, device, friction, .. } = table;
     let timing = servo.timing;
     let scene = Scene { device, timing, coupling, environment, latency, torque_limit };
-    let (simulation, hand) = (simulation?, hand?);
+    let (simulation, hand, supply) = (simulation?, hand?, supply?);
     Ok(SceneFile {
         name,
         scene,
@@ -94,6 +101,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         encoder_step,
         full_scale,
         friction,
+        supply,
         shapes,
     })
 }

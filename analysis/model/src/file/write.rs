@@ -5,6 +5,7 @@ mod shaped;
 
 use std::fmt::Write;
 
+use haptic_servo::current::Bus;
 use haptic_servo::environment::{Coefficients, Composed, Environment};
 use haptic_servo::parameter::{Parameter, Range};
 use haptic_servo::scene::{Coupling, Scene, TimeRange};
@@ -12,6 +13,7 @@ use haptic_servo::scene::{Coupling, Scene, TimeRange};
 use super::key::{self, Bound, Key, Presence};
 use super::kind::Kind;
 use super::scene::SceneFile;
+use super::supply::FileSupply;
 use crate::chain::{Chain, EncoderPlace};
 
 /// The text of a scene file in TOML: all keys of the file, and no others.
@@ -25,6 +27,7 @@ pub fn toml(file: &SceneFile) -> String {
         encoder_step,
         full_scale,
         friction,
+        supply,
         shapes,
     } = file;
     let mut lines = vec![format!("name = {}", quoted(name)), "[device]".to_owned()];
@@ -71,7 +74,28 @@ pub fn toml(file: &SceneFile) -> String {
     for (key, value) in limits {
         number(&mut lines, key, value);
     }
+    if let Some(supply) = supply {
+        lines.push("[supply]".to_owned());
+        supplied(&mut lines, supply);
+    }
     lines.join("\n") + "\n"
+}
+
+fn supplied(lines: &mut Vec<String>, supply: &FileSupply) {
+    match supply {
+        FileSupply::Sinks => lines.push("sinks = true".to_owned()),
+        FileSupply::Stores { bus, largest_speed } => {
+            let Bus { voltage, capacitance, fault_level } = bus;
+            for (key, value) in [
+                ("voltage", voltage),
+                ("fault_voltage", fault_level),
+                ("capacitance", capacitance),
+                ("largest_speed", largest_speed),
+            ] {
+                number(lines, key, Some(*value));
+            }
+        }
+    }
 }
 
 /// An optional key.

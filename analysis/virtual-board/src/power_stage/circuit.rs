@@ -21,9 +21,14 @@ pub struct Supply {
 }
 
 impl Supply {
-    /// A supply that keeps its voltage.
+    /// A supply that takes energy back and keeps its voltage.
     pub fn stiff(volts: f64) -> Self {
         Self { volts, capacitance: None, source: volts }
+    }
+
+    /// A supply that takes nothing back, with this capacitance in F at the bridge.
+    pub fn that_stores(volts: f64, capacitance: f64) -> Self {
+        Self { volts, capacitance: Some(capacitance), source: volts }
     }
 
     fn deliver(&mut self, charge: f64) {

@@ -462,8 +462,7 @@ fn a_motor_turns_and_its_back_emf_limits_the_current() {
 #[test]
 fn braking_lifts_a_supply_that_takes_nothing_back() {
     let mut driver = driving(brushed(), Flywheel::new(5e-5, 0.0));
-    driver.0.power_stage.circuit.supply =
-        Supply { volts: SUPPLY, capacitance: Some(5e-4), source: SUPPLY };
+    driver.0.power_stage.circuit.supply = Supply::that_stores(SUPPLY, 5e-4);
     driver.set_duties([0.75, 0.25, 0.5]);
     driver.periods(8000);
     assert_eq!(driver.0.power_stage.circuit.supply.volts, SUPPLY);

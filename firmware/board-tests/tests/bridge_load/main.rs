@@ -24,7 +24,7 @@ const LOAD: Drive = Drive {
         inductance: 0.1e-3,
         torque_constant: 1.0,
     },
-    supply: Supply { lowest: 11.4, highest: 12.6 },
+    supply: Supply::sinking(11.4, 12.6),
     bandwidth: 500.0,
     largest_temperature: 60.0,
 };

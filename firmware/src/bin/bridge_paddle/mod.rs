@@ -4,7 +4,9 @@
 // A crate that includes several programs has this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]
 
-use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
+use haptic_servo::current::{
+    B_G431B_ESC1, CurrentLoop, Drive, Motor, Regeneration, Supply, Winding,
+};
 use haptic_servo::encoder::CounterWidth;
 use haptic_servo::scene::Device;
 use haptic_servo::servo::Transducers;
@@ -24,7 +26,9 @@ pub const TRANSDUCERS: Transducers = Transducers {
     largest_speed: 25.0,
 };
 
-/// The motor between the outputs U and V, and its supply.
+/// The motor between the outputs U and V, and its supply: set to 24 V at most, it takes no energy back. So near
+/// to the board's highest voltage it needs 10 mF at the bridge; a motor that needs less voltage runs from 12 to
+/// 20 V with a tenth of that.
 pub const DRIVE: Drive = Drive {
     motor: Motor {
         winding: Winding::Brushed,
@@ -32,7 +36,11 @@ pub const DRIVE: Drive = Drive {
         inductance: 0.12e-3,
         torque_constant: 0.29,
     },
-    supply: Supply { lowest: 23.5, highest: 25.2 },
+    supply: Supply {
+        lowest: 23.5,
+        highest: 25.2,
+        regeneration: Regeneration::Stores { voltage: 24.0, capacitance: 10e-3 },
+    },
     bandwidth: 2000.0,
     largest_temperature: 80.0,
 };

@@ -5,7 +5,7 @@
 #![allow(dead_code, clippy::duplicate_mod)]
 
 use haptic_servo::current::{
-    B_G431B_ESC1, CurrentLoop, Drive, EncoderIndex, Motor, Supply, Winding,
+    B_G431B_ESC1, CurrentLoop, Drive, EncoderIndex, Motor, Regeneration, Supply, Winding,
 };
 use haptic_servo::encoder::CounterWidth;
 use haptic_servo::environment::{DamperWall, Matched, OneSided};
@@ -24,7 +24,7 @@ pub const TRANSDUCERS: Transducers = Transducers {
     largest_speed: 60.0,
 };
 
-/// The motor between the outputs U, V and W, in any order, and its supply.
+/// The motor between the outputs U, V and W, in any order, and its supply, which takes no energy back.
 pub const DRIVE: Drive = Drive {
     motor: Motor {
         winding: Winding::Brushless { pole_pairs: 7 },
@@ -32,7 +32,11 @@ pub const DRIVE: Drive = Drive {
         inductance: 0.06e-3,
         torque_constant: 0.05,
     },
-    supply: Supply { lowest: 20.0, highest: 25.2 },
+    supply: Supply {
+        lowest: 20.0,
+        highest: 25.2,
+        regeneration: Regeneration::Stores { voltage: 20.5, capacitance: 1e-3 },
+    },
     bandwidth: 2000.0,
     largest_temperature: 80.0,
 };

@@ -70,12 +70,11 @@ fn refusals_name_the_value_and_its_bound() {
          power stage measures and bears 40 A: lower the full-scale torque"
     );
     assert_eq!(
-        refused(Drive { supply: Supply { lowest: 22.0, highest: 36.0 }, ..DRIVE }),
+        refused(Drive { supply: Supply::sinking(22.0, 36.0), ..DRIVE }),
         "a supply from 22 to 36 V is not in the board's range from 10 to 34 V"
     );
     assert!(
-        refused(Drive { supply: Supply { lowest: 24.0, highest: 22.0 }, ..DRIVE })
-            .starts_with("a supply")
+        refused(Drive { supply: Supply::sinking(24.0, 22.0), ..DRIVE }).starts_with("a supply")
     );
     assert_eq!(
         refused(Drive { largest_temperature: 150.0, ..DRIVE }),
@@ -94,7 +93,7 @@ fn refusals_name_the_value_and_its_bound() {
 
 #[test]
 fn a_supply_that_is_too_low_is_told_what_would_be_enough() {
-    let supply = |lowest| Drive { supply: Supply { lowest, highest: 26.0 }, ..DRIVE };
+    let supply = |lowest| Drive { supply: Supply::sinking(lowest, 26.0), ..DRIVE };
     let at = |lowest| CurrentLoop::design(&supply(lowest), &STAGE, &TRANSDUCERS, PERIOD);
     let Err(DriveError::Voltage { needed, available, enough }) = at(15.0) else { panic!() };
     // Resistance, inductance and back-EMF of the model's first step, from -4 A at a speed of 100 rad/s.

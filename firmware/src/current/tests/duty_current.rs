@@ -42,7 +42,7 @@ fn a_load_takes_the_current_of_its_duty() {
 fn the_instructions_state_the_bounds_of_their_loads() {
     let load = |resistance, lowest, highest| Drive {
         motor: Motor { resistance, ..LOAD.motor },
-        supply: Supply { lowest, highest },
+        supply: Supply::sinking(lowest, highest),
         ..LOAD
     };
     let resistor = load(1.05, 11.4, 12.6);
@@ -64,7 +64,7 @@ fn the_instructions_state_the_bounds_of_their_loads() {
 /// Without a tolerance but that of the dead time the middle of the bounds is the current itself.
 #[test]
 fn the_bounds_are_on_both_sides_of_the_current() {
-    let supply = Supply { lowest: 24.0, highest: 24.0 };
+    let supply = Supply::sinking(24.0, 24.0);
     let load = Drive { supply, ..LOAD };
     let expected = load.current_at_duty(&STAGE, INSTANT, DUTY, 0.0).unwrap();
     let current = settled(&load, load.motor.resistance, 24.0, DUTY);

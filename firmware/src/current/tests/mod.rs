@@ -10,6 +10,7 @@ mod faults;
 mod follower;
 mod heating;
 mod index;
+mod regeneration;
 mod rig;
 mod three_phases;
 
@@ -23,6 +24,7 @@ const STAGE: PowerStage = PowerStage {
     amps_per_count: 0.03,
     current_lowers_count: true,
     volts_per_count: 0.0084,
+    volts_tolerance: 0.02,
     largest_current: 40.0,
     offset_counts: (2390, 2716),
     continuous_current: 40.0,
@@ -30,7 +32,7 @@ const STAGE: PowerStage = PowerStage {
     trip_range: TripRange { lowest: 140, highest: 180, amps_per_code: 0.5 },
     trip_margin: 8.0,
     charging: 10e-3,
-    supply: Supply { lowest: 10.0, highest: 34.0 },
+    supply: SupplyRange { lowest: 10.0, highest: 34.0 },
     dead_time: 0.2e-6,
     shortest_low: 1.5e-6,
     thermistor: Thermistor { resistance: 10e3, beta: 3380.0, to_ground: 4.7e3 },
@@ -43,7 +45,7 @@ const DRIVE: Drive = Drive {
         inductance: 0.3e-3,
         torque_constant: 0.05,
     },
-    supply: Supply { lowest: 22.0, highest: 26.0 },
+    supply: Supply::sinking(22.0, 26.0),
     bandwidth: 1000.0,
     largest_temperature: 90.0,
 };

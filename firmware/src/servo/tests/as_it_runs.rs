@@ -302,7 +302,7 @@ fn the_largest_deflection_is_that_of_a_torque_that_stays() {
     ] {
         let coupling = MatchedCoupling::of(1e-3, None, 0.022, &latency, Format::F64).unwrap();
         let total = latency.output_delay.most + latency.actuator_lag.most + 1e-3;
-        let found = coupling.largest_deflection();
+        let found = coupling.compliance_at_rest().hi();
         assert!((found * 2.0 * 0.022 / total - 1.0).abs() < 1e-12, "{found} {latency:?}");
     }
     // An amplifier in updates is later by what its straight lines are.
@@ -310,6 +310,6 @@ fn the_largest_deflection_is_that_of_a_torque_that_stays() {
     let coupling = MatchedCoupling::of(1e-3, None, 0.022, &in_updates, Format::F64).unwrap();
     let left = f64::exp(-2.5e-4 / 3e-4);
     let total = 1e-3 + 2.5e-4 + 1.25e-4 * (1.0 + left) / (1.0 - left);
-    let found = coupling.largest_deflection();
+    let found = coupling.compliance_at_rest().hi();
     assert!((found * 2.0 * 0.022 / total - 1.0).abs() < 1e-12, "{found}");
 }

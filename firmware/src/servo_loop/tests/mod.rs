@@ -41,7 +41,7 @@ const fn program<E: Copy>(environment: E) -> Program<E> {
             full_scale_torque: 2.0,
             largest_speed: 100.0,
         },
-        rendering: RenderingOptions { fade: 0.1, injection: None },
+        rendering: RenderingOptions { fade: 0.1, injection: None, ..RenderingOptions::DEFAULT },
         options: Options::DEFAULT,
     }
 }

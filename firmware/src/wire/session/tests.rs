@@ -49,7 +49,7 @@ fn program() -> Program<Wall> {
             full_scale_torque: 2.0,
             largest_speed: Transducers::NO_HAND_IS_FASTER,
         },
-        rendering: RenderingOptions { fade: 0.02, injection: None },
+        rendering: RenderingOptions { fade: 0.02, injection: None, ..RenderingOptions::DEFAULT },
         options: servo_loop::Options::DEFAULT,
     }
 }
@@ -264,7 +264,11 @@ fn largest_description() -> Description {
             torque_limit: Some(1.0),
         },
         transducers: program.transducers,
-        rendering: RenderingOptions { fade: 1.0, injection: Some(1.0) },
+        rendering: RenderingOptions {
+            fade: 1.0,
+            injection: Some(1.0),
+            ..RenderingOptions::DEFAULT
+        },
         format: Format::Fixed { fraction_bits: u32::MAX },
         timing: crate::servo::OutputTiming::AtPhase(u32::MAX),
     }

@@ -36,7 +36,7 @@ const MACHINE: Machine = Machine {
             inductance: 0.08e-3,
             torque_constant: 0.02,
         },
-        supply: Supply { lowest: 23.0, highest: 25.2 },
+        supply: Supply::sinking(23.0, 25.2),
         bandwidth: 2000.0,
         largest_temperature: 80.0,
     },

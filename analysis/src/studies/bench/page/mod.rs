@@ -14,7 +14,7 @@ use self::scenes::PageScene;
 use super::figure::{Figure, Pair, median};
 use crate::browser::{BrowserError, Page, Site};
 use crate::file::{self, FileError};
-use crate::verdict::judge_in;
+use crate::verdict::judge_file;
 
 /// Runs in the page before its own scripts.
 const WATCH: &str = include_str!("watch.js");
@@ -275,6 +275,6 @@ fn round(questions: &[String]) -> Result<f64, PageError> {
 /// The work of the page's module for `certify`, with the same functions.
 fn certify(question: &str) -> Result<String, PageError> {
     let file = file::parse("scene", file::Format::Json, question)?;
-    let report = judge_in(&file.name, &file.scene, Format::F64, &file.steps());
+    let report = judge_file(&file, Format::F64);
     Ok(serde_json::to_string(&report)?)
 }

@@ -208,7 +208,7 @@ fn strikes(time: f64) -> f64 {
 #[test]
 fn a_supply_that_takes_nothing_back_is_not_lifted_far() {
     let mut bench = boot(Paddle::new(strikes, 0.0));
-    circuit(&mut bench).supply = Supply { volts: 24.0, capacitance: Some(2e-5), source: 24.0 };
+    circuit(&mut bench).supply = Supply::that_stores(24.0, 2e-5);
     armed(&mut bench);
     let mut highest: f64 = 24.0;
     for _ in 0..900 {

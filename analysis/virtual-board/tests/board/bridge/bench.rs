@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use analysis::toolchain::TorqueOutput;
-use haptic_servo::current::{Drive, Winding};
+use haptic_servo::current::{Drive, Regeneration, Winding};
 use virtual_board::board::{BusAccess, VirtualBoard};
 use virtual_board::bridge_memory::BridgeMemory;
 use virtual_board::chip::B_G431B_ESC1;
@@ -43,6 +43,15 @@ pub fn motor(drive: &Drive) -> Motor {
     Motor::new(winding, resistance, inductance, torque_constant)
 }
 
+/// The supply that a program is for.
+pub fn supply(drive: &Drive) -> Supply {
+    let volts = drive.supply.open_voltage();
+    match drive.supply.regeneration {
+        Regeneration::Sinks => Supply::stiff(volts),
+        Regeneration::Stores { capacitance, .. } => Supply::that_stores(volts, capacitance),
+    }
+}
+
 /// A bench with the motor of `bridge_wall`, whose gates are recorded.
 pub fn boot(device: impl Device + Send + 'static) -> Bench {
     let mut bench = boot_program("bridge_wall", motor(&DRIVE), device);
@@ -55,7 +64,7 @@ pub fn boot_program(name: &str, motor: Motor, device: impl Device + Send + 'stat
     let mut bench = Bench::boot_file(&B_G431B_ESC1, program(name), device);
     let circuit = circuit(&mut bench);
     circuit.motor = Some(motor);
-    circuit.supply = Supply::stiff(24.0);
+    circuit.supply = supply(&DRIVE);
     bench
 }
 

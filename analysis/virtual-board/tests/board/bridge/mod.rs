@@ -9,6 +9,7 @@ mod identify;
 mod index;
 mod load;
 mod paddle;
+mod regeneration;
 mod same;
 mod wall;
 

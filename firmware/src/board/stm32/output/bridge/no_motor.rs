@@ -18,7 +18,7 @@ impl Setup {
 static NO_MOTOR: CurrentLoop = {
     let winding = Winding::Brushed;
     let motor = Motor { winding, resistance: 1.0, inductance: 1e-3, torque_constant: 1.0 };
-    let supply = Supply { lowest: 12.0, highest: 12.0 };
+    let supply = Supply::sinking(12.0, 12.0);
     let drive = Drive { motor, supply, bandwidth: 100.0, largest_temperature: 80.0 };
     let transducers = Transducers {
         counts_per_turn: 4096.0,

@@ -1,0 +1,54 @@
+//! The supply of a scene file's bridge.
+
+use haptic_servo::current::Bus;
+
+use super::faults::Read;
+use super::key;
+use super::section::Section;
+
+/// The contents of `[supply]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FileSupply {
+    /// It takes energy back.
+    Sinks,
+    /// It takes none.
+    Stores {
+        /// The capacitance and its voltages.
+        bus: Bus,
+        /// Largest speed of the device in rad/s.
+        largest_speed: f64,
+    },
+}
+
+/// Reads `[supply]`. A supply that does not sink needs a torque limit, which `torque` is if it is there.
+pub fn supply(mut section: Section<'_>, torque: Option<f64>) -> Read<FileSupply> {
+    let sinks = section.boolean(&key::SINKS);
+    let numbers = [&key::SUPPLY_VOLTAGE, &key::FAULT_VOLTAGE, &key::CAPACITANCE];
+    let numbers = numbers.map(|key| (key, section.found(key)));
+    let speed = section.number(&key::LARGEST_SPEED);
+    section.finish();
+    if sinks? == Some(true) {
+        for (_, number) in numbers {
+            number?;
+        }
+        speed?;
+        return Ok(FileSupply::Sinks);
+    }
+    let [voltage, level, capacitance] = numbers.map(|(key, number)| match number? {
+        Some(found) => Ok(found),
+        None => Err(section.missing(key)),
+    });
+    let (voltage, level, capacitance) = (voltage?, level?, capacitance?);
+    if voltage.value >= level.value {
+        let reason = format!("is not below `{}` = {} V", key::FAULT_VOLTAGE.path, level.value);
+        return Err(section.conflict(&key::SUPPLY_VOLTAGE, voltage.span, reason));
+    }
+    if torque.is_none() {
+        let (limit, full) = (key::TORQUE_LIMIT.path, key::FULL_SCALE.path);
+        let reason = format!("needs the largest torque beside it: set `{limit}` or `{full}`");
+        return Err(section.conflict(&key::CAPACITANCE, capacitance.span, reason));
+    }
+    let bus =
+        Bus { voltage: voltage.value, capacitance: capacitance.value, fault_level: level.value };
+    Ok(FileSupply::Stores { bus, largest_speed: speed? })
+}
