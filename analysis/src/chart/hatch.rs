@@ -29,6 +29,8 @@ pub enum Fill {
     Level,
     /// Upright lines.
     Upright,
+    /// Level and upright lines.
+    Squared,
 }
 
 impl Fill {
@@ -40,7 +42,8 @@ impl Fill {
             TickStatus::Ran(LimitReason::DacRange) => Some(Self::Rising),
             TickStatus::Ran(LimitReason::Angle) => Some(Self::Falling),
             TickStatus::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
-            TickStatus::Ran(LimitReason::Ramp | LimitReason::Heat) => Some(Self::Upright),
+            TickStatus::Ran(LimitReason::Ramp) => Some(Self::Upright),
+            TickStatus::Ran(LimitReason::Heat) => Some(Self::Squared),
             TickStatus::Missed => Some(Self::Level),
         }
     }
@@ -55,8 +58,9 @@ impl Fill {
             Self::Rising => rising(x, y),
             Self::Falling => falling(x, y),
             Self::Crossed => [rising(x, y), falling(x, y)].concat(),
-            Self::Level => on_grid(y).map(|level| [(x.start, level), (x.end, level)]).collect(),
-            Self::Upright => on_grid(x).map(|at| [(at, y.start), (at, y.end)]).collect(),
+            Self::Level => level(x, y),
+            Self::Upright => upright(x, y),
+            Self::Squared => [level(x, y), upright(x, y)].concat(),
         };
         for line in lines {
             area.draw(&PathElement::new(line.to_vec(), INK.stroke_width(UNITS)))?;
@@ -77,6 +81,14 @@ type Line = [(i32, i32); 2];
 fn on_grid(range: &Range<i32>) -> impl Iterator<Item = i32> {
     let first = range.start.div_euclid(SPACING) * SPACING;
     (first..range.end).step_by(SPACING as usize).filter(|at| range.contains(at))
+}
+
+fn level(x: &Range<i32>, y: &Range<i32>) -> Vec<Line> {
+    on_grid(y).map(|level| [(x.start, level), (x.end, level)]).collect()
+}
+
+fn upright(x: &Range<i32>, y: &Range<i32>) -> Vec<Line> {
+    on_grid(x).map(|at| [(at, y.start), (at, y.end)]).collect()
 }
 
 /// `x + y` the same along each, as far as they lie in the rectangle.

@@ -196,7 +196,7 @@ fn reads_every_message_to_the_host() {
             },
             "transducers": {"counts_per_turn": 61_440.0, "counter": {"type": "16"},
                             "full_scale_torque": 2.0, "largest_speed": 100.0},
-            "rendering": {"fade": 0.1, "injection": null},
+            "rendering": {"fade": 0.1, "injection": null, "returned": null},
             "format": {"type": "fixed", "fraction_bits": 24},
             "timing": {"type": "latched"},
         }],

@@ -142,7 +142,7 @@ pub fn the_root_says_the_verdict_for_programs() {
     assert_eq!(page.value("window.haptic.certify(window.haptic.scene()).verdict"), "certified");
     assert_eq!(page.complaints(), [""; 0]);
     let size = read(&file).len();
-    assert!(size <= 720_000, "{size} bytes");
+    assert!(size <= 700_000, "{size} bytes");
     for outside in ["src=\"http", "href=\"http", "@import", "url(http"] {
         assert!(!read(&file).contains(outside), "{outside}");
     }

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::current::AlignmentError;
 
-const ALL: [Fault; 27] = [
+const ALL: [Fault; 30] = [
     Fault::MissedTick { missed: 3, tolerated: 1 },
     Fault::EncoderJump { counts: 5000, largest: 979 },
     Fault::NotANumber,
@@ -31,6 +31,9 @@ const ALL: [Fault; 27] = [
     Fault::Power(PowerFault::Alignment(AlignmentError::PolePairs { moved: -1200, expected: 2340 })),
     Fault::Power(PowerFault::Alignment(AlignmentError::NotReturned { moved: 2340, returned: 90 })),
     Fault::Power(PowerFault::Alignment(AlignmentError::Uneven { degrees: 41, largest: 30 })),
+    Fault::Power(PowerFault::Thermistor { count: 4090, limit: 4032 }),
+    Fault::Power(PowerFault::Comparator { phase: 2, threshold: 141 }),
+    Fault::Power(PowerFault::IndexOffset { across: -3, along: 40 }),
 ];
 
 #[test]
@@ -45,7 +48,7 @@ fn every_fault_has_a_code_and_a_word_of_its_own() {
         }
     }
     assert_eq!(Fault::decode(0, [0; 2]), None);
-    assert_eq!(Fault::decode(29, [0; 2]), None);
+    assert_eq!(Fault::decode(32, [0; 2]), None);
 }
 
 #[test]
