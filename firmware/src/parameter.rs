@@ -104,6 +104,7 @@ parameters! {
     StatedGain: "environment.gain", "stated gain", "N m s/rad", Range::NotNegative;
     OutputDelay: "servo.output_delay", "output delay", "s", Range::NotNegative;
     OutputJitter: "servo.output_jitter", "output jitter", "s", Range::NotNegative;
+    CountJitter: "servo.count_jitter", "count jitter", "s", Range::NotNegative;
     ActuatorLag: "device.actuator_lag", "actuator lag", "s", Range::NotNegative;
     SensorLag: "device.sensor_lag", "sensor lag", "s", Range::NotNegative;
     ActuatorResponse: "device.actuator_response", "actuator response", "s", Range::NotNegative;
