@@ -104,7 +104,6 @@ parameters! {
     StatedGain: "environment.gain", "stated gain", "N m s/rad", Range::NotNegative;
     OutputDelay: "servo.output_delay", "output delay", "s", Range::NotNegative;
     OutputJitter: "servo.output_jitter", "output jitter", "s", Range::NotNegative;
-    CountJitter: "servo.count_jitter", "count jitter", "s", Range::NotNegative;
     ActuatorLag: "device.actuator_lag", "actuator lag", "s", Range::NotNegative;
     SensorLag: "device.sensor_lag", "sensor lag", "s", Range::NotNegative;
     ActuatorResponse: "device.actuator_response", "actuator response", "s", Range::NotNegative;
@@ -114,6 +113,7 @@ parameters! {
     From: "environment.from", "lower end stop", "rad", Range::Finite;
     To: "environment.to", "upper end stop", "rad", Range::Finite;
     Mode: "environment.mode", "mode", "", Range::Finite;
+    CountJitter: "servo.count_jitter", "count jitter", "s", Range::NotNegative;
 }
 
 /// The parameters that may be changed while the servo runs, with their names for users.

@@ -193,6 +193,19 @@ fn jitter_and_missed_updates_cost_what_their_worst_case_costs() {
     }
 }
 
+/// Neither torques nor counts come once a period: no bound is known. One jitter is of either kind.
+#[test]
+fn torques_and_counts_that_deviate_at_once_have_no_bound_at_the_port() {
+    let at = |output_jitter: f64, count_jitter: f64| {
+        let latency = Latency { output_jitter, count_jitter, ..Latency::delayed(3e-4) };
+        assess(&scene(1e-3, 0.1, one_sided(10.0, 0.01, 1), latency))
+    };
+    assert_eq!(at(0.0, 1e-4).bound, at(1e-4, 0.0).bound);
+    assert!(at(0.0, 1e-4).outcome.is_ok());
+    let both = at(1e-4, 1e-5).outcome.unwrap_err();
+    assert!(both.is_undecided() && both.to_string().contains("that both jitter"), "{both}");
+}
+
 /// The margin ends where the scene does.
 #[test]
 fn the_margin_is_the_damping_that_may_be_lost() {

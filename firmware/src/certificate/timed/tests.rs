@@ -129,6 +129,22 @@ fn a_board_s_phase_is_the_scene_s_output_delay() {
     assert_eq!(still, TimingError::Jitter { jitter: 5e-7 });
 }
 
+/// Beside a jitter of the torques, the time in which a board reads a count has to be a jitter of the counts.
+#[test]
+fn a_board_s_counts_deviate_by_the_count_jitter_of_the_scene_if_it_states_one() {
+    let at = |output_jitter: f64, count_jitter: f64| {
+        let latency = Latency { output_jitter, count_jitter, ..Latency::delayed(1e-5) };
+        let wall = Matched { environment: DamperWall { stiffness: 2.0, damping: 0.002 } };
+        let scene: Scene<UndelayedWall<0>> =
+            Scene { coupling: Coupling::Matched, latency, ..scene(wall, 44.0) };
+        scene.certify().unwrap().time::<AtPhase<10_000>>().err()
+    };
+    assert_eq!(at(2e-6, 5e-7), Some(TimingError::Jitter { jitter: 5e-7 }));
+    assert_eq!(at(2e-6, READ_WITHIN), None);
+    assert_eq!(at(5e-7, READ_WITHIN), None);
+    assert_eq!(at(0.0, READ_WITHIN), None);
+}
+
 /// Too short to compute a code in, and so long that the next one might be there.
 #[test]
 fn a_phase_has_its_range() {
