@@ -223,7 +223,10 @@ impl TimingError {
                      limits it while it fades in and out and at the DAC's full scale",
                 );
                 match (bound, limit) {
-                    (None, _) => t.push("; for a rational environment no bound is known then"),
+                    (None, _) => t.push(
+                        "; no bound is known then for a rational environment, or without a coupling for \
+                         torques and counts that both jitter",
+                    ),
                     (_, None) => t.push(
                         "; behind a coupling stiffer than the standard one, 2 delta/T, or a rigid \
                          one, it is not known to be passive then: soften the coupling",
