@@ -76,8 +76,9 @@ SCENE = [
                               ("composed", [FREE_OPTION, ("wall", ("option", WALL)),
                                             ("profile", PROFILE)])])),
     ("latency", [("output_delay", TIME_RANGE), ("output_jitter", "f64"),
-                 ("actuator_lag", TIME_RANGE), ("sensor_lag", TIME_RANGE),
-                 ("actuator_response", TIME_RANGE), ("actuator_updates", "u")]),
+                 ("count_jitter", "f64"), ("actuator_lag", TIME_RANGE),
+                 ("sensor_lag", TIME_RANGE), ("actuator_response", TIME_RANGE),
+                 ("actuator_updates", "u")]),
     ("torque_limit", ("option", "f64")),
 ]
 FIELDS = {

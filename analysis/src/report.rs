@@ -199,10 +199,12 @@ fn profile(profile: &AnyProfile) -> Vec<(&'static str, String)> {
 
 /// Times between count and torque that the scene has.
 fn latency(latency: &Latency) -> Vec<(&'static str, String)> {
-    let jitter = TimeRange::exactly(latency.output_jitter);
+    let [output_jitter, count_jitter] =
+        [latency.output_jitter, latency.count_jitter].map(TimeRange::exactly);
     let times = [
         ("Delay of the output", latency.output_delay),
-        ("Deviation from that delay, at most", jitter),
+        ("Deviation from that delay, at most", output_jitter),
+        ("Deviation of the counts, at most", count_jitter),
         ("Lag of the amplifier", latency.actuator_lag),
         ("Lag of the encoder's filter", latency.sensor_lag),
         ("Step response of the amplifier", latency.actuator_response),

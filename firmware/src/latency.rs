@@ -88,8 +88,13 @@ pub struct Latency {
     /// Time from a count to its torque, in addition to the environment's whole samples.
     pub output_delay: TimeRange,
     /// Largest deviation in s from that delay in either direction, which may differ from tick to tick: of
-    /// the torques, or of the counts. Where both deviate, this is not enough (theory, section 13.4).
+    /// the torques; of either the torques or the counts if [`Latency::count_jitter`] is 0.
     pub output_jitter: f64,
+    /// Largest deviation in s of a count from its time in either direction, which may differ from tick to
+    /// tick, while the torques deviate by the output jitter (theory, section 13.4). Without an output jitter
+    /// it is the same as that. On a board the counts deviate by at most this, or by the output jitter if
+    /// this is 0.
+    pub count_jitter: f64,
     /// Time constant of the amplifier.
     pub actuator_lag: TimeRange,
     /// Time constant of the filter between encoder and servo.
@@ -109,6 +114,7 @@ impl Latency {
     pub const NONE: Self = Self {
         output_delay: TimeRange::ZERO,
         output_jitter: 0.0,
+        count_jitter: 0.0,
         actuator_lag: TimeRange::ZERO,
         sensor_lag: TimeRange::ZERO,
         actuator_response: TimeRange::ZERO,
@@ -176,21 +182,49 @@ impl Latency {
         if is_whole { Some(delay_of_updates(update, self.actuator_updates)) } else { None }
     }
 
-    /// Largest jitter in s of a scene with this period and an environment that is late by a sample or more
-    /// (`is_late`) or not: no torque comes before its count, which in the first case is a period earlier.
+    /// Largest sum in s of the jitters of a scene with this period and an environment that is late by a
+    /// sample or more (`is_late`) or not: no torque comes before its count, which in the first case is a
+    /// period earlier.
     pub const fn largest_jitter(&self, is_late: bool, period: f64) -> f64 {
         self.output_delay.least + if is_late { period } else { 0.0 }
     }
 
-    /// The whole samples that the latest torque takes at this period in s, jitter included: as many past
+    /// The most in s by which a torque begins earlier or later after its count than the delay: the sum of both
+    /// jitters.
+    pub const fn total_jitter(&self) -> f64 {
+        self.output_jitter + self.count_jitter
+    }
+
+    /// Whether torques and counts deviate at the same time.
+    pub const fn jitters_twice(&self) -> bool {
+        !is_zero(self.output_jitter) && !is_zero(self.count_jitter)
+    }
+
+    /// The bound in s below which the sum of two jitters has to be at this period in s: half of what the
+    /// ranges of delay and response leave of a period. `None` if a lag is known in a range only, beside which
+    /// two jitters are not covered (theory, section 13.4).
+    pub const fn bound_on_two_jitters(&self, period: f64) -> Option<f64> {
+        if !self.actuator_lag.is_exact() || !self.sensor_lag.is_exact() {
+            return None;
+        }
+        let delay = self.torque_delay();
+        Some(0.5 * (period - (delay.most - delay.least)))
+    }
+
+    /// The most in s by which a count of a board, whose timer puts the torques out, deviates from its time.
+    pub const fn deviation_of_counts(&self) -> f64 {
+        if is_zero(self.count_jitter) { self.output_jitter } else { self.count_jitter }
+    }
+
+    /// The whole samples that the latest torque takes at this period in s, jitters included: as many past
     /// torques a [matched coupling](crate::matched::MatchedCoupling) stores.
     pub const fn whole_samples(&self, period: f64) -> usize {
         /// Above the rounding errors of the quotient, so that a whole number is not below itself.
         const ROUNDING: f64 = 2e-15;
         let latest = match self.actuator_updates {
-            0 => (self.torque_delay().most + self.output_jitter) / period,
+            0 => (self.torque_delay().most + self.total_jitter()) / period,
             updates => {
-                self.nearest_update(period) as f64 / updates as f64 + self.output_jitter / period
+                self.nearest_update(period) as f64 / updates as f64 + self.total_jitter() / period
             }
         };
         (latest * (1.0 + ROUNDING)) as usize
@@ -212,6 +246,7 @@ impl Latency {
     pub const fn is_none(&self) -> bool {
         self.output_delay.is_zero()
             && is_zero(self.output_jitter)
+            && is_zero(self.count_jitter)
             && self.actuator_lag.is_zero()
             && self.sensor_lag.is_zero()
             && self.actuator_response.is_zero()

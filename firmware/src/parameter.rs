@@ -113,6 +113,7 @@ parameters! {
     From: "environment.from", "lower end stop", "rad", Range::Finite;
     To: "environment.to", "upper end stop", "rad", Range::Finite;
     Mode: "environment.mode", "mode", "", Range::Finite;
+    CountJitter: "servo.count_jitter", "count jitter", "s", Range::NotNegative;
 }
 
 /// The parameters that may be changed while the servo runs, with their names for users.

@@ -15,7 +15,8 @@ pub(crate) type Fading = (Interval, Interval);
 /// `v_m = U_late(m - 1) - U_early(m)`, with `U(y)` the integral over all times after `y` of the rest of a step
 /// (equation 54).
 ///
-/// They fall from `width` to 0. Jitter makes torques earlier and later; so do ranges of delay and lag.
+/// They fall from `width` to 0. Jitter makes torques earlier and later; so do ranges of delay and lag. If
+/// torques and counts deviate at the same time, each has `both u_late(m)` more, with `u` the rest of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct ResponseWindow {
     /// The longest time between two counts, and the mean delay of the latest response less that of the
@@ -27,6 +28,8 @@ pub(crate) struct ResponseWindow {
     pub whole: usize,
     /// The taps from `whole + 2` on: for each lag one series, or two if it is known in a range.
     pub trails: [Fading; TRAILS],
+    /// The smaller of the widths of the windows of torques and of counts.
+    both: Interval,
     early: End,
     late: End,
 }
@@ -57,13 +60,16 @@ impl ResponseWindow {
         latency: &Latency,
     ) -> Option<Self> {
         if !UPDATES && latency.actuator_updates != 0
-            || latency.output_jitter > latency.largest_jitter(true, period)
+            || latency.total_jitter() > latency.largest_jitter(true, period)
         {
             return None;
         }
         let t = Interval::decimal(period);
-        let (delay, jitter) = (latency.torque_delay(), Interval::decimal(latency.output_jitter));
-        let jitter = jitter.div(t);
+        let delay = latency.torque_delay();
+        let jitters =
+            [Interval::decimal(latency.output_jitter), Interval::decimal(latency.count_jitter)];
+        let jitter = jitters[0].add(jitters[1]).div(t);
+        let both = jitters[0].min(jitters[1]).double().div(t);
         let range = [latency.actuator_lag, latency.sensor_lag];
         let (least, most) = (
             End::of::<UPDATES>(t, latency, delay.least, [range[0].least, range[1].least]),
@@ -74,7 +80,7 @@ impl ResponseWindow {
         let longer_lags =
             if is_exact { Interval::ZERO } else { late.held_back.sub(early.held_back) };
         early.delay = early.delay.sub(jitter);
-        if latency.output_jitter <= latency.output_delay.least {
+        if !latency.jitters_twice() && latency.total_jitter() <= latency.output_delay.least {
             early.delay = early.delay.and(Interval::new(0.0, f64::INFINITY));
         }
         late.delay = late.delay.add(jitter);
@@ -90,12 +96,18 @@ impl ResponseWindow {
             }
             _ => Interval::ONE,
         };
+        let apart = spread(delay).div(t).add(jitter.double());
+        if latency.jitters_twice() && !(is_exact && apart.hi() < ALMOST) {
+            return None;
+        }
         let width = between_counts.add(spread(delay).div(t)).add(jitter.double()).add(longer_lags);
+        let width = width.add(both);
         let mut out = Self {
             width,
             between_counts,
             whole: latency.whole_samples(period),
             trails: [(Interval::ZERO, Interval::ZERO); TRAILS],
+            both,
             early,
             late,
         };
@@ -110,7 +122,11 @@ impl ResponseWindow {
             return self.width;
         }
         let late = self.late.left_after(m.sub(Interval::ONE).sub(self.late.delay));
-        late.sub(self.early.left_after(m.sub(self.early.delay)))
+        let held = late.sub(self.early.left_after(m.sub(self.early.delay)));
+        if self.both.is_zero() {
+            return held;
+        }
+        held.add(self.both.mul(self.late.rest_after(m.sub(self.late.delay))))
     }
 
     /// The trails of both ends: those of the same time constant are one.
@@ -122,7 +138,11 @@ impl ResponseWindow {
         while i < ranges.len() {
             let late = self.late.left_by(i, arrived);
             let early = self.early.left_by(i, earliest);
-            if ranges[i].is_exact() {
+            if !self.both.is_zero() {
+                let later = arrived.add(Interval::ONE);
+                let rest = self.both.mul(self.late.rest_by(i, later));
+                self.trails[i] = (late.sub(early).add(rest), self.late.decay(i));
+            } else if ranges[i].is_exact() {
                 self.trails[i] = (late.sub(early), self.late.decay(i));
             } else {
                 self.trails[i] = (late, self.late.decay(i));
@@ -166,6 +186,10 @@ impl ResponseWindow {
         }
     }
 }
+
+/// The most periods that the window of a constant response may be wide if torques and counts deviate at the
+/// same time: below 1 by more than the rounding errors of a time.
+const ALMOST: f64 = 1.0 - 1e-12;
 
 /// Taps of a window that is as wide as the longest delays: more exceed the degrees of a polynomial.
 const MOST_TAPS: usize = 10;
@@ -217,6 +241,28 @@ impl End {
         match self.updates {
             0 => self.weights[lag].mul(time.div(tau).exp_of_negative()),
             updates => SampledLag::of(updates, tau).held_after(time),
+        }
+    }
+
+    /// `u`, the rest of a step, at a time after the beginning of the response.
+    ///
+    /// An enclosure of 0 counts as before: in the proof all of a step may be left a little longer.
+    const fn rest_after(&self, time: Interval) -> Interval {
+        if time.lo() <= 0.0 {
+            return Interval::ONE;
+        }
+        self.rest_by(0, time).add(self.rest_by(1, time))
+    }
+
+    /// The part of one lag in it.
+    const fn rest_by(&self, lag: usize, time: Interval) -> Interval {
+        let tau = self.lags[lag];
+        if tau.is_zero() {
+            return Interval::ZERO;
+        }
+        match self.updates {
+            0 => self.weights[lag].div(tau).mul(time.div(tau).exp_of_negative()),
+            updates => SampledLag::of(updates, tau).rest_after(time),
         }
     }
 

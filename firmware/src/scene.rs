@@ -113,6 +113,7 @@ impl<E> Scene<E> {
         TorqueLimit: Self { torque_limit: Some(value), .. },
         OutputDelay: Self { latency: Latency { output_delay: TimeRange { most: value, .. }, .. }, .. },
         OutputJitter: Self { latency: Latency { output_jitter: value, .. }, .. },
+        CountJitter: Self { latency: Latency { count_jitter: value, .. }, .. },
         ActuatorLag: Self { latency: Latency { actuator_lag: TimeRange { most: value, .. }, .. }, .. },
         SensorLag: Self { latency: Latency { sensor_lag: TimeRange { most: value, .. }, .. }, .. },
         ActuatorResponse: Self { latency: Latency { actuator_response: TimeRange { most: value, .. }, .. }, .. },
@@ -156,7 +157,7 @@ impl Scene {
         }
     }
 
-    /// The largest output jitter in s that it may have.
+    /// The largest sum in s of output jitter and count jitter that it may have.
     pub const fn largest_jitter(&self) -> f64 {
         self.latency.largest_jitter(self.environment.is_late(), self.timing.period)
     }

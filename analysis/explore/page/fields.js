@@ -4,8 +4,8 @@
 /** Keys that stand in "More" where the scene leaves them out. */
 const RARE = new Set([
   "device.passivity", "device.friction", "device.sensor_lag", "device.actuator_response",
-  "device.actuator_updates", "servo.worst_period", "servo.output_jitter", "environment.filter",
-  "environment.wall.filter",
+  "device.actuator_updates", "servo.worst_period", "servo.output_jitter", "servo.count_jitter",
+  "environment.filter", "environment.wall.filter",
 ]);
 
 /** Most tables of a list that have fields: more shapes than that are refused. */

@@ -149,6 +149,7 @@ fn latency(latency: &Latency) -> Expression {
     let Latency {
         output_delay,
         output_jitter,
+        count_jitter,
         actuator_lag,
         sensor_lag,
         actuator_response,
@@ -165,8 +166,10 @@ fn latency(latency: &Latency) -> Expression {
         .filter(|(_, time)| *time != TimeRange::ZERO)
         .map(|(name, it)| (name, time(it)))
         .collect();
-    if output_jitter != 0.0 {
-        fields.push(("output_jitter", number(output_jitter)));
+    for (name, jitter) in [("output_jitter", output_jitter), ("count_jitter", count_jitter)] {
+        if jitter != 0.0 {
+            fields.push((name, number(jitter)));
+        }
     }
     if actuator_updates != 0 {
         fields.push(("actuator_updates", word(actuator_updates)));

@@ -7,7 +7,8 @@ use haptic_servo::scene::Latency;
 pub fn left_out(latency: &Latency) -> Option<&'static str> {
     let Latency {
         output_delay,
-        output_jitter,
+        output_jitter: _,
+        count_jitter: _,
         actuator_lag,
         sensor_lag,
         actuator_response,
@@ -15,7 +16,7 @@ pub fn left_out(latency: &Latency) -> Option<&'static str> {
     } = latency;
     let times = [output_delay, actuator_lag, sensor_lag, actuator_response];
     let exact = times.into_iter().all(|time| time.is_exact());
-    match (exact, *output_jitter == 0.0) {
+    match (exact, latency.total_jitter() == 0.0) {
         (true, true) => None,
         (true, false) => Some("without jitter"),
         (false, true) => Some("middle of each range of latency"),

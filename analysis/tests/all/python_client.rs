@@ -188,6 +188,7 @@ fn reads_every_message_to_the_host() {
                     "face": -0.1, "one_sided": true}},
                 "latency": {
                     "output_delay": {"least": 0.0, "most": 0.0}, "output_jitter": 0.0,
+                    "count_jitter": 0.0,
                     "actuator_lag": {"least": 0.0, "most": 0.0},
                     "sensor_lag": {"least": 0.0, "most": 0.0},
                     "actuator_response": {"least": 0.0, "most": 0.0},

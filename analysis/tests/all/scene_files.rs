@@ -92,7 +92,7 @@ fn times_between_count_and_torque_are_numbers_or_ranges() {
         )
         .replacen(
             "period = 0.001",
-            "period = 0.001\noutput_delay = [4e-6, 6e-6]\noutput_jitter = 4e-6",
+            "period = 0.001\noutput_delay = [4e-6, 6e-6]\noutput_jitter = 4e-6\ncount_jitter = 0",
             1,
         )
         .replacen("stiffness = 44.0", "type = \"matched\"", 1);
@@ -155,6 +155,18 @@ fn a_bad_time_is_named_with_its_line_value_and_bound() {
     let late = format!("{least} and `servo.period`");
     servo("output_delay = [4e-6, 9e-6]\noutput_jitter = 1.1e-3", "8:17", &["1.1e-3", &late]);
     servo("output_jitter = 1.1e-3", "7:17", &["`servo.output_delay` = 0 s and"]);
+    servo("count_jitter = -1e-6", "7:16", &["`servo.count_jitter`", "-1e-6", bound]);
+    servo("count_jitter = 1.1e-3", "7:16", &["is more", "`servo.output_delay` = 0 s and"]);
+    let both = "output_jitter = 2e-4\ncount_jitter = ";
+    let together = "`servo.output_jitter` = 0.0002 s are together";
+    servo(&format!("{both}9e-4"), "8:16", &["9e-4", together, "more than the least"]);
+    servo(&format!("{both}3e-4"), "8:16", &["3e-4", together, "not below 0.0005 s"]);
+    servo(&format!("output_delay = [0, 2e-4]\n{both}2e-4"), "9:16", &["not below 0.0004 s"]);
+    let of_a_lag = WALL
+        .replacen("damping = 0.022", "damping = 0.022\nactuator_lag = [1e-4, 2e-4]", 1)
+        .replacen("period = 0.001", &format!("period = 0.001\n{both}1e-4"), 1);
+    let error = toml(&of_a_lag).unwrap_err().to_string();
+    assert!(error.contains("a lag of which only a range is known"), "{error}");
     assert!(
         toml(&WALL.replacen("period = 0.001", "period = 0.001\noutput_delay = 0.008", 1)).is_ok()
     );

@@ -268,6 +268,7 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
     let Latency {
         output_delay,
         output_jitter,
+        count_jitter,
         actuator_lag,
         sensor_lag,
         actuator_response,
@@ -280,8 +281,12 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
         write_time(f, *output_delay)?;
         f.write_str(" after its count")?;
     }
-    if *output_jitter > 0.0 {
-        write!(f, ", in each tick at most {} s earlier or later", ShortF64(*output_jitter))?;
+    if latency.total_jitter() > 0.0 {
+        let jitter = if *output_jitter > 0.0 { output_jitter } else { count_jitter };
+        write!(f, ", in each tick at most {} s earlier or later", ShortF64(*jitter))?;
+    }
+    if latency.jitters_twice() {
+        write!(f, ", while its count is at most {} s early or late", ShortF64(*count_jitter))?;
     }
     for (what, lag) in [("amplifier", actuator_lag), ("filter of the encoder", sensor_lag)] {
         if !lag.is_zero() {

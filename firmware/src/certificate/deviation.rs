@@ -27,7 +27,7 @@ impl Deviation {
     /// One of the proofs; `None` if it does not cover the scene.
     pub const fn of(proof: usize, lagging: &Lagging, n: &LoopIntervals) -> Option<Self> {
         let latency = &lagging.latency;
-        if latency.output_jitter == 0.0 && !n.misses_updates {
+        if latency.total_jitter() == 0.0 && !n.misses_updates {
             return match proof {
                 0 => Some(Self::NONE),
                 // The ripple of an amplifier of no known shape is that of the worst, and the window may be
@@ -36,9 +36,11 @@ impl Deviation {
                 _ => None,
             };
         }
-        let h = Interval::decimal(latency.output_jitter).div(n.period);
-        // A jitter of counts is one of torques with the lags of amplifier and sensor exchanged.
-        let is_of_pulses = latency.sensor_lag.is_zero() && !n.misses_updates;
+        let h = Interval::decimal(latency.total_jitter()).div(n.period);
+        // A jitter of counts is one of torques with the lags of amplifier and sensor exchanged. For both at
+        // once only the window is proved.
+        let is_of_pulses =
+            latency.sensor_lag.is_zero() && !latency.jitters_twice() && !n.misses_updates;
         match proof {
             0 => Self::within_window(lagging, n),
             1 if is_of_pulses && h.hi() <= 0.5 => Some(Self::of_means(h)),

@@ -12,7 +12,8 @@ pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
 }
 
 /// Whether a scene without a coupling is judged by its index at the port although it is linear: the exact
-/// rule has no proof for missed updates beside latency, and none for jitter that costs a spring nothing.
+/// rule has no proof for missed updates beside latency, and none for jitter that costs a spring nothing. For
+/// torques and counts that deviate at the same time the exact rule alone has a proof.
 const fn replaces_exact_rule(scene: &Scene) -> bool {
     let latency = &scene.latency;
     if latency.is_none() || !matches!(scene.coupling, Coupling::Rigid) {
@@ -26,6 +27,6 @@ const fn replaces_exact_rule(scene: &Scene) -> bool {
         (Environment::FreeModeWall { .. }, Some(wall)) => (f64::NAN, wall.stiffness < 0.0),
         _ => return false,
     };
-    !pulls
-        && (scene.timing.longer_period().is_some() || damping == 0.0 && latency.output_jitter > 0.0)
+    let has_one_jitter = latency.total_jitter() > 0.0 && !latency.jitters_twice();
+    !pulls && (scene.timing.longer_period().is_some() || damping == 0.0 && has_one_jitter)
 }

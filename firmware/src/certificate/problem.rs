@@ -270,7 +270,7 @@ impl PassivityProblem {
     #[inline(never)]
     pub(super) const fn fails_in_contact(&self) -> Option<RealPart> {
         let is_constant = match &self.numbers.latency {
-            Some(lagging) => lagging.latency.output_jitter == 0.0,
+            Some(lagging) => lagging.latency.total_jitter() == 0.0,
             None => true,
         };
         if !self.numbers.is_at_port || self.no_transfer.is_some() || !is_constant {

@@ -87,14 +87,14 @@ pub(super) const fn needed_at_port<E: EnvironmentModel>(
 /// The passivity that a switched damper takes at most beside a static law, over the damper: the root of the
 /// longest time between two counts or two torques, in periods (theory, section 16.3).
 pub(super) const fn share_of_damper(scene: &Scene, n: &LoopIntervals, reading: f64) -> Interval {
-    let jitter = Interval::exact(End::Upper.time(scene.latency.output_jitter, n));
+    let jitter = Interval::exact(End::Upper.time(scene.latency.total_jitter(), n));
     let reading = Interval::exact(End::Upper.time(reading, n));
     Interval::ONE.add(jitter.double()).add(reading).sqrt()
 }
 
 /// Whether the index is known to be the least one for a spring.
 const fn is_exact(latency: &Latency, n: &LoopIntervals) -> bool {
-    let is_in_updates = latency.actuator_updates == 0 || latency.output_jitter == 0.0;
+    let is_in_updates = latency.actuator_updates == 0 || latency.total_jitter() == 0.0;
     is_in_updates && (!n.misses_updates || latency.is_none())
 }
 
@@ -155,7 +155,8 @@ impl Law {
         }
     }
 
-    /// [`needed_at_port`] of the law in a scene.
+    /// [`needed_at_port`] of the law in a scene. `None` also where neither torques nor counts come once a
+    /// period (theory, section 16.2).
     const fn needed(
         &self,
         scene: &Scene,
@@ -163,11 +164,14 @@ impl Law {
         reading: f64,
         end: End,
     ) -> Option<f64> {
+        if scene.latency.jitters_twice() {
+            return None;
+        }
         let Some(age) = Age::of(&scene.latency, n, end) else { return None };
         let steepest = self.steepest;
         let moved = self.rise.half().add(self.late).add(steepest.mul(age.mean));
         let spread = steepest.mul(steepest).mul(age.variance);
-        let varies = n.misses_updates || reading > 0.0 || scene.latency.output_jitter > 0.0;
+        let varies = n.misses_updates || reading > 0.0 || scene.latency.total_jitter() > 0.0;
         // A damper whose counts are not a period apart has its own share of the passivity.
         let (within, beside) = if varies {
             (moved, self.damping.mul(share_of_damper(scene, n, reading)))
@@ -268,7 +272,7 @@ impl Age {
         if !n.misses_updates {
             return Some(Self { mean: whole.add(mean), variance: variance(square, mean) });
         }
-        if has_lag && has_filter || (has_lag || has_filter) && latency.output_jitter > 0.0 {
+        if has_lag && has_filter || (has_lag || has_filter) && latency.total_jitter() > 0.0 {
             return None;
         }
         // The envelope in the rest of a tick that is longer than a period is no larger than at its beginning.
@@ -295,7 +299,7 @@ const fn oldest(latency: &Latency, n: &LoopIntervals, end: End) -> Option<f64> {
         },
     };
     let response = end.time(latency.actuator_response.most, n);
-    let jitter = end.time(latency.output_jitter, n);
+    let jitter = end.time(latency.total_jitter(), n);
     let sum = Interval::exact(delay).add(Interval::exact(response)).add(Interval::exact(jitter));
     Some(end.of(sum))
 }
@@ -350,7 +354,7 @@ impl Tail {
     const fn sampled(tau: Interval, latency: &Latency, over: Interval) -> Self {
         let updates = latency.actuator_updates;
         let lag = SampledLag::of(updates, tau);
-        let over = if latency.output_jitter > 0.0 {
+        let over = if latency.total_jitter() > 0.0 {
             let whole = (over.lo() * updates as f64 * (1.0 - 1e-9)) as u32 as f64;
             Interval::exact(whole).div(Interval::exact(updates as f64))
         } else {

@@ -56,6 +56,13 @@ const NO_LAG_BESIDE: &str = "0 beside a lag of amplifier or sensor";
 /// No torque comes before its count.
 const NO_TORQUE_BEFORE: &str = "at most the time from a count to its torque:";
 
+/// Beside an output jitter, what the proof for both requires (theory, section 13.4).
+const BESIDE_OUTPUT_JITTER: [&str; 3] = [
+    "at most the time from a count to its torque, less the output jitter:",
+    "0 beside an output jitter and a lag that is known in a range",
+    "below half of what the ranges of delay and response leave of a period, less the output jitter:",
+];
+
 const fn requirement(range: Range) -> &'static str {
     match range {
         Range::Finite => "finite",
@@ -315,6 +322,12 @@ const fn latency_conflict(
             let limit = Some(scene.largest_jitter());
             return Some(InvalidParameter { parameter, value, bound: NO_TORQUE_BEFORE, limit });
         }
+        Parameter::CountJitter => {
+            return match count_jitter_conflict(scene) {
+                Some((bound, limit)) => Some(InvalidParameter { parameter, value, bound, limit }),
+                None => None,
+            };
+        }
         Parameter::ActuatorLag => (latency.actuator_lag, LONGEST_LAG * period),
         Parameter::SensorLag => (latency.sensor_lag, LONGEST_LAG * period),
         Parameter::ActuatorResponse => {
@@ -352,6 +365,23 @@ const fn latency_conflict(
         return None;
     };
     Some(InvalidParameter { parameter, value, bound, limit: Some(limit) })
+}
+
+/// What the count jitter must be, if it is not: alone, or beside an output jitter.
+const fn count_jitter_conflict(scene: &Scene) -> Option<(&'static str, Option<f64>)> {
+    let (latency, largest) = (&scene.latency, scene.largest_jitter());
+    let (beside, sum) = (latency.output_jitter, latency.total_jitter());
+    if !latency.jitters_twice() {
+        return if sum > largest { Some((NO_TORQUE_BEFORE, Some(largest))) } else { None };
+    }
+    if sum > largest {
+        return Some((BESIDE_OUTPUT_JITTER[0], Some(largest - beside)));
+    }
+    match latency.bound_on_two_jitters(scene.timing.period) {
+        None => Some((BESIDE_OUTPUT_JITTER[1], None)),
+        Some(bound) if sum >= bound => Some((BESIDE_OUTPUT_JITTER[2], Some(bound - beside))),
+        Some(_) => None,
+    }
 }
 
 /// A number of the scene that conflicts with an updated current loop. A board does not check this: with an

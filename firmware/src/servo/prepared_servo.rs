@@ -230,7 +230,8 @@ impl TimingLimits {
         // Below half the counter's range, so that twice the value fits.
         let stretch = (worst / timing.period) as f32;
         let span = 2 * largest_step;
-        let read_within = (scene.latency.output_jitter.max(READ_WITHIN) / timing.period) as f32;
+        let read_within =
+            (scene.latency.deviation_of_counts().max(READ_WITHIN) / timing.period) as f32;
         let period = timing.period;
         Ok(Self { period, tolerated, stretch, read_within, largest_step, span })
     }

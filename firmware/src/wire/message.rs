@@ -22,7 +22,7 @@ use crate::servo_loop::State;
 /// Longest message to a board, in bytes: the longest set.
 pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;
 /// Longest message to the host, in bytes: a full batch of ticks, or the description of a program.
-pub const LONGEST_TO_HOST: usize = 352;
+pub const LONGEST_TO_HOST: usize = 360;
 
 /// The host's number for a request; the answer has the same number.
 pub type Id = u16;

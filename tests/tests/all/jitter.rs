@@ -327,6 +327,15 @@ fn worst_growth(scene: &Scene, ticks: &[f64], rng: &mut ChaCha8Rng) -> f64 {
         let resonance = log_uniform(rng, 0.05, 3.0) / period;
         let spring = if hand % 3 == 0 { 0.0 } else { mass * resonance * resonance };
         let sampled = Sampled::of(scene, &taps, mass, spring);
+        if scene.latency.count_jitter > 0.0 {
+            for torques in patterns(scene.latency.output_jitter, rng) {
+                for counts in patterns(scene.latency.count_jitter, rng) {
+                    let both = Pattern { torques: &torques, counts: &counts, ticks };
+                    worst = worst.max(sampled.growth(both));
+                }
+            }
+            continue;
+        }
         for pattern in patterns(scene.latency.output_jitter, rng) {
             let of_torques = Pattern { torques: &pattern, ..STILL };
             let of_counts = Pattern { counts: &pattern, ..STILL };
@@ -424,6 +433,34 @@ fn no_limited_scene_below_its_limit_grows() {
 fn limited_scenes_beyond_their_limit_grow() {
     let (scenes, growing) = growing(1.3, 20);
     assert!(growing >= 4, "{growing} of {scenes}");
+}
+
+/// Torques and counts that deviate in patterns of their own at the same time, below the limit for both.
+#[test]
+fn torques_and_counts_that_deviate_at_once_do_not_grow() {
+    let mut rng = ChaCha8Rng::seed_from_u64(45);
+    let (period, delta) = (1e-3, 0.022);
+    for (delay, lag, torques, counts) in
+        [(1.0, 0.0, 0.2, 0.2), (0.4, 0.0, 0.1, 0.25), (0.5, 0.3, 0.24, 0.25)]
+    {
+        let latency = Latency {
+            output_jitter: torques * period,
+            count_jitter: counts * period,
+            ..Latency::delayed(delay * period).with_actuator_lag(lag * period)
+        };
+        let limit = delta / (1.0 + 2.0 * (torques + counts) + 2.0 * f64::min(torques, counts));
+        let scene = Scene {
+            device: Device { inertia: 2.2e-5, damping: delta, passivity: None },
+            timing: Timing { period, worst_period: None },
+            coupling: Coupling::Matched,
+            environment: Environment::DamperWall(Wall::spring(0.999 * 2.0 * limit / period, 1)),
+            latency,
+            torque_limit: Some(1.0),
+        };
+        assert!(PassivityProblem::of(&scene).unwrap().is_certified(), "{scene:?}");
+        let growth = worst_growth(&scene, &[1.0], &mut rng);
+        assert!(growth < GROWS, "{growth} {scene:?}");
+    }
 }
 
 /// The scenes of the theory's examples: what a lag of the former coupling's certificate let oscillate, and a

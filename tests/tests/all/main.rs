@@ -45,6 +45,7 @@ mod sampled;
 mod simulated;
 mod snaps;
 mod soundness;
+mod two_jitters;
 mod vectors;
 mod virtual_board;
 mod worst_hand;

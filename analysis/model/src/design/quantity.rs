@@ -59,8 +59,13 @@ impl Quantity {
             Self::OutputDelay => {
                 let value = last_update(scene, value);
                 let mut delayed = scene.with(Parameter::OutputDelay, value)?;
-                delayed.latency.output_jitter =
-                    delayed.latency.output_jitter.min(delayed.largest_jitter());
+                let largest = delayed.largest_jitter();
+                let latency = &mut delayed.latency;
+                latency.output_jitter = latency.output_jitter.min(largest);
+                if latency.total_jitter() > largest {
+                    // Below the difference, so that the sum does not round up.
+                    latency.count_jitter = (largest - latency.output_jitter).next_down().max(0.0);
+                }
                 Some(delayed)
             }
         }

@@ -270,6 +270,11 @@ keys! {
     /// Simulations leave it out.
     OUTPUT_JITTER = of(Parameter::OutputJitter),
         Default(0.0), "0.0";
+    /// Largest deviation of a count from its time, to either side, where torques deviate by
+    /// `output_jitter` at the same time; the sum of both is less than half a period. With one of the two at 0
+    /// the other is that of torques or of counts.
+    COUNT_JITTER = of(Parameter::CountJitter),
+        Default(0.0), "0.0";
 
     /// Coupling of device and environment.
     COUPLING = other("coupling", "", TABLE),

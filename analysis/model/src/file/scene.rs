@@ -114,6 +114,7 @@ struct Servo {
     timing: Timing,
     output_delay: Option<Found<TimeRange>>,
     output_jitter: Option<Found<f64>>,
+    count_jitter: Option<Found<f64>>,
     worst_period: Option<Found<f64>>,
 }
 
@@ -122,9 +123,11 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
     let worst = section.found(&key::WORST_PERIOD);
     let output_delay = section.time(&key::OUTPUT_DELAY);
     let output_jitter = section.found(&key::OUTPUT_JITTER);
+    let count_jitter = section.found(&key::COUNT_JITTER);
     section.finish();
     let (period, worst) = (period?, worst?);
-    let (output_delay, output_jitter) = (output_delay?, output_jitter?);
+    let (output_delay, output_jitter, count_jitter) =
+        (output_delay?, output_jitter?, count_jitter?);
     if let Some(Found { value, span }) = &worst
         && *value < period
     {
@@ -132,7 +135,7 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
         return Err(section.conflict(&key::WORST_PERIOD, span.clone(), reason));
     }
     let timing = Timing { period, worst_period: worst.as_ref().map(|found| found.value) };
-    Ok(Servo { timing, output_delay, output_jitter, worst_period: worst })
+    Ok(Servo { timing, output_delay, output_jitter, count_jitter, worst_period: worst })
 }
 
 /// The times between count and torque, each with a bound that depends on other keys.
@@ -169,11 +172,13 @@ fn latency_of(
     let latency = Latency {
         output_delay: output_delay?,
         output_jitter: output_jitter?,
+        count_jitter: servo.count_jitter.as_ref().map_or(0.0, |found| found.value),
         actuator_lag: actuator_lag?,
         sensor_lag: sensor_lag?,
         actuator_response: actuator_response?,
         actuator_updates: updates.as_ref().map_or(0, |found| found.value as u16),
     };
+    check_count_jitter(top, servo, &latency, largest)?;
     if let Some(places) = Places::of(updates, &servo.output_delay, &servo.worst_period) {
         places.check(top, &latency, &servo.timing)?;
     }
@@ -185,13 +190,46 @@ fn jitter_of(top: &Section<'_>, servo: &Servo, largest: f64) -> Read<f64> {
     if *value <= largest {
         return Ok(*value);
     }
+    let reason = format!("is {}", more_than_time_to_torque(servo, largest));
+    Err(top.conflict(&key::OUTPUT_JITTER, span.clone(), reason))
+}
+
+fn more_than_time_to_torque(servo: &Servo, largest: f64) -> String {
     let least = servo.output_delay.as_ref().map_or(0.0, |delay| delay.value.least);
     let late = if largest > least { format!(" and `{}`", key::PERIOD.path) } else { String::new() };
-    let reason = format!(
-        "is more than the least `{}` = {least} s{late}: no torque comes before its count",
+    format!(
+        "more than the least `{}` = {least} s{late}: no torque comes before its count",
         key::OUTPUT_DELAY.path
-    );
-    Err(top.conflict(&key::OUTPUT_JITTER, span.clone(), reason))
+    )
+}
+
+/// The count jitter beside the output jitter.
+fn check_count_jitter(
+    top: &Section<'_>,
+    servo: &Servo,
+    latency: &Latency,
+    largest: f64,
+) -> Read<()> {
+    let Some(Found { span, .. }) = &servo.count_jitter else { return Ok(()) };
+    let sum = latency.total_jitter();
+    let beside = match latency.output_jitter {
+        0.0 => "is".to_owned(),
+        jitter => format!("and `{}` = {jitter} s are together", key::OUTPUT_JITTER.path),
+    };
+    let reason = match latency.bound_on_two_jitters(servo.timing.period) {
+        _ if sum > largest => format!("{beside} {}", more_than_time_to_torque(servo, largest)),
+        _ if !latency.jitters_twice() => return Ok(()),
+        None => format!(
+            "stands beside `{}` and a lag of which only a range is known, for which there is no proof",
+            key::OUTPUT_JITTER.path
+        ),
+        Some(bound) if sum >= bound => format!(
+            "{beside} not below {bound} s, half of what the ranges of delay and response leave of `{}`",
+            key::PERIOD.path
+        ),
+        Some(_) => return Ok(()),
+    };
+    Err(top.conflict(&key::COUNT_JITTER, span.clone(), reason))
 }
 
 /// The `coupling.type` that takes no stiffness.

@@ -36,6 +36,7 @@ pub fn toml(file: &SceneFile) -> String {
     number(&mut lines, "worst_period", scene.timing.worst_period);
     time(&mut lines, "output_delay", scene.latency.output_delay);
     time(&mut lines, "output_jitter", TimeRange::exactly(scene.latency.output_jitter));
+    time(&mut lines, "count_jitter", TimeRange::exactly(scene.latency.count_jitter));
     match scene.coupling {
         Coupling::Rigid => {}
         Coupling::Spring { stiffness } => {
@@ -278,6 +279,7 @@ mod tests {
                 "output_delay = 0.0081\noutput_jitter = 1e-6\n",
                 "type = \"spring\"\nstiffness = 4\n",
             ),
+            ("", "output_delay = 5e-6\noutput_jitter = 1e-6\ncount_jitter = 3e-6\n", ""),
             ("actuator_lag = -0.0\n", "output_delay = [1e-6, 1e-6]\noutput_jitter = 1e-6\n", ""),
         ] {
             let coupling =

@@ -322,7 +322,7 @@ fn limit_name(scene: &Scene, assessment: &Assessment, limit: Option<f64>) -> &'s
         Coupling::Spring { stiffness } if near(0.5 * stiffness * scene.timing.period) => {
             "-K T/2 of the coupling"
         }
-        _ if scene.latency.output_jitter > 0.0 => "-limit, output delay varies",
+        _ if scene.latency.total_jitter() > 0.0 => "-limit, output delay varies",
         _ => "-limit, updates missed",
     }
 }
@@ -332,7 +332,7 @@ fn is_judged_at_port(scene: &Scene) -> bool {
 }
 
 /// The controller with delay, amplifier and sensor: `H g - D abs(H)^2 / (4 delta)` of equation 38. Times that
-/// lie in a range have their middle, and output jitter is left out.
+/// lie in a range have their middle, and jitter is left out.
 struct PortCurve {
     controller: Response,
     response: SampledResponse,

@@ -3,6 +3,7 @@ use crate::certificate::{Rejection, TimingError, assess, certify, timing_checked
 use crate::coupling::Coupling;
 use crate::environment::{DamperWall, OneSided, Uncoupled};
 use crate::number::Format;
+use crate::output_timing::OutputTiming;
 use crate::scene::{Device, TimeRange, Timing};
 use crate::servo::{AtPhase, Latched};
 
@@ -191,6 +192,29 @@ fn jitter_and_missed_updates_cost_what_their_worst_case_costs() {
         assert!((bound / expected - 1.0).abs() < 1e-12, "{bound} {expected}");
         assert!(found.outcome.is_ok());
     }
+}
+
+/// Neither torques nor counts come once a period: no bound is known. One jitter is of either kind.
+#[test]
+fn torques_and_counts_that_deviate_at_once_have_no_bound_at_the_port() {
+    let at = |output_jitter: f64, count_jitter: f64| {
+        let latency = Latency { output_jitter, count_jitter, ..Latency::delayed(3e-4) };
+        assess(&scene(1e-3, 0.1, one_sided(10.0, 0.01, 1), latency))
+    };
+    assert_eq!(at(0.0, 1e-4).bound, at(1e-4, 0.0).bound);
+    assert!(at(0.0, 1e-4).outcome.is_ok());
+    let both = at(1e-4, 1e-5).outcome.unwrap_err();
+    assert!(both.is_undecided() && both.to_string().contains("that both jitter"), "{both}");
+    // Linear, it is certified as a window of torques, but a board limits its torque.
+    let latency = Latency { output_jitter: 1e-4, count_jitter: 1e-5, ..Latency::NONE };
+    let linear = scene(1e-3, 0.1, Wall::spring(10.0, 1), latency);
+    let found = assess(&linear);
+    assert!(found.outcome.is_ok() && found.bound.is_none());
+    let refused = found.renders_at(&linear, OutputTiming::Latched).unwrap_err().to_string();
+    assert!(
+        refused.contains("without a coupling for torques and counts that both jitter"),
+        "{refused}"
+    );
 }
 
 /// The margin ends where the scene does.

@@ -137,7 +137,7 @@ pub enum TimingError {
     Coupled,
     /// A board reads counts later than the scene allows.
     Jitter {
-        /// The scene's output jitter in s.
+        /// The most by which a count may deviate in the scene, in s.
         jitter: f64,
     },
     /// The scene would pass if each count were read at the very beginning of its period.
@@ -208,7 +208,8 @@ impl TimingError {
                 t.push(
                     " s after the beginning of its period, which is jitter where torques lag: the ",
                 );
-                t.push("scene's output jitter has to be that at least, and is ");
+                t.push("scene's count jitter, or the output jitter if it states no other, has to be that ");
+                t.push("at least, and is ");
                 t.push_number(*jitter);
                 t.push(" s");
             }
@@ -222,7 +223,10 @@ impl TimingError {
                      limits it while it fades in and out and at the DAC's full scale",
                 );
                 match (bound, limit) {
-                    (None, _) => t.push("; for a rational environment no bound is known then"),
+                    (None, _) => t.push(
+                        "; no bound is known then for a rational environment, or without a coupling for \
+                         torques and counts that both jitter",
+                    ),
                     (_, None) => t.push(
                         "; behind a coupling stiffer than the standard one, 2 delta/T, or a rigid \
                          one, it is not known to be passive then: soften the coupling",
@@ -390,7 +394,7 @@ pub(super) const fn agree(
     }
     let is_on_a_board = !matches!(timing, OutputTiming::Simultaneous);
     if is_on_a_board && !is_rigid && !scene.latency.is_none() && !has_enough_jitter(scene) {
-        let jitter = scene.latency.output_jitter;
+        let jitter = scene.latency.deviation_of_counts();
         return Err(TimingError::Jitter { jitter });
     }
     let n = &LoopIntervals::of(scene, assessment.format);
@@ -500,7 +504,7 @@ const fn stands_counts_read_late(
 /// Whether a scene with a latency includes the time in which a board reads a count. With an updated current
 /// loop, its timer captures the count exactly at the update that begins the period.
 const fn has_enough_jitter(scene: &Scene) -> bool {
-    scene.latency.actuator_updates > 0 || scene.latency.output_jitter >= READ_WITHIN
+    scene.latency.actuator_updates > 0 || scene.latency.deviation_of_counts() >= READ_WITHIN
 }
 
 /// Upper limit of the bound for counts read late.

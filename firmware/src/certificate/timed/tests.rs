@@ -75,7 +75,7 @@ fn no_board_renders_a_rational_environment() {
     assert_eq!(late(0).unwrap_err(), TimingError::NotLate);
     let error = late(1).unwrap_err();
     assert!(matches!(error, TimingError::Limited { bound: None, .. }), "{error}");
-    assert!(error.to_string().ends_with("for a rational environment no bound is known then"));
+    assert!(error.to_string().contains("no bound is known then for a rational environment"));
 }
 
 /// Against the closed forms of theory, section 5: limit less index, from below and to the last
@@ -127,6 +127,22 @@ fn a_board_s_phase_is_the_scene_s_output_delay() {
     assert_eq!(other, TimingError::Phase { scene: 1e-5, board: 1.1e-5 });
     let still = at_phase(1e-5, 5e-7).time::<AtPhase<10_000>>().unwrap_err();
     assert_eq!(still, TimingError::Jitter { jitter: 5e-7 });
+}
+
+/// Beside a jitter of the torques, the time in which a board reads a count has to be a jitter of the counts.
+#[test]
+fn a_board_s_counts_deviate_by_the_count_jitter_of_the_scene_if_it_states_one() {
+    let at = |output_jitter: f64, count_jitter: f64| {
+        let latency = Latency { output_jitter, count_jitter, ..Latency::delayed(1e-5) };
+        let wall = Matched { environment: DamperWall { stiffness: 2.0, damping: 0.002 } };
+        let scene: Scene<UndelayedWall<0>> =
+            Scene { coupling: Coupling::Matched, latency, ..scene(wall, 44.0) };
+        scene.certify().unwrap().time::<AtPhase<10_000>>().err()
+    };
+    assert_eq!(at(2e-6, 5e-7), Some(TimingError::Jitter { jitter: 5e-7 }));
+    assert_eq!(at(2e-6, READ_WITHIN), None);
+    assert_eq!(at(5e-7, READ_WITHIN), None);
+    assert_eq!(at(0.0, READ_WITHIN), None);
 }
 
 /// Too short to compute a code in, and so long that the next one might be there.

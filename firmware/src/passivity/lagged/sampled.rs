@@ -55,17 +55,34 @@ impl SampledLag {
     /// time: the rest is at most 1.
     #[inline(never)]
     pub const fn held_after(&self, time: Interval) -> Interval {
-        let from = Interval::exact(time.lo().max(0.0)).mul(Interval::exact(self.updates));
-        let update = from.lo() as u32;
-        let part = from.sub(Interval::exact(update as f64));
-        let within = part.and(Interval::new(0.0, 1.0));
-        let beyond = Interval::exact((part.hi() - 1.0).max(0.0))
-            .div(Interval::exact(self.updates))
-            .add(Interval::exact(time.hi()).sub(Interval::exact(time.lo())));
+        let (update, within, beyond) = self.place(time);
         let sunk = Interval::ONE.sub(self.left).mul(within.mul(within)).half();
         let passed = within.sub(sunk).div(Interval::exact(self.updates));
         let held = self.after_updates(update).mul(self.held().sub(passed));
         held.sub(Interval::new(0.0, beyond.hi().max(0.0)))
+    }
+
+    /// The rest of a step at a time in periods, which is not negative: from one update to the next it falls
+    /// by at most 1.
+    #[inline(never)]
+    pub const fn rest_after(&self, time: Interval) -> Interval {
+        let (update, within, beyond) = self.place(time);
+        let sunk = Interval::ONE.sub(self.left).mul(within);
+        let rest = self.after_updates(update).mul(Interval::ONE.sub(sunk));
+        let fall = beyond.mul(Interval::exact(self.updates));
+        rest.add(Interval::new(-fall.hi().max(0.0), fall.hi().max(0.0)))
+    }
+
+    /// The update before the lower end of a time, the part of an interval from there to it, and the periods
+    /// from the end of that part to the upper end.
+    const fn place(&self, time: Interval) -> (u32, Interval, Interval) {
+        let from = Interval::exact(time.lo().max(0.0)).mul(Interval::exact(self.updates));
+        let update = from.lo() as u32;
+        let part = from.sub(Interval::exact(update as f64));
+        let beyond = Interval::exact((part.hi() - 1.0).max(0.0))
+            .div(Interval::exact(self.updates))
+            .add(Interval::exact(time.hi()).sub(Interval::exact(time.lo())));
+        (update, part.and(Interval::new(0.0, 1.0)), beyond)
     }
 
     /// The rest of a step after a time in periods that is a whole number of updates.

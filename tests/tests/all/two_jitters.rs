@@ -1,0 +1,331 @@
+//! Torques and counts that deviate in time at once (theory, section 13.4): the energy of equation 56 in the worst
+//! motion and for the worst torques, of a loop with period and passivity 1, with taps from a formula of its own.
+
+use analysis::file;
+use haptic_servo::certificate::PassivityProblem;
+use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::latency::TimeRange;
+use haptic_servo::matched::MatchedCoupling;
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use nalgebra::{DMatrix, SymmetricEigen};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Torques that differ from 0: two suffice for an energy below 0.
+const TORQUES: usize = 5;
+
+/// A torque begins `delay` after its count, `torques` off that at most, and the count is `counts` off its time at
+/// most.
+#[derive(Clone, Copy, Debug)]
+struct Windows {
+    delay: f64,
+    torques: f64,
+    counts: f64,
+}
+
+impl Windows {
+    fn both(&self) -> f64 {
+        2.0 * self.torques.min(self.counts)
+    }
+
+    fn width(&self) -> f64 {
+        2.0 * (self.torques + self.counts)
+    }
+
+    /// The taps of a torque that comes `later`, with this addition for the two kinds together.
+    fn tap(&self, m: usize, later: f64, both: f64) -> f64 {
+        let late = self.delay + self.torques + self.counts + later;
+        let m = m as f64;
+        (late + 1.0 - m).clamp(0.0, 1.0 + self.width()) + if m < late { both } else { 0.0 }
+    }
+
+    fn latency(&self) -> Latency {
+        Latency {
+            output_jitter: self.torques,
+            count_jitter: self.counts,
+            ..Latency::delayed(self.delay)
+        }
+    }
+}
+
+/// Deviations that repeat.
+#[derive(Clone, Debug)]
+struct Patterns {
+    torques: Vec<f64>,
+    counts: Vec<f64>,
+}
+
+fn at(pattern: &[f64], k: i32) -> f64 {
+    pattern[k.rem_euclid(pattern.len() as i32) as usize]
+}
+
+/// The least energy over all motions, for torques `f_0, f_1, ...` and 0 before and after them.
+fn energy(windows: &Windows, patterns: &Patterns, torques: &[f64], both: f64) -> f64 {
+    let f = |k: i32| usize::try_from(k).ok().and_then(|k| torques.get(k)).copied().unwrap_or(0.0);
+    let count = |k: i32| f64::from(k) + at(&patterns.counts, k);
+    let begin = |k: i32| f64::from(k) + windows.delay + at(&patterns.torques, k);
+    let ends = torques.len() as i32 + 5;
+    let left = 1.0 / (1.0 + windows.width() + both);
+    // A later code replaces an earlier one.
+    let applied = |time: f64| (-6..=ends).rev().find(|k| begin(*k) <= time).map_or(0.0, f);
+    (-4..ends)
+        .map(|k| {
+            let [from, to] = [count(k - 1), count(k)];
+            let mut times: Vec<f64> = (-6..=ends).map(begin).collect();
+            times.retain(|time| from < *time && *time < to);
+            times.extend([from, to]);
+            times.sort_by(f64::total_cmp);
+            let pieces: Vec<_> =
+                times.windows(2).map(|t| (applied(0.5 * (t[0] + t[1])), t[1] - t[0])).collect();
+            let length = to - from;
+            let impulse: f64 = pieces.iter().map(|(torque, time)| torque * time).sum();
+            let absorbed: f64 = (0..8)
+                .map(|m| 0.5 * windows.tap(m as usize, 0.0, both) * (f(k - m) - f(k - m - 1)))
+                .sum();
+            // Least where the velocity is half of the torque, less that of the tick, plus `left` times the step.
+            let step = (0.5 * (impulse - f(k) * length) + absorbed) / (1.0 - left * length);
+            let beside = left * step - 0.5 * f(k);
+            let spent: f64 = pieces
+                .iter()
+                .map(|(torque, time)| {
+                    let velocity = 0.5 * torque + beside;
+                    time * velocity * (velocity - torque)
+                })
+                .sum();
+            f(k) * step - left * step * step + spent
+        })
+        .sum()
+}
+
+/// The least energy over all motions and all torques of the norm 1.
+fn least_energy(windows: &Windows, patterns: &Patterns, both: f64) -> f64 {
+    let of = |units: &[usize]| {
+        let mut torques = [0.0; TORQUES];
+        units.iter().for_each(|unit| torques[*unit] += 1.0);
+        energy(windows, patterns, &torques, both)
+    };
+    let form = DMatrix::from_fn(TORQUES, TORQUES, |i, j| 0.5 * (of(&[i, j]) - of(&[i]) - of(&[j])));
+    SymmetricEigen::new(form).eigenvalues.min()
+}
+
+fn patterns(windows: &Windows, rng: &mut ChaCha8Rng) -> Patterns {
+    let mut of = |most: f64| -> Vec<f64> {
+        let inside = rng.random_bool(0.2);
+        (0..TORQUES + 7)
+            .map(|_| match inside {
+                true => rng.random_range(-most..=most),
+                false => {
+                    if rng.random_bool(0.5) {
+                        most
+                    } else {
+                        -most
+                    }
+                }
+            })
+            .collect()
+    };
+    Patterns { torques: of(windows.torques), counts: of(windows.counts) }
+}
+
+fn draw(rng: &mut ChaCha8Rng) -> Windows {
+    let sum = rng.random_range(0.02..0.49);
+    let torques = sum * rng.random_range(0.1..0.9);
+    let delay = [0.0, 0.3, 0.7, 1.0][rng.random_range(0..4)];
+    Windows { delay: delay + rng.random_range(0.0..0.3), torques, counts: sum - torques }
+}
+
+fn coupling(latency: &Latency) -> MatchedCoupling {
+    MatchedCoupling::of(1.0, None, 1.0, latency, Format::F64).expect("a coupling")
+}
+
+/// Those for torques up to the first two ticks, then the first of each trail.
+fn taps(coupling: &MatchedCoupling) -> Vec<f64> {
+    let mut taps = vec![coupling.compliance];
+    taps.extend(vec![coupling.held; coupling.whole]);
+    taps.push(coupling.arriving);
+    for later in 0..3 {
+        taps.push(coupling.trails.iter().map(|t| t.gain * t.decay.powi(later)).sum());
+    }
+    taps
+}
+
+#[test]
+fn no_pattern_and_no_torques_have_an_energy_below_0() {
+    let mut rng = ChaCha8Rng::seed_from_u64(70);
+    let mut least = f64::INFINITY;
+    for _ in 0..600 {
+        let windows = draw(&mut rng);
+        let patterns = patterns(&windows, &mut rng);
+        least = least.min(least_energy(&windows, &patterns, windows.both()));
+    }
+    assert!(least > -1e-12, "{least}");
+}
+
+/// What the smaller window adds is needed: found by a search over patterns, with a delay of one period.
+#[test]
+fn without_the_smaller_window_the_energy_is_below_0() {
+    let windows = Windows { delay: 1.0, torques: 0.2, counts: 0.2 };
+    let of = |signs: [f64; 7]| signs.map(|sign| 0.2 * sign).to_vec();
+    let patterns = Patterns {
+        torques: of([-1.0, 1.0, 1.0, -1.0, 1.0, -1.0, -1.0]),
+        counts: of([-1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
+    };
+    let torques = [-2.0, 1.0];
+    // Computed independently, with the energy as a quadratic form of the steps of the torque.
+    let found = energy(&windows, &patterns, &torques, 0.0);
+    assert!((found + 0.75).abs() < 1e-12, "{found}");
+    assert!(energy(&windows, &patterns, &torques, windows.both()) > 0.0);
+    let mut rng = ChaCha8Rng::seed_from_u64(71);
+    let negative = (0..200)
+        .filter(|_| {
+            let patterns = self::patterns(&windows, &mut rng);
+            least_energy(&windows, &patterns, 0.0) < -1e-3
+        })
+        .count();
+    assert!(negative > 20, "{negative} of 200");
+}
+
+#[test]
+fn a_coupling_has_these_taps_and_this_limit() {
+    let mut rng = ChaCha8Rng::seed_from_u64(72);
+    for _ in 0..200 {
+        let windows = draw(&mut rng);
+        let coupling = coupling(&windows.latency());
+        for (m, found) in taps(&coupling).into_iter().enumerate() {
+            let wanted = 0.5 * windows.tap(m, 0.0, windows.both());
+            assert!((found - wanted).abs() < 1e-12, "{m}: {found} {wanted} {windows:?}");
+        }
+        let limit = 1.0 / (1.0 + windows.width() + windows.both());
+        assert!((coupling.limit.midpoint() / limit - 1.0).abs() < 1e-11, "{windows:?}");
+    }
+    let equal = Windows { delay: 1.0, torques: 0.05, counts: 0.05 };
+    assert!((coupling(&equal.latency()).limit.midpoint() * 1.3 - 1.0).abs() < 1e-11);
+}
+
+/// A lag is a mixture of delays: its taps are means of those without a lag.
+#[test]
+fn the_taps_of_a_lag_are_means_over_its_delays() {
+    const PARTS: usize = 40_000;
+    let windows = Windows { delay: 0.75, torques: 0.06, counts: 0.09 };
+    let mean = |delay_of: &dyn Fn(f64) -> f64, m: usize| {
+        let part =
+            |i: usize| windows.tap(m, delay_of((i as f64 + 0.5) / PARTS as f64), windows.both());
+        (0..PARTS).map(part).sum::<f64>() / PARTS as f64
+    };
+    let tau = 0.6;
+    let continuous = |share: f64| -tau * (1.0 - share).ln();
+    // Between two of four updates in a period the step response is a straight line.
+    let decay = f64::exp(-0.25 / tau);
+    let updated = |share: f64| {
+        let (mut rest, mut update) = (1.0, 0.0);
+        while 1.0 - share < rest * decay {
+            (rest, update) = (rest * decay, update + 1.0);
+        }
+        0.25 * (update + (1.0 - (1.0 - share) / rest) / (1.0 - decay))
+    };
+    let lagging = windows.latency().with_actuator_lag(tau);
+    let sensed = Latency { sensor_lag: TimeRange::exactly(tau), ..windows.latency() };
+    let sampled = Latency { actuator_updates: 4, ..lagging };
+    let cases: [(Latency, &dyn Fn(f64) -> f64); 3] =
+        [(lagging, &continuous), (sensed, &continuous), (sampled, &updated)];
+    for (latency, delay_of) in cases {
+        for (m, found) in taps(&coupling(&latency)).into_iter().enumerate() {
+            let wanted = 0.5 * mean(delay_of, m);
+            assert!((found - wanted).abs() < 1e-4, "{m}: {found} {wanted} {latency:?}");
+        }
+    }
+    // Without the addition they would be off by more than that.
+    assert!(windows.both() * f64::exp(-1.0 / tau) > 1e-2);
+}
+
+/// One jitter is of torques or of counts, whichever of the two a scene states.
+#[test]
+fn a_count_jitter_alone_is_an_output_jitter() {
+    let jitter = 2e-4;
+    let output =
+        Latency { output_jitter: jitter, ..Latency::delayed(3e-4).with_actuator_lag(1e-4) };
+    let count = Latency { output_jitter: 0.0, count_jitter: jitter, ..output };
+    let of = |latency: &Latency| MatchedCoupling::of(1e-3, None, 0.022, latency, Format::F32);
+    assert_eq!(of(&output), of(&count));
+    for coupling in [Coupling::Rigid, Coupling::Matched, Coupling::Spring { stiffness: 8.0 }] {
+        for (damping, torque_limit) in [(0.0, None), (0.001, None), (0.001, Some(1.0))] {
+            let judged = |latency| {
+                let wall = Wall { damping, ..Wall::spring(3.0, 1) };
+                let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+                let posed = PassivityProblem::of(&Scene {
+                    device,
+                    timing: Timing { period: 1e-3, worst_period: None },
+                    coupling,
+                    environment: Environment::DamperWall(wall),
+                    latency,
+                    torque_limit,
+                })
+                .unwrap();
+                (posed.answer(), posed.bound(), posed.paper_limit())
+            };
+            assert_eq!(judged(output), judged(count), "{coupling:?} {damping} {torque_limit:?}");
+        }
+    }
+}
+
+/// A scene file with both is certified up to the limit behind the matched coupling, with and without a limited
+/// torque.
+#[test]
+fn a_scene_file_with_both_is_certified_up_to_the_limit() {
+    let (period, delta, torques, counts) = (1e-3, 0.022, 1e-4, 5e-5);
+    let limit = delta / (1.0 + 0.3 + 0.1);
+    for part in [1.0 - 1e-9, 1.0 + 1e-9] {
+        let stiffness = 2.0 * part * limit / period;
+        let text = format!(
+            "name = \"it\"\n[device]\ninertia = 2.2e-5\ndamping = {delta}\n[servo]\nperiod = {period}\n\
+             output_delay = 3e-4\noutput_jitter = {torques}\ncount_jitter = {counts}\n[coupling]\n\
+             type = \"matched\"\n[environment]\ntype = \"delayed-spring\"\nstiffness = {stiffness}\n\
+             delay = 1\n"
+        );
+        let scene = file::parse("scene.toml", file::Format::Toml, &text).unwrap().scene;
+        for torque_limit in [None, Some(1.0)] {
+            let posed = PassivityProblem::of(&Scene { torque_limit, ..scene }).unwrap();
+            assert_eq!(posed.is_certified(), part < 1.0, "{part} {torque_limit:?}");
+        }
+    }
+}
+
+/// Where the proof does not reach, a number is refused with what it has to be.
+#[test]
+fn what_is_not_proved_is_refused() {
+    let refused = |latency: Latency| {
+        let scene = Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+            timing: Timing { period: 1e-3, worst_period: None },
+            coupling: Coupling::Matched,
+            environment: Environment::DamperWall(Wall::spring(1.0, 1)),
+            latency,
+            torque_limit: None,
+        };
+        scene.certify().err().map(|error| error.to_string())
+    };
+    let both = Latency { output_jitter: 2e-4, count_jitter: 2.9e-4, ..Latency::delayed(6e-4) };
+    assert_eq!(refused(both), None);
+    let lag = |least, most| Latency { actuator_lag: TimeRange::between(least, most), ..both };
+    assert_eq!(refused(lag(1e-4, 1e-4)), None);
+    for (latency, words) in [
+        (
+            Latency { count_jitter: 3e-4, ..both },
+            "the count jitter is 0.0003 s, and must be below half",
+        ),
+        (Latency { output_delay: TimeRange::between(5e-4, 6e-4), ..both }, "below half"),
+        (lag(1e-4, 2e-4), "0 beside an output jitter and a lag"),
+        (
+            Latency { count_jitter: 1.5e-3, ..both },
+            "at most the time from a count to its torque, less",
+        ),
+        (
+            Latency { output_jitter: 0.0, count_jitter: 1.7e-3, ..both },
+            "at most the time from a count",
+        ),
+    ] {
+        let error = refused(latency).unwrap_or_default();
+        assert!(error.contains(words), "{error}: {latency:?}");
+    }
+}
