@@ -1,9 +1,9 @@
 //! The parts around the chip of a B-G431B-ESC1, with their tolerances and sources.
 //!
 //! No number here comes from the firmware, so that a belief of the firmware about a part is tested against the
-//! part. Sources: [S] the schematic of MB1419 as a reader of it states it
-//! (community.simplefoc.com/t/b-g431b-esc1-current-control/521); [M] from memory, not read in the data sheet;
-//! [A] an assumption.
+//! part. Sources: S: the schematic of MB1419 as a reader of it states it
+//! (community.simplefoc.com/t/b-g431b-esc1-current-control/521); M: from memory, not read in the data sheet;
+//! A: an assumption.
 
 /// A value that differs from board to board, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,37 +23,37 @@ impl Part {
     }
 }
 
-/// A shunt between a low side and ground, Ω: 3 mΩ [S], 1 % [M].
+/// A shunt between a low side and ground, Ω: 3 mΩ (S), 1 % (M).
 pub const SHUNT: Part = Part::percent(0.003, 1.0);
-/// From a shunt to the amplifier's non-inverting input, Ω [S], 1 % [A].
+/// From a shunt to the amplifier's non-inverting input, Ω (S), 1 % (A).
 pub const SERIES: Part = Part::percent(1.5e3, 1.0);
-/// From that input to ground, Ω [S], 1 % [A].
+/// From that input to ground, Ω (S), 1 % (A).
 pub const TO_GROUND: Part = Part::percent(2.2e3, 1.0);
-/// From that input to 3.3 V, Ω [S], 1 % [A].
+/// From that input to 3.3 V, Ω (S), 1 % (A).
 pub const TO_SUPPLY: Part = Part::percent(22e3, 1.0);
-/// Gain of an amplifier: 16 with its resistors' foot at ground (RM0440); 2 % [M] (DS12589).
+/// Gain of an amplifier: 16 with its resistors' foot at ground (RM0440); 2 % (M) (DS12589).
 pub const GAIN: Part = Part::percent(16.0, 2.0);
-/// Offset of an amplifier's input, V: 3 mV over the temperature [M] (DS12589).
+/// Offset of an amplifier's input, V: 3 mV over the temperature (M) (DS12589).
 pub const AMPLIFIER_OFFSET: Part = Part { least: -3e-3, nominal: 0.0, most: 3e-3 };
 /// Offset of a comparator, V: by so much the pin is above the reference when it trips; -9 to +3 mV (DS12589).
 pub const COMPARATOR_OFFSET: Part = Part { least: -9e-3, nominal: 0.0, most: 3e-3 };
-/// From the supply to the converter's pin, Ω [M], 1 % [A].
+/// From the supply to the converter's pin, Ω (M), 1 % (A).
 pub const DIVIDER_UPPER: Part = Part::percent(169e3, 1.0);
-/// From that pin to ground, Ω [M], 1 % [A].
+/// From that pin to ground, Ω (M), 1 % (A).
 pub const DIVIDER_LOWER: Part = Part::percent(18e3, 1.0);
-/// The thermistor at 25 °C, Ω [M], 1 % [A].
+/// The thermistor at 25 °C, Ω (M), 1 % (A).
 pub const THERMISTOR: Part = Part::percent(10e3, 1.0);
-/// The thermistor's constant B in K [M], 1 % [A].
+/// The thermistor's constant B in K (M), 1 % (A).
 pub const BETA: Part = Part::percent(3455.0, 1.0);
-/// From the thermistor to ground, Ω [M], 1 % [A].
+/// From the thermistor to ground, Ω (M), 1 % (A).
 pub const THERMISTOR_TO_GROUND: Part = Part::percent(4.7e3, 1.0);
 
 /// Time constant in s with which a low side that conducts charges the supply of its high side's gate: the driver's
-/// internal diode with 125 Ω [M] (L6387E) and the capacitor, 1 µF [A].
+/// internal diode with 125 Ω (M) (L6387E) and the capacitor, 1 µF (A).
 pub const BOOTSTRAP: Part = Part { least: 5e-5, nominal: 1.25e-4, most: 1e-3 };
-/// Time constant in s with which it discharges [A].
+/// Time constant in s with which it discharges (A).
 pub const BOOTSTRAP_LOSS: f64 = 0.1;
-/// The part of its voltage from which on the high side conducts [A].
+/// The part of its voltage from which on the high side conducts (A).
 pub const BOOTSTRAP_ENOUGH: f64 = 0.9;
 
 /// The parts of the current sense of a phase.
