@@ -152,8 +152,9 @@ impl TorqueOutput for Output {
         WAITING.store(code.get(), Ordering::Relaxed);
     }
 
-    /// Off at once; on after [`start_up_ticks`](TorqueOutput::start_up_ticks), if the power stage finds no fault. The current interrupt has a
-    /// higher priority than this one, and turns the gates on only after a request.
+    /// Off at once; on after [`start_up_ticks`](TorqueOutput::start_up_ticks), if the power stage finds no
+    /// fault. The current interrupt has a higher priority than this one, and turns the gates on only after a
+    /// request.
     #[inline(always)]
     fn switch(&mut self, on: bool) {
         if !on {
@@ -193,8 +194,10 @@ impl TorqueOutput for Output {
 #[cold]
 #[inline(never)]
 fn take_event() -> Option<OutputEvent> {
+    let code = FAULT.swap(0, Ordering::Acquire);
+    // After the code: a fault that replaces a step of the limit brings numbers of its own.
     let numbers = [0, 1].map(|i| FAULT_NUMBERS[i].load(Ordering::Relaxed));
-    match FAULT.swap(0, Ordering::Relaxed) {
+    match code {
         LOWER => Some(OutputEvent::Heat(HeatStep::Lower)),
         RAISE => Some(OutputEvent::Heat(HeatStep::Raise)),
         code => Fault::decode(code, numbers).map(OutputEvent::Fault),
