@@ -177,7 +177,9 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
                 }
                 return match self.controller.check_offset(sample, check) {
                     Ok(Some(duties)) => pwm::set(self.current_loop, duties),
-                    Ok(None) => self.finish_start(state),
+                    Ok(None) => {
+                        self.start(state).map_or_else(stop, |state| self.finish_start(state))
+                    }
                     Err(fault) => stop(fault),
                 };
             }
@@ -231,29 +233,24 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         if left > 0 {
             return charged.unwrap_or_else(stop);
         }
-        match charged.and_then(|()| self.start(state)) {
-            Ok(State::On) if BRUSHLESS => match self.controller.start_offset_check() {
-                Some(check) => {
-                    pwm::set(self.current_loop, self.current_loop.no_voltage());
-                    self.start_up = StartUp::Checking(check);
-                }
-                None => self.finish_start(state),
-            },
-            Ok(_) => self.finish_start(state),
-            Err(fault) => stop(fault),
-        }
+        let started = match charged.and_then(|()| self.start(state)) {
+            Ok(started) => started,
+            Err(fault) => return stop(fault),
+        };
+        let check = match started {
+            State::On if BRUSHLESS => self.controller.start_offset_check(),
+            _ => None,
+        };
+        let Some(check) = check else { return self.finish_start(started) };
+        pwm::set(self.current_loop, self.current_loop.no_voltage());
+        self.start_up = StartUp::Checking(check);
     }
 
     /// The next instant is the first of the requested state.
-    fn finish_start(&mut self, state: u8) {
-        match self.start(state) {
-            Ok(state) => {
-                pwm::set(self.current_loop, self.current_loop.no_voltage());
-                self.start_up = StartUp::Waiting;
-                STATE.store(state as u8, Ordering::Relaxed);
-            }
-            Err(fault) => stop(fault),
-        }
+    fn finish_start(&mut self, state: State) {
+        pwm::set(self.current_loop, self.current_loop.no_voltage());
+        self.start_up = StartUp::Waiting;
+        STATE.store(state as u8, Ordering::Relaxed);
     }
 
     /// An instant of an alignment.
