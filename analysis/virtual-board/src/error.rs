@@ -133,6 +133,9 @@ impl fmt::Display for NotModelled {
         match self.why {
             AccessError::Nobody => f.write_str("the virtual board has no peripheral there"),
             AccessError::Unit(Unmodelled::Register) => f.write_str("that register is not modelled"),
+            AccessError::Unit(Unmodelled::ClockStep) => {
+                f.write_str("the core's clock rises too far at once")
+            }
             AccessError::Unit(Unmodelled::Bits(bits)) => {
                 write!(f, "the bits {bits:#010x} are not modelled in that register")
             }

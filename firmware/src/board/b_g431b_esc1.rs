@@ -33,8 +33,8 @@ pub const CHIP: &[u8; 13] = b"STM32G431CBUx";
 /// The encoder: TIM4, the timer of PB6 and PB7, which are the pads A+ and B+ of J8. It has 16 bits;
 /// the chip's only quadrature timer with 32, TIM2, has no pad with both its inputs.
 pub const ENCODER: pac::timer::TimGp16 = pac::TIM4;
-/// TIM4's clock for counting and sampling, in Hz.
-pub const ENCODER_CLOCK: f64 = 170e6;
+/// The clock of the slow bus's timers in Hz: TIM4 counts and samples with it, TIM6 and TIM2 pace the servo.
+pub const TIMER_CLOCK: f64 = clock_170::CLOCK;
 /// The pads tolerate 5 V without the chip's own pull (DS12589), and the board pulls them up by 10 kΩ.
 pub const ENCODER_PULL: Pull = Pull::None;
 /// The clock that measures the lateness of the servo: TIM2, which has 32 bits.

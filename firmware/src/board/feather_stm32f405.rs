@@ -29,8 +29,8 @@ pub const CHIP: &[u8; 13] = b"STM32F405RGTx";
 /// The encoder: TIM3, the timer of PC6 and PC7 (D6 and D5). It has 16 bits: of the chip's 32-bit timers, TIM2
 /// has its inputs at the flash chip (PA15, PB3) or at the DAC (PA5), and TIM5 on pins without a header.
 pub const ENCODER: pac::timer::TimGp16 = pac::TIM3;
-/// TIM3's clock for counting and sampling, in Hz.
-pub const ENCODER_CLOCK: f64 = 84e6;
+/// The clock of the slow bus's timers in Hz: TIM3 counts and samples with it, TIM6 paces the servo.
+pub const TIMER_CLOCK: f64 = 84e6;
 /// PC6 and PC7 tolerate 5 V without the chip's own pull (DS8626), and the header supplies 5 V from USB.
 pub const ENCODER_PULL: Pull = Pull::None;
 /// The clock that measures the lateness of the servo: TIM5, which has 32 bits.

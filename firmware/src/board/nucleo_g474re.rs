@@ -24,8 +24,8 @@ pub const CHIP: &[u8; 13] = b"STM32G474RETx";
 
 /// The encoder: TIM2, one of the chip's two timers with 32 bits and quadrature inputs.
 pub const ENCODER: pac::timer::TimGp32 = pac::TIM2;
-/// TIM2's clock for counting and sampling, in Hz.
-pub const ENCODER_CLOCK: f64 = 170e6;
+/// The clock of the slow bus's timers in Hz: TIM2 counts and samples with it, TIM6 paces the servo.
+pub const TIMER_CLOCK: f64 = clock_170::CLOCK;
 /// PA0 and PA1 tolerate at most 3.6 V (DS12288), so the encoder must not have 5 V outputs. The inputs are
 /// pulled up for open collectors, and so that an unplugged encoder counts no noise.
 pub const ENCODER_PULL: Pull = Pull::Up;

@@ -1,8 +1,8 @@
 //! Reset and clock control: oscillators that are ready as soon as they are switched on, unless a
 //! test keeps one from starting; the clock that follows from it; and who is clocked and reset.
 
-use super::Access;
 use super::inert_registers::InertRegisters;
+use super::{Access, Unmodelled};
 
 /// What differs between the families.
 #[derive(Debug)]
@@ -23,6 +23,9 @@ pub struct Layout {
     pub internal: u32,
     /// Switches of clock sources: register, the switch's bit, and the bit that says it is ready.
     pub switches: &'static [(u32, u32, u32)],
+    /// The largest clock in Hz that the core may have at once when its source is another; above it the core's
+    /// voltage breaks down.
+    pub at_once: u64,
     /// CFGR: where it has the slow peripheral bus's divider.
     pub slow_bus: u32,
     /// The system's clock in Hz for a crystal of so many; none where what was chosen does not run.
@@ -195,7 +198,12 @@ impl Clock {
         } else {
             value & !own | self.causes()
         };
+        let before = self.get(offset);
         self.registers.set(offset, kept);
+        let changes_source = offset == self.layout.choice && (before ^ kept) & 0b11 != 0;
+        if changes_source && self.core() > self.layout.at_once {
+            return Err(Unmodelled::ClockStep);
+        }
         Ok(())
     }
 

@@ -38,6 +38,8 @@ pub const LAYOUT: Layout = Layout {
     internal: 0,
     // With the internal oscillators: of 16 MHz, and the slow one.
     switches: &[CRYSTAL, LOOP, (0x00, 1, 1 << 1), (0x74, 1, 1 << 1)],
+    // No bound in RM0090.
+    at_once: u64::MAX,
     slow_bus: 10,
     system,
 };

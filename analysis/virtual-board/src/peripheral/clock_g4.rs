@@ -25,8 +25,9 @@ pub const LAYOUT: Layout = Layout {
         (0x58, 0, u32::MAX),
         (0x5C, 0, u32::MAX),
         (0x60, 0, u32::MAX),
-        // CCIPR, CCIPR2: every peripheral at its bus's clock.
-        (0x88, 0, 0),
+        // CCIPR, CCIPR2: every peripheral at its bus's clock, USART2 also at the system's, which is the same
+        // where nothing divides.
+        (0x88, 0, 0b01 << 2),
         (0x9C, 0, 0),
         // BDCR: the clock of the day and its reset, which nothing here uses.
         (0x90, 0, (1 << 16) | (1 << 15) | (0b11 << 8)),
@@ -49,6 +50,8 @@ pub const LAYOUT: Layout = Layout {
         (0x94, 1, 1 << 1),
         (0x98, 1, 1 << 1),
     ],
+    // RM0440, system clock selection, which ST's driver follows: beyond 80 MHz in two steps.
+    at_once: 85_000_000,
     slow_bus: 8,
     system,
 };

@@ -26,6 +26,8 @@ pub enum Unmodelled {
     Register,
     /// These bits of what was written are not.
     Bits(u32),
+    /// The supply of a core whose clock rises so far at once is not.
+    ClockStep,
 }
 
 /// What an access gives.

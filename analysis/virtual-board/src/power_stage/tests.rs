@@ -112,6 +112,8 @@ impl Driver {
         self.set(RCC, 1 << 16);
         self.write(RCC + 0x0C, 3 | 1 << 4 | 85 << 8 | 1 << 24);
         self.set(RCC, 1 << 24);
+        // In two steps: half of it first.
+        self.write(RCC + 0x08, 3 | 0b1000 << 4);
         self.write(RCC + 0x08, 3);
         self.write(RCC + 0x4C, 0b111 | 1 << 13 | 1 << 18);
         self.write(RCC + 0x60, 1 | 1 << 11);

@@ -8,7 +8,7 @@
 
 use haptic_servo::board::input_filter::InputFilter;
 use haptic_servo::board::stm32::output::bridge::load::Load;
-use haptic_servo::board::stm32::wiring::{CHIP, ENCODER, ENCODER_CLOCK};
+use haptic_servo::board::stm32::wiring::{CHIP, ENCODER, TIMER_CLOCK};
 use haptic_servo::board::stm32::{init_chip, width};
 use haptic_servo::current::{
     B_G431B_ESC1, CurrentLoop, Drive, DutyCurrent, Motor, Sample, Supply, Winding,
@@ -54,7 +54,7 @@ const EXPECTED: DutyCurrent =
     LOAD.checked_current_at_duty(&B_G431B_ESC1, PERIOD / 40.0, DUTY, TOLERANCE);
 
 /// The filter of the encoder's inputs.
-const FILTER: InputFilter = InputFilter::of_encoder(&TRANSDUCERS, ENCODER_CLOCK);
+const FILTER: InputFilter = InputFilter::of_encoder(&TRANSDUCERS, TIMER_CLOCK);
 
 /// The chip of these tests, in the place where probe-rs looks for it.
 #[used]

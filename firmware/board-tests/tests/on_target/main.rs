@@ -10,7 +10,7 @@ use haptic_servo::board::input_filter::InputFilter;
 use haptic_servo::board::stm32::output::Setup;
 use haptic_servo::board::stm32::quadrature::Counter;
 use haptic_servo::board::stm32::registers::Registers;
-use haptic_servo::board::stm32::wiring::{CHIP, DAC, ENCODER, ENCODER_CLOCK};
+use haptic_servo::board::stm32::wiring::{CHIP, DAC, ENCODER, TIMER_CLOCK};
 use haptic_servo::board::stm32::{Mode, init_chip, registers, width};
 use haptic_servo::boot::Startup;
 use haptic_servo::dac::DacCode;
@@ -29,7 +29,7 @@ const TRANSDUCERS: Transducers = Transducers {
 };
 
 /// The filter of the encoder's inputs.
-const FILTER: InputFilter = InputFilter::of_encoder(&TRANSDUCERS, ENCODER_CLOCK);
+const FILTER: InputFilter = InputFilter::of_encoder(&TRANSDUCERS, TIMER_CLOCK);
 
 /// The environment of these tests: the wall of the program `damper_wall`.
 type Environment = OneSided<DamperWall<1>>;

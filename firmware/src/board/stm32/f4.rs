@@ -21,9 +21,9 @@ pub fn non_maskable() -> Fault {
 const F405: u16 = 0x413;
 const REVISION_A: u16 = 0x1000;
 
-/// Enables the caches and the prefetching of the flash memory: it has five wait states at 168 MHz, and
+/// Full speed: enables the caches and the prefetching of the flash memory: it has five wait states at 168 MHz, and
 /// the clock set-up clears the other bits of that register.
-pub fn cache() {
+pub fn full_speed() {
     let chip = DBGMCU.idcode().read();
     FLASH.acr().modify(|w| {
         w.set_icen(true);

@@ -2,6 +2,7 @@
 
 use embassy_stm32::pac::{DBGMCU, FLASH, RCC, SYSCFG};
 
+use super::clock_170;
 use crate::fault::Fault;
 
 /// RCC_CSR: the supply was below the brown-out level or was switched on; the chip does not distinguish the
@@ -24,9 +25,10 @@ pub fn non_maskable() -> Fault {
     if SYSCFG.cfgr2().read().spf() { Fault::RamParity } else { Fault::NonMaskable }
 }
 
-/// Both caches of the flash memory are on after reset. Nothing here relies on them: the code of each tick is
-/// in core-coupled memory.
-pub fn cache() {
+/// Full speed: the whole system clock, and both caches of the flash memory, which are on after reset. Nothing here
+/// relies on them: the code of each tick is in core-coupled memory.
+pub fn full_speed() {
+    clock_170::undivide();
     FLASH.acr().modify(|w| {
         w.set_icen(true);
         w.set_dcen(true);

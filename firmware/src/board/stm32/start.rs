@@ -169,7 +169,7 @@ fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_becaus
 /// Sets up clocks, interrupts and pins. The motor is off, and the next torque is zero.
 pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
     let chip = embassy_stm32::init(wiring::clocks());
-    family::cache();
+    family::full_speed();
     // From here on a stopped crystal is a fault and does not stop the core.
     pac::RCC.cr().modify(|w| w.set_csson(true));
     #[cfg(feature = "fast-memory")]
@@ -298,7 +298,7 @@ macro_rules! board_filter {
         const FILTER: $crate::board::input_filter::InputFilter =
             $crate::board::input_filter::InputFilter::of_encoder(
                 &$transducers,
-                $crate::board::stm32::wiring::ENCODER_CLOCK,
+                $crate::board::stm32::wiring::TIMER_CLOCK,
             );
     };
 }

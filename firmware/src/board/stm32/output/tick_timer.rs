@@ -25,7 +25,7 @@ use embassy_stm32::rcc;
 
 use super::periods::{Periods, now};
 use crate::board::stm32::quadrature::Counter;
-use crate::board::stm32::wiring::ENCODER;
+use crate::board::stm32::wiring::{ENCODER, TIMER_CLOCK};
 use crate::build_error::BuildError;
 use crate::encoder::RawCount;
 use crate::output_timing::OutputTiming;
@@ -57,7 +57,7 @@ impl Period {
     /// If the board cannot pace it: see [`period`](period::check).
     fn of(seconds: f64) -> Result<Self, BuildError> {
         period::check(seconds)?;
-        let clock = f64::from(rcc::frequency::<peripherals::TIM6>().0);
+        let clock = TIMER_CLOCK;
         let wanted = seconds * clock;
         // The prescaler with the nearest period, beginning with the smallest that fits, which has the finest
         // steps. Usual periods are whole numbers of counts with one of the next few prescalers, up to the

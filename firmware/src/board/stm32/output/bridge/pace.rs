@@ -14,7 +14,7 @@ use embassy_stm32::{peripherals, rcc};
 
 use super::pwm;
 use crate::board::stm32::output::periods::Periods;
-use crate::board::stm32::wiring::ENCODER;
+use crate::board::stm32::wiring::{ENCODER, TIMER_CLOCK};
 use crate::encoder::RawCount;
 
 /// The clock when the count of the present period was read, and that count.
@@ -55,8 +55,8 @@ impl Pace {
     /// after which the next capture overwrites the count.
     pub fn new(period: NonZeroU32, in_time: u32) -> Self {
         capture_counts();
-        let clock = f64::from(rcc::frequency::<peripherals::TIM2>().0);
-        Self { periods: Periods::new(period, f64::from(period.get()) / clock, in_time) }
+        let seconds = f64::from(period.get()) / TIMER_CLOCK;
+        Self { periods: Periods::new(period, seconds, in_time) }
     }
 
     /// Starts the clock and then TIM1.
