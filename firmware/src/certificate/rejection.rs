@@ -331,8 +331,8 @@ const fn write_doubt(
         }
         UndecidedReason::NoBoundAtPort => {
             "without a coupling no bound is known for this environment with this limit, or with these times: updates \
-             that are missed beside two lags, or beside a lag and jitter, or torques and counts that both jitter; \
-             couple it by a spring or, where torques lag, by the matched coupling"
+             that are missed beside two lags, or beside a lag and jitter, or torques and counts that both jitter beside a \
+             lag; couple it by a spring or, where torques lag, by the matched coupling"
         }
         UndecidedReason::NotBelowBound => {
             "without a coupling the bound on what the scene needs is not below delta, and it is not known whether it \

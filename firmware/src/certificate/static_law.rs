@@ -84,18 +84,20 @@ pub(super) const fn needed_at_port<E: EnvironmentModel>(
     }
 }
 
-/// The passivity that a switched damper takes at most beside a static law, over the damper: the root of the
-/// longest time between two counts or two torques, in periods (theory, section 16.3).
+/// The passivity that a switched damper takes at most beside a static law, over the damper: the geometric mean
+/// of the longest times between two counts and between two torques, in periods (theory, section 16.3). At least
+/// one of them is 1, unless torques and counts jitter: the arithmetic mean is then not less.
 pub(super) const fn share_of_damper(scene: &Scene, n: &LoopIntervals, reading: f64) -> Interval {
     let jitter = Interval::exact(End::Upper.time(scene.latency.total_jitter(), n));
     let reading = Interval::exact(End::Upper.time(reading, n));
-    Interval::ONE.add(jitter.double()).add(reading).sqrt()
+    let apart = Interval::ONE.add(jitter.double()).add(reading);
+    if scene.latency.jitters_twice() { Interval::ONE.add(apart).half() } else { apart.sqrt() }
 }
 
 /// Whether the index is known to be the least one for a spring.
 const fn is_exact(latency: &Latency, n: &LoopIntervals) -> bool {
     let is_in_updates = latency.actuator_updates == 0 || latency.total_jitter() == 0.0;
-    is_in_updates && (!n.misses_updates || latency.is_none())
+    is_in_updates && !latency.jitters_twice() && (!n.misses_updates || latency.is_none())
 }
 
 /// A torque that depends on positions, limited at any level, plus parts that depend on steps of positions.
@@ -155,8 +157,7 @@ impl Law {
         }
     }
 
-    /// [`needed_at_port`] of the law in a scene. `None` also where neither torques nor counts come once a
-    /// period (theory, section 16.2).
+    /// [`needed_at_port`] of the law in a scene.
     const fn needed(
         &self,
         scene: &Scene,
@@ -164,9 +165,6 @@ impl Law {
         reading: f64,
         end: End,
     ) -> Option<f64> {
-        if scene.latency.jitters_twice() {
-            return None;
-        }
         let Some(age) = Age::of(&scene.latency, n, end) else { return None };
         let steepest = self.steepest;
         let moved = self.rise.half().add(self.late).add(steepest.mul(age.mean));
@@ -179,7 +177,7 @@ impl Law {
             (moved.add(self.damping), Interval::ZERO)
         };
         let root = within.mul(within).add(spread).sqrt();
-        let needed = within.add(root).half().add(beside).mul(n.period);
+        let needed = within.add(root).half().mul(age.tick).add(beside).mul(n.period);
         Some(end.of(needed).max(0.0))
     }
 
@@ -239,17 +237,20 @@ impl Law {
 }
 
 /// The ages of a torque in addition to the whole samples of its law (equation 60): the mean of the folded
-/// envelope of the ages and its variance over a period (theory, section 16.1), scaled to the worst period.
+/// envelope of the ages and its variance over a tick (theory, section 16.1), scaled to the longest tick.
 #[derive(Clone, Copy)]
 struct Age {
     mean: Interval,
     variance: Interval,
+    /// The longest tick over the worst period.
+    tick: Interval,
 }
 
 impl Age {
-    const NONE: Self = Self { mean: Interval::ZERO, variance: Interval::ZERO };
+    const NONE: Self = Self { mean: Interval::ZERO, variance: Interval::ZERO, tick: Interval::ONE };
 
-    /// `None` if no bound is known: for updates that are missed beside two lags, or beside jitter and a lag.
+    /// `None` if no bound is known: for updates that are missed beside two lags, or beside jitter and a lag,
+    /// and for two jitters beside a lag.
     const fn of(latency: &Latency, n: &LoopIntervals, end: End) -> Option<Self> {
         if latency.is_none() {
             return Some(Self::NONE);
@@ -257,6 +258,13 @@ impl Age {
         let has_lag = !latency.actuator_lag.is_zero();
         let has_filter = !latency.sensor_lag.is_zero();
         let Some(oldest) = oldest(latency, n, end) else { return None };
+        if latency.jitters_twice() {
+            return if has_lag || has_filter {
+                None
+            } else {
+                Self::irregular(oldest, latency, n, end)
+            };
+        }
         let whole = oldest as u32 as f64;
         // Exact, as a difference of doubles of the same order.
         let part = Interval::exact(oldest - whole);
@@ -270,7 +278,8 @@ impl Age {
         };
         let whole = Interval::exact(whole);
         if !n.misses_updates {
-            return Some(Self { mean: whole.add(mean), variance: variance(square, mean) });
+            let variance = variance(square, mean);
+            return Some(Self { mean: whole.add(mean), variance, tick: Interval::ONE });
         }
         if has_lag && has_filter || (has_lag || has_filter) && latency.total_jitter() > 0.0 {
             return None;
@@ -280,7 +289,32 @@ impl Age {
         let longer = n.stretch.sub(Interval::ONE);
         let mean = mean.add(longer.mul(later)).div(n.stretch);
         let square = square.add(longer.mul(later).mul(later)).div(n.stretch);
-        Some(Self { mean: whole.add(mean), variance: variance(square, mean) })
+        let variance = variance(square, mean);
+        Some(Self { mean: whole.add(mean), variance, tick: Interval::ONE })
+    }
+
+    /// The ages where neither torques nor counts come once a period: of the two, the ticks are those that
+    /// deviate less, by `h`. Each is between `1 - 2 h` and the worst period plus `2 h` long, and as many ticks
+    /// as the samples of the law may take `2 h` less than their periods.
+    #[inline(never)]
+    const fn irregular(
+        oldest: f64,
+        latency: &Latency,
+        n: &LoopIntervals,
+        end: End,
+    ) -> Option<Self> {
+        let less = latency.output_jitter.min(latency.count_jitter);
+        let twice = Interval::exact(end.time(less, n)).double();
+        let shortest = Interval::ONE.sub(twice);
+        if shortest.lo() <= 0.0 {
+            return None;
+        }
+        let oldest = Interval::exact(oldest).add(twice);
+        let whole = Interval::exact(end.of(oldest.div(shortest)) as u32 as f64);
+        let longest = n.stretch.add(twice);
+        let part = oldest.sub(whole.mul(shortest)).max(Interval::ZERO).div(longest);
+        let tick = longest.div(n.stretch);
+        Some(Self { mean: whole.add(part), variance: variance(part, part), tick })
     }
 }
 

@@ -225,7 +225,7 @@ impl TimingError {
                 match (bound, limit) {
                     (None, _) => t.push(
                         "; no bound is known then for a rational environment, or without a coupling for \
-                         torques and counts that both jitter",
+                         torques and counts that both jitter beside a lag",
                     ),
                     (_, None) => t.push(
                         "; behind a coupling stiffer than the standard one, 2 delta/T, or a rigid \
