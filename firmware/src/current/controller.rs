@@ -16,7 +16,7 @@ use super::sample::{Duties, Sample};
 use super::speed::Speed;
 use super::supervision::Supervision;
 use super::surroundings::Surroundings;
-use super::vector::{Rotation, Vector, larger};
+use super::vector::{Rotation, Vector};
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 
@@ -42,6 +42,25 @@ pub struct CurrentController {
     surroundings: Surroundings,
     /// Current in A of the last sample; zero while the gates are off.
     current: f32,
+}
+
+/// The motion of a brushless motor in the direction of its field.
+#[derive(Clone, Copy)]
+struct Moved {
+    /// Counts since the last instant, and their mean over the last ones.
+    counts: f32,
+    mean: f32,
+}
+
+impl Moved {
+    const NONE: Self = Self { counts: 0.0, mean: 0.0 };
+
+    /// The motion by a step of the encoder.
+    #[inline(always)]
+    fn by(step: i32, phase: &PhaseAlignment, speed: &mut Speed) -> Self {
+        let sign = phase.sign();
+        Self { counts: sign * step as f32, mean: sign * speed.update(step) }
+    }
 }
 
 impl CurrentController {
@@ -125,7 +144,7 @@ impl CurrentController {
     ) -> Result<Option<Duties>, PowerFault> {
         let Some(phase) = self.phase else { return Err(self.not_aligned()) };
         let step = self.move_to(sample.position);
-        let speed = phase.sign() * self.speed.update(step);
+        let moved = Moved::by(step, &phase, &mut self.speed);
         let Some(current) = check.step(step) else {
             check.result()?;
             self.is_unchecked = false;
@@ -135,7 +154,7 @@ impl CurrentController {
         // Forward for the handle is backward for the magnets of a reversed motor.
         let wanted =
             Vector { along: amps * current.along, across: phase.sign() * amps * current.across };
-        self.step_vector(sample, phase.angle(self.turn.angle()), wanted, speed).map(Some)
+        self.step_vector(sample, phase.angle(self.turn.angle()), wanted, moved).map(Some)
     }
 
     /// Prepares for gates that are switched on before the next instant, with no current and no voltage. The
@@ -257,7 +276,7 @@ impl CurrentController {
         };
         let amps = self.design.law.amps_per_code * f32::from(DacCode::CODES_TO_FULL_SCALE);
         let wanted = Vector { along: current * amps, across: 0.0 };
-        self.step_vector(sample, angle, wanted, 0.0).map(AlignmentStep::Turning)
+        self.step_vector(sample, angle, wanted, Moved::NONE).map(AlignmentStep::Turning)
     }
 
     /// Counts since the last instant.
@@ -271,6 +290,7 @@ impl CurrentController {
     /// The instant of a brushed motor.
     #[inline(always)]
     fn step_brushed(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
+        let moved = self.speed.step(sample.position) as f32;
         let CurrentLoop { law, output, limits, timing, .. } = &self.design;
         limits.check_currents(sample, self.offset)?;
         let bus = self.surroundings.observe(limits, sample)?;
@@ -290,7 +310,8 @@ impl CurrentController {
             wanted.deviation,
             is_limited && wanted.deviation * counts > 0.0,
         );
-        self.supervision.observe(limits, wanted.deviation.abs(), is_limited)?;
+        let deviation = Vector { along: 0.0, across: wanted.deviation };
+        self.supervision.observe(limits, deviation, moved, is_limited)?;
         Ok(timing.between_two(limited))
     }
 
@@ -303,22 +324,22 @@ impl CurrentController {
             return Err(self.not_aligned());
         };
         let step = self.move_to(sample.position);
-        let speed = phase.sign() * self.speed.update(step);
+        let moved = Moved::by(step, &phase, &mut self.speed);
         let reference = phase.sign() * self.design.law.amps_per_code * f32::from(code_offset);
         let wanted = Vector { along: 0.0, across: reference };
-        let duties = self.step_vector(sample, phase.angle(self.turn.angle()), wanted, speed);
+        let duties = self.step_vector(sample, phase.angle(self.turn.angle()), wanted, moved);
         self.current *= phase.sign();
         duties
     }
 
-    /// Controls the currents along and across an angle that turns by `turned` in an instant.
+    /// Controls the currents along and across an angle.
     #[inline(always)]
     fn step_vector(
         &mut self,
         sample: &Sample,
         angle: u32,
         reference: Vector,
-        speed: f32,
+        moved: Moved,
     ) -> Result<Duties, PowerFault> {
         let CurrentLoop { law, output, limits, timing, .. } = &self.design;
         limits.check_currents(sample, self.offset)?;
@@ -332,7 +353,7 @@ impl CurrentController {
         self.current = current.across;
         let across = self.follower.follow(law, reference.across, current.across);
         let along = self.along.follow(law, reference.along, current.along);
-        let turned = law.radians * speed;
+        let turned = law.radians * moved.mean;
         let volts = Vector {
             along: along.volts - 0.5 * turned * self.follower.volts_across(law),
             across: across.volts + 0.5 * turned * self.along.volts_across(law),
@@ -343,8 +364,8 @@ impl CurrentController {
         let goes_on = |wanted: Wanted, counts: f32| is_limited && wanted.deviation * counts > 0.0;
         self.follower.integrate(law, across.deviation, goes_on(across, counts.across));
         self.along.integrate(law, along.deviation, goes_on(along, counts.along));
-        let deviation = larger(across.deviation.abs(), along.deviation.abs());
-        self.supervision.observe(limits, deviation, is_limited)?;
+        let deviation = Vector { along: along.deviation, across: across.deviation };
+        self.supervision.observe(limits, deviation, moved.counts, is_limited)?;
         // From the sample to the middle of the period in which the voltage acts.
         let rotation = rotation.ahead(1.5 * turned);
         let model = Vector { along: self.along.twice_mean(), across: self.follower.twice_mean() };

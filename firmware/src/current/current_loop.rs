@@ -160,6 +160,12 @@ pub(super) struct Limits {
     pub deviation: f32,
     /// Instants that a larger deviation, or a lack of voltage, may last.
     pub instants: u16,
+    /// Largest sum over such instants of the deviations that no motion explains, in A.
+    pub unexplained: f32,
+    /// Sum over the instants in A of the deviation by a change of the speed by a count in an instant.
+    pub amps_of_motion: f32,
+    /// `1 - a`, the weight of an instant's speed.
+    pub smoothing: f32,
     pub milliamps_per_count: f32,
     pub millivolts_per_count: f32,
     pub thermistor: ThermistorTable,
@@ -594,6 +600,19 @@ impl<'a> Design<'a> {
         }
     }
 
+    /// Instants in which a deviation must end.
+    const fn settling(&self) -> u16 {
+        (SETTLING / self.plant.feedback).min(u16::MAX as f64) as u16
+    }
+
+    /// Sum over the instants in A of the deviation by a change of the speed by a count in an instant: `Ke/(K R)`
+    /// of that speed (theory, section 15.10).
+    const fn amps_of_motion(&self) -> f64 {
+        let motor = &self.drive.motor;
+        let speed = core::f64::consts::TAU / (self.transducers.counts_per_turn * self.instant);
+        motor.back_emf() * speed / (self.plant.feedback * motor.resistance)
+    }
+
     const fn limits(&self) -> Limits {
         let Self { drive, stage, .. } = *self;
         // All casts round positive numbers down; the count of the lowest supply is rounded up.
@@ -608,7 +627,10 @@ impl<'a> Design<'a> {
             temperature: stage.thermistor.count(drive.largest_temperature),
             offsets: stage.offset_counts,
             deviation: (self.current * LARGEST_DEVIATION) as f32,
-            instants: (SETTLING / self.plant.feedback).min(u16::MAX as f64) as u16,
+            instants: self.settling(),
+            unexplained: (self.settling() as f64 * self.current * LARGEST_DEVIATION) as f32,
+            amps_of_motion: self.amps_of_motion() as f32,
+            smoothing: (1.0 - self.plant.decay) as f32,
             milliamps_per_count: (stage.amps_per_count * 1e3) as f32,
             millivolts_per_count: (stage.volts_per_count * 1e3) as f32,
             thermistor: stage.thermistor.table(),

@@ -98,6 +98,7 @@ impl CurrentLoop {
             i += 1;
         }
         self.check_device(device);
+        self.check_acceleration(device, transducers.largest_speed);
     }
 
     /// For constants: checks that the supply of this loop stays below its fault level after a push into a
@@ -178,6 +179,42 @@ impl CurrentLoop {
             t.push_number(most);
         } else {
             t.push(": take a motor with more inductance, or with a smaller torque constant");
+        }
+        panic!("{}", t.as_str())
+    }
+
+    /// The largest acceleration of the handle in rad/s^2 that supervision never takes for a fault (equation 64).
+    pub const fn largest_acceleration(&self) -> f64 {
+        let (limits, source) = (&self.limits, self.torque_source());
+        // By each of the two speeds that are compared, a count's edge.
+        let counts = 2.0 * limits.smoothing as f64 * limits.amps_of_motion as f64;
+        let deviation = source.gain * source.instant
+            / (self.torque_per_amp() * source.feedback * source.resistance);
+        let delay = 1.0 / source.feedback - 1.0;
+        (limits.unexplained as f64 - counts) / (2.0 * delay * deviation)
+    }
+
+    /// Checks that the device accelerates no more by motor and damping than supervision bears.
+    #[track_caller]
+    const fn check_acceleration(&self, device: &Device, speed: f64) {
+        let torque = OVER_CURRENT * self.full_scale_current() * self.torque_per_amp()
+            + device.damping * speed;
+        let (largest, acceleration) = (self.largest_acceleration(), torque / device.inertia);
+        if acceleration <= largest {
+            return;
+        }
+        let mut t = Sentence::new();
+        t.push("motor and damping accelerate the device by up to ");
+        t.push_number(acceleration);
+        t.push(" rad/s^2, and with more than ");
+        t.push_number(largest);
+        t.push(" its back-EMF looks like a broken wire: ");
+        if largest > 0.0 {
+            t.push("take an inertia of at least ");
+            t.push_number(torque / largest);
+            t.push(" kg m^2, or less full-scale torque, or a smaller torque constant");
+        } else {
+            t.push("take an encoder with more counts per turn");
         }
         panic!("{}", t.as_str())
     }

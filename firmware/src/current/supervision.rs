@@ -5,38 +5,57 @@ use core::hint::cold_path;
 use super::current_loop::Limits;
 use super::fault::PowerFault;
 use super::sample::Sample;
+use super::vector::{Vector, larger};
 
 /// The duration of a deviation or of a limited voltage.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Supervision {
-    deviating: u16,
     limited: u16,
+    deviating: u16,
+    /// Sum over the instants of the deviation, in A, less the part that the motion explains (theory, section 15.10).
+    unexplained: Vector,
+    /// Counts in an instant, smoothed as the winding smooths the current of a voltage.
+    speed: f32,
 }
 
 impl Supervision {
-    /// No deviation and no limited voltage.
-    pub(super) const NONE: Self = Self { deviating: 0, limited: 0 };
+    /// No deviation and no limited voltage, at rest.
+    pub(super) const NONE: Self =
+        Self { limited: 0, deviating: 0, unexplained: Vector::ZERO, speed: 0.0 };
 
-    /// Takes an instant's deviation in A, without its sign, and whether its voltage was limited.
+    /// Takes an instant's deviation in A, the counts that the motor moved since the last instant in the direction
+    /// of its torque, and whether the voltage was limited.
     ///
     /// # Errors
-    /// If one of them has lasted too long.
+    /// If a deviation that no motion explains, or a limited voltage, has lasted too long.
     #[inline(always)]
     pub(super) fn observe(
         &mut self,
         limits: &Limits,
-        deviation: f32,
+        deviation: Vector,
+        moved: f32,
         is_limited: bool,
     ) -> Result<(), PowerFault> {
         let allowed = limits.instants;
+        let faster = limits.smoothing * (moved - self.speed);
+        self.speed += faster;
         self.limited = if is_limited { self.limited + 1 } else { 0 };
-        self.deviating = if deviation > limits.deviation { self.deviating + 1 } else { 0 };
         if self.limited > allowed {
             cold_path();
             let instants = self.limited.into();
             return Err(PowerFault::SaturatedDuty { instants, allowed: allowed.into() });
         }
-        if self.deviating > allowed {
+        let Vector { along, across } = deviation;
+        let deviation = larger(along.abs(), across.abs());
+        if deviation <= limits.deviation {
+            (self.deviating, self.unexplained) = (0, Vector::ZERO);
+            return Ok(());
+        }
+        self.deviating = self.deviating.saturating_add(1);
+        self.unexplained.along += along;
+        self.unexplained.across += across - limits.amps_of_motion * faster;
+        let sum = self.unexplained.along.abs() + self.unexplained.across.abs();
+        if self.deviating > allowed && sum > limits.unexplained {
             cold_path();
             return Err(PowerFault::CurrentNotFollowing {
                 deviation: (deviation * 1e3) as u32,

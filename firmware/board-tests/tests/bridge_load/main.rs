@@ -1,6 +1,7 @@
-//! Tests of a B-G431B-ESC1's bridge with a resistor and a coil between the outputs 1 and 2, before a motor is
-//! connected; `boards.md` has the instructions. Each begins with a reset, ends with the gates low, and drives
-//! for less than 50 ms.
+//! Tests of a B-G431B-ESC1's bridge before a motor is connected: without a supply, and with a resistor and a coil
+//! between two outputs. They are steps of the first power-on in `boards.md`, which has the instructions. Each begins
+//! with a reset, refuses a supply other than that of its step, ends with the gates low, and drives for less than
+//! 200 ms.
 //!
 //! First adapt the numbers below to the load and its supply.
 #![no_std]
@@ -11,12 +12,13 @@ use haptic_servo::board::stm32::output::bridge::load::Load;
 use haptic_servo::board::stm32::wiring::{CHIP, ENCODER, TIMER_CLOCK};
 use haptic_servo::board::stm32::{init_chip, width};
 use haptic_servo::current::{
-    B_G431B_ESC1, CurrentLoop, Drive, DutyCurrent, Motor, Sample, Supply, Winding,
+    B_G431B_ESC1, CurrentLoop, Drive, Duties, DutyCurrent, Motor, Sample, Supply, TripCodes,
+    Winding,
 };
 use haptic_servo::servo::Transducers;
 
-/// The load, as the winding of a motor with almost no torque, and its supply in V. Resistor, coil and wires
-/// in series: 1 ohm and 0.1 mH.
+/// The load of steps 7 to 9, as the winding of a motor with almost no torque, and its supply in V. Resistor, coil and
+/// wires in series: 1 ohm and 0.1 mH.
 const LOAD: Drive = Drive {
     motor: Motor {
         winding: Winding::Brushed,
@@ -29,11 +31,36 @@ const LOAD: Drive = Drive {
     largest_temperature: 60.0,
 };
 
+/// The load of step 10 and its supply: half of the resistance, between any two outputs. The resistance of a phase is
+/// half of that.
+const TRIPPED: Drive = Drive {
+    motor: Motor { winding: Winding::Brushless { pole_pairs: 1 }, resistance: 0.28, ..LOAD.motor },
+    supply: Supply::sinking(14.2, 15.8),
+    ..LOAD
+};
+
 /// Relative tolerance of resistance and inductance.
 const TOLERANCE: f64 = 0.1;
 
-/// The part of the supply between the outputs, in both directions.
-const DUTY: f64 = 0.15;
+/// The part of the supply between the outputs in step 8, and those of the sweep in step 9 in per cent.
+const DUTY: f64 = 0.10;
+const SWEEP: core::ops::RangeInclusive<u8> = 10..=40;
+const SWEEP_STEP: u8 = 5;
+
+/// The largest duty in step 10, 0.7, in steps of half a per cent.
+const TRIP_STEPS: u8 = 140;
+const TRIP_STEP: f64 = 0.005;
+
+/// The part of a comparator's current that the last sample before its trip may have: its ripple and the duty's step
+/// are below that, an error of the gain on both sides.
+const TRIP_PART: core::ops::RangeInclusive<f32> = 0.8..=1.1;
+
+/// Pulses of a gate in step 4, and instants from one to the next.
+const PULSES: u32 = 20;
+const PAUSE: u32 = 40;
+
+/// The largest count of a supply that is off: 2 V.
+const NO_BUS: u16 = (2.0 / B_G431B_ESC1.volts_per_count) as u16;
 
 /// Full scale is 2 A, so that the comparators trip at the least that they can, 9 A. No encoder is read.
 const TRANSDUCERS: Transducers = Transducers {
@@ -45,13 +72,15 @@ const TRANSDUCERS: Transducers = Transducers {
 
 /// Period in s of the servo, which does not run here; as that of the scenes, 40 instants of 25 us.
 const PERIOD: f64 = 0.001;
+const INSTANT: f64 = PERIOD / 40.0;
 
-/// The modulation, the limits and the scales of the current loop with that load. The loop itself does not run.
-static CURRENT_LOOP: CurrentLoop = CurrentLoop::checked(&LOAD, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);
+/// The modulation, the limits and the scales of the current loops with two and with three outputs. The loops
+/// themselves do not run.
+static TWO: CurrentLoop = CurrentLoop::checked(&LOAD, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);
+static THREE: CurrentLoop = CurrentLoop::checked(&TRIPPED, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);
 
 /// The expected reading at that duty.
-const EXPECTED: DutyCurrent =
-    LOAD.checked_current_at_duty(&B_G431B_ESC1, PERIOD / 40.0, DUTY, TOLERANCE);
+const EXPECTED: DutyCurrent = LOAD.checked_current_at_duty(&B_G431B_ESC1, INSTANT, DUTY, TOLERANCE);
 
 /// The filter of the encoder's inputs.
 const FILTER: InputFilter = InputFilter::of_encoder(&TRANSDUCERS, TIMER_CLOCK);
@@ -75,21 +104,23 @@ const SETTLING: u32 = 40;
 /// The current in A that counts as zero: a count of noise, and a count of offset error.
 const NONE: f32 = 0.06;
 
+/// A missed instant.
+const MISSED: Failure = "no sample has come: the modulation does not run";
+
+const PHASES: [&str; 3] = ["U", "V", "W"];
+const SIDES: [&str; 2] = ["high", "low"];
+
 /// A board with its gates low, and the means of the phases without a current.
 struct Bench {
     load: Load,
+    current_loop: &'static CurrentLoop,
     offsets: [f32; 2],
 }
 
 impl Bench {
     /// Checks that the gates are low, the amplifiers' offsets valid, and the supply as stated.
-    fn new() -> Result<Self, Failure> {
-        let _ = init_chip(FILTER);
-        let mut load = Load::new(&CURRENT_LOOP);
-        if load.is_on() || !load.are_gates_low() {
-            return Err("a gate is high after the reset: switch the supply off");
-        }
-        skip(&mut load, SETTLING)?;
+    fn new(current_loop: &'static CurrentLoop) -> Result<Self, Failure> {
+        let mut load = set_up(current_loop)?;
         let (offsets, last) = means(&mut load)?;
         defmt::info!(
             "counts without a current: {} and {}, supply: {}",
@@ -102,7 +133,7 @@ impl Bench {
         if !offsets.iter().all(is_offset) {
             return Err("the counts without a current are not those of a working amplifier");
         }
-        let (lowest, highest) = CURRENT_LOOP.bus_counts();
+        let (lowest, highest) = current_loop.bus_counts();
         if last.bus < lowest {
             return Err(
                 "the supply is below the stated voltage: is it on, and is its limit of current too low?",
@@ -111,23 +142,19 @@ impl Bench {
         if last.bus > highest {
             return Err("the supply is above the stated voltage");
         }
-        Ok(Self { load, offsets })
+        Ok(Self { load, current_loop, offsets })
     }
 
-    /// Switches the gates on, with no voltage.
-    fn on(&mut self) -> Result<(), Failure> {
-        match self.load.on() {
-            Some(Ok(())) => Ok(()),
-            Some(Err(_)) => Err(
-                "an over-current comparator does not trip as a working one does without a current",
-            ),
-            None => Err("an instant is missed while the gates are switched on"),
-        }
+    /// Switches the gates on, with no voltage; returns the codes at which the comparators trip.
+    fn on(&mut self) -> Result<TripCodes, Failure> {
+        let trips = trips(&mut self.load)?;
+        self.load.on(trips).ok_or("an instant is missed while the gates are switched on")?;
+        Ok(trips)
     }
 
     /// The current in A at a duty, once it has settled.
     fn current_at(&mut self, duty: f64) -> Result<f32, Failure> {
-        self.load.set(CURRENT_LOOP.duties_at(duty));
+        self.load.set(self.current_loop.duties_at(duty));
         // One instant until the duty acts.
         skip(&mut self.load, 1 + EXPECTED.settling)?;
         self.current()
@@ -136,10 +163,37 @@ impl Bench {
     /// The mean of the current in A.
     fn current(&mut self) -> Result<f32, Failure> {
         let ([u, v], _) = means(&mut self.load)?;
-        let current =
-            CURRENT_LOOP.current_between_two((u - v) - (self.offsets[0] - self.offsets[1]));
-        defmt::info!("{} mA", (current * 1e3) as i32);
-        Ok(current)
+        Ok(self.current_loop.current_between_two((u - v) - (self.offsets[0] - self.offsets[1])))
+    }
+
+    /// The current at a duty in both directions, in A without its sign, checked against the load's.
+    fn checked_at(&mut self, duty: f64) -> Result<[f32; 2], Failure> {
+        let expected = LOAD
+            .current_at_duty(&B_G431B_ESC1, INSTANT, duty, TOLERANCE)
+            .map_err(|_| "the load has no current at this duty: are its numbers right?")?;
+        let mut currents = [0.0; 2];
+        for (sign, current) in [1.0_f32, -1.0].into_iter().zip(&mut currents) {
+            *current = sign * self.current_at(f64::from(sign) * duty)?;
+            defmt::info!(
+                "at {} % of the supply: {} mA, {} to {} mA are expected",
+                (f64::from(sign) * duty * 100.0) as i32,
+                (sign * *current * 1e3) as i32,
+                (expected.least * 1e3) as i32,
+                (expected.most * 1e3) as i32
+            );
+            if *current < -NONE {
+                return Err("the current has the wrong sign: an amplifier reads another phase");
+            }
+            if *current < expected.least as f32 - NONE {
+                return Err(
+                    "the current is too small: is the load connected, and its resistance as stated?",
+                );
+            }
+            if *current > expected.most as f32 + NONE {
+                return Err("the current is too large: is the resistance as stated?");
+            }
+        }
+        Ok(currents)
     }
 
     /// With the gates off, each of them is low, and no current is left.
@@ -158,6 +212,46 @@ impl Bench {
 impl Drop for Bench {
     fn drop(&mut self) {
         self.load.off();
+    }
+}
+
+/// The chip, with its gates low.
+fn set_up(current_loop: &'static CurrentLoop) -> Result<Load, Failure> {
+    let _ = init_chip(FILTER);
+    let mut load = Load::new(current_loop);
+    if load.is_on() || !load.are_gates_low() {
+        return Err("a gate is high after the reset: switch the supply off");
+    }
+    skip(&mut load, SETTLING)?;
+    Ok(load)
+}
+
+/// The same without a supply at the bridge.
+fn without_bus() -> Result<Load, Failure> {
+    let mut load = set_up(&THREE)?;
+    check_no_bus(&sample(&mut load)?)?;
+    Ok(load)
+}
+
+fn check_no_bus(sample: &Sample) -> Result<(), Failure> {
+    if sample.bus > NO_BUS {
+        return Err("the bridge has a supply of more than 2 V: disconnect it for this step");
+    }
+    Ok(())
+}
+
+/// The codes at which the comparators trip without a current.
+fn trips(load: &mut Load) -> Result<TripCodes, Failure> {
+    match load.trips().ok_or(MISSED)? {
+        Ok(trips) => {
+            defmt::info!("without a current the comparators trip at the codes {}", trips);
+            Ok(trips)
+        }
+        Err(fault) => {
+            let (_, [phase, code]) = fault.encode();
+            defmt::info!("the comparator of phase {}, code {}", PHASES[phase as usize], code);
+            Err("an over-current comparator does not trip as a working one does without a current")
+        }
     }
 }
 
@@ -188,16 +282,51 @@ fn add(sums: &mut [u32; 2], sample: &Sample) {
 
 /// The next sample; fails if gates that were on have been turned off.
 fn sample(load: &mut Load) -> Result<Sample, Failure> {
-    let sample = load.next().ok_or("no sample has come: the modulation does not run")?;
+    let sample = load.next().ok_or(MISSED)?;
     if load.broke() {
         return Err("a comparator has taken the gates away: is the load a short?");
     }
     Ok(sample)
 }
 
+/// The input of each gate driver is high in turn, and no other.
+fn each_gate() -> Result<(), Failure> {
+    let mut load = without_bus()?;
+    for (gate, side, phase) in (0..6).map(|gate| (gate, gate / 3, gate % 3)) {
+        defmt::info!("{} of 6: the {} side of {}", gate + 1, SIDES[side], PHASES[phase]);
+        for _ in 0..PULSES {
+            let (high, last) = load.pulse(phase, side).ok_or(MISSED)?;
+            let mut expected = [[false; 2]; 3];
+            expected[phase][side] = true;
+            if high != expected {
+                return Err("another gate than the named one is high, or that one is low");
+            }
+            check_no_bus(&last)?;
+            for _ in 1..PAUSE {
+                check_no_bus(&sample(&mut load)?)?;
+            }
+        }
+    }
+    check_low(&load)
+}
+
+/// The comparators' ramp.
+fn comparators() -> Result<(), Failure> {
+    let mut load = without_bus()?;
+    trips(&mut load)?;
+    check_low(&load)
+}
+
+fn check_low(load: &Load) -> Result<(), Failure> {
+    match !load.is_on() && load.are_gates_low() {
+        true => Ok(()),
+        false => Err("the gates are not off: switch the supply off"),
+    }
+}
+
 /// Both outputs are switched at half, so that no current flows.
 fn no_duty() -> Result<(), Failure> {
-    let mut bench = Bench::new()?;
+    let mut bench = Bench::new(&TWO)?;
     bench.on()?;
     if bench.current_at(0.0)?.abs() > NONE {
         return Err("a current flows without a voltage: is something connected to output 3?");
@@ -208,34 +337,74 @@ fn no_duty() -> Result<(), Failure> {
 
 /// That part of the supply in both directions, and off again.
 fn part_of_the_supply() -> Result<(), Failure> {
-    let mut bench = Bench::new()?;
-    defmt::info!(
-        "{} to {} mA are expected",
-        (EXPECTED.least * 1e3) as i32,
-        (EXPECTED.most * 1e3) as i32
-    );
+    let mut bench = Bench::new(&TWO)?;
     bench.on()?;
-    for sign in [1.0_f32, -1.0] {
-        let current = sign * bench.current_at(f64::from(sign) * DUTY)?;
-        if current < -NONE {
-            return Err("the current has the wrong sign: an amplifier reads another phase");
-        }
-        if current < EXPECTED.least as f32 - NONE {
+    bench.checked_at(DUTY)?;
+    bench.load.off();
+    bench.check_off()
+}
+
+/// Duties in steps: each step adds the same current, by the supply that is measured.
+fn sweep() -> Result<(), Failure> {
+    let mut bench = Bench::new(&TWO)?;
+    bench.on()?;
+    let part = f64::from(SWEEP_STEP) / 100.0;
+    let mut last: Option<[f32; 2]> = None;
+    for percent in SWEEP.step_by(SWEEP_STEP.into()) {
+        let currents = bench.checked_at(f64::from(percent) / 100.0)?;
+        let volts = f64::from(sample(&mut bench.load)?.bus) * B_G431B_ESC1.volts_per_count;
+        let step = (volts * part / LOAD.motor.resistance) as f32;
+        let is_off = |(now, before): (f32, f32)| {
+            (now - before - step).abs() > TOLERANCE as f32 * step + NONE
+        };
+        if last.is_some_and(|last| currents.into_iter().zip(last).any(is_off)) {
             return Err(
-                "the current is too small: is the load connected, and its resistance as stated?",
+                "a step of the duty adds another current: resistance or gain is not as stated",
             );
         }
-        if current > EXPECTED.most as f32 + NONE {
-            return Err("the current is too large: is the resistance as stated?");
-        }
+        last = Some(currents);
     }
     bench.load.off();
     bench.check_off()
 }
 
+/// A growing current out of one output into another, until the comparator of that one takes the gates away. U and V
+/// are sampled, so that it comes out of one of them.
+fn comparator_trips(from: usize, into: usize) -> Result<(), Failure> {
+    let mut bench = Bench::new(&THREE)?;
+    let [u, v, w] = bench.on()?;
+    let (own, shared) = [(u, [u, u]), (v, [v, w]), (w, [v, w])][into];
+    let above = THREE.trip_threshold(shared) - own;
+    let expected = f32::from(above) * THREE.trip_range().amps_per_code as f32;
+    let mut current = 0.0;
+    for step in 0..=TRIP_STEPS {
+        let Duties([high, low, half]) = THREE.duties_at(f64::from(step) * TRIP_STEP);
+        let mut duties = [half; 3];
+        (duties[from], duties[into]) = (high, low);
+        bench.load.set(Duties(duties));
+        let sample = bench.load.next().ok_or(MISSED)?;
+        if bench.load.broke() {
+            check_low(&bench.load)?;
+            defmt::info!(
+                "phase {} has tripped behind {} mA, {} mA are expected",
+                PHASES[into],
+                (current * 1e3) as i32,
+                (expected * 1e3) as i32
+            );
+            return match TRIP_PART.contains(&(current / expected)) {
+                true => Ok(()),
+                false => Err("the comparator trips at another current than its threshold's"),
+            };
+        }
+        let count = f32::from(sample.currents[from]) - bench.offsets[from];
+        current = THREE.current_between_two(2.0 * count);
+    }
+    Err("no comparator has taken the gates away: is the load between these outputs?")
+}
+
 /// A break turns the gates off during a current in the load, and only switching them on again ends it.
 fn software_break() -> Result<(), Failure> {
-    let mut bench = Bench::new()?;
+    let mut bench = Bench::new(&TWO)?;
     bench.on()?;
     if bench.current_at(DUTY)? < EXPECTED.least as f32 - NONE {
         return Err("no current flows before the break");
@@ -247,8 +416,8 @@ fn software_break() -> Result<(), Failure> {
     if !bench.load.broke() {
         return Err("a break does not say that it was");
     }
-    bench.load.set(CURRENT_LOOP.duties_at(DUTY));
-    bench.load.next().ok_or("no sample has come: the modulation does not run")?;
+    bench.load.set(TWO.duties_at(DUTY));
+    bench.load.next().ok_or(MISSED)?;
     if bench.load.is_on() {
         return Err("the gates come back by themselves: switch the supply off");
     }
@@ -262,19 +431,55 @@ mod tests {
 
     #[test]
     #[timeout(5)]
-    fn outputs_at_half_give_no_current() -> Result<(), Failure> {
+    fn step_4_each_gate_in_turn_without_a_bus() -> Result<(), Failure> {
+        super::each_gate()
+    }
+
+    #[test]
+    #[timeout(5)]
+    fn step_5_the_comparators_trip_without_a_current() -> Result<(), Failure> {
+        super::comparators()
+    }
+
+    #[test]
+    #[timeout(5)]
+    fn step_7_outputs_at_half_give_no_current() -> Result<(), Failure> {
         super::no_duty()
     }
 
     #[test]
     #[timeout(5)]
-    fn a_part_of_the_supply_gives_the_current_of_the_load() -> Result<(), Failure> {
+    fn step_8_a_part_of_the_supply_gives_the_current_of_the_load() -> Result<(), Failure> {
         super::part_of_the_supply()
     }
 
     #[test]
     #[timeout(5)]
-    fn a_break_takes_the_gates_away() -> Result<(), Failure> {
+    fn step_8_a_break_takes_the_gates_away() -> Result<(), Failure> {
         super::software_break()
+    }
+
+    #[test]
+    #[timeout(5)]
+    fn step_9_a_sweep_of_the_duty_gives_equal_steps() -> Result<(), Failure> {
+        super::sweep()
+    }
+
+    #[test]
+    #[timeout(5)]
+    fn step_10_a_current_from_v_into_u_trips() -> Result<(), Failure> {
+        super::comparator_trips(1, 0)
+    }
+
+    #[test]
+    #[timeout(5)]
+    fn step_10_a_current_from_u_into_v_trips() -> Result<(), Failure> {
+        super::comparator_trips(0, 1)
+    }
+
+    #[test]
+    #[timeout(5)]
+    fn step_10_a_current_from_v_into_w_trips() -> Result<(), Failure> {
+        super::comparator_trips(1, 2)
     }
 }

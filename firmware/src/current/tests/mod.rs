@@ -13,6 +13,7 @@ mod index;
 mod regeneration;
 mod rig;
 mod three_phases;
+mod thrown;
 
 use super::*;
 use crate::encoder::CounterWidth;

@@ -7,15 +7,25 @@ use std::sync::OnceLock;
 use analysis::toolchain::{BoardModel, Tools, TorqueOutput, prepare};
 use virtual_board::chip::B_G431B_ESC1;
 use virtual_board::motor::{Motor, Winding};
+use virtual_board::peripheral::pins::Level;
 use virtual_board::power_stage::gate_log::any_high;
-use virtual_board::power_stage::{Circuit, Supply};
+use virtual_board::power_stage::{Circuit, Gates, Supply};
 use virtual_board::semihosting::{CallError, Guest};
 
+use super::bench::INSTANT;
+
 /// The tests, as they are named in the file.
-const NO_DUTY: &str = "outputs_at_half_give_no_current";
-const PART: &str = "a_part_of_the_supply_gives_the_current_of_the_load";
-const BREAK: &str = "a_break_takes_the_gates_away";
-const ALL: [&str; 3] = [NO_DUTY, PART, BREAK];
+const GATES: &str = "step_4_each_gate_in_turn_without_a_bus";
+const COMPARATORS: &str = "step_5_the_comparators_trip_without_a_current";
+const NO_DUTY: &str = "step_7_outputs_at_half_give_no_current";
+const PART: &str = "step_8_a_part_of_the_supply_gives_the_current_of_the_load";
+const BREAK: &str = "step_8_a_break_takes_the_gates_away";
+const SWEEP: &str = "step_9_a_sweep_of_the_duty_gives_equal_steps";
+const TRIP_U: &str = "step_10_a_current_from_v_into_u_trips";
+const TRIP_V: &str = "step_10_a_current_from_u_into_v_trips";
+const TRIP_W: &str = "step_10_a_current_from_v_into_w_trips";
+const WITHOUT_BUS: [&str; 2] = [GATES, COMPARATORS];
+const WITH_LOAD: [&str; 7] = [NO_DUTY, PART, BREAK, SWEEP, TRIP_U, TRIP_V, TRIP_W];
 
 /// Core clocks that a test may take: a quarter of a second.
 const LONGEST: u64 = 170_000_000 / 4;
@@ -35,64 +45,141 @@ fn load(resistance: f64) -> Motor {
     Motor::new(Winding::Brushed, resistance, 0.1e-3, 0.0)
 }
 
-/// What the circuit is that the tests are written for.
-fn as_stated(circuit: &mut Circuit) {
-    circuit.motor = Some(load(1.05));
-    circuit.supply = Supply::stiff(12.0);
+/// What the circuit is that a test is written for.
+fn as_stated(test: &str, circuit: &mut Circuit) {
+    let (wires, resistance, volts) = match test {
+        GATES | COMPARATORS => return circuit.supply = Supply::stiff(0.0),
+        TRIP_U | TRIP_V => ([0, 1, 2], 0.55, 15.0),
+        // Between the outputs 2 and 3.
+        TRIP_W => ([2, 0, 1], 0.55, 15.0),
+        _ => ([0, 1, 2], 1.05, 12.0),
+    };
+    circuit.motor = Some(Motor { wires, ..load(resistance) });
+    circuit.supply = Supply::stiff(volts);
 }
 
-/// Runs a test in a circuit; whether it passes. The gates are low at its end, and switched in between only where they
-/// may be.
-fn passes(test: &str, change: fn(&mut Circuit)) -> bool {
-    let name = format!("{}___{test}_entrypoint", test.len() + "___entrypoint".len());
-    let probe = Guest::boot_command(file(), &B_G431B_ESC1, "").unwrap();
-    let (address, _) = probe.machine().image().symbol_ending(&name).expect("the test has a name");
-    let command: &'static str = format!("run_addr {}", address | 1).leak();
-    let mut guest = Guest::boot_command(file(), &B_G431B_ESC1, command).unwrap();
-    let board = guest.machine_mut().board_mut();
-    board.gates = Some(Vec::new());
-    as_stated(&mut board.power_stage.circuit);
-    change(&mut board.power_stage.circuit);
-    let end = loop {
-        if let Err(error) = guest.run_to_call() {
-            break error;
-        }
-    };
-    let board = guest.machine().board();
-    println!("{test}: {end}, {} clocks", board.now);
-    assert!(!board.power_stage.timer.is_on(), "{test}: the gates are on at the end");
-    assert!(board.now < LONGEST, "{test}: {} clocks", board.now);
-    let gates = board.gates.as_deref().unwrap();
-    let has_switched = any_high(gates, 0, u64::MAX);
-    let passes = end == CallError::Ended(0);
-    assert!(has_switched || !passes, "{test} has passed without switching a gate");
-    passes
+/// What a test did.
+struct Run {
+    passes: bool,
+    /// The changes of the gates.
+    gates: Vec<(u64, Gates)>,
+}
+
+impl Run {
+    /// Of a test in a circuit. The gates are off at its end.
+    fn of(test: &str, change: fn(&mut Circuit)) -> Self {
+        let name = format!("{}___{test}_entrypoint", test.len() + "___entrypoint".len());
+        let probe = Guest::boot_command(file(), &B_G431B_ESC1, "").unwrap();
+        let (address, _) =
+            probe.machine().image().symbol_ending(&name).expect("the test has a name");
+        let command: &'static str = format!("run_addr {}", address | 1).leak();
+        let mut guest = Guest::boot_command(file(), &B_G431B_ESC1, command).unwrap();
+        let board = guest.machine_mut().board_mut();
+        board.gates = Some(Vec::new());
+        as_stated(test, &mut board.power_stage.circuit);
+        change(&mut board.power_stage.circuit);
+        let end = loop {
+            if let Err(error) = guest.run_to_call() {
+                break error;
+            }
+        };
+        let board = guest.machine_mut().board_mut();
+        println!("{test}: {end}, {} clocks", board.now);
+        assert!(!board.power_stage.timer.is_on(), "{test}: the gates are on at the end");
+        assert!(!board.power_stage.gates().contains(&Level::High), "{test}: a gate is high");
+        assert!(board.now < LONGEST, "{test}: {} clocks", board.now);
+        let gates = board.gates.take().unwrap();
+        Self { passes: end == CallError::Ended(0), gates }
+    }
+
+    fn has_switched(&self) -> bool {
+        any_high(&self.gates, 0, u64::MAX)
+    }
 }
 
 #[test]
 fn they_pass_with_the_load_that_they_are_for() {
-    for test in ALL {
-        assert!(passes(test, |_| {}), "{test}");
+    for test in WITH_LOAD {
+        let run = Run::of(test, |_| {});
+        assert!(run.passes && run.has_switched(), "{test}");
     }
+    let run = Run::of(COMPARATORS, |_| {});
+    assert!(run.passes && !run.has_switched());
+}
+
+/// For an instant, twenty times, and never two of them.
+#[test]
+fn each_gate_is_high_alone_and_in_turn() {
+    const PULSES: usize = 20;
+    let run = Run::of(GATES, |_| {});
+    assert!(run.passes);
+    let high = |gates: &Gates| {
+        let high: Vec<_> = (0..6).filter(|&gate| gates[gate] == Level::High).collect();
+        assert!(high.len() < 2, "{gates:?}");
+        high.first().copied()
+    };
+    let mut pulses = Vec::new();
+    for pair in run.gates.windows(2) {
+        if let Some(gate) = high(&pair[0].1) {
+            let clocks = pair[1].0 - pair[0].0;
+            assert!(clocks <= 2 * INSTANT, "gate {gate}: {clocks} clocks");
+            pulses.push(gate);
+        }
+    }
+    let expected: Vec<_> = (0..6).flat_map(|gate| [gate; PULSES]).collect();
+    assert_eq!(pulses, expected);
 }
 
 /// A test, and its deliberate fault.
 type Cause = (&'static str, fn(&mut Circuit));
 
+fn short(circuit: &mut Circuit) {
+    circuit.motor.as_mut().unwrap().short = Some((0.01, 1e-6));
+}
+
 #[test]
 fn each_finds_what_is_wrong_with_load_and_supply() {
-    let causes: [Cause; 7] = [
+    let causes: [Cause; 11] = [
         (PART, |circuit| circuit.motor = None),
         (PART, |circuit| circuit.motor = Some(load(2.5))),
         (PART, |circuit| circuit.motor = Some(load(0.4))),
         // Its wires are between the outputs 1 and 3.
         (PART, |circuit| circuit.motor.as_mut().unwrap().wires = [0, 2, 1]),
-        // A short: the comparators take the gates away.
-        (PART, |circuit| circuit.motor.as_mut().unwrap().short = Some((0.01, 1e-6))),
-        (NO_DUTY, |circuit| circuit.supply = Supply::stiff(0.2)),
+        // The comparators take the gates away.
+        (PART, short),
         (BREAK, |circuit| circuit.amplifier_errors[0] = 0.5),
+        // Beyond a tenth, which the bounds of a single duty allow beside their dead time.
+        (SWEEP, |circuit| circuit.motor = Some(load(1.3))),
+        (SWEEP, short),
+        (TRIP_U, |circuit| circuit.motor = Some(load(2.0))),
+        (TRIP_V, short),
+        (TRIP_W, |circuit| circuit.motor.as_mut().unwrap().wires = [0, 1, 2]),
     ];
     for (place, (test, cause)) in causes.into_iter().enumerate() {
-        assert!(!passes(test, cause), "cause {place} of {test}");
+        assert!(!Run::of(test, cause).passes, "cause {place} of {test}");
+    }
+}
+
+/// No gate is switched for them.
+#[test]
+fn another_supply_and_a_broken_comparator_are_refused() {
+    for test in WITHOUT_BUS {
+        let run = Run::of(test, |circuit| circuit.supply = Supply::stiff(2.2));
+        assert!(!run.passes && !run.has_switched(), "{test}");
+    }
+    for test in WITH_LOAD {
+        for change in [
+            |circuit: &mut Circuit| circuit.supply = Supply::stiff(0.2),
+            |circuit: &mut Circuit| {
+                circuit.supply = Supply::stiff(17.0);
+            },
+        ] {
+            let run = Run::of(test, change);
+            assert!(!run.passes && !run.has_switched(), "{test}");
+        }
+    }
+    for test in [COMPARATORS, NO_DUTY] {
+        let run = Run::of(test, |circuit| circuit.parts.senses[2].comparator_offset = 0.03);
+        assert!(!run.passes && !run.has_switched(), "{test}");
     }
 }

@@ -10,6 +10,7 @@ mod index;
 mod load;
 mod paddle;
 mod regeneration;
+mod release;
 mod same;
 mod wall;
 

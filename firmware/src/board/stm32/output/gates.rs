@@ -27,6 +27,16 @@ impl Gate {
         self.port.idr().read().idr(self.pin) == pac::gpio::vals::Idr::LOW
     }
 
+    /// Makes the pin an output with this level, instead of the timer's.
+    #[cfg(feature = "on-target")]
+    pub fn drive(&self, is_high: bool) {
+        self.port.bsrr().write(|w| match is_high {
+            true => w.set_bs(self.pin, true),
+            false => w.set_br(self.pin, true),
+        });
+        self.port.moder().modify(|w| w.set_moder(self.pin, Moder::OUTPUT));
+    }
+
     /// Connects the pin to the timer. Before, it was a low output.
     fn connect(self) {
         self.port.afr(self.pin / 8).modify(|w| w.set_afr(self.pin % 8, self.function));

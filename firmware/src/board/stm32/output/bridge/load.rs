@@ -7,7 +7,7 @@ use embassy_stm32::pac;
 use super::{over_current, pace, pwm, sense};
 use crate::board::stm32::output::gates::Gate;
 use crate::board::stm32::wiring::GATES;
-use crate::current::{CurrentLoop, Duties, PowerFault, Sample, TripSearch};
+use crate::current::{CurrentLoop, Duties, PowerFault, Sample, TripCodes, TripSearch};
 
 /// The number of polls after which an instant counts as missed: much longer than a period of the modulation.
 const PATIENCE: u32 = 100_000;
@@ -40,26 +40,40 @@ impl Load {
         })
     }
 
-    /// Finds the comparators' thresholds of the current loop with the gates low, lets the low sides conduct as long
-    /// as a start does, and then switches the gates at zero voltage. `None` if an instant is missed.
-    pub fn on(&mut self) -> Option<Result<(), PowerFault>> {
-        pwm::low_sides_only(self.current_loop);
+    /// Finds the codes at which the comparators trip with the gates low. `None` if an instant is missed.
+    pub fn trips(&mut self) -> Option<Result<TripCodes, PowerFault>> {
         let mut search = TripSearch::new(self.current_loop.trip_range());
         loop {
             over_current::search(search.threshold());
             self.next()?;
-            match search.step(over_current::tripped()) {
-                Ok(None) => {}
-                Ok(Some(trips)) => break over_current::set(self.current_loop, trips),
-                Err(fault) => return Some(Err(fault)),
+            if let Some(end) = search.step(over_current::tripped()).transpose() {
+                return Some(end);
             }
         }
+    }
+
+    /// Sets the thresholds of the current loop above these codes, lets the low sides conduct as long as a start
+    /// does, and then switches the gates at zero voltage. `None` if an instant is missed.
+    pub fn on(&mut self, trips: TripCodes) -> Option<()> {
+        pwm::low_sides_only(self.current_loop);
+        over_current::set(self.current_loop, trips);
         pwm::on();
         for _ in 0..self.current_loop.charging_instants() {
             self.next()?;
         }
         self.set(self.current_loop.no_voltage());
-        Some(Ok(()))
+        Some(())
+    }
+
+    /// Has the input of one gate driver high for an instant, of the high or the low side of a phase. Returns which
+    /// inputs were high meanwhile, and the sample at its end; `None` if it is missed.
+    pub fn pulse(&mut self, phase: usize, side: usize) -> Option<([[bool; 2]; 3], Sample)> {
+        let gate = &GATES.0[phase][side];
+        gate.drive(true);
+        let sample = self.next();
+        let high = GATES.0.each_ref().map(|sides| sides.each_ref().map(|gate| !gate.is_low()));
+        gate.drive(false);
+        Some((high, sample?))
     }
 
     /// Sets the duties from the next instant on.
