@@ -22,7 +22,9 @@ pub const SCENE: Scene<Environment> = Scene {
         environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 20.0, damping: 0.009 } },
     },
     latency: CURRENT_LOOP.latency(OutputTiming::Latched),
-    torque_limit: Some(1.0),
+    // Half of full scale: with more, the bare paddle would exceed its largest speed against its damping when a hand
+    // lets go at the limit.
+    torque_limit: Some(0.5),
 };
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.

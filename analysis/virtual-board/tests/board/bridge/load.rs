@@ -54,7 +54,9 @@ fn as_stated(test: &str, circuit: &mut Circuit) {
         TRIP_W => ([2, 0, 1], 0.55, 15.0),
         _ => ([0, 1, 2], 1.05, 12.0),
     };
-    circuit.motor = Some(Motor { wires, ..load(resistance) });
+    let mut load = load(resistance);
+    load.wires = wires;
+    circuit.motor = Some(load);
     circuit.supply = Supply::stiff(volts);
 }
 
@@ -141,7 +143,7 @@ fn short(circuit: &mut Circuit) {
 fn each_finds_what_is_wrong_with_load_and_supply() {
     let causes: [Cause; 11] = [
         (PART, |circuit| circuit.motor = None),
-        (PART, |circuit| circuit.motor = Some(load(2.5))),
+        (SWEEP, |circuit| circuit.motor = Some(load(2.5))),
         (PART, |circuit| circuit.motor = Some(load(0.4))),
         // Its wires are between the outputs 1 and 3.
         (PART, |circuit| circuit.motor.as_mut().unwrap().wires = [0, 2, 1]),

@@ -1,40 +1,161 @@
-//! A hand that pushes into a wall to the torque limit and lets go at once.
+//! A hand that pushes into a wall to the torque limit and lets go at once: the motor throws the bare device.
 
 use std::f64::consts::TAU;
+use std::sync::{Arc, Mutex};
 
+use haptic_servo::scene::Device as Mechanics;
+use haptic_servo::servo_loop::State;
 use haptic_servo::wire::message::FaultCode;
+use virtual_board::device::{Device, Motion};
 use virtual_board::power_stage::Supply;
 
 use super::bench::{armed, boot, circuit};
-use super::bridge_wall::{SCENE, TRANSDUCERS};
+use super::bridge_wall::{CURRENT_LOOP, SCENE, TRANSDUCERS};
+use super::brushless::{aligned, wired};
+use super::brushless_wall;
 use super::paddle::Paddle;
+use crate::bench::Bench;
 
-fn run(part: f64, end: f64) {
-    let limit = SCENE.torque_limit.unwrap();
-    let hand = move |t: f64| {
-        if t < end { part * limit * ((t - 0.15) / 0.1).clamp(0.0, 1.0) } else { 0.0 }
-    };
-    let mut bench = boot(Paddle::new(hand, 0.0));
-    circuit(&mut bench).supply = Supply::stiff(24.0);
-    let from = armed(&mut bench);
-    bench.run((end * 1e3) as u64 + 60);
-    let fault = bench.status().fault.and_then(FaultCode::fault);
-    let counts: Vec<_> = bench.pins().samples[from..].iter().map(|s| s.count).collect();
-    let unit = TAU / TRANSDUCERS.counts_per_turn;
-    let speed = counts.windows(2).map(|w| f64::from(w[1] - w[0]) * unit * 1e3);
-    let min = speed.clone().fold(0.0, f64::min);
-    let max = speed.fold(0.0, f64::max);
-    let depth = counts.iter().max().copied().unwrap() as f64 * unit;
-    println!("{part} {end}: {fault:?}, depth {depth:.4}, {min:.1} to {max:.1} rad/s");
-    for c in counts.iter().skip((end * 1e3) as usize - 2).take(14) {
-        print!("{:.4} ", f64::from(*c) * unit);
+/// A supply in V that takes energy back.
+const VOLTS: f64 = 24.0;
+/// Milliseconds from the end of a push until the device is at rest.
+const AFTER: u64 = 40;
+
+/// Speed of the hand in rad/s, near the largest, and its acceleration in rad/s^2 where it stops.
+const SPEED: f64 = 24.0;
+const STOPS: f64 = 2.5e4;
+/// Depth in rad, beyond that of the torque limit.
+const DEPTH: f64 = 0.06;
+/// The times in s, since the motor was switched on, at which the hand takes the device back and pushes: the clamp is
+/// open.
+const BACK: f64 = 0.03;
+const BEGIN: f64 = 0.13;
+
+/// The device of the program: a hand leads it into the wall at full speed, stops it, and lets go at once.
+struct Pushed {
+    angle: f64,
+    speed: f64,
+    count: i32,
+    time: Option<f64>,
+    is_free: bool,
+    /// Largest speed of the free device in rad/s.
+    thrown: Arc<Mutex<f64>>,
+}
+
+impl Pushed {
+    /// The speed in rad/s at which the hand leads it.
+    fn led(&mut self, time: f64) -> f64 {
+        let left = (DEPTH - self.angle).max(0.0);
+        self.is_free |= left < 1e-4;
+        match time {
+            ..BACK => 0.0,
+            ..BEGIN => -0.7,
+            _ => SPEED.min((time - BEGIN) * 5e3).min((2.0 * STOPS * left).sqrt()),
+        }
     }
-    println!();
+}
+
+impl Device for Pushed {
+    fn sample(&mut self, _: Option<u16>, is_on: bool) -> i32 {
+        if is_on {
+            self.time.get_or_insert(0.0);
+        }
+        0
+    }
+
+    fn turn(&mut self, torque: f64, seconds: f64) -> Motion {
+        self.time = self.time.map(|time| time + seconds);
+        if self.is_free {
+            let Mechanics { inertia, damping, .. } = SCENE.device;
+            self.speed = (inertia * self.speed + torque * seconds) / (inertia + damping * seconds);
+            let mut thrown = self.thrown.lock().unwrap();
+            *thrown = thrown.max(self.speed.abs());
+        } else {
+            self.speed = self.time.map_or(0.0, |time| self.led(time));
+        }
+        self.angle += self.speed * seconds;
+        let count = (self.angle * TRANSDUCERS.counts_per_turn / TAU).floor() as i32;
+        let counts = count - std::mem::replace(&mut self.count, count);
+        Motion { counts, angle: self.angle, speed: self.speed }
+    }
+}
+
+fn check_runs(bench: &mut Bench) {
+    let status = bench.status();
+    let told = status.fault.and_then(FaultCode::fault);
+    assert!(told.is_none() && status.state == State::Running, "{told:?}, {:?}", status.state);
+}
+
+/// The back-EMF changes by most of twice the largest speed within 2 ms.
+#[test]
+fn a_fast_push_that_stops_and_lets_go_is_no_fault() {
+    let thrown = Arc::<Mutex<f64>>::default();
+    let mut bench = boot(Pushed {
+        angle: 0.5 * TAU / TRANSDUCERS.counts_per_turn,
+        speed: 0.0,
+        count: 0,
+        time: None,
+        is_free: false,
+        thrown: thrown.clone(),
+    });
+    circuit(&mut bench).supply = Supply::stiff(VOLTS);
+    armed(&mut bench);
+    bench.run(140 + AFTER);
+    let thrown = *thrown.lock().unwrap();
+    println!("thrown at {thrown:.1} rad/s");
+    check_runs(&mut bench);
+    assert!(thrown > 0.4 * TRANSDUCERS.largest_speed, "{thrown} rad/s");
+}
+
+/// From rest at the limit, and from deeper in the wall, where the torque lasts longer.
+#[test]
+fn a_hand_that_lets_go_at_the_torque_limit_is_no_fault() {
+    let limit = SCENE.torque_limit.expect("the scene has a limit");
+    for (part, end) in [(0.99, 0.3), (1.2, 0.26)] {
+        let hand = move |time: f64| {
+            let grown = ((time - 0.15) / 0.1).clamp(0.0, 1.0);
+            if time < end { part * limit * grown } else { 0.0 }
+        };
+        let mut bench = boot(Paddle::new(hand, 0.0));
+        circuit(&mut bench).supply = Supply::stiff(VOLTS);
+        let armed = armed(&mut bench);
+        bench.run((end * 1e3) as u64 - 1);
+        let pushed = circuit(&mut bench).mean_torque();
+        bench.run(AFTER);
+        let counts: Vec<_> = bench.pins().samples[armed..].iter().map(|it| it.count).collect();
+        let back = counts.windows(2).map(|pair| pair[0] - pair[1]).max().unwrap();
+        let most = TRANSDUCERS.largest_speed * TRANSDUCERS.counts_per_turn / TAU * 1e-3;
+        println!("{part}: {pushed:.3} N m, then up to {back} counts in a ms, of {most:.0}");
+        check_runs(&mut bench);
+        assert!(pushed < -0.95 * limit && f64::from(back) > 0.4 * most, "{pushed}, {back}");
+    }
 }
 
 #[test]
-fn explore() {
-    for (part, end) in [(0.95, 0.4), (0.99, 0.4), (1.1, 0.255), (1.1, 0.265), (1.1, 0.27)] {
-        run(part, end);
-    }
+fn a_hand_that_lets_go_of_a_brushless_motor_at_the_torque_limit_is_no_fault() {
+    let limit = brushless_wall::SCENE.torque_limit.expect("the scene has a limit");
+    let (mut held, fault) = aligned(wired([1, 0, 2], 0.7), |circuit| {
+        circuit.supply = Supply::stiff(VOLTS);
+    });
+    assert_eq!(fault, None);
+    held.bench.arm();
+    held.bench.run(2000);
+    // A little more than the limit and the friction, for 20 ms.
+    held.push(1.03 * limit);
+    held.bench.run(200);
+    let pushed = circuit(&mut held.bench).mean_torque();
+    held.push(0.0);
+    held.bench.run(1000);
+    check_runs(&mut held.bench);
+    assert!(pushed < -0.8 * limit, "{pushed} N m");
+}
+
+/// The compiler's bound for a motor and its device.
+#[test]
+fn the_paddle_is_within_the_bound_of_its_current_loop() {
+    let Mechanics { inertia, damping, .. } = SCENE.device;
+    let torque = 1.25 * TRANSDUCERS.full_scale_torque + damping * TRANSDUCERS.largest_speed;
+    let (most, bound) = (torque / inertia, CURRENT_LOOP.largest_acceleration());
+    println!("{most:.0} rad/s^2 of {bound:.0}");
+    assert!(most < bound && bound < 1.5 * most, "{most} of {bound}");
 }

@@ -7,7 +7,7 @@ use super::bridge_wall::{SCENE, TRANSDUCERS};
 use super::paddle::Paddle;
 
 /// Torque of the hand and Coulomb friction in N m.
-const TORQUE: f64 = 0.9;
+const TORQUE: f64 = 0.45;
 const FRICTION: f64 = 0.01;
 
 /// Leans against the wall from a quarter of a second on, and lets go from 1.2 s on.
