@@ -101,6 +101,9 @@ const MEASURED: u32 = 256;
 /// instant.
 const SETTLING: u32 = 40;
 
+/// The current in A of a count.
+const COUNT: f32 = B_G431B_ESC1.amps_per_count as f32;
+
 /// The current in A that counts as zero: a count of noise, and a count of offset error.
 const NONE: f32 = 0.06;
 
@@ -355,7 +358,7 @@ fn sweep() -> Result<(), Failure> {
         let volts = f64::from(sample(&mut bench.load)?.bus) * B_G431B_ESC1.volts_per_count;
         let step = (volts * part / LOAD.motor.resistance) as f32;
         let is_off = |(now, before): (f32, f32)| {
-            (now - before - step).abs() > TOLERANCE as f32 * step + NONE
+            (now - before - step).abs() > TOLERANCE as f32 * step + COUNT
         };
         if last.is_some_and(|last| currents.into_iter().zip(last).any(is_off)) {
             return Err(

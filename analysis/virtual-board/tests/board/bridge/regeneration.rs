@@ -20,7 +20,7 @@ const SLOW: f64 = -0.7;
 const SPEED: f64 = 24.0;
 /// Accelerations in rad/s^2 at the beginning and the end of the push.
 const BEGINS: f64 = 5e3;
-const ENDS: f64 = 1e4;
+const ENDS: f64 = 2.5e4;
 /// Milliseconds from switching on to the end: the push, and some time behind it.
 const TICKS: u64 = 170;
 
@@ -115,13 +115,13 @@ fn the_wall_stays_with_a_supply_that_the_compiler_accepts() {
     println!("{returned:.4} J of at most {energy:.4} J");
     assert_eq!(fault, None);
     assert!(highest < bus.fault_level, "{highest} V");
-    assert!(returned > 0.3 * energy && returned < energy, "{returned} J of {energy} J");
+    assert!(returned > 0.25 * energy && returned < energy, "{returned} J of {energy} J");
 }
 
-/// With 24 V and 0.4 mF the wall vanishes under the hand; the compiler refuses that.
+/// With 24 V and 0.2 mF the wall vanishes under the hand; the compiler refuses that.
 #[test]
 fn the_wall_vanishes_with_a_supply_that_the_compiler_refuses() {
-    let small = Bus { capacitance: 4e-4, ..bus() };
+    let small = Bus { capacitance: 2e-4, ..bus() };
     let push = CURRENT_LOOP.push(&SCENE.as_data(), &TRANSDUCERS, None);
     assert!(small.check(&SCENE.as_data(), &push).is_err());
     let (highest, fault) = pushed(Supply::that_stores(small.voltage, small.capacitance));
