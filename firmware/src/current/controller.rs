@@ -58,8 +58,8 @@ impl Moved {
     /// The motion by a step of the encoder.
     #[inline(always)]
     fn by(step: i32, phase: &PhaseAlignment, speed: &mut Speed) -> Self {
-        let sign = phase.sign();
-        Self { counts: sign * step as f32, mean: sign * speed.update(step) }
+        let counts = phase.sign() * step as f32;
+        Self { counts, mean: speed.update(counts) }
     }
 }
 

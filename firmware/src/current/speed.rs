@@ -41,10 +41,10 @@ impl Speed {
         (position.bits().wrapping_sub(self.last) << shift).cast_signed() >> shift
     }
 
-    /// Takes a step; returns the mean of the counts per instant.
+    /// Takes the counts of an instant; returns their mean.
     #[inline(always)]
-    pub(super) const fn update(&mut self, step: i32) -> f32 {
-        self.mean += NEWEST * (step as f32 - self.mean);
+    pub(super) const fn update(&mut self, counts: f32) -> f32 {
+        self.mean += NEWEST * (counts - self.mean);
         self.mean
     }
 }

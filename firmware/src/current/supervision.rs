@@ -11,17 +11,18 @@ use super::vector::{Vector, larger};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Supervision {
     limited: u16,
-    deviating: u16,
-    /// Sum over the instants of the deviation, in A, less the part that the motion explains (theory, section 15.10).
-    unexplained: Vector,
-    /// Counts in an instant, smoothed as the winding smooths the current of a voltage.
-    speed: f32,
+    /// Instants of the present run of deviations.
+    deviating: u32,
+    /// The sum of its deviations in A, plus what the speed before it makes.
+    sum: f32,
+    /// What a change of the speed from rest to the present one makes of such a sum, in A; the speed is smoothed as
+    /// the winding smooths the current of a voltage.
+    by_speed: f32,
 }
 
 impl Supervision {
     /// No deviation and no limited voltage, at rest.
-    pub(super) const NONE: Self =
-        Self { limited: 0, deviating: 0, unexplained: Vector::ZERO, speed: 0.0 };
+    pub(super) const NONE: Self = Self { limited: 0, deviating: 0, sum: 0.0, by_speed: 0.0 };
 
     /// Takes an instant's deviation in A, the counts that the motor moved since the last instant in the direction
     /// of its torque, and whether the voltage was limited.
@@ -36,33 +37,39 @@ impl Supervision {
         moved: f32,
         is_limited: bool,
     ) -> Result<(), PowerFault> {
-        let allowed = limits.instants;
-        let faster = limits.smoothing * (moved - self.speed);
-        self.speed += faster;
         self.limited = if is_limited { self.limited + 1 } else { 0 };
-        if self.limited > allowed {
+        if self.limited > limits.instants {
             cold_path();
-            let instants = self.limited.into();
-            return Err(PowerFault::SaturatedDuty { instants, allowed: allowed.into() });
+            let (instants, allowed) = (self.limited.into(), limits.instants.into());
+            return Err(PowerFault::SaturatedDuty { instants, allowed });
         }
+        self.by_speed += limits.smoothing * (limits.amps_of_motion * moved - self.by_speed);
         let Vector { along, across } = deviation;
-        let deviation = larger(along.abs(), across.abs());
-        if deviation <= limits.deviation {
-            (self.deviating, self.unexplained) = (0, Vector::ZERO);
+        let largest = larger(along.abs(), across.abs());
+        if largest <= limits.deviation {
+            (self.deviating, self.sum) = (0, self.by_speed);
             return Ok(());
         }
-        self.deviating = self.deviating.saturating_add(1);
-        self.unexplained.along += along;
-        self.unexplained.across += across - limits.amps_of_motion * faster;
-        let sum = self.unexplained.along.abs() + self.unexplained.across.abs();
-        if self.deviating > allowed && sum > limits.unexplained {
-            cold_path();
-            return Err(PowerFault::CurrentNotFollowing {
-                deviation: (deviation * 1e3) as u32,
-                largest: (limits.deviation * 1e3) as u32,
-            });
+        self.deviating = self.deviating.wrapping_add(1);
+        self.sum += across;
+        if self.deviating > u32::from(limits.instants) {
+            return self.explain(limits, along, largest);
         }
         Ok(())
+    }
+
+    /// Whether the motion explains a long run of deviations: only those across the field, and of their sum what
+    /// the change of the speed makes (theory, section 15.10).
+    #[cold]
+    fn explain(&self, limits: &Limits, along: f32, deviation: f32) -> Result<(), PowerFault> {
+        let unexplained = (self.sum - self.by_speed).abs();
+        if unexplained <= limits.unexplained && along.abs() <= limits.deviation {
+            return Ok(());
+        }
+        Err(PowerFault::CurrentNotFollowing {
+            deviation: (deviation * 1e3) as u32,
+            largest: (limits.deviation * 1e3) as u32,
+        })
     }
 }
 

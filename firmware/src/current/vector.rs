@@ -48,8 +48,6 @@ impl Rotation {
 }
 
 impl Vector {
-    pub(super) const ZERO: Self = Self { along: 0.0, across: 0.0 };
-
     /// The vector of the currents in U and V; the current in W makes the sum zero.
     #[inline(always)]
     pub(super) const fn of_two_phases(u: f32, v: f32) -> Self {

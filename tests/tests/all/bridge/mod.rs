@@ -282,7 +282,7 @@ fn leaned_against(is_bridge: bool, hand: &HandImpedance, friction: f64) -> Vec<I
         rig.hand_torque = 0.004 * f64::from(step);
         rig.run(0.005).unwrap();
     }
-    rig.run(0.5).unwrap();
+    rig.run(1.5).unwrap();
     rig.run(0.5).unwrap()
 }
 
