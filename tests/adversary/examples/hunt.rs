@@ -49,7 +49,7 @@ fn main() {
             "planted" => {
                 let of = |planted: &Planted| format!("{planted:?}") == value;
                 let planted = Planted::ALL.into_iter().find(of).expect("a planted rule");
-                search.choice = planted.choice();
+                search.choice.planted = Some(planted);
             }
             "coverage" => coverage = value.parse().expect("true or false"),
             "overrun" => search.choice.overrun = value.parse().expect("a number"),

@@ -95,15 +95,13 @@ impl Pattern {
     }
 }
 
-/// The times that deviate from tick to tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Jitter {
-    /// None does.
-    None,
+/// How the times of torques and counts deviate from tick to tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jitter {
     /// Those of the torques.
-    Torques(Signs),
+    pub torques: Option<Signs>,
     /// Those of the counts.
-    Counts(Signs),
+    pub counts: Option<Signs>,
 }
 
 /// Deviations in units of the largest one.
@@ -138,6 +136,18 @@ impl Signs {
             }
         }
     }
+
+    /// Signs of the counts beside these of the torques: the same, the opposite, or any.
+    fn beside(self, rng: &mut impl Rng) -> Self {
+        match (self, rng.random_range(0..3)) {
+            (signs, 0) => signs,
+            (Self::Periodic(signs, length), 1) => Self::Periodic(signs.map(|sign| -sign), length),
+            (Self::Periodic(_, length), _) => {
+                Self::Periodic([0; 4].map(|_| if rng.random_bool(0.5) { 1 } else { -1 }), length)
+            }
+            _ => Self::draw(rng),
+        }
+    }
 }
 
 /// Jitter of counts, in periods, from which two counts could change places.
@@ -145,26 +155,21 @@ const LARGEST_OF_COUNTS: f64 = 0.45;
 
 impl Jitter {
     fn draw(rng: &mut impl Rng, timing: &LoopTiming) -> Self {
-        let LoopTiming { jitter, updates, .. } = *timing;
-        if jitter == 0.0 || rng.random_bool(0.1) {
-            return Self::None;
+        let LoopTiming { jitters: [of_torques, of_counts], both, updates, .. } = *timing;
+        if of_torques == 0.0 || rng.random_bool(0.1) {
+            return Self::default();
         }
         let signs = Signs::draw(rng);
         // An amplifier that is updated takes a torque over at an update, whatever its jitter.
-        let of_counts = updates > 0 || rng.random_bool(0.35);
-        if jitter < LARGEST_OF_COUNTS && of_counts {
-            Self::Counts(signs)
-        } else {
-            Self::Torques(signs)
+        let torques = (updates == 0).then_some(signs);
+        if both {
+            return Self { torques, counts: Some(signs.beside(rng)) };
         }
-    }
-
-    /// The deviations of each.
-    pub const fn of_torques_and_counts(self) -> (Option<Signs>, Option<Signs>) {
-        match self {
-            Self::None => (None, None),
-            Self::Torques(signs) => (Some(signs), None),
-            Self::Counts(signs) => (None, Some(signs)),
+        let counts = of_counts < LARGEST_OF_COUNTS && (updates > 0 || rng.random_bool(0.35));
+        if counts {
+            Self { torques: None, counts: Some(signs) }
+        } else {
+            Self { torques: Some(signs), counts: None }
         }
     }
 }
@@ -205,6 +210,8 @@ pub struct Plan {
     pub within: [f64; 2],
     /// The request and its period.
     pub requests: [Option<(u32, Request)>; REQUESTS],
+    /// Whether the torque's limit falls by the heat of the board's current.
+    pub heats: bool,
     /// Whether the servo is armed again after each fault.
     pub again: bool,
     /// Periods.
@@ -258,11 +265,21 @@ impl Plan {
             jitter: Jitter::draw(rng, &normalized.timing),
             within: [Self::place_in_range(rng), Self::place_in_range(rng)],
             requests: [None; REQUESTS],
+            heats: rng.random_bool(0.3),
             again: rng.random_bool(0.7),
             periods,
         };
+        plan.separate(normalized);
         plan.draw_requests(rng, normalized);
         plan
+    }
+
+    /// Torques and counts deviate at the same time only where the scene says so: a count that is read late
+    /// deviates, too.
+    fn separate(&mut self, normalized: &NormalizedScene) {
+        if self.pattern.delays() && !normalized.timing.both {
+            self.jitter = Jitter::default();
+        }
     }
 
     fn place_in_range(rng: &mut impl Rng) -> f64 {
@@ -365,6 +382,7 @@ impl Plan {
             plan.delay = Self::delay(rng, normalized);
             plan.jitter = Jitter::draw(rng, &normalized.timing);
             plan.within = [Self::place_in_range(rng), Self::place_in_range(rng)];
+            plan.separate(normalized);
         }
         if requests {
             plan.draw_requests(rng, normalized);

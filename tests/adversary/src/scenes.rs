@@ -277,7 +277,14 @@ fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool)
     };
     let lags = !matches!(kind, Kind::Unstable | Kind::Hidden | Kind::Overstated)
         && sometimes(rng, choice.latency, 0.5);
-    if sometimes(rng, choice.bare, if lags { 0.5 } else { 0.08 }) {
+    // No board renders an environment that is only certified without a torque limit.
+    let rational = matches!(kind, Kind::Rational | Kind::Unstable | Kind::Hidden);
+    let bare = match (rational, lags) {
+        (true, _) => 0.9,
+        (_, true) => 0.5,
+        _ => 0.08,
+    };
+    if sometimes(rng, choice.bare, bare) {
         return (kind, format, Mode::Bare, lags);
     }
     // The canceller in front of a wall is undelayed, and so is never latched.
@@ -297,8 +304,12 @@ fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool)
 
 /// A coupling of about the standard stiffness; behind a latency also the coupling which absorbs it.
 fn draw_coupling(rng: &mut impl Rng, mode: Mode, lags: bool, standard: f64) -> Coupling {
-    if lags && (mode != Mode::Bare || rng.random_bool(0.4)) {
+    if lags && rng.random_bool(if mode == Mode::Bare { 0.35 } else { 0.75 }) {
         return Coupling::Matched;
+    }
+    if lags && mode != Mode::Bare {
+        // No board renders a torque that lags behind a spring.
+        return Coupling::Rigid;
     }
     let rigid = if mode == Mode::Bare { 3 } else { 1 };
     if rng.random_range(0..10) < rigid {
@@ -379,7 +390,8 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         1..=3 => 5.0 * size,
         _ => size,
     };
-    let least = usize::from(latched);
+    let early = scene.latency.total_jitter() > scene.latency.output_delay.least;
+    let least = usize::from(latched || early);
     let mut judged_as = None;
     let knob = match kind {
         Kind::Wall | Kind::Overstated => {
@@ -487,16 +499,17 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             w.one_sided = false;
         }
     }
-    let mut actual = Actual::default();
-    if let Some(planted) = choice.planted {
-        planted.plant(rng, &mut scene, &mut actual);
-    }
-    let accepted = |scene: &Scene| {
-        accepted(scene, format.format(), mode)
-            && choice.planted.is_none_or(|planted| planted.accepts(scene, &actual))
+    let format_of = format.format();
+    let taken_for = |scene: &Scene| {
+        choice.planted.map_or(*scene, |planted| planted.taken_for(scene, format_of))
     };
+    let accepted = |scene: &Scene| accepted(&taken_for(scene), format_of, mode);
     let scale = taken_to_the_line(&scene, knob, accepted)?;
-    let scene = scaled(&scene, knob, scale);
+    let actual_scene = scaled(&scene, knob, scale);
+    let scene = taken_for(&actual_scene);
+    let actual = choice.planted.map_or_else(Actual::default, |planted| {
+        planted.actual(&actual_scene, &scene)
+    });
     let judged_as = judged_as.map(|environment| Scene { environment, ..scene });
     let other = rng.random_bool(0.3).then(|| another(rng, &scene, size, format)).flatten();
     let damping = if choice.bisected || choice.weakened.is_some() {
@@ -508,7 +521,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             None => has - choice.taken * (has - least),
         })
     } else {
-        choice.planted.and_then(|planted| planted.damping(&scene, format.format()))
+        None
     };
     // The room is known only once the scene is certified.
     let injected = sometimes(rng, choice.injected, 0.15).then(|| 1.0 - log_uniform(rng, 1e-6, 0.9));
