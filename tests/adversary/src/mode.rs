@@ -149,7 +149,22 @@ fn latched(rng: &mut impl Rng, period: f64) -> Latency {
     read_late(jittering(rng, latency, period, 0.4 * period))
 }
 
+/// A delay alone, or none, often so that torques cross counts, with jitter.
+fn plain(rng: &mut impl Rng, period: f64) -> Latency {
+    let delay = match rng.random_range(0..4) {
+        0 | 1 => 0.0,
+        2 => period,
+        _ => period * log_uniform(rng, 0.01, 1.8),
+    };
+    // Without a delay the torques of a late environment may be early, too.
+    let most = if delay == 0.0 { period } else { delay };
+    jittering(rng, Latency::delayed(delay), period, most.min(0.95 * period))
+}
+
 fn any(rng: &mut impl Rng, period: f64) -> Latency {
+    if rng.random_bool(0.6) {
+        return plain(rng, period);
+    }
     let lag = period * log_uniform(rng, 0.01, 1.5);
     if rng.random_bool(0.15) {
         let updates = rng.random_range(1..=4);
@@ -162,14 +177,9 @@ fn any(rng: &mut impl Rng, period: f64) -> Latency {
         return latency;
     }
     let mut latency = Latency::NONE;
-    match rng.random_range(0..10) {
-        0..=2 => {}
-        // With jitter its torques cross the counts.
-        3..=4 => latency.output_delay = TimeRange::exactly(period),
-        _ => {
-            let delay = period * log_uniform(rng, 0.01, 1.8);
-            latency.output_delay = about(rng, delay);
-        }
+    if rng.random_bool(0.8) {
+        let delay = period * log_uniform(rng, 0.01, 1.8);
+        latency.output_delay = about(rng, delay);
     }
     if rng.random_bool(0.35) {
         latency.actuator_lag = about(rng, lag);
@@ -184,9 +194,8 @@ fn any(rng: &mut impl Rng, period: f64) -> Latency {
             TimeRange::between(begin, begin + period * rng.random_range(0.01..0.5));
     }
     if rng.random_bool(0.7) {
-        // Without a delay the torques of a late environment may be early, too.
-        let most = if latency.output_delay.is_zero() { period } else { latency.output_delay.least };
-        latency = jittering(rng, latency, period, most.min(0.6 * period));
+        let most = latency.output_delay.least.min(0.6 * period);
+        latency = jittering(rng, latency, period, most);
     }
     latency
 }

@@ -244,7 +244,9 @@ impl Plan {
             hand.damping = log_uniform(rng, 1e-5, 1e-2);
         }
         let mut start = [0.0; 8];
-        let size = normalized.size * log_uniform(rng, 0.1, 3.0);
+        // Small motions grow although a limit ends large ones.
+        let largest = if rng.random_bool(0.5) { normalized.bound } else { f64::INFINITY };
+        let size = normalized.size.min(0.3 * largest) * log_uniform(rng, 0.1, 3.0);
         for i in 0..=hand.segments.len() {
             start[2 * i] = size * rng.random_range(-1.0..1.0);
             start[2 * i + 1] = size * rng.random_range(-1.0..1.0);
@@ -309,7 +311,8 @@ impl Plan {
     fn hand(rng: &mut impl Rng, normalized: &NormalizedScene) -> Hand {
         match rng.random_range(0..8) {
             0 => Hand::draw(rng),
-            1..=2 => {
+            1 => Self::clamp(rng),
+            2 => {
                 let theta = rng.random_range(0.02..PI);
                 Hand::tuned(rng, theta)
             }
@@ -321,6 +324,17 @@ impl Plan {
                 let theta = normalized.angles[rng.random_range(0..normalized.angles.len())];
                 Hand::tuned(rng, theta)
             }
+        }
+    }
+
+    /// A hand that holds the device fast: coupling and environment may oscillate behind it by themselves, and its
+    /// damper takes what they deliver.
+    fn clamp(rng: &mut impl Rng) -> Hand {
+        Hand {
+            inertia: log_uniform(rng, 1e-3, 1.0),
+            damping: log_uniform(rng, 1e-3, 1e1),
+            stiffness: log_uniform(rng, 0.5, STIFFEST),
+            segments: Vec::new(),
         }
     }
 

@@ -5,6 +5,7 @@
 //! differs.
 
 use haptic_servo::certificate::{LoopTransfers, PassivityProblem};
+use haptic_servo::environment::Environment;
 use haptic_servo::latency::{Latency, TimeRange};
 use haptic_servo::number::Format;
 use haptic_servo::output_timing::READ_WITHIN;
@@ -107,13 +108,28 @@ fn without_jitter(latency: Latency) -> Latency {
     Latency { output_jitter, count_jitter: 0.0, ..latency }
 }
 
+/// The same servo on a device with this times the passivity.
 fn with_passivity(scene: &Scene, factor: f64) -> Scene {
+    let Device { damping, .. } = scene.device;
     let passivity = Some(factor * scene.device.passivity());
-    Scene { device: Device { passivity, ..scene.device }, ..*scene }
+    let mut with = *scene;
+    with.device = Device { damping: factor * damping, passivity, ..scene.device };
+    // A canceller cancels as much as it did.
+    let residual = match &mut with.environment {
+        Environment::FreeMode { residual, .. } | Environment::FreeModeWall { residual, .. } => {
+            Some(residual)
+        }
+        Environment::Composed(sum) => sum.residual.as_mut(),
+        _ => None,
+    };
+    if let Some(residual) = residual {
+        *residual += with.device.damping - damping;
+    }
+    with
 }
 
 /// A scene with the same servo that the certificate passes.
-fn certain(scene: &Scene) -> Scene {
+pub fn certain(scene: &Scene) -> Scene {
     Scene { latency: Latency::NONE, ..with_passivity(scene, 1e3) }
 }
 
@@ -129,7 +145,7 @@ fn delay_and_jitter(scene: &Scene) -> Option<(f64, f64, f64)> {
 
 /// Equation 41 with jitter as it once was: from `delta` the share `sqrt(h)` is taken, and from the compliance what
 /// absorbs the rest. `None` where it is not asked.
-fn former_spring(scene: &Scene, format: Format) -> Option<bool> {
+pub fn former_spring(scene: &Scene, format: Format) -> Option<bool> {
     let Coupling::Spring { stiffness } = scene.coupling else { return None };
     let (whole, part, jitter) = delay_and_jitter(scene)?;
     let index = PassivityProblem::in_format(scene, format).ok()?.bound()?.hi();
@@ -148,7 +164,7 @@ fn former_spring(scene: &Scene, format: Format) -> Option<bool> {
 
 /// Equation 38 with jitter as it once was, without a lag: `delta (1 - h/2) + Re(H g)` is above
 /// `(D + 3 h T^2) abs(H)^2 / (4 delta)`. `None` where it is not asked.
-fn former_linear(scene: &Scene, format: Format) -> Option<bool> {
+pub fn former_linear(scene: &Scene, format: Format) -> Option<bool> {
     const ANGLES: u32 = 2000;
     let (whole, part, jitter) = delay_and_jitter(scene)?;
     let is_linear = PassivityProblem::in_format(scene, format).ok()?.bound().is_none();

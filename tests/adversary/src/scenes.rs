@@ -258,15 +258,15 @@ fn sometimes(rng: &mut impl Rng, wanted: Option<bool>, probability: f64) -> bool
 
 /// The kind, the number format and the mode of a scene.
 fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool) {
-    let kind = choice.kind.unwrap_or_else(|| match rng.random_range(0..25) {
-        0..=7 => Kind::Wall,
-        8..=9 => Kind::FreeMode,
-        10..=11 => Kind::FreeModeWall,
-        12..=15 => Kind::Rational,
-        16..=17 => Kind::Unstable,
-        18 => Kind::Hidden,
-        19 => Kind::Overstated,
-        20..=22 => Kind::Profile,
+    let kind = choice.kind.unwrap_or_else(|| match rng.random_range(0..30) {
+        0..=12 => Kind::Wall,
+        13..=14 => Kind::FreeMode,
+        15..=16 => Kind::FreeModeWall,
+        17..=20 => Kind::Rational,
+        21..=22 => Kind::Unstable,
+        23 => Kind::Hidden,
+        24 => Kind::Overstated,
+        25..=27 => Kind::Profile,
         _ => Kind::Sum,
     });
     let format = match rng.random_range(0..10) {
@@ -311,7 +311,7 @@ fn draw_coupling(rng: &mut impl Rng, mode: Mode, lags: bool, standard: f64) -> C
         // No board renders a torque that lags behind a spring.
         return Coupling::Rigid;
     }
-    let rigid = if mode == Mode::Bare { 3 } else { 1 };
+    let rigid = if mode == Mode::Bare { 3 } else { 2 };
     if rng.random_range(0..10) < rigid {
         return Coupling::Rigid;
     }
@@ -340,7 +340,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let period = log_uniform(rng, shortest, 4e-3);
     let delta = log_uniform(rng, 2e-3, 0.5);
     let unit = delta / period;
-    let worst = if !lags && mode != Mode::Bare && sometimes(rng, choice.worst_period, 0.25) {
+    let worst = if !lags && mode != Mode::Bare && sometimes(rng, choice.worst_period, 0.4) {
         [1.5, 2.0, 2.0, 3.0, 4.0][rng.random_range(0..5)]
     } else {
         1.0
@@ -395,7 +395,8 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let mut judged_as = None;
     let knob = match kind {
         Kind::Wall | Kind::Overstated => {
-            let delay = if rng.random_bool(0.7) { least } else { rng.random_range(least..=3) };
+            let usual = if lags { 1 } else { least };
+            let delay = if rng.random_bool(0.7) { usual } else { rng.random_range(least..=3) };
             let wall = wall(rng, unit, delta, delay, reach);
             face = wall.face;
             if wall.damping == 0.0 && rng.random_bool(0.5) {
@@ -420,8 +421,14 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             if rng.random_bool(0.3) { Knob::Residual } else { Knob::Gain }
         }
         Kind::Rational | Kind::Unstable => {
-            let least = if rng.random_bool(0.6) { least } else { rng.random_range(least..=3) };
-            scene.environment = rational_with(rng, unit, least, kind == Kind::Unstable);
+            let delay = if rng.random_bool(0.6) { least } else { rng.random_range(least..=3) };
+            // Its sums have all of the angle times its coefficients, which a fixed-point format ends at.
+            let floats = matches!(format, Numbers::F32 | Numbers::F64);
+            scene.environment = if floats && kind == Kind::Rational && rng.random_bool(0.6) {
+                crossing(rng, unit, least)
+            } else {
+                rational_with(rng, unit, delay, kind == Kind::Unstable)
+            };
             Knob::Gain
         }
         Kind::Profile => {
@@ -547,8 +554,8 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
 fn wall(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize, reach: f64) -> Wall {
     let stiffness = unit * log_uniform(rng, 0.01, 2.0);
     let damping = match rng.random_range(0..10) {
-        0..=3 => 0.0,
-        4 => -delta * log_uniform(rng, 0.01, 1.0),
+        0..=4 => 0.0,
+        5 => -delta * log_uniform(rng, 0.01, 1.0),
         _ => delta * log_uniform(rng, 0.01, 1.0),
     };
     let filter = (damping != 0.0 && rng.random_bool(0.3)).then(|| match rng.random_range(0..4) {
@@ -615,6 +622,22 @@ fn rational_with(rng: &mut impl Rng, unit: f64, delay: usize, unstable: bool) ->
         denominator: coefficients(&denominator),
         delay,
         unit_zeros: 0,
+    })
+}
+
+/// A filter that cancels damping of slow motions and damps those at half of the sampling rate: where the length of
+/// ticks alternates, these drive each other.
+fn crossing(rng: &mut impl Rng, unit: f64, delay: usize) -> Environment {
+    let (slow, fast) = (rng.random_range(0.2..0.9), 1.0 - log_uniform(rng, 0.01, 0.3));
+    let damped = 0.5 * log_uniform(rng, 1.0, 8.0) * (1.0 - fast);
+    let cancelled = 1.0 - slow;
+    let numerator = [damped - cancelled, -damped * slow - cancelled * fast];
+    let denominator = [1.0, fast - slow, -slow * fast];
+    Environment::Rational(Rational {
+        numerator: coefficients(&numerator.map(|c| c * unit)),
+        denominator: coefficients(&denominator),
+        delay,
+        unit_zeros: 1,
     })
 }
 
