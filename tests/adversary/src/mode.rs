@@ -150,10 +150,10 @@ fn latched(rng: &mut impl Rng, period: f64) -> Latency {
 }
 
 /// A delay alone, or none, often so that torques cross counts, with jitter.
-fn plain(rng: &mut impl Rng, period: f64) -> Latency {
-    let delay = match rng.random_range(0..4) {
+pub fn plain(rng: &mut impl Rng, period: f64) -> Latency {
+    let delay = match rng.random_range(0..5) {
         0 | 1 => 0.0,
-        2 => period,
+        2 | 3 => period,
         _ => period * log_uniform(rng, 0.01, 1.8),
     };
     // Without a delay the torques of a late environment may be early, too.
@@ -162,7 +162,7 @@ fn plain(rng: &mut impl Rng, period: f64) -> Latency {
 }
 
 fn any(rng: &mut impl Rng, period: f64) -> Latency {
-    if rng.random_bool(0.6) {
+    if rng.random_bool(0.3) {
         return plain(rng, period);
     }
     let lag = period * log_uniform(rng, 0.01, 1.5);

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use rand::Rng;
-use tests::hands::Hand;
+use tests::hands::{Hand, Segment};
 use tests::scenes::log_uniform;
 
 use crate::device::State;
@@ -124,7 +124,7 @@ impl Signs {
         if rng.random_bool(0.15) {
             return Self::Random { seed: rng.random::<u64>() | 1 };
         }
-        let length = rng.random_range(2..=Self::LONGEST);
+        let length = [2, 2, 3, 3, 4][rng.random_range(0..5)];
         let mut signs = [1; Self::LONGEST];
         loop {
             for sign in &mut signs[..length] {
@@ -137,11 +137,11 @@ impl Signs {
         }
     }
 
-    /// Signs of the counts beside these of the torques: the same, the opposite, or any.
+    /// Signs of the counts beside these of the torques: often the same, so that ticks are long and short.
     fn beside(self, rng: &mut impl Rng) -> Self {
-        match (self, rng.random_range(0..3)) {
-            (signs, 0) => signs,
-            (Self::Periodic(signs, length), 1) => Self::Periodic(signs.map(|sign| -sign), length),
+        match (self, rng.random_range(0..5)) {
+            (signs, 0..=2) => signs,
+            (Self::Periodic(signs, length), 3) => Self::Periodic(signs.map(|sign| -sign), length),
             (Self::Periodic(_, length), _) => {
                 Self::Periodic([0; 4].map(|_| if rng.random_bool(0.5) { 1 } else { -1 }), length)
             }
@@ -309,14 +309,17 @@ impl Plan {
     }
 
     fn hand(rng: &mut impl Rng, normalized: &NormalizedScene) -> Hand {
+        if normalized.timing.jitters[0] > 0.0 && rng.random_bool(0.25) {
+            return Self::light(rng);
+        }
         match rng.random_range(0..8) {
             0 => Hand::draw(rng),
             1 => Self::clamp(rng),
-            2 => {
+            2..=3 => {
                 let theta = rng.random_range(0.02..PI);
                 Hand::tuned(rng, theta)
             }
-            3 => {
+            4 => {
                 let theta = log_uniform(rng, 5e-3, PI);
                 Hand::tuned(rng, theta)
             }
@@ -334,8 +337,24 @@ impl Plan {
             inertia: log_uniform(rng, 1e-3, 1.0),
             damping: log_uniform(rng, 1e-3, 1e1),
             stiffness: log_uniform(rng, 0.5, STIFFEST),
-            segments: Vec::new(),
+            ..Hand::NONE
         }
+    }
+
+    /// A light device, with a light absorber tuned to nearly half of the sampling rate or without one: what is left
+    /// of its motion is even within each tick, however long that is.
+    fn light(rng: &mut impl Rng) -> Hand {
+        let theta = PI * rng.random_range(0.8..1.0);
+        let inertia = log_uniform(rng, 1e-3, 2e-2);
+        let absorber = Segment {
+            link_stiffness: inertia * theta * theta,
+            link_damping: 0.0,
+            inertia,
+            stiffness: 0.0,
+            damping: 0.0,
+        };
+        let segments = if rng.random_bool(0.7) { vec![absorber] } else { Vec::new() };
+        Hand { inertia: log_uniform(rng, 1e-3, 1e-2), segments, ..Hand::NONE }
     }
 
     fn draw_requests(&mut self, rng: &mut impl Rng, normalized: &NormalizedScene) {

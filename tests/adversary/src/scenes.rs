@@ -11,7 +11,7 @@ use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
 use rand::Rng;
 use tests::scenes::log_uniform;
 
-use crate::mode::{Actual, draw_latency, has_latency};
+use crate::mode::{Actual, draw_latency, has_latency, plain};
 use crate::planted::Planted;
 use crate::profiles;
 
@@ -72,11 +72,13 @@ pub enum Kind {
     Profile,
     /// A sum of a profile with a wall, a canceller, or both.
     Sum,
+    /// What some rule is sharp for: a spring, a negative damper or a filter alone, and a delay alone with jitter.
+    Sharp,
 }
 
 impl Kind {
     /// All values.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Wall,
         Self::FreeMode,
         Self::FreeModeWall,
@@ -86,6 +88,7 @@ impl Kind {
         Self::Overstated,
         Self::Profile,
         Self::Sum,
+        Self::Sharp,
     ];
 }
 
@@ -258,16 +261,17 @@ fn sometimes(rng: &mut impl Rng, wanted: Option<bool>, probability: f64) -> bool
 
 /// The kind, the number format and the mode of a scene.
 fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool) {
-    let kind = choice.kind.unwrap_or_else(|| match rng.random_range(0..30) {
-        0..=12 => Kind::Wall,
-        13..=14 => Kind::FreeMode,
-        15..=16 => Kind::FreeModeWall,
-        17..=20 => Kind::Rational,
-        21..=22 => Kind::Unstable,
-        23 => Kind::Hidden,
-        24 => Kind::Overstated,
-        25..=27 => Kind::Profile,
-        _ => Kind::Sum,
+    let kind = choice.kind.unwrap_or_else(|| match rng.random_range(0..34) {
+        0..=7 => Kind::Wall,
+        8..=9 => Kind::FreeMode,
+        10..=11 => Kind::FreeModeWall,
+        12..=15 => Kind::Rational,
+        16..=17 => Kind::Unstable,
+        18 => Kind::Hidden,
+        19 => Kind::Overstated,
+        20..=22 => Kind::Profile,
+        23..=24 => Kind::Sum,
+        _ => Kind::Sharp,
     });
     let format = match rng.random_range(0..10) {
         0..=4 => Numbers::F32,
@@ -276,15 +280,20 @@ fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool)
         _ => Numbers::Q20,
     };
     let lags = !matches!(kind, Kind::Unstable | Kind::Hidden | Kind::Overstated)
-        && sometimes(rng, choice.latency, 0.5);
+        && sometimes(rng, choice.latency, if kind == Kind::Sharp { 0.9 } else { 0.5 });
     // No board renders an environment that is only certified without a torque limit.
     let rational = matches!(kind, Kind::Rational | Kind::Unstable | Kind::Hidden);
     let bare = match (rational, lags) {
         (true, _) => 0.9,
-        (_, true) => 0.5,
+        (_, true) => if kind == Kind::Sharp { 0.9 } else { 0.5 },
         _ => 0.08,
     };
     if sometimes(rng, choice.bare, bare) {
+        // The sums of a filter that no board renders have all of an angle times its coefficients, which a
+        // fixed-point format ends at.
+        let floats = matches!(format, Numbers::F32 | Numbers::F64);
+        let format =
+            if (rational || kind == Kind::Sharp) && !floats { Numbers::F64 } else { format };
         return (kind, format, Mode::Bare, lags);
     }
     // The canceller in front of a wall is undelayed, and so is never latched.
@@ -356,7 +365,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         choice.limited,
         match (rational, lags) {
             (true, _) => 0.1,
-            (_, true) => 0.7,
+            (_, true) if kind != Kind::Sharp => 0.7,
             _ => 0.5,
         },
     );
@@ -381,8 +390,12 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         timing: Timing { period, worst_period: (worst > 1.0).then_some(worst * period) },
         coupling,
         environment: Environment::FreeMode { residual: 0.0, delay: 0 },
-        latency: if lags { draw_latency(rng, mode, period) } else { Latency::NONE },
-        torque_limit: limited.then(|| full_scale * log_uniform(rng, 0.05, 0.999)),
+        latency: match lags {
+            true if kind == Kind::Sharp && mode == Mode::Bare => plain(rng, period),
+            true => draw_latency(rng, mode, period),
+            false => Latency::NONE,
+        },
+        torque_limit: limited.then(|| full_scale * log_uniform(rng, 0.15, 0.999)),
     };
     let mut face = 0.0;
     let reach = match rng.random_range(0..12) {
@@ -395,8 +408,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let mut judged_as = None;
     let knob = match kind {
         Kind::Wall | Kind::Overstated => {
-            let usual = if lags { 1 } else { least };
-            let delay = if rng.random_bool(0.7) { usual } else { rng.random_range(least..=3) };
+            let delay = if rng.random_bool(0.7) { least } else { rng.random_range(least..=3) };
             let wall = wall(rng, unit, delta, delay, reach);
             face = wall.face;
             if wall.damping == 0.0 && rng.random_bool(0.5) {
@@ -405,6 +417,13 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
                 scene.environment = Environment::DamperWall(wall);
             }
             if wall.damping != 0.0 && rng.random_bool(0.5) { Knob::Damping } else { Knob::Gain }
+        }
+        Kind::Sharp => {
+            scene.environment = sharp(rng, unit, delta, least);
+            match scene.environment {
+                Environment::DamperWall(_) => Knob::Damping,
+                _ => Knob::Gain,
+            }
         }
         Kind::FreeMode => {
             let residual = damping * rng.random_range(-0.1..1.0);
@@ -422,13 +441,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         }
         Kind::Rational | Kind::Unstable => {
             let delay = if rng.random_bool(0.6) { least } else { rng.random_range(least..=3) };
-            // Its sums have all of the angle times its coefficients, which a fixed-point format ends at.
-            let floats = matches!(format, Numbers::F32 | Numbers::F64);
-            scene.environment = if floats && kind == Kind::Rational && rng.random_bool(0.6) {
-                crossing(rng, unit, least)
-            } else {
-                rational_with(rng, unit, delay, kind == Kind::Unstable)
-            };
+            scene.environment = rational_with(rng, unit, delay, kind == Kind::Unstable);
             Knob::Gain
         }
         Kind::Profile => {
@@ -554,8 +567,8 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
 fn wall(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize, reach: f64) -> Wall {
     let stiffness = unit * log_uniform(rng, 0.01, 2.0);
     let damping = match rng.random_range(0..10) {
-        0..=4 => 0.0,
-        5 => -delta * log_uniform(rng, 0.01, 1.0),
+        0..=3 => 0.0,
+        4 => -delta * log_uniform(rng, 0.01, 1.0),
         _ => delta * log_uniform(rng, 0.01, 1.0),
     };
     let filter = (damping != 0.0 && rng.random_bool(0.3)).then(|| match rng.random_range(0..4) {
@@ -625,11 +638,34 @@ fn rational_with(rng: &mut impl Rng, unit: f64, delay: usize, unstable: bool) ->
     })
 }
 
+/// A spring that is late by a sample, a damper below zero, or a filter.
+fn sharp(rng: &mut impl Rng, unit: f64, delta: f64, least: usize) -> Environment {
+    let wall = |stiffness, damping, delay, one_sided| Wall {
+        stiffness,
+        damping,
+        filter: None,
+        delay,
+        face: 0.0,
+        one_sided,
+    };
+    match rng.random_range(0..4) {
+        0 | 1 => {
+            let stiffness = unit * log_uniform(rng, 0.1, 2.0);
+            Environment::DelayedSpring(wall(stiffness, 0.0, 1, rng.random_bool(0.2)))
+        }
+        2 => {
+            let damping = -delta * log_uniform(rng, 0.1, 1.0);
+            Environment::DamperWall(wall(0.01 * unit, damping, least, false))
+        }
+        _ => crossing(rng, unit, least),
+    }
+}
+
 /// A filter that cancels damping of slow motions and damps those at half of the sampling rate: where the length of
 /// ticks alternates, these drive each other.
 fn crossing(rng: &mut impl Rng, unit: f64, delay: usize) -> Environment {
-    let (slow, fast) = (rng.random_range(0.2..0.9), 1.0 - log_uniform(rng, 0.01, 0.3));
-    let damped = 0.5 * log_uniform(rng, 1.0, 8.0) * (1.0 - fast);
+    let (slow, fast) = (rng.random_range(0.4..0.8), 1.0 - log_uniform(rng, 0.01, 0.15));
+    let damped = 0.5 * log_uniform(rng, 3.0, 7.0) * (1.0 - fast);
     let cancelled = 1.0 - slow;
     let numerator = [damped - cancelled, -damped * slow - cancelled * fast];
     let denominator = [1.0, fast - slow, -slow * fast];
