@@ -101,7 +101,8 @@ fn jittering(rng: &mut impl Rng, latency: Latency, period: f64, most: f64) -> La
     match bound {
         Some(bound) => {
             let total = total.min(0.999 * bound);
-            let of_counts = total * if rng.random_bool(0.5) { 0.5 } else { rng.random_range(0.0..1.0) };
+            let of_counts =
+                total * if rng.random_bool(0.5) { 0.5 } else { rng.random_range(0.0..1.0) };
             Latency { output_jitter: total - of_counts, count_jitter: of_counts, ..latency }
         }
         None => Latency { output_jitter: total, ..latency },

@@ -150,8 +150,7 @@ impl NormalizedScene {
         }
         let latency = actual.latency.unwrap_or(scene.latency);
         // Torques that may come before their counts are computed ahead.
-        let ahead =
-            drawn.mode == Mode::Bare && latency.total_jitter() > latency.output_delay.least;
+        let ahead = drawn.mode == Mode::Bare && latency.total_jitter() > latency.output_delay.least;
         let samples = drawn.mode.samples() + f64::from(u8::from(ahead));
         let mut timing = LoopTiming::of(&Scene { latency, ..*scene }, samples);
         if let Some(delay) = actual.delay {

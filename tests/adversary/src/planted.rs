@@ -4,15 +4,12 @@
 //! servo is that of the certified scene, and what is simulated is the scene as it is. Nothing else in the search
 //! differs.
 
-use haptic_servo::certificate::{LoopTransfers, PassivityProblem};
+use haptic_servo::certificate::PassivityProblem;
 use haptic_servo::environment::Environment;
 use haptic_servo::latency::{Latency, TimeRange};
 use haptic_servo::number::Format;
 use haptic_servo::output_timing::READ_WITHIN;
-use haptic_servo::passivity::polynomial::Polynomial;
-use haptic_servo::passivity::transfer::Transfer;
 use haptic_servo::scene::{Coupling, Device, Scene};
-use nalgebra::Complex;
 
 use crate::mode::Actual;
 
@@ -24,9 +21,6 @@ pub enum Planted {
     /// Jitter behind a coupling spring leaves `delta (1 - sqrt(h))` and takes a compliance from the spring, as if
     /// both were not in the coupling at once.
     SpringJitter,
-    /// Jitter of a linear loop without a lag adds the ripple `3 h` and takes half of its part of the passivity, as
-    /// if a tick had one change of the torque.
-    LinearJitter,
     /// Jitters of torques and counts at once are a jitter of one of them, of the same sum.
     TwoJitters,
     /// Without a coupling the mean age of a torque counts, and not the largest.
@@ -49,10 +43,9 @@ pub enum Planted {
 
 impl Planted {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 11] = [
         Self::MatchedJitter,
         Self::SpringJitter,
-        Self::LinearJitter,
         Self::TwoJitters,
         Self::MeanAge,
         Self::LagIgnored,
@@ -73,7 +66,6 @@ impl Planted {
             Self::MatchedJitter if coupling == Coupling::Matched => with(without_jitter(latency)),
             Self::MeanAge if is_rigid => with(without_jitter(latency)),
             Self::SpringJitter if former_spring(scene, format) == Some(true) => certain(scene),
-            Self::LinearJitter if former_linear(scene, format) == Some(true) => certain(scene),
             Self::TwoJitters => {
                 let output_jitter = latency.total_jitter();
                 with(Latency { output_jitter, count_jitter: 0.0, ..latency })
@@ -81,9 +73,10 @@ impl Planted {
             Self::LagIgnored => with(Latency { actuator_lag: TimeRange::ZERO, ..latency }),
             Self::DelayIgnored => with(Latency { output_delay: TimeRange::ZERO, ..latency }),
             Self::RigidBeyondLimit if is_rigid => with_passivity(scene, 1.1),
-            Self::MissedUpdates => {
-                with_passivity(scene, timing.worst_period.map_or(1.0, |worst| worst / timing.period))
-            }
+            Self::MissedUpdates => with_passivity(
+                scene,
+                timing.worst_period.map_or(1.0, |worst| worst / timing.period),
+            ),
             _ => *scene,
         }
     }
@@ -91,13 +84,14 @@ impl Planted {
     /// How a scene differs from what the rule takes it for.
     pub fn actual(self, scene: &Scene, taken_for: &Scene) -> Actual {
         let is_on_time = self == Self::EarlyTorques && scene.latency.is_none();
+        let overtake = scene.latency.total_jitter() > 0.5 * scene.timing.period;
         let passivity = scene.device.passivity();
         Actual {
             latency: (scene.latency != taken_for.latency).then_some(scene.latency),
             passivity: (passivity != taken_for.device.passivity()).then_some(passivity),
             delay: is_on_time.then_some(0.005),
             unreported: self == Self::StaleCode,
-            unordered: self == Self::Unordered,
+            unordered: self == Self::Unordered && overtake,
         }
     }
 }
@@ -129,7 +123,7 @@ fn with_passivity(scene: &Scene, factor: f64) -> Scene {
 }
 
 /// A scene with the same servo that the certificate passes.
-pub fn certain(scene: &Scene) -> Scene {
+fn certain(scene: &Scene) -> Scene {
     Scene { latency: Latency::NONE, ..with_passivity(scene, 1e3) }
 }
 
@@ -145,7 +139,7 @@ fn delay_and_jitter(scene: &Scene) -> Option<(f64, f64, f64)> {
 
 /// Equation 41 with jitter as it once was: from `delta` the share `sqrt(h)` is taken, and from the compliance what
 /// absorbs the rest. `None` where it is not asked.
-pub fn former_spring(scene: &Scene, format: Format) -> Option<bool> {
+fn former_spring(scene: &Scene, format: Format) -> Option<bool> {
     let Coupling::Spring { stiffness } = scene.coupling else { return None };
     let (whole, part, jitter) = delay_and_jitter(scene)?;
     let index = PassivityProblem::in_format(scene, format).ok()?.bound()?.hi();
@@ -160,34 +154,4 @@ pub fn former_spring(scene: &Scene, format: Format) -> Option<bool> {
     let (margin, most) = (excess - others, excess + others / 3.0);
     let limit = remaining / (1.0 + 2.0 * remaining * most * most / (period * margin));
     Some(remaining > 0.0 && margin > 0.0 && index < limit)
-}
-
-/// Equation 38 with jitter as it once was, without a lag: `delta (1 - h/2) + Re(H g)` is above
-/// `(D + 3 h T^2) abs(H)^2 / (4 delta)`. `None` where it is not asked.
-pub fn former_linear(scene: &Scene, format: Format) -> Option<bool> {
-    const ANGLES: u32 = 2000;
-    let (whole, part, jitter) = delay_and_jitter(scene)?;
-    let is_linear = PassivityProblem::in_format(scene, format).ok()?.bound().is_none();
-    if !is_linear || scene.coupling == Coupling::Matched {
-        return None;
-    }
-    let (period, delta) = (scene.timing.period, scene.device.passivity());
-    let controller = LoopTransfers::in_format(scene, format).ok()?.controller;
-    let ripple = part * (1.0 - part) + 3.0 * jitter;
-    Some((1..=ANGLES).all(|i| {
-        let theta = std::f64::consts::PI * f64::from(i) / f64::from(ANGLES);
-        let z = Complex::from_polar(1.0, theta);
-        let h = at(&controller, z) * period;
-        let g = z.powf(-whole) * (1.0 / (z - 1.0) - part / z);
-        delta * (1.0 - 0.5 * jitter) + (h * g).re >= ripple * h.norm_sqr() / (4.0 * delta)
-    }))
-}
-
-/// A transfer function at a point.
-fn at(f: &Transfer, z: Complex<f64>) -> Complex<f64> {
-    let sum = |p: &Polynomial| {
-        (0..p.len()).rev().fold(Complex::from(0.0), |sum, i| sum * z + p.coefficient(i).midpoint())
-    };
-    let powers = z.powi(f.shift) * (z - 1.0).powi(f.ones) * (z + 1.0).powi(f.minus_ones);
-    powers * sum(&f.numerator) / sum(&f.denominator) * f.scale.midpoint()
 }

@@ -285,7 +285,13 @@ fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool)
     let rational = matches!(kind, Kind::Rational | Kind::Unstable | Kind::Hidden);
     let bare = match (rational, lags) {
         (true, _) => 0.9,
-        (_, true) => if kind == Kind::Sharp { 0.9 } else { 0.5 },
+        (_, true) => {
+            if kind == Kind::Sharp {
+                0.9
+            } else {
+                0.5
+            }
+        }
         _ => 0.08,
     };
     if sometimes(rng, choice.bare, bare) {
@@ -527,9 +533,9 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let scale = taken_to_the_line(&scene, knob, accepted)?;
     let actual_scene = scaled(&scene, knob, scale);
     let scene = taken_for(&actual_scene);
-    let actual = choice.planted.map_or_else(Actual::default, |planted| {
-        planted.actual(&actual_scene, &scene)
-    });
+    let actual = choice
+        .planted
+        .map_or_else(Actual::default, |planted| planted.actual(&actual_scene, &scene));
     let judged_as = judged_as.map(|environment| Scene { environment, ..scene });
     let other = rng.random_bool(0.3).then(|| another(rng, &scene, size, format)).flatten();
     let damping = if choice.bisected || choice.weakened.is_some() {

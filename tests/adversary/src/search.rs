@@ -317,7 +317,9 @@ impl Task for Climb<'_> {
             false
         };
         let mut is_refuted = false;
-        for _ in 0..effort.drawn {
+        // Patterns of jitter are drawn with the hands.
+        let jitters = normalized.timing.jitters[0] > 0.0;
+        for _ in 0..effort.drawn * if jitters { 3 } else { 1 } {
             let plan = Plan::draw(rng, &normalized, effort.periods);
             is_refuted = consider(&mut found, plan, &mut best);
             if is_refuted {
