@@ -40,6 +40,10 @@ fn sometimes(rng: &mut impl Rng, probability: f64, lo: f64, hi: f64) -> f64 {
 }
 
 impl Hand {
+    /// None, and no mass of the device either.
+    pub const NONE: Self =
+        Self { inertia: 0.0, damping: 0.0, stiffness: 0.0, segments: Vec::new() };
+
     /// Anything: masses, springs and dampers over many decades.
     pub fn draw(rng: &mut impl Rng) -> Self {
         let segment = |rng: &mut _| Segment {

@@ -2,7 +2,7 @@
 //!
 //! Of the search: `seed`, `scenes`, `enough`, or one scene's `number`. Of the drawn scenes: `kind`,
 //! `worst_period`, `limited`, `latched`, `saturates`, `injected`, `overrun`, `latency`,
-//! `bare`, or `planted` for all that a planted rule judges. Of the device: `taken`,
+//! `bare`, or `planted` for a wrong rule. Of the device: `taken`,
 //! `bisected`, `weakened`. Of the effort: `drawn`, `climbed`, `periods`, `long`. `full=false` prints two
 //! lines each; `coverage=true` prints what was drawn.
 
@@ -49,7 +49,7 @@ fn main() {
             "planted" => {
                 let of = |planted: &Planted| format!("{planted:?}") == value;
                 let planted = Planted::ALL.into_iter().find(of).expect("a planted rule");
-                search.choice = planted.choice();
+                search.choice.planted = Some(planted);
             }
             "coverage" => coverage = value.parse().expect("true or false"),
             "overrun" => search.choice.overrun = value.parse().expect("a number"),

@@ -6,7 +6,7 @@ use std::fmt;
 use haptic_servo::environment::Environment;
 use haptic_servo::scene::Coupling;
 
-use crate::plan::{Jitter, Pattern, Plan, Request, Signs, TickTiming};
+use crate::plan::{Pattern, Plan, Request, Signs, TickTiming};
 use crate::scenes::RandomScene;
 
 /// Scenes that boards or servos accept and their runs, by what they have.
@@ -56,7 +56,8 @@ impl Coverage {
         let has = [
             ("latency: none", latency.is_none()),
             ("latency: output delay", !latency.output_delay.is_zero()),
-            ("latency: jitter", latency.output_jitter > 0.0),
+            ("latency: jitter", latency.total_jitter() > 0.0),
+            ("latency: two jitters", latency.jitters_twice()),
             ("latency: actuator lag", !latency.actuator_lag.is_zero()),
             ("latency: sensor lag", !latency.sensor_lag.is_zero()),
             ("latency: updates within the period", latency.actuator_updates > 0),
@@ -84,10 +85,11 @@ impl Coverage {
     /// Counts a run.
     pub fn run(&mut self, plan: &Plan) {
         let mut count = |what: String| *self.runs.entry(what).or_default() += 1;
-        let (of, signs) = match plan.jitter {
-            Jitter::None => ("none", None),
-            Jitter::Torques(signs) => ("torques", Some(signs)),
-            Jitter::Counts(signs) => ("counts", Some(signs)),
+        let (of, signs) = match (plan.jitter.torques, plan.jitter.counts) {
+            (None, None) => ("none", None),
+            (Some(signs), None) => ("torques", Some(signs)),
+            (None, Some(signs)) => ("counts", Some(signs)),
+            (Some(signs), Some(_)) => ("torques and counts", Some(signs)),
         };
         count(match signs {
             None => format!("jitter: {of}"),
@@ -112,6 +114,9 @@ impl Coverage {
         };
         if asks(&|request| matches!(request, Request::Submit(_))) {
             count("request: swap".to_owned());
+        }
+        if plan.heats {
+            count("heat".to_owned());
         }
         if asks(&|request| *request == Request::Disarm) {
             count("request: disarm".to_owned());

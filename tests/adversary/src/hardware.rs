@@ -1,14 +1,40 @@
 //! A simulated board: encoder, DAC, amplifier and timer of the servo's interrupt.
 
 use haptic_servo::boot::Startup;
+use haptic_servo::current::{
+    B_G431B_ESC1, CurrentLoop, Drive, HeatStep, Heating, Motor, PowerStage, Supply, Winding,
+};
 use haptic_servo::dac::DacCode;
-use haptic_servo::encoder::RawCount;
+use haptic_servo::encoder::{CounterWidth, RawCount};
 use haptic_servo::fault::FaultRecord;
 use haptic_servo::reset::ResetCause;
+use haptic_servo::servo::Transducers;
 use haptic_servo::servo_loop::{BEGAN_LATE, Frame, FrameSink, Hardware, State};
+use haptic_servo::torque_output::OutputEvent;
 
 /// Timer counts in a period.
 pub const PERIOD: u32 = 1000;
+
+/// A current loop whose power stage bears a fifth of the full-scale current. For a servo as slow as this a power
+/// stage heats and cools within some tens of ticks.
+static CURRENT_LOOP: CurrentLoop = {
+    let motor = Motor {
+        winding: Winding::Brushed,
+        resistance: 0.1,
+        inductance: 0.05e-3,
+        torque_constant: 0.05,
+    };
+    let supply = Supply::sinking(20.0, 24.0);
+    let drive = Drive { motor, supply, bandwidth: 1000.0, largest_temperature: 90.0 };
+    let transducers = Transducers {
+        counts_per_turn: 61_440.0,
+        counter: CounterWidth::Bits16,
+        full_scale_torque: 1.0,
+        largest_speed: 10.0,
+    };
+    let stage = PowerStage { continuous_current: 4.0, ..B_G431B_ESC1 };
+    CurrentLoop::checked(&drive, &stage, &transducers, 0.1)
+};
 
 /// The board. What the run sets before a tick, and what the tick did.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +52,10 @@ pub struct Board {
     pub offset: i16,
     /// Whether the amplifier is on.
     pub amplifier: bool,
+    /// The heat of the board's current, where it has one.
+    pub heating: Option<Heating>,
+    /// What that does to the torque's limit.
+    pub heat_step: Option<HeatStep>,
     /// Whether the last reset was the watchdog's.
     pub by_watchdog: bool,
     counts_per_radian: f64,
@@ -34,6 +64,21 @@ pub struct Board {
 }
 
 impl Board {
+    /// The same with a current that heats it.
+    pub const fn heating(self) -> Self {
+        Self { heating: Some(CURRENT_LOOP.heating()), ..self }
+    }
+
+    /// The heat of the current after a tick; whether the torque's limit begins to rise.
+    pub fn heat(&mut self) -> bool {
+        let Some(heating) = &mut self.heating else { return false };
+        let full = f32::from(DacCode::CODES_TO_FULL_SCALE);
+        let amps = CURRENT_LOOP.full_scale_current() as f32 * f32::from(self.offset) / full;
+        let was = self.heat_step;
+        self.heat_step = heating.observe(amps, self.offset);
+        self.heat_step == Some(HeatStep::Raise) && was != self.heat_step
+    }
+
     /// A board with the device at zero.
     pub const fn new(counts_per_radian: f64, by_watchdog: bool) -> Self {
         Self {
@@ -43,6 +88,8 @@ impl Board {
             delay: 0,
             offset: 0,
             amplifier: false,
+            heating: None,
+            heat_step: None,
             by_watchdog,
             counts_per_radian,
             zero: 0.0,
@@ -65,6 +112,10 @@ impl Hardware for Board {
 
     fn amplifier(&mut self, on: bool) {
         self.amplifier = on;
+    }
+
+    fn output_event(&mut self) -> Option<OutputEvent> {
+        self.heat_step.map(OutputEvent::Heat)
     }
 
     #[inline]
@@ -109,7 +160,7 @@ pub struct Last {
     /// Ticks by their reason, in the order of [`LimitReason::ALL`].
     ///
     /// [`LimitReason::ALL`]: haptic_servo::torque::LimitReason::ALL
-    pub limits: [u32; 6],
+    pub limits: [u32; 7],
 }
 
 impl FrameSink for Last {

@@ -59,6 +59,10 @@ pub struct Actual {
     pub delay: Option<f64>,
     /// Whether the servo does not know of late ticks, so that the motor keeps a stale code.
     pub unreported: bool,
+    /// Whether the motor takes a code although a later one has overtaken it.
+    pub unordered: bool,
+    /// The passivity of the device in N m s/rad.
+    pub passivity: Option<f64>,
 }
 
 /// Whether a scene's torques lag, or its coupling has memory.
@@ -90,9 +94,33 @@ pub fn draw_latency(rng: &mut impl Rng, mode: Mode, period: f64) -> Latency {
     }
 }
 
+/// The same with jitters of torques or counts, or of both at once, that are together this much at most.
+fn jittering(rng: &mut impl Rng, latency: Latency, period: f64, most: f64) -> Latency {
+    let total = most * share(rng);
+    let bound = latency.bound_on_two_jitters(period).filter(|_| rng.random_bool(0.35));
+    match bound {
+        Some(bound) => {
+            let total = total.min(0.999 * bound);
+            let of_counts =
+                total * if rng.random_bool(0.5) { 0.5 } else { rng.random_range(0.0..1.0) };
+            Latency { output_jitter: total - of_counts, count_jitter: of_counts, ..latency }
+        }
+        None => Latency { output_jitter: total, ..latency },
+    }
+}
+
+/// The same with counts that may be read as late as a board reads them.
+fn read_late(mut latency: Latency) -> Latency {
+    let counts = match latency.count_jitter {
+        0.0 => &mut latency.output_jitter,
+        _ => &mut latency.count_jitter,
+    };
+    *counts = counts.max(READ_WITHIN);
+    latency
+}
+
 fn at_phase(rng: &mut impl Rng, phase: f64, period: f64) -> Latency {
     let mut latency = Latency::delayed(phase);
-    latency.output_jitter = (phase * share(rng)).clamp(READ_WITHIN, phase);
     if rng.random_bool(0.5) {
         let lag = period * log_uniform(rng, 0.01, 1.0);
         latency.actuator_lag = about(rng, lag);
@@ -100,45 +128,59 @@ fn at_phase(rng: &mut impl Rng, phase: f64, period: f64) -> Latency {
     if rng.random_bool(0.15) {
         latency.sensor_lag = TimeRange::exactly(period * log_uniform(rng, 0.02, 0.8));
     }
-    latency
+    read_late(jittering(rng, latency, period, phase))
 }
 
 fn latched(rng: &mut impl Rng, period: f64) -> Latency {
     let lag = period * log_uniform(rng, 0.02, 1.0);
     let mut latency = Latency::NONE;
-    if rng.random_bool(0.35) {
+    if rng.random_bool(0.25) {
         latency = Latency::sampled(rng.random_range(1..=4), lag, period);
-        latency.output_jitter =
-            if rng.random_bool(0.5) { period * log_uniform(rng, 1e-3, 0.2) } else { 0.0 };
+        if rng.random_bool(0.5) {
+            latency = jittering(rng, latency, period, 0.2 * period);
+        }
         return latency;
     }
-    latency.actuator_lag = about(rng, lag);
-    latency.output_jitter = (0.4 * period * share(rng)).max(READ_WITHIN);
+    if rng.random_bool(0.5) {
+        latency.actuator_lag = about(rng, lag);
+    }
     if rng.random_bool(0.15) {
         latency.sensor_lag = TimeRange::exactly(period * log_uniform(rng, 0.02, 0.8));
     }
-    latency
+    read_late(jittering(rng, latency, period, 0.4 * period))
+}
+
+/// A delay alone, or none, often so that torques cross counts, with jitter.
+pub fn plain(rng: &mut impl Rng, period: f64) -> Latency {
+    let delay = match rng.random_range(0..5) {
+        0 | 1 => 0.0,
+        2 | 3 => period,
+        _ => period * log_uniform(rng, 0.01, 1.8),
+    };
+    // Without a delay the torques of a late environment may be early, too.
+    let most = if delay == 0.0 { period } else { delay };
+    jittering(rng, Latency::delayed(delay), period, most.min(0.95 * period))
 }
 
 fn any(rng: &mut impl Rng, period: f64) -> Latency {
+    if rng.random_bool(0.3) {
+        return plain(rng, period);
+    }
     let lag = period * log_uniform(rng, 0.01, 1.5);
     if rng.random_bool(0.15) {
         let updates = rng.random_range(1..=4);
         let mut latency = Latency::sampled(updates, lag, period);
         let delay = f64::from(rng.random_range(0..=2 * updates)) * period / f64::from(updates);
         latency.output_delay = TimeRange::exactly(delay);
-        latency.output_jitter =
-            if rng.random_bool(0.4) { delay * log_uniform(rng, 1e-3, 0.5) } else { 0.0 };
+        if rng.random_bool(0.4) {
+            latency = jittering(rng, latency, period, 0.5 * delay);
+        }
         return latency;
     }
     let mut latency = Latency::NONE;
     if rng.random_bool(0.8) {
         let delay = period * log_uniform(rng, 0.01, 1.8);
         latency.output_delay = about(rng, delay);
-        if rng.random_bool(0.7) {
-            let jitter = delay * share(rng);
-            latency.output_jitter = jitter.min(0.6 * period);
-        }
     }
     if rng.random_bool(0.35) {
         latency.actuator_lag = about(rng, lag);
@@ -151,6 +193,10 @@ fn any(rng: &mut impl Rng, period: f64) -> Latency {
         let begin = period * rng.random_range(0.0..0.5);
         latency.actuator_response =
             TimeRange::between(begin, begin + period * rng.random_range(0.01..0.5));
+    }
+    if rng.random_bool(0.7) {
+        let most = latency.output_delay.least.min(0.6 * period);
+        latency = jittering(rng, latency, period, most);
     }
     latency
 }

@@ -38,8 +38,12 @@ pub struct NormalizedScene {
     pub bare: bool,
     /// Whether its certificate excludes that a torque is limited.
     pub unlimited: bool,
+    /// Whether that computes its codes a tick ahead.
+    pub ahead: bool,
     /// Planted: late ticks of which the servo does not know.
     pub unreported: bool,
+    /// Planted: codes that are put out although later ones have overtaken them.
+    pub unordered: bool,
     /// Energy that the environment stores where the servo starts.
     pub stored: f64,
     /// How much positions are off, in rad.
@@ -102,7 +106,8 @@ impl NormalizedScene {
     /// the torque error of encoder, numbers and DAC.
     pub fn of(drawn: &RandomScene, assessments: &[Assessment], format: Format) -> Option<Self> {
         let RandomScene { scene, transducers, .. } = drawn;
-        let declared = declared(scene);
+        let actual = &drawn.actual;
+        let declared = actual.passivity.unwrap_or(declared(scene));
         let unit = declared / scene.timing.period;
         let steps = Resolution::of(transducers, None);
         let step = TAU / transducers.counts_per_turn;
@@ -134,15 +139,21 @@ impl NormalizedScene {
             bound = bound.max(largest);
             soft = soft.max(compliance(scene));
             face = face.max(scene.environment.wall().map_or(0.0, |wall| wall.face.abs()));
-            let lost = drawn.taken * margin(assessment, scene, drawn.rendering.injection);
+            let lost = match actual.passivity {
+                Some(_) => 0.0,
+                None => drawn.taken * margin(assessment, scene, drawn.rendering.injection),
+            };
             damping = damping.max(drawn.damping.unwrap_or(has - lost));
             if drawn.mode == Mode::Bare {
                 stored = stored.max(Self::stored_at_zero(scene));
             }
         }
-        let latency = drawn.actual.latency.unwrap_or(scene.latency);
-        let mut timing = LoopTiming::of(&Scene { latency, ..*scene }, drawn.mode.samples());
-        if let Some(delay) = drawn.actual.delay {
+        let latency = actual.latency.unwrap_or(scene.latency);
+        // Torques that may come before their counts are computed ahead.
+        let ahead = drawn.mode == Mode::Bare && latency.total_jitter() > latency.output_delay.least;
+        let samples = drawn.mode.samples() + f64::from(u8::from(ahead));
+        let mut timing = LoopTiming::of(&Scene { latency, ..*scene }, samples);
+        if let Some(delay) = actual.delay {
             timing.delay = TimeRange::exactly(delay);
         }
         let filters = Lags { sensor: timing.sensor.most, ..Lags::default() };
@@ -167,13 +178,15 @@ impl NormalizedScene {
             segments: filters.segments(),
             bare: drawn.mode == Mode::Bare,
             unlimited: drawn.mode == Mode::Bare && scene.torque_limit.is_none(),
-            unreported: drawn.actual.unreported,
+            ahead,
+            unreported: actual.unreported,
+            unordered: actual.unordered,
             stored: stored / unit,
             off,
             sides: if scene.environment.profile().is_some() { 2.0 } else { 1.0 },
             overrun: drawn.overrun,
             in_time: READ_WITHIN.max(match drawn.mode {
-                Mode::AtPhase(_) => scene.latency.output_jitter,
+                Mode::AtPhase(_) => scene.latency.deviation_of_counts(),
                 _ => 0.0,
             }) / scene.timing.period,
             torque_per_code: transducers.full_scale_torque
@@ -189,7 +202,7 @@ impl NormalizedScene {
             fastest: 0.9 * half * step / 8.0,
             size: drawn.size,
             reach: drawn.reach,
-            angles: if timing.jitter > 0.0 {
+            angles: if timing.jitters[0] > 0.0 {
                 // A pattern of two to four ticks resonates with the motions that it folds onto each other.
                 [theta, 0.97 * PI, PI / 2.0, PI / 3.0]
             } else if theta < SLOWEST {

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use rand::Rng;
-use tests::hands::Hand;
+use tests::hands::{Hand, Segment};
 use tests::scenes::log_uniform;
 
 use crate::device::State;
@@ -95,15 +95,13 @@ impl Pattern {
     }
 }
 
-/// The times that deviate from tick to tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Jitter {
-    /// None does.
-    None,
+/// How the times of torques and counts deviate from tick to tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jitter {
     /// Those of the torques.
-    Torques(Signs),
+    pub torques: Option<Signs>,
     /// Those of the counts.
-    Counts(Signs),
+    pub counts: Option<Signs>,
 }
 
 /// Deviations in units of the largest one.
@@ -126,7 +124,7 @@ impl Signs {
         if rng.random_bool(0.15) {
             return Self::Random { seed: rng.random::<u64>() | 1 };
         }
-        let length = rng.random_range(2..=Self::LONGEST);
+        let length = [2, 2, 3, 3, 4][rng.random_range(0..5)];
         let mut signs = [1; Self::LONGEST];
         loop {
             for sign in &mut signs[..length] {
@@ -138,6 +136,18 @@ impl Signs {
             }
         }
     }
+
+    /// Signs of the counts beside these of the torques: often the same, so that ticks are long and short.
+    fn beside(self, rng: &mut impl Rng) -> Self {
+        match (self, rng.random_range(0..5)) {
+            (signs, 0..=2) => signs,
+            (Self::Periodic(signs, length), 3) => Self::Periodic(signs.map(|sign| -sign), length),
+            (Self::Periodic(_, length), _) => {
+                Self::Periodic([0; 4].map(|_| if rng.random_bool(0.5) { 1 } else { -1 }), length)
+            }
+            _ => Self::draw(rng),
+        }
+    }
 }
 
 /// Jitter of counts, in periods, from which two counts could change places.
@@ -145,26 +155,21 @@ const LARGEST_OF_COUNTS: f64 = 0.45;
 
 impl Jitter {
     fn draw(rng: &mut impl Rng, timing: &LoopTiming) -> Self {
-        let LoopTiming { jitter, updates, .. } = *timing;
-        if jitter == 0.0 || rng.random_bool(0.1) {
-            return Self::None;
+        let LoopTiming { jitters: [of_torques, of_counts], both, updates, .. } = *timing;
+        if of_torques == 0.0 || rng.random_bool(0.1) {
+            return Self::default();
         }
         let signs = Signs::draw(rng);
         // An amplifier that is updated takes a torque over at an update, whatever its jitter.
-        let of_counts = updates > 0 || rng.random_bool(0.35);
-        if jitter < LARGEST_OF_COUNTS && of_counts {
-            Self::Counts(signs)
-        } else {
-            Self::Torques(signs)
+        let torques = (updates == 0).then_some(signs);
+        if both {
+            return Self { torques, counts: Some(signs.beside(rng)) };
         }
-    }
-
-    /// The deviations of each.
-    pub const fn of_torques_and_counts(self) -> (Option<Signs>, Option<Signs>) {
-        match self {
-            Self::None => (None, None),
-            Self::Torques(signs) => (Some(signs), None),
-            Self::Counts(signs) => (None, Some(signs)),
+        let counts = of_counts < LARGEST_OF_COUNTS && (updates > 0 || rng.random_bool(0.35));
+        if counts {
+            Self { torques: None, counts: Some(signs) }
+        } else {
+            Self { torques: Some(signs), counts: None }
         }
     }
 }
@@ -205,6 +210,8 @@ pub struct Plan {
     pub within: [f64; 2],
     /// The request and its period.
     pub requests: [Option<(u32, Request)>; REQUESTS],
+    /// Whether the torque's limit falls by the heat of the board's current.
+    pub heats: bool,
     /// Whether the servo is armed again after each fault.
     pub again: bool,
     /// Periods.
@@ -237,7 +244,9 @@ impl Plan {
             hand.damping = log_uniform(rng, 1e-5, 1e-2);
         }
         let mut start = [0.0; 8];
-        let size = normalized.size * log_uniform(rng, 0.1, 3.0);
+        // Small motions grow although a limit ends large ones.
+        let largest = if rng.random_bool(0.5) { normalized.bound } else { f64::INFINITY };
+        let size = normalized.size.min(0.3 * largest) * log_uniform(rng, 0.1, 3.0);
         for i in 0..=hand.segments.len() {
             start[2 * i] = size * rng.random_range(-1.0..1.0);
             start[2 * i + 1] = size * rng.random_range(-1.0..1.0);
@@ -258,11 +267,21 @@ impl Plan {
             jitter: Jitter::draw(rng, &normalized.timing),
             within: [Self::place_in_range(rng), Self::place_in_range(rng)],
             requests: [None; REQUESTS],
+            heats: rng.random_bool(0.3),
             again: rng.random_bool(0.7),
             periods,
         };
+        plan.separate(normalized);
         plan.draw_requests(rng, normalized);
         plan
+    }
+
+    /// Torques and counts deviate at the same time only where the scene says so: a count that is read late
+    /// deviates, too.
+    fn separate(&mut self, normalized: &NormalizedScene) {
+        if self.pattern.delays() && !normalized.timing.both {
+            self.jitter = Jitter::default();
+        }
     }
 
     fn place_in_range(rng: &mut impl Rng) -> f64 {
@@ -290,13 +309,17 @@ impl Plan {
     }
 
     fn hand(rng: &mut impl Rng, normalized: &NormalizedScene) -> Hand {
+        if normalized.timing.jitters[0] > 0.0 && rng.random_bool(0.25) {
+            return Self::light(rng);
+        }
         match rng.random_range(0..8) {
             0 => Hand::draw(rng),
-            1..=2 => {
+            1 => Self::clamp(rng),
+            2..=3 => {
                 let theta = rng.random_range(0.02..PI);
                 Hand::tuned(rng, theta)
             }
-            3 => {
+            4 => {
                 let theta = log_uniform(rng, 5e-3, PI);
                 Hand::tuned(rng, theta)
             }
@@ -305,6 +328,33 @@ impl Plan {
                 Hand::tuned(rng, theta)
             }
         }
+    }
+
+    /// A hand that holds the device fast: coupling and environment may oscillate behind it by themselves, and its
+    /// damper takes what they deliver.
+    fn clamp(rng: &mut impl Rng) -> Hand {
+        Hand {
+            inertia: log_uniform(rng, 1e-3, 1.0),
+            damping: log_uniform(rng, 1e-3, 1e1),
+            stiffness: log_uniform(rng, 0.5, STIFFEST),
+            ..Hand::NONE
+        }
+    }
+
+    /// A light device, with a light absorber tuned to nearly half of the sampling rate or without one: what is left
+    /// of its motion is even within each tick, however long that is.
+    fn light(rng: &mut impl Rng) -> Hand {
+        let theta = PI * rng.random_range(0.8..1.0);
+        let inertia = log_uniform(rng, 1e-3, 2e-2);
+        let absorber = Segment {
+            link_stiffness: inertia * theta * theta,
+            link_damping: 0.0,
+            inertia,
+            stiffness: 0.0,
+            damping: 0.0,
+        };
+        let segments = if rng.random_bool(0.7) { vec![absorber] } else { Vec::new() };
+        Hand { inertia: log_uniform(rng, 1e-3, 1e-2), segments, ..Hand::NONE }
     }
 
     fn draw_requests(&mut self, rng: &mut impl Rng, normalized: &NormalizedScene) {
@@ -365,6 +415,7 @@ impl Plan {
             plan.delay = Self::delay(rng, normalized);
             plan.jitter = Jitter::draw(rng, &normalized.timing);
             plan.within = [Self::place_in_range(rng), Self::place_in_range(rng)];
+            plan.separate(normalized);
         }
         if requests {
             plan.draw_requests(rng, normalized);

@@ -59,7 +59,7 @@ pub struct Outcome {
     /// The servo went on although more updates were missed in a row than the certificate tolerates.
     pub went_on: bool,
     /// Ticks whose torque was limited, by reason.
-    pub limits: [u32; 6],
+    pub limits: [u32; 7],
     /// The largest energy of device and hand.
     pub largest: f64,
 }
@@ -255,15 +255,16 @@ impl Motor {
         }
     }
 
-    /// Takes the codes of an instant over. A code that a later one has overtaken is not put out.
-    fn take(&mut self, period: u32, place: usize) {
+    /// Takes the codes of an instant over. A code that a later one has overtaken is not put out, unless the motor
+    /// takes them out of order.
+    fn take(&mut self, period: u32, place: usize, unordered: bool) {
         for slot in &mut self.sent {
             let Some(sent) = *slot else { continue };
             if (sent.period, sent.place) != (period, place) {
                 continue;
             }
             *slot = None;
-            if self.newest.is_none_or(|newest| sent.tick >= newest) {
+            if unordered || self.newest.is_none_or(|newest| sent.tick >= newest) {
                 (self.newest, self.code) = (Some(sent.tick), sent.code);
             }
         }
@@ -297,6 +298,9 @@ impl<'a> Run<'a> {
         // As booting does it, with the device at the board's zero.
         board.angle = plan.zero;
         board.zero_encoder();
+        if plan.heats {
+            board = board.heating();
+        }
         let mut x = plan.start;
         if schedule.lags.sensor > 0.0 {
             x[SENSED] = x[0];
@@ -367,10 +371,18 @@ impl<'a> Run<'a> {
         self.skipped = 0;
         let was = self.last.state;
         match control {
-            Control::Board(servo_loop) => servo_loop.run(&mut self.board, inbox, &mut self.last),
+            Control::Board(servo_loop) => {
+                servo_loop.run(&mut self.board, inbox, &mut self.last);
+                self.balance.openings += u32::from(self.board.heat());
+            }
             Control::Bare(servo) => {
-                let output = servo.tick(self.board.count());
-                self.board.write(output.code);
+                let count = self.board.count();
+                let mut code = servo.tick(count).code;
+                if normalized.ahead {
+                    // That of a late environment, whatever the next count is.
+                    code = servo.clone().tick(count).code;
+                }
+                self.board.write(code);
                 self.board.amplifier = true;
                 let full = DacCode::CODES_TO_FULL_SCALE.cast_signed();
                 self.saturated |= normalized.unlimited && self.board.offset.abs() >= full;
@@ -502,9 +514,8 @@ where
         let window = (plan.periods / 4).max(LOOK);
         let mut rate = Rate { window, before: EnergyBalance::default(), last: -1.0 };
         let mut ticks = Ticks { pattern: plan.pattern, at: 0, in_a_row: 0 };
-        let (torques, counts) = plan.jitter.of_torques_and_counts();
-        let mut torques = torques.map(|signs| Shifts { signs, at: 0 });
-        let mut counts = counts.map(|signs| Shifts { signs, at: 0 });
+        let shifts = |signs: Option<Signs>| signs.map(|signs| Shifts { signs, at: 0 });
+        let (mut torques, mut counts) = (shifts(plan.jitter.torques), shifts(plan.jitter.counts));
         let (mut overdue, mut was_late, mut target) = (None, false, 0.0);
         let mut next_request = plan.next_request(0);
         for period in 0..plan.periods {
@@ -538,7 +549,7 @@ where
                     let timed = (period, tick, shift);
                     overdue = run.tick(&mut control, &mut inbox, &mut requests, timed);
                 }
-                run.motor.take(period, place);
+                run.motor.take(period, place, normalized.unordered);
                 run.advance(place, step, &mut target);
             }
             let balance = &mut run.balance;

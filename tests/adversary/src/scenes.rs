@@ -11,7 +11,7 @@ use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
 use rand::Rng;
 use tests::scenes::log_uniform;
 
-use crate::mode::{Actual, draw_latency, has_latency};
+use crate::mode::{Actual, draw_latency, has_latency, plain};
 use crate::planted::Planted;
 use crate::profiles;
 
@@ -72,11 +72,13 @@ pub enum Kind {
     Profile,
     /// A sum of a profile with a wall, a canceller, or both.
     Sum,
+    /// What some rule is sharp for: a spring, a negative damper or a filter alone, and a delay alone with jitter.
+    Sharp,
 }
 
 impl Kind {
     /// All values.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Wall,
         Self::FreeMode,
         Self::FreeModeWall,
@@ -86,6 +88,7 @@ impl Kind {
         Self::Overstated,
         Self::Profile,
         Self::Sum,
+        Self::Sharp,
     ];
 }
 
@@ -258,7 +261,7 @@ fn sometimes(rng: &mut impl Rng, wanted: Option<bool>, probability: f64) -> bool
 
 /// The kind, the number format and the mode of a scene.
 fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool) {
-    let kind = choice.kind.unwrap_or_else(|| match rng.random_range(0..25) {
+    let kind = choice.kind.unwrap_or_else(|| match rng.random_range(0..34) {
         0..=7 => Kind::Wall,
         8..=9 => Kind::FreeMode,
         10..=11 => Kind::FreeModeWall,
@@ -267,7 +270,8 @@ fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool)
         18 => Kind::Hidden,
         19 => Kind::Overstated,
         20..=22 => Kind::Profile,
-        _ => Kind::Sum,
+        23..=24 => Kind::Sum,
+        _ => Kind::Sharp,
     });
     let format = match rng.random_range(0..10) {
         0..=4 => Numbers::F32,
@@ -276,8 +280,26 @@ fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool)
         _ => Numbers::Q20,
     };
     let lags = !matches!(kind, Kind::Unstable | Kind::Hidden | Kind::Overstated)
-        && sometimes(rng, choice.latency, 0.5);
-    if sometimes(rng, choice.bare, if lags { 0.5 } else { 0.08 }) {
+        && sometimes(rng, choice.latency, if kind == Kind::Sharp { 0.9 } else { 0.5 });
+    // No board renders an environment that is only certified without a torque limit.
+    let rational = matches!(kind, Kind::Rational | Kind::Unstable | Kind::Hidden);
+    let bare = match (rational, lags) {
+        (true, _) => 0.9,
+        (_, true) => {
+            if kind == Kind::Sharp {
+                0.9
+            } else {
+                0.5
+            }
+        }
+        _ => 0.08,
+    };
+    if sometimes(rng, choice.bare, bare) {
+        // The sums of a filter that no board renders have all of an angle times its coefficients, which a
+        // fixed-point format ends at.
+        let floats = matches!(format, Numbers::F32 | Numbers::F64);
+        let format =
+            if (rational || kind == Kind::Sharp) && !floats { Numbers::F64 } else { format };
         return (kind, format, Mode::Bare, lags);
     }
     // The canceller in front of a wall is undelayed, and so is never latched.
@@ -297,10 +319,14 @@ fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool)
 
 /// A coupling of about the standard stiffness; behind a latency also the coupling which absorbs it.
 fn draw_coupling(rng: &mut impl Rng, mode: Mode, lags: bool, standard: f64) -> Coupling {
-    if lags && (mode != Mode::Bare || rng.random_bool(0.4)) {
+    if lags && rng.random_bool(if mode == Mode::Bare { 0.35 } else { 0.75 }) {
         return Coupling::Matched;
     }
-    let rigid = if mode == Mode::Bare { 3 } else { 1 };
+    if lags && mode != Mode::Bare {
+        // No board renders a torque that lags behind a spring.
+        return Coupling::Rigid;
+    }
+    let rigid = if mode == Mode::Bare { 3 } else { 2 };
     if rng.random_range(0..10) < rigid {
         return Coupling::Rigid;
     }
@@ -329,7 +355,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let period = log_uniform(rng, shortest, 4e-3);
     let delta = log_uniform(rng, 2e-3, 0.5);
     let unit = delta / period;
-    let worst = if !lags && mode != Mode::Bare && sometimes(rng, choice.worst_period, 0.25) {
+    let worst = if !lags && mode != Mode::Bare && sometimes(rng, choice.worst_period, 0.4) {
         [1.5, 2.0, 2.0, 3.0, 4.0][rng.random_range(0..5)]
     } else {
         1.0
@@ -345,7 +371,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         choice.limited,
         match (rational, lags) {
             (true, _) => 0.1,
-            (_, true) => 0.7,
+            (_, true) if kind != Kind::Sharp => 0.7,
             _ => 0.5,
         },
     );
@@ -370,8 +396,12 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         timing: Timing { period, worst_period: (worst > 1.0).then_some(worst * period) },
         coupling,
         environment: Environment::FreeMode { residual: 0.0, delay: 0 },
-        latency: if lags { draw_latency(rng, mode, period) } else { Latency::NONE },
-        torque_limit: limited.then(|| full_scale * log_uniform(rng, 0.05, 0.999)),
+        latency: match lags {
+            true if kind == Kind::Sharp && mode == Mode::Bare => plain(rng, period),
+            true => draw_latency(rng, mode, period),
+            false => Latency::NONE,
+        },
+        torque_limit: limited.then(|| full_scale * log_uniform(rng, 0.15, 0.999)),
     };
     let mut face = 0.0;
     let reach = match rng.random_range(0..12) {
@@ -379,7 +409,8 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         1..=3 => 5.0 * size,
         _ => size,
     };
-    let least = usize::from(latched);
+    let early = scene.latency.total_jitter() > scene.latency.output_delay.least;
+    let least = usize::from(latched || early);
     let mut judged_as = None;
     let knob = match kind {
         Kind::Wall | Kind::Overstated => {
@@ -392,6 +423,13 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
                 scene.environment = Environment::DamperWall(wall);
             }
             if wall.damping != 0.0 && rng.random_bool(0.5) { Knob::Damping } else { Knob::Gain }
+        }
+        Kind::Sharp => {
+            scene.environment = sharp(rng, unit, delta, least);
+            match scene.environment {
+                Environment::DamperWall(_) => Knob::Damping,
+                _ => Knob::Gain,
+            }
         }
         Kind::FreeMode => {
             let residual = damping * rng.random_range(-0.1..1.0);
@@ -408,8 +446,8 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             if rng.random_bool(0.3) { Knob::Residual } else { Knob::Gain }
         }
         Kind::Rational | Kind::Unstable => {
-            let least = if rng.random_bool(0.6) { least } else { rng.random_range(least..=3) };
-            scene.environment = rational_with(rng, unit, least, kind == Kind::Unstable);
+            let delay = if rng.random_bool(0.6) { least } else { rng.random_range(least..=3) };
+            scene.environment = rational_with(rng, unit, delay, kind == Kind::Unstable);
             Knob::Gain
         }
         Kind::Profile => {
@@ -487,16 +525,17 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             w.one_sided = false;
         }
     }
-    let mut actual = Actual::default();
-    if let Some(planted) = choice.planted {
-        planted.plant(rng, &mut scene, &mut actual);
-    }
-    let accepted = |scene: &Scene| {
-        accepted(scene, format.format(), mode)
-            && choice.planted.is_none_or(|planted| planted.accepts(scene, &actual))
+    let format_of = format.format();
+    let taken_for = |scene: &Scene| {
+        choice.planted.map_or(*scene, |planted| planted.taken_for(scene, format_of))
     };
+    let accepted = |scene: &Scene| accepted(&taken_for(scene), format_of, mode);
     let scale = taken_to_the_line(&scene, knob, accepted)?;
-    let scene = scaled(&scene, knob, scale);
+    let actual_scene = scaled(&scene, knob, scale);
+    let scene = taken_for(&actual_scene);
+    let actual = choice
+        .planted
+        .map_or_else(Actual::default, |planted| planted.actual(&actual_scene, &scene));
     let judged_as = judged_as.map(|environment| Scene { environment, ..scene });
     let other = rng.random_bool(0.3).then(|| another(rng, &scene, size, format)).flatten();
     let damping = if choice.bisected || choice.weakened.is_some() {
@@ -508,7 +547,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             None => has - choice.taken * (has - least),
         })
     } else {
-        choice.planted.and_then(|planted| planted.damping(&scene, format.format()))
+        None
     };
     // The room is known only once the scene is certified.
     let injected = sometimes(rng, choice.injected, 0.15).then(|| 1.0 - log_uniform(rng, 1e-6, 0.9));
@@ -602,6 +641,45 @@ fn rational_with(rng: &mut impl Rng, unit: f64, delay: usize, unstable: bool) ->
         denominator: coefficients(&denominator),
         delay,
         unit_zeros: 0,
+    })
+}
+
+/// A spring that is late by a sample, a damper below zero, or a filter.
+fn sharp(rng: &mut impl Rng, unit: f64, delta: f64, least: usize) -> Environment {
+    let wall = |stiffness, damping, delay, one_sided| Wall {
+        stiffness,
+        damping,
+        filter: None,
+        delay,
+        face: 0.0,
+        one_sided,
+    };
+    match rng.random_range(0..4) {
+        0 | 1 => {
+            let stiffness = unit * log_uniform(rng, 0.1, 2.0);
+            Environment::DelayedSpring(wall(stiffness, 0.0, 1, rng.random_bool(0.2)))
+        }
+        2 => {
+            let damping = -delta * log_uniform(rng, 0.1, 1.0);
+            Environment::DamperWall(wall(0.01 * unit, damping, least, false))
+        }
+        _ => crossing(rng, unit, least),
+    }
+}
+
+/// A filter that cancels damping of slow motions and damps those at half of the sampling rate: where the length of
+/// ticks alternates, these drive each other.
+fn crossing(rng: &mut impl Rng, unit: f64, delay: usize) -> Environment {
+    let (slow, fast) = (rng.random_range(0.4..0.8), 1.0 - log_uniform(rng, 0.01, 0.15));
+    let damped = 0.5 * log_uniform(rng, 3.0, 7.0) * (1.0 - fast);
+    let cancelled = 1.0 - slow;
+    let numerator = [damped - cancelled, -damped * slow - cancelled * fast];
+    let denominator = [1.0, fast - slow, -slow * fast];
+    Environment::Rational(Rational {
+        numerator: coefficients(&numerator.map(|c| c * unit)),
+        denominator: coefficients(&denominator),
+        delay,
+        unit_zeros: 1,
     })
 }
 

@@ -20,6 +20,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::coverage::Coverage;
 use crate::hardware::Board;
+use crate::mode::Actual;
 use crate::normalized_scene::NormalizedScene;
 use crate::plan::Plan;
 use crate::report::Counterexample;
@@ -316,7 +317,9 @@ impl Task for Climb<'_> {
             false
         };
         let mut is_refuted = false;
-        for _ in 0..effort.drawn {
+        // Patterns of jitter are drawn with the hands.
+        let jitters = normalized.timing.jitters[0] > 0.0;
+        for _ in 0..effort.drawn * if jitters { 3 } else { 1 } {
             let plan = Plan::draw(rng, &normalized, effort.periods);
             is_refuted = consider(&mut found, plan, &mut best);
             if is_refuted {
@@ -363,6 +366,10 @@ impl Search {
         let Some(drawn) = scenes::draw(&mut rng, &self.choice) else {
             return Found { scenes: 1, largest: -1.0, rate: -1.0, ..Found::default() };
         };
+        // What a planted rule does not judge is the same scene of the search without it.
+        if self.choice.planted.is_some() && drawn.actual == Actual::default() {
+            return Found { scenes: 1, largest: -1.0, rate: -1.0, ..Found::default() };
+        }
         self.climb(number, &drawn, rng)
     }
 

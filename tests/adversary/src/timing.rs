@@ -9,7 +9,7 @@ use haptic_servo::scene::Scene;
 
 use crate::device::{HeldDevice, Lags, Step};
 use crate::hardware::PERIOD;
-use crate::plan::{Jitter, Plan};
+use crate::plan::{Plan, Signs};
 
 /// Instants nearer than this are one.
 const SAME: f64 = 1e-9;
@@ -19,8 +19,10 @@ const SAME: f64 = 1e-9;
 pub struct LoopTiming {
     /// The time from a count to its torque.
     pub delay: TimeRange,
-    /// Largest deviation from it that differs from tick to tick.
-    pub jitter: f64,
+    /// Largest deviations that differ from tick to tick: of torques, and of counts.
+    pub jitters: [f64; 2],
+    /// Whether both deviate at the same time.
+    pub both: bool,
     /// Time constant of the amplifier.
     pub amplifier: TimeRange,
     /// Updates of the amplifier in a period; 0 if its lag is continuous.
@@ -39,9 +41,14 @@ impl LoopTiming {
             TimeRange::between(time.least / period, time.most / period)
         };
         let delay = in_periods(latency.torque_delay());
+        let jitters = match latency.jitters_twice() {
+            true => [latency.output_jitter, latency.count_jitter],
+            false => [latency.total_jitter(); 2],
+        };
         Self {
             delay: TimeRange::between(delay.least + samples, delay.most + samples),
-            jitter: latency.output_jitter / scene.timing.period,
+            jitters: jitters.map(|jitter| jitter / scene.timing.period),
+            both: latency.jitters_twice(),
             amplifier: in_periods(latency.actuator_lag),
             updates: latency.actuator_updates,
             sensor: in_periods(latency.sensor_lag),
@@ -99,13 +106,11 @@ impl Schedule {
     ) -> Self {
         let delay = within(timing.delay, plan.within[0]);
         // No torque begins before its count.
-        let early = timing.jitter.min(delay);
-        let shifts = [-early, 0.0, timing.jitter];
-        let (counts, torques) = match plan.jitter {
-            Jitter::None => ([0.0; 3], [0.0; 3]),
-            Jitter::Torques(_) => ([0.0; 3], shifts),
-            Jitter::Counts(_) => (shifts.map(|shift| -shift), [0.0; 3]),
+        let shifts = |jitter: f64, signs: Option<Signs>| {
+            signs.map_or([0.0; 3], |_| [-jitter.min(delay), 0.0, jitter])
         };
+        let torques = shifts(timing.jitters[0], plan.jitter.torques);
+        let counts = shifts(timing.jitters[1], plan.jitter.counts).map(|shift| -shift);
         // The earliest count begins the period.
         let start = -counts.iter().copied().fold(0.0, f64::min);
         let counts = counts.map(|shift| start + shift);

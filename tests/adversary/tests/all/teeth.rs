@@ -69,9 +69,10 @@ fn springy(stiffness: f64) -> Plan {
         armed_by_boot: true,
         pattern: Pattern::AllOnTime,
         delay: 0.0,
-        jitter: Jitter::None,
+        jitter: Jitter::default(),
         within: [0.0; 2],
         requests: [None; REQUESTS],
+        heats: false,
         again: false,
         periods: 65_536,
     }
