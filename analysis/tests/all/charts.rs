@@ -62,12 +62,10 @@ fn every_picture_in_every_format() {
         ),
     ];
     for (arguments, words) in pictures {
-        for file in ["out.svg", "out.png", "out.pdf"] {
-            let run = chart(folder.path(), &[arguments, &["-o", file]].concat());
-            assert_eq!(run.status.code(), Some(0), "{run:?}");
-            let prints = arguments[0] == "bode";
-            assert!(run.stdout.is_empty() != prints && run.stderr.is_empty(), "{run:?}");
-        }
+        let run = chart(folder.path(), &[arguments, &["-o", "out.svg"]].concat());
+        assert_eq!(run.status.code(), Some(0), "{run:?}");
+        let prints = arguments[0] == "bode";
+        assert!(run.stdout.is_empty() != prints && run.stderr.is_empty(), "{run:?}");
         let svg = std::fs::read_to_string(folder.path().join("out.svg")).unwrap();
         for word in words {
             assert!(svg.contains(word), "{arguments:?}: {word}");
@@ -76,10 +74,6 @@ fn every_picture_in_every_format() {
         for colour in svg.split("\"#").skip(1).map(|rest| &rest[..6]) {
             assert!(colour[..2] == colour[2..4] && colour[2..4] == colour[4..], "{colour}");
         }
-        let png = std::fs::read(folder.path().join("out.png")).unwrap();
-        assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 10_000);
-        let pdf = std::fs::read(folder.path().join("out.pdf")).unwrap();
-        assert!(pdf.starts_with(b"%PDF-") && pdf.len() > 5_000, "{}", pdf.len());
     }
 }
 
