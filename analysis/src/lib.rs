@@ -11,7 +11,6 @@ pub mod command;
 // Output: charts, and pages with charts.
 pub mod chart;
 pub mod explore;
-pub mod report;
 
 // Measured once and kept: comparisons of methods, formats and models.
 pub mod studies;
@@ -58,7 +57,6 @@ pub mod run_csv;
 pub mod table;
 
 // Numbers and words.
-pub mod date;
 pub mod progress;
 pub mod terminal;
 pub mod text_table;

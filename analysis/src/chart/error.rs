@@ -28,9 +28,7 @@ pub enum ChartError {
         source: std::io::Error,
     },
     /// The file's name does not give the kind of picture.
-    #[error(
-        "{path}: the name of a picture must end in .svg, .png or .pdf, that of its numbers in .csv"
-    )]
+    #[error("{path}: the name of a picture must end in .svg, that of its numbers in .csv")]
     Extension {
         /// The file.
         path: PathBuf,

@@ -16,7 +16,6 @@ pub mod identify;
 pub mod new;
 mod outcome;
 mod rebuild_with_scene;
-pub mod report;
 pub mod run;
 pub mod schema;
 pub mod scope;
@@ -113,8 +112,6 @@ pub enum Command {
     Demo(demo::Arguments),
     /// Draw charts: Nyquist curves, Bode charts, maps, limits, traces.
     Chart(chart::Arguments),
-    /// Write verdict, numbers, assumptions and charts of a scene into one HTML page.
-    Report(report::Arguments),
     /// Write a scene into one HTML page: to change it, see what changes, hold it, and send it on.
     Explore(explore::Arguments),
     /// Measure the cost of a certificate, a simulated step and a tick.
@@ -180,7 +177,6 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
-        Command::Report(arguments) => report::run(&arguments),
         Command::Explore(arguments) => explore::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),

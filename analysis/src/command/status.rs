@@ -209,9 +209,6 @@ pub enum CommandError {
         /// The first sample, counted from 0, that is not shown.
         sample: usize,
     },
-    /// The date of a page is invalid.
-    #[error(transparent)]
-    Date(#[from] crate::date::InvalidDate),
     /// A page's file must have the extension of a page.
     #[error("{path}: the name of a page must end in .html")]
     NoPage {

@@ -62,12 +62,10 @@ fn every_picture_in_every_format() {
         ),
     ];
     for (arguments, words) in pictures {
-        for file in ["out.svg", "out.png", "out.pdf"] {
-            let run = chart(folder.path(), &[arguments, &["-o", file]].concat());
-            assert_eq!(run.status.code(), Some(0), "{run:?}");
-            let prints = arguments[0] == "bode";
-            assert!(run.stdout.is_empty() != prints && run.stderr.is_empty(), "{run:?}");
-        }
+        let run = chart(folder.path(), &[arguments, &["-o", "out.svg"]].concat());
+        assert_eq!(run.status.code(), Some(0), "{run:?}");
+        let prints = arguments[0] == "bode";
+        assert!(run.stdout.is_empty() != prints && run.stderr.is_empty(), "{run:?}");
         let svg = std::fs::read_to_string(folder.path().join("out.svg")).unwrap();
         for word in words {
             assert!(svg.contains(word), "{arguments:?}: {word}");
@@ -76,10 +74,6 @@ fn every_picture_in_every_format() {
         for colour in svg.split("\"#").skip(1).map(|rest| &rest[..6]) {
             assert!(colour[..2] == colour[2..4] && colour[2..4] == colour[4..], "{colour}");
         }
-        let png = std::fs::read(folder.path().join("out.png")).unwrap();
-        assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 10_000);
-        let pdf = std::fs::read(folder.path().join("out.pdf")).unwrap();
-        assert!(pdf.starts_with(b"%PDF-") && pdf.len() > 5_000, "{}", pdf.len());
     }
 }
 
@@ -258,11 +252,6 @@ fn a_line_that_a_trace_does_not_show_is_not_in_its_key() {
         assert!(drawn.contains(words), "{words}");
     }
     assert!(!drawn.contains("dash-dotted") && !drawn.contains("dotted: face"));
-    let report = program(&["report", "small.toml", "-o", "small.html"]);
-    let report = { report }.current_dir(folder.path()).output().unwrap();
-    assert!(report.status.code().is_some_and(|status| status < 2), "{report:?}");
-    let page = std::fs::read_to_string(folder.path().join("small.html")).unwrap();
-    assert!(page.contains("torque limit 0.1 N m is outside of the picture"));
 }
 
 /// Numbers that a file may have and no machine has give a picture, or a sentence that names the number out of
@@ -298,10 +287,6 @@ fn extreme_numbers_come_to_an_end() {
             assert!(drawn != said.starts_with("error: "), "{to} {arguments:?}: {said}");
             assert!(!said.contains("panicked") && said.len() < 500, "{to} {arguments:?}: {said}");
         }
-        let mut report = program(&["report", "x.toml", "-o", "x.html"]);
-        let report = report.current_dir(folder.path()).output().unwrap();
-        let said = String::from_utf8(report.stderr).unwrap();
-        assert!(report.status.code().is_some() && !said.contains("panicked"), "{to}: {said}");
     }
     let map = chart(folder.path(), &["map", "wall.toml", "--damping", "0:1e308", "-o", "x.svg"]);
     assert!(

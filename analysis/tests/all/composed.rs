@@ -142,7 +142,6 @@ fn every_command_answers_or_says_why_not() {
     for (arguments, status) in [
         (&["certify", name, "--format", "f32"] as &[&str], 0),
         (&["simulate", name, "--json"], 0),
-        (&["report", name, "-o", "page.html"], 0),
         (&["design", "largest", "torque", name], 0),
         (&["design", "largest", "stiffness", name], 0),
         (&["chart", "profile", name, "-o", "profile.svg"], 0),

@@ -20,7 +20,6 @@ mod profiles;
 mod python_client;
 mod readme;
 mod reference;
-mod report;
 mod scene_files;
 mod serve;
 mod set_up;

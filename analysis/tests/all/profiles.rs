@@ -468,14 +468,13 @@ fn every_command_answers_or_says_why_not() {
         let file = folder.path().join(format!("{number}.toml"));
         std::fs::write(&file, format!("{}{TRAILER}", text(environment))).unwrap();
         let name = file.to_str().unwrap();
-        let commands: [&[&str]; 14] = [
+        let commands: [&[&str]; 13] = [
             &["certify", name, "--format", "f32"],
             &["simulate", name],
             &["simulate", name, "--json"],
             &["stability", name],
             &["worst-hand", name],
             &["device", name],
-            &["report", name, "-o", "page.html"],
             &["run", name, "--ticks", "200"],
             &["chart", "profile", name, "-o", "profile.svg"],
             &["chart", "map", name, "-o", "map.svg"],

@@ -164,12 +164,11 @@ fn every_command_answers_or_says_why_not() {
         let file = folder.path().join(format!("{number}.toml"));
         std::fs::write(&file, format!("{}{TRAILER}", text(environment))).unwrap();
         let name = file.to_str().unwrap();
-        let commands: [&[&str]; 8] = [
+        let commands: [&[&str]; 7] = [
             &["certify", name, "--format", "f32"],
             &["simulate", name],
             &["stability", name],
             &["worst-hand", name],
-            &["report", name, "-o", "page.html"],
             &["chart", "profile", name, "-o", "profile.svg"],
             &["chart", "map", name, "-o", "map.svg"],
             &["design", "largest", "torque", name],

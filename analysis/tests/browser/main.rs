@@ -1,4 +1,4 @@
-//! The report as its reader sees it, in a browser. Where there is no browser, and none can be installed,
+//! The page as its reader sees it, in a browser. Where there is no browser, and none can be installed,
 //! these tests report this and count as ignored.
 
 mod bench;
@@ -16,21 +16,13 @@ mod screenshot;
 mod serve;
 mod verdict_page;
 
-use std::path::Path;
 use std::process::ExitCode;
 
-use base64::Engine;
 use libtest_mimic::{Arguments, Trial};
-use serde_json::Value;
-
-use self::common::{MOTION, WALL, report};
-
-const MEASURE: &str = include_str!("measure.js");
 
 /// Each test with its name.
-const TESTS: [(&str, fn()); 25] = [
-    ("nothing_is_missing_cut_off_or_in_the_way", nothing_is_missing_cut_off_or_in_the_way),
-    ("the_measurement_finds_what_it_looks_for", the_measurement_finds_what_it_looks_for),
+const TESTS: [(&str, fn()); 24] = [
+    ("on_paper_there_is_nothing_to_operate", scene_page::on_paper_there_is_nothing_to_operate),
     (
         "the_numbers_of_the_page_are_those_of_the_program",
         explore::the_numbers_of_the_page_are_those_of_the_program,
@@ -119,89 +111,6 @@ fn main() -> ExitCode {
         if missing.is_some() { trial.with_kind("no chromium") } else { trial }
     };
     libtest_mimic::run(&arguments, TESTS.map(trial).into()).exit_code()
-}
-
-/// The measurements of a browser on a page, in a window of this width in pixels.
-fn measure(folder: &Path, page: &str, width: u32) -> Value {
-    let copy = folder.join("measured.html");
-    std::fs::write(&copy, page.replace("</body>", &format!("<script>{MEASURE}</script></body>")))
-        .unwrap();
-    let dom = chromium::dom(&copy, width);
-    let (_, rest) = dom.split_once("<pre id=\"measured\">").expect("the page was measured");
-    let (measured, _) = rest.split_once("</pre>").unwrap();
-    let json = base64::engine::general_purpose::STANDARD.decode(measured).unwrap();
-    serde_json::from_slice(&json).unwrap()
-}
-
-fn nothing_is_missing_cut_off_or_in_the_way() {
-    let folder = tempfile::tempdir().unwrap();
-    let long = "a name so long that no picture has room for all of it, as people write them";
-    let cases = [
-        (format!("{WALL}{MOTION}"), 0, 3),
-        (
-            format!(
-                "{}{MOTION}",
-                WALL.replace("delayed wall", &format!("<b>&amp; {long}"))
-                    .replace("delay = 1", "delay = 2")
-            ),
-            1,
-            3,
-        ),
-        (
-            WALL.replace("delayed wall", "still").replace("stiffness = 44.0", "stiffness = 30.0"),
-            1,
-            2,
-        ),
-        (
-            format!(
-                "{}\ntype = \"free-mode\"\nresidual = 0.001\n",
-                WALL.split_once("type").unwrap().0
-            ),
-            0,
-            1,
-        ),
-    ];
-    for (scene, status, pictures) in cases {
-        let (page, code) = report(folder.path(), &scene);
-        assert_eq!(code, Some(status), "{scene}");
-        for width in [1200, 500] {
-            let seen = measure(folder.path(), &page, width);
-            assert_eq!(seen["found"], serde_json::json!([]), "{width} pixels: {scene}");
-            assert_eq!(seen["pictures"], pictures, "{scene}");
-            let text = |id: &str| seen["texts"][id].as_str().unwrap_or_default().to_owned();
-            let verdict = if status == 0 { "CERTIFIED" } else { "REJECTED" };
-            assert!(text("verdict").starts_with(verdict), "{}", text("verdict"));
-            assert!(text("numbers").contains("N m s/rad"));
-            assert!(text("assumptions").lines().count() >= 3);
-            assert_eq!(text("remedies").is_empty(), status == 0);
-            for id in ["nyquist", "map", "motion"] {
-                assert!(!text(id).is_empty(), "{id}");
-            }
-            assert!(scene.contains(seen["title"].as_str().unwrap()));
-        }
-    }
-}
-
-fn the_measurement_finds_what_it_looks_for() {
-    let folder = tempfile::tempdir().unwrap();
-    let text = |x: i32, words: &str| format!("<text x='{x}' y='40'>{words}</text>");
-    let bad = [
-        ("off the page", "<p style='width: 3000px'>wide</p>".to_owned()),
-        (
-            "wider than its box",
-            "<p style='width: 3em; overflow: hidden'>unbreakable</p>".to_owned(),
-        ),
-        ("cut off", format!("<svg width='200' height='60'>{}</svg>", text(180, "too far"))),
-        (
-            "overlap",
-            format!("<svg width='200' height='60'>{}{}</svg>", text(9, "one"), text(12, "two")),
-        ),
-    ];
-    for (what, body) in bad {
-        let page = format!("<!DOCTYPE html><html><body>{body}</body></html>");
-        let found = measure(folder.path(), &page, 800)["found"].to_string();
-        assert!(found.contains(what), "{what}: {found}");
-    }
 }
 
 /// They do not count as passed: runs this program again, with a path that has no programs.

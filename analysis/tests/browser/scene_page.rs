@@ -1,7 +1,7 @@
 //! A user on the page of `haptic explore`: changes a field, applies a remedy, makes a mistake, follows a
 //! link, moves the scene on its map.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::common::WALL;
 use crate::devtools::Page;
@@ -47,6 +47,21 @@ pub fn a_field_changes_the_verdict_and_a_remedy_certifies() {
     enter(&mut page, "#field-device-inertia", "2.2e-5");
     page.wait_for(&format!("{VERDICT} === 'certified'"));
     assert_eq!(page.complaints(), [""; 0]);
+}
+
+pub fn on_paper_there_is_nothing_to_operate() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut page = Page::start(1280);
+    page.open_file(&explore(folder.path(), WALL));
+    page.call("Emulation.setEmulatedMedia", json!({ "media": "print" }));
+    let mut shown = |what: &str| {
+        let all = format!("[...document.querySelectorAll({what:?})]");
+        page.value(&format!("{all}.filter((one) => one.checkVisibility()).length"))
+    };
+    assert_eq!(shown("button, input[type=range], #handle, #board, #whole"), 0);
+    for kept in ["#verdict-word", "#verdict-rows dd", "#fields input", ".picture > canvas"] {
+        assert_ne!(shown(kept), 0, "{kept}");
+    }
 }
 
 pub fn a_link_is_the_scene_and_a_bad_one_is_named() {

@@ -11,7 +11,7 @@ use crate::command::value_parsers::range;
 /// The output files of a chart and its numbers.
 #[derive(Debug, Args)]
 pub struct OutputArguments {
-    /// File of the chart: .svg, .png or .pdf; or .csv for its numbers only
+    /// File of the chart, .svg; or .csv for its numbers only
     #[arg(short, long, value_name = "PICTURE")]
     pub output: PathBuf,
     /// Also write the numbers of the chart to this .csv

@@ -32,7 +32,7 @@ pub struct Arguments {
     /// Folder of the tables and charts; default: analysis/pictures/tradeoff of this repository
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
-    /// Draw only the panels of these cases and errors, into this file: .svg, .png or .pdf
+    /// Draw only the panels of these cases and errors, into this .svg
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
     /// Name of a case in the table; default: all
@@ -60,9 +60,6 @@ pub enum Topic {
     /// Sample rates: share of the processor against stiffness and ripple of the encoder
     Rate,
 }
-
-/// Pixels of a PNG for each pixel of the drawing: the pictures are large, and kept.
-const SCALE: f32 = 1.0;
 /// Ticks of a run on the emulated board.
 const DEFAULT_TICKS: usize = 5000;
 
@@ -146,16 +143,13 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(CommandStatus::Success)
 }
 
-/// Draws all panels of a table into a folder, as SVG and as PNG.
+/// Draws all panels of a table into a folder.
 fn draw(tradeoff: &Tradeoff, folder: &Path) -> Result<(), CommandError> {
     let name = tradeoff.comparison.name;
     for (word, panels) in Panels::all(tradeoff) {
         let picture = chart::tradeoff::tradeoff(tradeoff, &panels)?;
         let name = word.map_or_else(|| name.to_owned(), |word| format!("{name}-{word}"));
-        for extension in ["svg", "png"] {
-            let file = folder.join(&name).with_extension(extension);
-            Output::new(&file)?.write_scaled(&picture, SCALE)?;
-        }
+        Output::new(&folder.join(&name).with_extension("svg"))?.write(&picture)?;
     }
     Ok(())
 }

@@ -96,15 +96,3 @@ pub fn read(path: impl AsRef<Path>) -> String {
     let path = path.as_ref();
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
-
-/// Writes the report of a scene; its text and the program's exit status.
-pub fn report(folder: &Path, scene: &str) -> (String, Option<i32>) {
-    let (file, page) = (folder.join("scene.toml"), folder.join("report.html"));
-    std::fs::write(&file, scene).unwrap();
-    let run = haptic(&["report", file.to_str().unwrap(), "-o", page.to_str().unwrap()]);
-    assert!(run.stderr.is_empty(), "{run:?}");
-    let said = String::from_utf8(run.stdout).unwrap();
-    let verdict = if run.status.code() == Some(0) { "certified" } else { "rejected" };
-    assert!(said.contains(&format!("report.html: {verdict}")), "{said}");
-    (std::fs::read_to_string(page).unwrap(), run.status.code())
-}
