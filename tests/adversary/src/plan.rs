@@ -341,7 +341,7 @@ impl Plan {
         }
     }
 
-    /// A light device, with a light absorber tuned to nearly half of the sampling rate or without one: what is left
+    /// A light device, with a light absorber tuned to nearly half of the sampling rate or without one: all that is left
     /// of its motion is even within each tick, however long that is.
     fn light(rng: &mut impl Rng) -> Hand {
         let theta = PI * rng.random_range(0.8..1.0);

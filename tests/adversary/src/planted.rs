@@ -1,7 +1,7 @@
 //! Wrong rules, planted to see that the search finds what they let pass.
 //!
 //! The product is untouched. A wrong rule takes a scene for another one, and accepts it if that is certified; the
-//! servo is that of the certified scene, and what is simulated is the scene as it is. Nothing else in the search
+//! servo is that of the certified scene, and the simulated scene is the stated one. Nothing else in the search
 //! differs.
 
 use haptic_servo::certificate::PassivityProblem;

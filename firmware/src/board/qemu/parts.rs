@@ -54,7 +54,8 @@ impl<E: Tunable<N>, N: Number, M: OutputMode> CycleParts<E, N, M> {
         spread.add(cost);
     }
 
-    /// Instructions from count to code. In a function of its own, so that no register is taken by what is around.
+    /// Instructions from count to code. In a function of its own, so that no code beside it takes
+    /// registers.
     #[inline(never)]
     fn servo_cost(&mut self, tick: &Measured, scale: &Scale) -> u32 {
         let servo = black_box(&mut self.servo);
