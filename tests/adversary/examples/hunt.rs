@@ -71,6 +71,12 @@ fn main() {
     if coverage {
         println!("{}", found.coverage);
     }
+    for motion in &found.motions {
+        println!(
+            "scene {}, {}, periodic motion: energy {}",
+            motion.number, motion.drawn.kind, motion.energy
+        );
+    }
     for counterexample in &found.counterexamples {
         let text = counterexample.to_string();
         if full {

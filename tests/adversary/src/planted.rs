@@ -4,14 +4,18 @@
 //! servo is that of the certified scene, and the simulated scene is the stated one. Nothing else in the search
 //! differs.
 
-use haptic_servo::certificate::PassivityProblem;
+use std::f64::consts::PI;
+
+use haptic_servo::certificate::{LoopTransfers, PassivityProblem};
 use haptic_servo::environment::Environment;
 use haptic_servo::latency::{Latency, TimeRange};
 use haptic_servo::number::Format;
 use haptic_servo::output_timing::READ_WITHIN;
 use haptic_servo::scene::{Coupling, Device, Scene};
+use nalgebra::Complex;
 
 use crate::mode::Actual;
+use crate::periodic_motion::at;
 
 /// A wrong rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +25,8 @@ pub enum Planted {
     /// Jitter behind a coupling spring leaves `delta (1 - sqrt(h))` and takes a compliance from the spring, as if
     /// both were not in the coupling at once.
     SpringJitter,
+    /// Jitter of a linear loop changes the torque once in a tick, also where it crosses a count.
+    LinearJitter,
     /// Jitters of torques and counts at once are a jitter of one of them, of the same sum.
     TwoJitters,
     /// Without a coupling the mean age of a torque counts, and not the largest.
@@ -43,9 +49,10 @@ pub enum Planted {
 
 impl Planted {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::MatchedJitter,
         Self::SpringJitter,
+        Self::LinearJitter,
         Self::TwoJitters,
         Self::MeanAge,
         Self::LagIgnored,
@@ -66,6 +73,7 @@ impl Planted {
             Self::MatchedJitter if coupling == Coupling::Matched => with(without_jitter(latency)),
             Self::MeanAge if is_rigid => with(without_jitter(latency)),
             Self::SpringJitter if former_spring(scene, format) == Some(true) => certain(scene),
+            Self::LinearJitter if former_linear(scene, format) == Some(true) => certain(scene),
             Self::TwoJitters => {
                 let output_jitter = latency.total_jitter();
                 with(Latency { output_jitter, count_jitter: 0.0, ..latency })
@@ -154,4 +162,24 @@ fn former_spring(scene: &Scene, format: Format) -> Option<bool> {
     let (margin, most) = (excess - others, excess + others / 3.0);
     let limit = remaining / (1.0 + 2.0 * remaining * most * most / (period * margin));
     Some(remaining > 0.0 && margin > 0.0 && index < limit)
+}
+
+/// Equation 38 with jitter as it once was, without a lag: `delta (1 - h/2) + Re(H g)` is above
+/// `(D + 3 h T^2) abs(H)^2 / (4 delta)`. `None` where it is not asked.
+fn former_linear(scene: &Scene, format: Format) -> Option<bool> {
+    const ANGLES: u32 = 2000;
+    let (whole, part, jitter) = delay_and_jitter(scene)?;
+    let is_linear = PassivityProblem::in_format(scene, format).ok()?.bound().is_none();
+    if !is_linear || scene.coupling == Coupling::Matched {
+        return None;
+    }
+    let (period, delta) = (scene.timing.period, scene.device.passivity());
+    let controller = LoopTransfers::in_format(scene, format).ok()?.controller;
+    let ripple = part * (1.0 - part) + 3.0 * jitter;
+    Some((1..=ANGLES).all(|i| {
+        let z = Complex::from_polar(1.0, PI * f64::from(i) / f64::from(ANGLES));
+        let h = at(&controller, z) * period;
+        let g = z.powf(-whole) * (1.0 / (z - 1.0) - part / z);
+        delta * (1.0 - 0.5 * jitter) + (h * g).re >= ripple * h.norm_sqr() / (4.0 * delta)
+    }))
 }

@@ -428,6 +428,10 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             scene.environment = sharp(rng, unit, delta, least);
             match scene.environment {
                 Environment::DamperWall(_) => Knob::Damping,
+                Environment::Rational(_) if mode == Mode::Bare && lags => {
+                    scene.coupling = Coupling::Rigid;
+                    Knob::Gain
+                }
                 _ => Knob::Gain,
             }
         }
@@ -670,8 +674,8 @@ fn sharp(rng: &mut impl Rng, unit: f64, delta: f64, least: usize) -> Environment
 /// A filter that cancels damping of slow motions and damps those at half of the sampling rate: where the length of
 /// ticks alternates, these drive each other.
 fn crossing(rng: &mut impl Rng, unit: f64, delay: usize) -> Environment {
-    let (slow, fast) = (rng.random_range(0.4..0.8), 1.0 - log_uniform(rng, 0.01, 0.15));
-    let damped = 0.5 * log_uniform(rng, 3.0, 7.0) * (1.0 - fast);
+    let (slow, fast) = (rng.random_range(0.5..0.75), 1.0 - log_uniform(rng, 0.01, 0.06));
+    let damped = 0.5 * log_uniform(rng, 3.6, 5.4) * (1.0 - fast);
     let cancelled = 1.0 - slow;
     let numerator = [damped - cancelled, -damped * slow - cancelled * fast];
     let denominator = [1.0, fast - slow, -slow * fast];

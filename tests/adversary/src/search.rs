@@ -22,6 +22,7 @@ use crate::coverage::Coverage;
 use crate::hardware::Board;
 use crate::mode::Actual;
 use crate::normalized_scene::NormalizedScene;
+use crate::periodic_motion::least_energy;
 use crate::plan::Plan;
 use crate::report::Counterexample;
 use crate::run::{Control, Machine, Outcome};
@@ -83,6 +84,19 @@ pub struct Found {
     pub coverage: Coverage,
     /// Runs that refute a certificate.
     pub counterexamples: Vec<Counterexample>,
+    /// Certified scenes that give energy away in a periodic motion.
+    pub motions: Vec<PeriodicMotion>,
+}
+
+/// A linear scene that gives energy away in a periodic motion.
+#[derive(Clone, Debug)]
+pub struct PeriodicMotion {
+    /// The scene's number in the search.
+    pub number: u64,
+    /// What was drawn.
+    pub drawn: RandomScene,
+    /// See [`least_energy`].
+    pub energy: f64,
 }
 
 impl Found {
@@ -96,6 +110,12 @@ impl Found {
         self.rate = self.rate.max(other.rate);
         self.coverage.add(&other.coverage);
         self.counterexamples.extend(other.counterexamples);
+        self.motions.extend(other.motions);
+    }
+
+    /// The scenes that give energy away.
+    pub fn refuted(&self) -> usize {
+        self.counterexamples.len() + self.motions.len()
     }
 }
 
@@ -254,6 +274,18 @@ pub fn refusal(scene: &Scene, format: Numbers) -> Option<String> {
     certify_in(scene, format.format()).err().map(|rejection| rejection.to_string())
 }
 
+/// Energy that rounding may leave, over that of the device alone.
+const ROUNDING: f64 = 1e-6;
+
+/// A periodic motion of the scene as it is in which it gives energy away.
+fn periodic_motion(number: u64, drawn: &RandomScene) -> Option<PeriodicMotion> {
+    let Actual { latency, passivity, .. } = drawn.actual;
+    let latency = latency.unwrap_or(drawn.scene.latency);
+    let passivity = passivity.unwrap_or(drawn.scene.device.passivity());
+    let energy = least_energy(&drawn.scene, drawn.format.format(), &latency, passivity)?;
+    (energy < -ROUNDING).then(|| PeriodicMotion { number, drawn: drawn.clone(), energy })
+}
+
 /// A rate from which a run is worth to be gone on with.
 const SURE: f64 = 1e-5;
 
@@ -370,7 +402,11 @@ impl Search {
         if self.choice.planted.is_some() && drawn.actual == Actual::default() {
             return Found { scenes: 1, largest: -1.0, rate: -1.0, ..Found::default() };
         }
-        self.climb(number, &drawn, rng)
+        let mut found = self.climb(number, &drawn, rng);
+        if found.accepted > 0 && drawn.mode == Mode::Bare {
+            found.motions.extend(periodic_motion(number, &drawn));
+        }
+        found
     }
 
     /// Searches through the runs of a scene.
@@ -396,18 +432,16 @@ impl Search {
                     loop {
                         let number = next.fetch_add(1, Ordering::Relaxed);
                         let over = self.time.is_some_and(|time| began.elapsed() > time);
-                        if number >= self.scenes
-                            || over
-                            || found.counterexamples.len() >= self.enough
-                        {
+                        if number >= self.scenes || over || found.refuted() >= self.enough {
                             break;
                         }
                         found.add(self.scene(number));
-                        if !found.counterexamples.is_empty() {
+                        if found.refuted() > 0 {
                             // So that both threads stop when there are enough together.
                             let mut all = all.lock().expect("no thread panics");
                             all.counterexamples.append(&mut found.counterexamples);
-                            if all.counterexamples.len() >= self.enough {
+                            all.motions.append(&mut found.motions);
+                            if all.refuted() >= self.enough {
                                 next.store(self.scenes, Ordering::Relaxed);
                             }
                         }

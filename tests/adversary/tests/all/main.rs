@@ -2,6 +2,7 @@
 //! `cargo test -p adversary --test all NAME::` runs those of one file.
 
 mod device;
+mod periodic_motion;
 mod planted;
 mod search;
 mod teeth;

@@ -18,12 +18,14 @@ fn the_search_finds_what_every_planted_rule_lets_pass() {
             effort: Effort::USUAL,
         };
         let found = search.run();
-        let count = found.counterexamples.len();
-        println!("{planted:?}: {found} counterexamples={count}");
+        println!("{planted:?}: {found} refuted={}", found.refuted());
         if let Some(first) = found.counterexamples.first() {
             println!("  scene {}, {}", first.number, first.drawn.kind);
         }
-        if count == 0 {
+        if let Some(first) = found.motions.first() {
+            println!("  scene {}, {}: {}", first.number, first.drawn.kind, first.energy);
+        }
+        if found.refuted() == 0 {
             missed.push(planted);
         }
     }
