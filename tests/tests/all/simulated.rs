@@ -87,10 +87,8 @@ pub(super) fn stays_anywhere(scene: &Scene) -> bool {
         | Environment::DamperWall(wall)
         | Environment::FreeModeWall { wall, .. } => wall.stiffness == 0.0,
         Environment::FreeMode { .. } => true,
-        Environment::Rational(_)
-        | Environment::Stated(_)
-        | Environment::Profile(_)
-        | Environment::Composed(_) => false,
+        Environment::Rational(rational) => rational.unit_zeros > 0,
+        Environment::Stated(_) | Environment::Profile(_) | Environment::Composed(_) => false,
     }
 }
 
