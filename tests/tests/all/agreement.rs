@@ -273,7 +273,7 @@ fn nor_of_any_kind_in_any_number_format() {
     println!("{seen:?}");
     let Seen { matched, profiles, sums, jitter, single, fixed, booted, certified, unrounded } =
         seen;
-    assert!(u64::from(profiles.min(sums)) > scenes / 80 && 10 * unrounded > 9 * certified);
+    assert!(u64::from(profiles) > scenes / 80 && sums > 0 && 10 * unrounded > 9 * certified);
     let often = [matched, jitter, single, fixed, 2 * booted - certified];
     assert!(often.into_iter().all(|seen| u64::from(seen) > scenes / 10));
 }
