@@ -1,6 +1,6 @@
 //! What the programs have in common, and passes: a device, its transducers and a scene. A program in
-//! `refused` changes what it must not compile for, its neighbour in `examples` what compiles; the test is
-//! in `tests`.
+//! `refused` changes what it must not compile for; the test is in `tests`. Each sees another way past the
+//! certificate that is open. Which numbers pass is a matter of unit tests.
 
 use haptic_servo::certificate::Certified;
 use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};

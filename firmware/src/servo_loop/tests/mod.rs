@@ -144,6 +144,38 @@ fn a_program_that_says_so_is_armed_at_power_on_and_after_no_other_reset() {
     }
 }
 
+#[test]
+#[should_panic(expected = "arming at power-on needs a reason")]
+fn no_program_arms_itself_without_a_reason() {
+    let _ = Options::DEFAULT.armed_at_power_on(" ");
+}
+
+/// `scene_program!` has these checks evaluated at compile time.
+#[test]
+fn numbers_that_no_board_can_run_are_refused() {
+    assert!(SPRING.check().is_ok());
+    let Program { scene, transducers, rendering, options } = SPRING;
+    let timed = |period| Program {
+        scene: Scene { timing: Timing { period, ..scene.timing }, ..scene },
+        ..SPRING
+    };
+    let with = |transducers| Program { transducers, ..SPRING };
+    let limited = Scene { torque_limit: Some(1e3), ..scene };
+    for (program, told) in [
+        (timed(1e-6), "the period of 1e-6 s is not between 0.00001 and 0.06396875 s"),
+        (timed(0.0), "the period of 0 s"),
+        (with(Transducers { counts_per_turn: 0.0, ..transducers }), "the counts per turn"),
+        (with(Transducers { full_scale_torque: -1.0, ..transducers }), "the full-scale torque"),
+        (with(Transducers { largest_speed: 1e9, ..transducers }), "at the largest speed"),
+        (Program { scene: limited, ..SPRING }, "the torque limit of 1000 N m"),
+        (Program { rendering: RenderingOptions { fade: 0.0, ..rendering }, ..SPRING }, "the time"),
+        (Program { options: Options { link_timeout: 0.0, ..options }, ..SPRING }, "the link"),
+    ] {
+        let error = program.check().unwrap_err().to_string();
+        assert!(error.starts_with(told), "{error}");
+    }
+}
+
 /// RAM may keep a record through a supply that was off for a moment.
 #[test]
 fn a_fault_that_was_kept_is_armed_at_no_power_on() {
