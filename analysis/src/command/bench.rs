@@ -164,7 +164,7 @@ fn about_pages(repetitions: Repetitions) -> Result<Vec<Figure>, CommandError> {
 
 /// Ticks behind the matched coupling; no program has only a wall behind it.
 fn behind_matched(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
-    let most = matched::contact_instructions(&toolchain.build_bench_programs()?)?;
+    let most = matched::contact_instructions(&toolchain.build_harness("bench_programs")?)?;
     for (what, most) in ["", " and one lag"].into_iter().zip(most) {
         figures.push(Figure::new(
             format!("damper wall behind the matched coupling{what}, f32: tick, contact, most"),
@@ -179,7 +179,7 @@ fn behind_matched(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
 
 /// Verdicts on torque profiles with more knots than those of the programs.
 fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
-    let most = profile::verdict_instructions(&toolchain.build_certify_server()?)?;
+    let most = profile::verdict_instructions(&toolchain.build_harness("certify_server")?)?;
     for (what, most) in ["", " with its message"].into_iter().zip(most) {
         figures.push(Figure::new(
             format!("torque profile of 64 knots: verdict{what} on the target, most"),
@@ -195,7 +195,7 @@ fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
 /// The additional work and memory of a board with its own bridge.
 fn about_bridges(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
     let servo = most_of_interrupts(figures);
-    let most = current::instant_instructions(&toolchain.build_bench_programs()?)?;
+    let most = current::instant_instructions(&toolchain.build_harness("bench_programs")?)?;
     for ((motor, budget), most) in INSTANT_BUDGETS.into_iter().zip(most.map(f64::from)) {
         let name = format!("current loop, {motor} motor: instant, sample to compare values, most");
         figures.push(Figure::new(name, most, "instructions", Some(budget), "budget"));

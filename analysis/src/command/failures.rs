@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let mut player = match arguments.emulate {
         true => {
             let toolchain = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))?;
-            Some(ServoClient::boot(&toolchain.build_servo_server()?)?)
+            Some(ServoClient::boot(&toolchain.build_harness("servo_server")?)?)
         }
         false => None,
     };

@@ -14,7 +14,8 @@ pub struct BenchClient {
 }
 
 impl BenchClient {
-    /// Starts the program; see [`build_bench_programs`](crate::toolchain::Toolchain::build_bench_programs).
+    /// Starts `bench_programs` or `bench_all`, built by
+    /// [`build_harness`](crate::toolchain::Toolchain::build_harness).
     ///
     /// # Errors
     /// If the emulator cannot be started.

@@ -13,7 +13,7 @@ pub struct CertifyClient {
 }
 
 impl CertifyClient {
-    /// Starts the certify server; see [`build_certify_server`](crate::toolchain::Toolchain::build_certify_server).
+    /// Starts `certify_server`, built by [`build_harness`](crate::toolchain::Toolchain::build_harness).
     ///
     /// # Errors
     /// If the emulator cannot be started.

@@ -15,8 +15,7 @@ pub struct ServoClient {
 }
 
 impl ServoClient {
-    /// Starts the servo server; see
-    /// [`build_servo_server`](crate::toolchain::Toolchain::build_servo_server).
+    /// Starts `servo_server`, built by [`build_harness`](crate::toolchain::Toolchain::build_harness).
     ///
     /// # Errors
     /// If the emulator cannot be started.

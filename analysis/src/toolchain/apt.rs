@@ -5,230 +5,176 @@ use std::fmt;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Output, Stdio};
+use std::process::{Command, Output};
 
-use super::output::last_lines;
-
-/// The changes of an installation.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Changes {
-    /// New packages.
-    pub installed: Vec<NewPackage>,
-    /// Packages that are replaced by another version.
-    pub replaced: Vec<NewPackage>,
-    /// Names of packages that would be removed.
-    pub removed: Vec<String>,
-}
-
-/// A package at the version that would be installed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NewPackage {
-    /// Its name.
-    pub name: String,
-    /// Its version, as Debian writes it.
-    pub version: String,
-}
+use super::Version;
+use super::output::finished;
+use super::package::Package;
+use super::unpacked::Unpacked;
 
 /// The reason why packages were neither installed nor unpacked.
 #[derive(Debug, thiserror::Error)]
 pub enum AptError {
-    /// A program could not be started.
-    #[error("{program} could not be run: {source}")]
-    Unrunnable {
-        /// The program.
-        program: String,
-        /// The cause.
-        source: io::Error,
-    },
-    /// A program failed.
-    #[error("`{command}` ended with {status}:\n{output}")]
-    Failed {
-        /// The command.
-        command: String,
-        /// Its exit status.
-        status: ExitStatus,
-        /// The end of its output.
-        output: String,
-    },
-    /// Only root may install packages.
-    #[error("only root may install packages; as root: {0}")]
-    NotRoot(String),
-    /// Packages would be removed.
-    #[error(
-        "installing {wanted} would remove packages of this machine, so nothing was done: it \
-         {changes}\ncheck these changes; if they are right, run this yourself:\n  {command}"
-    )]
-    Removes {
-        /// The requested packages.
-        wanted: String,
-        /// The changes that installing them would make.
-        changes: Changes,
-        /// The command that installs them after asking.
-        command: String,
-    },
-    /// The folder for unpacked packages could not be used.
-    #[error("{path}: {source}")]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// The cause.
-        source: io::Error,
-    },
+    /// A program or a file failed.
+    #[error(transparent)]
+    Failed(#[from] io::Error),
+    /// Nothing was done, for this reason.
+    #[error("{0}")]
+    NotDone(String),
 }
 
 /// The programs of Debian that fetch, install and unpack packages.
-#[derive(Clone, Debug)]
-pub struct Apt {
+pub struct Apt<'a> {
     apt_get: PathBuf,
     dpkg_deb: PathBuf,
-    /// The folder of lists of packages that the user has fetched, without root's rights.
-    own_lists: Option<PathBuf>,
+    is_root: bool,
+    unpacked: &'a Unpacked,
+    /// Gets each step before it is taken.
+    progress: &'a dyn Fn(&str),
 }
 
-/// The command for the user to install packages as root, which asks for consent itself.
-pub fn by_hand(packages: &[&str]) -> String {
+/// The changes of an installation.
+#[derive(Debug, Default)]
+struct Changes {
+    /// Names and versions of packages that are new, or replace another version.
+    installed: Vec<(String, String)>,
+    /// Names of packages that would be removed.
+    removed: Vec<String>,
+}
+
+fn command(packages: &[&str]) -> String {
     format!("apt-get install --no-install-recommends {}", packages.join(" "))
 }
 
-impl Apt {
-    /// For root, who uses the machine's lists of packages, and for another user, who can fetch lists into
-    /// `folder` only.
-    pub fn of(is_root: bool, folder: &Path) -> Self {
-        let own_lists = (!is_root).then(|| folder.join("apt"));
-        Self { apt_get: "apt-get".into(), dpkg_deb: "dpkg-deb".into(), own_lists }
+impl<'a> Apt<'a> {
+    /// What cannot be installed is unpacked beside `unpacked`.
+    pub fn new(unpacked: &'a Unpacked, progress: &'a dyn Fn(&str)) -> Self {
+        let is_root = nix::unistd::geteuid().is_root();
+        Self { apt_get: "apt-get".into(), dpkg_deb: "dpkg-deb".into(), is_root, unpacked, progress }
     }
 
-    /// Fetches the lists of packages.
+    /// Provides packages: installs them, or, where that would remove another package and for a user who is
+    /// not root, unpacks them.
     ///
     /// # Errors
-    /// If that fails.
-    pub fn update(&self) -> Result<(), AptError> {
-        if let Some(folder) = &self.own_lists {
-            make(&folder.join("lists/partial"))?;
-            make(&folder.join("cache/archives/partial"))?;
+    /// If one does not exist, is too old or has to be installed, or if a step fails.
+    pub fn provide(&self, packages: &[Package]) -> Result<(), AptError> {
+        let names: Vec<_> = packages.iter().map(|package| package.name()).collect();
+        if packages.iter().any(|package| Package::NATIVE.contains(package)) {
+            return self.install(&names);
         }
-        self.run(&["update"], &[], Path::new(".")).map(drop)
+        self.with_fresh_lists(|| {
+            let changes = self.changes(&names)?;
+            changes.serve(packages)?;
+            if self.is_root && changes.removed.is_empty() {
+                return self.install_with(&names, &changes);
+            }
+            if self.is_root {
+                (self.progress)(&format!("{} {changes}: not done", command(&names)));
+            }
+            self.unpack(&names, &changes)
+        })
     }
 
-    /// The options for the user's own lists of packages, if there are any.
-    pub fn options(&self) -> Vec<String> {
-        match &self.own_lists {
-            Some(folder) if folder.join("lists").is_dir() => vec![
-                "-o".into(),
-                format!("Dir::State::Lists={}", folder.join("lists").display()),
-                "-o".into(),
-                format!("Dir::Cache={}", folder.join("cache").display()),
-            ],
-            _ => Vec::new(),
-        }
-    }
-
-    /// The changes of installing packages.
-    ///
-    /// # Errors
-    /// If a package does not exist, or cannot be installed.
-    pub fn changes(&self, packages: &[&str]) -> Result<Changes, AptError> {
-        let simulate = ["install", "--simulate", "--no-install-recommends"];
-        let simulation = self.run(&simulate, packages, Path::new("."))?;
-        Ok(Changes::of_simulation(&String::from_utf8_lossy(&simulation.stdout)))
-    }
-
-    /// Prints the changes, and installs the packages if that removes no other package.
+    /// Installs packages as root, if that removes no other package.
     ///
     /// # Errors
     /// If it would remove a package, which changes nothing, or if it fails.
-    pub fn install(&self, packages: &[&str], progress: impl Fn(&str)) -> Result<(), AptError> {
-        let changes = self.changes(packages)?;
-        let command = by_hand(packages);
-        if !changes.removed.is_empty() {
-            return Err(AptError::Removes { wanted: packages.join(" "), changes, command });
+    pub fn install(&self, names: &[&str]) -> Result<(), AptError> {
+        if !self.is_root {
+            return Err(AptError::NotDone("only root may install packages".into()));
         }
-        progress(&format!("{command}: {changes}"));
-        // `--no-remove`, because the machine may have changed since the simulation.
-        let arguments = ["install", "--yes", "--no-install-recommends", "--no-remove"];
-        self.run(&arguments, packages, Path::new(".")).map(drop)
+        self.with_fresh_lists(|| {
+            let changes = self.changes(names)?;
+            if changes.removed.is_empty() {
+                return self.install_with(names, &changes);
+            }
+            let why = format!("this would remove packages; check these changes: {changes}");
+            Err(AptError::NotDone(why))
+        })
     }
 
-    /// Prints which packages it fetches, unpacks them with the missing packages that they depend on into
-    /// `root`, and returns all of them. This changes nothing outside this folder, and needs no rights.
-    ///
-    /// # Errors
-    /// If a package does not exist, or cannot be fetched or unpacked.
-    pub fn unpack(
-        &self,
-        packages: &[&str],
-        root: &Path,
-        progress: impl Fn(&str),
-    ) -> Result<Vec<NewPackage>, AptError> {
-        let wanted = self.changes(packages)?.unpackable();
-        let names: Vec<_> = wanted.iter().map(|package| &*package.name).collect();
-        let folder = root.display();
-        progress(&format!("unpacks {} into {folder}: {}", names.len(), names.join(" ")));
-        let archives = root.join("archives");
-        let source = |source| AptError::Folder { path: archives.clone(), source };
-        // An interrupted run has left archives, perhaps of other versions.
-        if archives.exists() {
-            fs::remove_dir_all(&archives).map_err(source)?;
+    /// Gets packages, with new lists if that fails: a new machine has none, and a mirror may have dropped the
+    /// versions that old lists name.
+    fn with_fresh_lists(&self, get: impl Fn() -> Result<(), AptError>) -> Result<(), AptError> {
+        match get() {
+            Err(AptError::Failed(error)) if error.kind() == io::ErrorKind::Other => {}
+            result => return result,
         }
-        make(&archives)?;
-        let exact: Vec<_> =
-            wanted.iter().map(|NewPackage { name, version }| format!("{name}={version}")).collect();
+        (self.progress)("apt-get update");
+        if let Some(own) = self.own_lists() {
+            fs::create_dir_all(own.join("lists/partial"))?;
+            fs::create_dir_all(own.join("cache/archives/partial"))?;
+        }
+        self.apt_get(&["update"], &[], Path::new("."))?;
+        get()
+    }
+
+    /// The folder of lists of packages of a user who is not root and cannot fetch the machine's.
+    fn own_lists(&self) -> Option<PathBuf> {
+        (!self.is_root).then(|| self.unpacked.folder().join("apt"))
+    }
+
+    fn changes(&self, names: &[&str]) -> Result<Changes, AptError> {
+        let simulate = ["install", "--simulate", "--no-install-recommends"];
+        let simulation = self.apt_get(&simulate, names, Path::new("."))?;
+        Ok(Changes::of_simulation(&String::from_utf8_lossy(&simulation.stdout)))
+    }
+
+    /// Prints the changes, and installs the packages.
+    fn install_with(&self, names: &[&str], changes: &Changes) -> Result<(), AptError> {
+        (self.progress)(&format!("{}: {changes}", command(names)));
+        // `--no-remove`, because the machine may have changed since the simulation.
+        let arguments = ["install", "--yes", "--no-install-recommends", "--no-remove"];
+        self.apt_get(&arguments, names, Path::new("."))?;
+        Ok(())
+    }
+
+    /// Prints which packages it fetches, and unpacks them. This changes nothing outside their folder, and
+    /// needs no rights.
+    fn unpack(&self, names: &[&str], changes: &Changes) -> Result<(), AptError> {
+        let root = self.unpacked.folder();
+        // Not the C library, whose loader starts every program and is the machine's.
+        let packages = changes.installed.iter().filter(|(name, _)| !name.starts_with("libc6"));
+        let packages: Vec<_> = packages.collect();
+        let all: Vec<_> = packages.iter().map(|(name, _)| &**name).collect();
+        let (count, folder) = (all.len(), root.display());
+        (self.progress)(&format!("unpacks {count} into {folder}: {}", all.join(" ")));
+        let archives = root.join("archives");
+        // An interrupted run has left archives, perhaps of other versions.
+        fs::remove_dir_all(&archives).ok();
+        fs::create_dir_all(&archives)?;
+        let exact = packages.iter().map(|(name, version)| format!("{name}={version}"));
+        let exact: Vec<_> = exact.collect();
         let exact: Vec<_> = exact.iter().map(String::as_str).collect();
-        self.run(&["download"], &exact, &archives)?;
-        for archive in fs::read_dir(&archives).map_err(source)? {
-            let archive = archive.map_err(source)?.path();
+        self.apt_get(&["download"], &exact, &archives)?;
+        for archive in fs::read_dir(&archives)? {
+            let archive = archive?.path();
             if archive.extension().is_some_and(|extension| extension == "deb") {
-                let mut command = Command::new(&self.dpkg_deb);
-                finished(command.arg("-x").arg(&archive).arg(root))?;
+                finished(Command::new(&self.dpkg_deb).arg("-x").arg(archive).arg(root))?;
             }
         }
-        fs::remove_dir_all(&archives).map_err(source)?;
-        Ok(wanted)
+        fs::remove_dir_all(&archives)?;
+        // Last, so that packages whose unpacking was interrupted do not count.
+        for (name, version) in packages.iter().filter(|(name, _)| names.contains(&&**name)) {
+            fs::write(self.unpacked.stamp(name), version)?;
+        }
+        Ok(())
     }
 
     /// Runs `apt-get` without questions, in a folder; it waits for another one to finish.
-    fn run(
-        &self,
-        arguments: &[&str],
-        packages: &[&str],
-        folder: &Path,
-    ) -> Result<Output, AptError> {
+    fn apt_get(&self, does: &[&str], packages: &[&str], folder: &Path) -> io::Result<Output> {
         let mut command = Command::new(&self.apt_get);
-        command.args(["-o", "DPkg::Lock::Timeout=600"]).args(self.options());
-        finished(command.args(arguments).args(packages).current_dir(folder))
-    }
-}
-
-fn make(folder: &Path) -> Result<(), AptError> {
-    fs::create_dir_all(folder).map_err(|source| AptError::Folder { path: folder.into(), source })
-}
-
-/// The output of a program that succeeds.
-fn finished(command: &mut Command) -> Result<Output, AptError> {
-    let output = command
         // The parsed output must not depend on the user's language.
-        .env("LC_ALL", "C")
-        .env("DEBIAN_FRONTEND", "noninteractive")
-        .stdin(Stdio::null())
-        .output();
-    let output = output.map_err(|source| {
-        let program = command_line(command).next().unwrap_or_default();
-        AptError::Unrunnable { program, source }
-    })?;
-    if output.status.success() {
-        return Ok(output);
+        command.env("LC_ALL", "C").env("DEBIAN_FRONTEND", "noninteractive").current_dir(folder);
+        command.args(["-o", "DPkg::Lock::Timeout=600"]);
+        if let Some(own) = self.own_lists().filter(|own| own.join("lists").is_dir()) {
+            let (lists, cache) = (own.join("lists"), own.join("cache"));
+            command.arg("-o").arg(format!("Dir::State::Lists={}", lists.display()));
+            command.arg("-o").arg(format!("Dir::Cache={}", cache.display()));
+        }
+        finished(command.args(does).args(packages))
     }
-    let said = [output.stdout, output.stderr].concat();
-    Err(AptError::Failed {
-        command: command_line(command).collect::<Vec<_>>().join(" "),
-        status: output.status,
-        output: last_lines(&String::from_utf8_lossy(&said), 20),
-    })
-}
-
-fn command_line(command: &Command) -> impl Iterator<Item = String> {
-    let words = std::iter::once(command.get_program()).chain(command.get_args());
-    words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().into_iter()
 }
 
 impl Changes {
@@ -239,56 +185,52 @@ impl Changes {
         let mut changes = Self::default();
         for line in text.lines() {
             let mut words = line.split_whitespace();
-            let (Some(what), Some(name)) = (words.next(), words.next()) else { continue };
-            if what == "Remv" || what == "Purg" {
-                changes.removed.push(name.to_owned());
-            }
-            let mut words = words.peekable();
-            let is_replaced = words.next_if(|word| word.starts_with('[')).is_some();
-            let version = words.next().and_then(|word| word.strip_prefix('('));
-            if let ("Inst", Some(version)) = (what, version) {
-                let list = if is_replaced { &mut changes.replaced } else { &mut changes.installed };
-                list.push(NewPackage { name: name.to_owned(), version: version.to_owned() });
+            match (words.next(), words.next()) {
+                (Some("Remv" | "Purg"), Some(name)) => changes.removed.push(name.to_owned()),
+                (Some("Inst"), Some(name)) => {
+                    let version = words.find_map(|word| word.strip_prefix('('));
+                    let version = version.unwrap_or_default();
+                    changes.installed.push((name.to_owned(), version.to_owned()));
+                }
+                _ => {}
             }
         }
         changes
     }
 
-    /// The packages to unpack instead of installing them: all that are new or have another version, except
-    /// the C library, whose loader starts every program and is the machine's.
-    fn unpackable(self) -> Vec<NewPackage> {
-        let all = self.installed.into_iter().chain(self.replaced);
-        all.filter(|package| !package.name.starts_with("libc6")).collect()
+    /// Refuses packages that are too old.
+    fn serve(&self, packages: &[Package]) -> Result<(), AptError> {
+        for package in packages {
+            let new = self.installed.iter().find(|(name, _)| name == package.name());
+            let version = new.and_then(|(_, version)| Version::find(version));
+            if let Some(old) = version.filter(|version| !package.is_served_by(*version)) {
+                let why = format!("the package {} is too old: {old}", package.name());
+                return Err(AptError::NotDone(why));
+            }
+        }
+        Ok(())
     }
 }
 
 impl fmt::Display for Changes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names = |packages: &[NewPackage]| {
-            packages.iter().map(|package| package.name.clone()).collect::<Vec<_>>()
-        };
-        let kinds = [
-            ("installs", names(&self.installed)),
-            ("replaces", names(&self.replaced)),
-            ("REMOVES", self.removed.clone()),
-        ];
-        let some: Vec<_> = kinds
-            .iter()
-            .filter(|(_, packages)| !packages.is_empty())
-            .map(|(does, packages)| format!("{does} {}: {}", packages.len(), packages.join(" ")))
-            .collect();
-        f.write_str(if some.is_empty() { "changes nothing" } else { "" })?;
-        f.write_str(&some.join("; "))
+        let (new, removed) = (&self.installed, &self.removed);
+        write!(f, "installs {}:", new.len())?;
+        new.iter().try_for_each(|(name, _)| write!(f, " {name}"))?;
+        match removed.len() {
+            0 => Ok(()),
+            count => write!(f, "; REMOVES {count}: {}", removed.join(" ")),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use std::cell::RefCell;
-    use std::os::unix::fs::PermissionsExt;
 
     use super::*;
 
+    const INSTALLS: &str = "Inst lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])\n";
     const REMOVES: &str = "\
 Reading package lists...
 The following packages will be REMOVED:
@@ -301,107 +243,135 @@ Conf lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])
 ";
 
     #[test]
-    fn a_simulation_says_what_would_be_installed_replaced_and_removed() {
+    fn a_simulation_says_what_would_be_installed_and_removed() {
         let changes = Changes::of_simulation(REMOVES);
-        let package =
-            |name: &str, version: &str| NewPackage { name: name.into(), version: version.into() };
-        let new = [package("lld-14", "1:14.0.6-12"), package("lld", "1:14.0-55.7")];
-        assert_eq!(changes.installed, new);
-        assert_eq!(changes.replaced, [package("libc6", "2.36-10")]);
-        assert_eq!(changes.removed, ["gcc-old"]);
-        assert_eq!(
-            changes.to_string(),
-            "installs 2: lld-14 lld; replaces 1: libc6; REMOVES 1: gcc-old"
-        );
-        // The loader of programs stays the machine's.
-        assert_eq!(changes.unpackable(), new);
+        assert_eq!(changes.to_string(), "installs 3: lld-14 libc6 lld; REMOVES 1: gcc-old");
+        assert_eq!(changes.installed[1], ("libc6".to_owned(), "2.36-10".to_owned()));
         let purged = Changes::of_simulation("Purg libfoo:i386 [1.0]\nnonsense\nInst\n");
-        assert_eq!(purged.removed, ["libfoo:i386"]);
-        assert_eq!(Changes::of_simulation("").to_string(), "changes nothing");
+        assert_eq!(purged.to_string(), "installs 0:; REMOVES 1: libfoo:i386");
     }
 
-    /// Programs that write down what they are asked; `apt-get` prints `simulation` where it simulates, and
-    /// makes a file for each package that it downloads.
-    fn fake(folder: &Path, simulation: &str) -> Apt {
-        fs::write(folder.join("simulation"), simulation).unwrap();
-        let script = |name: &str, text: &str| {
-            let program = folder.join(name);
-            fs::write(&program, format!("#!/bin/sh\nset -e\nhere={}\n{text}", folder.display()))
-                .unwrap();
-            fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
-            program
-        };
-        let apt_get = "case \"$*\" in *--simulate*) cat $here/simulation ;; *) echo \"$*\" >> $here/done ;; \
-                       esac\nfor p in \"$@\"; do case $p in *=*=*) ;; lld*=*) : > $p.deb ;; esac; done\n";
-        Apt {
-            apt_get: script("apt-get", apt_get),
-            dpkg_deb: script("dpkg-deb", "echo \"dpkg-deb $1 $(basename $2) $3\" >> $here/done\n"),
-            own_lists: None,
+    #[test]
+    fn packages_that_are_too_old_do_not_serve() {
+        let rustc = |version| Changes::of_simulation(&format!("Inst rustc-web ({version}.0 x)\n"));
+        assert!(rustc("1.95").serve(&Package::COMPILER).is_ok());
+        let error = rustc("1.85").serve(&Package::COMPILER).unwrap_err().to_string();
+        assert_eq!(error, "the package rustc-web is too old: 1.85");
+    }
+
+    /// A machine whose `apt-get` and `dpkg-deb` write down their arguments.
+    struct Machine {
+        folder: tempfile::TempDir,
+        unpacked: Unpacked,
+    }
+
+    impl Machine {
+        /// `apt-get` prints `simulation` where it simulates, and makes a file for each package that it
+        /// downloads.
+        fn new(simulation: &str) -> Self {
+            let folder = tempfile::tempdir().unwrap();
+            fs::write(folder.path().join("simulation"), simulation).unwrap();
+            let unpacked = Unpacked::beside(folder.path());
+            let machine = Self { folder, unpacked };
+            machine.has(
+                "apt-get",
+                "case \"$*\" in *--simulate*) cat $here/simulation ;; *) echo \"$*\" >> $here/done ;; \
+                 esac\nfor p in \"$@\"; do case $p in *=*=*) ;; lld*=*) : > $p.deb ;; esac; done\n",
+            );
+            machine.has("dpkg-deb", "echo \"dpkg-deb $1 $(basename $2) $3\" >> $here/done\n");
+            machine
+        }
+
+        fn has(&self, name: &str, text: &str) {
+            let (folder, draft) = (self.folder.path(), self.folder.path().join("draft"));
+            let script = format!("#!/bin/sh\nset -e\nhere={}\n{text}", folder.display());
+            fs::write(&draft, script).unwrap();
+            // Another process writes the file: a file that this process had open could not be run.
+            let mut install = Command::new("install");
+            finished(install.args(["-m", "755"]).arg(draft).arg(folder.join(name))).unwrap();
+        }
+
+        /// Has packages provided; returns the result, the messages, and the arguments of the programs.
+        fn provide(
+            &self,
+            is_root: bool,
+            package: Package,
+        ) -> (Result<(), AptError>, String, String) {
+            let said = RefCell::new(String::new());
+            let progress = |step: &str| said.borrow_mut().push_str(step);
+            let (apt_get, dpkg_deb) =
+                (self.folder.path().join("apt-get"), self.folder.path().join("dpkg-deb"));
+            let unpacked = &self.unpacked;
+            let apt = Apt { apt_get, dpkg_deb, is_root, unpacked, progress: &progress };
+            let result = apt.provide(&[package]);
+            let done = fs::read_to_string(self.folder.path().join("done")).unwrap_or_default();
+            (result, said.take(), done)
         }
     }
 
-    fn done(folder: &Path) -> String {
-        fs::read_to_string(folder.join("done")).unwrap_or_default()
-    }
-
     #[test]
-    fn what_would_remove_a_package_is_not_installed() {
-        let folder = tempfile::tempdir().unwrap();
-        let apt = fake(folder.path(), REMOVES);
-        let error = apt.install(&["lld"], |_| {}).unwrap_err().to_string();
-        assert_eq!(done(folder.path()), "");
-        assert!(error.contains("REMOVES 1: gcc-old"), "{error}");
-        assert!(error.ends_with("\n  apt-get install --no-install-recommends lld"), "{error}");
-    }
-
-    #[test]
-    fn what_would_remove_a_package_can_be_unpacked() {
-        let folder = tempfile::tempdir().unwrap();
-        let apt = fake(folder.path(), REMOVES);
-        let root = folder.path().join("root");
-        let said = RefCell::new(String::new());
-        // What an interrupted one has left is not unpacked with it.
-        make(&root.join("archives")).unwrap();
-        fs::write(root.join("archives/lld=1:14.0-55.6.deb"), "half of it").unwrap();
-        apt.unpack(&["lld"], &root, |step| said.borrow_mut().push_str(step)).unwrap();
-        assert!(said.borrow().ends_with(": lld-14 lld"), "{said:?}");
-        let done = done(folder.path());
-        let lines: Vec<_> = done.lines().collect();
-        assert!(lines[0].ends_with("download lld-14=1:14.0.6-12 lld=1:14.0-55.7"), "{done}");
-        let mut unpacked: Vec<_> = lines[1..].to_vec();
-        unpacked.sort_unstable();
-        let root = root.display();
-        assert_eq!(
-            unpacked,
-            [
-                format!("dpkg-deb -x lld-14=1:14.0.6-12.deb {root}"),
-                format!("dpkg-deb -x lld=1:14.0-55.7.deb {root}"),
-            ]
+    fn root_installs_what_removes_nothing() {
+        let (result, said, done) = Machine::new(INSTALLS).provide(true, Package::Lld);
+        result.unwrap();
+        assert!(said.ends_with("lld: installs 1: lld"), "{said}");
+        assert!(
+            done.ends_with("install --yes --no-install-recommends --no-remove lld\n"),
+            "{done}"
         );
-        assert!(!folder.path().join("root/archives").exists());
-        // Nothing was asked to be installed or removed.
-        assert!(!done.contains("install"), "{done}");
     }
 
     #[test]
-    fn what_removes_nothing_is_said_and_done_and_may_not_remove() {
-        let folder = tempfile::tempdir().unwrap();
-        let apt = fake(folder.path(), "Inst lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])\n");
-        let said = RefCell::new(String::new());
-        apt.install(&["lld"], |step| said.borrow_mut().push_str(step)).unwrap();
-        assert!(said.borrow().ends_with("installs 1: lld"), "{said:?}");
-        let done = done(folder.path());
-        assert!(done.contains("install --yes --no-install-recommends --no-remove lld"), "{done}");
+    fn a_package_that_would_remove_another_one_is_unpacked() {
+        for is_root in [true, false] {
+            let machine = Machine::new(REMOVES);
+            let root = machine.unpacked.folder();
+            // What an interrupted one has left is not unpacked with it.
+            fs::create_dir_all(root.join("archives")).unwrap();
+            fs::write(root.join("archives/lld=1:14.0-55.6.deb"), "half of it").unwrap();
+            let (result, said, done) = machine.provide(is_root, Package::Lld);
+            result.unwrap();
+            assert_eq!(said.contains("REMOVES 1: gcc-old: not done"), is_root, "{said}");
+            // The loader of programs stays the machine's.
+            assert!(said.ends_with(": lld-14 lld"), "{said}");
+            let mut lines: Vec<_> = done.lines().collect();
+            lines.sort_unstable();
+            assert!(lines[0].ends_with("download lld-14=1:14.0.6-12 lld=1:14.0-55.7"), "{done}");
+            let unpacks = |name| format!("dpkg-deb -x {name}.deb {}", root.display());
+            let unpacked = [unpacks("lld-14=1:14.0.6-12"), unpacks("lld=1:14.0-55.7")];
+            assert_eq!(lines[1..], unpacked);
+            assert!(!root.join("archives").exists());
+            assert!(machine.unpacked.version(Package::Lld).is_some());
+        }
+    }
+
+    /// They look for their parts where they are installed.
+    #[test]
+    fn the_tools_of_the_virtual_board_are_not_unpacked() {
+        for is_root in [true, false] {
+            let (result, _, done) = Machine::new(REMOVES).provide(is_root, Package::Cmake);
+            let error = result.unwrap_err().to_string();
+            assert_eq!(error.contains("REMOVES 1: gcc-old"), is_root, "{error}");
+            assert_eq!(done, "");
+        }
     }
 
     #[test]
-    fn a_user_without_rights_has_lists_of_their_own() {
-        let folder = tempfile::tempdir().unwrap();
-        let apt = Apt { own_lists: Some(folder.path().join("apt")), ..fake(folder.path(), "") };
-        // The machine's lists serve until others are fetched.
-        assert!(apt.options().is_empty());
-        apt.update().unwrap();
-        let lists = format!("Dir::State::Lists={}", folder.path().join("apt/lists").display());
-        assert!(done(folder.path()).contains(&lists), "{}", done(folder.path()));
+    fn lists_are_fetched_before_a_package_is_given_up() {
+        for is_root in [true, false] {
+            let machine = Machine::new("");
+            machine.has(
+                "apt-get",
+                "echo \"$*\" >> $here/done; case \"$*\" in *update) ;; *) exit 1; esac",
+            );
+            let (result, said, done) = machine.provide(is_root, Package::Lld);
+            assert!(result.unwrap_err().to_string().contains("install --simulate"));
+            assert_eq!(said, "apt-get update");
+            let lists = format!("={}", machine.unpacked.folder().join("apt/lists").display());
+            let lines: Vec<_> = done.lines().collect();
+            assert!(lines.len() == 3 && lines[1].ends_with("update"), "{done}");
+            // The machine's lists serve a user without rights until others are fetched.
+            let own: Vec<_> = lines.iter().map(|line| line.contains(&lists)).collect();
+            assert_eq!(own, [false, !is_root, !is_root]);
+        }
     }
 }

@@ -7,9 +7,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::memory::{Memory, NoLength};
+use super::memory::Memory;
 use super::output::last_lines;
-use super::size::{SizeError, Sizes};
+use super::size::Sizes;
 use super::sources::{Sources, SourcesError, workspace_root};
 use super::unpacked::{QEMU, Unpacked};
 use super::{BoardModel, TARGET, Target, TorqueOutput};
@@ -76,21 +76,13 @@ pub enum BuildError {
         /// The output of the compiler.
         output: String,
     },
-    /// The linker's map could not be read.
-    #[error("{path}: {source}")]
-    Map {
-        /// The map.
+    /// The size of a program, or the linker's map, could not be read.
+    #[error("{path}: {why}")]
+    Content {
+        /// The file.
         path: PathBuf,
-        /// The cause.
-        source: NoLength,
-    },
-    /// The program's size could not be read.
-    #[error("{path}: {source}")]
-    Size {
-        /// The program's file.
-        path: PathBuf,
-        /// The cause.
-        source: SizeError,
+        /// The reason.
+        why: String,
     },
 }
 
@@ -220,18 +212,6 @@ impl Toolchain {
         self.scenes_programs(names, &variant)?.into_iter().map(Program::at).collect()
     }
 
-    /// Builds a program for a board with a plain `cargo build --release`, to check that it compiles and fits;
-    /// discards the output.
-    ///
-    /// # Errors
-    /// If it does not compile or fit.
-    pub fn try_release(&self, board: BoardModel, name: &str) -> Result<(), BuildError> {
-        let build = ["--release", "--package", SCENES, "--features", board.name()];
-        let program = ["--bin", name, "--target", TARGET];
-        let _lock = self.workspace.lock("build")?;
-        self.compile(name, &[&build[..], &program].concat())
-    }
-
     /// Builds the tests that run on a board, like a user, and returns their file: a board's own bridge has
     /// other tests than its DAC.
     ///
@@ -288,41 +268,19 @@ impl Toolchain {
     pub fn memory(&self) -> Result<Memory, BuildError> {
         let path = self.workspace.root.join("memory.x");
         match fs::read_to_string(&path) {
-            Ok(map) => Memory::of_map(&map).map_err(|source| BuildError::Map { path, source }),
+            Ok(map) => Memory::of_map(&map).map_err(|why| BuildError::Content { path, why }),
             Err(source) => Err(BuildError::File { path, source }),
         }
     }
 
-    /// Builds the server that certifies scenes for [`CertifyClient`](crate::emulator::CertifyClient).
+    /// Builds a program without a scene for the emulated board: the server of a client in
+    /// [`emulator`](crate::emulator).
     ///
     /// # Errors
     /// If it does not compile.
-    pub fn build_certify_server(&self) -> Result<PathBuf, BuildError> {
-        self.build_harness("certify_server")
-    }
-
-    /// Builds the server that runs scenes for [`ServoClient`](crate::emulator::ServoClient).
-    ///
-    /// # Errors
-    /// If it does not compile.
-    pub fn build_servo_server(&self) -> Result<PathBuf, BuildError> {
-        self.build_harness("servo_server")
-    }
-
-    /// Builds the benchmark server for [`BenchClient`](crate::emulator::BenchClient).
-    ///
-    /// # Errors
-    /// If it does not compile.
-    pub fn build_bench_programs(&self) -> Result<PathBuf, BuildError> {
-        self.build_harness("bench_programs")
-    }
-
-    /// Builds the benchmark server that has every type of scene.
-    ///
-    /// # Errors
-    /// If it does not compile.
-    pub fn build_bench_all(&self) -> Result<PathBuf, BuildError> {
-        self.build_harness("bench_all")
+    pub fn build_harness(&self, name: &str) -> Result<PathBuf, BuildError> {
+        let variant = Variant { features: "emulated".into(), suffix: String::new() };
+        Ok(self.build("firmware-harness", &[name], &variant)?.swap_remove(0))
     }
 
     /// Builds the program of the foreign environment for the emulated board, with its log.
@@ -341,7 +299,7 @@ impl Toolchain {
     pub fn build_own_board(&self) -> Result<Program, BuildError> {
         const NAME: &str = "own-board";
         let _lock = self.workspace.lock("build")?;
-        self.compile(NAME, &["--release", "--package", NAME, "--target", TARGET])?;
+        ran(NAME, self.cargo().args(["--release", "--package", NAME, "--target", TARGET]))?;
         let built = self.target_folder().join(TARGET).join("release").join(NAME);
         Program::at(self.workspace.keep(&built, NAME)?)
     }
@@ -352,13 +310,13 @@ impl Toolchain {
     /// If it does not compile.
     pub fn build_virtual_board(&self) -> Result<PathBuf, BuildError> {
         const NAME: &str = "virtual-board";
-        let mut cargo = Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into()));
-        cargo.current_dir(&self.workspace.root).args(["build", "--package", NAME]);
+        let target = &self.workspace.target;
+        let mut cargo = own_cargo(&self.workspace.root);
         for name in INHERITED {
             cargo.env_remove(name);
         }
-        let target = &self.workspace.target;
-        ran(NAME, cargo.env("CARGO_TARGET_DIR", target))?;
+        cargo.env("CARGO_TARGET_DIR", target).args(["build", "--package", NAME]);
+        ran(NAME, &mut cargo)?;
         Ok(target.join("debug").join(NAME))
     }
 
@@ -376,12 +334,6 @@ impl Toolchain {
         let name = "haptic_explore.wasm";
         let built = self.target_folder().join(target).join("browser").join(name);
         self.workspace.keep(&built, name)
-    }
-
-    /// Builds a program without a scene for the emulated board.
-    fn build_harness(&self, name: &str) -> Result<PathBuf, BuildError> {
-        let variant = Variant { features: "emulated".into(), suffix: String::new() };
-        Ok(self.build("firmware-harness", &[name], &variant)?.swap_remove(0))
     }
 
     fn scenes_programs(
@@ -411,19 +363,13 @@ impl Toolchain {
         let release = ["--release", "--package", package, "--target", TARGET];
         let programs = names.iter().flat_map(|name| ["--bin", name]);
         let features = ["--features", &*variant.features];
-        self.compile(
-            &names.join(", "),
-            &release.into_iter().chain(programs).chain(features).collect::<Vec<_>>(),
-        )?;
+        let mut cargo = self.cargo();
+        ran(&names.join(", "), cargo.args(release).args(programs).args(features))?;
         let folder = self.target_folder().join(TARGET).join("release");
         let keep = |name: &&str| {
             self.workspace.keep(&folder.join(name), &format!("{name}{}", variant.suffix))
         };
         names.iter().map(keep).collect()
-    }
-
-    fn compile(&self, program: &str, arguments: &[&str]) -> Result<(), BuildError> {
-        ran(program, self.cargo().args(arguments))
     }
 
     /// Each compiler has its own folder: in a common folder each would rebuild the other's output.
@@ -441,11 +387,12 @@ impl Toolchain {
 
     fn cargo_for(&self, target: Target) -> Command {
         let unpacked = self.workspace.unpacked();
+        let root = &self.workspace.root;
         let mut command = match self.compiler {
-            Compiler::Own => Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into())),
+            Compiler::Own => own_cargo(root),
             Compiler::Debian => Command::new(unpacked.program("cargo", "/usr/bin/cargo")),
         };
-        command.current_dir(&self.workspace.root);
+        command.current_dir(root);
         for name in INHERITED {
             command.env_remove(name);
         }
@@ -474,12 +421,11 @@ pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
     const NAME: &str = "haptic-scene";
     let workspace = Workspace::find()?;
     let _lock = workspace.lock("scene")?;
-    let mut cargo = Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(&workspace.root).args(["build", "--package", NAME]);
+    let mut cargo = own_cargo(&workspace.root);
     // Cargo's folder of the profile `dev` has a different name.
     let (profile, folder) =
         if cfg!(debug_assertions) { ("dev", "debug") } else { ("host", "host") };
-    cargo.args(["--profile", profile]);
+    cargo.args(["build", "--package", NAME, "--profile", profile]);
     cargo.env("CARGO_TARGET_DIR", &workspace.target).env("HAPTIC_SCENE", scene);
     ran(scene, &mut cargo)?;
     workspace.keep(&workspace.target.join(folder).join(NAME), &format!("haptic-{scene}"))
@@ -526,7 +472,7 @@ impl Program {
         let elf = fs::read(&path).map_err(|source| BuildError::File { path: path.clone(), source });
         match Sizes::of_elf(&elf?) {
             Ok(sizes) => Ok(Self { path, sizes }),
-            Err(source) => Err(BuildError::Size { path, source }),
+            Err(error) => Err(BuildError::Content { path, why: error.to_string() }),
         }
     }
 }
@@ -585,6 +531,13 @@ impl Workspace {
 /// If the workspace cannot be found.
 pub fn target_folder() -> Result<PathBuf, BuildError> {
     Ok(Workspace::find()?.target)
+}
+
+/// The cargo that has built this program, in a folder.
+fn own_cargo(folder: &Path) -> Command {
+    let mut cargo = Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(folder);
+    cargo
 }
 
 fn variable(name: &str) -> Option<OsString> {

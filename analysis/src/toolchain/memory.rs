@@ -13,23 +13,15 @@ pub struct Memory {
     pub fast: u64,
 }
 
-/// The map does not contain the length of a region.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("it does not say the length of {region}")]
-pub struct NoLength {
-    /// The region.
-    pub region: &'static str,
-}
-
 impl Memory {
     /// Reads a linker's map.
     ///
     /// # Errors
     /// If a region or its length is missing.
-    pub fn of_map(map: &str) -> Result<Self, NoLength> {
+    pub fn of_map(map: &str) -> Result<Self, String> {
         let length = |region| {
             let mut lengths = map.lines().filter_map(|line| length(line, region));
-            lengths.next().ok_or(NoLength { region })
+            lengths.next().ok_or_else(|| format!("it does not say the length of {region}"))
         };
         let (flash, ram) = (length("FLASH")?, length("RAM")?);
         Ok(Self { flash, ram, stack: length("STACK")?, fast: length("FAST")? })
@@ -61,7 +53,7 @@ mod tests {
         let map = "FLASH : ORIGIN = 0, LENGTH = 512\nRAM : LENGTH = 1K\nSTACK : LENGTH = many\n\
                    FAST : LENGTH = 10K";
         let error = Memory::of_map(map).unwrap_err();
-        assert_eq!(error.to_string(), "it does not say the length of STACK");
+        assert_eq!(error, "it does not say the length of STACK");
         let memory = Memory::of_map(&map.replace("many", "7")).unwrap();
         assert_eq!(memory, Memory { flash: 512, ram: 1024, stack: 7, fast: 10_240 });
     }

@@ -1,16 +1,16 @@
 //! Builds programs for the board; no other module knows how.
 //!
-//! [`prepare`] observes the machine ([`observe`]), makes a plan ([`plan`], a pure function), executes it, and
-//! returns a [`Toolchain`], which everything else uses.
+//! [`prepare`] observes the machine, decides what it needs, provides that, and returns a [`Toolchain`], which
+//! everything else uses.
 
 mod apt;
 mod board;
 mod build;
-pub mod host_environment;
 mod memory;
-pub mod observe;
+mod needs;
+mod observe;
 mod output;
-pub mod plan;
+mod package;
 mod prepare;
 pub mod probe;
 pub mod python;
@@ -26,7 +26,7 @@ pub use build::{
     BuildError, NumberFormat, Program, Toolchain, build_haptic_with, emulator, target_folder,
 };
 pub use memory::Memory;
-pub use plan::Tools;
+pub use needs::Tools;
 pub use prepare::{SetupError, prepare, set_up_package, set_up_tool};
 pub use size::Sizes;
 pub use sources::{Sources, SourcesError};

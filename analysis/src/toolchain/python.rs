@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use super::output::last_lines;
+use super::output;
 use super::prepare::{set_up_package, set_up_tool};
 use super::{BuildError, target_folder};
 
@@ -39,15 +39,8 @@ impl PythonEnvironment {
     pub fn pip_install(&self) -> Command {
         let mut pip = self.program("python");
         // One try: without a network every further one takes its time, and fails, too.
-        pip.args([
-            "-m",
-            "pip",
-            "--disable-pip-version-check",
-            "--retries",
-            "1",
-            "install",
-            "--quiet",
-        ]);
+        pip.args(["-m", "pip", "--disable-pip-version-check", "--retries", "1"]);
+        pip.args(["install", "--quiet"]);
         pip
     }
 
@@ -61,10 +54,9 @@ impl PythonEnvironment {
         set_up_package("python3-venv", &["python3", "-c", "import ensurepip"])?;
         if !self.0.join("pyvenv.cfg").exists() {
             let made = finished(Command::new("python3").args(["-m", "venv"]).arg(&self.0));
-            made.map_err(|why| {
+            made.inspect_err(|_| {
                 // An incomplete environment would lack pip the next time, too.
                 std::fs::remove_dir_all(&self.0).ok();
-                format!("python3 -m venv: {why}")
             })?;
         }
         Ok(())
@@ -76,10 +68,5 @@ impl PythonEnvironment {
 /// # Errors
 /// The last lines of its output, if it fails.
 pub fn finished(command: &mut Command) -> Result<(), String> {
-    let output = command.output().map_err(|error| error.to_string())?;
-    if output.status.success() {
-        return Ok(());
-    }
-    let said = [output.stdout, output.stderr].concat();
-    Err(last_lines(String::from_utf8_lossy(&said).trim_end(), 20))
+    output::finished(command).map(drop).map_err(|error| error.to_string())
 }

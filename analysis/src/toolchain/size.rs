@@ -21,11 +21,6 @@ pub struct Sizes {
 /// Prefix of the names of sections in the fast memory.
 const FAST: &str = ".fast";
 
-/// A file that is not a program for the board.
-#[derive(Debug, thiserror::Error)]
-#[error("not an ELF file: {0}")]
-pub struct SizeError(#[from] object::read::Error);
-
 impl Sizes {
     /// Bytes of flash.
     pub fn flash(&self) -> u64 {
@@ -38,7 +33,7 @@ impl Sizes {
     }
 
     /// Sums up the sections of a program that are loaded.
-    pub(super) fn of_elf(bytes: &[u8]) -> Result<Self, SizeError> {
+    pub(super) fn of_elf(bytes: &[u8]) -> Result<Self, object::read::Error> {
         let mut sizes = Self::default();
         for section in object::File::parse(bytes)?.sections() {
             if section.name().is_ok_and(|name| name.starts_with(FAST)) {

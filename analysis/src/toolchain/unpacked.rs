@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::Version;
-use super::apt::{Apt, AptError};
-use super::host_environment::Package;
+use super::package::Package;
 
 /// The emulator's program.
 pub const QEMU: &str = "qemu-system-arm";
@@ -31,33 +30,12 @@ impl Unpacked {
 
     /// The version of a package, if it is unpacked.
     pub(super) fn version(&self, package: Package) -> Option<Version> {
-        Version::find(&fs::read_to_string(self.stamp(package)).ok()?)
+        Version::find(&fs::read_to_string(self.stamp(package.name())).ok()?)
     }
 
-    /// Unpacks packages.
-    ///
-    /// # Errors
-    /// If they cannot be fetched or unpacked.
-    pub(super) fn add(
-        &self,
-        packages: &[Package],
-        apt: &Apt,
-        progress: impl Fn(&str),
-    ) -> Result<(), AptError> {
-        let names: Vec<_> = packages.iter().map(|package| package.name()).collect();
-        let versions = apt.unpack(&names, &self.folder, progress)?;
-        for package in packages {
-            let version = versions.iter().find(|new| new.name == package.name());
-            let version = version.map_or("", |new| &new.version);
-            let path = self.stamp(*package);
-            fs::write(&path, version).map_err(|source| AptError::Folder { path, source })?;
-        }
-        Ok(())
-    }
-
-    /// Written last, so that a package whose unpacking was interrupted does not count.
-    fn stamp(&self, package: Package) -> PathBuf {
-        self.folder.join(package.name()).with_extension("version")
+    /// The file with the version of an unpacked package.
+    pub(super) fn stamp(&self, name: &str) -> PathBuf {
+        self.folder.join(format!("{name}.version"))
     }
 
     /// A program: the unpacked one, or `installed`.

@@ -77,14 +77,6 @@ fn check_parts(board: BoardModel, name: &str, program: &Program) {
     }
 }
 
-/// What people of embedded systems type, for the board that most of them have.
-#[test]
-fn the_plain_command_builds_a_program_that_fits() {
-    let toolchain = toolchain();
-    let built = toolchain.try_release(BoardModel::NucleoG474re, "damper_wall");
-    built.unwrap_or_else(|error| panic!("{error}"));
-}
-
 /// They run by hand only, but shall not rot.
 #[test]
 fn the_tests_on_a_board_build() {

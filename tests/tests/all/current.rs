@@ -13,7 +13,7 @@ fn inputs() -> Vec<u32> {
 
 #[test]
 fn an_instant_is_within_its_budget_and_is_the_hosts() {
-    let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_harness("bench_programs").unwrap_or_else(|error| panic!("{error}"));
     let mut board = BenchClient::boot(&elf).unwrap();
     for bench in CurrentBench::ALL {
         let outputs = board.compute(&BenchRequest::Current(bench), &inputs()).unwrap();

@@ -148,7 +148,7 @@ fn judged_alike(board: &mut CertifyClient, scene: &Scene, name: &str) -> Certify
 /// The board's judgement of all reference cases is that of the host, bit for bit.
 #[test]
 fn the_board_judges_as_the_host_does() {
-    let elf = TOOLCHAIN.build_certify_server().unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_harness("certify_server").unwrap_or_else(|error| panic!("{error}"));
     let mut board = CertifyClient::boot(&elf).unwrap();
     let mut most = 0;
     for case in vectors::all() {
@@ -163,7 +163,7 @@ fn the_board_judges_as_the_host_does() {
 /// So is that of scenes whose torque lags; the board takes no longer for one than it may.
 #[test]
 fn the_board_judges_lagging_scenes_as_the_host_does() {
-    let elf = TOOLCHAIN.build_certify_server().unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_harness("certify_server").unwrap_or_else(|error| panic!("{error}"));
     let mut board = CertifyClient::boot(&elf).unwrap();
     let mut most = 0;
     let published = super::latency::scenes().into_iter().step_by(4);
@@ -179,7 +179,7 @@ fn the_board_judges_lagging_scenes_as_the_host_does() {
 /// So is that of torque profiles of 64 knots.
 #[test]
 fn the_board_judges_torque_profiles_as_the_host_does() {
-    let elf = TOOLCHAIN.build_certify_server().unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_harness("certify_server").unwrap_or_else(|error| panic!("{error}"));
     let mut board = CertifyClient::boot(&elf).unwrap();
     let (mut most, mut certified) = (0, 0);
     for scene in bench::profile::scenes() {
@@ -197,7 +197,7 @@ fn the_board_judges_torque_profiles_as_the_host_does() {
 /// data, on the board it is a type.
 #[test]
 fn every_format_computes_as_the_host_does() {
-    let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_harness("bench_programs").unwrap_or_else(|error| panic!("{error}"));
     let mut board = BenchClient::boot(&elf).unwrap();
     for (number, case) in servo::cases().iter().enumerate() {
         let motion = Motion::recorded(&case.problem, counts(number as u64));
@@ -233,7 +233,7 @@ fn every_format_computes_as_the_host_does() {
 /// change what a tick does.
 #[test]
 fn behind_the_matched_coupling_a_board_computes_as_the_host_does() {
-    let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_harness("bench_programs").unwrap_or_else(|error| panic!("{error}"));
     let mut board = BenchClient::boot(&elf).unwrap();
     let wall = Wall {
         stiffness: 22.0,

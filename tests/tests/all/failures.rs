@@ -35,8 +35,10 @@ use super::worst_hand::radius;
 fn board() -> ServoClient {
     let toolchain = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
         .unwrap_or_else(|error| panic!("{error}"));
-    ServoClient::boot(&toolchain.build_servo_server().unwrap_or_else(|error| panic!("{error}")))
-        .unwrap()
+    ServoClient::boot(
+        &toolchain.build_harness("servo_server").unwrap_or_else(|error| panic!("{error}")),
+    )
+    .unwrap()
 }
 
 /// The verdicts of each case that are wrong: those that say safe, and those that say unsafe.

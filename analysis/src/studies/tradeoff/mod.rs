@@ -177,7 +177,7 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
 /// # Errors
 /// If its program cannot be built or the emulator cannot be started.
 pub fn board() -> Result<BenchClient, TradeoffError> {
-    boot("building the trial of the formats", Toolchain::build_bench_programs)
+    boot("building the trial of the formats", |tools| tools.build_harness("bench_programs"))
 }
 
 /// The same for any scene; its program takes longer to build.
@@ -185,7 +185,7 @@ pub fn board() -> Result<BenchClient, TradeoffError> {
 /// # Errors
 /// As of [`board`].
 pub fn any_board() -> Result<BenchClient, TradeoffError> {
-    boot("building all types of scenes in all formats", Toolchain::build_bench_all)
+    boot("building all types of scenes in all formats", |tools| tools.build_harness("bench_all"))
 }
 
 fn boot(

@@ -34,7 +34,7 @@ fn broken(rng: &mut ChaCha8Rng) -> Scene {
 
 #[test]
 fn certificates_are_equal() {
-    let elf = TOOLCHAIN.build_certify_server().unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_harness("certify_server").unwrap_or_else(|error| panic!("{error}"));
     let mut boards = [
         CertifyClient::with_transport(VirtualGuest::boot(&elf)),
         CertifyClient::boot(&elf).unwrap(),

@@ -48,7 +48,7 @@ fn draw(rng: &mut ChaCha8Rng) -> LoopRequest {
 
 #[test]
 fn plays_are_equal() {
-    let elf = TOOLCHAIN.build_servo_server().unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_harness("servo_server").unwrap_or_else(|error| panic!("{error}"));
     let mut boards =
         [ServoClient::with_transport(VirtualGuest::boot(&elf)), ServoClient::boot(&elf).unwrap()];
     let mut replies = [0; 3];

@@ -47,7 +47,7 @@ fn bits(value: f64) -> u64 {
 
 #[test]
 fn sines_are_equal() {
-    let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_harness("bench_programs").unwrap_or_else(|error| panic!("{error}"));
     let mut boards =
         [BenchClient::with_transport(VirtualGuest::boot(&elf)), BenchClient::boot(&elf).unwrap()];
     let inputs = inputs();

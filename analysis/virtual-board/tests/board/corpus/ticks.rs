@@ -54,7 +54,7 @@ fn compare(
 
 #[test]
 fn ticks_are_equal() {
-    let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_harness("bench_programs").unwrap_or_else(|error| panic!("{error}"));
     let mut boards =
         [BenchClient::with_transport(VirtualGuest::boot(&elf)), BenchClient::boot(&elf).unwrap()];
     let mut rng = ChaCha8Rng::seed_from_u64(1);
