@@ -10,6 +10,7 @@ use tempfile::TempDir;
 use crate::common::{answer, haptic, program};
 
 #[test]
+#[ignore = "builds for minutes"]
 fn what_is_flashed_gives_the_codes_of_the_host() {
     for board in BoardModel::ALL {
         for scene in ["delayed_spring", "damper_wall", "free_mode"] {
@@ -67,6 +68,7 @@ fn with_its_bridge(scene: &str, ticks: &str) -> (Vec<f64>, Vec<f64>) {
 /// The hand is a spring of 6 N m/rad to its set-point of 0.12 rad: the motor's torque is the servo's, or the
 /// device would rest elsewhere.
 #[test]
+#[ignore = "builds for minutes"]
 fn a_hand_rests_in_the_wall_of_a_motor_board_by_the_motor_s_torque() {
     let (angles, torques) = with_its_bridge("bridge_wall", "1700");
     let (angles, torques) = (&angles[1500..], &torques[1500..]);
@@ -84,6 +86,7 @@ fn a_hand_rests_in_the_wall_of_a_motor_board_by_the_motor_s_torque() {
 
 /// Aligned before that, as a person would have it aligned.
 #[test]
+#[ignore = "builds for minutes"]
 fn a_brushless_motor_is_aligned_and_then_gives_the_codes_of_the_host() {
     let (angles, torques) = with_its_bridge("brushless_wall", "9500");
     // The hand comes from outside, where there is no torque.
@@ -158,10 +161,20 @@ impl Drop for SimulatedBoard {
     }
 }
 
-/// Over the serial port that the drivers have set up, judged by the certificate in the flash.
 #[test]
 fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
-    for board in BoardModel::ALL {
+    tune(&[BoardModel::NucleoG474re]);
+}
+
+#[test]
+#[ignore = "builds for minutes"]
+fn so_are_those_of_other_boards() {
+    tune(&[BoardModel::BG431bEsc1, BoardModel::FeatherStm32f405]);
+}
+
+/// Over the serial port that the drivers have set up, judged by the certificate in the flash.
+fn tune(boards: &[BoardModel]) {
+    for &board in boards {
         let board = SimulatedBoard::of(board, "damper_wall");
         let (status, running) = board.tune(&[]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
@@ -185,6 +198,7 @@ fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
 
 /// With the measurements of its power stage.
 #[test]
+#[ignore = "builds for minutes"]
 fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
     let board = SimulatedBoard::of(BoardModel::BG431bEsc1, "bridge_wall");
     let (status, running) = board.tune(&["--arm"]);

@@ -79,6 +79,7 @@ fn check_parts(board: BoardModel, name: &str, program: &Program) {
 
 /// They run by hand only, but shall not rot.
 #[test]
+#[ignore = "builds for minutes"]
 fn the_tests_on_a_board_build() {
     let toolchain = toolchain();
     for (board, output) in [
@@ -112,6 +113,7 @@ fn where_no_board_is_named_the_compiler_names_all_of_them() {
 }
 
 #[test]
+#[ignore = "builds for minutes"]
 fn every_program_builds_for_every_board_and_fits() {
     let toolchain = toolchain();
     let programs = toolchain.scenes().unwrap();

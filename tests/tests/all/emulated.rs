@@ -265,6 +265,7 @@ fn behind_the_matched_coupling_a_board_computes_as_the_host_does() {
 
 /// What the servo leaves of a board's memory: 128 KiB of flash, 22 KiB of RAM.
 #[test]
+#[ignore = "builds for minutes"]
 fn programs_without_a_log_fit_the_smallest_board() {
     let scenes = TOOLCHAIN.scenes().unwrap();
     let scenes: Vec<_> = scenes.iter().map(String::as_str).collect();

@@ -85,6 +85,7 @@ fn no_executor_no_logger_and_no_hardware_come_with_it() {
 
 /// A program for a board, from nothing but the library and its linker map.
 #[test]
+#[ignore = "builds for minutes"]
 fn a_scene_of_another_crate_runs_on_a_board() {
     let folder = copy("on_a_board");
     let map = Path::new(env!("CARGO_MANIFEST_DIR")).join("../memory.x");

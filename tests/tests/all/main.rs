@@ -47,5 +47,4 @@ mod snaps;
 mod soundness;
 mod two_jitters;
 mod vectors;
-mod virtual_board;
 mod worst_hand;

@@ -6,3 +6,6 @@ mod periodic_motion;
 mod planted;
 mod search;
 mod teeth;
+
+/// Scenes of a search: of all planted faults, the rarest shows in the 4155th scene.
+const SCENES: u64 = 5000;

@@ -4,6 +4,8 @@ use adversary::planted::Planted;
 use adversary::scenes::Choice;
 use adversary::search::{Effort, Search};
 
+use super::SCENES;
+
 /// The same scenes, hands and patterns as in the search for what the product lets pass.
 #[test]
 fn the_search_finds_what_every_planted_rule_lets_pass() {
@@ -11,7 +13,7 @@ fn the_search_finds_what_every_planted_rule_lets_pass() {
     for planted in Planted::ALL {
         let search = Search {
             seed: 1,
-            scenes: 12_000,
+            scenes: SCENES,
             time: None,
             choice: Choice { planted: Some(planted), ..Choice::ANY },
             enough: 1,

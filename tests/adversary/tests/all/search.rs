@@ -8,6 +8,8 @@ use haptic_servo::scene::{Coupling, Scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use super::SCENES;
+
 fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok().map(|value| value.parse().unwrap_or_else(|e| panic!("{name}: {e}")))
 }
@@ -17,7 +19,7 @@ fn no_hand_takes_energy_out_of_a_certified_scene() {
     // A number of scenes, not a time: the same ones on every machine.
     let search = Search {
         seed: number("ADVERSARY_SEED").unwrap_or(1),
-        scenes: number("ADVERSARY_SCENES").unwrap_or(8000),
+        scenes: number("ADVERSARY_SCENES").unwrap_or(SCENES),
         time: None,
         choice: Choice::ANY,
         enough: 20,
