@@ -54,15 +54,9 @@ impl<E: Copy> Program<E> {
     /// The invalid number and its bound.
     pub const fn check(&self) -> Result<(), BuildError> {
         let Scene { timing, torque_limit, .. } = self.scene;
-        if let Err(error) = period::check(timing.period) {
-            return Err(error);
-        }
-        if let Err(error) = self.transducers.check(timing, torque_limit) {
-            return Err(error);
-        }
-        if let Err(error) = BuildError::unless_positive("time of fading", self.rendering.fade) {
-            return Err(error);
-        }
+        ok!(period::check(timing.period));
+        ok!(self.transducers.check(timing, torque_limit));
+        ok!(BuildError::unless_positive("time of fading", self.rendering.fade));
         BuildError::unless_positive("link's timeout", self.options.link_timeout)
     }
 

@@ -1,9 +1,7 @@
 //! Errors between a certified scene and a servo.
 
-use core::fmt;
-
 use crate::number::{Format, Number, OutOfRange};
-use crate::text::Sentence;
+use crate::text::{Sentence, error_with_sentence, push};
 
 /// The reason why a certified scene cannot run with these transducers in this number format.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,151 +138,68 @@ impl BuildError {
     pub fn number<N: Number>(name: &'static str, value: f64) -> Result<N, Self> {
         N::from_f64(value).map_err(|reason| Self::Unrepresentable { name, reason })
     }
-}
 
-impl BuildError {
     /// The error as a sentence, the same at compile time, on the host and on the board.
     pub const fn sentence(&self) -> Sentence {
         let mut t = Sentence::new();
-        match self {
+        match *self {
             Self::NotPositive { name, value } => {
-                t.push("the ");
-                t.push(name);
-                t.push(" must be positive and finite, and is ");
-                t.push_number(*value);
+                push!(t, "the " {name} " must be positive and finite, and is " {value});
             }
-            Self::TorqueLimit { limit, full_scale } => {
-                t.push("the torque limit of ");
-                t.push_number(*limit);
-                t.push(" N m is above the DAC's full scale of ");
-                t.push_number(*full_scale);
-                t.push(" N m: lower it to that, or scale the amplifier up");
-            }
+            Self::TorqueLimit { limit, full_scale } => push!(t,
+                "the torque limit of " {limit} " N m is above the DAC's full scale of " {full_scale} " N m: lower it \
+                 to that, or scale the amplifier up"),
             Self::Unrepresentable { name, reason } => {
-                t.push("the ");
-                t.push(name);
-                t.push(": ");
+                push!(t, "the " {name} ": ");
                 reason.write(&mut t);
             }
-            Self::Uncertified { format } => {
-                t.push("the scene is certified, but not with its coefficients rounded to ");
-                t.push(format.name().as_str());
-                t.push(": `haptic certify --format` says why; leave more margin");
-            }
-            Self::IllPosed { line, contact } => {
-                t.push(
-                    "coupling and environment have no unique solution: the loop gain 1 + f / K is ",
-                );
-                t.push_number(*line);
-                t.push(" out of contact and ");
-                t.push_number(*contact);
-                t.push(
-                    " in contact, and must be positive; a stiffer coupling or a delayed \
-                     environment has one",
-                );
-            }
-            Self::NotLate => {
-                t.push("the environment says that it is late, and its law is not");
-            }
-            Self::CouplingMemory => {
-                t.push(
-                    "a matched coupling goes with an environment that is `Matched`, with as many whole \
-                     samples and lags as the scene's latency has, and no other coupling does",
-                );
-            }
-            Self::NoMatchedCoupling => {
-                t.push(
-                    "there is no matched coupling for this latency: actuator lag and sensor lag are too \
-                     much alike, updates may be missed where torques lag, or a number is out of range",
-                );
-            }
-            Self::Turn { counts, largest } => {
-                t.push("a turn has ");
-                t.push_number(*counts);
-                t.push(
-                    " encoder counts, and a torque profile that repeats for ever needs a whole number of \
-                     them, up to ",
-                );
-                t.push_number(*largest);
-                t.push(": give it end stops, or count at the shaft that it is on");
-            }
-            Self::Hysteresis { hysteresis, count } => {
-                t.push("from a snap point the knob goes back ");
-                t.push_number(*hysteresis);
-                t.push(" rad to snap back, and that must be more than an encoder count of ");
-                t.push_number(*count);
-                t.push(" rad: put the snap point farther from the centre, or take fewer detents");
-            }
-            Self::LawElsewhere => {
-                t.push(
-                    "the environment is known by its bounds alone: only its own crate renders it",
-                );
-            }
-            Self::Delay { delay, largest } => {
-                t.push("a delay of ");
-                t.push_number(*delay as f64);
-                t.push(" samples is longer than the ");
-                t.push_number(*largest as f64);
-                t.push(" that are stored");
-            }
-            Self::Improper { numerator, denominator } => {
-                t.push("a numerator of degree ");
-                t.push_number(*numerator as f64);
-                t.push(" over a denominator of degree ");
-                t.push_number(*denominator as f64);
-                t.push(" needs future samples");
-            }
-            Self::Injection { damping, room } => {
-                t.push("a damping of ");
-                t.push_number(*damping);
-                t.push(
-                    " N m s/rad that is switched on and off needs as much of the device's \
-                     passivity, but this scene leaves less than ",
-                );
-                t.push_number(*room);
-                t.push(" N m s/rad: inject less, or make the scene softer");
-            }
-            Self::Returned { energy, largest } => {
-                t.push("a hand that pushes and lets go returns up to ");
-                t.push_number(*energy);
-                t.push(" J to the supply, which takes less than ");
-                t.push_number(*largest);
-                t.push(
-                    " J below its fault level: make the wall stiffer or its torque limit lower, or state a \
-                     supply that takes more in the program",
-                );
-            }
-            Self::Speed { counts, half } => {
-                t.push("at the largest speed the encoder may move by ");
-                t.push_number(*counts);
-                t.push(" counts between two ticks, but its counter resolves only fewer than ");
-                t.push_number(*half);
-                t.push(": take a shorter worst period or a wider counter");
-            }
-            Self::Period { period, shortest, longest } => {
-                t.push("the period of ");
-                t.push_number(*period);
-                t.push(" s is not between ");
-                t.push_number(*shortest);
-                t.push(" and ");
-                t.push_number(*longest);
-                t.push(" s, the range of a board");
-            }
+            Self::Uncertified { format } => push!(t,
+                "the scene is certified, but not with its coefficients rounded to " {format.name().as_str()}
+                ": `haptic certify --format` says why; leave more margin"),
+            Self::IllPosed { line, contact } => push!(t,
+                "coupling and environment have no unique solution: the loop gain 1 + f / K is " {line} " out of \
+                 contact and " {contact} " in contact, and must be positive; a stiffer coupling or a delayed \
+                 environment has one"),
+            Self::NotLate => t.push("the environment says that it is late, and its law is not"),
+            Self::CouplingMemory => t.push(
+                "a matched coupling goes with an environment that is `Matched`, with as many whole \
+                 samples and lags as the scene's latency has, and no other coupling does",
+            ),
+            Self::NoMatchedCoupling => t.push(
+                "there is no matched coupling for this latency: actuator lag and sensor lag are too \
+                 much alike, updates may be missed where torques lag, or a number is out of range",
+            ),
+            Self::Turn { counts, largest } => push!(t,
+                "a turn has " {counts} " encoder counts, and a torque profile that repeats for ever needs a whole \
+                 number of them, up to " {largest} ": give it end stops, or count at the shaft that it is on"),
+            Self::Hysteresis { hysteresis, count } => push!(t,
+                "from a snap point the knob goes back " {hysteresis} " rad to snap back, and that must be more than \
+                 an encoder count of " {count} " rad: put the snap point farther from the centre, or take fewer \
+                 detents"),
+            Self::LawElsewhere => t.push(
+                "the environment is known by its bounds alone: only its own crate renders it",
+            ),
+            Self::Delay { delay, largest } => push!(t,
+                "a delay of " {delay} " samples is longer than the " {largest} " that are stored"),
+            Self::Improper { numerator, denominator } => push!(t,
+                "a numerator of degree " {numerator} " over a denominator of degree " {denominator}
+                " needs future samples"),
+            Self::Injection { damping, room } => push!(t,
+                "a damping of " {damping} " N m s/rad that is switched on and off needs as much of the device's \
+                 passivity, but this scene leaves less than " {room} " N m s/rad: inject less, or make the scene \
+                 softer"),
+            Self::Returned { energy, largest } => push!(t,
+                "a hand that pushes and lets go returns up to " {energy} " J to the supply, which takes less than "
+                {largest} " J below its fault level: make the wall stiffer or its torque limit lower, or state a \
+                 supply that takes more in the program"),
+            Self::Speed { counts, half } => push!(t,
+                "at the largest speed the encoder may move by " {counts} " counts between two ticks, but its counter \
+                 resolves only fewer than " {half} ": take a shorter worst period or a wider counter"),
+            Self::Period { period, shortest, longest } => push!(t,
+                "the period of " {period} " s is not between " {shortest} " and " {longest} " s, the range of a board"),
         }
         t
     }
-
-    /// Panics with the error's text; in a constant this is a compile error.
-    #[track_caller]
-    pub(crate) const fn refuse(&self) -> ! {
-        panic!("{}", self.sentence().as_str())
-    }
 }
 
-impl fmt::Display for BuildError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.sentence().as_str())
-    }
-}
-
-impl core::error::Error for BuildError {}
+error_with_sentence!(BuildError);

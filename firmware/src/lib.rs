@@ -73,6 +73,16 @@
 // A rejection contains all its numbers, and there is no heap for them.
 #![allow(clippy::result_large_err)]
 
+/// The value of a result, or a return with its error: `?` in a `const fn`.
+macro_rules! ok {
+    ($result:expr) => {
+        match $result {
+            Ok(value) => value,
+            Err(error) => return Err(error),
+        }
+    };
+}
+
 pub mod encoder;
 
 pub mod coupling;

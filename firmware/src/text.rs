@@ -13,6 +13,62 @@ pub struct Text<const N: usize> {
 /// A sentence about a scene.
 pub type Sentence = Text<800>;
 
+/// Appends pieces to a [`Text`]: literals, and strings and numbers in braces.
+macro_rules! push {
+    (@ $text:expr, { $piece:expr }) => {
+        $crate::text::Piece($piece).push_to(&mut $text)
+    };
+    (@ $text:expr, $piece:literal) => {
+        $text.push($piece)
+    };
+    ($text:expr, $($piece:tt)+) => {{
+        $(push!(@ $text, $piece);)+
+    }};
+}
+pub(crate) use push;
+
+/// `Display` and `Error` of an error that has a `sentence`, and its refusal at compile time.
+macro_rules! error_with_sentence {
+    ($error:ty) => {
+        impl $error {
+            /// Panics with the sentence; in a constant this is a compile error.
+            #[track_caller]
+            pub(crate) const fn refuse(&self) -> ! {
+                self.sentence().refuse()
+            }
+        }
+
+        impl core::fmt::Display for $error {
+            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                f.write_str(self.sentence().as_str())
+            }
+        }
+
+        impl core::error::Error for $error {}
+    };
+}
+pub(crate) use error_with_sentence;
+
+/// A piece of a text. Not by a trait, whose methods are not `const`.
+pub(crate) struct Piece<T>(pub T);
+
+impl Piece<&str> {
+    pub(crate) const fn push_to<const N: usize>(self, text: &mut Text<N>) {
+        text.push(self.0);
+    }
+}
+
+macro_rules! number_pieces {
+    ($($number:ty)+) => {$(
+        impl Piece<$number> {
+            pub(crate) const fn push_to<const N: usize>(self, text: &mut Text<N>) {
+                text.push_number(self.0 as f64);
+            }
+        }
+    )+};
+}
+number_pieces!(f64 u16 u32 usize);
+
 impl<const N: usize> Text<N> {
     /// Capacity in bytes.
     pub const CAPACITY: usize = N;
@@ -29,6 +85,12 @@ impl<const N: usize> Text<N> {
             // Only whole ASCII pieces are ever pushed.
             Err(_) => "",
         }
+    }
+
+    /// Panics with the text; in a constant this is a compile error.
+    #[track_caller]
+    pub(crate) const fn refuse(&self) -> ! {
+        panic!("{}", self.as_str())
     }
 
     const fn byte(&mut self, byte: u8) {

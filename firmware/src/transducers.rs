@@ -35,37 +35,27 @@ impl Transducers {
     /// # Errors
     /// The invalid number and its bound.
     pub const fn check(&self, timing: Timing, limit: Option<f64>) -> Result<(), BuildError> {
-        if let Err(error) = self.codes_per_torque() {
-            return Err(error);
-        }
-        if let Err(error) = self.bound(limit) {
-            return Err(error);
-        }
+        ok!(self.codes_per_torque());
+        ok!(self.bound(limit));
         // The counter must not wrap undetected before missed ticks become a fault.
         let worst = match timing.worst_period {
             Some(worst) => worst,
             None => timing.period,
         };
-        match self.largest_step(worst) {
-            Ok(_) => Ok(()),
-            Err(error) => Err(error),
-        }
+        ok!(self.largest_step(worst));
+        Ok(())
     }
 
     pub(crate) const fn radians_per_count(&self) -> Result<f64, BuildError> {
         let counts = self.counts_per_turn;
-        match BuildError::unless_positive("counts per turn", counts) {
-            Ok(()) => Ok(TAU / counts),
-            Err(error) => Err(error),
-        }
+        ok!(BuildError::unless_positive("counts per turn", counts));
+        Ok(TAU / counts)
     }
 
     pub(crate) const fn codes_per_torque(&self) -> Result<f64, BuildError> {
         let full_scale = self.full_scale_torque;
-        match BuildError::unless_positive("full-scale torque", full_scale) {
-            Ok(()) => Ok(DacCode::CODES_TO_FULL_SCALE as f64 / full_scale),
-            Err(error) => Err(error),
-        }
+        ok!(BuildError::unless_positive("full-scale torque", full_scale));
+        Ok(DacCode::CODES_TO_FULL_SCALE as f64 / full_scale)
     }
 
     /// The largest number of counts that the encoder can move in `time` s, plus one for its edges.
@@ -74,13 +64,8 @@ impl Transducers {
     /// If the counter could wrap undetected in that time.
     pub(crate) const fn largest_step(&self, time: f64) -> Result<u32, BuildError> {
         let speed = self.largest_speed;
-        if let Err(error) = BuildError::unless_positive("largest speed", speed) {
-            return Err(error);
-        }
-        let step = match self.radians_per_count() {
-            Ok(step) => step,
-            Err(error) => return Err(error),
-        };
+        ok!(BuildError::unless_positive("largest speed", speed));
+        let step = ok!(self.radians_per_count());
         let counts = speed * time / step + 1.0;
         let half = match self.counter {
             CounterWidth::Bits16 => (1_u32 << 15) as f64,
@@ -103,9 +88,7 @@ impl Transducers {
             Some(limit) => limit,
             None => full_scale,
         };
-        if let Err(error) = BuildError::unless_positive("torque limit", bound) {
-            return Err(error);
-        }
+        ok!(BuildError::unless_positive("torque limit", bound));
         if bound > full_scale {
             return Err(BuildError::TorqueLimit { limit: bound, full_scale });
         }

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use crate::servo::Transducers;
-use crate::text::Text;
+use crate::text::{Text, error_with_sentence, push};
 
 /// A filter of an STM32 timer's input: a level counts after this many equal samples in a row, so shorter
 /// pulses are removed.
@@ -58,7 +58,7 @@ impl InputFilter {
     pub const fn of_encoder(transducers: &Transducers, clock: f64) -> Self {
         match Self::new(transducers, clock) {
             Ok(filter) => filter,
-            Err(error) => panic!("{}", error.sentence().as_str()),
+            Err(error) => error.refuse(),
         }
     }
 
@@ -86,14 +86,15 @@ impl TooFast {
     /// The error as a sentence.
     pub const fn sentence(&self) -> Text<200> {
         let mut t = Text::new();
-        t.push("counts_per_turn and largest_speed allow ");
-        t.push_number(self.rate);
-        t.push(" counts a second; the shortest filter of this board's encoder inputs passes ");
-        t.push_number(self.largest);
-        t.push(": state the speed that the device can reach, or use fewer counts");
+        push!(t,
+            "counts_per_turn and largest_speed allow " {self.rate} " counts a second; the shortest filter of this \
+             board's encoder inputs passes " {self.largest} ": state the speed that the device can reach, or use \
+             fewer counts");
         t
     }
 }
+
+error_with_sentence!(TooFast);
 
 #[cfg(test)]
 mod tests {

@@ -12,11 +12,10 @@
 //! except the first, which the magnets may not have reached. With equal friction in both directions, friction
 //! cancels in the mean.
 
-use super::alignment_error::AlignmentError;
 use super::current_loop::CurrentLoop;
-use super::motor::Winding;
+use super::fault::AlignmentError;
+use super::modulation::Duties;
 use super::phase::{PhaseAlignment, Turn};
-use super::sample::Duties;
 
 /// Current of the field, relative to the current of full-scale torque.
 const PART: f32 = 0.25;
@@ -92,8 +91,8 @@ const fn quarters(stop: usize) -> u32 {
 
 impl Alignment {
     pub(super) const fn new(design: &CurrentLoop, begin: Turn) -> Self {
-        let instants = 1.0 / design.instant;
-        let is_brushed = matches!(design.winding, Winding::Brushed);
+        let instants = 1.0 / design.instant();
+        let is_brushed = !design.is_brushless();
         Self {
             ramp: (RAMP * instants) as u32,
             quarter: (QUARTER * instants) as u32,
@@ -170,7 +169,7 @@ impl Alignment {
             return Err(AlignmentError::Blocked { moved, expected });
         }
         // One pole pair more or less differs by twice as much.
-        let tolerance = TOLERANCE.min(0.5 / (1.0 + self.begin.pole_pairs() as f32));
+        let tolerance = TOLERANCE.min(0.5 / (1.0 + self.begin.pole_pairs as f32));
         if (moved.abs() as f32 - turn).abs() > tolerance * turn {
             return Err(AlignmentError::PolePairs { moved, expected });
         }

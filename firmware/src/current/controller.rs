@@ -4,20 +4,14 @@ use core::hint::cold_path;
 
 use super::alignment::{Alignment, AlignmentStep, Field};
 use super::current_loop::CurrentLoop;
-use super::encoder_index::IndexOffset;
+use super::encoder_index::{IndexOffset, OffsetCheck, check_index};
 use super::fault::PowerFault;
 use super::follower::{Follower, Wanted};
-use super::index_check::IndexCheck;
-use super::motor::Winding;
-use super::offset::Offsets;
-use super::offset_check::OffsetCheck;
-use super::phase::{PhaseAlignment, Turn};
-use super::sample::{Duties, Sample};
-use super::speed::Speed;
-use super::supervision::Supervision;
-use super::surroundings::Surroundings;
+use super::modulation::{Duties, Sample};
+use super::phase::{PhaseAlignment, Speed, Turn};
+use super::supervision::{Supervision, Surroundings};
 use super::vector::{Rotation, Vector};
-use crate::dac::DacCode;
+use super::zero_current::Offsets;
 use crate::encoder::RawCount;
 
 /// A running current loop.
@@ -36,7 +30,8 @@ pub struct CurrentController {
     phase: Option<PhaseAlignment>,
     /// Whether the program states the phase, and no torque has shown yet that it is the motor's.
     is_unchecked: bool,
-    index: IndexCheck,
+    /// The position of the first index since a restart, at which all others come.
+    index: Option<Turn>,
     speed: Speed,
     supervision: Supervision,
     surroundings: Surroundings,
@@ -76,7 +71,7 @@ impl CurrentController {
             turn: design.turn,
             phase: None,
             is_unchecked: false,
-            index: IndexCheck::NOT_SEEN,
+            index: None,
             speed: Speed::new(design.counter),
             supervision: Supervision::NONE,
             surroundings: Surroundings::of(design.limits.bus.0),
@@ -107,8 +102,8 @@ impl CurrentController {
     pub fn observe_index(&mut self, captured: RawCount) -> Result<(), PowerFault> {
         let mut at = self.turn;
         at.move_by(self.speed.since_last(captured));
-        if let Err(fault) = self.index.observe(at) {
-            (self.phase, self.index) = (None, IndexCheck::NOT_SEEN);
+        if let Err(fault) = check_index(*self.index.get_or_insert(at), at) {
+            (self.phase, self.index) = (None, None);
             return Err(fault);
         }
         if let (None, Some(offset)) = (self.phase, self.design.index_offset()) {
@@ -119,7 +114,7 @@ impl CurrentController {
 
     /// The phase of the motor at the index, once both are known; a program may state it.
     pub fn index_offset(&self) -> Option<IndexOffset> {
-        Some(IndexOffset::of(self.phase?, self.index.reference()?))
+        Some(IndexOffset::of(self.phase?, self.index?))
     }
 
     /// Stores the result of an alignment.
@@ -129,7 +124,7 @@ impl CurrentController {
 
     /// The check of a phase that the program states, before its first torque; `None` if none is needed.
     pub fn start_offset_check(&self) -> Option<OffsetCheck> {
-        self.is_unchecked.then(|| OffsetCheck::new(self.design.instant))
+        self.is_unchecked.then(|| OffsetCheck::new(self.design.instant()))
     }
 
     /// One instant of that check; `None` at its end, if the phase is the motor's.
@@ -150,7 +145,7 @@ impl CurrentController {
             self.is_unchecked = false;
             return Ok(None);
         };
-        let amps = self.design.law.amps_per_code * f32::from(DacCode::CODES_TO_FULL_SCALE);
+        let amps = self.design.law.full_scale();
         // Forward for the handle is backward for the magnets of a reversed motor.
         let wanted =
             Vector { along: amps * current.along, across: phase.sign() * amps * current.across };
@@ -164,7 +159,7 @@ impl CurrentController {
     /// If the offsets, the supply or the temperature of the last sample are out of range, or a brushless
     /// motor is not aligned.
     pub fn start(&mut self) -> Result<(), PowerFault> {
-        if matches!(self.design.winding, Winding::Brushless { .. }) && self.phase.is_none() {
+        if self.design.is_brushless() && self.phase.is_none() {
             return Err(self.not_aligned());
         }
         self.start_at_rest()
@@ -178,7 +173,7 @@ impl CurrentController {
     pub fn start_alignment(&mut self) -> Result<Alignment, PowerFault> {
         self.start_at_rest()?;
         // Counts lost before do not affect this alignment.
-        self.index = IndexCheck::NOT_SEEN;
+        self.index = None;
         Ok(Alignment::new(&self.design, self.turn))
     }
 
@@ -190,7 +185,7 @@ impl CurrentController {
     pub fn charge(&mut self, sample: &Sample) -> Result<(), PowerFault> {
         let limits = &self.design.limits;
         limits.check_currents(sample, self.offset)?;
-        if matches!(self.design.winding, Winding::Brushless { .. }) {
+        if self.design.is_brushless() {
             limits.check_third_current(sample, self.offset)?;
         }
         self.surroundings.observe(limits, sample)?;
@@ -222,9 +217,10 @@ impl CurrentController {
     /// Faults, after which the gates are to be switched off.
     #[inline(always)]
     pub fn step(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
-        match self.design.winding {
-            Winding::Brushed => self.step_of::<false>(sample, code_offset),
-            Winding::Brushless { .. } => self.step_of::<true>(sample, code_offset),
+        if self.design.is_brushless() {
+            self.step_brushless(sample, code_offset)
+        } else {
+            self.step_brushed(sample, code_offset)
         }
     }
 
@@ -251,12 +247,11 @@ impl CurrentController {
     pub fn over_current(&self, sample: &Sample) -> PowerFault {
         let limits = &self.design.limits;
         let counts = |phase: usize| (f32::from(sample.currents[phase]) - self.offset[phase]).abs();
-        let third = match self.design.winding {
-            Winding::Brushed => 0.0,
-            Winding::Brushless { .. } => limits.third_current(sample, self.offset),
-        };
-        let tripped = f32::from(limits.over_current);
-        limits.over_current(counts(0).max(counts(1)).max(third).max(tripped))
+        let mut most = counts(0).max(counts(1)).max(limits.over_current.into());
+        if self.design.is_brushless() {
+            most = most.max(limits.third_current(sample, self.offset));
+        }
+        limits.over_current(most)
     }
 
     /// One instant of an alignment. At its end the phase is stored, if one was found.
@@ -274,8 +269,7 @@ impl CurrentController {
             (self.phase, self.is_unchecked) = (result.ok(), false);
             return Ok(AlignmentStep::Ended(result));
         };
-        let amps = self.design.law.amps_per_code * f32::from(DacCode::CODES_TO_FULL_SCALE);
-        let wanted = Vector { along: current * amps, across: 0.0 };
+        let wanted = Vector { along: current * self.design.law.full_scale(), across: 0.0 };
         self.step_vector(sample, angle, wanted, Moved::NONE).map(AlignmentStep::Turning)
     }
 

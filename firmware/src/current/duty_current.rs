@@ -1,14 +1,12 @@
 //! The current of a constant duty in a load of known resistance and inductance, for the test of a power stage
 //! before it drives a motor (theory, section 15.9).
 
-use core::fmt;
-
 use super::current_loop::CurrentLoop;
 use super::error::DriveError;
-use super::motor::{Drive, Winding};
+use super::modulation::Duties;
+use super::motor::Drive;
 use super::power_stage::PowerStage;
-use super::sample::Duties;
-use crate::text::Text;
+use crate::text::{Text, error_with_sentence, push};
 
 /// Relative tolerance of the dead time: switching takes time, too.
 const DEAD_TIME_TOLERANCE: f64 = 0.5;
@@ -71,9 +69,7 @@ impl Drive {
         duty: f64,
         tolerance: f64,
     ) -> Result<DutyCurrent, DutyError> {
-        if let Err(error) = self.check_load(instant, tolerance) {
-            return Err(error);
-        }
+        ok!(self.check_load(instant, tolerance));
         let dead = 2.0 * stage.dead_time / instant;
         let (least, most) =
             (dead * (1.0 + DEAD_TIME_TOLERANCE), 1.0 - 2.0 * stage.shortest_low / instant);
@@ -99,28 +95,24 @@ impl Drive {
     }
 
     const fn check_load(&self, instant: f64, tolerance: f64) -> Result<(), DutyError> {
-        if !matches!(self.motor.winding, Winding::Brushed) {
+        if self.motor.winding.is_brushless() {
             return Err(DutyError::Brushless);
         }
         let is_part = tolerance >= 0.0 && tolerance < 1.0;
         if !is_part {
             return Err(DutyError::Tolerance(tolerance));
         }
-        let numbers = [
+        let numbers = DriveError::unless_positive(&[
             ("load's resistance", self.motor.resistance),
             ("load's inductance", self.motor.inductance),
             ("lowest supply", self.supply.lowest),
             ("highest supply", self.supply.highest),
             ("period of the modulation", instant),
-        ];
-        let mut i = 0;
-        while i < numbers.len() {
-            if let Err(error) = DriveError::unless_positive(numbers[i].0, numbers[i].1) {
-                return Err(DutyError::Drive(error));
-            }
-            i += 1;
+        ]);
+        match numbers {
+            Ok(()) => Ok(()),
+            Err(error) => Err(DutyError::Drive(error)),
         }
-        Ok(())
     }
 
     /// The same for constants.
@@ -137,7 +129,7 @@ impl Drive {
     ) -> DutyCurrent {
         match self.current_at_duty(stage, instant, duty, tolerance) {
             Ok(current) => current,
-            Err(error) => panic!("{}", error.sentence().as_str()),
+            Err(error) => error.refuse(),
         }
     }
 }
@@ -162,39 +154,23 @@ impl DutyError {
     /// The error as a sentence.
     pub const fn sentence(&self) -> Text<320> {
         let mut t = Text::new();
-        match self {
+        match *self {
             Self::Drive(error) => return error.sentence(),
             Self::Brushless => {
                 t.push("a load has two terminals: state it as the winding of a brushed motor")
             }
             Self::Tolerance(tolerance) => {
-                t.push("the tolerance must be from 0 to below 1, and is ");
-                t.push_number(*tolerance);
+                push!(t, "the tolerance must be from 0 to below 1, and is " {tolerance});
             }
-            Self::Duty { duty, least, most } => {
-                t.push("the duty must be above ");
-                t.push_number(*least);
-                t.push(", which the dead time may take, and at most ");
-                t.push_number(*most);
-                t.push(", which leaves the low sides their time, and is ");
-                t.push_number(*duty);
-            }
-            Self::Current { current, largest } => {
-                t.push("the load may take ");
-                t.push_number(*current);
-                t.push(" A, and the power stage bears ");
-                t.push_number(*largest);
-                t.push(" A: take a larger resistance, a lower supply or a smaller duty");
-            }
+            Self::Duty { duty, least, most } => push!(t,
+                "the duty must be above " {least} ", which the dead time may take, and at most " {most}
+                ", which leaves the low sides their time, and is " {duty}),
+            Self::Current { current, largest } => push!(t,
+                "the load may take " {current} " A, and the power stage bears " {largest}
+                " A: take a larger resistance, a lower supply or a smaller duty"),
         }
         t
     }
 }
 
-impl fmt::Display for DutyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.sentence().as_str())
-    }
-}
-
-impl core::error::Error for DutyError {}
+error_with_sentence!(DutyError);

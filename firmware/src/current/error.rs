@@ -1,9 +1,7 @@
 //! Reasons why a drive cannot run on a power stage.
 
-use core::fmt;
-
 use super::motor::SupplyRange;
-use crate::text::Text;
+use crate::text::{Text, error_with_sentence, push};
 
 /// The reason why there is no current loop, with the value and its bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,162 +118,73 @@ pub enum DriveError {
     },
 }
 
-/// A sentence about a drive.
-type DriveSentence = Text<320>;
-
 impl DriveError {
     /// The error as a sentence, the same at compile time and later.
-    pub const fn sentence(&self) -> DriveSentence {
-        let mut t = DriveSentence::new();
-        match self {
+    pub const fn sentence(&self) -> Text<320> {
+        let mut t = Text::new();
+        match *self {
             Self::NotPositive { name, value } => {
-                t.push("the ");
-                t.push(name);
-                t.push(" must be positive and finite, and is ");
-                t.push_number(*value);
+                push!(t, "the " {name} " must be positive and finite, and is " {value});
             }
-            Self::PolePairs { pole_pairs, largest } => {
-                t.push("the motor's ");
-                t.push_number(*pole_pairs as f64);
-                t.push(
-                    " pole pairs must be at least 1, and at most as many as leave an electrical turn 64 \
-                     encoder counts, so that no torque is lost between two of them: ",
-                );
-                t.push_number(*largest as f64);
-            }
-            Self::Counts { counts, largest } => {
-                t.push("a turn has ");
-                t.push_number(*counts);
-                t.push(
-                    " encoder counts, and the phase of a brushless motor needs a whole number of them, up to ",
-                );
-                t.push_number(*largest);
-                t.push(": count at the shaft that the motor is on");
-            }
+            Self::PolePairs { pole_pairs, largest } => push!(t,
+                "the motor's " {pole_pairs} " pole pairs must be at least 1, and at most as many as leave an \
+                 electrical turn 64 encoder counts, so that no torque is lost between two of them: " {largest}),
+            Self::Counts { counts, largest } => push!(t,
+                "a turn has " {counts} " encoder counts, and the phase of a brushless motor needs a whole number of \
+                 them, up to " {largest} ": count at the shaft that the motor is on"),
             Self::IndexNotNeeded => t.push(
                 "a brushed motor needs no index of its encoder: state none, or the winding of a brushless one",
             ),
-            Self::IndexCounts { counts, least } => {
-                t.push("an electrical turn has ");
-                t.push_number(*counts);
-                t.push(" encoder counts, and a phase that comes from the index needs at least ");
-                t.push_number(*least);
-                t.push(", since its pulse is some counts wide: take a finer encoder, or state no offset");
-            }
-            Self::IndexOffset { offset, counts } => {
-                t.push("the index offset of ");
-                t.push_number(*offset as f64);
-                t.push(" counts is not below the counts of an electrical turn, ");
-                t.push_number(*counts);
-                t.push(": align the motor, and state the offset that the board tells");
-            }
-            Self::ElectricalSpeed { turns, largest } => {
-                t.push("at the largest speed the motor makes ");
-                t.push_number(*turns);
-                t.push(" electrical turns a second, and a 32nd of the modulation's frequency is ");
-                t.push_number(*largest);
-                t.push(": lower the largest speed");
-            }
-            Self::Bandwidth { bandwidth, largest } => {
-                t.push("the bandwidth of ");
-                t.push_number(*bandwidth);
-                t.push(" Hz is above ");
-                t.push_number(*largest);
-                t.push(
-                    " Hz, where the time constant of the current is two periods of the modulation: a \
-                     faster one leaves the feedback no time",
-                );
-            }
-            Self::Period { period, lowest, highest, nearest } => {
-                t.push("the period of ");
-                t.push_number(*period);
-                t.push(" s is not filled by whole periods of a modulation between ");
-                t.push_number(*lowest);
-                t.push(" and ");
-                t.push_number(*highest);
-                t.push(" Hz in whole counts of its timer: ");
-                t.push_number(*nearest);
-                t.push(" s is");
-            }
-            Self::Current { torque, current, largest } => {
-                t.push("full-scale torque of ");
-                t.push_number(*torque);
-                t.push(" N m, and the quarter more at which over-current trips, take ");
-                t.push_number(*current);
-                t.push(" A, and the power stage measures and bears ");
-                t.push_number(*largest);
-                t.push(" A: lower the full-scale torque");
-            }
-            Self::Supply { supply, board } => {
-                t.push("a supply from ");
-                t.push_number(supply.lowest);
-                t.push(" to ");
-                t.push_number(supply.highest);
-                t.push(" V is not in the board's range from ");
-                t.push_number(board.lowest);
-                t.push(" to ");
-                t.push_number(board.highest);
-                t.push(" V");
-            }
-            Self::OpenVoltage { voltage, supply } => {
-                t.push("the supply itself delivers up to ");
-                t.push_number(*voltage);
-                t.push(" V, which must be between its lowest and its highest voltage, ");
-                t.push_number(supply.lowest);
-                t.push(" and ");
-                t.push_number(supply.highest);
-                t.push(" V");
-            }
-            Self::Voltage { needed, available, enough } => {
-                t.push(
-                    "the step from full-scale torque to its opposite at the largest speed needs ",
-                );
-                t.push_number(*needed);
-                t.push(" V at the motor, and the lowest supply gives ");
-                t.push_number(*available);
-                t.push(" V: take ");
-                t.push_number(*enough);
-                t.push(" V, or lower bandwidth, torque or speed");
-            }
-            Self::Temperature { temperature, lowest, highest } => {
-                t.push("the largest temperature of ");
-                t.push_number(*temperature);
-                t.push(" degrees Celsius is not between ");
-                t.push_number(*lowest);
-                t.push(" and ");
-                t.push_number(*highest);
-            }
-            Self::CurrentRange { current, largest } => {
-                t.push("the board's largest current of ");
-                t.push_number(*current);
-                t.push(" A is above the ");
-                t.push_number(*largest);
-                t.push(" A that its converter can measure");
-            }
+            Self::IndexCounts { counts, least } => push!(t,
+                "an electrical turn has " {counts} " encoder counts, and a phase that comes from the index needs at \
+                 least " {least} ", since its pulse is some counts wide: take a finer encoder, or state no offset"),
+            Self::IndexOffset { offset, counts } => push!(t,
+                "the index offset of " {offset} " counts is not below the counts of an electrical turn, " {counts}
+                ": align the motor, and state the offset that the board tells"),
+            Self::ElectricalSpeed { turns, largest } => push!(t,
+                "at the largest speed the motor makes " {turns} " electrical turns a second, and a 32nd of the \
+                 modulation's frequency is " {largest} ": lower the largest speed"),
+            Self::Bandwidth { bandwidth, largest } => push!(t,
+                "the bandwidth of " {bandwidth} " Hz is above " {largest} " Hz, where the time constant of the \
+                 current is two periods of the modulation: a faster one leaves the feedback no time"),
+            Self::Period { period, lowest, highest, nearest } => push!(t,
+                "the period of " {period} " s is not filled by whole periods of a modulation between " {lowest}
+                " and " {highest} " Hz in whole counts of its timer: " {nearest} " s is"),
+            Self::Current { torque, current, largest } => push!(t,
+                "full-scale torque of " {torque} " N m, and the quarter more at which over-current trips, take "
+                {current} " A, and the power stage measures and bears " {largest} " A: lower the full-scale torque"),
+            Self::Supply { supply, board } => push!(t,
+                "a supply from " {supply.lowest} " to " {supply.highest} " V is not in the board's range from "
+                {board.lowest} " to " {board.highest} " V"),
+            Self::OpenVoltage { voltage, supply } => push!(t,
+                "the supply itself delivers up to " {voltage} " V, which must be between its lowest and its highest \
+                 voltage, " {supply.lowest} " and " {supply.highest} " V"),
+            Self::Voltage { needed, available, enough } => push!(t,
+                "the step from full-scale torque to its opposite at the largest speed needs " {needed} " V at the \
+                 motor, and the lowest supply gives " {available} " V: take " {enough}
+                " V, or lower bandwidth, torque or speed"),
+            Self::Temperature { temperature, lowest, highest } => push!(t,
+                "the largest temperature of " {temperature} " degrees Celsius is not between " {lowest} " and "
+                {highest}),
+            Self::CurrentRange { current, largest } => push!(t,
+                "the board's largest current of " {current} " A is above the " {largest}
+                " A that its converter can measure"),
         }
         t
     }
 
-    /// Rejects values that are not positive and finite.
-    pub(super) const fn unless_positive(name: &'static str, value: f64) -> Result<(), Self> {
-        if value > 0.0 && value.is_finite() {
-            Ok(())
-        } else {
-            Err(Self::NotPositive { name, value })
+    /// Rejects the first of these numbers that is not positive and finite.
+    pub(super) const fn unless_positive(numbers: &[(&'static str, f64)]) -> Result<(), Self> {
+        let mut i = 0;
+        while i < numbers.len() {
+            let (name, value) = numbers[i];
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(Self::NotPositive { name, value });
+            }
+            i += 1;
         }
-    }
-
-    /// Panics with the error's text; in a constant this is a compile error.
-    #[track_caller]
-    pub(super) const fn refuse(&self) -> ! {
-        panic!("{}", self.sentence().as_str())
+        Ok(())
     }
 }
 
-impl fmt::Display for DriveError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.sentence().as_str())
-    }
-}
-
-impl core::error::Error for DriveError {}
+error_with_sentence!(DriveError);

@@ -1,8 +1,6 @@
-//! Faults of a power stage: its gates are switched off.
+//! Faults of a power stage: its gates are switched off. Of a motor that could not be aligned, the reason.
 
-use core::fmt;
-
-use super::alignment_error::AlignmentError;
+use crate::fault::codes::fault_table;
 
 /// The fault that switched a power stage off, with its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,75 +98,100 @@ pub enum PowerFault {
     Alignment(AlignmentError),
 }
 
-impl PowerFault {
-    /// The fault in one word, for tables.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::OverCurrent { .. } => "over-current",
-            Self::OverVoltage { .. } => "over-voltage",
-            Self::UnderVoltage { .. } => "under-voltage",
-            Self::OverTemperature { .. } => "over-temperature",
-            Self::CurrentOffset { .. } => "current-offset",
-            Self::Thermistor { .. } => "thermistor",
-            Self::Comparator { .. } => "comparator",
-            Self::IndexOffset { .. } => "index-offset",
-            Self::CurrentNotFollowing { .. } => "current-not-following",
-            Self::SaturatedDuty { .. } => "saturated-duty",
-            Self::IndexMismatch { .. } => "index-mismatch",
-            Self::CurrentInterruptLate { .. } => "current-interrupt-late",
-            Self::NotAligned { .. } => "not-aligned",
-            Self::Alignment(error) => error.as_str(),
-        }
-    }
-
-    /// The fault as a code and two numbers, distinct from the codes of [`Fault`](crate::fault::Fault).
-    pub const fn encode(self) -> (u32, [u32; 2]) {
-        match self {
-            Self::OverCurrent { current, largest } => (14, [current, largest]),
-            Self::OverVoltage { voltage, highest } => (15, [voltage, highest]),
-            Self::UnderVoltage { voltage, lowest } => (16, [voltage, lowest]),
-            Self::OverTemperature { temperature, largest } => {
-                (17, [temperature.cast_unsigned(), largest.cast_unsigned()])
-            }
-            Self::CurrentOffset { phase, count } => (18, [phase, count]),
-            Self::CurrentNotFollowing { deviation, largest } => (19, [deviation, largest]),
-            Self::SaturatedDuty { instants, allowed } => (20, [instants, allowed]),
-            Self::IndexMismatch { count, aligned } => (21, [count, aligned]),
-            Self::CurrentInterruptLate { late, allowed } => (22, [late, allowed]),
-            Self::NotAligned { by_index } => (23, [by_index as u32, 0]),
-            Self::Alignment(error) => error.encode(),
-            Self::Thermistor { count, limit } => (29, [count, limit]),
-            Self::Comparator { phase, threshold } => (30, [phase, threshold]),
-            Self::IndexOffset { across, along } => {
-                (31, [across.cast_unsigned(), along.cast_unsigned()])
-            }
-        }
-    }
-
-    /// The fault of a code and its numbers; `None` if there is no such fault of a power stage.
-    pub const fn decode(code: u32, numbers: [u32; 2]) -> Option<Self> {
-        let [a, b] = numbers;
-        Some(match code {
-            14 => Self::OverCurrent { current: a, largest: b },
-            15 => Self::OverVoltage { voltage: a, highest: b },
-            16 => Self::UnderVoltage { voltage: a, lowest: b },
-            17 => Self::OverTemperature { temperature: a.cast_signed(), largest: b.cast_signed() },
-            18 => Self::CurrentOffset { phase: a, count: b },
-            19 => Self::CurrentNotFollowing { deviation: a, largest: b },
-            20 => Self::SaturatedDuty { instants: a, allowed: b },
-            21 => Self::IndexMismatch { count: a, aligned: b },
-            22 => Self::CurrentInterruptLate { late: a, allowed: b },
-            23 => Self::NotAligned { by_index: a != 0 },
-            29 => Self::Thermistor { count: a, limit: b },
-            30 => Self::Comparator { phase: a, threshold: b },
-            31 => Self::IndexOffset { across: a.cast_signed(), along: b.cast_signed() },
-            _ => match AlignmentError::decode(code, numbers) {
-                Some(error) => Self::Alignment(error),
-                None => return None,
-            },
-        })
-    }
+/// The reason why a motor could not be aligned. Counts are per electrical turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AlignmentError {
+    /// The board cannot turn the motor's field: the motor is brushed, or behind an external amplifier.
+    NotNeeded,
+    /// The handle did not move.
+    Blocked {
+        /// Counts that it moved.
+        moved: i32,
+        /// Counts of an electrical turn.
+        expected: i32,
+    },
+    /// The handle moved, but not by an electrical turn.
+    PolePairs {
+        /// Counts that it moved.
+        moved: i32,
+        /// Counts of an electrical turn.
+        expected: i32,
+    },
+    /// The handle did not return by the same number of counts.
+    NotReturned {
+        /// Counts that it moved.
+        moved: i32,
+        /// Counts that it moved back.
+        returned: i32,
+    },
+    /// The positions of the stops do not fit a turning field.
+    Uneven {
+        /// The largest deviation in degrees of an electrical turn.
+        degrees: i32,
+        /// The largest allowed deviation.
+        largest: i32,
+    },
 }
+
+fault_table! { PowerFault {
+    14 "over-current" OverCurrent { current, largest } => (
+        "a phase had {current} mA, and {largest} mA are allowed: check the motor's wires for a short circuit, then \
+         arm again"),
+    15 "over-voltage" OverVoltage { voltage, highest } => (
+        "the supply had {voltage} mV, and at most {highest} mV are allowed: lower it, or give it a brake resistor \
+         for what the motor feeds back, then arm again"),
+    16 "under-voltage" UnderVoltage { voltage, lowest } => (
+        "the supply had {voltage} mV, and at least {lowest} mV are needed: check it and its wires, then arm again"),
+    17 "over-temperature" OverTemperature { temperature, largest } => (
+        "the power stage had {temperature} tenths of a degree Celsius, and {largest} are allowed: let it cool down, \
+         then arm again"),
+    18 "current-offset" CurrentOffset { phase, count } => (
+        "the converter reads {count} for phase {} without a current, which no working amplifier gives: check the \
+         power stage, then arm again", name(phase)),
+    19 "current-not-following" CurrentNotFollowing { deviation, largest } => (
+        "the current was {deviation} mA off its model, and {largest} mA are allowed: check the motor's wires, and \
+         its resistance and inductance, then arm again"),
+    20 "saturated-duty" SaturatedDuty { instants, allowed } => (
+        "the voltage was not enough for {instants} instants in a row, and {allowed} are allowed: the handle was \
+         faster than its largest speed, or the motor has more resistance than was stated; arm again"),
+    21 "index-mismatch" IndexMismatch { count, aligned } => (
+        "the encoder's index was at the count {count}, and at {aligned} when the motor was aligned: check the \
+         encoder's cable and coupling, then align again"),
+    22 "current-interrupt-late" CurrentInterruptLate { late, allowed } => (
+        "the currents' interrupt ended {late} timer counts after the start of its period, and {allowed} are \
+         allowed: shorten the critical sections that mask it, then arm again"),
+    23 "not-aligned" NotAligned { by_index } => (
+        "the motor has not been aligned with its encoder: {}align it, then arm again",
+        if by_index { "turn the handle past the encoder's index, or " } else { "" }),
+    29 "thermistor" Thermistor { count, limit } => (
+        "the converter reads {count} for the thermistor, and {limit} at the end of its range: it is disconnected or \
+         shorted; repair it, then arm again"),
+    30 "comparator" Comparator { phase, threshold } => (
+        "the over-current comparator of phase {} does not trip as a working one does without a current, at the \
+         threshold {threshold}: keep the handle at rest, check the power stage, then arm again", name(phase)),
+    31 "index-offset" IndexOffset { across, along } => (
+        "a pulse of torque moved the handle by {across} counts, and a current without torque by {along}: keep the \
+         hand off; if it comes again, the offset in the program is not this motor's: align it, and state the offset \
+         that the board tells; then arm again"),
+    _ Alignment(error: AlignmentError) => ("not aligned: "),
+} }
+
+fault_table! { AlignmentError {
+    24 "alignment-not-needed" NotNeeded => (
+        "this motor needs no alignment: it is brushed, or an amplifier outside turns its field"),
+    25 "alignment-blocked" Blocked { moved, expected } => (
+        "the handle moved by {moved} counts, and an electrical turn has {expected}: release it, check the wires of \
+         motor and encoder, then align again"),
+    26 "alignment-pole-pairs" PolePairs { moved, expected } => (
+        "an electrical turn moved the handle by {moved} counts, and not by {expected}: check the pole pairs and the \
+         counts per turn, keep the hand off, then align again"),
+    27 "alignment-not-returned" NotReturned { moved, returned } => (
+        "the handle moved by {moved} counts and back by {returned}: keep the hand off, check the encoder's \
+         coupling, then align again"),
+    28 "alignment-uneven" Uneven { degrees, largest } => (
+        "the handle settled {degrees} electrical degrees off the field, and {largest} are allowed: friction or \
+         cogging is too much for the current of the alignment"),
+} }
 
 /// The name of a phase.
 const fn name(phase: u32) -> &'static str {
@@ -178,86 +201,3 @@ const fn name(phase: u32) -> &'static str {
         _ => "W",
     }
 }
-
-/// The event, the value, the bound, and the remedy.
-impl fmt::Display for PowerFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OverCurrent { current, largest } => write!(
-                f,
-                "a phase had {current} mA, and {largest} mA are allowed: check the motor's wires for a \
-                 short circuit, then arm again"
-            ),
-            Self::OverVoltage { voltage, highest } => write!(
-                f,
-                "the supply had {voltage} mV, and at most {highest} mV are allowed: lower it, or give it a \
-                 brake resistor for what the motor feeds back, then arm again"
-            ),
-            Self::UnderVoltage { voltage, lowest } => write!(
-                f,
-                "the supply had {voltage} mV, and at least {lowest} mV are needed: check it and its wires, \
-                 then arm again"
-            ),
-            Self::OverTemperature { temperature, largest } => write!(
-                f,
-                "the power stage had {temperature} tenths of a degree Celsius, and {largest} are allowed: \
-                 let it cool down, then arm again"
-            ),
-            Self::CurrentOffset { phase, count } => write!(
-                f,
-                "the converter reads {count} for phase {} without a current, which no working amplifier \
-                 gives: check the power stage, then arm again",
-                name(*phase)
-            ),
-            Self::IndexOffset { across, along } => write!(
-                f,
-                "a pulse of torque moved the handle by {across} counts, and a current without torque by \
-                 {along}: keep the hand off; if it comes again, the offset in the program is not this motor's: \
-                 align it, and state the offset that the board tells; then arm again"
-            ),
-            Self::Thermistor { count, limit } => write!(
-                f,
-                "the converter reads {count} for the thermistor, and {limit} at the end of its range: it is \
-                 disconnected or shorted; repair it, then arm again"
-            ),
-            Self::Comparator { phase, threshold } => write!(
-                f,
-                "the over-current comparator of phase {} does not trip as a working one does without a \
-                 current, at the threshold {threshold}: keep the handle at rest, check the power stage, then \
-                 arm again",
-                name(*phase)
-            ),
-            Self::CurrentNotFollowing { deviation, largest } => write!(
-                f,
-                "the current was {deviation} mA off its model, and {largest} mA are allowed: check the \
-                 motor's wires, and its resistance and inductance, then arm again"
-            ),
-            Self::SaturatedDuty { instants, allowed } => write!(
-                f,
-                "the voltage was not enough for {instants} instants in a row, and {allowed} are allowed: the \
-                 handle was faster than its largest speed, or the motor has more resistance than was \
-                 stated; arm again"
-            ),
-            Self::IndexMismatch { count, aligned } => write!(
-                f,
-                "the encoder's index was at the count {count}, and at {aligned} when the motor was aligned: \
-                 check the encoder's cable and coupling, then align again"
-            ),
-            Self::CurrentInterruptLate { late, allowed } => write!(
-                f,
-                "the currents' interrupt ended {late} timer counts after the start of its period, and \
-                 {allowed} are allowed: shorten the critical sections that mask it, then arm again"
-            ),
-            Self::Alignment(error) => write!(f, "not aligned: {error}"),
-            Self::NotAligned { by_index: false } => f.write_str(
-                "the motor has not been aligned with its encoder: align it, then arm again",
-            ),
-            Self::NotAligned { by_index: true } => f.write_str(
-                "the motor has not been aligned with its encoder: turn the handle past the encoder's index, \
-                 or align it, then arm again",
-            ),
-        }
-    }
-}
-
-impl core::error::Error for PowerFault {}

@@ -12,6 +12,21 @@ pub enum Winding {
     },
 }
 
+impl Winding {
+    /// Whether the motor has three phases and magnets.
+    pub const fn is_brushless(self) -> bool {
+        matches!(self, Self::Brushless { .. })
+    }
+
+    /// Electrical turns in a turn of the handle; zero for a brushed motor.
+    pub const fn pole_pairs(self) -> u16 {
+        match self {
+            Self::Brushed => 0,
+            Self::Brushless { pole_pairs } => pole_pairs,
+        }
+    }
+}
+
 /// The data of a motor for its current loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor {

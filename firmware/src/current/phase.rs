@@ -1,18 +1,25 @@
-//! The phase of a brushless motor from the counts of an encoder.
+//! The phase of a brushless motor and the speed of the handle from the counts of an encoder.
 //!
 //! Angles are parts of an electrical turn in 32 bits, which wrap as turns do.
+
+use crate::encoder::{CounterWidth, RawCount};
+
+/// Weight of the last instant's counts in the mean: a time constant of 32 instants, which makes a count of a
+/// coarse encoder a small step of the phase.
+const NEWEST: f32 = 1.0 / 32.0;
 
 /// The position of the handle in its turn, in whole counts, so that no error accumulates over any number of
 /// turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turn {
     /// From zero to the counts of a turn less one.
-    count: i32,
-    counts: i32,
+    pub count: i32,
+    pub counts: i32,
     /// Electrical turns in a count, times 2^64: over a turn its rounding adds up to less than 2^-40 of a
     /// turn.
     scale: u64,
-    pole_pairs: u16,
+    /// Electrical turns in a turn.
+    pub pole_pairs: u16,
 }
 
 impl Turn {
@@ -43,11 +50,6 @@ impl Turn {
         (self.count as i64 + step as i64).rem_euclid(self.counts as i64) as i32
     }
 
-    /// The count in its turn.
-    pub(super) const fn count(&self) -> i32 {
-        self.count
-    }
-
     /// Electrical angle since the count 0.
     #[inline(always)]
     pub(super) const fn angle(&self) -> u32 {
@@ -68,16 +70,6 @@ impl Turn {
         let nearest = ((turns + one / 2) / one) as u32;
         let is_whole_turn = nearest as u128 * self.pole_pairs as u128 >= self.counts as u128;
         if is_whole_turn { 0 } else { nearest }
-    }
-
-    /// Counts in a turn.
-    pub(super) const fn counts(&self) -> u32 {
-        self.counts.cast_unsigned()
-    }
-
-    /// Electrical turns in a turn.
-    pub(super) const fn pole_pairs(&self) -> u16 {
-        self.pole_pairs
     }
 
     /// Counts in an electrical turn.
@@ -108,5 +100,47 @@ impl PhaseAlignment {
     #[inline(always)]
     pub(super) const fn sign(&self) -> f32 {
         if self.is_reversed { -1.0 } else { 1.0 }
+    }
+}
+
+/// The mean of the counts in an instant, for the angle by which the phase turns until its voltage acts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Speed {
+    last: u32,
+    width: CounterWidth,
+    mean: f32,
+}
+
+impl Speed {
+    pub(super) const fn new(width: CounterWidth) -> Self {
+        Self { last: 0, width, mean: 0.0 }
+    }
+
+    /// Restarts the mean from zero.
+    pub(super) const fn restart(&mut self) {
+        self.mean = 0.0;
+    }
+
+    /// Counts since the last reading, less than half the counter's range. The first reading counts from the
+    /// nearest zero.
+    #[inline(always)]
+    pub(super) const fn step(&mut self, position: RawCount) -> i32 {
+        let step = self.since_last(position);
+        self.last = position.bits();
+        step
+    }
+
+    /// Counts from the last reading to a reading near it.
+    #[inline(always)]
+    pub(super) const fn since_last(&self, position: RawCount) -> i32 {
+        let shift = self.width as u32;
+        (position.bits().wrapping_sub(self.last) << shift).cast_signed() >> shift
+    }
+
+    /// Takes the counts of an instant; returns their mean.
+    #[inline(always)]
+    pub(super) const fn update(&mut self, counts: f32) -> f32 {
+        self.mean += NEWEST * (counts - self.mean);
+        self.mean
     }
 }

@@ -1,9 +1,10 @@
-//! The power stage of a board, from its data sheets and its schematic.
+//! The power stage of a board, from its data sheets and its schematic, and the network of its sensors.
 
-use super::current_sense::CurrentSense;
 use super::motor::SupplyRange;
-use super::thermistor::{LARGEST_COUNT, Thermistor};
-use super::trip_search::TripRange;
+use crate::passivity::interval::Interval;
+
+/// 0 degrees Celsius in K.
+const ZERO_CELSIUS: f64 = 273.15;
 
 /// The numbers of a board's power stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,8 +48,190 @@ pub struct PowerStage {
 }
 
 impl PowerStage {
-    /// The largest count of a board's converters.
-    pub const LARGEST_COUNT: u16 = LARGEST_COUNT;
+    /// The largest count of a board's converters, of 12 bits: at their supply.
+    pub const LARGEST_COUNT: u16 = 4095;
+
+    /// The dead time in counts of the timer, rounded up.
+    pub const fn dead_time_counts(&self) -> u8 {
+        // The cast rounds a positive number down, and saturates.
+        (self.dead_time * self.clock + (1.0 - 1e-6)) as u8
+    }
+}
+
+/// The range of codes of the thresholds' converter in which a working comparator trips without a current, and the
+/// current of a code.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TripRange {
+    /// The lowest code.
+    pub lowest: u16,
+    /// The highest code.
+    pub highest: u16,
+    /// Current in A of a code.
+    pub amps_per_code: f64,
+}
+
+impl TripRange {
+    /// Instants of a search.
+    pub const fn instants(&self) -> u32 {
+        (self.highest - self.lowest) as u32 + 1
+    }
+}
+
+/// A shunt, a resistor from it to an amplifier's non-inverting input, and two more from that input to ground
+/// and to the converter's supply, which lift the voltage so that both directions of the current are in range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct CurrentSense {
+    /// The shunt in ohm, from the low side to ground.
+    shunt: f64,
+    /// The resistor in ohm from the shunt to the amplifier's input.
+    series: f64,
+    /// The resistor in ohm from the amplifier's input to ground.
+    to_ground: f64,
+    /// The resistor in ohm from the amplifier's input to the converter's supply.
+    to_supply: f64,
+    /// Relative tolerance of these three resistors.
+    resistor_tolerance: f64,
+    /// Gain of the amplifier.
+    gain: f64,
+    /// Relative tolerance of the gain.
+    gain_tolerance: f64,
+    /// Largest offset in V of the amplifier's input, of either sign.
+    amplifier_offset: f64,
+    /// Largest offset in V of the comparator at the same input, of either sign.
+    comparator_offset: f64,
+    /// Largest error in V of the comparator's threshold.
+    threshold_error: f64,
+    /// The converter's supply in V, which is also its reference.
+    reference: f64,
+}
+
+impl CurrentSense {
+    /// Counts of the converter per volt.
+    const fn counts_per_volt(&self) -> f64 {
+        (PowerStage::LARGEST_COUNT as f64 + 1.0) / self.reference
+    }
+
+    /// Current in A of a count, without its sign.
+    const fn amps_per_count(&self) -> f64 {
+        let conductance = 1.0 / self.series + 1.0 / self.to_ground + 1.0 / self.to_supply;
+        let left = 1.0 / self.series / conductance;
+        1.0 / (self.counts_per_volt() * self.gain * left * self.shunt)
+    }
+
+    /// Voltage at the amplifier's input without a current if the resistors deviate by so many times their
+    /// tolerance, each in the direction that moves the voltage by the sign of `times`.
+    const fn input(&self, times: f64) -> f64 {
+        let off = times * self.resistor_tolerance;
+        let up = 1.0 / (self.to_supply * (1.0 - off));
+        let down = 1.0 / (self.to_ground * (1.0 + off)) + 1.0 / (self.series * (1.0 + off));
+        self.reference * up / (up + down)
+    }
+
+    /// The count without a current, likewise for all parts.
+    const fn zero(&self, times: f64) -> f64 {
+        let input = self.input(times) + times * self.amplifier_offset;
+        self.counts_per_volt() * self.gain * (1.0 + times * self.gain_tolerance) * input
+    }
+
+    /// The lowest and the highest count without a current, symmetric about the nominal count.
+    const fn zero_counts(&self) -> (u16, u16) {
+        let middle = self.zero(0.0);
+        let off = (self.zero(1.0) - middle).max(middle - self.zero(-1.0));
+        // The casts round positive numbers down.
+        let (nearest, width) = ((middle + 0.5) as u16, off as u16 + 1);
+        (nearest - width, nearest + width)
+    }
+
+    /// The codes of a threshold, of as many bits as a count, at which a working comparator trips without a
+    /// current.
+    const fn trip_range(&self) -> TripRange {
+        let off = self.comparator_offset + self.threshold_error;
+        TripRange {
+            // The casts round positive numbers down.
+            lowest: (self.counts_per_volt() * (self.input(-1.0) - off)) as u16,
+            highest: (self.counts_per_volt() * (self.input(1.0) + off)) as u16 + 1,
+            amps_per_code: self.amps_per_count() * self.gain,
+        }
+    }
+}
+
+/// A thermistor with a negative coefficient, from the converter's supply to its input, and a resistor from
+/// there to ground: the count rises with the temperature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thermistor {
+    /// Its resistance in ohm at 25 degrees Celsius.
+    pub resistance: f64,
+    /// The thermistor's constant B in K.
+    pub beta: f64,
+    /// The resistor in ohm.
+    pub to_ground: f64,
+}
+
+impl Thermistor {
+    /// Lowest temperature in degrees Celsius in the table.
+    pub const LOWEST: i16 = -20;
+    /// Highest temperature in degrees Celsius in the table.
+    pub const HIGHEST: i16 = 140;
+    const STEP: i16 = 10;
+    /// Temperatures of a [`ThermistorTable`].
+    const STEPS: usize = ((Self::HIGHEST - Self::LOWEST) / Self::STEP) as usize + 1;
+
+    /// The count of the converter at a temperature in degrees Celsius.
+    pub const fn count(&self, celsius: f64) -> u16 {
+        let exponent = self.beta * (1.0 / (celsius + ZERO_CELSIUS) - 1.0 / (25.0 + ZERO_CELSIUS));
+        let factor = Interval::exact(exponent.abs()).exp_of_negative().midpoint();
+        let thermistor =
+            if exponent < 0.0 { self.resistance * factor } else { self.resistance / factor };
+        // The cast rounds a positive number down.
+        (PowerStage::LARGEST_COUNT as f64 * self.to_ground / (self.to_ground + thermistor) + 0.5)
+            as u16
+    }
+
+    /// Counts for a board, which does not compute exponential functions.
+    pub(super) const fn table(&self) -> ThermistorTable {
+        let (mut counts, mut i) = ([0; Self::STEPS], 0);
+        while i < counts.len() {
+            counts[i] = self.count((Self::LOWEST + Self::STEP * i as i16) as f64);
+            i += 1;
+        }
+        ThermistorTable(counts)
+    }
+}
+
+/// Counts of a thermistor, ten degrees apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ThermistorTable([u16; Thermistor::STEPS]);
+
+impl ThermistorTable {
+    /// The count at the lowest temperature: below it the thermistor is open.
+    #[inline(always)]
+    pub(super) const fn lowest(&self) -> u16 {
+        self.0[0]
+    }
+
+    /// The count at the highest temperature: above it the thermistor is shorted.
+    pub(super) const fn highest(&self) -> u16 {
+        self.0[Thermistor::STEPS - 1]
+    }
+
+    /// The temperature of a count in tenths of a degree Celsius, by linear interpolation, clamped to the ends
+    /// of the table.
+    pub(super) const fn tenths(&self, count: u16) -> i32 {
+        let (mut tenths, mut i) = (Thermistor::LOWEST as i32 * 10, 1);
+        while i < self.0.len() {
+            let (below, above) = (self.0[i - 1], self.0[i]);
+            if count <= below {
+                break;
+            }
+            let (width, part) = (above.saturating_sub(below), count - below);
+            if part < width {
+                return tenths + part as i32 * 100 / width as i32;
+            }
+            tenths += 100;
+            i += 1;
+        }
+        tenths
+    }
 }
 
 /// The current sense of the B-G431B-ESC1.
@@ -114,14 +297,6 @@ pub const B_G431B_ESC1: PowerStage = PowerStage {
     // 10 kΩ from the 3.3 V, 4.7 kΩ to ground.
     thermistor: Thermistor { resistance: 10e3, beta: 3455.0, to_ground: 4.7e3 },
 };
-
-impl PowerStage {
-    /// The dead time in counts of the timer, rounded up.
-    pub const fn dead_time_counts(&self) -> u8 {
-        // The cast rounds a positive number down, and saturates.
-        (self.dead_time * self.clock + (1.0 - 1e-6)) as u8
-    }
-}
 
 // Longer dead times are not linear in the timer's register.
 const _: () = assert!(B_G431B_ESC1.dead_time_counts() < 128);

@@ -1,13 +1,13 @@
 //! Checks a current loop against its program.
 
-use super::current_loop::{CurrentLoop, OVER_CURRENT};
-use super::motor::Winding;
+use super::current_loop::CurrentLoop;
+use super::design::OVER_CURRENT;
 use super::regeneration::{Bus, Push};
 use crate::latency::Latency;
 use crate::output_timing::OutputTiming;
 use crate::passivity::interval::Interval;
 use crate::scene::{Device, Scene};
-use crate::text::Sentence;
+use crate::text::{Sentence, push};
 use crate::transducers::Transducers;
 
 /// Relative tolerance of times that should be equal.
@@ -87,13 +87,9 @@ impl CurrentLoop {
             let is_same = (stated - own).abs() <= SAME * own.abs();
             if !is_same {
                 let mut t = Sentence::new();
-                t.push("the program's ");
-                t.push(name);
-                t.push(" is ");
-                t.push_number(stated);
-                t.push(", and that of its current loop ");
-                t.push_number(own);
-                panic!("{}", t.as_str());
+                push!(t,
+                    "the program's " {name} " is " {stated} ", and that of its current loop " {own});
+                t.refuse();
             }
             i += 1;
         }
@@ -165,22 +161,16 @@ impl CurrentLoop {
             return;
         }
         let mut t = Sentence::new();
-        t.push("the device's passivity of ");
-        t.push_number(passivity);
-        t.push(" N m s/rad, and the ");
-        t.push_number(loss);
-        t.push(
-            " that motion takes through the current loop, are more than the device's damping of ",
-        );
-        t.push_number(device.damping);
+        push!(t,
+            "the device's passivity of " {passivity} " N m s/rad, and the " {loss} " that motion takes through the \
+             current loop, are more than the device's damping of " {device.damping});
         let most = device.damping - loss;
         if most > 0.0 {
-            t.push(": declare a passivity of at most ");
-            t.push_number(most);
+            push!(t, ": declare a passivity of at most " {most});
         } else {
             t.push(": take a motor with more inductance, or with a smaller torque constant");
         }
-        panic!("{}", t.as_str())
+        t.refuse()
     }
 
     /// The largest acceleration of the handle in rad/s^2 that supervision never takes for a fault (equation 64).
@@ -188,8 +178,7 @@ impl CurrentLoop {
         let (limits, source) = (&self.limits, self.torque_source());
         // By each of the two speeds that are compared, a count's edge.
         let counts = 2.0 * limits.smoothing as f64 * limits.amps_of_motion as f64;
-        let deviation = source.gain * source.instant
-            / (self.torque_per_amp() * source.feedback * source.resistance);
+        let deviation = source.deviation_by(self.torque_per_amp(), source.instant);
         let delay = 1.0 / source.feedback - 1.0;
         (limits.unexplained as f64 - counts) / (2.0 * delay * deviation)
     }
@@ -204,33 +193,16 @@ impl CurrentLoop {
             return;
         }
         let mut t = Sentence::new();
-        t.push("motor and damping accelerate the device by up to ");
-        t.push_number(acceleration);
-        t.push(" rad/s^2, and with more than ");
-        t.push_number(largest);
-        t.push(" its back-EMF looks like a broken wire: ");
+        push!(t,
+            "motor and damping accelerate the device by up to " {acceleration} " rad/s^2, and with more than "
+            {largest} " its back-EMF looks like a broken wire: ");
         if largest > 0.0 {
-            t.push("take an inertia of at least ");
-            t.push_number(torque / largest);
-            t.push(" kg m^2, or less full-scale torque, or a smaller torque constant");
+            push!(t,
+                "take an inertia of at least " {torque / largest} " kg m^2, or less full-scale torque, or a smaller \
+                 torque constant");
         } else {
             t.push("take an encoder with more counts per turn");
         }
-        panic!("{}", t.as_str())
-    }
-
-    /// Whether the motor has three phases and magnets.
-    pub const fn is_brushless(&self) -> bool {
-        matches!(self.winding(), Winding::Brushless { .. })
-    }
-
-    /// Phases that the motor is wired to.
-    pub const fn phases(&self) -> usize {
-        if self.is_brushless() { 3 } else { 2 }
-    }
-
-    /// Clock counts in a period of the servo: the timer counts up and down in each instant.
-    pub const fn clock_counts(&self) -> u32 {
-        2 * self.timer_counts() as u32 * self.updates() as u32
+        t.refuse()
     }
 }

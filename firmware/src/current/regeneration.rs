@@ -5,14 +5,13 @@
 //! reaches the fault level, the bridge is switched off, and the wall vanishes under the hand.
 
 use core::f64::consts::TAU;
-use core::fmt;
 
 use crate::environment::{AnyProfile, Environment, Wall};
 use crate::matched::MatchedCoupling;
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::scene::{Coupling, Scene};
-use crate::text::Text;
+use crate::text::{Text, error_with_sentence, push};
 use crate::transducers::Transducers;
 
 /// Steps of the search for the torque limit: its relative error is below that of a double.
@@ -248,72 +247,34 @@ pub enum RegenerationError {
     Unbounded,
 }
 
-/// A sentence about returned energy.
-type RegenerationSentence = Text<480>;
-
 impl RegenerationError {
     /// The error as a sentence, the same at compile time and later.
-    pub const fn sentence(&self) -> RegenerationSentence {
-        let mut t = RegenerationSentence::new();
-        match self {
-            Self::Unbounded => t.push(
+    pub const fn sentence(&self) -> Text<480> {
+        let mut t = Text::new();
+        let Self::OverVoltage { bus, energy, torque } = *self else {
+            t.push(
                 "no bound is known for the energy that this environment returns to its supply, which takes \
                  none: take a supply that sinks, such as one with a brake resistor",
-            ),
-            Self::OverVoltage { bus, energy, torque } => {
-                t.push("a hand that pushes and lets go returns up to ");
-                t.push_number(energy.total());
-                t.push(" J, which raises the ");
-                t.push_number(bus.capacitance);
-                t.push(" F at the bridge from ");
-                t.push_number(bus.voltage);
-                t.push(" to ");
-                t.push_number(bus.voltage_after(energy.total()));
-                t.push(" V, and the bridge may switch itself off at ");
-                t.push_number(bus.fault_level);
-                t.push(" V: take ");
-                self.push_remedies(&mut t, bus, energy.total(), *torque);
-            }
-        }
-        t
-    }
-
-    const fn push_remedies(
-        &self,
-        t: &mut RegenerationSentence,
-        bus: &Bus,
-        energy: f64,
-        torque: f64,
-    ) {
+            );
+            return t;
+        };
+        let energy = energy.total();
+        push!(t,
+            "a hand that pushes and lets go returns up to " {energy} " J, which raises the " {bus.capacitance}
+            " F at the bridge from " {bus.voltage} " to " {bus.voltage_after(energy)}
+            " V, and the bridge may switch itself off at " {bus.fault_level} " V: take ");
         if let Some(capacitance) = bus.least_capacitance(energy) {
-            t.push("at least ");
-            t.push_number(capacitance);
-            t.push(" F, ");
+            push!(t, "at least " {capacitance} " F, ");
         }
         if let Some(voltage) = bus.largest_voltage(energy) {
-            t.push("a supply of at most ");
-            t.push_number(voltage);
-            t.push(" V, ");
+            push!(t, "a supply of at most " {voltage} " V, ");
         }
         if torque > 0.0 {
-            t.push("a torque limit of at most ");
-            t.push_number(torque);
-            t.push(" N m, ");
+            push!(t, "a torque limit of at most " {torque} " N m, ");
         }
         t.push("or a supply that sinks, such as one with a brake resistor");
-    }
-
-    /// Panics with the error's text; in a constant this is a compile error.
-    #[track_caller]
-    pub(super) const fn refuse(&self) -> ! {
-        panic!("{}", self.sentence().as_str())
+        t
     }
 }
 
-impl fmt::Display for RegenerationError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.sentence().as_str())
-    }
-}
-
-impl core::error::Error for RegenerationError {}
+error_with_sentence!(RegenerationError);

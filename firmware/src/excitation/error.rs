@@ -1,9 +1,7 @@
 //! Errors of a sweep.
 
-use core::fmt;
-
 use super::LEAST_PERIODS;
-use crate::text::Text;
+use crate::text::{Text, error_with_sentence, push};
 
 /// An error of a sweep. Tones are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,55 +59,23 @@ impl SweepError {
         let mut t = Text::new();
         match *self {
             Self::NotPositive { name, value } => {
-                t.push("the ");
-                t.push(name);
-                t.push(" is ");
-                t.push_number(value);
-                t.push("; it must be positive and finite");
+                push!(t, "the " {name} " is " {value} "; it must be positive and finite");
             }
-            Self::Frequency { tone, frequency, largest } => {
-                of_tone(&mut t, tone, "a frequency of ", frequency);
-                t.push(" Hz; it must be above 0 and below half the sampling rate, ");
-                t.push_number(largest);
-                t.push(" Hz");
-            }
-            Self::Amplitude { tone, amplitude, least, largest } => {
-                of_tone(&mut t, tone, "an amplitude of ", amplitude);
-                t.push(" N m; the DAC gives ");
-                t.push_number(least);
-                t.push(" to ");
-                t.push_number(largest);
-                t.push(" N m");
-            }
-            Self::Periods { tone, measured } => {
-                of_tone(&mut t, tone, "a measured part of ", measured as f64);
-                t.push(" periods; it must be at least ");
-                t.push_number(LEAST_PERIODS as f64);
-            }
-            Self::Samples { tone, periods, samples, most } => {
-                of_tone(&mut t, tone, "a part of ", periods as f64);
-                t.push(" periods, which take ");
-                t.push_number(samples);
-                t.push(" samples; they must take a whole number of samples, and at most ");
-                t.push_number(most);
-            }
+            Self::Frequency { tone, frequency, largest } => push!(t,
+                "tone " {tone} " has a frequency of " {frequency} " Hz; it must be above 0 and below half the \
+                 sampling rate, " {largest} " Hz"),
+            Self::Amplitude { tone, amplitude, least, largest } => push!(t,
+                "tone " {tone} " has an amplitude of " {amplitude} " N m; the DAC gives " {least} " to " {largest}
+                " N m"),
+            Self::Periods { tone, measured } => push!(t,
+                "tone " {tone} " has a measured part of " {measured} " periods; it must be at least "
+                {LEAST_PERIODS}),
+            Self::Samples { tone, periods, samples, most } => push!(t,
+                "tone " {tone} " has a part of " {periods} " periods, which take " {samples} " samples; they must \
+                 take a whole number of samples, and at most " {most}),
         }
         t
     }
 }
 
-const fn of_tone(t: &mut Text<240>, tone: usize, what: &str, value: f64) {
-    t.push("tone ");
-    t.push_number(tone as f64);
-    t.push(" has ");
-    t.push(what);
-    t.push_number(value);
-}
-
-impl fmt::Display for SweepError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.sentence().as_str())
-    }
-}
-
-impl core::error::Error for SweepError {}
+error_with_sentence!(SweepError);

@@ -137,10 +137,7 @@ impl<const N: usize> Sweep<N> {
         let mut steps = [Step { settle: 0, measured: 1, cycles: 0, codes: 0.0 }; N];
         let mut i = 0;
         while i < N {
-            steps[i] = match step(i, &tones[i], period, full_scale_torque) {
-                Ok(step) => step,
-                Err(error) => return Err(error),
-            };
+            steps[i] = ok!(step(i, &tones[i], period, full_scale_torque));
             i += 1;
         }
         Ok(Self { period, full_scale_torque, tones, steps })
@@ -151,7 +148,7 @@ impl<const N: usize> Sweep<N> {
     pub const fn planned(period: f64, transducers: &Transducers, tones: [Tone; N]) -> Self {
         match Self::new(period, transducers, tones) {
             Ok(sweep) => sweep,
-            Err(error) => panic!("{}", error.sentence().as_str()),
+            Err(error) => error.refuse(),
         }
     }
 
@@ -200,13 +197,9 @@ const fn step(
     if measured < LEAST_PERIODS {
         return Err(SweepError::Periods { tone, measured });
     }
-    let parts = (whole(tone, settle, frequency, period), whole(tone, measured, frequency, period));
-    match parts {
-        (Ok(settle), Ok(samples)) => {
-            Ok(Step { settle, measured: samples, cycles: measured, codes: codes as f32 })
-        }
-        (Err(error), _) | (_, Err(error)) => Err(error),
-    }
+    let settle = ok!(whole(tone, settle, frequency, period));
+    let samples = ok!(whole(tone, measured, frequency, period));
+    Ok(Step { settle, measured: samples, cycles: measured, codes: codes as f32 })
 }
 
 /// The number of samples of a number of periods.

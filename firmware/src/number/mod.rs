@@ -23,7 +23,7 @@ pub use truncated::Truncated;
 
 use core::fmt;
 
-use crate::text::Text;
+use crate::text::{Text, push};
 
 /// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`], rounded or [`Truncated`].
 pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
@@ -123,10 +123,7 @@ impl Format {
             Self::F32 => name.push("f32"),
             Self::F64 => name.push("f64"),
             Self::Fixed { fraction_bits } | Self::Truncated { fraction_bits } => {
-                name.push("Q");
-                name.push_number(32.0 - fraction_bits as f64);
-                name.push(".");
-                name.push_number(fraction_bits as f64);
+                push!(name, "Q" {32.0 - fraction_bits as f64} "." {fraction_bits});
                 if matches!(self, Self::Truncated { .. }) {
                     name.push(" truncated");
                 }
@@ -156,11 +153,8 @@ pub struct OutOfRange {
 impl OutOfRange {
     /// Appends the error as a sentence.
     pub(crate) const fn write<const N: usize>(&self, t: &mut Text<N>) {
-        t.push_number(self.value);
-        t.push(" does not fit ");
-        t.push(self.format.name().as_str());
-        t.push(": its magnitude may be at most ");
-        t.push_number(self.bound);
+        push!(*t,
+            {self.value} " does not fit " {self.format.name().as_str()} ": its magnitude may be at most " {self.bound});
     }
 }
 

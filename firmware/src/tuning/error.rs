@@ -29,27 +29,21 @@ pub enum TuningError {
 
 impl fmt::Display for TuningError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = |parameter: &Parameter| name(*parameter).unwrap_or(parameter.name_and_unit().0);
         match self {
             Self::Fixed { parameter } => {
-                let (fixed, _) = parameter.name_and_unit();
+                let (fixed, tunable) =
+                    (name(parameter), TUNABLE.iter().map(|(_, tunable)| *tunable));
+                let all = Parameters::of(tunable);
                 write!(
                     f,
-                    "the {fixed} is fixed while the program runs; the tunable parameters are \
-                           "
-                )?;
-                for (i, (name, _)) in TUNABLE.iter().enumerate() {
-                    write!(f, "{}{name}", if i > 0 { ", " } else { "" })?;
-                }
-                Ok(())
+                    "the {fixed} is fixed while the program runs; the tunable parameters are {all}"
+                )
             }
             Self::Absent { parameter, has } => {
-                let absent = name(*parameter).unwrap_or(parameter.name_and_unit().0);
-                write!(f, "this scene has no {absent}; it has {has}")
+                write!(f, "this scene has no {}; it has {has}", name(parameter))
             }
-            Self::Twice { parameter } => {
-                let twice = name(*parameter).unwrap_or(parameter.name_and_unit().0);
-                write!(f, "{twice} is given twice")
-            }
+            Self::Twice { parameter } => write!(f, "{} is given twice", name(parameter)),
         }
     }
 }

@@ -39,8 +39,6 @@ pub fn name(parameter: Parameter) -> Option<&'static str> {
     TUNABLE.iter().find(|(_, known)| *known == parameter).map(|(name, _)| *name)
 }
 
-const _: () = assert!(TUNABLE.len() <= u16::BITS as usize, "a bit for each");
-
 /// A subset of the [`TUNABLE`] parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Parameters {

@@ -157,10 +157,9 @@ impl fmt::Display for Refusal {
             Self::Busy => f.write_str(
                 "the board still works on the previous request of this kind: wait for its answer",
             ),
-            Self::Disarming => f.write_str(
-                "not armed: the servo is being disarmed; arm it after \
-                                            that",
-            ),
+            Self::Disarming => {
+                f.write_str("not armed: the servo is being disarmed; arm it after that")
+            }
             Self::Fault(fault) => write!(f, "not armed: {fault}"),
             Self::NotAligning(Some(fault)) => write!(f, "no alignment begins: {fault}"),
             Self::NotAligning(None) => f.write_str(
@@ -234,7 +233,7 @@ impl From<Fault> for FaultCode {
 
 impl FaultCode {
     /// The fault; `None` if this version does not know the code.
-    pub const fn fault(self) -> Option<Fault> {
+    pub fn fault(self) -> Option<Fault> {
         Fault::decode(self.code, self.numbers)
     }
 }

@@ -1,6 +1,6 @@
 //! Alignment against motors with any wiring, and their torque afterwards.
 
-use super::three_phases::{Handle, ThreePhases};
+use super::rig::{Handle, ThreePhases};
 use super::*;
 
 pub const WIRES: [[usize; 3]; 6] =

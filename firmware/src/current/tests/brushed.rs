@@ -1,28 +1,20 @@
-//! A brushed motor.
+//! A brushed motor, and the model, the feed-forward and the feedback of its current without counts.
 
+use super::super::follower::Follower;
 use super::rig::Rig;
 use super::*;
-
-/// Deviation in A that counts may leave, with what the ripple leaves of it at the samples: it is of the second
-/// order in the resistance.
-fn allowed(design: &CurrentLoop) -> f64 {
-    design.resolution().deviation / design.torque_per_amp() + 0.01
-}
 
 /// Largest deviation from the certified current in A over instants.
 fn deviation(rig: &mut Rig, steps: &[(usize, i16)], instants: std::ops::Range<usize>) -> f64 {
     let mut most = 0.0_f64;
     for instant in 0..instants.end {
-        let code = steps.iter().rev().find(|step| step.0 <= instant).map_or(0, |step| step.1);
-        let current = rig.instant(code).unwrap();
+        let current = rig.instant(code_at(steps, instant)).unwrap();
         if instants.contains(&instant) {
             most = most.max((current - certified_current(&BRUSHED, steps, instant)).abs());
         }
     }
     most
 }
-
-const STEPS: [(usize, i16); 4] = [(3, FULL_SCALE), (100, -FULL_SCALE), (140, 300), (300, 0)];
 
 #[test]
 fn the_current_is_the_certified_one_at_every_instant() {
@@ -195,5 +187,79 @@ impl Random {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    }
+}
+
+/// A winding between instants: `i(k+1) = a i(k) + b v(k-1)`, by the rate of its decay.
+struct Coil {
+    resistance: f64,
+    inductance: f64,
+    current: f64,
+    voltage: f64,
+}
+
+impl Coil {
+    fn pass(&mut self, next: f64) {
+        let end = self.voltage / self.resistance;
+        let part = -(-self.resistance / self.inductance * INSTANT).exp_m1();
+        self.current += (end - self.current) * part;
+        self.voltage = next;
+    }
+}
+
+fn run(
+    design: &CurrentLoop,
+    motor: Motor,
+    reference: impl Fn(usize) -> i16,
+    instants: usize,
+) -> Vec<f64> {
+    let Motor { resistance, inductance, .. } = motor;
+    let law = &design.law;
+    let (mut follower, mut coil) =
+        (Follower::AT_REST, Coil { resistance, inductance, current: 0.0, voltage: 0.0 });
+    (0..instants)
+        .map(|instant| {
+            let current = coil.current;
+            let reference = law.amps_per_code * f32::from(reference(instant));
+            let wanted = follower.follow(law, reference, current as f32);
+            follower.integrate(law, wanted.deviation, false);
+            coil.pass(wanted.volts.into());
+            current
+        })
+        .collect()
+}
+
+#[test]
+fn a_step_is_that_of_the_model_to_rounding() {
+    for bandwidth in [20.0, 300.0, 1000.0] {
+        let drive = Drive { bandwidth, ..DRIVE };
+        let design = CurrentLoop::checked(&drive, &STAGE, &TRANSDUCERS, PERIOD);
+        let steps = [(2, FULL_SCALE), (50, -FULL_SCALE), (90, 17)];
+        let code = |instant| code_at(&steps, instant);
+        for (instant, current) in run(&design, DRIVE.motor, code, 1000).into_iter().enumerate() {
+            let off = (current - certified_current(&design, &steps, instant)).abs();
+            assert!(off < 2e-5, "{bandwidth} Hz, {instant}: {off}");
+        }
+    }
+}
+
+/// The response to an error of the measurement is `K/(z^2 - z + K)`: never negative, and of the sum 1.
+#[test]
+fn an_error_of_the_measurement_does_not_come_out_larger() {
+    for bandwidth in [20.0, 300.0, 1000.0, 1060.0] {
+        let drive = Drive { bandwidth, ..DRIVE };
+        let design = CurrentLoop::checked(&drive, &STAGE, &TRANSDUCERS, PERIOD);
+        let (mut follower, mut sum) = (Follower::AT_REST, 0.0);
+        let Motor { resistance, inductance, .. } = DRIVE.motor;
+        let mut coil = Coil { resistance, inductance, current: 0.0, voltage: 0.0 };
+        for instant in 0..5000 {
+            let error = if instant == 0 { 1.0 } else { 0.0 };
+            let wanted = follower.follow(&design.law, 0.0, coil.current as f32 + error);
+            follower.integrate(&design.law, wanted.deviation, false);
+            coil.pass(wanted.volts.into());
+            assert!(coil.current < 1e-5, "{bandwidth}: {}", coil.current);
+            sum -= coil.current;
+        }
+        assert!((sum - 1.0).abs() < 1e-3, "{bandwidth}: {sum}");
     }
 }

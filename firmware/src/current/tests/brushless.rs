@@ -1,27 +1,19 @@
 //! A brushless motor whose phase is known.
 
 use super::super::phase::Turn;
-use super::three_phases::ThreePhases;
+use super::rig::ThreePhases;
 use super::*;
-
-const STEPS: [(usize, i16); 4] = [(3, FULL_SCALE), (100, -FULL_SCALE), (140, 300), (300, 0)];
-
-/// Deviation in A that counts may leave, with the ripple at the samples.
-fn allowed(design: &CurrentLoop) -> f64 {
-    design.resolution().deviation / design.torque_per_amp() + 0.01
-}
 
 /// Largest deviations, along and across the magnets, from the certified current.
 fn deviations(rig: &mut ThreePhases, steps: &[(usize, i16)], begin: usize, end: usize) -> [f64; 2] {
     let mut most = [0.0_f64; 2];
     for instant in 0..end {
-        let code = steps.iter().rev().find(|step| step.0 <= instant).map_or(0, |step| step.1);
         let [along, across] = rig.currents();
         if instant >= begin {
             let off = across - certified_current(&BRUSHLESS, steps, instant);
             most = [most[0].max(along.abs()), most[1].max(off.abs())];
         }
-        rig.instant(code).unwrap();
+        rig.instant(code_at(steps, instant)).unwrap();
     }
     most
 }
@@ -31,20 +23,13 @@ fn the_current_across_the_magnets_is_the_certified_one_and_none_is_along_them() 
     for angle in 0..12 {
         let mut rig = ThreePhases::started(&BRUSHLESS);
         rig.offset = f64::from(angle) / 12.0 * std::f64::consts::TAU;
-        rig = started_again(rig);
+        rig = rig.aligned();
         let [along, across] = deviations(&mut rig, &STEPS, 0, 600);
         let crossing = BRUSHLESS.resolution().zero_crossing / BRUSHLESS.torque_per_amp();
         let allowed = allowed(&BRUSHLESS) + crossing;
         assert!(along < allowed && across < allowed, "{angle}: {along}, {across} of {allowed}");
         assert!(across > 0.1 * allowed, "{angle}: {across}");
     }
-}
-
-fn started_again(mut rig: ThreePhases) -> ThreePhases {
-    let offset = (rig.offset / std::f64::consts::TAU * 2_f64.powi(32)) as u32;
-    rig.controller.set_phase(PhaseAlignment { offset, is_reversed: false });
-    rig.controller.start().unwrap();
-    rig
 }
 
 #[test]
@@ -148,7 +133,7 @@ fn a_phase_does_not_drift() {
             turn.move_by(step);
             position += i64::from(step);
             let within = position.rem_euclid(i64::from(counts)) as u128;
-            assert_eq!(turn.count() as u128, within);
+            assert_eq!(turn.count as u128, within);
             let exact = ((within * u128::from(pole_pairs)) << 32) / u128::from(counts);
             let off = turn.angle().wrapping_sub(exact as u32).cast_signed();
             assert!(off.abs() <= 1, "{counts}, {pole_pairs}: {off}");

@@ -2,8 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::rig::Rig;
-use super::three_phases::ThreePhases;
+use super::rig::{Rig, ThreePhases};
 use super::*;
 use crate::encoder::RawCount;
 
@@ -90,7 +89,7 @@ fn a_supply_out_of_its_range_is_found_at_the_second_sample() {
 /// A single phase above the limit, by counts: of W the sum of the two others, each below it.
 #[test]
 fn an_over_current_of_each_phase_is_found() {
-    let limit = i32::from(BRUSHLESS.over_current_counts());
+    let limit = i32::from(BRUSHLESS.limits.over_current);
     for (part, is_fault) in [(0.9, false), (1.1, true)] {
         let most = (part * f64::from(limit)) as i32;
         for phase in 0..3 {

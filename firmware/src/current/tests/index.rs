@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::aligned::{HANDLE, WIRES, align, rig, torques};
-use super::three_phases::ThreePhases;
+use super::rig::ThreePhases;
 use super::*;
 use crate::encoder::RawCount;
 

@@ -7,12 +7,9 @@ mod brushless;
 mod design;
 mod duty_current;
 mod faults;
-mod follower;
 mod heating;
 mod index;
-mod regeneration;
 mod rig;
-mod three_phases;
 mod thrown;
 
 use super::*;
@@ -64,7 +61,7 @@ const PERIOD: f64 = 1e-3;
 const INSTANT: f64 = 25e-6;
 
 /// Full scale, 1791 codes, is 4 A.
-pub(super) const BRUSHED: CurrentLoop = CurrentLoop::checked(&DRIVE, &STAGE, &TRANSDUCERS, PERIOD);
+const BRUSHED: CurrentLoop = CurrentLoop::checked(&DRIVE, &STAGE, &TRANSDUCERS, PERIOD);
 
 /// A motor of seven pole pairs, whose phases have half of the brushed one's resistance.
 const BRUSHLESS_DRIVE: Drive = Drive {
@@ -82,7 +79,7 @@ const BRUSHLESS: CurrentLoop = CurrentLoop::checked(&BRUSHLESS_DRIVE, &STAGE, &T
 const FULL_SCALE: i16 = 1791;
 
 /// What the certificate knows: the steps of a lag behind a delay of an instant, as sums of exponential functions
-/// and not by a recursion. The steps are instants and the codes from there on.
+/// and not by a recursion.
 fn certified_current(design: &CurrentLoop, steps: &[(usize, i16)], instant: usize) -> f64 {
     let TorqueResponse { delay, lag, .. } = design.response();
     let (mut last, mut current) = (0, 0.0);
@@ -93,4 +90,18 @@ fn certified_current(design: &CurrentLoop, steps: &[(usize, i16)], instant: usiz
         last = code;
     }
     current
+}
+
+/// Steps over the whole range of torque and to the smallest codes: instants, and the codes from there on.
+const STEPS: [(usize, i16); 4] = [(3, FULL_SCALE), (100, -FULL_SCALE), (140, 300), (300, 0)];
+
+/// The code of an instant by such steps.
+fn code_at(steps: &[(usize, i16)], instant: usize) -> i16 {
+    steps.iter().rev().find(|step| step.0 <= instant).map_or(0, |step| step.1)
+}
+
+/// Deviation in A that counts may leave, with what the ripple leaves of it at the samples: it is of the second
+/// order in the resistance.
+fn allowed(design: &CurrentLoop) -> f64 {
+    design.resolution().deviation / design.torque_per_amp() + 0.01
 }

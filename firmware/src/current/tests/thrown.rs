@@ -1,7 +1,6 @@
 //! Motors that throw a free device to and fro: its back-EMF changes faster than the feedback follows.
 
-use super::rig::Rig;
-use super::three_phases::{Handle, ThreePhases};
+use super::rig::{Handle, Rig, ThreePhases};
 use super::*;
 
 /// Full scale is 3.45 A.
@@ -94,11 +93,8 @@ fn three_phases_that_throw_a_free_device_are_no_fault() {
     let least = least_inertia(&design(THREE));
     for (inertia, is_reversed) in [(least, false), (2.2e-5, false), (2.2e-5, true), (4e-5, true)] {
         let mut rig = ThreePhases::off(&design(THREE)).measured();
-        let offset = (rig.offset / std::f64::consts::TAU * 2_f64.powi(32)) as u32;
-        rig.controller.set_phase(PhaseAlignment { offset, is_reversed });
-        rig.controller.start().unwrap();
-        rig.motor = THREE;
-        rig.encoder = if is_reversed { -1.0 } else { 1.0 };
+        (rig.motor, rig.encoder) = (THREE, if is_reversed { -1.0 } else { 1.0 });
+        rig = rig.aligned();
         rig.handle = Some(Handle { inertia, damping: 0.0, friction: 0.0, cogging: (0.0, 0.0) });
         let mut thrower = Thrower { code: FULL_SCALE };
         for _ in 0..4000 {

@@ -10,7 +10,6 @@ use core::num::NonZeroU32;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use embassy_stm32::pac::timer::vals::{CcmrInputCcs, Ts};
-use embassy_stm32::{peripherals, rcc};
 
 use super::pwm;
 use crate::board::stm32::output::periods::Periods;

@@ -1,6 +1,7 @@
-//! The number of periods of the pulse-width modulation in a period of the servo.
+//! The pulse-width modulation: its periods in a period of the servo, the samples of each, and its compare values.
 
 use super::error::DriveError;
+use crate::encoder::RawCount;
 
 /// Lowest and highest frequency in Hz of the modulation: below, the ripple grows and beats become audible;
 /// above, the interrupts take too much of the processor, and the dead time too much of the voltage.
@@ -49,6 +50,22 @@ impl PwmTiming {
     pub const fn instant(&self, period: f64) -> f64 {
         period / self.updates as f64
     }
+
+    /// No voltage: all phases at half.
+    pub(super) const fn no_voltage(self) -> Duties {
+        Duties([self.counts / 2; 3])
+    }
+
+    /// A voltage from U to V, as the difference of their compare values, symmetric about half, rounded to the
+    /// nearest.
+    #[inline(always)]
+    pub(super) const fn between_two(self, difference: f32) -> Duties {
+        // The cast rounds a positive number down.
+        let high = (difference + (self.counts as f32 + 0.5)) as u32;
+        let above = high >> 1;
+        let below = self.counts as u32 - (high - above);
+        Duties([above as u16, below as u16, self.counts / 2])
+    }
 }
 
 /// The longest possible period that a timer can fill, at most `period` and at least one period of the
@@ -65,3 +82,21 @@ const fn nearest(period: f64, clock: f64) -> f64 {
 const fn whole(number: f64) -> f64 {
     number as u32 as f64
 }
+
+/// The samples of one instant of the modulation, in the middle of the low sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// Counts of the currents of the phases U and V.
+    pub currents: [u16; 2],
+    /// Count of the supply.
+    pub bus: u16,
+    /// Count of the temperature.
+    pub temperature: u16,
+    /// The encoder's counter.
+    pub position: RawCount,
+}
+
+/// Compare values of the phases U, V and W: the high side conducts while the timer is below. A brushed motor is
+/// between U and V, and W is at half.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Duties(pub [u16; 3]);

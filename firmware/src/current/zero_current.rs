@@ -1,27 +1,56 @@
-//! The search for the thresholds at which the over-current comparators trip without a current.
+//! Measurements without a current before each start: the counts of the converters, and the thresholds at which
+//! the over-current comparators trip.
 //!
 //! A comparator's offset, of up to 9 mV, is as much as the voltage of 5 A at its input. So the threshold is not
 //! computed from the converters' counts, but found at the comparator itself: while the gates are low, it falls by
 //! a code in each instant, over the whole range in which a working comparator trips.
 
+use super::current_loop::Limits;
 use super::fault::PowerFault;
+use super::modulation::Sample;
+use super::power_stage::TripRange;
 
-/// The range of codes of the thresholds' converter in which a working comparator trips without a current, and the
-/// current of a code.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TripRange {
-    /// The lowest code.
-    pub lowest: u16,
-    /// The highest code.
-    pub highest: u16,
-    /// Current in A of a code.
-    pub amps_per_code: f64,
+/// The number of samples in a mean, whose noise is a sixteenth of that of a sample.
+const SAMPLES: u32 = 256;
+
+/// The mean of the last whole block of samples, taken while the gates are off.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Offsets {
+    sums: [u32; 2],
+    samples: u32,
+    /// Sums of the last whole block, so that they are the offsets with eight more bits.
+    blocks: Option<[u32; 2]>,
 }
 
-impl TripRange {
-    /// Instants of a search.
-    pub const fn instants(&self) -> u32 {
-        (self.highest - self.lowest) as u32 + 1
+impl Offsets {
+    /// No block yet.
+    pub(super) const NONE: Self = Self { sums: [0; 2], samples: 0, blocks: None };
+
+    /// Takes a sample.
+    pub(super) const fn measure(&mut self, sample: &Sample) {
+        let [u, v] = self.sums;
+        // No sum is above 2^24.
+        self.sums = [u + sample.currents[0] as u32, v + sample.currents[1] as u32];
+        self.samples += 1;
+        if self.samples == SAMPLES {
+            *self = Self { blocks: Some(self.sums), ..Self::NONE };
+        }
+    }
+
+    /// The means in counts, which `f32` holds exactly.
+    ///
+    /// # Errors
+    /// If one is not that of a working amplifier, or no block is complete.
+    pub(super) fn checked(&self, limits: &Limits) -> Result<[f32; 2], PowerFault> {
+        let sums = self.blocks.unwrap_or_default();
+        let (lowest, highest) = (u32::from(limits.offsets.0), u32::from(limits.offsets.1));
+        for (phase, sum) in (0..).zip(sums) {
+            let count = sum / SAMPLES;
+            if self.blocks.is_none() || count < lowest || count > highest {
+                return Err(PowerFault::CurrentOffset { phase, count });
+            }
+        }
+        Ok(sums.map(|sum| sum as f32 / SAMPLES as f32))
     }
 }
 

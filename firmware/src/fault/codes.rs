@@ -1,0 +1,97 @@
+//! Faults as a table: the code, the word and the sentence of each.
+
+/// A number of a fault in the 32 bits of its code.
+pub trait Bits {
+    /// As bits.
+    fn into_bits(self) -> u32;
+    /// From bits.
+    fn from_bits(bits: u32) -> Self;
+}
+
+impl Bits for u32 {
+    fn into_bits(self) -> u32 {
+        self
+    }
+
+    fn from_bits(bits: u32) -> Self {
+        bits
+    }
+}
+
+impl Bits for i32 {
+    fn into_bits(self) -> u32 {
+        self.cast_unsigned()
+    }
+
+    fn from_bits(bits: u32) -> Self {
+        bits.cast_signed()
+    }
+}
+
+impl Bits for bool {
+    fn into_bits(self) -> u32 {
+        self.into()
+    }
+
+    fn from_bits(bits: u32) -> Self {
+        bits != 0
+    }
+}
+
+/// The methods of an enumeration of faults, from a row for each: its code, its word, the variant with at most two
+/// numbers, and its sentence. The last row, of another enumeration's faults, has no code and no word.
+macro_rules! fault_table {
+    ($fault:ident {
+        $($code:literal $word:literal $variant:ident $({ $($number:ident),+ })?
+            => ($sentence:literal $(, $argument:expr)?),)+
+        $(_ $other:ident($inner:ident: $kind:ident) => ($prefix:literal),)?
+    }) => {
+        impl $fault {
+            /// The fault in one word, for tables.
+            pub const fn as_str(self) -> &'static str {
+                match self {
+                    $(Self::$variant { .. } => $word,)+
+                    $(Self::$other($inner) => $inner.as_str(),)?
+                }
+            }
+
+            /// The fault as a code, never zero, and two numbers. Codes never change, so that hosts and boards of
+            /// different versions understand each other.
+            pub fn encode(self) -> (u32, [u32; 2]) {
+                match self {
+                    $(Self::$variant $({ $($number),+ })? => {
+                        let [a, b, ..] = [$($($crate::fault::codes::Bits::into_bits($number),)+)? 0, 0];
+                        ($code, [a, b])
+                    })+
+                    $(Self::$other($inner) => $inner.encode(),)?
+                }
+            }
+
+            /// The fault of a code and its numbers; `None` if there is no such fault.
+            pub fn decode(code: u32, numbers: [u32; 2]) -> Option<Self> {
+                match code {
+                    $($code => {
+                        let [$($($number,)+)? ..] = numbers;
+                        Some(Self::$variant $({
+                            $($number: $crate::fault::codes::Bits::from_bits($number)),+
+                        })?)
+                    })+
+                    _ => None::<Self>$(.or_else(|| $kind::decode(code, numbers).map(Self::$other)))?,
+                }
+            }
+        }
+
+        /// The event, the value, the bound, and the remedy.
+        impl core::fmt::Display for $fault {
+            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                match *self {
+                    $(Self::$variant $({ $($number),+ })? => write!(f, $sentence $(, $argument)?),)+
+                    $(Self::$other($inner) => write!(f, concat!($prefix, "{}"), $inner),)?
+                }
+            }
+        }
+
+        impl core::error::Error for $fault {}
+    };
+}
+pub(crate) use fault_table;
