@@ -3,8 +3,8 @@
 use comfy_table::{CellAlignment, Table, presets};
 
 /// An empty table with this header; the columns of numbers are set to the right.
-pub fn markdown_table<const N: usize>(
-    header: [&str; N],
+pub fn markdown_table<'h>(
+    header: impl IntoIterator<Item = &'h str>,
     numbers: impl IntoIterator<Item = usize>,
 ) -> Table {
     let mut table = Table::new();

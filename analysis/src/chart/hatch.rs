@@ -5,20 +5,19 @@ use std::ops::Range;
 use haptic_servo::torque::LimitReason;
 use plotters::prelude::*;
 
-use super::{Area, Drawn, FORBIDDEN, UNITS, pen, units};
+use super::palette::{FAINT, FORBIDDEN};
+use super::{Area, Drawn, UNITS, units};
 use crate::simulation::tick_status::TickStatus;
 
 /// Units between two lines of a hatching; all fills of a kind share one grid, so that adjacent narrow fills
 /// also show it.
 const SPACING: i32 = units(7);
-/// Grey lines on which a black curve is visible.
-const INK: RGBColor = RGBColor(150, 150, 150);
 
 /// A fill pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fill {
-    /// Light grey.
-    Grey,
+    /// One colour.
+    Solid(RGBColor),
     /// Lines that rise to the right.
     Rising,
     /// Lines that fall to the right.
@@ -38,7 +37,7 @@ impl Fill {
     pub fn of(status: TickStatus) -> Option<Self> {
         match status {
             TickStatus::Ran(LimitReason::None) => None,
-            TickStatus::Ran(LimitReason::Torque) => Some(Self::Grey),
+            TickStatus::Ran(LimitReason::Torque) => Some(Self::Solid(FORBIDDEN)),
             TickStatus::Ran(LimitReason::DacRange) => Some(Self::Rising),
             TickStatus::Ran(LimitReason::Angle) => Some(Self::Falling),
             TickStatus::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
@@ -51,9 +50,9 @@ impl Fill {
     /// Covers a rectangle, in units of the area.
     pub(super) fn draw(self, area: &Area<'_>, x: &Range<i32>, y: &Range<i32>) -> Drawn<()> {
         let lines = match self {
-            Self::Grey => {
+            Self::Solid(ink) => {
                 let corners = [(x.start, y.start), (x.end, y.end)];
-                return area.draw(&Rectangle::new(corners, FORBIDDEN.filled()));
+                return area.draw(&Rectangle::new(corners, ink.filled()));
             }
             Self::Rising => rising(x, y),
             Self::Falling => falling(x, y),
@@ -63,15 +62,9 @@ impl Fill {
             Self::Squared => [level(x, y), upright(x, y)].concat(),
         };
         for line in lines {
-            area.draw(&PathElement::new(line.to_vec(), INK.stroke_width(UNITS)))?;
+            area.draw(&PathElement::new(line.to_vec(), FAINT.stroke_width(UNITS)))?;
         }
         Ok(())
-    }
-
-    /// A rectangle of it with a border, for a legend.
-    pub(super) fn swatch(self, area: &Area<'_>, x: &Range<i32>, y: &Range<i32>) -> Drawn<()> {
-        self.draw(area, x, y)?;
-        area.draw(&Rectangle::new([(x.start, y.start), (x.end, y.end)], pen(1)))
     }
 }
 

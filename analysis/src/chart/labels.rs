@@ -1,9 +1,9 @@
 //! Places names beside points and lines without overlaps, if there is room.
 
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::text_anchor::{HPos, VPos};
 
-use crate::chart::{Area, Drawn, FONT, UNITS, units};
+use crate::chart::{Area, Drawn, LABEL, UNITS, anchored, units};
 
 /// Width of a letter relative to the size of its font: more than the mean of the used letters, so that a name
 /// is never longer than its block.
@@ -177,94 +177,29 @@ impl Labels {
         self.panel.holds(block) && !self.taken.iter().any(|taken| taken.meets(block))
     }
 
-    /// Uses a block and writes in it, on the side towards a place.
-    fn fill(
-        &mut self,
-        area: &Area<'_>,
-        block: Block,
-        (name, size): (&str, i32),
-        (x, _): (i32, i32),
-    ) -> Drawn<()> {
-        self.take(block);
-        let quarter = (block.right - block.left) / 4;
-        let (side, edge) = match x {
-            _ if x <= block.left + quarter => (HPos::Left, block.left),
-            _ if x >= block.right - quarter => (HPos::Right, block.right),
-            _ => (HPos::Center, (block.left + block.right) / 2),
-        };
-        let style = TextStyle::from((FONT, size)).color(&BLACK).pos(Pos::new(side, VPos::Center));
-        area.draw(&Text::new(name.to_owned(), (edge, (block.top + block.bottom) / 2), style))
-    }
-
     fn take(&mut self, block: Block) {
         self.taken.push(block);
         self.names.push(block);
     }
 
-    /// Writes lines of text beside a vertical line: on its left if there is room, otherwise on its right,
-    /// from the top (`highest`) or from the bottom; without room, where they cover least.
-    pub fn write_along(
-        &mut self,
-        area: &Area<'_>,
-        x: i32,
-        words: &[String],
-        (size, highest): (i32, bool),
-    ) -> Drawn<()> {
-        let width = words.iter().map(|word| width_of(word, size)).max().unwrap_or(0);
-        let row = size * 5 / 4;
-        let height = row * words.len() as i32;
-        let lowest = self.panel.bottom - GAP - height;
-        let mut tops: Vec<_> = (self.panel.top + GAP..=lowest).step_by(GAP as usize).collect();
-        if !highest {
-            tops.reverse();
-        }
-        let sides = [x - GAP - width, x + GAP];
-        let corners = sides.iter().flat_map(|left| tops.iter().map(move |top| (*left, *top)));
-        let blocks = corners.map(|(x, y)| Block::new((x, y), (x + width, y + height)));
-        let covered = |block: &Block| self.taken.iter().filter(|taken| taken.meets(block)).count();
-        let inside = blocks.filter(|block| self.panel.holds(block));
-        let Some(block) = inside.min_by_key(covered) else { return Ok(()) };
-        self.take(block);
-        let (side, edge) = match block.left < x {
-            true => (HPos::Right, block.right),
-            false => (HPos::Left, block.left),
-        };
-        let style = TextStyle::from((FONT, size)).color(&BLACK).pos(Pos::new(side, VPos::Center));
-        for (index, word) in words.iter().enumerate() {
-            let place = (edge, block.top + row * index as i32 + row / 2);
-            area.draw(&Text::new(word.clone(), place, style.clone()))?;
-        }
-        Ok(())
-    }
-
-    /// Writes a word above or below a horizontal line, as far to the left as possible.
-    pub fn write_beside(&mut self, area: &Area<'_>, y: i32, word: &str, size: i32) -> Drawn<()> {
-        let (width, height) = (width_of(word, size), size);
-        let column = |left: i32| [y - height - BESIDE, y + 2 * BESIDE].map(|top| (left, top));
-        let corners = (self.panel.left..self.panel.right).step_by(GAP as usize).flat_map(column);
-        let block = |(x, y): (i32, i32)| Block::new((x, y), (x + width, y + height));
-        match corners.map(block).find(|block| self.is_free(block)) {
-            Some(block) => {
-                self.fill(area, block, (word, size), ((block.left + block.right) / 2, y))
-            }
-            None => Ok(()),
-        }
-    }
-
     /// Writes a name beside a point, with a thin leader line if it is far away or nearer to another point.
-    pub fn write(
-        &mut self,
-        area: &Area<'_>,
-        point: (i32, i32),
-        name: &str,
-        size: i32,
-    ) -> Drawn<()> {
-        let Some(spot) = self.place(point, (width_of(name, size), size)) else { return Ok(()) };
-        if spot.is_led {
+    pub fn write(&mut self, area: &Area<'_>, point: (i32, i32), name: &str) -> Drawn<()> {
+        let width = (name.chars().count() as f64 * LETTER * f64::from(LABEL)) as i32;
+        let Some(Spot { block, is_led }) = self.place(point, (width, LABEL)) else { return Ok(()) };
+        self.take(block);
+        if is_led {
             let line = BLACK.mix(0.7).stroke_width(UNITS * 3 / 4);
-            area.draw(&PathElement::new(vec![point, spot.block.nearest(point)], line))?;
+            area.draw(&PathElement::new(vec![point, block.nearest(point)], line))?;
         }
-        self.fill(area, spot.block, (name, size), point)
+        // On the side towards its point.
+        let quarter = (block.right - block.left) / 4;
+        let (side, edge) = match point.0 {
+            x if x <= block.left + quarter => (HPos::Left, block.left),
+            x if x >= block.right - quarter => (HPos::Right, block.right),
+            _ => (HPos::Center, (block.left + block.right) / 2),
+        };
+        let place = (edge, (block.top + block.bottom) / 2);
+        area.draw(&Text::new(name.to_owned(), place, anchored(side, VPos::Center)))
     }
 }
 
@@ -277,11 +212,6 @@ fn along(pair: &[(i32, i32)], (step, steps): (i32, i32)) -> (i32, i32) {
     let part = f64::from(step) / f64::from(steps);
     let mix = |a: i32, b: i32| a + (part * f64::from(b - a)).round() as i32;
     (mix(pair[0].0, pair[1].0), mix(pair[0].1, pair[1].1))
-}
-
-/// Upper estimate of the width of a name.
-fn width_of(name: &str, size: i32) -> i32 {
-    (name.chars().count() as f64 * LETTER * f64::from(size)) as i32
 }
 
 #[cfg(test)]
@@ -327,26 +257,5 @@ mod tests {
             led.push(spot.is_led);
         }
         assert!(led[4] && !led[9], "{led:?}");
-    }
-
-    #[test]
-    fn a_name_along_a_line_is_where_no_curve_is() {
-        let panel = Block::new((0, 0), (units(400), units(300)));
-        let mut labels = Labels::within(panel);
-        let x = units(300);
-        labels.keep_clear_along((x, 0), (x, units(300)));
-        // It takes the place on the left all the way down, but for some of the middle.
-        for (from, to) in [(0, 140), (200, 300)] {
-            labels.keep_clear_of(&[(units(250), units(from)), (units(250), units(to))], units(4));
-        }
-        let mut svg = String::new();
-        let backend = SVGBackend::with_string(&mut svg, (400 * UNITS, 300 * UNITS));
-        let area = backend.into_drawing_area();
-        let words = ["critical line".to_owned(), "-delta = -0.0001".to_owned()];
-        labels.write_along(&area, units(399), &["bound".to_owned()], (units(14), false)).unwrap();
-        labels.write_along(&area, x, &words, (units(14), true)).unwrap();
-        let [bound, line] = labels.names[..] else { panic!("two names") };
-        assert!(panel.holds(&bound) && bound.bottom > units(270), "{bound:?}");
-        assert!(line.right < x && line.top > units(140) && line.bottom < units(200), "{line:?}");
     }
 }

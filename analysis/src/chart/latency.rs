@@ -1,18 +1,18 @@
 //! The stiffest certified spring over the servo's rate, one panel for each current loop, compared with the
 //! common assumptions.
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
-
-use super::axes::Axes;
-use super::dash::Dash;
+use super::axis::Axis;
+use super::legend::{Legend, Sample};
+use super::mark::Mark;
+use super::page::{Page, WIDTH};
+use super::panel::{Axes, Panel};
+use super::stroke::Stroke;
 use super::*;
 use crate::latency_limits::{LatencyLimits, LatencyPoint};
 use crate::quantity::significant;
 
-/// Height of a row of panels, and of a line of the legend, in pixels.
+/// Height of a row of panels in pixels.
 const PANEL: i32 = 330;
-const ROW: i32 = 20;
 /// Panels beside each other.
 const COLUMNS: usize = 2;
 
@@ -41,57 +41,35 @@ pub fn latency(title: &str, loops: &[LatencyLimits]) -> Result<Picture, ChartErr
         return Err(ChartError::TooFewPoints);
     }
     let stiffness = stiffness.start / 1.2..stiffness.end * 1.2;
+    let axes = Axes::new(
+        (Axis::logarithmic(rates), "servo rate (Hz)"),
+        (Axis::logarithmic(stiffness), "stiffness (N m/rad)"),
+    );
+    let unsafe_point = "it oscillates in some passive hand, with torques latched";
+    let curves = CURVES.iter().enumerate();
+    let curves = curves.map(|(index, curve)| (Sample::Line(stroke(index)), curve.0));
+    let entries = curves.chain([(Sample::Point(Mark::CROSS), unsafe_point)]);
+    let legends = vec![Legend::new(1, entries)];
     let rows = loops.len().div_ceil(COLUMNS);
-    let legend = ROW * (CURVES.len() as i32 + 1) + 16;
-    let size = (SIZE.0, (TITLE_ROOM + PANEL * rows as i32 + legend) as u32);
-    draw_sized(size, |area| {
-        let area = area.margin(units(TOP), 0, 0, 0).titled(title, text(TITLE))?;
-        let (panels, below) = area.split_vertically(units(PANEL * rows as i32));
-        for (limits, panel) in loops.iter().zip(panels.split_evenly((rows, COLUMNS))) {
-            paint(&panel, limits, rates.clone(), stiffness.clone())?;
-        }
-        write_legend(&below)
+    let heights = [PANEL * rows as i32];
+    Page { title, width: WIDTH, heights: &heights, legends }.draw(|areas| {
+        let areas = areas[0].split_evenly((rows, COLUMNS));
+        loops.iter().zip(&areas).try_for_each(|(limits, area)| paint(area, limits, &axes))
     })
 }
 
-fn paint(
-    area: &Area<'_>,
-    limits: &LatencyLimits,
-    rates: Range<f64>,
-    stiffness: Range<f64>,
-) -> Drawn<()> {
-    let mut chart =
-        axes::chart(area).build_cartesian_2d(rates.clone().log_scale(), stiffness.log_scale())?;
-    let names = Axes::named("servo rate (Hz)", "stiffness (N m/rad)");
-    Axes { most: (8, 8), ..names }.draw(&mut chart)?;
-    let (plane, area) = (chart.plotting_area(), chart.plotting_area().strip_coord_spec());
-    let (x, y) = plane.get_base_pixel();
-    let place = |rate: f64, stiffness: f64| {
-        let (px, py) = plane.map_coordinate(&(rate, stiffness));
-        (px - x, py - y)
-    };
-    for (index, (_, value)) in CURVES.iter().enumerate() {
-        let line = limits.points.iter().filter_map(|p| Some(place(p.rate, value(p)?)));
-        Dash::of(index).draw(&area, &line.collect::<Vec<_>>(), if index < 2 { 2 } else { 1 })?;
-    }
-    for point in limits.points.iter().step_by(4).filter(|point| point.folklore_is_unsafe()) {
-        let at = place(point.rate, point.folklore);
-        area.draw(&Cross::new(at, units(4), pen(1)))?;
-    }
-    let name = format!("current loop of {} Hz", significant(limits.bandwidth, 3));
-    area.draw(&Text::new(name, (units(10), units(14)), anchored(HPos::Left, VPos::Center)))
+/// The line of the curve with this number.
+fn stroke(index: usize) -> Stroke {
+    Stroke::of(index, if index < 2 { 2 } else { 1 })
 }
 
-fn write_legend(area: &Area<'_>) -> Drawn<()> {
-    let style = || anchored(HPos::Left, VPos::Center);
-    let middle = |row: usize| units(ROW * row as i32 + ROW / 2);
-    for (row, (name, _)) in CURVES.iter().enumerate() {
-        let y = middle(row);
-        Dash::of(row).draw(area, &[(units(20), y), (units(90), y)], 2)?;
-        area.draw(&Text::new(*name, (units(102), y), style()))?;
+fn paint(area: &Area<'_>, limits: &LatencyLimits, axes: &Axes<'_>) -> Drawn<()> {
+    let heading = format!("current loop of {} Hz", significant(limits.bandwidth, 3));
+    let panel = Panel::new(area, Axes { heading: &heading, ..axes.clone() })?;
+    for (index, (_, value)) in CURVES.iter().enumerate() {
+        let line = limits.points.iter().filter_map(|point| Some((point.rate, value(point)?)));
+        panel.curve(stroke(index), line)?;
     }
-    let y = middle(CURVES.len());
-    area.draw(&Cross::new((units(55), y), units(4), pen(1)))?;
-    let words = "it oscillates in some passive hand, with torques latched";
-    area.draw(&Text::new(words, (units(102), y), style()))
+    let marked = limits.points.iter().step_by(4).filter(|point| point.folklore_is_unsafe());
+    marked.into_iter().try_for_each(|point| panel.mark(Mark::CROSS, (point.rate, point.folklore)))
 }

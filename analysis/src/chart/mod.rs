@@ -1,25 +1,30 @@
-//! Charts as SVG: black on white, curves distinguished by line style and labelled in place, to
-//! be readable in print.
+//! Charts as SVG: black on white, curves distinguished by line style and explained in a legend, to be
+//! readable in print.
 
-pub mod axes;
+mod axis;
 pub mod bode;
 pub mod cell_polygons;
-pub mod dash;
 pub mod data;
 pub mod detents;
 mod error;
 pub mod failures;
+mod frame;
 pub mod growth;
 pub mod hatch;
 pub mod identify;
 mod labels;
 pub mod latency;
+mod legend;
 pub mod limits;
 pub mod map;
+mod mark;
 pub mod nyquist;
+mod page;
+mod palette;
+mod panel;
 pub mod picture;
-mod plot_area;
 pub mod profile;
+mod stroke;
 mod strokes;
 pub mod trace;
 pub mod tradeoff;
@@ -28,66 +33,24 @@ pub mod turn;
 use std::ops::Range;
 
 use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 pub use data::{Cell, Chart, Data};
 pub use error::ChartError;
-pub use picture::{Output, Picture};
-use strokes::join_strokes;
-
-/// Width and height of a picture in pixels.
-pub const SIZE: (u32, u32) = (820, 560);
+pub use picture::{Picture, has_extension};
 
 /// Units of the drawing in a pixel. Coordinates are whole numbers, and a curve on whole pixels
 /// would be jagged.
 const UNITS: u32 = 8;
-
 /// Font of all text; every viewer has one by this name.
 const FONT: &str = "sans-serif";
-/// Size of titles.
-const TITLE: i32 = units(19);
-/// Size of axis labels and of labels in the picture.
+/// Size of all text except titles.
 const LABEL: i32 = units(14);
-/// Room above a title, in pixels.
-const TOP: i32 = 10;
-/// Height of a title with the room above it, in pixels.
-const TITLE_ROOM: i32 = TOP + 26;
-/// Room around a picture.
-const MARGIN: i32 = units(14);
-/// Room on the right, for the last number of the time axis.
-const MARGIN_RIGHT: i32 = units(24);
-/// Room for the numbers and the name of a horizontal axis.
-const X_LABELS: i32 = units(48);
-/// The same for a vertical axis.
-const Y_LABELS: i32 = units(78);
-/// Grey of forbidden regions.
-const FORBIDDEN: RGBColor = RGBColor(225, 225, 225);
-/// Grey of a secondary curve.
-const FAINT: RGBColor = RGBColor(150, 150, 150);
-/// Grey of grid lines.
-const GRID: RGBColor = RGBColor(235, 235, 235);
 
 /// Pixels in units of the drawing.
 const fn units(pixels: i32) -> i32 {
     pixels * UNITS as i32
-}
-
-/// A black line with a width in pixels.
-fn pen(width: u32) -> ShapeStyle {
-    BLACK.stroke_width(width * UNITS)
-}
-
-/// A broken line: pixels of ink, pixels of gap, width.
-fn broken(
-    points: impl IntoIterator<Item = (f64, f64)>,
-    ink: i32,
-    gap: i32,
-    width: u32,
-) -> DashedLineSeries<std::vec::IntoIter<(f64, f64)>, i32> {
-    let points: Vec<_> = points.into_iter().collect();
-    DashedLineSeries::new(points, units(ink), units(gap), pen(width))
 }
 
 /// Ranges of the axes, in place of the default ones.
@@ -115,30 +78,6 @@ fn meets(
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn<T> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
-type Plane<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-
-/// Draws a picture of the usual size.
-fn draw(picture: impl FnOnce(&Area<'_>) -> Drawn<()>) -> Result<Picture, ChartError> {
-    draw_sized(SIZE, picture)
-}
-
-/// Draws a picture with a size in pixels.
-fn draw_sized(
-    size: (u32, u32),
-    picture: impl FnOnce(&Area<'_>) -> Drawn<()>,
-) -> Result<Picture, ChartError> {
-    let (width, height) = (size.0 * UNITS, size.1 * UNITS);
-    let mut svg = String::new();
-    let drawn = {
-        let area = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
-        area.fill(&WHITE).and_then(|()| picture(&area)).and_then(|()| area.present())
-    };
-    drawn.map_err(|error| ChartError::Drawing(error.to_string()))?;
-    // The drawing keeps its units; only its size on the page is in pixels.
-    let drawing = format!("width=\"{width}\" height=\"{height}\" viewBox");
-    let page = format!("width=\"{}\" height=\"{}\" viewBox", size.0, size.1);
-    Ok(Picture::new(join_strokes(&svg.replacen(&drawing, &page, 1))))
-}
 
 fn text(size: i32) -> TextStyle<'static> {
     TextStyle::from((FONT, size)).color(&BLACK)

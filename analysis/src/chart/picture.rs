@@ -1,6 +1,6 @@
 //! Pictures as files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::error::ChartError;
 
@@ -10,32 +10,9 @@ pub struct Picture {
     svg: String,
 }
 
-/// The output file of a picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Output {
-    path: PathBuf,
-}
-
-impl Output {
-    /// A file with the extension `.svg` in any case.
-    ///
-    /// # Errors
-    /// If it has another extension or none.
-    pub fn new(path: &Path) -> Result<Self, ChartError> {
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
-            return Ok(Self { path: path.to_owned() });
-        }
-        Err(ChartError::Extension { path: path.to_owned() })
-    }
-
-    /// Writes the picture.
-    ///
-    /// # Errors
-    /// If it cannot be written.
-    pub fn write(&self, picture: &Picture) -> Result<(), ChartError> {
-        std::fs::write(&self.path, &picture.svg)
-            .map_err(|source| ChartError::Output { path: self.path.clone(), source })
-    }
+/// Whether a file has this extension, in any case.
+pub fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
 }
 
 impl Picture {
@@ -48,6 +25,26 @@ impl Picture {
     pub fn svg(&self) -> &str {
         &self.svg
     }
+
+    /// Checks that a picture may have this file, before the work for it.
+    ///
+    /// # Errors
+    /// If it has another extension than `.svg`, or none.
+    pub fn check_name(path: &Path) -> Result<(), ChartError> {
+        match has_extension(path, "svg") {
+            true => Ok(()),
+            false => Err(ChartError::Extension { path: path.to_owned() }),
+        }
+    }
+
+    /// Writes it to a file.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), ChartError> {
+        std::fs::write(path, &self.svg)
+            .map_err(|source| ChartError::Output { path: path.to_owned(), source })
+    }
 }
 
 #[cfg(test)]
@@ -56,10 +53,9 @@ mod tests {
 
     #[test]
     fn a_picture_is_named_as_svg() {
-        let names = ["a.svg", "b.SVG"];
-        assert_eq!(names.map(|name| Output::new(Path::new(name)).is_ok()), [true; 2]);
+        assert!(["a.svg", "b.SVG"].iter().all(|name| Picture::check_name(Path::new(name)).is_ok()));
         for name in ["a.eps", "a.png", "svg", ""] {
-            let error = Output::new(Path::new(name)).unwrap_err().to_string();
+            let error = Picture::check_name(Path::new(name)).unwrap_err().to_string();
             assert!(error.contains("must end in .svg"), "{error}");
         }
     }

@@ -1,14 +1,13 @@
 //! Position, velocity and torque over time.
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
-
-use super::axes::Axes;
-use super::dash::{Dash, SOLID};
+use super::axis::Axis;
 use super::hatch::Fill;
-use super::plot_area::{Frame, whole};
+use super::legend::{Legend, Sample};
+use super::page::{Page, WIDTH};
+use super::panel::{Axes, Panel};
+use super::stroke::Stroke;
 use super::*;
-use crate::quantity::{shortened, significant};
+use crate::quantity::significant;
 use crate::simulation::tick_status::TickStatus;
 use crate::trace::{TimeUnit, Trace};
 
@@ -44,17 +43,20 @@ fn reasons(trace: &Trace) -> Vec<(TickStatus, Fill)> {
     TickStatus::all().filter(occurs).filter_map(grounded).collect()
 }
 
-/// Height of the line of the legend that names the fills, in pixels.
-const ROW: i32 = 24;
-/// Height of a line of words, in pixels.
-const LINE: i32 = 20;
-/// Letters of a line of words.
-const LETTERS: usize = 112;
 /// Heights of the panels, in pixels.
-const PANELS: [i32; 3] = [226, 186, 264];
+const PANELS: [i32; 3] = [216, 186, 256];
 /// The sign convention.
 const SIGNS: &str = "signs: angle, velocity and the hand's torque are positive in one direction; \
                      the motor applies minus the coupling torque";
+/// The lines of the device, of its velocity, of the hand, of a wall's face, of the torque limit, of the moment
+/// at which the hand lets go, and of zero.
+const DEVICE: Stroke = Stroke::solid(2);
+const VELOCITY: Stroke = Stroke::solid(1);
+const HAND: Stroke = Stroke::dashed(&[6, 4], 1);
+const FACE: Stroke = Stroke::dashed(&[2, 4], 1);
+const LIMIT: Stroke = Stroke::dashed(&[12, 4, 2, 4], 1);
+const RELEASE: Stroke = Stroke::dashed(&[12, 4, 2, 4, 2, 4], 1);
+const ZERO: Stroke = Stroke::solid(1).faint();
 
 /// Draws position above velocity and torque, over one time axis. The fill shows why the torque was limited or
 /// a tick was missed. `wanted` has the ranges of time and angle to show.
@@ -66,53 +68,31 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
     if samples < 2 || trace.position.len() != samples || trace.torque.len() != samples {
         return Err(ChartError::TooFewPoints);
     }
-    let reasons = reasons(trace);
     meets("horizontal", wanted.x.as_ref(), &trace.times())?;
     let times = wanted.x.clone().unwrap_or(trace.times());
-    let seen = seen(&trace.position, trace, &times).chain(seen(&trace.hand, trace, &times));
-    meets("vertical", wanted.y.as_ref(), &span(seen))?;
-    let angles = wanted.y.clone().unwrap_or(angle_axis(trace, &times));
-    let words = wrapped(&words(trace, &times, &angles));
-    let legend = LINE * words.len() as i32 + if reasons.is_empty() { 0 } else { ROW };
-    let height = TITLE_ROOM + legend + PANELS.iter().sum::<i32>() + LINE + 4;
-    draw_sized((SIZE.0, height as u32), |area| {
-        let area =
-            area.margin(units(TOP), 0, 0, 0).titled(&shortened(&trace.title, 72), text(TITLE))?;
-        let (above, area) = area.split_vertically(units(legend));
-        for (row, line) in words.iter().enumerate() {
-            let place = (units(SIZE.0 as i32 / 2), units(LINE * row as i32 + LINE / 2));
-            above.draw(&Text::new(line.clone(), place, anchored(HPos::Center, VPos::Center)))?;
-        }
-        let (_, grounds) = above.split_vertically(units(LINE * words.len() as i32));
-        write_fill_legend(&grounds, &reasons)?;
-        let (first, area) = area.split_vertically(units(PANELS[0]));
-        let (second, area) = area.split_vertically(units(PANELS[1]));
-        let (third, signs) = area.split_vertically(units(PANELS[2]));
-        position(&first, trace, &times, &angles)?;
-        velocity(&second, trace, &times)?;
-        torque(&third, trace, &times, &reasons)?;
-        let place = (units(SIZE.0 as i32 / 2), units(LINE / 2));
-        let style = TextStyle::from((FONT, LABEL - units(2))).color(&BLACK);
-        let style = style.pos(Pos::new(HPos::Center, VPos::Center));
-        signs.draw(&Text::new(SIGNS, place, style))
+    let seen = || seen(&trace.position, trace, &times).chain(seen(&trace.hand, trace, &times));
+    meets("vertical", wanted.y.as_ref(), &span(seen()))?;
+    let angles = wanted.y.clone().unwrap_or(padded(span(seen()), 0.16));
+    let reasons = reasons(trace);
+    let fills = reasons.iter().map(|(status, fill)| (Sample::Region(*fill), name(*status).into()));
+    let lines = lines(trace, &times, &angles).into_iter();
+    let notes = notes(trace).into_iter().map(|note| (Sample::Nothing, note));
+    let legends = vec![Legend::new(2, lines.chain(fills)), Legend::new(1, notes)];
+    Page { title: &trace.title, width: WIDTH, heights: &PANELS, legends }.draw(|areas| {
+        position(&areas[0], trace, &times, angles)?;
+        velocity(&areas[1], trace, &times)?;
+        torque(&areas[2], trace, &times, &reasons)
     })
 }
 
-/// The default axis of the angle.
-fn angle_axis(trace: &Trace, times: &Range<f64>) -> Range<f64> {
-    let all = seen(&trace.position, trace, times).chain(seen(&trace.hand, trace, times));
-    padded(span(all), 0.16)
-}
-
-fn position(area: &Area<'_>, trace: &Trace, times: &Range<f64>, y: &Range<f64>) -> Drawn<()> {
-    let mut chart = panel(area, times, y, None, "angle (rad)")?;
-    if let Some(face) = trace.face.filter(|face| y.contains(face)) {
-        let line = [(times.start, face), (times.end, face)];
-        chart.draw_series(broken(line, 2, 4, 1))?;
+fn position(area: &Area<'_>, trace: &Trace, times: &Range<f64>, y: Range<f64>) -> Drawn<()> {
+    let panel = panel(area, times, y, ("", "angle (rad)"))?;
+    if let Some(face) = trace.face {
+        panel.level(FACE, face)?;
     }
-    draw_in(&chart, trace, &trace.hand, HAND, 1)?;
-    draw_in(&chart, trace, &trace.position, SOLID, 2)?;
-    release(&mut chart, trace, times, y, true)
+    panel.curve(HAND, sampled(&trace.hand, trace))?;
+    panel.curve(DEVICE, sampled(&trace.position, trace))?;
+    release(&panel, trace)
 }
 
 fn velocity(area: &Area<'_>, trace: &Trace, times: &Range<f64>) -> Drawn<()> {
@@ -124,57 +104,26 @@ fn velocity(area: &Area<'_>, trace: &Trace, times: &Range<f64>) -> Drawn<()> {
         TimeUnit::Seconds => "velocity (rad/s)",
         TimeUnit::Ticks => "velocity (rad/tick)",
     };
-    let mut chart = panel(area, times, &y, None, name)?;
-    if y.contains(&0.0) {
-        let zero = [(times.start, 0.0), (times.end, 0.0)];
-        chart.draw_series([PathElement::new(zero, FAINT.stroke_width(UNITS))])?;
-    }
-    draw_in(&chart, trace, &velocity, SOLID, 1)?;
-    release(&mut chart, trace, times, &y, false)
+    let panel = panel(area, times, y, ("", name))?;
+    panel.level(ZERO, 0.0)?;
+    panel.curve(VELOCITY, sampled(&velocity, trace))?;
+    release(&panel, trace)
 }
 
-/// A panel with its axes.
+/// A panel over time.
 fn panel<'a, 'b>(
     area: &'a Area<'b>,
     times: &Range<f64>,
-    y: &Range<f64>,
-    x: Option<&str>,
-    name: &str,
-) -> Drawn<Plane<'a, 'b>> {
-    let below = if x.is_some() { X_LABELS } else { units(24) };
-    let mut chart = axes::chart(area)
-        .margin_top(units(8))
-        .margin_bottom(units(2))
-        .margin_right(MARGIN_RIGHT)
-        .x_label_area_size(below)
-        .build_cartesian_2d(times.clone(), y.clone())?;
-    Axes { most: (11, 7), ..Axes::named(x, name) }.draw(&mut chart)?;
-    Ok(chart)
+    y: Range<f64>,
+    (x_name, y_name): (&'a str, &'a str),
+) -> Drawn<Panel<'a, 'b>> {
+    let x = (Axis::linear(times.clone()), x_name);
+    Panel::new(area, Axes::new(x, (Axis::linear(y), y_name)))
 }
 
-/// A line through samples, as far as it is in the panel.
-fn draw_in(
-    chart: &Plane<'_, '_>,
-    trace: &Trace,
-    values: &[f64],
-    dash: Dash,
-    width: u32,
-) -> Drawn<()> {
-    let plot = chart.plotting_area();
-    let (x, y) = (plot.get_x_range(), plot.get_y_range());
-    let (w, h) = plot.dim_in_pixel();
-    let part = |value: f64, range: &Range<f64>| (value - range.start) / (range.end - range.start);
-    let place = |(time, value): (f64, f64)| {
-        (part(time, &x) * f64::from(w), (1.0 - part(value, &y)) * f64::from(h))
-    };
-    let frame = Frame { left: 0.0, top: 0.0, right: f64::from(w), bottom: f64::from(h) };
-    let places: Vec<_> = sampled(values, trace).into_iter().map(place).collect();
-    let area = plot.strip_coord_spec();
-    for line in Frame::clip(&places, |_| frame) {
-        let line: Vec<_> = line.iter().map(whole).collect();
-        dash.draw(&area, &line, width)?;
-    }
-    Ok(())
+/// The line at which the hand lets go.
+fn release(panel: &Panel<'_, '_>, trace: &Trace) -> Drawn<()> {
+    trace.release.map_or(Ok(()), |time| panel.upright(RELEASE, time))
 }
 
 /// The samples at these times.
@@ -187,82 +136,54 @@ fn seen<'v>(
     both.filter(|(time, _)| times.contains(*time)).map(|(_, value)| *value)
 }
 
-/// The line styles of the hand and of the torque limit.
-const HAND: Dash = Dash::new(&[6, 4]);
-const LIMIT: Dash = Dash::new(&[12, 4, 2, 4]);
-
-/// The explanation of the lines, above the chart, where no curve is in the way.
-fn words(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<String> {
-    let mut words = vec!["solid: device".to_owned()];
-    if let Some(face) = trace.face {
-        words.push(match angles.contains(&face) {
-            true => "dotted: face of the wall".to_owned(),
-            false => {
-                format!("face of the wall, {} rad, is outside of the picture", significant(face, 4))
-            }
+/// The legend of the lines.
+fn lines(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<(Sample, String)> {
+    let mut lines = vec![(Sample::Line(DEVICE), "device".to_owned())];
+    // A level, which may be outside of its panel.
+    let mut level = |is_seen: bool, stroke: Stroke, words: String| {
+        lines.push(match is_seen {
+            true => (Sample::Line(stroke), words),
+            false => (Sample::Nothing, format!("{words}, outside of the picture")),
         });
-    }
-    if !trace.hand.is_empty() {
-        words.push("dashed: set-point of the hand".to_owned());
-    }
-    if !trace.hand_torque.is_empty() {
-        words.push("dashed: torque of the hand".to_owned());
+    };
+    if let Some(face) = trace.face {
+        let words = format!("face of the wall, {} rad", significant(face, 4));
+        level(angles.contains(&face), FACE, words);
     }
     if let Some(limit) = trace.torque_limit {
-        let limit = significant(limit, 4);
-        words.push(match torque_axis(trace, times).1.is_empty() {
-            false => format!("dash-dotted: torque limit, {limit} N m"),
-            true => format!("torque limit {limit} N m is outside of the picture"),
-        });
+        let words = format!("torque limit, {} N m", significant(limit, 4));
+        level(!torque_axis(trace, times).1.is_empty(), LIMIT, words);
     }
-    if trace.velocity.is_empty() {
-        let few = match trace.window() {
-            1 => "two ticks' angles".to_owned(),
-            many => format!("angles {many} ticks apart"),
-        };
-        words.push(format!("velocity from {few}"));
+    if let Some(time) = trace.release.filter(|time| times.contains(time)) {
+        let words = format!("the hand lets go, at {} {}", significant(time, 4), unit(trace));
+        level(true, RELEASE, words);
     }
-    if let Some(lost) = trace.lost {
-        let unit = match trace.time_unit {
-            TimeUnit::Seconds => "s",
-            TimeUnit::Ticks => "ticks",
-        };
-        let when = significant(lost, 6);
-        words.push(format!("not drawn from {when} {unit} on: too large for a chart"));
-    }
-    words
-}
-
-/// The text in lines that fit the picture.
-fn wrapped(words: &[String]) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in words {
-        match lines.last_mut() {
-            Some(line) if line.len() + word.len() + 2 <= LETTERS => {
-                *line = format!("{line}; {word}");
-            }
-            _ => lines.push(word.clone()),
-        }
+    let hands =
+        [(&trace.hand, "set-point of the hand"), (&trace.hand_torque, "torque of the hand")];
+    for (_, words) in hands.into_iter().filter(|hand| !hand.0.is_empty()) {
+        level(true, HAND, words.to_owned());
     }
     lines
 }
 
-/// The legend of the torque's fills, side by side.
-fn write_fill_legend(area: &Area<'_>, reasons: &[(TickStatus, Fill)]) -> Drawn<()> {
-    const SWATCH: i32 = 30;
-    const GAP: i32 = 8;
-    // An estimate of the text's width.
-    let width = |name: &str| SWATCH + 3 * GAP + 7 * name.len() as i32;
-    let all: i32 = reasons.iter().map(|(status, _)| width(name(*status))).sum();
-    let mut x = (SIZE.0 as i32 - all) / 2;
-    for &(status, fill) in reasons {
-        fill.swatch(area, &(units(x)..units(x + SWATCH)), &(units(4)..units(ROW - 4)))?;
-        let place = (units(x + SWATCH + GAP), units(ROW / 2));
-        let style = anchored(HPos::Left, VPos::Center);
-        area.draw(&Text::new(name(status), place, style))?;
-        x += width(name(status));
+/// Remarks below the legend.
+fn notes(trace: &Trace) -> Vec<String> {
+    let velocity = trace.velocity.is_empty().then(|| match trace.window() {
+        1 => "velocity from two ticks' angles".to_owned(),
+        many => format!("velocity from angles {many} ticks apart"),
+    });
+    let lost = trace.lost.map(|lost| {
+        let when = significant(lost, 6);
+        format!("not drawn from {when} {} on: too large for a chart", unit(trace))
+    });
+    [velocity, lost, Some(SIGNS.to_owned())].into_iter().flatten().collect()
+}
+
+fn unit(trace: &Trace) -> &'static str {
+    match trace.time_unit {
+        TimeUnit::Seconds => "s",
+        TimeUnit::Ticks => "ticks",
     }
-    Ok(())
 }
 
 /// The meaning of a fill.
@@ -304,45 +225,31 @@ fn torque(
     reasons: &[(TickStatus, Fill)],
 ) -> Drawn<()> {
     let (y, limits) = torque_axis(trace, times);
-    let axis = match trace.time_unit {
-        TimeUnit::Seconds => "time (s)",
-        TimeUnit::Ticks => "time (ticks)",
-    };
-    let mut chart = panel(area, times, &y, Some(axis), "torque (N m)")?;
+    let x_name = format!("time ({})", unit(trace));
+    let panel = panel(area, times, y, (&x_name, "torque (N m)"))?;
     for &(status, fill) in reasons {
-        shade(&chart, trace, status, fill)?;
+        shade(&panel, trace, times, (status, fill))?;
     }
-    let level = |value: f64| [(times.start, value), (times.end, value)];
-    if y.contains(&0.0) {
-        chart.draw_series([PathElement::new(level(0.0), FAINT.stroke_width(UNITS))])?;
-    }
-    for limit in limits {
-        let (plot, line) = (chart.plotting_area(), level(limit));
-        let (x, y) = plot.get_base_pixel();
-        let ends = line.map(|end| plot.map_coordinate(&end)).map(|(px, py)| (px - x, py - y));
-        LIMIT.draw(&plot.strip_coord_spec(), &ends, 1)?;
-    }
-    draw_in(&chart, trace, &trace.hand_torque, HAND, 1)?;
-    draw_in(&chart, trace, &trace.torque, SOLID, 2)?;
-    release(&mut chart, trace, times, &y, false)
+    panel.level(ZERO, 0.0)?;
+    limits.into_iter().try_for_each(|limit| panel.level(LIMIT, limit))?;
+    panel.curve(HAND, sampled(&trace.hand_torque, trace))?;
+    panel.curve(DEVICE, sampled(&trace.torque, trace))?;
+    release(&panel, trace)
 }
 
-/// Fills the background of the samples of this status.
-fn shade(chart: &Plane<'_, '_>, trace: &Trace, status: TickStatus, fill: Fill) -> Drawn<()> {
-    let plot = chart.plotting_area();
-    let area = plot.strip_coord_spec();
-    let (width, height) = area.dim_in_pixel();
-    let (left, bottom) = (plot.get_base_pixel().0, plot.get_y_range().start);
-    // A chart may show a part of the run.
-    let times = plot.get_x_range();
-    let place = |sample| {
-        let time = trace.begin(sample).clamp(times.start, times.end);
-        plot.map_coordinate(&(time, bottom)).0 - left
-    };
+/// Fills the background of the samples of this status. A chart may show a part of the run.
+fn shade(
+    panel: &Panel<'_, '_>,
+    trace: &Trace,
+    times: &Range<f64>,
+    (status, fill): (TickStatus, Fill),
+) -> Drawn<()> {
+    let [width, height] = [panel.frame.right, panel.frame.bottom].map(|end| end as i32);
+    let place = |sample| panel.point((trace.begin(sample).clamp(times.start, times.end), 0.0)).0;
     let first = trace.time.partition_point(|time| *time < times.start).saturating_sub(1);
     let last = trace.time.partition_point(|time| *time < times.end);
     for run in runs(&trace.limit[..last.min(trace.limit.len())], first, status, place) {
-        fill.draw(&area, &(run.start..run.end.min(width as i32)), &(0..height as i32))?;
+        fill.draw(&panel.area, &(run.start..run.end.min(width)), &(0..height))?;
     }
     Ok(())
 }
@@ -366,23 +273,6 @@ fn runs(
         }
     }
     runs
-}
-
-fn release(
-    chart: &mut Plane<'_, '_>,
-    trace: &Trace,
-    times: &Range<f64>,
-    y: &Range<f64>,
-    named: bool,
-) -> Drawn<()> {
-    let Some(time) = trace.release.filter(|time| times.contains(time)) else { return Ok(()) };
-    let line = [(time, y.start), (time, y.end)];
-    chart.draw_series(broken(line, 8, 5, 1))?;
-    if named {
-        let place = (time + 0.01 * (times.end - times.start), y.end);
-        chart.draw_series([Text::new("lets go", place, anchored(HPos::Left, VPos::Top))])?;
-    }
-    Ok(())
 }
 
 /// Largest number of visible parts of a curve.

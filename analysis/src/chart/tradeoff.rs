@@ -1,32 +1,25 @@
 //! Speed against accuracy: for each case and each error a panel with all methods, families
 //! distinguished by mark and colour, and the Pareto front with the names of its methods.
 
-use plotters::coord::combinators::LogCoord;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
-
-use super::axes::Axes;
-use super::*;
-use crate::studies::tradeoff::{Axis, Method, Tradeoff};
-
-mod marks;
-
+use super::axis::Axis;
 use super::labels::{Block, Labels};
-use marks::Mark;
+use super::legend::{Legend, Sample};
+use super::mark::Mark;
+use super::page::{Page, WIDTH};
+use super::panel::{Axes, Panel};
+use super::stroke::Stroke;
+use super::*;
+use crate::studies::tradeoff::{Axis as Figure, Method, Tradeoff};
 
 /// Width and height of a panel in pixels.
-const PANEL: (u32, u32) = (520, 350);
-/// Height of a line of the legend in pixels.
-const ROW: i32 = 22;
+const PANEL: (i32, i32) = (520, 350);
 /// Width of an entry of the legend in pixels.
-const ENTRY: i32 = 240;
+const ENTRY: i32 = 260;
 /// Room inside a panel around its points, as a part of a decade.
 const ROOM: f64 = 0.35;
-/// Size of the text in a panel.
-const SMALL: i32 = units(13);
-
-type Logarithmic<'a, 'b> =
-    ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
+/// The line of a Pareto front, and of the levels without a seen error and of failures.
+const FRONT: Stroke = Stroke::dashed(&[11, 5], 1);
+const LEVEL: Stroke = Stroke::dashed(&[2, 4], 1);
 
 /// Largest number of readable columns of panels at the width of a page.
 const COLUMNS: usize = 2;
@@ -74,47 +67,48 @@ impl Panels {
 /// If no method has a cost and an error, or the drawing fails.
 pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError> {
     let columns = panels.columns();
-    let rows_of_panels = panels.each().count().div_ceil(columns);
-    let costs = range(table, &table.comparison.cost, |method| method.cost());
-    let Some(costs) = costs else { return Err(ChartError::TooFewPoints) };
-    let width = (PANEL.0 * columns as u32).max(SIZE.0);
-    let per_row = (width as i32 / ENTRY).max(1);
-    // The families, and the explanation of a front.
-    let rows = rows(table, per_row) + 1;
-    let height = (PANEL.1 * rows_of_panels as u32) as i32;
-    let size = (width, (TITLE_ROOM + height + ROW * rows + 10) as u32);
-    draw_sized(size, |area| {
-        let area = area.margin(units(TOP), 0, 0, 0).titled(table.comparison.title, text(TITLE))?;
-        let (plots, below) = area.split_vertically(units(height));
-        let plots = plots.split_evenly((rows_of_panels, columns));
-        for (plot, (case, error)) in plots.iter().zip(panels.each()) {
-            Panel { table, case, error }.paint(plot, costs.clone())?;
-        }
-        write_legend(&below, table, per_row)
+    let rows = panels.each().count().div_ceil(columns);
+    let cost = &table.comparison.cost;
+    let costs = range(table, cost, Method::cost).ok_or(ChartError::TooFewPoints)?;
+    let width = (PANEL.0 * columns as i32).max(WIDTH);
+    let families = table.families().into_iter().enumerate();
+    let families = families.map(|(index, name)| (Sample::Point(Mark::of(index)), name));
+    let front = "front: no other method of the table is both cheaper and better";
+    let legends = vec![
+        Legend::new((width / ENTRY) as usize, families),
+        Legend::new(1, [(Sample::Line(FRONT), front)]),
+    ];
+    let heights = [PANEL.1 * rows as i32];
+    Page { title: table.comparison.title, width, heights: &heights, legends }.draw(|areas| {
+        let areas = areas[0].split_evenly((rows, columns));
+        areas.iter().zip(panels.each()).try_for_each(|(area, (case, error))| {
+            Methods { table, case, error }.paint(area, costs.clone())
+        })
     })
 }
 
 /// Decades that contain all values of a column; `None` if there is nothing to draw.
 fn range(
     table: &Tradeoff,
-    axis: &Axis,
+    figure: &Figure,
     value: impl Fn(&Method) -> Option<f64>,
 ) -> Option<Range<f64>> {
-    let values = table.methods.iter().filter_map(value).map(|value| value.max(axis.floor));
+    let values = table.methods.iter().filter_map(value).map(|value| value.max(figure.floor));
     let logs = values.map(f64::log10).filter(|log| log.is_finite());
     let (low, high) = logs
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), log| (low.min(log), high.max(log)));
     (low <= high).then(|| 10_f64.powf(low - ROOM)..10_f64.powf(high + ROOM))
 }
 
-struct Panel<'t> {
+/// The methods of a case by one error.
+struct Methods<'t> {
     table: &'t Tradeoff,
     case: &'t str,
     error: usize,
 }
 
-impl Panel<'_> {
-    fn axis(&self) -> &Axis {
+impl Methods<'_> {
+    fn figure(&self) -> &Figure {
         &self.table.comparison.errors[self.error]
     }
 
@@ -128,78 +122,68 @@ impl Panel<'_> {
         self.table.of(self.case).filter_map(place).collect()
     }
 
-    /// Position of a method; a failing method is at the worst edge.
+    /// Cost and error of a method; a failing method is at the worst edge.
     fn place(&self, method: &Method, top: f64) -> Option<(f64, f64)> {
         let (cost, error) = (method.cost()?, method.error(self.error)?);
         let cost = cost.max(self.table.comparison.cost.floor);
-        let error = if error.is_finite() { error.max(self.axis().floor) } else { top };
+        let error = if error.is_finite() { error.max(self.figure().floor) } else { top };
         cost.is_finite().then_some((cost, error))
     }
 
     fn paint(&self, area: &Area<'_>, costs: Range<f64>) -> Drawn<()> {
-        let (axis, cost) = (self.axis(), &self.table.comparison.cost);
-        let errors = range(self.table, axis, |method| method.error(self.error));
+        let (figure, cost) = (self.figure(), &self.table.comparison.cost);
+        let errors = range(self.table, figure, |method| method.error(self.error));
         let mut errors = errors.unwrap_or(0.1..1.0);
         let fails = self.table.methods.iter().any(|m| m.error(self.error) == Some(f64::INFINITY));
         let top = errors.end;
         if fails {
             errors.end *= 10_f64.powf(2.0 * ROOM);
         }
-        let mut chart = axes::chart(area)
-            .margin_top(2 * MARGIN)
-            .build_cartesian_2d(costs.log_scale(), errors.clone().log_scale())?;
-        let names = Axes::named(cost.label, axis.label);
-        Axes { most: (8, 10), size: SMALL, ..names }.draw(&mut chart)?;
-        self.paint_methods(&mut chart, top)?;
-        let middle = (area.dim_in_pixel().0 as i32 + Y_LABELS) / 2;
-        let caption = anchored(HPos::Center, VPos::Center);
-        area.draw(&Text::new(self.case.to_owned(), (middle, MARGIN), caption))
+        let x = (Axis::logarithmic(costs), cost.label);
+        let y = (Axis::logarithmic(errors), figure.label);
+        let panel = Panel::new(area, Axes { heading: self.case, ..Axes::new(x, y) })?;
+        self.paint_methods(&panel, top)
     }
 
-    fn paint_methods(&self, chart: &mut Logarithmic<'_, '_>, top: f64) -> Drawn<()> {
-        let area = chart.plotting_area();
-        let (x, y) = area.get_base_pixel();
-        let pixel = |place: &(f64, f64)| {
-            let (px, py) = area.map_coordinate(place);
-            (px - x, py - y)
-        };
-        let plain = area.strip_coord_spec();
-        let (width, height) = plain.dim_in_pixel();
-        let mut labels = Labels::within(Block::new((0, 0), (width as i32, height as i32)));
+    fn paint_methods(&self, panel: &Panel<'_, '_>, top: f64) -> Drawn<()> {
+        let right = panel.frame.right as i32;
+        let mut labels = Labels::within(Block::new((0, 0), (right, panel.frame.bottom as i32)));
         let places = self.places(top);
         for family in 0..self.table.families().len() {
-            let line = places.iter().filter(|place| place.0 == family).map(|p| pixel(&p.1));
-            let thin = Mark::of(family).colour().mix(0.5).stroke_width(UNITS);
-            plain.draw(&PathElement::new(line.collect::<Vec<_>>(), thin))?;
+            let line = places.iter().filter(|place| place.0 == family).map(|place| place.1);
+            panel.curve(Stroke::solid(1).ink(Mark::of(family).ink()), line)?;
         }
         let front = self.table.front(self.case, self.error);
-        let stairs = stairs(front.iter().filter_map(|m| self.place(m, top)).map(|p| pixel(&p)));
-        dash::Dash::of(1).draw(&plain, &stairs, 1)?;
-        stairs.windows(2).for_each(|step| labels.keep_clear_along(step[0], step[1]));
-        for (family, place) in &places {
-            Mark::of(*family).draw(&plain, pixel(place))?;
-            labels.mark(pixel(place), Mark::SIZE);
+        let stairs = stairs(front.iter().filter_map(|method| self.place(method, top)));
+        panel.curve(FRONT, stairs.iter().copied())?;
+        for step in stairs.windows(2) {
+            labels.keep_clear_along(panel.point(step[0]), panel.point(step[1]));
         }
-        let levels = [(self.axis().floor, self.axis().at_floor), (top, "fails")];
+        for &(family, place) in &places {
+            let mark = Mark::of(family);
+            panel.mark(mark, place)?;
+            labels.mark(panel.point(place), mark.reach());
+        }
+        let levels = [(self.figure().floor, self.figure().at_floor), (top, "fails")];
         for (level, word) in levels {
             if places.iter().any(|place| place.1.1 == level) {
-                let y = pixel(&(1.0, level)).1;
-                dash::Dash::of(2).draw(&plain, &[(0, y), (width as i32, y)], 1)?;
-                labels.keep_clear_along((0, y), (width as i32, y));
-                labels.write_beside(&plain, y, word, SMALL)?;
+                let y = panel.point((1.0, level)).1;
+                panel.level(LEVEL, level)?;
+                labels.keep_clear_along((0, y), (right, y));
+                labels.write(&panel.area, (0, y), word)?;
             }
         }
         for method in front {
             let Some(place) = self.place(method, top) else { continue };
-            labels.write(&plain, pixel(&place), &method.name, SMALL)?;
+            labels.write(&panel.area, panel.point(place), &method.name)?;
         }
         Ok(())
     }
 }
 
 /// From the cheapest to the best: across to the cost of the next method, then down to its error.
-fn stairs(front: impl Iterator<Item = (i32, i32)>) -> Vec<(i32, i32)> {
-    let mut line: Vec<(i32, i32)> = Vec::new();
+fn stairs(front: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    let mut line: Vec<(f64, f64)> = Vec::new();
     for place in front {
         if let Some(&(_, before)) = line.last() {
             line.push((place.0, before));
@@ -207,27 +191,4 @@ fn stairs(front: impl Iterator<Item = (i32, i32)>) -> Vec<(i32, i32)> {
         line.push(place);
     }
     line
-}
-
-/// Rows of families in the legend.
-fn rows(table: &Tradeoff, per_row: i32) -> i32 {
-    (table.families().len() as i32 + per_row - 1) / per_row
-}
-
-fn write_legend(area: &Area<'_>, table: &Tradeoff, per_row: i32) -> Drawn<()> {
-    let style = || anchored(HPos::Left, VPos::Center);
-    let place = |index: usize| {
-        let (row, column) = (index as i32 / per_row, index as i32 % per_row);
-        (units(30 + column * ENTRY), units(ROW * row + ROW / 2))
-    };
-    let families = table.families();
-    for (index, family) in families.iter().enumerate() {
-        let (x, y) = place(index);
-        Mark::of(index).draw(area, (x, y))?;
-        area.draw(&Text::new((*family).to_owned(), (x + units(14), y), style()))?;
-    }
-    let y = units(ROW * rows(table, per_row) + ROW / 2);
-    dash::Dash::of(1).draw(area, &[(units(20), y), (units(60), y)], 1)?;
-    let words = "front: no other method of the table is both cheaper and better";
-    area.draw(&Text::new(words, (units(70), y), style()))
 }

@@ -7,7 +7,7 @@ use std::process::Command;
 use clap::Args;
 use comfy_table::Table;
 use haptic_servo::certificate::Parameter;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Scene};
 
 use super::explore;
@@ -20,7 +20,7 @@ use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
 use crate::studies::bench::current;
-use crate::studies::bench::figure::{Figure, Pair, Ratio};
+use crate::studies::bench::figure::{Budget, Figure, Pair, Ratio};
 use crate::studies::bench::live::live_set;
 use crate::studies::bench::matched;
 use crate::studies::bench::page::scenes::{PageScene, SHOWN};
@@ -68,37 +68,36 @@ impl Arguments {
     }
 }
 
-/// Largest time of a verdict on one core in microseconds.
-const VERDICT_BUDGET: f64 = 20.0;
-/// The same with a lagging torque.
-const LAGGING_BUDGET: f64 = 15.0;
-/// Smallest part of the passivity that the certificate allows at a jitter of a hundredth of a period.
-const JITTER_BUDGET: f64 = 0.98;
-/// Largest time of a verdict for a torque profile of 64 knots.
-const PROFILE_BUDGET: f64 = 5.0;
-/// Largest time of a step of the exact simulation on one core in nanoseconds.
-const STEP_BUDGET: f64 = 10.0;
-/// Smallest number of walls per second in a map.
-const MAP_BUDGET: f64 = 1e5;
-/// Largest time that a certificate may add to a compilation in milliseconds.
-const COMPILE_BUDGET: f64 = 50.0;
-/// Largest number of instructions of a certificate on the target: 20 ms at 170 MHz.
-const CERTIFY_BUDGET: f64 = 3.4e6;
-/// Largest number of instructions of the servo's whole interrupt, including the accesses to encoder and DAC.
-const INTERRUPT_BUDGET: f64 = 150.0;
-/// Largest share of a core for the servo in per cent.
-const CORE_BUDGET: f64 = 15.0;
+/// Of a verdict on one core, with a lagging torque, and for a torque profile of 64 knots.
+const VERDICT: Budget = Budget { value: 20.0, unit: "us", source: "budget, one core" };
+const LAGGING: Budget = Budget { value: 15.0, ..VERDICT };
+const PROFILE: Budget = Budget { value: 5.0, ..VERDICT };
+/// Of a step of the exact simulation on one core.
+const STEP: Budget = Budget { value: 10.0, unit: "ns", source: "budget, 100 M steps/s" };
+/// Of the part of the passivity that a jitter of a hundredth of a period leaves, at least.
+const JITTER: Budget = Budget { value: 0.98, unit: "of delta", source: "budget, at least" };
+/// Of the number of walls per second in a map.
+const MAP: Budget = Budget { value: 1e5, unit: "1/s", source: "budget, a million in 10 s" };
+/// Of the time that a certificate may add to a compilation.
+const COMPILATION: Budget = Budget::of(50.0, "ms");
+/// Of a certificate on the target.
+const CERTIFICATE: Budget =
+    Budget { value: 3.4e6, unit: "instructions", source: "budget, 20 ms at 170 MHz" };
+/// Of the servo's whole interrupt, including the accesses to encoder and DAC.
+const INTERRUPT: Budget = Budget::of(150.0, "instructions");
+/// Of the servo's share of a core.
+const CORE: Budget = Budget::of(15.0, "%");
 /// Ticks per second for the share of the CPU.
 const TICK_RATE: f64 = 20e3;
-
-/// Largest number of instructions of a tick of the damper wall behind the matched coupling, in contact.
-const MATCHED_BUDGET: f64 = 50.0;
-
-/// Largest numbers of instructions of an instant of a bridge's current loop, for a brushed and a brushless
-/// motor.
-const INSTANT_BUDGETS: [(&str, f64); 2] = [("brushed", 250.0), ("brushless", 450.0)];
-/// Smallest number of free bytes of a motor board's flash with a wall on its bridge.
-const FLASH_LEFT: f64 = 40.0 * 1024.0;
+/// Of a tick of the damper wall behind the matched coupling, in contact.
+const MATCHED: Budget = Budget::of(50.0, "instructions");
+/// Of an instant of a bridge's current loop, for a brushed and a brushless motor.
+const INSTANTS: [(&str, Budget); 2] = [
+    ("brushed", Budget::of(250.0, "instructions")),
+    ("brushless", Budget::of(450.0, "instructions")),
+];
+/// Of the free bytes of a motor board's flash with a wall on its bridge.
+const FLASH_LEFT: Budget = Budget { value: 40.0 * 1024.0, unit: "bytes", source: "at least" };
 
 /// Ticks of each run in the emulator.
 const DEFAULT_TICKS: usize = 5000;
@@ -166,13 +165,9 @@ fn about_pages(repetitions: Repetitions) -> Result<Vec<Figure>, CommandError> {
 fn behind_matched(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
     let most = matched::contact_instructions(&toolchain.build_harness("bench_programs")?)?;
     for (what, most) in ["", " and one lag"].into_iter().zip(most) {
-        figures.push(Figure::new(
-            format!("damper wall behind the matched coupling{what}, f32: tick, contact, most"),
-            most.into(),
-            "instructions",
-            Some(MATCHED_BUDGET),
-            "budget",
-        ));
+        let name =
+            format!("damper wall behind the matched coupling{what}, f32: tick, contact, most");
+        figures.push(Figure::within(name, most.into(), &MATCHED));
     }
     Ok(())
 }
@@ -181,13 +176,8 @@ fn behind_matched(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
 fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
     let most = profile::verdict_instructions(&toolchain.build_harness("certify_server")?)?;
     for (what, most) in ["", " with its message"].into_iter().zip(most) {
-        figures.push(Figure::new(
-            format!("torque profile of 64 knots: verdict{what} on the target, most"),
-            most as f64,
-            "instructions",
-            Some(CERTIFY_BUDGET),
-            "budget, 20 ms at 170 MHz",
-        ));
+        let name = format!("torque profile of 64 knots: verdict{what} on the target, most");
+        figures.push(Figure::within(name, most as f64, &CERTIFICATE));
     }
     Ok(())
 }
@@ -196,42 +186,29 @@ fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
 fn about_bridges(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
     let servo = most_of_interrupts(figures);
     let most = current::instant_instructions(&toolchain.build_harness("bench_programs")?)?;
-    for ((motor, budget), most) in INSTANT_BUDGETS.into_iter().zip(most.map(f64::from)) {
-        let name = format!("current loop, {motor} motor: instant, sample to compare values, most");
-        figures.push(Figure::new(name, most, "instructions", Some(budget), "budget"));
-        let allowed = current::share_of_core(budget, INTERRUPT_BUDGET);
-        figures.push(Figure::new(
-            format!("current loop, {motor} motor, at 40 kHz with a servo at 10 kHz: of 170 M instructions/s"),
-            current::share_of_core(most, servo),
-            "%",
-            Some(allowed),
-            "the same of both budgets",
-        ));
+    for ((motor, budget), most) in INSTANTS.into_iter().zip(most.map(f64::from)) {
+        let name = format!("current loop, {motor} motor");
+        let instant = format!("{name}: instant, sample to compare values, most");
+        figures.push(Figure::within(instant, most, &budget));
+        let both = Budget {
+            value: current::share_of_core(budget.value, INTERRUPT.value),
+            unit: "%",
+            source: "the same of both budgets",
+        };
+        let share = format!("{name}, at 40 kHz with a servo at 10 kHz: of 170 M instructions/s");
+        figures.push(Figure::within(share, current::share_of_core(most, servo), &both));
     }
     let (board, name) = (BoardModel::BG431bEsc1, "bridge_wall");
     let spinner = progress::spinner("building programs");
     let built = toolchain.build_for(board, TorqueOutput::Bridge, &[name], NumberFormat::F32)?;
     spinner.finish_and_clear();
-    let Some(flash) = built.first().map(|program| program.sizes.flash() as f64) else {
-        return Ok(());
-    };
-    let all = board.flash() as f64;
-    figures.extend([
-        Figure::new(
-            format!("{name}, {board}: flash"),
-            flash,
-            "bytes",
-            Some(all),
-            "the board's flash",
-        ),
-        Figure::new(
-            format!("{name}, {board}: flash left"),
-            all - flash,
-            "bytes",
-            Some(FLASH_LEFT),
-            "at least",
-        ),
-    ]);
+    if let Some(program) = built.first() {
+        let (flash, value) = (program.sizes.flash() as f64, board.flash() as f64);
+        let all = Budget { value, unit: "bytes", source: "the board's flash" };
+        figures.push(Figure::within(format!("{name}, {board}: flash"), flash, &all));
+        let left = format!("{name}, {board}: flash left");
+        figures.push(Figure::within(left, value - flash, &FLASH_LEFT));
+    }
     Ok(())
 }
 
@@ -260,22 +237,16 @@ fn on_host(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     let spinner = progress::spinner("measuring this machine");
     let mut figures = beside_peers(rounds, &scenes, peers)?;
     figures.extend(lagging(rounds));
-    figures.push(Figure::new(
-        "verdict about a torque profile of 64 knots, median",
-        bench::verdict_time(&profile::scenes(), rounds.own),
-        "us",
-        Some(PROFILE_BUDGET),
-        "budget, one core",
-    ));
+    let time = bench::verdict_time(&profile::scenes(), rounds.own);
+    let name = "verdict about a torque profile of 64 knots, median";
+    figures.push(Figure::within(name, time, &PROFILE));
     figures.extend(maps(rounds));
     spinner.finish_and_clear();
     let spinner = progress::spinner("compiling certificates");
     for (name, latency) in [("", bench::AT_ONCE), (" with delay and lag", bench::LAGGING)] {
         let name = format!("certificate{name}, added to compilation");
         match compile_time(latency, rounds) {
-            Ok(time) => {
-                figures.push(Figure::new(name, time, "ms", Some(COMPILE_BUDGET), "budget"));
-            }
+            Ok(time) => figures.push(Figure::within(name, time, &COMPILATION)),
             Err(error) => eprintln!("{name}: not measured: {error}"),
         }
     }
@@ -290,8 +261,7 @@ fn beside_peers(
     mut peers: Option<PythonPeers>,
 ) -> Result<Vec<Figure>, CommandError> {
     let time = bench::verdict_time(scenes, rounds.own);
-    let verdict =
-        Figure::new("verdict, median", time, "us", Some(VERDICT_BUDGET), "budget, one core");
+    let verdict = Figure::within("verdict, median", time, &VERDICT);
     let mut figures = vec![verdict.clone()];
     for name in JUDGES {
         if let Some(peers) = &mut peers {
@@ -299,8 +269,7 @@ fn beside_peers(
             figures.push(verdict.again_beside(name, measured)?);
         }
     }
-    let (name, time) = ("exact simulation, a step", step_time(rounds.own));
-    let step = Figure::new(name, time, "ns", Some(STEP_BUDGET), "budget, 100 M steps/s");
+    let step = Figure::within("exact simulation, a step", step_time(rounds.own), &STEP);
     let in_c = in_c().and_then(|(mut peer, source)| {
         Ok((steps_beside(rounds.own, "C", &mut peer, ["values", "seconds"])?, source))
     });
@@ -316,30 +285,23 @@ fn lagging(rounds: Rounds) -> [Figure; 4] {
     let time = bench::middle_verdict_time(&bench::lagging_scenes(), rounds.own);
     let springs = bench::lagging_springs();
     let at_rest = || bench::at_rest::rendered_stiffness(&program::STIFFEST);
+    let same = Pair::computed(at_rest, || springs.ours());
     [
-        Figure::new(
-            "verdict with delay and lag, degrees 0 to 8, median",
-            time,
-            "us",
-            Some(LAGGING_BUDGET),
-            "budget, one core",
-        ),
+        Figure::within("verdict with delay and lag, degrees 0 to 8, median", time, &LAGGING),
         Figure::beside(
             "certified spring at 1 kHz, 5 us, current loop of 3 kHz",
             springs,
             "N m/rad",
             "latched, lag as a whole sample",
         ),
-        Figure::new(
+        Figure::within(
             "certified spring at h = 0.01 T: index allowed",
             bench::spring_with_jitter(),
-            "of delta",
-            Some(JITTER_BUDGET),
-            "budget, at least",
+            &JITTER,
         ),
         Figure::beside(
             "undelayed_spring: stiffness at rest in closed loop, same latency",
-            Pair::computed(at_rest, || springs.ours()),
+            same,
             "N m/rad",
             "the certified spring above",
         ),
@@ -352,19 +314,11 @@ fn maps(rounds: Rounds) -> Vec<Figure> {
     let name = "a map's walls judged, all cores";
     let scenes = [("standard coupling, delay 1", 44.0, 1), ("softer coupling, delay 2", 30.0, 2)];
     let figure = |(what, stiffness, delay): (&str, f64, usize)| {
-        let environment = Environment::DamperWall(Wall {
-            stiffness: 22.0,
-            damping: 0.01,
-            filter: None,
-            delay,
-            face: 0.0,
-            one_sided: false,
-        });
+        let environment = Wall::damped(22.0, 0.01, delay).alone();
         let coupling = Coupling::Spring { stiffness };
-        let scene = Scene { coupling, environment, ..damper_wall::SCENE.as_data() };
+        let scene = Scene { coupling, environment, ..damper_wall::SCENE };
         let rate = bench::map_rate(&Scene { torque_limit: None, ..scene }, rounds.maps).ok()?;
-        let budget = "budget, a million in 10 s";
-        Some(Figure::new(format!("{name}: {what}"), rate, "1/s", Some(MAP_BUDGET), budget))
+        Some(Figure::within(format!("{name}: {what}"), rate, &MAP))
     };
     scenes.into_iter().filter_map(figure).collect()
 }
@@ -422,18 +376,13 @@ fn on_target(
         for (state, stats) in groups {
             let Some(stats) = stats else { continue };
             let name = format!("{name}, {format}: tick, count to code, {state}, most");
-            figures.push(Figure::new(name, stats.max as f64, "instructions", None, ""));
+            figures.push(Figure::alone(name, stats.max as f64, "instructions"));
         }
         let has_budget = name == "damper_wall" && format == NumberFormat::F32;
         interrupt(&format!("{name}, {format}"), &board, has_budget, figures);
         if format == NumberFormat::F32 {
-            figures.push(Figure::new(
-                format!("{name}: certificate on the target"),
-                board.certify_instructions as f64,
-                "instructions",
-                Some(CERTIFY_BUDGET),
-                "budget, 20 ms at 170 MHz",
-            ));
+            let name = format!("{name}: certificate on the target");
+            figures.push(Figure::within(name, board.certify_instructions as f64, &CERTIFICATE));
         }
     }
     Ok(())
@@ -442,33 +391,28 @@ fn on_target(
 /// The servo's interrupt and its parts. The parts are measured separately, outside the interrupt, where the
 /// compiler can share less between them.
 fn interrupt(name: &str, board: &EmulatorReport, has_budget: bool, figures: &mut Vec<Figure>) {
-    let budget = has_budget.then_some(INTERRUPT_BUDGET);
     let whole = board.interrupt_instructions.max as f64;
-    let mut add = |what: &str, value: f64, against: Option<f64>, source| {
-        let against_source = if against.is_some() { source } else { "" };
-        let name = format!("{name}: {what}");
-        figures.push(Figure::new(name, value, "instructions", against, against_source));
+    let figure =
+        |what: &str, value: f64| Figure::alone(format!("{name}: {what}"), value, INTERRUPT.unit);
+    let bounded = |figure: Figure| match has_budget {
+        true => Figure::within(figure.name, figure.value, &INTERRUPT),
+        false => figure,
     };
-    add("whole interrupt, mean", board.interrupt_instructions.mean, budget, "budget");
-    add("whole interrupt, most", whole, budget, "budget");
+    let mean = board.interrupt_instructions.mean;
+    figures.push(bounded(figure("whole interrupt, mean", mean)));
+    figures.push(bounded(figure("whole interrupt, most", whole)));
     let parts = [
         ("of it the tick, count to code, mean", board.compute_instructions.mean),
         ("of it the energy monitor, mean", board.energy_instructions.mean),
         ("of it the frame, mean", board.frame_instructions.mean),
     ];
-    let rest = parts.iter().fold(board.interrupt_instructions.mean, |rest, (_, part)| rest - part);
-    for (what, mean) in parts {
-        add(what, mean, None, "");
-    }
-    add("of it time, state, requests, registers, mean", rest, None, "");
-    add("lockstep around it, mean", board.lockstep_instructions.mean, None, "");
-    figures.push(Figure::new(
-        format!("{name}: a 170 MHz core at 20 kHz, a cycle an instruction"),
-        100.0 * whole * TICK_RATE / CORE_CLOCK,
-        "%",
-        Some(CORE_BUDGET),
-        "budget",
-    ));
+    let rest = parts.iter().fold(mean, |rest, (_, part)| rest - part);
+    let rest = ("of it time, state, requests, registers, mean", rest);
+    let around = ("lockstep around it, mean", board.lockstep_instructions.mean);
+    let others = parts.into_iter().chain([rest, around]);
+    figures.extend(others.map(|(what, mean)| figure(what, mean)));
+    let name = format!("{name}: a 170 MHz core at 20 kHz, a cycle an instruction");
+    figures.push(Figure::within(name, 100.0 * whole * TICK_RATE / CORE_CLOCK, &CORE));
 }
 
 /// Cost of a set that the board certifies, and of a refused one.
@@ -476,19 +420,12 @@ fn live_sets(name: &str, elf: &Path, figures: &mut Vec<Figure>) -> Result<(), Co
     for coupling in [LIVE_COUPLING, 2.0 * LIVE_COUPLING] {
         let set = live_set(elf, &[(Parameter::CouplingStiffness, coupling)])?;
         let name = format!("{name}: live set, {}", if set.taken { "taken" } else { "refused" });
-        let (value, budget) = (set.instructions as f64, Some(CERTIFY_BUDGET));
-        figures.push(Figure::new(
-            format!("{name}, below the servo"),
-            value,
-            "instructions",
-            budget,
-            "budget, 20 ms at 170 MHz",
-        ));
+        let below = format!("{name}, below the servo");
+        figures.push(Figure::within(below, set.instructions as f64, &CERTIFICATE));
         let asked = format!("{name}, whole interrupt with its requests, most");
-        figures.push(Figure::new(asked, set.interrupt as f64, "instructions", None, ""));
+        figures.push(Figure::alone(asked, set.interrupt as f64, "instructions"));
         if let Some(left) = set.stack_left {
-            let name = format!("{name}, stack left");
-            figures.push(Figure::new(name, left.into(), "bytes", None, ""));
+            figures.push(Figure::alone(format!("{name}, stack left"), left.into(), "bytes"));
         }
     }
     Ok(())

@@ -13,10 +13,10 @@ use super::outcome::section;
 use super::shared_arguments::{DEFAULT_TICKS, MAX_TICKS};
 use super::status::{CommandError, CommandStatus};
 use crate::chain::Chain;
+use crate::chart::Window;
 use crate::chart::growth::growth;
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::trace;
-use crate::chart::{ChartError, Output, Picture, Window};
 use crate::compare_run::{self, Backend, Input, RunOutcome, run_with_backend};
 use crate::device::Motion;
 use crate::program::{self, Program};
@@ -116,7 +116,8 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         ),
     ];
     for (name, title, scene) in pictures {
-        write(folder, name, &nyquist(title, &[(name.to_owned(), scene)], &Window::default())?)?;
+        let picture = nyquist(title, &[(name.to_owned(), scene)], &Window::default())?;
+        picture.write(&folder.join(name))?;
     }
     writeln!(out, "pictures: {}", folder.display())?;
     out.flush()?;
@@ -150,12 +151,8 @@ fn draw_run(folder: &Path, program: &Program, outcome: &RunOutcome) -> Result<()
         compare_run::trace(title, program.scene.timing.period, &outcome.run, &trajectory);
     picture.face = face(&program.scene.environment);
     picture.torque_limit = program.scene.torque_limit;
-    Ok(write(folder, &format!("{}.svg", program.name), &trace(&picture, &Window::default())?)?)
-}
-
-/// Writes a picture into the folder.
-fn write(folder: &Path, name: &str, picture: &Picture) -> Result<(), ChartError> {
-    Output::new(&folder.join(name))?.write(picture)
+    let file = folder.join(program.name).with_extension("svg");
+    Ok(trace(&picture, &Window::default())?.write(&file)?)
 }
 
 /// The face of a one-sided wall in rad.
@@ -206,7 +203,7 @@ fn past_the_line(out: &mut impl Write, folder: &Path) -> Result<(), CommandError
             PAST_THE_LINE.timing.period,
             &touched(&device, &held)?,
         )?;
-        write(folder, "past_the_line.svg", &picture)?;
+        picture.write(&folder.join("past_the_line.svg"))?;
     } else {
         writeln!(out, "  no hand was found in which it oscillates")?;
     }

@@ -3,7 +3,6 @@
 //! by a part of a name or `--include-ignored`.
 
 mod bench;
-mod chromium;
 #[allow(dead_code)]
 #[path = "../all/common/mod.rs"]
 mod common;
@@ -19,6 +18,8 @@ mod verdict_page;
 
 use std::process::ExitCode;
 
+use analysis::browser::NAME;
+use analysis::toolchain::set_up_tool;
 use libtest_mimic::{Arguments, Completion, Trial};
 
 /// Each test with its name.
@@ -99,7 +100,7 @@ fn main() -> ExitCode {
     // A list of the tests, or other tests, need no browser.
     let wanted = |name: &str| arguments.filter.as_ref().is_none_or(|part| name.contains(part));
     let looks = !arguments.list && TESTS.iter().any(|(name, _)| wanted(name));
-    let missing = looks.then(chromium::set_up).and_then(Result::err);
+    let missing = looks.then(|| set_up_tool(NAME)).and_then(Result::err);
     if let Some(why) = &missing {
         eprintln!("skipped: tests/browser looks at pages with chromium: {why}");
     }

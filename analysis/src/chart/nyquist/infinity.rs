@@ -4,40 +4,34 @@
 //! `k / (z/z0 - 1)` there, half a turn clockwise at infinity: through the right half-plane if the residue `k`
 //! is positive, through the left if it is negative. The chart's frame stands for infinity.
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
-
 use super::Curve;
-use crate::chart::dash::Dash;
-use crate::chart::plot_area::{DrawingPoint, Frame, PlotArea};
-use crate::chart::{Drawn, anchored, units};
+use crate::chart::frame::{Frame, Place};
+use crate::chart::panel::Panel;
+use crate::chart::stroke::Stroke;
+use crate::chart::{Drawn, units};
 use crate::nyquist::Branch;
 use crate::unit_circle_poles::UnitCirclePole;
 
 /// The line style of a closure at infinity.
-const FAR: Dash = Dash::new(&[4, 4]);
+pub(super) const FAR: Stroke = Stroke::dashed(&[4, 4], 1);
 
-/// Room at the left and right for words outside of the frames, in units of the drawing.
-const WORDS: i32 = units(24);
-/// Room above and below the outermost frame.
+/// Room around the outermost frame, in units of the drawing.
 const ROOM: i32 = units(10);
 /// Distance between the frames of two poles.
 const STEP: i32 = units(7);
-/// Radius of a frame's corners.
-const CORNER: f64 = units(14) as f64;
 
 /// The frame of each pole of each curve, later frames inside earlier ones.
-pub(super) fn frames(plot: &PlotArea<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> {
-    let all = plot.all();
+pub(super) fn frames(panel: &Panel<'_, '_>, curves: &[&Curve]) -> Vec<Vec<Frame>> {
+    let all = panel.frame;
     let mut level = 0;
     let mut frame = |_: &UnitCirclePole| {
-        let [side, above] = [WORDS, ROOM].map(|room| f64::from(room + STEP * level));
+        let room = f64::from(ROOM + STEP * level);
         level += 1;
         Frame {
-            left: all.left + side,
-            top: all.top + above,
-            right: all.right - side,
-            bottom: all.bottom - above,
+            left: all.left + room,
+            top: all.top + room,
+            right: all.right - room,
+            bottom: all.bottom - room,
         }
     };
     curves.iter().map(|curve| curve.poles.iter().map(&mut frame).collect()).collect()
@@ -45,19 +39,19 @@ pub(super) fn frames(plot: &PlotArea<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> 
 
 /// Draws the closures of one curve at infinity, and returns them.
 pub(super) fn draw(
-    plot: &PlotArea<'_>,
+    panel: &Panel<'_, '_>,
     curve: &Curve,
     frames: &[Frame],
-) -> Drawn<Vec<Vec<DrawingPoint>>> {
+) -> Drawn<Vec<Vec<Place>>> {
     let drawn = (0..curve.poles.len()).filter(|&pole| curve.poles[pole].is_simple());
     let way = |pole: usize| {
-        let (from, to) = ends(plot, curve, pole, &frames[pole])?;
+        let (from, to) = ends(panel, curve, pole, &frames[pole])?;
         Some(around(&frames[pole], from, to))
     };
     let ways: Vec<_> = drawn.filter_map(way).collect();
     for way in &ways {
-        plot.line(FAR, way, 1)?;
-        plot.arrow(way, 0.62)?;
+        panel.line(FAR, way)?;
+        panel.arrow(way, 0.62)?;
     }
     Ok(ways)
 }
@@ -65,17 +59,17 @@ pub(super) fn draw(
 /// The ends of the curve at a pole, where it goes to infinity and where it returns, with rising angle. At the
 /// pole's conjugate the closure is the same if the residue is real; otherwise it is mirrored and not drawn.
 fn ends(
-    plot: &PlotArea<'_>,
+    panel: &Panel<'_, '_>,
     curve: &Curve,
     pole: usize,
     frame: &Frame,
-) -> Option<(DrawingPoint, DrawingPoint)> {
+) -> Option<(Place, Place)> {
     let branch = |end: usize| curve.branches.iter().find(|b| b.poles[end] == Some(pole));
-    let places = |b: &'_ Branch| b.values.iter().map(|&v| plot.place(v)).collect::<Vec<_>>();
+    let places = |b: &'_ Branch| b.values.iter().map(|&v| panel.place(v)).collect::<Vec<_>>();
     let from = branch(1).map(places).map(|line| frame.exit(line.into_iter()));
     let to = branch(0).map(places).map(|line| frame.exit(line.into_iter().rev()));
     // At rest and at half the sample rate the other end is the mirrored one.
-    let mirrored = |end: Option<DrawingPoint>| end.map(|end| frame.nearest(plot.mirrored(end)));
+    let mirrored = |end: Option<Place>| end.map(|end| frame.nearest(panel.mirrored(end)));
     let (from, to) = match (from, to) {
         (None, None) => return None,
         (Some(from), None) => (from?, mirrored(from)?),
@@ -92,8 +86,8 @@ fn ends(
     })
 }
 
-/// Along the frame clockwise, with rounded corners.
-fn around(frame: &Frame, from: DrawingPoint, to: DrawingPoint) -> Vec<DrawingPoint> {
+/// Along the frame clockwise.
+fn around(frame: &Frame, from: Place, to: Place) -> Vec<Place> {
     let [start, mut end] = [from, to].map(|place| way_to(frame, place));
     let (width, height) = (frame.right - frame.left, frame.bottom - frame.top);
     let once = 2.0 * (width + height);
@@ -110,11 +104,11 @@ fn around(frame: &Frame, from: DrawingPoint, to: DrawingPoint) -> Vec<DrawingPoi
     let mut points = vec![from];
     points.extend(turns.filter(|(s, _)| start < *s && *s < end).map(|(_, corner)| corner));
     points.push(to);
-    rounded(&points)
+    points
 }
 
 /// Length of the frame clockwise from its upper left corner to a place on it.
-fn way_to(frame: &Frame, (x, y): DrawingPoint) -> f64 {
+fn way_to(frame: &Frame, (x, y): Place) -> f64 {
     let (width, height) = (frame.right - frame.left, frame.bottom - frame.top);
     let sides = [
         (y - frame.top, x - frame.left),
@@ -124,49 +118,6 @@ fn way_to(frame: &Frame, (x, y): DrawingPoint) -> f64 {
     ];
     let nearest = sides.into_iter().min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     nearest.map_or(0.0, |(_, way)| way)
-}
-
-/// The line with its corners rounded, as far as their neighbours leave room.
-fn rounded(points: &[DrawingPoint]) -> Vec<DrawingPoint> {
-    let mut line = vec![points[0]];
-    for three in points.windows(3) {
-        let [before, corner, after] = [three[0], three[1], three[2]];
-        let towards = |other: DrawingPoint| {
-            let length = (other.0 - corner.0).hypot(other.1 - corner.1);
-            let part = if length > 0.0 { (CORNER / length).min(0.5) } else { 0.0 };
-            (corner.0 + part * (other.0 - corner.0), corner.1 + part * (other.1 - corner.1))
-        };
-        let (a, b) = (towards(before), towards(after));
-        let bend = |t: f64| {
-            let mix = |a: f64, c: f64, b: f64| {
-                (1.0 - t) * (1.0 - t) * a + 2.0 * t * (1.0 - t) * c + t * t * b
-            };
-            (mix(a.0, corner.0, b.0), mix(a.1, corner.1, b.1))
-        };
-        line.extend((0..=8).map(|i| bend(f64::from(i) / 8.0)));
-    }
-    line.push(points[points.len() - 1]);
-    line
-}
-
-/// Names the ways, once, at a side that one of them takes, above the real axis.
-pub(super) fn name(plot: &PlotArea<'_>, ways: &[Vec<DrawingPoint>]) -> Drawn<()> {
-    let all = plot.all();
-    let passes = |far: bool| {
-        let near = |x: f64| if far { x > 0.8 * all.right } else { x < 0.2 * all.right };
-        let tall = |way: &&Vec<DrawingPoint>| {
-            way.windows(2).any(|p| near(p[0].0) && (p[1].1 - p[0].1).abs() > 0.5 * all.bottom)
-        };
-        ways.iter().any(|way| tall(&way))
-    };
-    if ways.is_empty() {
-        return Ok(());
-    }
-    let side = if passes(true) || !passes(false) { all.right } else { all.left };
-    let inwards = if side > 0.0 { -WORDS / 2 } else { WORDS / 2 };
-    let place = (side.round() as i32 + inwards, (0.3 * all.bottom).round() as i32);
-    let style = anchored(HPos::Center, VPos::Center).transform(FontTransform::Rotate90);
-    plot.area.draw(&Text::new("at infinity", place, style))
 }
 
 #[cfg(test)]

@@ -1,75 +1,47 @@
 //! The legend below a Nyquist plot.
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
+use super::super::legend::{Legend, Sample};
+use super::infinity::FAR;
+use super::{BOUND, CRITICAL, Curve, NyquistScene, Role, lines};
+use crate::nyquist::{critical_lines, words};
+use crate::quantity::{shortened, significant};
+use crate::unit_circle_poles::UnitCirclePole;
 
-use super::{NyquistScene, lines};
-use crate::chart::dash::Dash;
-use crate::chart::{Area, Drawn, FAINT, UNITS, anchored, units};
-use crate::nyquist::words;
-use crate::quantity::shortened;
-
-/// Height of a line of the legend in pixels.
-const ROW: i32 = 19;
 /// Longest name in the legend, in letters.
 const LONGEST_NAME: usize = 48;
 
-/// An entry below the plot: lines of text with the patterns that they explain.
-struct Entry {
-    /// Pattern and ink of the explained line.
-    sample: Option<(Dash, RGBColor, u32)>,
-    words: Vec<String>,
-}
-
-/// Height of the legend in units of the drawing.
-pub(super) fn height(scenes: &[NyquistScene]) -> i32 {
-    let rows: usize = legend(scenes).iter().map(|entry| entry.words.len()).sum();
-    units(ROW * rows as i32 + 10)
-}
-
-fn legend(scenes: &[NyquistScene]) -> Vec<Entry> {
+/// Of each scene its curves and its bound, of which only the first line of words has a sample; then the lines
+/// that are not to be crossed, and the closures at infinity.
+pub(super) fn legend(scenes: &[NyquistScene]) -> Legend {
+    let is_single = scenes.len() == 1;
     let of = |(index, (scene, lines)): (usize, (&NyquistScene, Vec<super::Line<'_>>))| {
-        let name = match scenes.len() {
-            1 => String::new(),
-            _ => format!("{}: {}: ", index + 1, shortened(&scene.name, LONGEST_NAME)),
+        let name = match is_single {
+            true => String::new(),
+            false => format!("{}: {}: ", index + 1, shortened(&scene.name, LONGEST_NAME)),
         };
         let curves = lines.into_iter().map(|line| {
-            let judged = line.curve.role.is_judged();
-            let ink = if judged { BLACK } else { FAINT };
-            let words = words::curve(&name, scene, line.curve, scenes.len() == 1);
-            Entry { sample: Some((line.dash, ink, 2)), words }
+            (Sample::Line(line.stroke), words::curve(&name, scene, line.curve, is_single))
         });
-        let bound = bound(&name, scene);
+        let sample = scene.bound.map_or(Sample::Nothing, |_| Sample::Line(BOUND));
+        let bound = words::bound(&name, scene).map(|words| (sample, words));
         curves.chain(bound).collect::<Vec<_>>()
     };
     let mut entries: Vec<_> = scenes.iter().zip(lines(scenes)).enumerate().flat_map(of).collect();
-    if scenes.len() == 1
-        && let Some(first) = entries.first_mut()
-    {
-        first.words.insert(0, words::HALVES.to_owned());
+    if let Some(first) = entries.first_mut().filter(|_| is_single) {
+        first.1.insert(0, words::HALVES.to_owned());
     }
-    entries
-}
-
-/// The line that is judged in place of a curve.
-fn bound(name: &str, scene: &NyquistScene) -> Option<Entry> {
-    let sample = scene.bound.map(|_| (Dash::of(0), BLACK, 3));
-    words::bound(name, scene).map(|words| Entry { sample, words })
-}
-
-pub(super) fn write(area: &Area<'_>, scenes: &[NyquistScene]) -> Drawn<()> {
-    let mut row = 0;
-    for Entry { sample, words } in legend(scenes) {
-        for (index, line) in words.into_iter().enumerate() {
-            let middle = units(ROW * row + ROW / 2);
-            if let Some((dash, ink, width)) = sample.filter(|_| index == 0) {
-                let ends = [(units(20), middle), (units(76), middle)];
-                dash.draw_styled(area, &ends, ink.stroke_width(width * UNITS))?;
-            }
-            let style = anchored(HPos::Left, VPos::Center);
-            area.draw(&Text::new(line, (units(88), middle), style))?;
-            row += 1;
-        }
-    }
-    Ok(())
+    let rows = entries.into_iter().flat_map(|(sample, words)| {
+        let samples = std::iter::once(sample).chain(std::iter::repeat(Sample::Nothing));
+        samples.zip(words)
+    });
+    let critical = |(line, name): (f64, &str)| {
+        (Sample::Line(CRITICAL), format!("critical line, {name} = {}", significant(line, 4)))
+    };
+    let critical = critical_lines(scenes).into_iter().map(critical);
+    let closes = |curve: &Curve| {
+        curve.role != Role::Alone && curve.poles.iter().any(UnitCirclePole::is_simple)
+    };
+    let mut curves = scenes.iter().flat_map(|scene| &scene.curves);
+    let far = curves.any(closes).then(|| (Sample::Line(FAR), "at infinity".to_owned()));
+    Legend::new(1, rows.chain(critical).chain(far))
 }

@@ -5,31 +5,28 @@ mod legend;
 mod marks;
 
 use haptic_servo::scene::Scene;
-use plotters::prelude::*;
 
-use super::axes::Axes;
-use super::dash::Dash;
-use super::plot_area::{DrawingPoint, Frame, PlotArea};
+use super::axis::Axis;
+use super::frame::{Frame, Place};
+use super::mark::Mark;
+use super::page::{HEIGHT, Page, WIDTH};
+use super::palette::FORBIDDEN;
+use super::panel::{Axes, Panel};
+use super::stroke::Stroke;
 use super::*;
 use crate::nyquist::{Curve, NyquistScene, Role, critical_lines, usual_window};
-use crate::quantity::shortened;
 
-/// A very light line.
-const HAIRLINE: Dash = Dash::new(&[1, 7]);
+/// The lines of the axes, of an asymptote, of the line that is not to be crossed, and of a bound that is judged
+/// in place of a curve.
+const AXIS: Stroke = Stroke::solid(1);
+const ASYMPTOTE: Stroke = Stroke::dashed(&[1, 7], 1);
+const CRITICAL: Stroke = Stroke::dashed(&[8, 5], 2);
+const BOUND: Stroke = Stroke::solid(3);
 
-/// Longest title, in letters.
-const LONGEST_TITLE: usize = 72;
-
-/// A curve with its line pattern.
+/// A curve with its line.
 struct Line<'j> {
-    dash: Dash,
+    stroke: Stroke,
     curve: &'j Curve,
-}
-
-impl Line<'_> {
-    fn ink(&self) -> RGBColor {
-        if self.curve.role.is_judged() { BLACK } else { FAINT }
-    }
 }
 
 /// Each judged curve takes a pattern; the others take the pattern of their scene.
@@ -46,9 +43,15 @@ fn lines(scenes: &[NyquistScene]) -> Vec<Vec<Line<'_>>> {
         };
         scene.curves.iter().map(number).collect()
     };
-    let line = |(curve, dash): (_, usize)| Line { dash: Dash::of(dash), curve };
+    let line = |(curve, number): (_, usize)| Line { stroke: stroke(curve, number), curve };
     let numbers: Vec<Vec<usize>> = scenes.iter().map(&mut of).collect();
     scenes.iter().zip(numbers).map(|(s, n)| s.curves.iter().zip(n).map(line).collect()).collect()
+}
+
+/// The line of a curve, grey if the curve is not judged.
+fn stroke(curve: &Curve, number: usize) -> Stroke {
+    let stroke = Stroke::of(number, 2);
+    if curve.role.is_judged() { stroke } else { stroke.faint() }
 }
 
 /// Draws the Nyquist plots of named scenes for velocity, `(T z / (z - 1)) G`: the judged curve in black, with
@@ -74,17 +77,9 @@ pub fn nyquist(
     let tallest = span(values().map(|value| value.1.abs())).end;
     meets("horizontal", wanted.x.as_ref(), &real)?;
     meets("vertical", wanted.y.as_ref(), &(-tallest..tallest))?;
-    let legend = legend::height(&scenes);
-    let size = (SIZE.0, SIZE.1 + legend as u32 / UNITS);
-    draw_sized(size, |area| {
-        let area = area
-            .margin(units(TOP), 0, 0, 0)
-            .titled(&shortened(title, LONGEST_TITLE), text(TITLE))?;
-        let (plot, below) =
-            area.split_vertically(units(size.1 as i32) - legend - units(TITLE_ROOM));
-        paint(&plot, &scenes, wanted)?;
-        legend::write(&below, &scenes)
-    })
+    let legends = vec![legend::legend(&scenes)];
+    Page { title, width: WIDTH, heights: &[HEIGHT], legends }
+        .draw(|areas| paint(&areas[0], &scenes, wanted))
 }
 
 fn judged(scenes: &[(String, Scene)]) -> Result<Vec<NyquistScene>, ChartError> {
@@ -135,80 +130,52 @@ pub fn data(scenes: &[(String, Scene)]) -> Result<Data, ChartError> {
 
 fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()> {
     let (x, y) = usual_window(scenes, wanted.x.clone(), wanted.y.clone());
-    let mut chart = axes::chart(area).build_cartesian_2d(x.clone(), y.clone())?;
+    let axes = Axes::new(
+        (Axis::linear(x.clone()), "real part (N m s/rad)"),
+        (Axis::linear(y.clone()), "imaginary part (N m s/rad)"),
+    );
+    let mut panel = Panel::bare(area, axes)?;
     let criticals = critical_lines(scenes);
     // The region left of all lines is forbidden for every scene; without any line, the whole plane.
-    let leftmost = criticals.first().map_or(x.end, |line| line.0.clamp(x.start, x.end));
-    let forbidden = Rectangle::new([(x.start, y.start), (leftmost, y.end)], FORBIDDEN.filled());
-    chart.draw_series([forbidden])?;
-    Axes::named("real part (N m s/rad)", "imaginary part (N m s/rad)").draw(&mut chart)?;
-    if y.contains(&0.0) {
-        chart.draw_series([PathElement::new([(x.start, 0.0), (x.end, 0.0)], pen(1))])?;
-    }
-    if x.contains(&0.0) {
-        chart.draw_series([PathElement::new([(0.0, y.start), (0.0, y.end)], pen(1))])?;
-    }
-    let shown: Vec<_> = criticals.into_iter().filter(|line| x.contains(&line.0)).collect();
-    for (line, _) in &shown {
-        chart.draw_series(broken([(*line, y.start), (*line, y.end)], 8, 5, 2))?;
-    }
-    let plot = PlotArea::of(&chart);
+    let end = criticals.first().map_or(x.end, |line| line.0);
+    panel.fill(FORBIDDEN, [(x.start, y.start), (end, y.start), (end, y.end), (x.start, y.end)])?;
+    panel.grid()?;
+    panel.level(AXIS, 0.0)?;
+    panel.upright(AXIS, 0.0)?;
+    criticals.iter().try_for_each(|line| panel.upright(CRITICAL, line.0))?;
     let patterns = lines(scenes);
     let through: Vec<_> = scenes.iter().flat_map(|s| &s.curves).collect();
-    let frames = infinity::frames(&plot, &through);
+    let frames = infinity::frames(&panel, &through);
     let mut ways = Vec::new();
     for (line, frames) in patterns.iter().flatten().zip(&frames) {
-        ways.extend(draw_curve(&plot, line, frames)?);
+        ways.extend(draw_curve(&panel, line, frames)?);
     }
-    draw_bounds(&mut chart, scenes, &x, &y)?;
-    infinity::name(&plot, &ways)?;
-    let minima = draw_minima(&mut chart, scenes, &x, y.end)?;
-    let inner = frames.iter().flatten().last().copied().unwrap_or(plot.all());
-    let names = marks::Names { criticals: &shown, minima: &minima, ways: &ways };
-    marks::draw(&plot, scenes, inner, &names)
-}
-
-/// The bound that is judged in place of a curve: a vertical line, with all motion of the scene on its right.
-fn draw_bounds(
-    chart: &mut Plane<'_, '_>,
-    scenes: &[NyquistScene],
-    x: &Range<f64>,
-    y: &Range<f64>,
-) -> Drawn<()> {
-    let bounds = scenes.iter().filter_map(|scene| Some(-scene.bound?));
-    for line in bounds.filter(|line| x.contains(line)) {
-        let style = BLACK.stroke_width(3 * UNITS);
-        chart.draw_series([PathElement::new([(line, y.start), (line, y.end)], style)])?;
-    }
-    Ok(())
+    // All motion of a scene is on the right of its bound.
+    let mut bounds = scenes.iter().filter_map(|scene| Some(-scene.bound?));
+    bounds.try_for_each(|bound| panel.upright(BOUND, bound))?;
+    let minima = draw_minima(&panel, scenes, (x.end - x.start, y.end))?;
+    let inner = frames.iter().flatten().last().copied().unwrap_or(panel.frame);
+    marks::draw(&panel, scenes, inner, &minima, &ways)
 }
 
 /// The curve, and in a thinner line its mirror image for negative angles, with arrows in the direction of
 /// rising angles; its asymptote at rest, if it goes to infinity, as a hairline; and its closures at infinity,
 /// which are returned.
-fn draw_curve(
-    plot: &PlotArea<'_>,
-    line: &Line<'_>,
-    frames: &[Frame],
-) -> Drawn<Vec<Vec<DrawingPoint>>> {
-    let Line { dash, curve } = line;
+fn draw_curve(panel: &Panel<'_, '_>, line: &Line<'_>, frames: &[Frame]) -> Drawn<Vec<Vec<Place>>> {
+    let Line { stroke, curve } = line;
     let judged = curve.role.is_judged();
     if let Some(re) = curve.asymptote.filter(|_| judged) {
-        let (x, all) = (plot.place((re, 0.0)).0, plot.all());
-        if all.left <= x && x <= all.right {
-            plot.line(HAIRLINE, &[(x, all.top), (x, all.bottom)], 1)?;
-        }
+        panel.upright(ASYMPTOTE, re)?;
     }
     for branch in &curve.branches {
         let [first, last] = branch.poles.map(|pole| {
             let drawn = pole.filter(|&pole| curve.poles[pole].is_simple());
-            drawn.map_or(plot.all(), |pole| frames[pole])
+            drawn.map_or(panel.frame, |pole| frames[pole])
         });
-        let places: Vec<_> = branch.values.iter().map(|&value| plot.place(value)).collect();
+        let places: Vec<_> = branch.values.iter().map(|&value| panel.place(value)).collect();
         let half = places.len() / 2;
         let frame = |place| if place < half { first } else { last };
-        let mirrored: Vec<_> =
-            branch.values.iter().map(|&(re, im)| plot.place((re, -im))).collect();
+        let mirrored: Vec<_> = places.iter().map(|&place| panel.mirrored(place)).collect();
         for (places, width, arrow) in [(&places, 2, 0.4), (&mirrored, 1, 0.6)] {
             let parts = Frame::clip(places, frame);
             let longest = parts.iter().max_by_key(|part| part.len());
@@ -218,26 +185,22 @@ fn draw_curve(
                 if width == 1 {
                     part.reverse();
                 }
-                plot.arrow(&part, arrow)?;
+                panel.arrow(&part, arrow)?;
             }
-            for part in &parts {
-                plot.line_in(*dash, part, line.ink().stroke_width(width * UNITS))?;
-            }
+            parts.iter().try_for_each(|part| panel.line(stroke.wide(width), part))?;
         }
     }
     // Curves that are not judged may leave the frame.
-    if curve.role == Role::Alone { Ok(Vec::new()) } else { infinity::draw(plot, curve, frames) }
+    if curve.role == Role::Alone { Ok(Vec::new()) } else { infinity::draw(panel, curve, frames) }
 }
 
 /// Marks the minima, and returns them with their labels: in a row for several at one place; a single scene
-/// has its label in the legend.
+/// has its label in the legend. `size` is the width of the panel and its height above the real axis.
 fn draw_minima(
-    chart: &mut Plane<'_, '_>,
+    panel: &Panel<'_, '_>,
     scenes: &[NyquistScene],
-    x: &Range<f64>,
-    height: f64,
+    (width, height): (f64, f64),
 ) -> Drawn<Vec<((f64, f64), String)>> {
-    let width = x.end - x.start;
     let near = |a: (f64, f64), b: (f64, f64)| {
         (a.0 - b.0).abs() < 0.04 * width && (a.1 - b.1).abs() < 0.1 * height
     };
@@ -247,15 +210,9 @@ fn draw_minima(
     });
     for (index, curve) in marked {
         let Some(alpha) = curve.alpha else { continue };
-        let at = curve.minimum.filter(|point| point.1.abs() <= height).unwrap_or((-alpha, 0.0));
-        if !x.contains(&at.0) {
-            continue;
-        }
-        chart.draw_series([
-            Circle::new(at, units(5), WHITE.filled()),
-            Circle::new(at, units(5), pen(2)),
-        ])?;
-        if scenes.len() == 1 {
+        let at = curve.minimum.filter(|&point| panel.holds(point)).unwrap_or((-alpha, 0.0));
+        panel.mark(Mark::RING, at)?;
+        if scenes.len() == 1 || !panel.holds(at) {
             continue;
         }
         if let Some((_, numbers)) = labels.iter_mut().find(|(other, _)| near(*other, at)) {

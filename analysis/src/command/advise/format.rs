@@ -21,8 +21,7 @@ use crate::studies::bench::CORE_CLOCK;
 use crate::studies::number_format::{
     Advice, FormatProblem, HALF_A_TURN, Motion, Requirements, cost,
 };
-use crate::studies::tradeoff::ticks::Ticks;
-use crate::studies::tradeoff::{self, simulation};
+use crate::studies::tradeoff::{self, Tradeoff, simulation, ticks};
 
 /// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]
@@ -150,9 +149,10 @@ fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, Comman
 
 /// Advises with the kept instruction counts of scenes of this type.
 fn kept(motion: &Motion, requirements: &Requirements) -> Result<Advice, CommandError> {
-    let ticks = Ticks::kept()?;
+    let table = Tradeoff::kept(&ticks::COMPARISON)?;
     let environment = &motion.problem().scene.environment;
-    Ok(Advice::new(motion, requirements, |arithmetic| Ok(ticks.of(environment, arithmetic)))?)
+    let instructions = |arithmetic| Ok(ticks::instructions(&table, environment, arithmetic));
+    Ok(Advice::new(motion, requirements, instructions)?)
 }
 
 /// Advises with the instruction counts of this scene on the emulated board.
@@ -167,7 +167,7 @@ fn measured(motion: &Motion, requirements: &Requirements) -> Result<Advice, Comm
 
 /// The cheapest method of simulation whose relative error of the verdict is within a bound.
 fn simulated(bound: f64) -> Result<Option<SimulationMethod>, CommandError> {
-    let table = simulation::kept()?;
+    let table = Tradeoff::kept(&simulation::COMPARISON)?;
     Ok(simulation::cheapest(&table, bound).map(|method| SimulationMethod {
         method: method.family.clone(),
         substeps: method.values[simulation::SUBSTEPS_COLUMN].unwrap_or(f64::NAN),

@@ -1,11 +1,11 @@
 //! The output file of a chart, and its visible part.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::chart::{Chart, ChartError, Output, Window};
+use crate::chart::{Chart, ChartError, Picture, Window, has_extension};
 use crate::command::value_parsers::range;
 
 /// The output files of a chart and its numbers.
@@ -40,23 +40,23 @@ impl WindowArguments {
 /// Files whose names state their content.
 #[derive(Debug)]
 pub struct Files {
-    picture: Option<Output>,
+    picture: Option<PathBuf>,
     data: Option<PathBuf>,
 }
 
 impl OutputArguments {
     /// Checks the file names before the work: the picture could not be saved otherwise.
     pub(super) fn files(&self) -> Result<Files, ChartError> {
-        let is_data = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-        match &self.csv {
-            Some(path) if !is_data(path) => Err(ChartError::DataExtension { path: path.clone() }),
-            Some(path) if is_data(&self.output) => {
-                Err(ChartError::TwoTables { output: self.output.clone(), csv: path.clone() })
+        let (output, csv) = (self.output.clone(), self.csv.clone());
+        let is_data = has_extension(&output, "csv");
+        match csv {
+            Some(path) if !has_extension(&path, "csv") => Err(ChartError::DataExtension { path }),
+            Some(csv) if is_data => Err(ChartError::TwoTables { output, csv }),
+            None if is_data => Ok(Files { picture: None, data: Some(output) }),
+            data => {
+                Picture::check_name(&output)?;
+                Ok(Files { picture: Some(output), data })
             }
-            None if is_data(&self.output) => {
-                Ok(Files { picture: None, data: Some(self.output.clone()) })
-            }
-            data => Ok(Files { picture: Some(Output::new(&self.output)?), data: data.clone() }),
         }
     }
 }
@@ -64,9 +64,7 @@ impl OutputArguments {
 impl Files {
     /// Writes the files of a chart.
     pub(super) fn write(&self, Chart { picture, data }: Chart) -> Result<(), ChartError> {
-        if let Some(output) = &self.picture {
-            output.write(&picture)?;
-        }
+        self.picture.as_ref().map_or(Ok(()), |path| picture.write(path))?;
         self.data.as_ref().map_or(Ok(()), |path| data.write(path))
     }
 }

@@ -7,15 +7,14 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use crate::chart::tradeoff::Panels;
-use crate::chart::{self, Output};
+use crate::chart::{self, Picture};
 use crate::command::status::{CommandError, CommandStatus};
 use crate::compare_run::{Backend, Input, run_with_backend};
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
-use crate::studies::tradeoff::ticks::{self, Ticks};
 use crate::studies::tradeoff::{
-    self, Comparison, Tradeoff, certificate, rate, servo, simulation, sine,
+    self, Comparison, Tradeoff, certificate, rate, servo, simulation, sine, ticks,
 };
 use crate::table::Table;
 use crate::toolchain::{self, NumberFormat, Tools};
@@ -102,39 +101,30 @@ impl Topic {
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures/tradeoff");
     let folder = arguments.output.as_ref().unwrap_or(&kept);
-    let unwritable = |path: &Path| {
-        let path = path.to_owned();
-        move |source| CommandError::Unwritable { path, source }
-    };
     if let (Some(picture), Topic::All) = (&arguments.picture, arguments.topic) {
         let topics = TOPICS.map(|topic| topic.comparison().name).join(", ");
         return Err(CommandError::NoTopic { picture: picture.clone(), topics });
     }
-    let picture = arguments.picture.as_deref().map(Output::new).transpose()?;
+    arguments.picture.as_deref().map_or(Ok(()), Picture::check_name)?;
     if !arguments.draw_only {
-        std::fs::create_dir_all(folder).map_err(unwritable(folder))?;
+        std::fs::create_dir_all(folder).map_err(|source| unwritable(folder, source))?;
     }
     for topic in arguments.topic.topics() {
-        let file = |extension| folder.join(topic.comparison().name).with_extension(extension);
-        let table = file("csv");
+        let table = table_of(topic.comparison(), folder);
         if !arguments.draw_only {
-            let measured = topic.measure()?;
-            let out = File::create(&table).map_err(unwritable(&table))?;
-            measured.write(out).map_err(unwritable(&table))?;
+            keep(&topic.measure()?, folder)?;
             if topic == Topic::Servo {
-                let table = folder.join("ticks.csv");
-                let out = File::create(&table).map_err(unwritable(&table))?;
-                all_ticks()?.write(out).map_err(unwritable(&table))?;
+                keep(&all_ticks()?, folder)?;
             }
         }
         if arguments.draw_only && !table.exists() {
             return Err(CommandError::NothingKept { table });
         }
         let tradeoff = Tradeoff::read(topic.comparison(), Table::open(&table)?)?;
-        match &picture {
-            Some(output) => {
+        match &arguments.picture {
+            Some(picture) => {
                 let panels = arguments.panels(&tradeoff)?;
-                output.write(&chart::tradeoff::tradeoff(&tradeoff, &panels)?)?;
+                chart::tradeoff::tradeoff(&tradeoff, &panels)?.write(picture)?;
             }
             None => draw(&tradeoff, folder)?,
         }
@@ -143,13 +133,29 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(CommandStatus::Success)
 }
 
+fn unwritable(path: &Path, source: io::Error) -> CommandError {
+    CommandError::Unwritable { path: path.to_owned(), source }
+}
+
+/// The file of a comparison's table in a folder.
+fn table_of(comparison: &Comparison, folder: &Path) -> PathBuf {
+    folder.join(comparison.name).with_extension("csv")
+}
+
+/// Writes a table into a folder.
+fn keep(measured: &Tradeoff, folder: &Path) -> Result<(), CommandError> {
+    let path = table_of(measured.comparison, folder);
+    let written = File::create(&path).and_then(|out| measured.write(out));
+    written.map_err(|source| unwritable(&path, source))
+}
+
 /// Draws all panels of a table into a folder.
 fn draw(tradeoff: &Tradeoff, folder: &Path) -> Result<(), CommandError> {
     let name = tradeoff.comparison.name;
     for (word, panels) in Panels::all(tradeoff) {
         let picture = chart::tradeoff::tradeoff(tradeoff, &panels)?;
         let name = word.map_or_else(|| name.to_owned(), |word| format!("{name}-{word}"));
-        Output::new(&folder.join(&name).with_extension("svg"))?.write(&picture)?;
+        picture.write(&folder.join(&name).with_extension("svg"))?;
     }
     Ok(())
 }
@@ -182,10 +188,10 @@ impl Arguments {
 }
 
 /// The cost of a tick of any scene, for which there is no chart.
-fn all_ticks() -> Result<Ticks, CommandError> {
+fn all_ticks() -> Result<Tradeoff, CommandError> {
     let mut board = tradeoff::any_board()?;
     let bar = progress::bar(ticks::types() as u64, "types of scenes");
-    let measured = Ticks::measure(&mut board, || bar.inc(1))?;
+    let measured = ticks::measure(&mut board, || bar.inc(1))?;
     bar.finish_and_clear();
     board.finish()?;
     Ok(measured)

@@ -75,17 +75,35 @@ impl Pair {
     }
 }
 
+/// A bound on a figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// The bound.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it is, as text.
+    pub source: &'static str,
+}
+
+impl Budget {
+    /// A budget without further text.
+    pub const fn of(value: f64, unit: &'static str) -> Self {
+        Self { value, unit, source: "budget" }
+    }
+}
+
 impl Figure {
-    /// A figure with its budget, or alone: without a ratio.
-    pub fn new(
-        name: impl Into<String>,
-        value: f64,
-        unit: &'static str,
-        budget: Option<f64>,
-        source: impl Into<String>,
-    ) -> Self {
-        let (name, source) = (name.into(), source.into());
-        Self { name, value, unit, against: budget, ratio: None, source }
+    /// A figure alone.
+    pub fn alone(name: impl Into<String>, value: f64, unit: &'static str) -> Self {
+        let (name, source) = (name.into(), String::new());
+        Self { name, value, unit, against: None, ratio: None, source }
+    }
+
+    /// A figure with its budget, without a ratio.
+    pub fn within(name: impl Into<String>, value: f64, budget: &Budget) -> Self {
+        let &Budget { value: most, unit, source } = budget;
+        Self { against: Some(most), source: source.to_owned(), ..Self::alone(name, value, unit) }
     }
 
     /// A figure with a peer of the same run; the source says so.
@@ -96,7 +114,7 @@ impl Figure {
         source: impl Into<String>,
     ) -> Self {
         let (ratio, source) = (Some(pair.ratio()), format!("{}, same run", source.into()));
-        Self { ratio, ..Self::new(name, pair.ours, unit, Some(pair.peers), source) }
+        Self { against: Some(pair.peers), ratio, source, ..Self::alone(name, pair.ours, unit) }
     }
 
     /// This figure measured again, in turns with a peer; the same figure with its budget if the peer is not
@@ -160,7 +178,7 @@ mod tests {
 
     #[test]
     fn a_missing_peer_leaves_the_budget_and_no_ratio() {
-        let alone = Figure::new("a step", 8.0, "ns", Some(10.0), "budget");
+        let alone = Figure::within("a step", 8.0, &Budget::of(10.0, "ns"));
         assert_eq!(alone.ratio, None);
         let missing = Err(PeerError::Unavailable("no cc\n(a cause)".to_owned()));
         let row = alone.again_beside("C", missing).unwrap();

@@ -23,8 +23,8 @@ use std::time::Instant;
 use self::figure::{Pair, median};
 use crate::latency_limits::{lag_of, largest_spring};
 use crate::stability_map::{Family, Map, MapError};
-use haptic_servo::certificate::{PassivityProblem, assess};
-use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::certificate::assess;
+use haptic_servo::environment::{Coefficients, Environment, Rational};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// Instructions per second of a board's core: 170 MHz, at one cycle per instruction.
@@ -97,28 +97,27 @@ const MAP_SIDE: usize = 300;
 pub fn map_rate(scene: &Scene, rounds: usize) -> Result<f64, MapError> {
     let family = Family::rigid("the scene that is measured", scene)?;
     let (stiffness, damping) = family.usual_ranges();
-    let round = || {
-        let start = Instant::now();
+    let time = median_time(rounds, || {
         black_box(Map::new(&family, stiffness.clone(), damping.clone(), MAP_SIDE, || {}));
-        (MAP_SIDE * MAP_SIDE) as f64 / start.elapsed().as_secs_f64()
+    });
+    Ok((MAP_SIDE * MAP_SIDE) as f64 / time)
+}
+
+/// Median time of some work in s. The first round fills caches and starts threads, and is discarded.
+fn median_time(rounds: usize, mut work: impl FnMut()) -> f64 {
+    let mut round = || {
+        let start = Instant::now();
+        work();
+        start.elapsed().as_secs_f64()
     };
-    // The first round starts the threads and is discarded.
     round();
-    Ok(median((0..rounds).map(|_| round()).collect()))
+    median((0..rounds).map(|_| round()).collect())
 }
 
 /// Median time of one verdict on one core of this machine in microseconds.
 pub fn verdict_time(scenes: &[Scene], rounds: usize) -> f64 {
-    let round = || {
-        let start = Instant::now();
-        for scene in scenes {
-            black_box(assess(black_box(scene)));
-        }
-        start.elapsed().as_secs_f64() * 1e6 / scenes.len() as f64
-    };
-    // The first round fills caches and is discarded.
-    round();
-    median((0..rounds).map(|_| round()).collect())
+    let judge = || scenes.iter().for_each(|scene| _ = black_box(assess(black_box(scene))));
+    median_time(rounds, judge) * 1e6 / scenes.len() as f64
 }
 
 /// The same scenes with torques 10 us after their counts, through a current loop of 3 kHz.
@@ -130,16 +129,8 @@ pub fn lagging_scenes() -> Vec<Scene> {
 /// Time of the median scene in microseconds: the cost of a verdict grows with its degree, and is many times
 /// larger if poles are close to the circle.
 pub fn middle_verdict_time(scenes: &[Scene], rounds: usize) -> f64 {
-    let time = |scene: &Scene| {
-        let round = || {
-            let start = Instant::now();
-            black_box(assess(black_box(scene)));
-            start.elapsed().as_secs_f64() * 1e6
-        };
-        round();
-        median((0..rounds).map(|_| round()).collect())
-    };
-    median(scenes.iter().map(time).collect())
+    let time = |scene: &Scene| median_time(rounds, || _ = black_box(assess(black_box(scene))));
+    1e6 * median(scenes.iter().map(time).collect())
 }
 
 /// Largest certified stiffness in N m/rad of an undelayed spring without coupling, at 1 kHz, for a device of
@@ -150,22 +141,6 @@ pub fn lagging_springs() -> Pair {
     let early = Latency::delayed(5e-6).with_actuator_lag(lag_of(3e3));
     let largest = |latency, delay| largest_spring(&device, 1e-3, latency, delay);
     Pair::computed(|| largest(early, 0), || largest(Latency::NONE, 2))
-}
-
-/// The part of the device's passivity that certified springs may need behind the matched coupling, where
-/// torques or counts deviate by up to a hundredth of a period from tick to tick.
-pub fn spring_with_jitter() -> f64 {
-    let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
-    let scene = Scene {
-        device,
-        timing: Timing { period: 1e-3, worst_period: None },
-        coupling: Coupling::Matched,
-        environment: Environment::DelayedSpring(Wall::spring(20.0, 1)),
-        latency: Latency { output_jitter: 1e-5, ..Latency::delayed(1e-4) },
-        torque_limit: Some(1.0),
-    };
-    let limit = PassivityProblem::of(&scene).ok().and_then(|posed| posed.limit());
-    limit.map_or(0.0, |limit| limit.lo() / device.damping)
 }
 
 /// Milliseconds that a certificate adds to the compilation of a program: the difference between a program
@@ -261,12 +236,5 @@ mod tests {
         for scene in &scenes {
             assert!(assess(scene).alpha.is_some(), "{scene:?}");
         }
-    }
-
-    /// Equation 55: torques in a window of two hundredths of a period.
-    #[test]
-    fn a_jitter_costs_the_width_of_its_window() {
-        let left = spring_with_jitter();
-        assert!(left >= 0.98 && (left * 1.02 - 1.0).abs() < 1e-9, "{left}");
     }
 }

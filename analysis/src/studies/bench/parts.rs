@@ -1,11 +1,12 @@
 //! The parts of a tick and the state of each scene.
 
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::Table;
 use serde::Serialize;
 
 use super::figure::Figure;
 use crate::program::{Program, State};
 use crate::studies::tick_parts::{Part, Share, TickParts, TickPartsError};
+use crate::text_table::markdown_table;
 use crate::toolchain::{self, NumberFormat};
 
 /// The inventory of a scene's program.
@@ -71,7 +72,7 @@ impl Inventory {
             ("state of the environment, fixed", self.state_fixed.environment as u64, "bytes"),
         ];
         let figure = |(what, value, unit)| {
-            Figure::new(format!("{}: {what}", self.scene), value as f64, unit, None, "")
+            Figure::alone(format!("{}: {what}", self.scene), value as f64, unit)
         };
         figures.map(figure).to_vec()
     }
@@ -79,9 +80,8 @@ impl Inventory {
 
 /// The scenes as a table.
 pub fn table(scenes: &[Inventory]) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header([""].into_iter().chain(scenes.iter().map(|of| of.scene)));
+    let header = [""].into_iter().chain(scenes.iter().map(|of| of.scene));
+    let mut table = markdown_table(header, 1..=scenes.len());
     let mut row = |name: String, cell: &dyn Fn(&Inventory) -> String| {
         table.add_row([name].into_iter().chain(scenes.iter().map(cell)));
     };
@@ -102,8 +102,5 @@ pub fn table(scenes: &[Inventory]) -> Table {
     });
     row("flash: bytes".into(), &|of| of.flash.to_string());
     row("RAM: bytes".into(), &|of| of.ram.to_string());
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
     table
 }

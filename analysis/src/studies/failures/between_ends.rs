@@ -12,7 +12,6 @@ use super::case::{CaseResult, FailureError};
 use super::method_result::MethodResult;
 use super::motion::Outcome;
 use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run, rigid, wall_of};
-use crate::simulation::{Experiment, Integration};
 
 /// Stiffness in N m/rad and damping in N m s/rad of the wall.
 const WALL: (f64, f64) = (22.0, 0.01);
@@ -49,9 +48,7 @@ pub fn between_ends() -> Result<CaseResult, FailureError> {
         of_end("certificate of the wall, not late", 0),
     ];
     let scene = between();
-    let alone = Experiment::still(&scene);
-    let truth =
-        MethodResult::eigenvalues("exact exponential, in no hand", &alone, Integration::default())?;
+    let truth = MethodResult::in_no_hand(&scene)?;
     // Small steps, so that the motion begins above them.
     let counts_per_turn = f64::from(1 << 22);
     let fine = Transducers { counts_per_turn, full_scale_torque: 2.0, ..PADDLES };
@@ -62,10 +59,5 @@ pub fn between_ends() -> Result<CaseResult, FailureError> {
     let matched = Scene { coupling: Coupling::Matched, latency: scene.latency, ..end(0) };
     let rests =
         loop_run("the wall behind the matched coupling", &matched, PADDLES, Outcome::Converges);
-    Ok(CaseResult {
-        methods,
-        certificate: MethodResult::certificate(&scene),
-        truth,
-        runs: vec![shakes, rests.pushed(1.0, 2000)],
-    })
+    Ok(CaseResult::of(&scene, methods, truth, [shakes, rests.pushed(1.0, 2000)]))
 }

@@ -1,6 +1,7 @@
 //! A question about one loop, and the results of the methods.
 
 use haptic_servo::environment::ShapeError;
+use haptic_servo::scene::Scene;
 use thiserror::Error;
 
 use super::loop_run::{LoopRun, LoopRunError};
@@ -49,6 +50,18 @@ pub struct CaseResult {
     pub truth: MethodResult,
     /// The runs: of the loop in question, then of a loop that the certificate allows.
     pub runs: Vec<LoopRun>,
+}
+
+impl CaseResult {
+    /// The results of common methods on a scene, and the certificate's.
+    pub(super) fn of(
+        scene: &Scene,
+        methods: Vec<MethodResult>,
+        truth: MethodResult,
+        runs: impl Into<Vec<LoopRun>>,
+    ) -> Self {
+        Self { methods, certificate: MethodResult::certificate(scene), truth, runs: runs.into() }
+    }
 }
 
 impl Case {

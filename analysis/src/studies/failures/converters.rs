@@ -11,7 +11,6 @@ use super::method_result::MethodResult;
 use super::motion::Outcome;
 use super::setting::{PADDLE, PADDLES, coupled, friction_for_rest, loop_run, wall_of};
 use crate::simulation::torque_signal::TorqueSignal;
-use crate::simulation::{Experiment, Integration};
 
 /// Torque in N m with which the hand leans on the wall.
 const LEANS: f64 = 0.2;
@@ -73,12 +72,9 @@ fn leaning(
 fn ideal(scene: &Scene) -> Result<Vec<MethodResult>, FailureError> {
     let mut smooth = leaning("no steps", scene, PADDLES, Outcome::Converges, 0.0);
     smooth.experiment.encoder_step = None;
+    let linear = MethodResult::in_no_hand(scene)?;
     Ok(vec![
-        MethodResult::eigenvalues(
-            "linear analysis",
-            &Experiment::still(scene),
-            Integration::default(),
-        )?,
+        MethodResult { method: "linear analysis".into(), ..linear },
         MethodResult::simulated("simulation in real numbers", &smooth)?,
     ])
 }

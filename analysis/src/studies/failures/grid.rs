@@ -12,7 +12,7 @@ use super::motion::Outcome;
 use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run};
 use crate::device::Hand;
 use crate::response::Response;
-use crate::simulation::{Experiment, Integration, SimulationError};
+use crate::simulation::SimulationError;
 
 /// Distance of the resonance's pole from the unit circle.
 const NARROW: f64 = 1e-6;
@@ -30,25 +30,17 @@ pub fn grid() -> Result<CaseResult, FailureError> {
     let methods = GRIDS.map(|points| {
         let angles = (1..points).map(|point| PI * f64::from(point) / f64::from(points));
         let alpha = angles.map(|theta| -velocity.at_angle(theta).re).fold(f64::MIN, f64::max);
+        let (name, verdict) = (format!("grid of {points}"), MethodVerdict::of(alpha < delta));
         let reason = "the least real part on the grid asks for {} N m s/rad";
-        MethodResult::new(
-            format!("grid of {points}"),
-            MethodVerdict::of(alpha < delta),
-            alpha,
-            reason,
-        )
+        MethodResult::new(name, verdict, alpha, reason)
     });
-    let alone = Experiment::still(&scene);
-    let truth =
-        MethodResult::eigenvalues("exact exponential, in no hand", &alone, Integration::default())?;
+    let truth = MethodResult::in_no_hand(&scene)?;
     // A spring with which the device resonates at the minimum.
     let stiffness = PADDLE.inertia * (angle() / PERIOD).powi(2);
     let mut grows = loop_run("in a hand that resonates there", &scene, PADDLES, Outcome::Diverges);
     grows.experiment.plant =
         grows.experiment.plant.with_hand(Hand { stiffness, ..Hand::default() });
-    let certificate = MethodResult::certificate(&scene);
-    let runs = vec![grows.pushed(1.0, 300_000)];
-    Ok(CaseResult { methods: methods.into(), certificate, truth, runs })
+    Ok(CaseResult::of(&scene, methods.into(), truth, [grows.pushed(1.0, 300_000)]))
 }
 
 /// In the middle between two points of the finest grid, a third of the way around.

@@ -3,7 +3,7 @@
 use haptic_servo::servo::Transducers;
 
 use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, MethodVerdict};
+use super::method_result::MethodResult;
 use super::motion::Outcome;
 use super::setting::{KNOB, KNOBS, coupled, loop_run, rigid, wall_of};
 use crate::simulation::method::Method;
@@ -23,44 +23,30 @@ fn two_masses() -> Plant {
 pub fn explicit_euler() -> Result<CaseResult, FailureError> {
     let scene = coupled(KNOB, wall_of(500.0, 0.0, 1));
     let experiment = Experiment { plant: two_masses(), ..Experiment::still(&scene) };
-    let mut methods = Vec::new();
-    for substeps in [1, 20] {
-        let integration = Integration { method: Method::Euler, substeps };
-        methods.push(MethodResult::eigenvalues(
-            name(Method::Euler, substeps),
-            &experiment,
-            integration,
-        )?);
-    }
-    let truth =
-        MethodResult::eigenvalues(Method::Exact.name(), &experiment, Integration::default())?;
+    let by = |name, integration| MethodResult::eigenvalues(name, &experiment, integration);
+    let euler = |substeps| {
+        by(name(Method::Euler, substeps), Integration { method: Method::Euler, substeps })
+    };
+    let methods = vec![euler(1)?, euler(20)?];
+    let truth = by(Method::Exact.name().to_owned(), Integration::default())?;
     let mut certified =
         loop_run("the certified wall", &scene, KNOBS, Outcome::Converges).pushed(1.0, 3000);
-    certified.experiment.plant = experiment.plant;
-    Ok(CaseResult {
-        methods,
-        certificate: MethodResult::certificate(&scene),
-        truth,
-        runs: vec![certified],
-    })
+    certified.experiment.plant = two_masses();
+    Ok(CaseResult::of(&scene, methods, truth, [certified]))
 }
 
 /// Semi-implicit Euler with few steps: an oscillating wall comes to rest.
 pub fn semi_implicit_euler() -> Result<CaseResult, FailureError> {
     let scene = rigid(KNOB, wall_of(1500.0, 0.0, 0));
-    let experiment = Experiment::still(&scene);
-    let mut methods = Vec::new();
-    for substeps in [1, 2, 10] {
-        methods.push(by_limit(&experiment, Method::SemiImplicit, substeps, 1500.0)?);
-    }
-    let truth = by_limit(&experiment, Method::Exact, 1, 1500.0)?;
+    let by = |method, substeps| by_limit(&Experiment::still(&scene), method, substeps, 1500.0);
+    let methods = [1, 2, 10].map(|substeps| by(Method::SemiImplicit, substeps));
+    let methods = methods.into_iter().collect::<Result<_, _>>()?;
     let shakes = loop_run("1500 N m/rad", &scene, KNOBS, Outcome::Diverges)
         .pushed(1.0, 3000)
         .with_claimed_passivity(2.0);
     let rests = rigid(KNOB, wall_of(900.0, 0.0, 0));
     let rests = loop_run("900 N m/rad", &rests, KNOBS, Outcome::Converges).pushed(1.0, 3000);
-    let certificate = MethodResult::certificate(&scene);
-    Ok(CaseResult { methods, certificate, truth, runs: vec![shakes, rests] })
+    Ok(CaseResult::of(&scene, methods, by(Method::Exact, 1)?, [shakes, rests]))
 }
 
 /// Runge-Kutta of fourth order with one step per tick: two masses in a hand.
@@ -72,22 +58,16 @@ pub fn runge_kutta() -> Result<CaseResult, FailureError> {
     let fine = Transducers { counts_per_turn, full_scale_torque: 100.0, ..KNOBS };
     let scene = rigid(KNOB, wall_of(STIFFNESS, 0.0, 0));
     let experiment = Experiment { plant: two_masses(), ..Experiment::still(&scene) };
-    let methods = vec![
-        by_limit(&experiment, Method::Rk4, 1, STIFFNESS)?,
-        by_limit(&experiment, Method::Tustin, 1, STIFFNESS)?,
-    ];
-    let truth = by_limit(&experiment, Method::Exact, 1, STIFFNESS)?;
-    let mut runs = vec![
-        loop_run("2750 N m/rad", &scene, fine, Outcome::Diverges)
-            .pushed(2.0, 15_000)
-            .with_claimed_passivity(3.0),
-        loop_run("900 N m/rad", &rigid(KNOB, wall_of(900.0, 0.0, 0)), fine, Outcome::Converges)
-            .pushed(2.0, 15_000),
-    ];
-    for loop_run in &mut runs {
-        loop_run.experiment.plant = two_masses();
-    }
-    Ok(CaseResult { methods, certificate: MethodResult::certificate(&scene), truth, runs })
+    let by = |method| by_limit(&experiment, method, 1, STIFFNESS);
+    let methods = vec![by(Method::Rk4)?, by(Method::Tustin)?];
+    let rests = rigid(KNOB, wall_of(900.0, 0.0, 0));
+    let mut runs = [
+        loop_run("2750 N m/rad", &scene, fine, Outcome::Diverges).with_claimed_passivity(3.0),
+        loop_run("900 N m/rad", &rests, fine, Outcome::Converges),
+    ]
+    .map(|loop_run| loop_run.pushed(2.0, 15_000));
+    runs.iter_mut().for_each(|loop_run| loop_run.experiment.plant = two_masses());
+    Ok(CaseResult::of(&scene, methods, by(Method::Exact)?, runs))
 }
 
 /// The name of a method with a number of steps.
@@ -108,6 +88,5 @@ fn by_limit(
 ) -> Result<MethodResult, FailureError> {
     let integration = Integration { method, substeps };
     let limit = critical_stiffness(experiment, integration)?.unwrap_or(f64::INFINITY);
-    let verdict = MethodVerdict::of(stiffness < limit);
-    Ok(MethodResult::new(name(method, substeps), verdict, limit, "stable up to {} N m/rad"))
+    Ok(MethodResult::bound(name(method, substeps), stiffness, limit, "stable up to {} N m/rad"))
 }

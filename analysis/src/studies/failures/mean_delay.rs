@@ -3,7 +3,7 @@
 use haptic_servo::scene::{Latency, Scene};
 
 use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, MethodVerdict};
+use super::method_result::MethodResult;
 use super::motion::Outcome;
 use super::setting::{PADDLE, PADDLES, PERIOD, loop_run, rigid, wall_of};
 use crate::chain::Chain;
@@ -30,14 +30,8 @@ pub fn mean_delay() -> Result<CaseResult, FailureError> {
     let limit = PADDLE.damping / (0.5 * PERIOD + DELAY + lag_of(BANDWIDTH));
     let without = PADDLE.damping / (0.5 * PERIOD + lag_of(BANDWIDTH));
     let scene = spring(PART * limit);
-    let rule = |method, limit: f64| {
-        MethodResult::new(
-            method,
-            MethodVerdict::of(PART * limit < limit),
-            limit,
-            "allows {} N m/rad",
-        )
-    };
+    let rule =
+        |method, allowed| MethodResult::bound(method, PART * limit, allowed, "allows {} N m/rad");
     let alone = Experiment::still(&scene);
     let by_itself = MethodResult::eigenvalues("in no hand", &alone, Integration::default())?;
     let methods =
@@ -54,10 +48,6 @@ pub fn mean_delay() -> Result<CaseResult, FailureError> {
     let samples = (4.0 / hand.spectral_radius.ln()).clamp(1000.0, 150_000.0) as usize;
     let certified = spring(0.95 * largest_spring(&PADDLE, PERIOD, latency(), 0));
     let rests = loop_run("0.95 of the certified limit", &certified, PADDLES, Outcome::Converges);
-    Ok(CaseResult {
-        methods,
-        certificate: MethodResult::certificate(&scene),
-        truth,
-        runs: vec![shakes.pushed(1.0, samples), rests.pushed(1.0, 4000)],
-    })
+    let runs = [shakes.pushed(1.0, samples), rests.pushed(1.0, 4000)];
+    Ok(CaseResult::of(&scene, methods, truth, runs))
 }

@@ -90,6 +90,20 @@ impl MethodResult {
         Ok(Self::modulus(method, "largest eigenvalue", radius(&eigenvalues(&closed.matrix)?)))
     }
 
+    /// The verdict by the exact eigenvalues of a scene on its device without a hand.
+    ///
+    /// # Errors
+    /// As of [`Self::eigenvalues`].
+    pub fn in_no_hand(scene: &Scene) -> Result<Self, SimulationError> {
+        let alone = Experiment::still(scene);
+        Self::eigenvalues("exact exponential, in no hand", &alone, Integration::default())
+    }
+
+    /// The verdict by a number that must be less than another: the method is a bound on it.
+    pub fn bound(method: impl Into<String>, value: f64, limit: f64, reason: &str) -> Self {
+        Self::new(method, MethodVerdict::of(value < limit), limit, reason)
+    }
+
     /// The verdict by a modulus that must be inside the unit circle; `of` names it.
     pub fn modulus(method: impl Into<String>, of: &str, modulus: f64) -> Self {
         let (is_inside, beside) = (modulus < 1.0, significant((modulus - 1.0).abs(), 6));

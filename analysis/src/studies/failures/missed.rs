@@ -23,7 +23,6 @@ pub fn missed_ticks() -> Result<CaseResult, FailureError> {
         MethodResult::new("K < 2b/T, T as meant", MethodVerdict::Safe, limit, reason),
         MethodResult::simulated("simulation in time", &punctual)?,
     ];
-    let certificate = MethodResult::certificate(&twice(nominal));
     let mut grows = loop_run("0.95 of 2b/T", &nominal, KNOBS, Outcome::Diverges).pushed(5.0, 3000);
     grows.experiment.missed = Missed::Random { fraction: 0.1, seed: 1 };
     let half = twice(rigid(KNOB, wall_of(0.95 * 0.5 * limit, 0.0, 0)));
@@ -31,5 +30,5 @@ pub fn missed_ticks() -> Result<CaseResult, FailureError> {
         loop_run("0.95 of 2b/T_max", &half, KNOBS, Outcome::Converges).pushed(1.0, 6000);
     rests.experiment.missed = Missed::Every(2);
     let truth = MethodResult::simulated("simulation, a tenth of the ticks missed", &grows)?;
-    Ok(CaseResult { methods, certificate, truth, runs: vec![grows, rests] })
+    Ok(CaseResult::of(&twice(nominal), methods, truth, [grows, rests]))
 }

@@ -41,12 +41,7 @@ pub fn passivity_observer() -> Result<CaseResult, FailureError> {
     let reason = "left alone, the device ends within {} rad";
     let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
     let truth = MethodResult::new("exact exponential", verdict, motion.last, reason);
-    Ok(CaseResult {
-        methods,
-        certificate: MethodResult::certificate(&scene),
-        truth,
-        runs: vec![ours],
-    })
+    Ok(CaseResult::of(&scene, methods, truth, [ours]))
 }
 
 /// When the controller divides by the velocity.
@@ -80,24 +75,16 @@ fn observed(
         };
         held = torque + damping * velocity;
         if !held.is_finite() {
-            let reason = "the torque is not a number from {} s on";
-            return Ok(MethodResult::new(
-                method,
-                MethodVerdict::Unsafe,
-                sample as f64 * PERIOD,
-                reason,
-            ));
+            let (time, reason) =
+                (sample as f64 * PERIOD, "the torque is not a number from {} s on");
+            return Ok(MethodResult::new(method, MethodVerdict::Unsafe, time, reason));
         }
         peak = peak.max(held.abs());
         held = held.clamp(-PADDLES.full_scale_torque, PADDLES.full_scale_torque);
         device.apply(-held);
     }
     let motion = Motion::of(&device.positions, loop_run.experiment.samples);
-    let reason = format!("{}; it asks the motor for {{}} N m", motion);
-    Ok(MethodResult::new(
-        method,
-        MethodVerdict::of(motion.outcome() == Outcome::Converges),
-        peak,
-        &reason,
-    ))
+    let reason = format!("{motion}; it asks the motor for {{}} N m");
+    let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
+    Ok(MethodResult::new(method, verdict, peak, &reason))
 }

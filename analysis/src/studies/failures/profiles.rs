@@ -58,8 +58,8 @@ pub fn fine_detents() -> Result<CaseResult, FailureError> {
         rests_by("torque neither held nor late", &not_held.experiment, Integration::default())?,
     ];
     let truth = MethodResult::simulated("exact exponential", &hums)?;
-    let certificate = MethodResult::certificate(&hums.experiment.scene);
-    Ok(CaseResult { methods, certificate, truth, runs: vec![hums, rests] })
+    let scene = hums.experiment.scene;
+    Ok(CaseResult::of(&scene, methods, truth, [hums, rests]))
 }
 
 /// A profile whose slopes are all small, and whose mean is not zero.

@@ -2,12 +2,13 @@
 
 use haptic_servo::environment::{Coefficients, Environment, Rational};
 use haptic_servo::scene::Scene;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 
 use super::case::{CaseResult, FailureError};
 use super::method_result::{MethodResult, MethodVerdict};
 use super::setting::{PADDLE, rigid};
 use crate::stability::{eigenvalues, radius};
+use crate::studies::tradeoff::certificate::polynomials::companion;
 
 /// Distance of the pole from the circle: 2^-20, so that every coefficient is a double.
 pub const BESIDE: f64 = 1.0 / (1 << 20) as f64;
@@ -54,27 +55,15 @@ fn evaluate(pole: f64) -> Result<CaseResult, FailureError> {
     let companion = companion(&denominator(pole));
     let plain: Vec<Complex<f64>> = companion.complex_eigenvalues().iter().copied().collect();
     let root = "outermost root of the denominator";
+    let balanced = eigenvalues(&companion)?;
     let methods = vec![
         MethodResult::modulus("companion matrix", root, radius(&plain)),
-        MethodResult::modulus(
-            "companion matrix, balanced",
-            root,
-            radius(&eigenvalues(&companion)?),
-        ),
+        MethodResult::modulus("companion matrix, balanced", root, radius(&balanced)),
     ];
     let growth = growth(pole);
     let reason = "factor by factor its output is {} of what it was, 2^20 samples later";
     let truth = MethodResult::new("its response", MethodVerdict::of(growth < 1.0), growth, reason);
-    let certificate = MethodResult::certificate(&scene);
-    Ok(CaseResult { methods, certificate, truth, runs: Vec::new() })
-}
-
-fn companion(descending: &[f64]) -> DMatrix<f64> {
-    let degree = descending.len() - 1;
-    DMatrix::from_fn(degree, degree, |row, column| match row {
-        0 => -descending[column + 1],
-        _ => f64::from(u8::from(row == column + 1)),
-    })
+    Ok(CaseResult::of(&scene, methods, truth, []))
 }
 
 /// The change of the filter's impulse response over 2^20 samples, after its four fast poles have decayed;

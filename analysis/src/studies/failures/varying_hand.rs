@@ -61,35 +61,22 @@ pub fn varying_hand() -> Result<CaseResult, FailureError> {
     let linear = needed(&scene, &device).unwrap_or(f64::NAN);
     let reason = "hands that do not vary ask for {} N m s/rad";
     let searched = search(&scene, &device)?;
+    let allows = MethodVerdict::of(linear < LIGHT.damping);
+    let (tried, worst) = (searched.tried, searched.worst.spectral_radius);
+    let still = MethodVerdict::of(!searched.oscillates);
+    let largest = "the largest eigenvalue in the worst of them is {}";
     let methods = vec![
-        MethodResult::new(
-            "Nyquist, for all linear hands",
-            MethodVerdict::of(linear < LIGHT.damping),
-            linear,
-            reason,
-        ),
-        MethodResult::new(
-            format!("{} hands that do not vary", searched.tried),
-            MethodVerdict::of(!searched.oscillates),
-            searched.worst.spectral_radius,
-            "the largest eigenvalue in the worst of them is {}",
-        ),
+        MethodResult::new("Nyquist, for all linear hands", allows, linear, reason),
+        MethodResult::new(format!("{tried} hands that do not vary"), still, worst, largest),
     ];
-    let truth = MethodResult::modulus(
-        "a hand that varies with the period",
-        "largest multiplier",
-        VaryingHand::against(&scene)?.multiplier(&scene)?,
-    );
+    let multiplier = VaryingHand::against(&scene)?.multiplier(&scene)?;
+    let varying = "a hand that varies with the period";
+    let truth = MethodResult::modulus(varying, "largest multiplier", multiplier);
     let still = loop_run("1.005 of the limit, in no hand", &scene, PADDLES, Outcome::Converges)
         .with_claimed_passivity(1.5)
         .pushed(1.0, 2000);
     let below = loop_run("0.995 of it", &at(0.995), PADDLES, Outcome::Converges).pushed(1.0, 2000);
-    Ok(CaseResult {
-        methods,
-        certificate: MethodResult::certificate(&scene),
-        truth,
-        runs: vec![still, below],
-    })
+    Ok(CaseResult::of(&scene, methods, truth, [still, below]))
 }
 
 /// The path of a coefficient through the hand.

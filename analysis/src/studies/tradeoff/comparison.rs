@@ -76,6 +76,8 @@ pub struct Comparison {
     pub errors: &'static [Axis],
     /// Columns that are kept but not drawn.
     pub others: &'static [Column],
+    /// Its kept table, as CSV.
+    pub kept: &'static [u8],
 }
 
 impl Comparison {

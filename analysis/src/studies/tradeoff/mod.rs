@@ -140,6 +140,14 @@ impl Tradeoff {
         Ok(Self { comparison, methods })
     }
 
+    /// The kept table of a comparison.
+    ///
+    /// # Errors
+    /// As of [`Self::read`].
+    pub fn kept(comparison: &'static Comparison) -> Result<Self, TableError> {
+        Self::read(comparison, Table::new(comparison.name, comparison.kept)?)
+    }
+
     /// Writes the table.
     ///
     /// # Errors

@@ -21,6 +21,7 @@ pub static COMPARISON: Comparison = Comparison {
         Column { names: &["rate"], bound: NUMBER },
         Column { names: &["instructions"], bound: NUMBER },
     ],
+    kept: include_bytes!("../../../pictures/tradeoff/rate.csv"),
 };
 
 /// Sample rates in Hz.

@@ -12,7 +12,7 @@ use crate::emulator::BenchClient;
 use crate::hand::HandTrajectory;
 use crate::program::{self, Program};
 use crate::studies::number_format::{self, FormatError, HALF_A_TURN, Losses, Motion, cost};
-use crate::table::{Column, Table, TableError};
+use crate::table::Column;
 
 /// The comparison.
 pub static COMPARISON: Comparison = Comparison {
@@ -31,6 +31,7 @@ pub static COMPARISON: Comparison = Comparison {
         Column { names: &["hum_with_encoder"], bound: NUMBER },
         Column { names: &["cycle_with_encoder"], bound: NUMBER },
     ],
+    kept: include_bytes!("../../../pictures/tradeoff/servo.csv"),
 };
 
 /// The rounding error of `f64` for numbers around 1.
@@ -107,15 +108,6 @@ pub fn measure() -> Result<Tradeoff, TradeoffError> {
     Ok(Tradeoff { comparison: &COMPARISON, methods })
 }
 
-/// The stored table.
-///
-/// # Errors
-/// If it is not a table of this comparison.
-pub fn kept() -> Result<Tradeoff, TableError> {
-    let kept = include_bytes!("../../../pictures/tradeoff/servo.csv");
-    Tradeoff::read(&COMPARISON, Table::new("servo.csv", &kept[..])?)
-}
-
 fn row(
     case: &Case,
     motion: &Motion,
@@ -155,7 +147,7 @@ mod tests {
     /// The kept figures that do not depend on a compiler for the board.
     #[test]
     fn the_kept_losses_are_what_they_are() {
-        let kept = kept().unwrap();
+        let kept = Tradeoff::kept(&COMPARISON).unwrap();
         let mut methods = kept.methods.iter();
         for case in cases() {
             let motion = case.motion().unwrap();

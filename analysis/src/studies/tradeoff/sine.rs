@@ -4,9 +4,8 @@
 //! Two cases: for the sine of a sweep, with a part of a turn in `f32`, the error is that of the sine; for a
 //! phase in 32 bits, that of the torque (`torque_error`).
 //!
-//! The G4's CORDIC unit is not measured, because no emulator has it. A model of its arithmetic is in the
-//! tests: with 16 iterations the error of its angle is up to 2^-15, which is invisible in the torque. With
-//! the unit, the running code would not be the tested code, and would need a board that has it.
+//! The G4's CORDIC unit is not measured, because no emulator has it. With the unit, the running code would
+//! not be the tested code, and would need a board that has it.
 
 use std::f64::consts::TAU;
 
@@ -24,6 +23,7 @@ pub static COMPARISON: Comparison = Comparison {
     cost: Axis::least(&["instructions"], "most instructions"),
     errors: &[Axis::least(&["error"], "largest error (1)")],
     others: &[Column { names: &["mean_instructions"], bound: NUMBER }],
+    kept: include_bytes!("../../../pictures/tradeoff/sine.csv"),
 };
 
 /// The number of evenly spread parts of a turn: those of a tone measured over as many samples.
@@ -34,24 +34,10 @@ pub fn turns() -> Vec<f32> {
     (0..TURNS).map(|part| part as f32 / TURNS as f32).collect()
 }
 
-/// Largest error of sines, one for each part of a turn.
+/// Largest error of sines, one for each part of a turn, beside those of `f64`.
 pub fn error(sines: impl IntoIterator<Item = f64>) -> f64 {
     let pairs = turns().into_iter().zip(sines);
-    pairs.fold(0.0, |most, (turn, sine)| (sine - exact(turn)).abs().max(most))
-}
-
-/// The sine in `f64` of an angle within an eighth of a turn, to which a part of a turn is reduced without
-/// rounding.
-fn exact(turn: f32) -> f64 {
-    let eighths = (f64::from(turn) * 8.0).floor();
-    let quarters = ((eighths + 1.0) / 2.0).floor();
-    let angle = TAU * (f64::from(turn) - quarters / 4.0);
-    match quarters as i64 % 4 {
-        0 => angle.sin(),
-        1 => angle.cos(),
-        2 => -angle.sin(),
-        _ => -angle.cos(),
-    }
+    pairs.fold(0.0, |most, (turn, sine)| (sine - (TAU * f64::from(turn)).sin()).abs().max(most))
 }
 
 /// Measures all methods.
@@ -126,72 +112,22 @@ fn torque_error(angle: u32, [sine, cosine]: [f32; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use num_bigint::BigInt;
-    use num_traits::ToPrimitive;
-
     use super::*;
-    use crate::table::Table;
 
-    /// The stored table.
     fn kept() -> Tradeoff {
-        let kept = include_bytes!("../../../pictures/tradeoff/sine.csv");
-        Tradeoff::read(&COMPARISON, Table::new("sine.csv", &kept[..]).unwrap()).unwrap()
+        Tradeoff::kept(&COMPARISON).unwrap()
     }
 
-    /// Binary digits behind the point of the reference.
-    const DIGITS: u32 = 160;
-
-    fn one() -> BigInt {
-        BigInt::from(1) << DIGITS
-    }
-
-    /// pi by Machin's formula.
-    fn pi() -> BigInt {
-        let arctan_of_one_over = |n: i32| {
-            let (mut power, mut sum, mut k) = (one() / n, BigInt::from(0), 1);
-            while power != BigInt::from(0) {
-                sum += &power / k * (if k % 4 == 1 { 1 } else { -1 });
-                power /= n * n;
-                k += 2;
-            }
-            sum
-        };
-        (arctan_of_one_over(5) * 4 - arctan_of_one_over(239)) * 4
-    }
-
-    /// The sine of a part of a turn by its series, in whole numbers.
-    fn series(turn: f32) -> f64 {
-        // Below 2^-149 no `f32` has a digit.
-        let turn = BigInt::from((f64::from(turn) * 2_f64.powi(52)) as i64) << (DIGITS - 52);
-        let angle: BigInt = (turn * pi() * 2) >> DIGITS;
-        let square: BigInt = (&angle * &angle) >> DIGITS;
-        let (mut term, mut sum, mut k) = (angle.clone(), BigInt::from(0), 1);
-        while term != BigInt::from(0) {
-            sum += &term;
-            term = -((term * &square) >> DIGITS) / ((k + 1) * (k + 2));
-            // Division rounds to zero, the shift down: a last digit may not go away.
-            if term == BigInt::from(-1) {
-                break;
-            }
-            k += 2;
-        }
-        let shifted: BigInt = sum >> (DIGITS - 62);
-        shifted.to_f64().unwrap() * 2_f64.powi(-62)
-    }
-
+    /// The kept errors are those of the same code here, beside a sine in `f64`.
     #[test]
-    fn the_kept_errors_are_those_to_a_sine_of_forty_digits() {
+    fn the_kept_errors_of_a_sweep_are_those_of_the_host() {
         let kept = kept();
         assert_eq!(kept.methods.len(), Sine::ALL.len() + Rotation::ALL.len());
-        let truth: Vec<_> = turns().into_iter().map(series).collect();
         for (sine, kept) in Sine::ALL.into_iter().zip(&kept.methods) {
-            let off = turns().into_iter().zip(&truth);
-            let error = off.fold(0.0, |most, (turn, truth)| {
-                (f64::from(sine.of_turn(turn)) - truth).abs().max(most)
-            });
-            let kept_error = kept.error(0).unwrap();
+            let here = error(turns().into_iter().map(|turn| f64::from(sine.of_turn(turn))));
+            let there = kept.error(0).unwrap();
             assert_eq!(sine.name(), kept.name);
-            assert!((error / kept_error - 1.0).abs() < 1e-5, "{}: {error}", sine.name());
+            assert!((here / there - 1.0).abs() < 1e-5, "{}: {here}, {there}", sine.name());
         }
     }
 
@@ -216,40 +152,6 @@ mod tests {
             let there = kept.error(0).unwrap();
             assert_eq!((rotation.name(), PHASE), (&*kept.name, &*kept.case));
             assert!((here / there - 1.0).abs() < 1e-5, "{}: {here}, {there}", rotation.name());
-        }
-    }
-
-    /// The unit of the G4 by its manual (RM0440): in each of its cycles four iterations, which turn a vector of
-    /// 24 bits by arc tangents of falling powers of two. Its tables say 2^-15 for 16 of them, 2^-19 for 24.
-    fn cordic(angle: u32, iterations: u32) -> [f32; 2] {
-        const BITS: i32 = 24;
-        let scale = 2_f64.powi(BITS);
-        // To the half turn about zero, where the iterations converge.
-        let from_zero = f64::from(angle.cast_signed()) / 2_f64.powi(32);
-        let is_far = from_zero.abs() > 0.25;
-        let near = if is_far { from_zero - 0.5 * from_zero.signum() } else { from_zero };
-        let gain: f64 =
-            (0..iterations).map(|k| 1.0 / (1.0 + 0.25_f64.powi(k as i32)).sqrt()).product();
-        let (mut x, mut y, mut left) = ((gain * scale) as i64, 0_i64, (near * scale) as i64);
-        for k in 0..iterations {
-            let turn = (0.5_f64.powi(k as i32).atan() / TAU * scale).round() as i64;
-            let sign = if left < 0 { -1 } else { 1 };
-            (x, y, left) = (x - sign * (y >> k), y + sign * (x >> k), left - sign * turn);
-        }
-        let sign = if is_far { -1.0 } else { 1.0 };
-        [y, x].map(|part| (sign * part as f64 / scale) as f32)
-    }
-
-    #[test]
-    fn the_unit_of_the_g4_would_be_as_good() {
-        for (iterations, off) in [(16, 2_f64.powi(-14)), (24, 2_f64.powi(-18))] {
-            for angle in angles() {
-                let [sine, cosine] = cordic(angle, iterations).map(f64::from);
-                let exact = TAU * f64::from(angle) / 2_f64.powi(32);
-                let error = (sine - exact.sin()).abs().max((cosine - exact.cos()).abs());
-                assert!(error < off, "{iterations}, {angle}: {error}");
-                assert!(torque_error(angle, cordic(angle, iterations)) < off);
-            }
         }
     }
 

@@ -9,6 +9,7 @@ static COMPARISON: Comparison = Comparison {
         Axis::most(&["stiffness"], "stiffness (N m/rad)"),
     ],
     others: &[Column { names: &["steps"], bound: NUMBER }],
+    kept: b"",
 };
 
 fn table(rows: &[(&str, f64, f64, f64)]) -> Tradeoff {

@@ -5,108 +5,54 @@
 //! them costs at most as much as the next larger. In `f64`, which is software, the cost of a tick also
 //! depends on the numbers, which are those of one scene in one hand.
 
-use std::io::Write;
-
 use haptic_servo::environment::{
     AnyProfile, Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational, Wall,
 };
 use haptic_servo::number::Arithmetic;
 
-use super::NUMBER;
 use super::servo::Case;
+use super::{Axis, Comparison, Method, Tradeoff};
 use crate::emulator::BenchClient;
 use crate::program::{Program, knob};
 use crate::studies::number_format::{FormatError, cost};
-use crate::table::{Column, Table, TableError};
 
-/// Largest number of instructions of a tick from count to code, by type of scene and format.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Ticks {
-    rows: Vec<(String, [f64; FORMATS])>,
-}
+/// The comparison: types of scenes are its cases, and it has no error to draw.
+pub static COMPARISON: Comparison = Comparison {
+    name: "ticks",
+    title: "Servo: number formats, a tick of each type of scene on the emulated Cortex-M4",
+    cost: Axis::least(&["instructions"], "most instructions from count to code"),
+    errors: &[],
+    others: &[],
+    kept: include_bytes!("../../../pictures/tradeoff/ticks.csv"),
+};
 
-const FORMATS: usize = Arithmetic::ALL.len();
 /// Measured delays.
 const DELAYS: [usize; 3] = [0, 1, MAX_DELAY];
 /// Measured degrees.
 const DEGREES: [usize; 4] = [1, 2, 4, MAX_DEGREE];
 
-const TYPE: Column = Column { names: &["type"], bound: "a type of scene" };
-static FORMAT_NAMES: [[&str; 1]; FORMATS] = {
-    let mut names = [[""]; FORMATS];
-    let mut i = 0;
-    while i < FORMATS {
-        names[i] = [Arithmetic::ALL[i].name()];
-        i += 1;
-    }
-    names
-};
-
-impl Ticks {
-    /// Measures all types in all formats; `step` is called after each type.
-    ///
-    /// # Errors
-    /// If the board fails, or its results differ from this machine's.
-    pub fn measure(board: &mut BenchClient, mut step: impl FnMut()) -> Result<Self, FormatError> {
-        let mut rows = Vec::new();
-        for case in cases() {
-            let motion = case.motion()?;
-            let mut most = [0.0; FORMATS];
-            for (most, arithmetic) in most.iter_mut().zip(Arithmetic::ALL) {
-                *most = cost(board, &motion, arithmetic)?.most.into();
-            }
-            rows.push((type_of(&case.problem.scene.environment), most));
-            step();
+/// Measures all types in all formats; `step` is called after each type.
+///
+/// # Errors
+/// If the board fails, or its results differ from this machine's.
+pub fn measure(board: &mut BenchClient, mut step: impl FnMut()) -> Result<Tradeoff, FormatError> {
+    let mut methods = Vec::new();
+    for case in cases() {
+        let (motion, name) = (case.motion()?, type_of(&case.problem.scene.environment));
+        for arithmetic in Arithmetic::ALL {
+            let most = cost(board, &motion, arithmetic)?.most.into();
+            methods.push(Method::new(&name, "", arithmetic.name(), &[most]));
         }
-        Ok(Self { rows })
+        step();
     }
+    Ok(Tradeoff { comparison: &COMPARISON, methods })
+}
 
-    /// The stored figures.
-    ///
-    /// # Errors
-    /// If the file is not such a table.
-    pub fn kept() -> Result<Self, TableError> {
-        let kept = include_bytes!("../../../pictures/tradeoff/ticks.csv");
-        let mut table = Table::new("ticks.csv", &kept[..])?;
-        let name = table.column(TYPE)?;
-        let mut places = Vec::new();
-        for names in &FORMAT_NAMES {
-            places.push(table.column(Column { names, bound: NUMBER })?);
-        }
-        let mut rows = Vec::new();
-        while let Some(row) = table.row()? {
-            let mut most = [0.0; FORMATS];
-            for (most, place) in most.iter_mut().zip(&places) {
-                *most = row.number(*place, |value: &f64| *value > 0.0)?;
-            }
-            rows.push((row.text(name).to_owned(), most));
-        }
-        table.at_least(1)?;
-        Ok(Self { rows })
-    }
-
-    /// Writes the figures.
-    ///
-    /// # Errors
-    /// If they cannot be written.
-    pub fn write(&self, to: impl Write) -> std::io::Result<()> {
-        let mut file = csv::Writer::from_writer(to);
-        let formats = FORMAT_NAMES.iter().map(|[name]| *name);
-        file.write_record(TYPE.names.iter().copied().chain(formats))?;
-        for (name, most) in &self.rows {
-            let most = most.iter().map(f64::to_string);
-            file.write_record(std::iter::once(name.clone()).chain(most))?;
-        }
-        file.flush()
-    }
-
-    /// The instructions of a scene in a format; infinite if no scene of its type was measured.
-    pub fn of(&self, environment: &Environment, arithmetic: Arithmetic) -> f64 {
-        let wanted = type_of(environment);
-        let row = self.rows.iter().find(|(name, _)| *name == wanted);
-        let formats = Arithmetic::ALL.iter().position(|other| *other == arithmetic);
-        row.zip(formats).map_or(f64::INFINITY, |((_, most), format)| most[format])
-    }
+/// The instructions of a scene in a format, by a table; infinite if no scene of its type was measured.
+pub fn instructions(table: &Tradeoff, environment: &Environment, arithmetic: Arithmetic) -> f64 {
+    let wanted = type_of(environment);
+    let found = table.of(&wanted).find(|method| method.name == arithmetic.name());
+    found.and_then(Method::cost).unwrap_or(f64::INFINITY)
 }
 
 /// Number of types.
@@ -217,25 +163,26 @@ mod tests {
     use super::*;
     use crate::studies::tradeoff::servo;
 
-    /// Whatever a file names has a row.
+    fn kept() -> Tradeoff {
+        Tradeoff::kept(&COMPARISON).unwrap()
+    }
+
+    /// Whatever a file names has its figures in all formats.
     #[test]
     fn every_type_is_kept() {
-        let kept = Ticks::kept().unwrap();
         let names: Vec<_> = cases().iter().map(|c| type_of(&c.problem.scene.environment)).collect();
-        let rows: Vec<_> = kept.rows.iter().map(|(name, _)| name.clone()).collect();
-        assert_eq!(names, rows);
-        let unlike = |a: &String| names.iter().filter(|b| a == *b).count() == 1;
-        assert!(names.iter().all(unlike), "{names:?}");
+        assert_eq!(names, kept().cases());
+        assert_eq!(kept().methods.len(), names.len() * Arithmetic::ALL.len());
     }
 
     /// The types that have a program were measured by another one, in which a compiler may have
     /// placed a few instructions otherwise.
     #[test]
     fn both_tables_count_alike() {
-        let (ticks, formats) = (Ticks::kept().unwrap(), servo::kept().unwrap());
+        let (ticks, formats) = (kept(), Tradeoff::kept(&servo::COMPARISON).unwrap());
         for case in servo::cases() {
             for (method, arithmetic) in formats.of(case.name).zip(Arithmetic::ALL) {
-                let here = ticks.of(&case.problem.scene.environment, arithmetic);
+                let here = instructions(&ticks, &case.problem.scene.environment, arithmetic);
                 let off = (here / method.cost().unwrap() - 1.0).abs();
                 assert!(off < 0.05, "{} in {}: {here}, off by {off}", case.name, method.name);
             }
@@ -245,9 +192,10 @@ mod tests {
     /// A delay takes instructions, and so does a degree.
     #[test]
     fn a_value_between_two_counts_as_the_next_larger() {
-        let ticks = Ticks::kept().unwrap();
+        let ticks = kept();
         let of = |degree, delay| {
-            ticks.of(&Environment::Rational(of_degree(degree, delay)), Arithmetic::F32)
+            let environment = Environment::Rational(of_degree(degree, delay));
+            instructions(&ticks, &environment, Arithmetic::F32)
         };
         assert_eq!([of(3, 1), of(5, 1), of(4, 2)], [of(4, 1), of(8, 1), of(4, 8)]);
         assert!(of(2, 1) < of(4, 1) && of(4, 1) < of(8, 1) && of(4, 1) < of(4, 8));

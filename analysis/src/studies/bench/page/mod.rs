@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use thiserror::Error;
 
 use self::scenes::PageScene;
-use super::figure::{Figure, Pair, median};
+use super::figure::{Budget, Figure, Pair, median};
 use crate::browser::{BrowserError, Page, Site};
 use crate::file::{self, FileError};
 use crate::verdict::judge_file;
@@ -19,20 +19,19 @@ use crate::verdict::judge_file;
 /// Runs in the page before its own scripts.
 const WATCH: &str = include_str!("watch.js");
 
-/// Largest size of a page in bytes.
-const SIZE_BUDGET: f64 = 700e3;
-/// Largest time in s from opening a page to its first visible verdict.
-const OPENING_BUDGET: f64 = 0.5;
-/// Largest time of a verdict within a frame in ms.
-const VERDICT_BUDGET: f64 = 1.0;
-/// Milliseconds of a frame.
-const FRAME: f64 = 1e3 / 60.0;
-/// Largest time for a map of 40 000 points in s.
-const MAP_BUDGET: f64 = 1.0;
-/// Largest time until the first picture of a map in ms.
-const FIRST_PICTURE_BUDGET: f64 = 100.0;
-/// Largest ratio of a verdict's time in a page to its time in this program.
-const PAGE_BUDGET: f64 = 2.0;
+/// Of a page's size.
+const SIZE: Budget = Budget::of(700e3, "bytes");
+/// Of the time from opening a page to its first visible verdict.
+const OPENING: Budget = Budget::of(0.5, "s");
+/// Of a verdict within a frame.
+const VERDICT: Budget = Budget { value: 1.0, unit: "ms", source: "budget, of a frame" };
+/// Of a frame.
+const FRAME: Budget = Budget { value: 1e3 / 60.0, unit: "ms", source: "60 frames a second" };
+/// Of a map of 40 000 points, and of the time until its first picture.
+const MAP: Budget = Budget::of(1.0, "s");
+const FIRST_PICTURE: Budget = Budget::of(100.0, "ms");
+/// Of a verdict's time in a page over its time in this program.
+const OVER_NATIVE: Budget = Budget::of(2.0, "times");
 
 /// Width of the window in pixels.
 const WIDTH: u32 = 1280;
@@ -126,7 +125,8 @@ pub fn figures(
     progress: impl Fn(&str),
 ) -> Result<Vec<Figure>, PageError> {
     let size = pages.first().map(|page| page.text.len() as f64);
-    let mut figures: Vec<_> = size.into_iter().map(size_figure).collect();
+    let size = size.map(|size| Figure::within("page of haptic explore: size", size, &SIZE));
+    let mut figures: Vec<_> = size.into_iter().collect();
     for ScenePage { scene, text } in pages {
         let site = Site::of(text.clone())?;
         progress(&format!("opening the page, {}", scene.name));
@@ -142,22 +142,11 @@ pub fn figures(
     }
 }
 
-fn size_figure(size: f64) -> Figure {
-    Figure::new("page of haptic explore: size", size, "bytes", Some(SIZE_BUDGET), "budget")
-}
-
 /// Median and largest of some values, as two figures.
-fn spread(
-    name: &str,
-    values: Vec<f64>,
-    unit: &'static str,
-    budget: f64,
-    source: &'static str,
-) -> [Figure; 2] {
+fn spread(name: &str, values: Vec<f64>, budget: &Budget) -> [Figure; 2] {
     let most = values.iter().copied().fold(0.0, f64::max);
-    [("median", median(values)), ("most", most)].map(|(which, value)| {
-        Figure::new(format!("{name}, {which}"), value, unit, Some(budget), source)
-    })
+    [("median", median(values)), ("most", most)]
+        .map(|(which, value)| Figure::within(format!("{name}, {which}"), value, budget))
 }
 
 /// Opens the page several times: the times until its first verdict is visible, until the first picture of its
@@ -168,26 +157,26 @@ fn opened(
     scene: &PageScene,
     repetitions: Repetitions,
 ) -> Result<Vec<Figure>, PageError> {
-    const MAP: &str = "document.querySelector('#picture-map')?.dataset";
+    const PICTURE: &str = "document.querySelector('#picture-map')?.dataset";
     let [mut shown, mut first, mut all] = [const { Vec::new() }; 3];
     for _ in 0..repetitions.openings {
         browser.go_to("about:blank")?;
         browser.go_to(&site.url())?;
         browser.wait_for("window.bench?.shown !== undefined")?;
-        browser.wait_for(&format!("{MAP}?.progress === 'all'"))?;
+        browser.wait_for(&format!("{PICTURE}?.progress === 'all'"))?;
         shown.push(browser.number("window.bench.shown")? / 1e3);
-        first.push(browser.number(&format!("{MAP}.firstMs"))?);
-        all.push(browser.number(&format!("{MAP}.allMs"))? / 1e3);
+        first.push(browser.number(&format!("{PICTURE}.firstMs"))?);
+        all.push(browser.number(&format!("{PICTURE}.allMs"))? / 1e3);
     }
-    let name = |what| format!("page, {}: {what}", scene.name);
-    let mut figures = Vec::new();
-    let opening = name("opening to the first verdict on the screen");
-    figures.extend(spread(&opening, shown, "s", OPENING_BUDGET, "budget"));
-    let picture = name("first picture of the map");
-    figures.extend(spread(&picture, first, "ms", FIRST_PICTURE_BUDGET, "budget"));
-    let whole = name("map of 40 000 points");
-    figures.extend(spread(&whole, all, "s", MAP_BUDGET, "budget"));
-    Ok(figures)
+    let measured = [
+        ("opening to the first verdict on the screen", shown, OPENING),
+        ("first picture of the map", first, FIRST_PICTURE),
+        ("map of 40 000 points", all, MAP),
+    ];
+    let figures = measured.map(|(what, times, budget)| {
+        spread(&format!("page, {}: {what}", scene.name), times, &budget)
+    });
+    Ok(figures.into_iter().flatten().collect())
 }
 
 /// Drags a slider of the open page with the mouse, back and forth.
@@ -217,16 +206,17 @@ fn dragged(
     if full.is_empty() && quick.is_empty() {
         return Err(PageError::NothingJudged { scene: scene.name, key: scene.dragged });
     }
-    let name = |what| format!("page, {}: {what} while a slider is dragged", scene.name);
-    let mut figures = Vec::new();
-    for (what, times) in [("verdict, words and remedies", full), ("verdict and words", quick)] {
-        // If remedies take longer than a frame, they are computed when the hand rests.
-        if !times.is_empty() {
-            figures.extend(spread(&name(what), times, "ms", VERDICT_BUDGET, "budget, of a frame"));
-        }
-    }
-    figures.extend(spread(&name("frame"), frames, "ms", FRAME, "60 frames a second"));
-    Ok(figures)
+    // If remedies take longer than a frame, they are computed when the hand rests.
+    let measured = [
+        ("verdict, words and remedies", full, VERDICT),
+        ("verdict and words", quick, VERDICT),
+        ("frame", frames, FRAME),
+    ];
+    let figures = measured.into_iter().filter(|(_, times, _)| !times.is_empty());
+    let figures = figures.map(|(what, times, budget)| {
+        spread(&format!("page, {}: {what} while a slider is dragged", scene.name), times, &budget)
+    });
+    Ok(figures.flatten().collect())
 }
 
 /// The times of the same verdicts in the open page and in this program, alternately, from a scene as JSON to
@@ -253,13 +243,7 @@ fn compared(browser: &mut Page, repetitions: Repetitions) -> Result<[Figure; 2],
     let name = format!("page: verdict, {} scenes, median", questions.len());
     Ok([
         Figure::beside(name, pair, "us", "natively on one core"),
-        Figure::new(
-            "page: verdict, WebAssembly over native",
-            pair.ratio().get(),
-            "times",
-            Some(PAGE_BUDGET),
-            "budget",
-        ),
+        Figure::within("page: verdict, WebAssembly over native", pair.ratio().get(), &OVER_NATIVE),
     ])
 }
 

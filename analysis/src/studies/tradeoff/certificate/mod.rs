@@ -5,7 +5,7 @@
 pub mod environments;
 pub mod index_methods;
 
-mod polynomials;
+pub(crate) mod polynomials;
 
 use std::hint::black_box;
 
@@ -33,6 +33,7 @@ pub static COMPARISON: Comparison = Comparison {
         Column { names: &["median_error"], bound: NUMBER },
         Column { names: &["largest_error"], bound: NUMBER },
     ],
+    kept: include_bytes!("../../../../pictures/tradeoff/certificate.csv"),
 };
 
 /// Environments of each kind for the timing of a method.

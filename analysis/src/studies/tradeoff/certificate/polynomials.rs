@@ -49,16 +49,17 @@ impl Ascending {
 pub(super) fn roots(descending: &[f64]) -> Option<Vec<Complex<f64>>> {
     let start = descending.iter().position(|&value| value != 0.0);
     let Some(monic) = start.map(|start| &descending[start..]) else { return Some(Vec::new()) };
-    let degree = monic.len() - 1;
-    if degree == 0 {
-        return Some(Vec::new());
-    }
-    let companion = DMatrix::from_fn(degree, degree, |i, j| match (i, j) {
-        (0, j) => -monic[j + 1] / monic[0],
+    if monic.len() == 1 { Some(Vec::new()) } else { eigenvalues(&companion(monic)).ok() }
+}
+
+/// The matrix whose eigenvalues are the roots of a polynomial, of which the first coefficient is not 0.
+pub fn companion(descending: &[f64]) -> DMatrix<f64> {
+    let degree = descending.len() - 1;
+    DMatrix::from_fn(degree, degree, |i, j| match (i, j) {
+        (0, j) => -descending[j + 1] / descending[0],
         (i, j) if i == j + 1 => 1.0,
         _ => 0.0,
-    });
-    eigenvalues(&companion).ok()
+    })
 }
 
 /// `A + (1 + c) B` of theory, section 7, as a Chebyshev series: twice the real part of

@@ -1,10 +1,4 @@
 use super::*;
-use crate::table::Table;
-
-fn kept() -> Tradeoff {
-    let kept = include_bytes!("../../../../pictures/tradeoff/certificate.csv");
-    Tradeoff::read(&COMPARISON, Table::new("certificate.csv", &kept[..]).unwrap()).unwrap()
-}
 
 /// Ways that need a grid of tens of thousands of points are left out: they take long, and are the
 /// same code.
@@ -16,7 +10,7 @@ fn is_quick(method: &IndexMethod) -> bool {
 /// arithmetic finds depends on the last places of sines and square roots.
 #[test]
 fn the_kept_errors_and_verdicts_are_those_that_are_found() {
-    let kept = kept();
+    let kept = Tradeoff::kept(&COMPARISON).unwrap();
     let mut compared = 0;
     for kind in Kind::ALL {
         for candidate in candidates().iter().filter(|candidate| is_quick(&candidate.method)) {
@@ -57,7 +51,7 @@ fn the_kept_errors_and_verdicts_are_those_that_are_found() {
 #[test]
 fn a_proof_is_never_wrong_and_grids_and_roots_are() {
     let count = |row: &Method, column: usize| row.values[column].unwrap();
-    for row in &kept().methods {
+    for row in &Tradeoff::kept(&COMPARISON).unwrap().methods {
         let [wrong_yes, wrong_no, open] = [2, 3, 4].map(|column| count(row, column));
         let is_far = row.case != Kind::Border.name();
         match (&*row.family, &*row.name) {

@@ -10,7 +10,7 @@ use super::{Axis, Comparison, Method as Row, NUMBER, Tradeoff, fastest};
 use crate::simulation::method::Method;
 use crate::simulation::{Integration, SimulationError, Trajectory, simulate};
 use crate::stability::critical_stiffness;
-use crate::table::{Column, Table, TableError};
+use crate::table::Column;
 
 pub use cases::{Case, cases};
 
@@ -35,6 +35,7 @@ pub static COMPARISON: Comparison = Comparison {
         Column { names: &["substeps"], bound: NUMBER },
         Column { names: &["largest_stable_stiffness"], bound: NUMBER },
     ],
+    kept: include_bytes!("../../../../pictures/tradeoff/simulation.csv"),
 };
 
 /// Index of the verdict's error among the errors.
@@ -47,15 +48,6 @@ const SUBSTEPS: [u32; 8] = [1, 2, 3, 5, 10, 20, 50, 100];
 const ROUNDS: usize = 31;
 /// A relative error of the angle above which the motion is lost.
 const LOST: f64 = 1e3;
-
-/// The stored table.
-///
-/// # Errors
-/// If it is not a table of this comparison.
-pub fn kept() -> Result<Tradeoff, TableError> {
-    let kept = include_bytes!("../../../../pictures/tradeoff/simulation.csv");
-    Tradeoff::read(&COMPARISON, Table::new("simulation.csv", &kept[..])?)
-}
 
 /// The cheapest method in a table of this comparison whose largest stable stiffness for the rigid device has
 /// at most a given relative error.

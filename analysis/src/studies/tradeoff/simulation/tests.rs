@@ -1,5 +1,4 @@
 use super::*;
-use crate::table::Table;
 
 fn integration(method: Method, substeps: u32) -> Integration {
     Integration { method, substeps }
@@ -45,14 +44,9 @@ fn apparent_limits_are_those_of_theory() {
     assert_eq!(part(Method::Euler), None);
 }
 
-fn kept() -> Tradeoff {
-    let kept = include_bytes!("../../../../pictures/tradeoff/simulation.csv");
-    Tradeoff::read(&COMPARISON, Table::new("simulation.csv", &kept[..]).unwrap()).unwrap()
-}
-
 #[test]
 fn the_exact_exponential_is_on_every_front() {
-    let kept = kept();
+    let kept = Tradeoff::kept(&COMPARISON).unwrap();
     for case in kept.cases() {
         for error in 0..COMPARISON.errors.len() {
             assert!(kept.front(case, error).iter().any(|method| method.name == "exact"));
@@ -63,7 +57,7 @@ fn the_exact_exponential_is_on_every_front() {
 /// All that does not depend on the machine is in the kept table as it is found today.
 #[test]
 fn the_kept_errors_are_those_that_are_found() {
-    let kept = kept();
+    let kept = Tradeoff::kept(&COMPARISON).unwrap();
     let mut kept = kept.methods.iter();
     for case in cases() {
         let truth = Truth::of(&case).unwrap();

@@ -1,0 +1,98 @@
+//! Clipping of lines to a frame.
+
+/// A point in units of the drawing, from the upper left corner of a panel.
+pub type Place = (f64, f64);
+
+/// A place in whole units.
+pub fn whole(place: &Place) -> (i32, i32) {
+    (place.0.round() as i32, place.1.round() as i32)
+}
+
+/// A rectangle; down is positive, as in the drawing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    pub left: f64,
+    pub top: f64,
+    pub right: f64,
+    pub bottom: f64,
+}
+
+impl Frame {
+    /// Whether a place is inside or on the border; never true of NaN.
+    pub fn contains(&self, (x, y): Place) -> bool {
+        self.left <= x && x <= self.right && self.top <= y && y <= self.bottom
+    }
+
+    /// The nearest place inside or on the border.
+    pub fn nearest(&self, (x, y): Place) -> Place {
+        (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
+    }
+
+    /// The point in which the line from an inner to an outer place crosses the border.
+    pub fn crossing(&self, inner: Place, outer: Place) -> Place {
+        let part = |from: f64, to: f64, low: f64, high: f64| {
+            let bound = if to > from { high } else { low };
+            if to == from { f64::INFINITY } else { (bound - from) / (to - from) }
+        };
+        let t = part(inner.0, outer.0, self.left, self.right)
+            .min(part(inner.1, outer.1, self.top, self.bottom))
+            .clamp(0.0, 1.0);
+        let x = inner.0 + t * (outer.0 - inner.0);
+        let y = inner.1 + t * (outer.1 - inner.1);
+        self.nearest((x, y))
+    }
+
+    /// The last point in which a line leaves the frame; `None` if it ends inside, or is never inside.
+    pub fn exit(&self, line: impl DoubleEndedIterator<Item = Place>) -> Option<Place> {
+        let mut outer = None;
+        for place in line.rev().filter(|place| place.0.is_finite() && place.1.is_finite()) {
+            if self.contains(place) {
+                return outer.map(|outer| self.crossing(place, outer));
+            }
+            outer = Some(place);
+        }
+        None
+    }
+
+    /// The parts of a line inside, up to the border; `frame` gives the frame of each place by its number.
+    pub fn clip(line: &[Place], frame: impl Fn(usize) -> Self) -> Vec<Vec<Place>> {
+        let mut parts: Vec<Vec<Place>> = Vec::new();
+        let mut open = false;
+        for (i, &place) in line.iter().enumerate() {
+            let inside = frame(i).contains(place);
+            let before = i.checked_sub(1).map(|j| line[j]).filter(|p| p.0.is_finite());
+            match (open, inside) {
+                (false, true) => {
+                    let entry = before.map(|before| frame(i).crossing(place, before));
+                    parts.push(entry.into_iter().chain([place]).collect());
+                }
+                (true, _) => {
+                    if let (Some(part), Some(before)) = (parts.last_mut(), before) {
+                        let end = if inside { place } else { frame(i).crossing(before, place) };
+                        part.extend([end].into_iter().filter(|end| end.0.is_finite()));
+                    }
+                }
+                (false, false) => {}
+            }
+            open = inside;
+        }
+        parts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRAME: Frame = Frame { left: 1.0, top: 2.0, right: 9.0, bottom: 8.0 };
+
+    #[test]
+    fn lines_end_on_the_border() {
+        let line = [(5.0, -4.0), (5.0, 5.0), (7.0, 5.0), (11.0, 7.0), (f64::NAN, f64::INFINITY)];
+        let parts = Frame::clip(&line, |_| FRAME);
+        assert_eq!(parts, [[(5.0, 2.0), (5.0, 5.0), (7.0, 5.0), (9.0, 6.0)]]);
+        assert_eq!(FRAME.exit(line.into_iter()), Some((9.0, 6.0)));
+        assert_eq!(FRAME.exit(line.into_iter().rev()), Some((5.0, 2.0)));
+        assert_eq!(FRAME.exit(line[..2].iter().copied()), None);
+    }
+}
