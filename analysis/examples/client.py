@@ -17,7 +17,7 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 8
+PROTOCOL = 9
 BAUD = 460800
 
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
@@ -51,16 +51,18 @@ STEP = ("enum", [("change", []), ("certificate", []), ("servo", [])])
 REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)]),
                     ("set", [("step", STEP)]),
                     ("not-aligning", [("fault", ("option", FAULT))])])
-WALL = [("stiffness", "f64"), ("damping", "f64"), ("filter", ("option", "f64")), ("delay", "u"),
-        ("face", "f64"), ("one_sided", "bool")]
-FREE = ("residual", "f64")
-FREE_OPTION = ("residual", ("option", "f64"))
+CANCELLER = [("residual", "f64"), ("delay", "u")]
+DAMPER = [("damping", "f64"), ("filter", ("option", "f64"))]
+SIDE = ("enum", [("centred", []), ("displaced", [("position", "f64")]),
+                 ("face", [("position", "f64")])])
+WALL = [("stiffness", "f64"), ("damper", ("option", DAMPER)), ("side", SIDE), ("delay", "u")]
 STATED = ("enum", [("bounded", [("delay", "u"), ("index", "f64"), ("gain", "f64")])])
-PROFILE = [("outline", [("knots", "u"), ("rise", "i"), ("fall", "i"), ("wraps", "bool"),
-                        ("sum", "i"), ("is_odd", "bool")]),
+OUTLINE = [("knots", "u"), ("rise", "i"), ("fall", "i"), ("wraps", "bool"), ("sum", "i"),
+           ("is_odd", "bool")]
+PROFILE = [("table", [("outline", OUTLINE)]),
            ("torque", "f64"), ("count", "f64"), ("centre", "f64"),
            ("ends", ("option", [("from", "f64"), ("to", "f64"), ("stiffness", "f64")])),
-           ("damping", "f64"), ("delay", "u"),
+           ("damping", ("option", "f64")), ("delay", "u"),
            ("snap", ("option", [("pitches", "f64"), ("offset", "f64"), ("share", "f64"),
                                 ("snap", "f64")])),
            ("modes", ("option", [("mode", "f64"), ("count", "u")]))]
@@ -69,12 +71,10 @@ SCENE = [
     ("device", [("inertia", "f64"), ("damping", "f64"), ("passivity", ("option", "f64"))]),
     ("timing", [("period", "f64"), ("worst_period", ("option", "f64"))]),
     ("coupling", ("enum", [("rigid", []), ("spring", [("stiffness", "f64")]), ("matched", [])])),
-    ("environment", ("enum", [("delayed-spring", WALL), ("damper-wall", WALL),
-                              ("free-mode", [FREE, ("delay", "u")]),
-                              ("free-mode-wall", [FREE, ("wall", WALL)]),
-                              ("stated", [("model", STATED)]), ("profile", PROFILE),
-                              ("composed", [FREE_OPTION, ("wall", ("option", WALL)),
-                                            ("profile", PROFILE)])])),
+    ("environment", ("enum", [("parts", [("canceller", ("option", CANCELLER)),
+                                         ("wall", ("option", WALL)),
+                                         ("profile", ("option", PROFILE))]),
+                              ("stated", [("model", STATED)])])),
     ("latency", [("output_delay", TIME_RANGE), ("output_jitter", "f64"),
                  ("count_jitter", "f64"), ("actuator_lag", TIME_RANGE),
                  ("sensor_lag", TIME_RANGE), ("actuator_response", TIME_RANGE),

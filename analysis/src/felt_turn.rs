@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use haptic_servo::certificate::Rejection;
 use haptic_servo::dac::DacCode;
-use haptic_servo::environment::{AnyProfile, Ends};
+use haptic_servo::environment::{Ends, Profile};
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::{BuildError, Transducers};
 use thiserror::Error;
@@ -101,7 +101,7 @@ impl FeltTurn {
 }
 
 /// How far a profile is turned in rad.
-fn way(profile: &AnyProfile) -> f64 {
+fn way(profile: &Profile) -> f64 {
     match profile.ends {
         Some(Ends { from, to, .. }) if !profile.outline().wraps => {
             BEYOND * if to > 0.0 { to } else { to - from }
@@ -118,7 +118,7 @@ mod tests {
     /// The tolerance is for DAC steps, and for half an encoder step on the slope.
     #[test]
     fn what_is_felt_is_the_profile_where_it_was_a_sample_ago() {
-        let scene = knob::SCENE.as_data();
+        let scene = knob::SCENE;
         let turn = FeltTurn::of(&scene, &knob::TRANSDUCERS, FINGERS).unwrap();
         assert_eq!(turn.time.len(), 2000);
         // The torque as a triangle wave, by an independent formula.

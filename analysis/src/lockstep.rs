@@ -237,7 +237,7 @@ impl RemoteServo for NoRemote {
 #[cfg(test)]
 mod tests {
     use haptic_servo::encoder::CounterWidth;
-    use haptic_servo::environment::{Environment, Wall};
+    use haptic_servo::environment::Wall;
     use haptic_servo::scene::{Coupling, Device};
 
     use super::*;
@@ -246,19 +246,12 @@ mod tests {
     #[test]
     fn a_code_acts_from_its_phase_on() {
         let (inertia, damping, period, phase) = (2.2e-5, 0.022, 1e-3, 2e-4);
-        let wall = Wall {
-            stiffness: 22.0,
-            damping: 0.0,
-            delay: 0,
-            filter: None,
-            face: 0.0,
-            one_sided: false,
-        };
+        let wall = Wall::spring(22.0, 0);
         let scene = Scene {
             device: Device { inertia, damping, passivity: None },
             timing: Timing { period, worst_period: None },
             coupling: Coupling::Matched,
-            environment: Environment::DelayedSpring(wall),
+            environment: wall.alone(),
             latency: Latency::delayed(phase),
             torque_limit: None,
         };

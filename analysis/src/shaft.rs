@@ -191,7 +191,7 @@ impl Shaft for HandHeldShaft {
 #[cfg(test)]
 mod tests {
     use haptic_servo::current::{B_G431B_ESC1, Drive, Motor, Supply, Winding};
-    use haptic_servo::environment::{Environment, Wall};
+    use haptic_servo::environment::Wall;
     use haptic_servo::scene::{Coupling, Device, Latency, Timing};
 
     use super::*;
@@ -259,19 +259,12 @@ mod tests {
     #[test]
     fn a_device_that_nobody_holds_is_moved_by_the_motor_s_torque() {
         let (inertia, damping, torque) = (2.2e-5, 0.022, 0.1);
-        let wall = Wall {
-            stiffness: 20.0,
-            damping: 0.0,
-            delay: 0,
-            filter: None,
-            face: 0.0,
-            one_sided: true,
-        };
+        let wall = Wall::spring(20.0, 0).behind(0.0);
         let scene = Scene {
             device: Device { inertia, damping, passivity: None },
             timing: Timing { period: PERIOD, worst_period: None },
             coupling: Coupling::Matched,
-            environment: Environment::DelayedSpring(wall),
+            environment: wall.alone(),
             latency: Latency::sampled(40, 8e-5, PERIOD),
             torque_limit: None,
         };

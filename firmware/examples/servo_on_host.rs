@@ -5,20 +5,20 @@ use core::f64::consts::TAU;
 use haptic_servo::certificate::Certified;
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::{CounterWidth, RawCount};
-use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{BuildError, Output, Servo, Transducers};
 
-const SCENE: Scene<OneSided<DamperWall<1>>> = Scene {
+const SCENE: Scene = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: OneSided { face: 0.1, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },
+    environment: Wall::damped(22.0, 0.01, 1).behind(0.1).alone(),
     latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 
-const CERTIFIED: Certified<Scene<OneSided<DamperWall<1>>>> = SCENE.certified();
+const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,

@@ -5,26 +5,28 @@
 //! one sample late, behind a virtual coupling, with a limited torque, in `f32`.
 
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::DelayedSpring;
+use haptic_servo::environment::Wall;
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// The loop's law for the certificate.
-pub const SPRING: Scene<DelayedSpring<1>> = Scene {
+pub const SPRING: Scene = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: DelayedSpring { stiffness: 20.0 },
+    environment: Wall::spring(20.0, 1).alone(),
     latency: Latency::NONE,
     torque_limit: Some(0.3),
 };
 
 /// Certified with the numbers rounded to the loop's `f32`. The loop takes its numbers only from here, so that
 /// no number can change without a certificate.
-pub const CERTIFIED: Certified<Scene<DelayedSpring<1>>> =
-    SPRING.certified().certified_in(Format::F32);
+pub const CERTIFIED: Certified<Scene> = SPRING.certified().certified_in(Format::F32);
 
-const STIFFNESS: f32 = CERTIFIED.scene().environment.stiffness as f32;
+const STIFFNESS: f32 = match CERTIFIED.scene().environment.wall() {
+    Some(wall) => wall.stiffness as f32,
+    None => panic!("this loop has a spring"),
+};
 const COMPLIANCE: f32 = match CERTIFIED.scene().coupling {
     Coupling::Spring { stiffness } => (1.0 / stiffness) as f32,
     _ => panic!("this loop has a coupling that is a spring"),

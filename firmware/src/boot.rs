@@ -6,11 +6,12 @@ use core::hint::black_box;
 
 use crate::build_error::BuildError;
 use crate::dac::DacCode;
-use crate::environment::{Discretize, SupportsTiming};
+use crate::environment::SupportsTiming;
 use crate::fault::{Fault, FaultRecord};
 use crate::number::Number;
 use crate::output_timing::OutputMode;
 use crate::period;
+use crate::rendering::Rendering;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
 use crate::servo::{PreparedServo, RenderingOptions};
@@ -75,7 +76,7 @@ impl<E: Copy> Program<E> {
 
 /// A board whose servo may run.
 #[derive(Clone, Debug)]
-pub struct Booted<E: Discretize<N>, N: Number, M> {
+pub struct Booted<E: Rendering<N>, N: Number, M> {
     /// The loop that its interrupt runs.
     pub servo_loop: ServoLoop<E, N, M>,
     /// Damping in N m s/rad that the device may lose while this scene runs.

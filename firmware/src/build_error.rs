@@ -49,9 +49,8 @@ pub enum BuildError {
     },
     /// The law of an environment that is declared late computes a torque from the present position.
     NotLate,
-    /// The law of the environment does not store the past torques that the scene's coupling needs, or stores
-    /// torques that the coupling does not use.
-    CouplingMemory,
+    /// The numbers are those of a scene with other parts, delays or another coupling than the program's.
+    Structure,
     /// There is no matched coupling for the scene's latency.
     NoMatchedCoupling,
     /// The environment repeats in each turn, and a turn is not a whole number of encoder counts.
@@ -161,10 +160,9 @@ impl BuildError {
                  contact and " {contact} " in contact, and must be positive; a stiffer coupling or a delayed \
                  environment has one"),
             Self::NotLate => t.push("the environment says that it is late, and its law is not"),
-            Self::CouplingMemory => t.push(
-                "a matched coupling goes with an environment that is `Matched`, with as many whole \
-                 samples and lags as the scene's latency has, and no other coupling does",
-            ),
+            Self::Structure => {
+                t.push("the scene has other parts, delays or another coupling than this program");
+            }
             Self::NoMatchedCoupling => t.push(
                 "there is no matched coupling for this latency: actuator lag and sensor lag are too \
                  much alike, updates may be missed where torques lag, or a number is out of range",

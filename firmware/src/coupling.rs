@@ -31,17 +31,17 @@ pub enum Coupling {
 }
 
 impl Coupling {
-    /// Compliance in rad/(N m) for the torque of the same tick, for a law with this compliance of its
-    /// [own](crate::environment::Law::matched_compliance); `None`: rigid.
+    /// Compliance in rad/(N m) for the torque of the same tick, for a memory with this
+    /// [compliance](crate::coupling_memory::CouplingMemory::compliance); `None`: rigid.
     ///
     /// # Errors
-    /// If the law stores past torques and the coupling does not use them, or the reverse.
+    /// If the memory stores past torques and the coupling does not use them, or the reverse.
     pub const fn compliance(self, matched: Option<f64>) -> Result<Option<f64>, BuildError> {
         match (self, matched) {
             (Self::Rigid, None) => Ok(None),
             (Self::Spring { stiffness }, None) => Ok(Some(1.0 / stiffness)),
             (Self::Matched, Some(compliance)) => Ok(Some(compliance)),
-            _ => Err(BuildError::CouplingMemory),
+            _ => Err(BuildError::Structure),
         }
     }
 }
@@ -60,14 +60,22 @@ pub enum Response<N> {
 }
 
 impl<N: Number> Response<N> {
-    /// The same with a torque (N m) added that does not depend on this tick's position.
+    /// The sum of two responses, of which at most one has a wall.
     #[inline(always)]
-    pub(crate) fn plus(self, torque: N) -> Self {
-        match self {
-            Self::Held(held) => Self::Held(held.plus(torque)),
-            Self::Line(line) => Self::Line(line.plus(torque)),
-            Self::Wall(contact) => Self::LineAndWall(torque, contact),
-            Self::LineAndWall(line, contact) => Self::LineAndWall(line.plus(torque), contact),
+    pub(crate) fn plus(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Held(a), Self::Held(b)) => Self::Held(a.plus(b)),
+            (Self::Held(a) | Self::Line(a), Self::Held(b) | Self::Line(b)) => Self::Line(a.plus(b)),
+            (Self::Held(torque) | Self::Line(torque), Self::Wall(contact))
+            | (Self::Wall(contact), Self::Held(torque) | Self::Line(torque)) => {
+                Self::LineAndWall(torque, contact)
+            }
+            (Self::Held(torque) | Self::Line(torque), Self::LineAndWall(line, contact))
+            | (Self::LineAndWall(line, contact), Self::Held(torque) | Self::Line(torque)) => {
+                Self::LineAndWall(line.plus(torque), contact)
+            }
+            // A sum of parts has one wall.
+            (walls, Self::Wall(_) | Self::LineAndWall(..)) => walls,
         }
     }
 }
@@ -88,6 +96,13 @@ pub struct Slopes {
     pub line: f64,
     /// The slope of the one-sided wall; zero without a wall.
     pub wall: f64,
+}
+
+impl Slopes {
+    /// Those of the sum of two responses.
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { line: self.line + other.line, wall: self.wall + other.wall }
+    }
 }
 
 /// The coupling with all constants of a tick computed in advance.

@@ -6,14 +6,14 @@
 //!
 //! ```
 //! use haptic_servo::certificate::Certified;
-//! use haptic_servo::environment::DelayedSpring;
+//! use haptic_servo::environment::Wall;
 //! use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 //!
-//! const SPRING: Certified<Scene<DelayedSpring<1>>> = Scene {
+//! const SPRING: Certified<Scene> = Scene {
 //!     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
 //!     timing: Timing { period: 0.001, worst_period: None },
 //!     coupling: Coupling::Spring { stiffness: 44.0 },
-//!     environment: DelayedSpring { stiffness: 22.0 }, // with 220.0 this does not compile
+//!     environment: Wall::spring(22.0, 1).alone(), // with 220.0 this does not compile
 //!     latency: Latency::NONE,
 //!     torque_limit: None,
 //! }
@@ -86,6 +86,7 @@ macro_rules! ok {
 pub mod encoder;
 
 pub mod coupling;
+pub mod coupling_memory;
 pub mod environment;
 
 pub mod energy;
@@ -107,6 +108,7 @@ pub mod excitation;
 // The servo on a board: one interrupt per period, from reset to fault.
 pub mod boot;
 pub mod fault;
+pub mod rendering;
 pub mod reset;
 pub mod servo_loop;
 pub mod tuning;
@@ -114,6 +116,7 @@ pub mod tuning;
 pub mod certificate;
 pub mod passivity;
 pub mod scene;
+pub mod scene_type;
 pub mod servo;
 
 // Shared by the modules above.

@@ -139,26 +139,6 @@ pub trait NamedParameters {
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64>;
 }
 
-/// The named parameters of a type: its own fields, and the parameters of its last field.
-macro_rules! named_parameters {
-    ($([$($generics:tt)*] $type:ty: $($parameter:ident => $field:ident),* $(; $inner:ident)?;)*) => {$(
-        impl<$($generics)*> $crate::parameter::NamedParameters for $type {
-            fn value(
-                &mut self,
-                parameter: $crate::parameter::Parameter,
-            ) -> Option<&mut f64> {
-                match parameter {
-                    $($crate::parameter::Parameter::$parameter => Some(&mut self.$field),)*
-                    _ => named_parameters!(@ self parameter $($inner)?),
-                }
-            }
-        }
-    )*};
-    (@ $self:ident $parameter:ident) => { None };
-    (@ $self:ident $parameter:ident $inner:ident) => { $self.$inner.value($parameter) };
-}
-pub(crate) use named_parameters;
-
 /// The parameters of a type from one table: functions to read one, to change one, and to list all. A pattern
 /// binds the value.
 macro_rules! numbers {

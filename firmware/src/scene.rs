@@ -90,6 +90,18 @@ impl<E> Scene<E> {
         }
     }
 
+    /// The same scene with another environment.
+    pub const fn in_environment<T>(&self, environment: T) -> Scene<T> {
+        Scene {
+            device: self.device,
+            timing: self.timing,
+            coupling: self.coupling,
+            environment,
+            latency: self.latency,
+            torque_limit: self.torque_limit,
+        }
+    }
+
     /// Inputs of the coefficients.
     pub(crate) fn setting(&self) -> Result<LawContext, BuildError> {
         let (period, coupling) = (self.timing.period, self.coupling);
@@ -136,13 +148,13 @@ impl Scene {
     ///
     /// ```
     /// use haptic_servo::certificate::Parameter;
-    /// # use haptic_servo::environment::{Environment, Wall};
+    /// # use haptic_servo::environment::Canceller;
     /// # use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
     /// # let scene = Scene {
     /// #     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     /// #     timing: Timing { period: 1e-3, worst_period: None },
     /// #     coupling: Coupling::Spring { stiffness: 44.0 },
-    /// #     environment: Environment::FreeMode { residual: 0.01, delay: 1 },
+    /// #     environment: Canceller { residual: 0.01, delay: 1 }.alone(),
     /// #     latency: Latency::NONE, torque_limit: None,
     /// # };
     /// assert_eq!(scene.get(Parameter::Residual), Some(0.01));

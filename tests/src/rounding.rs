@@ -4,7 +4,7 @@
 use crate::exact::{Q, of_f64};
 use crate::poly::Poly;
 use crate::rules::Exact;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Canceller, Parts, Wall};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Scene};
 use num_integer::Integer;
@@ -69,9 +69,9 @@ fn plus(a: &(Poly, Poly), b: &(Poly, Poly)) -> (Poly, Poly) {
 
 fn wall(wall: &Wall, period: &Q, format: Format) -> (Poly, Poly) {
     let spring = (Poly::ascending(vec![nearest(&q(wall.stiffness), format)]), Poly::integers(&[1]));
-    let rate = Q::one() - wall.filter.map_or_else(Q::zero, q);
-    let damper = washout(&(q(wall.damping) / period * &rate), &rate, format);
-    let sum = if wall.damping == 0.0 { spring } else { plus(&spring, &damper) };
+    let rate = Q::one() - wall.filter().map_or_else(Q::zero, q);
+    let damper = washout(&(q(wall.damping()) / period * &rate), &rate, format);
+    let sum = if wall.damping() == 0.0 { spring } else { plus(&spring, &damper) };
     (sum.0, sum.1.raised(wall.delay))
 }
 
@@ -88,8 +88,8 @@ pub fn as_it_runs(scene: &Scene, format: Format) -> Option<Exact> {
         Coupling::Spring { stiffness } => Some(q(stiffness)),
     };
     let compliance = stiffness.as_ref().map(|k| not_below(&(Q::one() / k), format));
-    let free = |residual: f64| {
-        let be = q(scene.device.damping) - q(residual);
+    let free = |canceller: &Canceller| {
+        let be = q(scene.device.damping) - q(canceller.residual);
         let (gain, rate) = match &stiffness {
             None => (&be / &period, Q::one()),
             Some(k) => {
@@ -97,23 +97,16 @@ pub fn as_it_runs(scene: &Scene, format: Format) -> Option<Exact> {
                 (&be * k / &leading, k * &period / &leading)
             }
         };
-        washout(&-gain, &rate, format)
+        let (numerator, denominator) = washout(&-gain, &rate, format);
+        (numerator, denominator.raised(canceller.delay))
     };
-    let (numerator, denominator) = match &scene.environment {
-        Environment::DelayedSpring(spring) | Environment::DamperWall(spring) => {
-            wall(spring, &period, format)
+    let (numerator, denominator) = match scene.environment.parts() {
+        Parts { canceller: None, wall: Some(alone), profile: None } => wall(alone, &period, format),
+        Parts { canceller: Some(alone), wall: None, profile: None } => free(alone),
+        Parts { canceller: Some(canceller), wall: Some(beside), profile: None } => {
+            plus(&free(canceller), &wall(beside, &period, format))
         }
-        Environment::FreeMode { residual, delay } => {
-            let (numerator, denominator) = free(*residual);
-            (numerator, denominator.raised(*delay))
-        }
-        Environment::FreeModeWall { residual, wall: behind } => {
-            plus(&free(*residual), &wall(behind, &period, format))
-        }
-        Environment::Rational(_)
-        | Environment::Stated(_)
-        | Environment::Profile(_)
-        | Environment::Composed(_) => return None,
+        _ => return None,
     };
     // The direct feedthrough is solved with the coupling by a gain that is rounded as well.
     let through = if numerator.degree() < denominator.degree() || numerator.is_zero() {

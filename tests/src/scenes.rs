@@ -6,7 +6,9 @@
 use crate::exact::{Q, of_f64};
 use crate::poly::Poly;
 use crate::rules::Exact;
-use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::environment::{
+    Canceller, Coefficients, Damper, Environment, Parts, Rational, Wall,
+};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use num_traits::{One, Zero};
 use rand::Rng;
@@ -65,6 +67,16 @@ impl Frame {
     /// The spring `delta / T`, natural unit of stiffness.
     pub fn unit(&self) -> f64 {
         self.delta / self.period
+    }
+
+    /// The scene with a sum of these.
+    pub fn with_parts(&self, canceller: Option<Canceller>, wall: Option<Wall>) -> ExactScene {
+        let parts = [
+            canceller.map(|canceller| free_fraction(&canceller, self)),
+            wall.map(|wall| wall_fraction(&wall, self.period)),
+        ];
+        let sum = parts.into_iter().flatten().reduce(|a, b| sum_of(&a, &b));
+        self.with(Parts { canceller, wall, profile: None }.sum(), sum.expect("at least one part"))
     }
 
     /// The scene with an environment, and its exact transfer function.
@@ -183,15 +195,10 @@ fn least_real(numerator: &[f64], denominator: &[f64], delay: usize) -> f64 {
     real.fold(f64::INFINITY, f64::min)
 }
 
-/// A wall or spring as data.
-pub fn wall_data(stiffness: f64, damping: f64, filter: Option<f64>, delay: usize) -> Wall {
-    Wall { stiffness, damping, filter, delay, face: 0.0, one_sided: false }
-}
-
 /// Transfer function of a wall: `z^-n (K + B q / T)`, the velocity through `(1 - a) / (1 - a / z)`.
 pub fn wall_fraction(wall: &Wall, period: f64) -> (Poly, Poly) {
-    let a = wall.filter.map_or_else(Q::zero, q);
-    let (k, b, t) = (q(wall.stiffness), q(wall.damping) * (Q::one() - &a), q(period));
+    let a = wall.filter().map_or_else(Q::zero, q);
+    let (k, b, t) = (q(wall.stiffness), q(wall.damping()) * (Q::one() - &a), q(period));
     let pole = Poly::ascending(vec![-a, Q::one()]);
     let spring = pole.scaled(&(k * &t));
     let damper = Poly::integers(&[-1, 1]).scaled(&b);
@@ -199,8 +206,8 @@ pub fn wall_fraction(wall: &Wall, period: f64) -> (Poly, Poly) {
 }
 
 /// Transfer function of the free mode, `E = C / (1 - C V)` for `C = -be q / T`.
-pub fn free_fraction(cancelled: f64, frame: &Frame, delay: usize) -> (Poly, Poly) {
-    let (be, t) = (q(cancelled), q(frame.period));
+fn free_fraction(canceller: &Canceller, frame: &Frame) -> (Poly, Poly) {
+    let (be, t) = (q(frame.delta - canceller.residual), q(frame.period));
     let compliance = match frame.coupling {
         Coupling::Rigid => Q::zero(),
         Coupling::Matched => unreachable!("not drawn"),
@@ -208,11 +215,12 @@ pub fn free_fraction(cancelled: f64, frame: &Frame, delay: usize) -> (Poly, Poly
     };
     let step = Poly::integers(&[-1, 1]).scaled(&be);
     let numerator = step.scaled(&-Q::one());
-    (numerator, Poly::ascending(vec![Q::zero(), t]).plus(&step.scaled(&compliance)).raised(delay))
+    let denominator = Poly::ascending(vec![Q::zero(), t]).plus(&step.scaled(&compliance));
+    (numerator, denominator.raised(canceller.delay))
 }
 
 /// Sum of two fractions.
-pub fn sum_of(a: &(Poly, Poly), b: &(Poly, Poly)) -> (Poly, Poly) {
+fn sum_of(a: &(Poly, Poly), b: &(Poly, Poly)) -> (Poly, Poly) {
     (a.0.times(&b.1).plus(&b.0.times(&a.1)), a.1.times(&b.1))
 }
 
@@ -221,33 +229,28 @@ pub fn wall(rng: &mut impl Rng) -> ExactScene {
     let frame = Frame::draw(rng);
     let delay = rng.random_range(0..=8);
     let stiffness = short(frame.unit() * log_uniform(rng, 0.02, 4.0), 16);
-    if rng.random_bool(0.3) {
-        let wall = wall_data(stiffness, 0.0, None, delay);
-        let fraction = wall_fraction(&wall, frame.period);
-        return frame.with(Environment::DelayedSpring(wall), fraction);
+    let mut wall = Wall::spring(stiffness, delay);
+    if !rng.random_bool(0.3) {
+        let sign = if rng.random_bool(0.8) { 1.0 } else { -1.0 };
+        let damping = short(sign * frame.delta * log_uniform(rng, 0.01, 2.0), 24);
+        let filter = rng.random_bool(0.4).then(|| short(rng.random_range(0.0..0.98), 20));
+        wall.damper = Some(Damper { damping, filter });
     }
-    let sign = if rng.random_bool(0.8) { 1.0 } else { -1.0 };
-    let damping = short(sign * frame.delta * log_uniform(rng, 0.01, 2.0), 24);
-    let filter = rng.random_bool(0.4).then(|| short(rng.random_range(0.0..0.98), 20));
-    let wall = wall_data(stiffness, damping, filter, delay);
-    let fraction = wall_fraction(&wall, frame.period);
-    frame.with(Environment::DamperWall(wall), fraction)
+    frame.with_parts(None, Some(wall))
 }
 
 /// A free mode, with or without a wall behind it.
 pub fn free(rng: &mut impl Rng) -> ExactScene {
     let frame = Frame::draw(rng);
     let residual = short(frame.delta * rng.random_range(-0.2..1.0), 24);
-    let free = |delay| free_fraction(frame.delta - residual, &frame, delay);
     if rng.random_bool(0.5) {
         let delay = rng.random_range(0..=2);
-        return frame.with(Environment::FreeMode { residual, delay }, free(delay));
+        return frame.with_parts(Some(Canceller { residual, delay }), None);
     }
     let stiffness = short(frame.unit() * log_uniform(rng, 0.02, 2.0), 16);
     let damping = short(frame.delta * log_uniform(rng, 0.01, 1.0), 24);
-    let wall = wall_data(stiffness, damping, None, rng.random_range(0..=2));
-    let fraction = sum_of(&free(0), &wall_fraction(&wall, frame.period));
-    frame.with(Environment::FreeModeWall { residual, wall }, fraction)
+    let wall = Wall::damped(stiffness, damping, rng.random_range(0..=2));
+    frame.with_parts(Some(Canceller::to(residual)), Some(wall))
 }
 
 /// Any of the above; rational environments have up to three poles, none nearer the circle than

@@ -2,77 +2,42 @@
 
 mod expression;
 
-use std::collections::BTreeSet;
-
 use haptic_model::file::SceneFile;
 use haptic_model::file::profile::Shapes;
-use haptic_servo::environment::{Coefficients, Composed, Ends, Environment, Rational, Shape, Wall};
+use haptic_servo::environment::{
+    Canceller, Coefficients, Damper, Ends, Environment, Profile, Rational, Shape, Side, Wall,
+};
 use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange};
 
 use crate::PageResult;
 use crate::scene_text::read;
 use expression::{Expression, number, optional, structure, word};
 
-/// Which walls there are a type of.
-const FREE_MODE_WALLS: &str = "beside free motion a wall is at rest at angle 0, or has one side";
-
-/// The constants of a scene: the environment's type, the scene, and its certificate.
+/// The constants of a scene: the table of its torque profile, the scene, and its certificate.
 pub fn constant(text: &str, _: &mut Vec<f64>) -> PageResult {
     let file = read(text).map_err(|error| error.to_string())?;
     of(&file)
 }
 
-/// A type with a value, the names that both use, and their table.
-struct Typed {
-    name: String,
-    value: Expression,
-    uses: BTreeSet<&'static str>,
-    knots: Option<String>,
-}
-
-impl Typed {
-    fn new(used: &'static str, name: String, value: Expression) -> Self {
-        Self { name, value, uses: BTreeSet::from([used]), knots: None }
-    }
-
-    /// A type around others, each in a field of its name, after fields that are numbers.
-    fn around(
-        used: &'static str,
-        numbers: Vec<(&'static str, Expression)>,
-        inner: Vec<(&'static str, Self)>,
-    ) -> Self {
-        let mut fields = numbers;
-        let (mut names, mut uses, mut knots) = (Vec::new(), BTreeSet::from([used]), None);
-        for (field, typed) in inner {
-            fields.push((field, typed.value));
-            names.push(typed.name);
-            uses.extend(typed.uses);
-            knots = knots.or(typed.knots);
-        }
-        let name = format!("{used}<{}>", names.join(", "));
-        Self { name, value: structure(used, fields), uses, knots }
-    }
-}
-
 /// The text of the program's constants.
 fn of(file: &SceneFile) -> PageResult {
     let SceneFile { scene, shapes, .. } = file;
-    let own = environment(&scene.environment, shapes.as_ref())?;
-    let Typed { name, value, uses, knots } = match scene.coupling {
-        Coupling::Matched => matched(scene, own),
-        _ => own,
-    };
+    let shapes = shapes.as_ref();
+    let environment = environment(&scene.environment, shapes)?;
+    let uses = imports("haptic_servo::environment", &uses(&scene.environment, shapes)?);
     let is_late = scene.latency != Latency::NONE;
     let time_range = if is_late { ", TimeRange" } else { "" };
-    let uses = imports("haptic_servo::environment", &uses.into_iter().collect::<Vec<_>>());
-    let knots = knots.map_or_else(String::new, |knots| format!("{knots}\n"));
+    let knots = match (scene.environment.profile(), shapes) {
+        (Some(profile), Some(shapes)) => knots(shapes, profile.outline().knots) + "\n",
+        _ => String::new(),
+    };
     let constant = structure(
         "Scene",
         vec![
             ("device", device(scene)),
             ("timing", timing(scene)),
             ("coupling", coupling(scene.coupling)),
-            ("environment", value),
+            ("environment", environment),
             ("latency", latency(&scene.latency)),
             ("torque_limit", optional(scene.torque_limit)),
         ],
@@ -81,13 +46,11 @@ fn of(file: &SceneFile) -> PageResult {
         "use haptic_servo::certificate::Certified;\n\
          {uses}\n\
          use haptic_servo::scene::{{Coupling, Device, Latency, Scene{time_range}, Timing}};\n\n\
-         /// The environment that the hand feels.\n\
-         pub type Environment = {name};\n\n\
          {knots}\
          /// The scene.\n\
-         pub const SCENE: Scene<Environment> = {};\n\n\
+         pub const SCENE: Scene = {};\n\n\
          /// Its certificate: a scene that could oscillate in a hand is a compile error here.\n\
-         pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();\n",
+         pub const CERTIFIED: Certified<Scene> = SCENE.certified();\n",
         constant.broken(0)
     ))
 }
@@ -187,73 +150,82 @@ fn time(TimeRange { least, most }: TimeRange) -> Expression {
     word(format!("TimeRange::between({least:?}, {most:?})"))
 }
 
-/// Behind the matched coupling with the memory that the scene's latency needs.
-fn matched(scene: &Scene, own: Typed) -> Typed {
-    let latency = &scene.latency;
-    let (whole, lags) = (latency.whole_samples(scene.timing.period), latency.trails());
-    let numbers = match (whole, lags, latency.actuator_updates) {
-        (0, 0, 0) => String::new(),
-        (_, 0, 0) => format!(", {whole}"),
-        (_, _, 0) => format!(", {whole}, {lags}"),
-        _ => format!(", {whole}, {lags}, true"),
+/// The names that the expression of an environment uses.
+fn uses(environment: &Environment, shapes: Option<&Shapes>) -> Result<Vec<&'static str>, String> {
+    let parts = environment.parts();
+    let changed = match &parts.profile {
+        Some(profile) => changes(profile, shapes)?,
+        None => Vec::new(),
     };
-    let name = format!("Matched<{}{numbers}>", own.name);
-    Typed { name, ..Typed::around("Matched", vec![], vec![("environment", own)]) }
+    let has_ends = changed.iter().any(|(name, _)| *name == "ends");
+    let is_rational = environment.rational().is_some();
+    let profile = parts.profile.is_some();
+    let names = [
+        ("Canceller", parts.canceller.is_some()),
+        ("Coefficients", is_rational),
+        ("Ends", has_ends),
+        ("Environment", is_rational),
+        ("Knots", profile),
+        ("Parts", parts.count() > 1),
+        ("Profile", profile),
+        ("Rational", is_rational),
+        ("Shape", profile),
+        ("Wall", parts.wall.is_some()),
+    ];
+    Ok(names.into_iter().filter(|(_, is_used)| *is_used).map(|(name, _)| name).collect())
 }
 
-fn environment(environment: &Environment, shapes: Option<&Shapes>) -> Result<Typed, String> {
-    match environment {
-        Environment::DelayedSpring(wall) => Ok(placed(wall, spring(wall))),
-        Environment::DamperWall(wall) => Ok(placed(wall, damper(wall))),
-        Environment::FreeMode { residual, delay } => Ok(Typed::new(
-            "FreeMode",
-            format!("FreeMode<{delay}>"),
-            structure("FreeMode", vec![("residual", number(*residual))]),
-        )),
-        Environment::FreeModeWall { residual, wall } => {
-            let wall = beside(wall, damper(wall))?;
-            let residual = vec![("residual", number(*residual))];
-            Ok(Typed::around("FreeModeWall", residual, vec![("wall", wall)]))
-        }
-        Environment::Rational(rational) => Ok(self::rational(rational)),
-        Environment::Profile(_) | Environment::Composed(_) => profiled(environment, shapes),
+fn environment(environment: &Environment, shapes: Option<&Shapes>) -> PageExpression {
+    let parts = match environment {
+        Environment::Parts(parts) => parts,
+        Environment::Rational(rational) => return Ok(self::rational(rational)),
         Environment::Stated(_) => {
-            Err("an environment of another crate has no constant here".to_owned())
+            return Err("an environment of another crate has no constant here".to_owned());
         }
+    };
+    let mut all = Vec::new();
+    all.extend(parts.canceller.map(|it| ("canceller", canceller(&it))));
+    all.extend(parts.wall.map(|it| ("wall", wall(&it))));
+    if let Some(it) = &parts.profile {
+        all.push(("profile", profile(it, shapes)?));
+    }
+    Ok(match <[_; 1]>::try_from(all) {
+        Ok([(_, part)]) => part.method("alone"),
+        Err(all) => {
+            let is_whole = all.len() == 3;
+            let some = all.into_iter().map(|(name, part)| (name, part.within("Some"))).collect();
+            let parts = structure("Parts", some);
+            if is_whole { parts } else { parts.with_rest("Parts::NONE") }.method("sum")
+        }
+    })
+}
+
+type PageExpression = Result<Expression, String>;
+
+fn canceller(Canceller { residual, delay }: &Canceller) -> Expression {
+    match delay {
+        0 => word(format!("Canceller::to({residual:?})")),
+        _ => structure("Canceller", vec![("residual", number(*residual)), ("delay", word(delay))]),
     }
 }
 
-fn spring(wall: &Wall) -> Typed {
-    let stiffness = vec![("stiffness", number(wall.stiffness))];
-    let name = format!("DelayedSpring<{}>", wall.delay);
-    Typed::new("DelayedSpring", name, structure("DelayedSpring", stiffness))
+fn wall(wall: &Wall) -> Expression {
+    let Wall { stiffness, damper, side, delay } = *wall;
+    let spring = match damper {
+        None => format!("Wall::spring({stiffness:?}, {delay})"),
+        Some(Damper { damping, filter }) => {
+            let filter = filter.map_or_else(String::new, |pole| format!(".filtered({pole:?})"));
+            format!("Wall::damped({stiffness:?}, {damping:?}, {delay}){filter}")
+        }
+    };
+    word(match side {
+        Side::Centred => spring,
+        Side::Displaced(position) => format!("{spring}.placed({position:?})"),
+        Side::Face(face) => format!("{spring}.behind({face:?})"),
+    })
 }
 
-fn damper(wall: &Wall) -> Typed {
-    let name = if wall.filter.is_some() { "FilteredWall" } else { "DamperWall" };
-    let mut fields = vec![("stiffness", number(wall.stiffness)), ("damping", number(wall.damping))];
-    fields.extend(wall.filter.map(|filter| ("filter", number(filter))));
-    Typed::new(name, format!("{name}<{}>", wall.delay), structure(name, fields))
-}
-
-/// With its face, if it has one.
-fn placed(wall: &Wall, own: Typed) -> Typed {
-    let face = vec![("face", number(wall.face))];
-    if wall.one_sided {
-        return Typed::around("OneSided", face, vec![("wall", own)]);
-    }
-    if wall.face == 0.0 { own } else { Typed::around("Placed", face, vec![("wall", own)]) }
-}
-
-/// A wall in a sum, which must be one-sided or centred.
-fn beside(wall: &Wall, own: Typed) -> Result<Typed, String> {
-    if !wall.one_sided && wall.face != 0.0 {
-        return Err(format!("{FREE_MODE_WALLS}; `face` is {:?} rad", wall.face));
-    }
-    Ok(placed(wall, own))
-}
-
-fn rational(rational: &Rational) -> Typed {
+fn rational(rational: &Rational) -> Expression {
     let coefficients = |all: &Coefficients| {
         let all: Vec<_> = all.as_slice().iter().map(|one| format!("{one:?}")).collect();
         word(format!("Coefficients::new(&[{}]).unwrap()", all.join(", ")))
@@ -264,35 +236,26 @@ fn rational(rational: &Rational) -> Typed {
         ("delay", word(rational.delay)),
         ("unit_zeros", word(rational.unit_zeros)),
     ];
-    let mut typed = Typed::new("Rational", "Rational".to_owned(), structure("Rational", fields));
-    typed.uses.insert("Coefficients");
-    typed
+    structure("Rational", fields).within("Environment::Rational")
 }
 
-/// A torque profile with its table, alone or in a sum with a wall and a canceller.
-fn profiled(environment: &Environment, shapes: Option<&Shapes>) -> Result<Typed, String> {
+/// A torque profile of the table, with the numbers that are not those of its shapes.
+fn profile(profile: &Profile, shapes: Option<&Shapes>) -> PageExpression {
+    let of_shapes = format!("Profile::of(&KNOTS, {})", profile.delay);
+    let changed = changes(profile, shapes)?;
+    if changed.is_empty() {
+        return Ok(word(of_shapes));
+    }
+    Ok(structure("Profile", changed).with_rest(of_shapes))
+}
+
+/// The numbers of a profile that are not those of its shapes.
+fn changes(
+    profile: &Profile,
+    shapes: Option<&Shapes>,
+) -> Result<Vec<(&'static str, Expression)>, String> {
     let shapes = shapes.ok_or("the profile has no shapes")?;
-    let composed = match environment {
-        Environment::Composed(composed) => *composed,
-        Environment::Profile(profile) => Composed { residual: None, wall: None, profile: *profile },
-        _ => return Err("the environment is not a torque profile".to_owned()),
-    };
-    let Composed { residual, wall, profile } = composed;
-    let (is_alone, has_snap) = (residual.is_none() && wall.is_none(), profile.snap.is_some());
-    if profile.damping != 0.0 && (!is_alone || has_snap) {
-        return Err(format!(
-            "a profile with a damping has no snap point, no canceller and no wall beside it; `damping` is \
-             {:?} N m s/rad",
-            profile.damping
-        ));
-    }
-    if has_snap && !is_alone {
-        return Err("a profile with a snap point has no canceller and no wall beside it".to_owned());
-    }
     let own = shapes.sampled(profile.delay).map_err(|error| error.to_string())?;
-    let cells = own.outline().knots;
-    let kind = if has_snap { "SnapProfile" } else { "Profile" };
-    let built = format!("{kind}::of(&KNOTS)");
     let mut changed = Vec::new();
     let mut differs = |name, now: f64, was: f64| {
         if now.to_bits() != was.to_bits() {
@@ -305,40 +268,10 @@ fn profiled(environment: &Environment, shapes: Option<&Shapes>) -> Result<Typed,
     if profile.ends != own.ends {
         changed.push(("ends", ends(profile.ends)));
     }
-    if has_snap && !changed.is_empty() {
-        return Err("a profile with a snap point is that of its shapes: change these".to_owned());
+    if profile.damping.is_some() {
+        changed.push(("damping", optional(profile.damping)));
     }
-    let has_ends = changed.iter().any(|(name, _)| *name == "ends");
-    let value =
-        if changed.is_empty() { word(built) } else { structure(kind, changed).with_rest(built) };
-    let mut typed = Typed::new(kind, format!("{kind}<{cells}, {}>", profile.delay), value);
-    if profile.damping != 0.0 {
-        let fields = vec![("profile", typed.value), ("damping", number(profile.damping))];
-        typed.name = format!("DampedProfile<{cells}, {}>", profile.delay);
-        typed.value = structure("DampedProfile", fields);
-        typed.uses.insert("DampedProfile");
-    }
-    typed.uses.extend(["Knots", "Shape"]);
-    typed.uses.extend(has_ends.then_some("Ends"));
-    typed.knots = Some(knots(shapes, cells));
-    let wall = wall.as_ref().map(wall_beside_profile).transpose()?;
-    let left = residual.map(|residual| ("residual", number(residual)));
-    let numbers: Vec<_> = left.into_iter().collect();
-    Ok(match (numbers.is_empty(), wall) {
-        (true, None) => typed,
-        (false, None) => Typed::around("FreeModeProfile", numbers, vec![("profile", typed)]),
-        (is_free, Some(wall)) => {
-            let name = if is_free { "WallAndProfile" } else { "FreeModeWallAndProfile" };
-            Typed::around(name, numbers, vec![("wall", wall), ("profile", typed)])
-        }
-    })
-}
-
-fn wall_beside_profile(wall: &Wall) -> Result<Typed, String> {
-    if let Some(filter) = wall.filter {
-        return Err(format!("a wall beside a profile has no filter; `filter` is {filter:?}"));
-    }
-    beside(wall, damper(wall))
+    Ok(changed)
 }
 
 fn ends(ends: Option<Ends>) -> Expression {

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use haptic_model::stability_map::plane::{Plane, parameter_of};
 use haptic_model::stability_map::{Region, middle};
-use haptic_servo::environment::Environment;
+use haptic_servo::environment::Wall;
 use haptic_servo::parameter::Parameter;
 use haptic_servo::scene::Scene;
 use serde::Deserialize;
@@ -127,9 +127,9 @@ fn words(region: Region, says_stability: bool) -> &'static str {
 
 /// Further keys with values that another member of the map's scenes must have.
 fn also(scene: &Scene, axes: [Parameter; 2]) -> Vec<[&'static str; 2]> {
-    match scene.environment {
-        // A spring with a damper is a wall.
-        Environment::DelayedSpring(_) if axes.contains(&Parameter::Damping) => {
+    // A spring with a damper is a wall.
+    match scene.environment.wall() {
+        Some(Wall { damper: None, .. }) if axes.contains(&Parameter::Damping) => {
             vec![["environment.type", "damper-wall"]]
         }
         _ => Vec::new(),

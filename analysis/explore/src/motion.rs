@@ -10,6 +10,7 @@ use haptic_model::simulation::torque_signal::TorqueSignal;
 use haptic_model::simulation::{Experiment, Integration, simulate};
 use haptic_model::trace::Trace;
 use haptic_model::worst_hand;
+use haptic_servo::environment::Wall;
 use serde_json::json;
 
 use crate::PageResult;
@@ -146,7 +147,7 @@ fn run(file: &SceneFile, experiment: &Experiment, what: String) -> Result<Run, S
         velocity: motion.velocity,
         torque: motion.torque,
         limit: motion.limit,
-        face: file.scene.environment.wall().filter(|wall| wall.one_sided).map(|wall| wall.face),
+        face: file.scene.environment.wall().filter(|wall| wall.is_one_sided()).map(Wall::face),
         ..Trace::default()
     };
     Ok(Run { what, trace: trace.until(|value| value.abs() <= FARTHEST.max(TAP)) })

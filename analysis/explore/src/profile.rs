@@ -41,8 +41,8 @@ pub fn profile(text: &str, numbers: &mut Vec<f64>) -> PageResult {
                      depends on the angle alone";
         return Err(format!("{}: {words}", file.name));
     };
-    numbers.extend(line(&wall, limit));
-    Ok(json!({ "kind": "wall", "limit": limit, "words": wall_words(&wall) }).to_string())
+    numbers.extend(line(wall, limit));
+    Ok(json!({ "kind": "wall", "limit": limit, "words": wall_words(wall) }).to_string())
 }
 
 fn piece(piece: &Piece) -> Value {
@@ -60,7 +60,7 @@ fn line(wall: &Wall, limit: Option<f64>) -> impl Iterator<Item = f64> {
         .map(|limit| 1.5 * limit / wall.stiffness.abs())
         .filter(|reach| *reach > 0.0 && reach.is_finite())
         .unwrap_or(REACH);
-    let Wall { stiffness, face, one_sided, .. } = *wall;
+    let (stiffness, face, one_sided) = (wall.stiffness, wall.face(), wall.is_one_sided());
     (0..POINTS).flat_map(move |i| {
         let into = reach * (2.0 * i as f64 / (POINTS - 1) as f64 - 1.0);
         let torque = if one_sided && into < 0.0 { 0.0 } else { stiffness * into };
@@ -70,8 +70,8 @@ fn line(wall: &Wall, limit: Option<f64>) -> impl Iterator<Item = f64> {
 
 fn wall_words(wall: &Wall) -> String {
     let stiffness = significant(wall.stiffness, 4);
-    let face = significant(wall.face, 4);
-    match wall.one_sided {
+    let face = significant(wall.face(), 4);
+    match wall.is_one_sided() {
         true => format!("at rest, {stiffness} N m/rad beyond the face at {face} rad"),
         false => format!("at rest, {stiffness} N m/rad around {face} rad"),
     }

@@ -7,8 +7,9 @@ use haptic_servo::board::sim_hardware::{SimHardware, SimIo};
 use haptic_servo::boot::{self, Program};
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::{CounterWidth, RawCount};
-use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::number::Format;
+use haptic_servo::parameter::Parameter;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, Transducers};
 use haptic_servo::servo_loop::{self, FrameQueue, Frames, Inbox, Mailbox, ServoLoop};
@@ -17,19 +18,17 @@ use haptic_servo::wire::{BoardInfo, PROTOCOL, Session, encode};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-type Wall = OneSided<DamperWall<1>>;
-
 /// Counts at which the device is held: inside of the wall.
 const DEPTH: i32 = 300;
 /// Frames that wait.
 const FRAMES: usize = 64;
 
-fn scene(stiffness: f64) -> Scene<Wall> {
+fn scene(stiffness: f64) -> Scene {
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: OneSided { face: 0.0, wall: DamperWall { stiffness, damping: 0.01 } },
+        environment: Wall::damped(stiffness, 0.01, 1).behind(0.0).alone(),
         latency: Latency::NONE,
         torque_limit: Some(1.0),
     }
@@ -54,10 +53,10 @@ impl SimIo for Still {
 
 /// A board, its wire, and the page's time.
 struct Bench {
-    session: Session<'static, Wall, f32, Latched, FRAMES>,
-    servo_loop: ServoLoop<Wall, f32, Latched>,
+    session: Session<'static, Environment, f32, Latched, FRAMES>,
+    servo_loop: ServoLoop<Environment, f32, Latched>,
     hardware: SimHardware<Still>,
-    inbox: Inbox<'static, PreparedServo<Wall, f32, Latched>>,
+    inbox: Inbox<'static, PreparedServo<Environment, f32, Latched>>,
     frames: Frames<'static, FRAMES>,
     /// The page's time in ms.
     now: f64,
@@ -181,7 +180,7 @@ fn the_page_shows_what_runs_on_the_board() {
     assert_eq!((&bench.board["is_armed"], &bench.board["fault"]), (&false.into(), &Value::Null));
     assert_eq!(bench.number("stiffness"), 22.0);
     let margin = scene(22.0).certify_in(Format::F32).unwrap();
-    let margin = margin.assessment().margin(&scene(22.0).as_data()).unwrap();
+    let margin = margin.assessment().margin(&scene(22.0)).unwrap();
     assert_eq!(bench.board["margin"].as_f64(), Some(margin));
     let mut curves = Vec::new();
     wire::curves("100", &mut curves).unwrap();
@@ -213,8 +212,7 @@ fn a_set_that_the_certificate_refuses_is_not_sent() {
     assert_eq!(bench.replies, ["stiffness=12.5 ...", "stiffness=12.5: done"]);
     assert_eq!(bench.number("stiffness"), 12.5);
     // The next numbers are judged beside the running numbers.
-    let mut next = scene(12.5);
-    next.environment.wall.damping = 1.0;
+    let next = scene(12.5).with(Parameter::Damping, 1.0).unwrap();
     let sentence = next.certify_in(Format::F32).unwrap_err().to_string();
     assert_eq!(wire::judge("damping=1", &mut Vec::new()), Err(sentence));
 }

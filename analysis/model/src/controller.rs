@@ -2,8 +2,8 @@
 
 use haptic_servo::certificate::Certified;
 use haptic_servo::encoder::RawCount;
-use haptic_servo::environment::Discretize;
 use haptic_servo::number::{Number, OutOfRange};
+use haptic_servo::rendering::Rendering;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::{BuildError, Servo, Transducers};
 use haptic_servo::torque::LimitReason;
@@ -36,7 +36,7 @@ pub trait Controller {
     fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange>;
 }
 
-impl<E: Discretize<N>, N: Number> Controller for Servo<E, N> {
+impl<E: Rendering<N>, N: Number> Controller for Servo<E, N> {
     fn tick(&mut self, raw: i32) -> Tick {
         let output = Servo::tick(self, RawCount::from(raw));
         Tick {

@@ -1,6 +1,6 @@
 //! The trajectory of a hand: its set-point over time, and when it lets go.
 
-use haptic_servo::environment::Environment;
+use haptic_servo::environment::{Environment, Parts};
 
 use crate::device::{Hand, HandSetpoint};
 
@@ -24,9 +24,9 @@ pub const TYPICAL_HAND: Hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 6
 impl HandTrajectory {
     /// The trajectory that demonstrates an environment: a wall is pushed into, free motion is swung.
     pub fn for_environment(environment: &Environment) -> Self {
-        match environment {
-            Environment::FreeMode { .. } => Self::swing_and_let_go(),
-            Environment::Profile(_) | Environment::Composed(_) => Self::turn_and_let_go(),
+        match environment.parts() {
+            Parts { profile: Some(_), .. } => Self::turn_and_let_go(),
+            Parts { canceller: Some(_), wall: None, .. } => Self::swing_and_let_go(),
             _ => Self::push_and_let_go(),
         }
     }

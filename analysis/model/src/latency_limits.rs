@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use haptic_servo::certificate::PassivityProblem;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::parameter::MAX_DELAY;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
@@ -87,7 +87,7 @@ pub fn largest_spring(device: &Device, period: f64, latency: Latency, delay: usi
         device: *device,
         timing: Timing { period, worst_period: None },
         coupling: Coupling::Rigid,
-        environment: Environment::DelayedSpring(Wall::spring(stiffness, delay)),
+        environment: Wall::spring(stiffness, delay).alone(),
         latency,
         torque_limit: None,
     };

@@ -192,8 +192,6 @@ impl Curves {
 
 #[cfg(test)]
 mod tests {
-    use haptic_servo::environment::Environment;
-
     use super::*;
     use haptic_servo::scene::{Device, Latency};
 
@@ -202,14 +200,7 @@ mod tests {
             device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
             timing: Timing { period: 0.001, worst_period: None },
             coupling,
-            environment: Environment::DamperWall(Wall {
-                stiffness: 22.0,
-                damping,
-                filter: None,
-                delay,
-                face: 0.0,
-                one_sided: false,
-            }),
+            environment: Wall::damped(22.0, damping, delay).alone(),
             latency: Latency::NONE,
             torque_limit: None,
         }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use haptic_servo::environment::{AnyProfile, Ends, FULL_SCALE};
+use haptic_servo::environment::{Ends, FULL_SCALE, Profile};
 use haptic_servo::scene::Scene;
 
 use crate::design::{Choice, DesignLimit, Quantity, Terms, largest};
@@ -94,7 +94,7 @@ impl ProfileCurve {
 }
 
 /// The angles in rad to show: between end stops and a little beyond, a turn, or some repetitions.
-fn shown(profile: &AnyProfile) -> Range<f64> {
+fn shown(profile: &Profile) -> Range<f64> {
     match profile.ends {
         Some(Ends { from, to, stiffness }) => {
             let beyond = (PUSHED * profile.torque / stiffness).min(BEYOND * (to - from));
@@ -108,13 +108,13 @@ fn shown(profile: &AnyProfile) -> Range<f64> {
 }
 
 /// The torque in N m at an angle in rad, in the nearest detent where there are several branches.
-fn undelayed(scene: &Scene, profile: &AnyProfile) -> Option<impl Fn(f64) -> f64 + use<>> {
+fn undelayed(scene: &Scene, profile: &Profile) -> Option<impl Fn(f64) -> f64 + use<>> {
     let torque = held(scene, profile)?;
     Some(move |angle: f64| torque(angle, angle))
 }
 
 /// The steepest pieces, up and down, next to the middle of the shown range.
-fn steepest(profile: &AnyProfile, shown: &Range<f64>, torque: impl Fn(f64) -> f64) -> [Piece; 2] {
+fn steepest(profile: &Profile, shown: &Range<f64>, torque: impl Fn(f64) -> f64) -> [Piece; 2] {
     let (units, per_rad) = (profile.units(), profile.knots_per_rad());
     let width = 1.0 / per_rad;
     let unit = profile.torque / f64::from(FULL_SCALE) * per_rad;
@@ -171,7 +171,7 @@ const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };
 
 /// For the table and its end stops, beside the line to a snap point: this line grows with the torque, and
 /// stays unchanged where the end stops grow.
-fn certified_rise(scene: &Scene, profile: &AnyProfile, rise: f64, line: f64) -> Option<f64> {
+fn certified_rise(scene: &Scene, profile: &Profile, rise: f64, line: f64) -> Option<f64> {
     let is_of_stops = profile.ends.is_some_and(|ends| ends.stiffness == rise);
     // With a wall beside the profile this quantity is the stiffness of the wall.
     if is_of_stops && scene.environment.wall().is_none() {

@@ -1,7 +1,6 @@
 //! The remedies of a rejected scene, as changes of its file.
 
 use haptic_servo::certificate::Remedy;
-use haptic_servo::environment::Environment;
 use haptic_servo::parameter::Parameter;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -52,10 +51,8 @@ fn changes(file: &SceneFile, remedy: &Remedy) -> Vec<(&'static str, Value)> {
 /// The key of a number; `None` where the file has another number in its place.
 fn key_of(file: &SceneFile, parameter: Parameter) -> Option<&'static str> {
     let is_chain = file.chain.masses().len() > 1;
-    let is_beside_wall = match &file.scene.environment {
-        Environment::Composed(composed) => composed.wall.is_some(),
-        _ => false,
-    };
+    let environment = &file.scene.environment;
+    let is_beside_wall = environment.wall().is_some() && environment.profile().is_some();
     Some(match parameter {
         // The damping of a chain follows from its masses.
         Parameter::DeviceDamping if is_chain => return None,

@@ -109,7 +109,7 @@ impl Filter {
 mod tests {
     use super::*;
     use haptic_servo::certificate::LoopTransfers;
-    use haptic_servo::environment::{Environment, Wall};
+    use haptic_servo::environment::Wall;
     use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
     fn wall(delay: usize) -> Scene {
@@ -117,14 +117,7 @@ mod tests {
             device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
             timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
-            environment: Environment::DamperWall(Wall {
-                stiffness: 22.0,
-                damping: 0.01,
-                filter: None,
-                delay,
-                face: 0.0,
-                one_sided: false,
-            }),
+            environment: Wall::damped(22.0, 0.01, delay).alone(),
             latency: Latency::NONE,
             torque_limit: None,
         }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use haptic_servo::coupling::Response;
-use haptic_servo::environment::{AnyProfile, Discretize, Law, SnapPoint};
+use haptic_servo::environment::{Discretize, Law, Profile, SnapPoint};
 use haptic_servo::scene::Scene;
 
 /// Points of a branch.
@@ -20,10 +20,10 @@ pub struct Branch {
 
 /// The torque in N m of a profile at an angle in rad, while the detent next to another angle holds the knob:
 /// by the law that runs, without delay and damping.
-pub fn held(scene: &Scene, profile: &AnyProfile) -> Option<impl Fn(f64, f64) -> f64 + use<>> {
+pub fn held(scene: &Scene, profile: &Profile) -> Option<impl Fn(f64, f64) -> f64 + use<>> {
     let mut still = *profile;
-    (still.delay, still.damping) = (0, 0.0);
-    let law = Discretize::<f64>::law(&still, &scene.context()).ok()?;
+    (still.delay, still.damping) = (0, None);
+    let law = Discretize::<f64>::law(&still.alone(), &scene.context()).ok()?;
     Some(move |held_at: f64, angle: f64| {
         let mut law = law.clone();
         law.rest_at(held_at);
@@ -35,7 +35,7 @@ pub fn held(scene: &Scene, profile: &AnyProfile) -> Option<impl Fn(f64, f64) -> 
 }
 
 /// The branches whose centre is shown; none for a profile without a snap point.
-pub fn of(scene: &Scene, profile: &AnyProfile, shown: &Range<f64>) -> Vec<Branch> {
+pub fn of(scene: &Scene, profile: &Profile, shown: &Range<f64>) -> Vec<Branch> {
     let (Some(snap), Some(torque)) = (profile.snap, held(scene, profile)) else {
         return Vec::new();
     };
@@ -55,7 +55,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    fn of(snap: &SnapPoint, profile: &AnyProfile) -> Self {
+    fn of(snap: &SnapPoint, profile: &Profile) -> Self {
         let layout = profile.layout();
         let pitch = snap.pitch(&layout);
         let (least, last) = snap.branches(&layout);
@@ -88,13 +88,13 @@ impl Numbers {
 }
 
 /// Slope in N m/rad of the line of every branch.
-pub fn slope(snap: &SnapPoint, profile: &AnyProfile) -> f64 {
+pub fn slope(snap: &SnapPoint, profile: &Profile) -> f64 {
     let layout = profile.layout();
     snap.torque(&layout) / (snap.snap() * snap.pitch(&layout))
 }
 
 /// Centre of the detent next to an angle, and the width of its branch, both in rad.
-pub fn next_to(angle: f64, snap: &SnapPoint, profile: &AnyProfile) -> (f64, f64) {
+pub fn next_to(angle: f64, snap: &SnapPoint, profile: &Profile) -> (f64, f64) {
     let numbers = Numbers::of(snap, profile);
     let nearest = ((angle - numbers.first) / numbers.pitch).round() as i32;
     let branch = nearest.clamp(numbers.least, numbers.last);

@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::path::Path;
 
+use haptic_servo::environment::Wall;
+
 use crate::file::SceneFile;
 use crate::nominal_latency::titled;
 use crate::simulation::tick_status::TickStatus;
@@ -80,7 +82,7 @@ impl Trace {
             hand_torque: driven.unwrap_or_default(),
             torque_limit: file.scene.torque_limit,
             limit: motion.limit,
-            face: file.scene.environment.wall().filter(|wall| wall.one_sided).map(|wall| wall.face),
+            face: file.scene.environment.wall().filter(|wall| wall.is_one_sided()).map(Wall::face),
             ..Self::default()
         };
         Ok(trace)

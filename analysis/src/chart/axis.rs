@@ -57,8 +57,10 @@ impl Axis {
     fn decades(&self, most: usize) -> Vec<f64> {
         let [first, last] = [self.range.start, self.range.end].map(f64::log10);
         let multiples: &[f64] = if last - first < FEW { &[1.0, 2.0, 5.0] } else { &[1.0] };
-        let step = ((last - first) / most as f64).ceil().max(1.0) as usize;
-        let decades = (first.floor() as i32..=last.ceil() as i32).step_by(step);
+        let step = ((last - first) / most as f64).ceil().max(1.0) as i32;
+        // Whole multiples of the step, so that 1 is among them.
+        let first = (first.floor() as i32).div_euclid(step) * step;
+        let decades = (first..=last.ceil() as i32).step_by(step as usize);
         let values =
             decades.flat_map(|decade| multiples.iter().map(move |m| m * 10_f64.powi(decade)));
         values.filter(|value| self.holds(*value)).collect()

@@ -182,10 +182,23 @@ impl Labels {
         self.names.push(block);
     }
 
+    /// Writes a word above or below a level line, as far to the left as possible.
+    pub fn write_beside(&mut self, area: &Area<'_>, y: i32, word: &str) -> Drawn<()> {
+        let width = width_of(word);
+        let column = |left: i32| [y - LABEL - BESIDE, y + 2 * BESIDE].map(|top| (left, top));
+        let corners = (self.panel.left..self.panel.right).step_by(GAP as usize).flat_map(column);
+        let block = |(x, y): (i32, i32)| Block::new((x, y), (x + width, y + LABEL));
+        let free = corners.map(block).find(|block| self.is_free(block));
+        let Some(block) = free else { return Ok(()) };
+        self.take(block);
+        let place = (block.left + BESIDE, (block.top + block.bottom) / 2);
+        area.draw(&Text::new(word.to_owned(), place, anchored(HPos::Left, VPos::Center)))
+    }
+
     /// Writes a name beside a point, with a thin leader line if it is far away or nearer to another point.
     pub fn write(&mut self, area: &Area<'_>, point: (i32, i32), name: &str) -> Drawn<()> {
-        let width = (name.chars().count() as f64 * LETTER * f64::from(LABEL)) as i32;
-        let Some(Spot { block, is_led }) = self.place(point, (width, LABEL)) else { return Ok(()) };
+        let size = (width_of(name), LABEL);
+        let Some(Spot { block, is_led }) = self.place(point, size) else { return Ok(()) };
         self.take(block);
         if is_led {
             let line = BLACK.mix(0.7).stroke_width(UNITS * 3 / 4);
@@ -201,6 +214,11 @@ impl Labels {
         let place = (edge, (block.top + block.bottom) / 2);
         area.draw(&Text::new(name.to_owned(), place, anchored(side, VPos::Center)))
     }
+}
+
+/// Upper estimate of the width of a name.
+fn width_of(name: &str) -> i32 {
+    (name.chars().count() as f64 * LETTER * f64::from(LABEL)) as i32
 }
 
 fn distance(a: (i32, i32), b: (i32, i32)) -> f64 {

@@ -17,7 +17,7 @@ const GAP: i32 = 12;
 /// Room on the right of the words, in pixels.
 const RIGHT: i32 = 14;
 /// Width of a letter in pixels: more than the mean of the used letters.
-const LETTER: f64 = 6.3;
+const LETTER: f64 = 6.0;
 
 /// A part of the picture that a legend explains.
 #[derive(Clone, Copy, Debug, PartialEq)]

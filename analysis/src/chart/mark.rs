@@ -105,9 +105,11 @@ impl Mark {
                 stroke((0, -d), (0, d), line)
             }
             Form::Cross => {
-                // With a white border, to be visible on lines and in dark regions.
+                // A wide one has a white border, to be visible on lines and in dark regions.
                 let border = WHITE.stroke_width((self.width + 3) * UNITS);
-                for style in [border, line] {
+                for style in
+                    [Some(border).filter(|_| self.width > 1), Some(line)].into_iter().flatten()
+                {
                     stroke((-s, -s), (s, s), style)?;
                     stroke((-s, s), (s, -s), style)?;
                 }

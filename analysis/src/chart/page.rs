@@ -13,8 +13,8 @@ pub const HEIGHT: i32 = 524;
 
 /// Size of a title.
 const TITLE: i32 = units(19);
-/// Longest title, in letters.
-const LONGEST_TITLE: usize = 72;
+/// Width of a letter of a title in pixels: more than that of most letters.
+const LETTER: i32 = 11;
 /// Room above a title, and height of a title with this room, in pixels.
 const TOP: i32 = 10;
 const TITLE_ROOM: i32 = TOP + 26;
@@ -64,7 +64,7 @@ impl Page<'_> {
         paint: impl FnOnce(&[Area<'_>]) -> Drawn<()>,
     ) -> Drawn<()> {
         area.fill(&WHITE)?;
-        let title = shortened(self.title, LONGEST_TITLE);
+        let title = shortened(self.title, (self.width / LETTER) as usize);
         let mut rest = area.margin(units(TOP), 0, 0, 0).titled(&title, text(TITLE))?;
         let mut areas = Vec::new();
         for part in parts {

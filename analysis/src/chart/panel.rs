@@ -22,7 +22,7 @@ const BESIDE: i32 = units(78);
 const TICKS_APART: (i32, i32) = (62, 28);
 const MOST_TICKS: usize = 11;
 
-/// The axes of a panel, and what is written at them.
+/// The axes of a panel, with their names and a heading.
 #[derive(Clone, Debug)]
 pub struct Axes<'n> {
     /// The horizontal axis.

@@ -48,8 +48,8 @@ const PANELS: [i32; 3] = [216, 186, 256];
 /// The sign convention.
 const SIGNS: &str = "signs: angle, velocity and the hand's torque are positive in one direction; \
                      the motor applies minus the coupling torque";
-/// The lines of the device, of its velocity, of the hand, of a wall's face, of the torque limit, of the moment
-/// at which the hand lets go, and of zero.
+/// The lines of the device, of its velocity, of the hand, of a wall's face, of the torque limit, of the
+/// moment at which the hand lets go, and of zero.
 const DEVICE: Stroke = Stroke::solid(2);
 const VELOCITY: Stroke = Stroke::solid(1);
 const HAND: Stroke = Stroke::dashed(&[6, 4], 1);

@@ -170,7 +170,7 @@ impl Methods<'_> {
                 let y = panel.point((1.0, level)).1;
                 panel.level(LEVEL, level)?;
                 labels.keep_clear_along((0, y), (right, y));
-                labels.write(&panel.area, (0, y), word)?;
+                labels.write_beside(&panel.area, y, word)?;
             }
         }
         for method in front {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use haptic_servo::certificate::certify;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Canceller, Environment, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use super::outcome::section;
@@ -47,7 +47,7 @@ const FIGURE_9: Scene = Scene {
     device: Device { inertia: 1e-3, damping: 1.0, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 2000.0 },
-    environment: Environment::FreeMode { residual: 0.05, delay: 0 },
+    environment: Canceller::to(0.05).alone(),
     latency: Latency::NONE,
     torque_limit: None,
 };
@@ -57,30 +57,14 @@ const DELAYED_WALL: Scene = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: Environment::DamperWall(Wall {
-        stiffness: 22.0,
-        damping: 0.01,
-        filter: None,
-        delay: 1,
-        face: 0.0,
-        one_sided: false,
-    }),
+    environment: Wall::damped(22.0, 0.01, 1).alone(),
     latency: Latency::NONE,
     torque_limit: None,
 };
 
 /// The same wall with one more sample of delay: beyond the critical line.
-const PAST_THE_LINE: Scene = Scene {
-    environment: Environment::DamperWall(Wall {
-        stiffness: 22.0,
-        damping: 0.01,
-        filter: None,
-        delay: 2,
-        face: 0.0,
-        one_sided: false,
-    }),
-    ..DELAYED_WALL
-};
+const PAST_THE_LINE: Scene =
+    Scene { environment: Wall::damped(22.0, 0.01, 2).alone(), ..DELAYED_WALL };
 
 /// Sets up, builds, certifies, runs and draws. The status is negative if a scene is not certified or a code
 /// of the emulated board differs from the host's.
@@ -157,7 +141,7 @@ fn draw_run(folder: &Path, program: &Program, outcome: &RunOutcome) -> Result<()
 
 /// The face of a one-sided wall in rad.
 fn face(environment: &Environment) -> Option<f64> {
-    environment.wall().filter(|wall| wall.one_sided).map(|wall| wall.face)
+    environment.wall().filter(|wall| wall.is_one_sided()).map(Wall::face)
 }
 
 /// The number of ticks in which the motion grows by a factor.

@@ -86,5 +86,9 @@ fn coasting(program: &Program, outcome: &RunOutcome) -> String {
 
 /// Whether a released device is on a spring at every position.
 fn is_held_by_a_spring(program: &Program) -> bool {
-    program.scene.environment.wall().is_some_and(|wall| !wall.one_sided && wall.stiffness > 0.0)
+    program
+        .scene
+        .environment
+        .wall()
+        .is_some_and(|wall| !wall.is_one_sided() && wall.stiffness > 0.0)
 }

@@ -3,7 +3,7 @@
 
 use crate::common::{answer, haptic_reading, program};
 use analysis::file::{self, FileError, Format, Purpose, SceneFile, parse_for, write};
-use haptic_servo::environment::{Composed, Environment, Wall};
+use haptic_servo::environment::{Canceller, Parts, Wall};
 use haptic_servo::parameter::Parameter;
 
 const HEAD: &str = "name = \"knob\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n[servo]\n\
@@ -20,15 +20,9 @@ fn read(environment: &str) -> Result<SceneFile, FileError> {
     file::parse("knob.toml", Format::Toml, &format!("{HEAD}{environment}"))
 }
 
-fn sum(environment: &str) -> Composed {
-    match read(environment)
-        .unwrap_or_else(|error| panic!("{error}\n{environment}"))
-        .scene
-        .environment
-    {
-        Environment::Composed(composed) => composed,
-        other => panic!("{other:?}"),
-    }
+fn sum(environment: &str) -> Parts {
+    let read = read(environment).unwrap_or_else(|error| panic!("{error}\n{environment}"));
+    *read.scene.environment.parts()
 }
 
 fn run(arguments: &[&str], environment: &str) -> std::process::Output {
@@ -38,20 +32,14 @@ fn run(arguments: &[&str], environment: &str) -> std::process::Output {
 #[test]
 fn what_is_beside_a_profile_is_read() {
     let free = sum(&format!("residual = 0.018\n{DETENTS}"));
-    assert_eq!((free.residual, free.wall), (Some(0.018), None));
+    assert_eq!((free.canceller, free.wall), (Some(Canceller::to(0.018)), None));
     let more = "damping = 0.001\nfilter = 0.2\nface = 1.5\none_sided = true\n";
     let all = sum(&format!("residual = 0.018\n{DETENTS}{STOPS}{WALL}{more}"));
-    let wall = Wall {
-        stiffness: 4.0,
-        damping: 0.001,
-        filter: Some(0.2),
-        delay: 2,
-        face: 1.5,
-        one_sided: true,
-    };
-    assert_eq!((all.wall, all.profile.delay, all.profile.torque), (Some(wall), 1, 0.05));
-    assert_eq!(sum(&format!("{DETENTS}{STOPS}{WALL}")).wall, Some(Wall::spring(4.0, 2)));
-    assert!(matches!(read(DETENTS).unwrap().scene.environment, Environment::Profile(_)));
+    let profile = all.profile.unwrap();
+    let wall = Wall::damped(4.0, 0.001, 2).filtered(0.2).behind(1.5);
+    assert_eq!((all.wall, profile.delay, profile.torque), (Some(wall), 1, 0.05));
+    assert_eq!(sum(&format!("{DETENTS}{STOPS}{WALL}")).wall, Some(Wall::damped(4.0, 0.0, 2)));
+    assert_eq!(sum(DETENTS).count(), 1);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use analysis::link::{Address, Link, RequestResult};
 use analysis::lockstep::PlantIo;
 use analysis::program::{Program, knob_modes};
 use haptic_servo::certificate::{Parameter, certify_in};
-use haptic_servo::environment::{KNOB_MODES, MODES, ProfileModes, Shape};
+use haptic_servo::environment::{KNOB_MODES, MODES, Profile, Shape};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Scene};
 use haptic_servo::servo::Latched;
@@ -113,13 +113,13 @@ fn a_mode_that_there_is_not_is_refused_by_name_value_and_bound() {
 #[test]
 fn another_mode_is_refused_with_numbers_that_it_is_not_certified_with() {
     let of = |mode: f64, stiffness: f64| Scene {
-        environment: ProfileModes::of(&KNOB_MODES).selecting(mode),
+        environment: Profile::of_modes(&KNOB_MODES, 1).selecting(mode).unwrap().alone(),
         coupling: Coupling::Spring { stiffness },
         ..knob_modes::SCENE
     };
     // A softer coupling suits a knob that turns freely, and not strong detents.
     let passes = |mode, stiffness| {
-        let data = of(mode, stiffness).as_data();
+        let data = of(mode, stiffness);
         certify_in(&data, Format::F32)
             .is_ok_and(|assessment| assessment.renders_in::<Latched>(&data).is_ok())
     };

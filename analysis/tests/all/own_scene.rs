@@ -56,7 +56,7 @@ fn a_new_file_is_all_that_the_commands_need() {
     assert!(copy.status.success(), "{}", String::from_utf8_lossy(&copy.stderr));
     assert!(copy.stdout == original.stdout);
 
-    scene.change("stiffness: 22.0, damping: 0.01", "stiffness: 12.0, damping: 0.005");
+    scene.change("damped(22.0, 0.01, 1)", "damped(12.0, 0.005, 1)");
     assert!(copied(NAME).stdout != original.stdout);
     for target in ["qemu", "board:nucleo-g474re"] {
         let run = haptic(&["run", NAME, "--target", target, "--ticks", "1000", "--json"]);
@@ -81,7 +81,7 @@ fn a_new_file_is_all_that_the_commands_need() {
     let unknown = complaint(haptic(&["run", "no_such_scene"]));
     assert!(unknown.contains(NAME) && unknown.contains("damper_wall"), "{unknown}");
 
-    scene.change("damping: 0.005", "damping: 0.02");
+    scene.change("damped(12.0, 0.005, 1)", "damped(12.0, 0.02, 1)");
     let refused = complaint(haptic(&["run", NAME]));
     assert!(refused.contains("does not compile") && refused.contains("would pass"), "{refused}");
     assert!(copied("damper_wall").stdout == original.stdout);

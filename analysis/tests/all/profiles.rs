@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::common::{answer, haptic_reading, program};
 use analysis::file::{self, FileError, Format, Purpose, SceneFile, parse_for, write};
-use haptic_servo::environment::{AnyProfile, Ends};
+use haptic_servo::environment::{Ends, Profile};
 use haptic_servo::parameter::Parameter;
 
 const HEAD: &str = "name = \"knob\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n[servo]\n\
@@ -21,7 +21,7 @@ fn read(environment: &str) -> Result<SceneFile, FileError> {
     file::parse("knob.toml", Format::Toml, &text(environment))
 }
 
-fn profile(environment: &str) -> AnyProfile {
+fn profile(environment: &str) -> Profile {
     let file = read(environment).unwrap_or_else(|error| panic!("{error}\n{environment}"));
     *file.scene.environment.profile().unwrap()
 }
@@ -39,11 +39,11 @@ const STOPS: &str = "from = -1.0\nto = 1.5\nstiffness = 4.0\n";
 fn shapes_add_up_to_one_table() {
     let detents = profile(DETENTS);
     assert_eq!((detents.count, detents.torque, detents.ends), (24.0, 0.05, None));
-    assert_eq!((detents.delay, detents.damping, detents.units().len()), (1, 0.0, 16));
+    assert_eq!((detents.delay, detents.damping, detents.units().len()), (1, None, 16));
     let stops = shape("end_stops", "from = -2\nto = 2\nstiffness = 15");
     let knob = profile(&format!("damping = 1e-4\n{DETENTS}{stops}"));
     assert_eq!(knob.ends, Some(Ends { from: -2.0, to: 2.0, stiffness: 15.0 }));
-    assert_eq!((knob.count, knob.damping, knob.outline().wraps), (24.0, 1e-4, true));
+    assert_eq!((knob.count, knob.damping, knob.outline().wraps), (24.0, Some(1e-4), true));
     // The keys of the environment override those of the shapes.
     let keys = format!("torque = 0.02\ncount = 30\ncentre = 0.1\nto = 1.5\n{DETENTS}{stops}");
     let changed = profile(&keys);

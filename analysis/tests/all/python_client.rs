@@ -9,7 +9,7 @@ use haptic_servo::certificate::Parameter;
 use haptic_servo::current::IndexOffset;
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Canceller, Parts, Wall};
 use haptic_servo::fault::Fault;
 use haptic_servo::number::Format;
 use haptic_servo::power_reading::PowerReading;
@@ -91,20 +91,14 @@ fn status() -> Status {
 }
 
 fn description() -> Description {
-    let wall = Wall {
-        stiffness: 22.0,
-        damping: 0.01,
-        filter: Some(0.5),
-        delay: 300,
-        face: -0.1,
-        one_sided: true,
-    };
+    let wall = Wall::damped(22.0, 0.01, 300).filtered(0.5).behind(-0.1);
+    let canceller = Some(Canceller::to(0.01));
     Description {
         scene: Scene {
             device: Device { inertia: 0.25, damping: 0.022, passivity: Some(0.02) },
             timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
-            environment: Environment::FreeModeWall { residual: 0.01, wall },
+            environment: Parts { canceller, wall: Some(wall), ..Parts::NONE }.sum(),
             latency: Latency::NONE,
             torque_limit: Some(1.5),
         },
@@ -183,9 +177,11 @@ fn reads_every_message_to_the_host() {
                 "device": {"inertia": 0.25, "damping": 0.022, "passivity": 0.02},
                 "timing": {"period": 0.001, "worst_period": null},
                 "coupling": {"type": "spring", "stiffness": 44.0},
-                "environment": {"type": "free-mode-wall", "residual": 0.01, "wall": {
-                    "stiffness": 22.0, "damping": 0.01, "filter": 0.5, "delay": 300,
-                    "face": -0.1, "one_sided": true}},
+                "environment": {
+                    "type": "parts", "canceller": {"residual": 0.01, "delay": 0},
+                    "wall": {"stiffness": 22.0, "damper": {"damping": 0.01, "filter": 0.5},
+                             "side": {"type": "face", "position": -0.1}, "delay": 300},
+                    "profile": null},
                 "latency": {
                     "output_delay": {"least": 0.0, "most": 0.0}, "output_jitter": 0.0,
                     "count_jitter": 0.0,
@@ -279,7 +275,7 @@ fn talks_to_a_board() {
     let reason = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(reason, "refused by its certificate; `haptic tune` says why\n");
     let described = answer(&ask(&["describe"]));
-    assert_eq!(described["scene"]["environment"]["stiffness"], 12.5);
+    assert_eq!(described["scene"]["environment"]["wall"]["stiffness"], 12.5);
     assert_eq!(described["timing"]["type"], "latched");
     let status = answer(&ask(&["disarm"]));
     assert_eq!((&status["state"], &status["sets"]), (&"disarmed".into(), &1.into()));

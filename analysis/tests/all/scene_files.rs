@@ -48,15 +48,7 @@ fn both_formats_say_the_same() {
     let wall = toml(WALL).unwrap();
     assert_eq!(wall.name, "delayed wall");
     assert_eq!(wall.scene.coupling, Coupling::Spring { stiffness: 44.0 });
-    let expected = Wall {
-        stiffness: 22.0,
-        damping: 0.01,
-        filter: None,
-        delay: 1,
-        face: 0.0,
-        one_sided: false,
-    };
-    assert_eq!(wall.scene.environment, Environment::DamperWall(expected));
+    assert_eq!(wall.scene.environment, Wall::damped(22.0, 0.01, 1).alone());
     let same = r#"{"name": "delayed wall", "device": {"inertia": 2.2e-5, "damping": 0.022},
         "servo": {"period": 0.001}, "coupling": {"stiffness": 44}, "environment": {"type":
         "damper-wall", "stiffness": 22, "damping": 0.01, "delay": 1}}"#;
@@ -498,9 +490,8 @@ proptest! {
     #[test]
     fn every_finite_number_is_read_as_it_is(value in any::<f64>().prop_filter("finite", |v| v.is_finite())) {
         let text = WALL.replace("stiffness = 22.0", &format!("stiffness = {value:?}"));
-        let Environment::DamperWall(wall) = toml(&text).unwrap().scene.environment else {
-            panic!("not a wall");
-        };
+        let scene = toml(&text).unwrap().scene;
+        let wall = scene.environment.wall().unwrap();
         prop_assert_eq!(wall.stiffness.to_bits(), value.to_bits());
         survive(&text);
     }

@@ -11,7 +11,7 @@ use analysis::simulation::plant::Plant;
 use analysis::simulation::torque_signal::TorqueSignal;
 use analysis::simulation::{Experiment, Integration, Trajectory, simulate};
 use analysis::stability::{closed_loop, eigenvalues};
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Canceller, Environment, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 const SAMPLES: usize = 1000;
@@ -68,10 +68,6 @@ fn run(
     trajectory
 }
 
-fn wall(stiffness: f64, damping: f64, delay: usize) -> Wall {
-    Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false }
-}
-
 fn experiment(environment: Environment, coupling: Option<f64>, start: Motion) -> Experiment {
     let coupling = coupling.map_or(Coupling::Rigid, |stiffness| Coupling::Spring { stiffness });
     let scene = Scene {
@@ -116,7 +112,7 @@ fn delayed_wall(stiffness: f64, damping: f64, coupling: f64) -> impl FnMut(&Real
 #[test]
 fn papers_wall() {
     let start = Motion { position: 0.001, velocity: 0.0 };
-    let environment = Environment::DamperWall(wall(22.0, 0.01, 1));
+    let environment = Wall::damped(22.0, 0.01, 1).alone();
     let servo = delayed_wall(22.0, 0.01, 44.0);
     let reference = run(&rigid(Hand::default()), &[0.001, 0.0], servo, |_| 0.0);
     compare("paper's wall", &experiment(environment, Some(44.0), start), &reference);
@@ -126,7 +122,7 @@ fn papers_wall() {
 fn wall_in_a_hand_that_pushes() {
     let hand = Hand { inertia: 1e-4, damping: 0.003, stiffness: 6.0 };
     let torque: Vec<f64> = (0..700).map(|k| 0.05 * f64::from((k * 37) % 101) / 101.0).collect();
-    let environment = Environment::DamperWall(wall(22.0, 0.01, 1));
+    let environment = Wall::damped(22.0, 0.01, 1).alone();
     let mut experiment = experiment(environment, Some(44.0), Motion::default());
     experiment.plant = Plant::rigid(DEVICE).with_hand(hand);
     experiment.hand_torque = TorqueSignal::Held(torque.clone());
@@ -140,7 +136,7 @@ fn wall_in_a_hand_that_pushes() {
 #[test]
 fn loop_that_grows() {
     let start = Motion { position: 0.0, velocity: 0.1 };
-    let environment = Environment::DamperWall(wall(50.0, 0.0, 1));
+    let environment = Wall::damped(50.0, 0.0, 1).alone();
     let servo = delayed_wall(50.0, 0.0, 44.0);
     let reference = run(&rigid(Hand::default()), &[0.0, 0.1], servo, |_| 0.0);
     compare("loop that grows", &experiment(environment, Some(44.0), start), &reference);
@@ -152,7 +148,7 @@ fn loop_that_grows() {
 fn free_mode() {
     let (residual, coupling) = (0.001, 44.0);
     let start = Motion { position: 0.2, velocity: -1.5 };
-    let environment = Environment::FreeMode { residual, delay: 0 };
+    let environment = Canceller::to(residual).alone();
     let be = r(DEVICE.damping) - r(residual);
     // Of any coupling: K T in place of 2 b.
     let kt = r(coupling) * r(PERIOD);
@@ -176,8 +172,7 @@ fn free_mode() {
 fn limited_wall_with_a_face() {
     let (stiffness, coupling, face, limit) = (18.0, 30.0, 0.0004, 0.1);
     let start = Motion { position: -0.02, velocity: 5.0 };
-    let environment =
-        Environment::DelayedSpring(Wall { face, one_sided: true, ..wall(stiffness, 0.0, 1) });
+    let environment = Wall::spring(stiffness, 1).behind(face).alone();
     let mut experiment = experiment(environment, Some(coupling), start);
     experiment.scene.torque_limit = Some(limit);
     let hand = Hand { inertia: 3e-4, damping: 0.001, stiffness: 0.5 };
@@ -202,7 +197,7 @@ fn chain_with_lag_and_sine() {
     let hand = Hand { inertia: 1e-5, damping: 0.001, stiffness: 0.4 };
     let (lag, stiffness) = (2e-4, 9.0);
     let (amplitude, omega, phase) = (0.03, 411.0, 0.7);
-    let environment = Environment::DelayedSpring(wall(stiffness, 0.0, 0));
+    let environment = Wall::spring(stiffness, 0).alone();
     let mut experiment = experiment(environment, None, Motion::default());
     experiment.plant = Plant::chain(&masses, &links).with_hand(hand).with_actuator_lag(lag);
     experiment.hand_torque = TorqueSignal::Sine { amplitude, omega, phase };
@@ -299,7 +294,7 @@ fn spectral_radius() {
     for hand in [Hand::default(), light, heavy] {
         for (stiffness, damping, coupling) in [(22.0, 0.01, 44.0), (30.0, 0.004, 100.0)] {
             let matrix = closed_wall(&rigid(hand), [stiffness, damping, coupling]);
-            let environment = Environment::DamperWall(wall(stiffness, damping, 1));
+            let environment = Wall::damped(stiffness, damping, 1).alone();
             let mut experiment = experiment(environment, Some(coupling), Motion::default());
             experiment.plant = Plant::rigid(DEVICE).with_hand(hand);
             let closed = closed_loop(&experiment, Integration::default()).unwrap();

@@ -18,7 +18,7 @@ use analysis::scope::Scope;
 use analysis::scope::control::{Action, Reply, Request};
 use analysis::scope::poller::{BoardPoller, Event};
 use haptic_servo::certificate::Parameter;
-use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::environment::Wall;
 use haptic_servo::number::Format;
 use haptic_servo::scene::Scene;
 use haptic_servo::wire::message::{Changes, Status};
@@ -121,9 +121,9 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-fn with(stiffness: f64, damping: f64) -> Scene<damper_wall::Environment> {
-    let wall = DamperWall { stiffness, damping };
-    Scene { environment: OneSided { face: 0.0, wall }, ..damper_wall::SCENE }
+fn with(stiffness: f64, damping: f64) -> Scene {
+    let environment = Wall::damped(stiffness, damping, 1).behind(0.0).alone();
+    Scene { environment, ..damper_wall::SCENE }
 }
 
 /// The code of a wall of that stiffness behind the coupling at rest: two springs in series.
@@ -148,7 +148,7 @@ fn tune_changes_what_is_certified_and_prints_what_runs() {
     assert_eq!(said["parameters"]["damping"], 0.002);
     assert_eq!(said["parameters"]["coupling.stiffness"], 44.0);
     let scene = with(12.5, 0.002);
-    let margin = scene.certify_in(Format::F32).unwrap().assessment().margin(&scene.as_data());
+    let margin = scene.certify_in(Format::F32).unwrap().assessment().margin(&scene);
     assert_eq!(said["margin"].as_f64(), margin);
     assert_eq!((&said["refused"], &said["sets"]), (&Value::Null, &Value::from(1)));
     assert_eq!(said["missed"], 0);

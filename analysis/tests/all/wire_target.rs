@@ -16,7 +16,7 @@ use analysis::link::{Address, Link};
 use analysis::program::damper_wall;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
 use haptic_servo::board::lockstep_protocol::TickInput;
-use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::environment::Wall;
 use haptic_servo::number::Format;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo_loop::State;
@@ -155,9 +155,9 @@ fn code(stiffness: f64) -> f64 {
     2048.0 - torque * 1791.0 / transducers.full_scale_torque
 }
 
-fn with(stiffness: f64, damping: f64) -> Scene<damper_wall::Environment> {
-    let wall = DamperWall { stiffness, damping };
-    Scene { environment: OneSided { face: 0.0, wall }, ..damper_wall::SCENE }
+fn with(stiffness: f64, damping: f64) -> Scene {
+    let environment = Wall::damped(stiffness, damping, 1).behind(0.0).alone();
+    Scene { environment, ..damper_wall::SCENE }
 }
 
 /// Half of them inadmissible; the verdict on each is made here, apart from the board.

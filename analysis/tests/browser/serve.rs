@@ -112,7 +112,7 @@ pub fn a_board_is_watched_tuned_armed_and_recorded() {
 
     // Refused before it is sent, in the words of the certificate.
     let mut stiff = damper_wall::SCENE;
-    stiff.environment.wall.stiffness = 30.0;
+    stiff.environment.wall_mut().unwrap().stiffness = 30.0;
     let sentence = stiff.certify_in(Format::F32).unwrap_err().to_string();
     type_number(&mut page, "stiffness", "30");
     assert_eq!(text(&mut page, "judged"), sentence);

@@ -7,14 +7,12 @@ use haptic_servo::boot::Program;
 use haptic_servo::certificate::Parameter;
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::{CounterWidth, RawCount};
-use haptic_servo::environment::{
-    DamperWall, DelayedSpring, FilteredWall, FreeMode, OneSided, Placed,
-};
+use haptic_servo::environment::{Canceller, Environment, Side, Wall};
 use haptic_servo::reset::ResetCause;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
-use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, SupportsTiming, Transducers};
+use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, Transducers};
 use haptic_servo::servo_loop::{FrameQueue, Frames, Inbox, Mailbox, Options, ServoLoop};
-use haptic_servo::tuning::{self, Tunable};
+use haptic_servo::tuning;
 use haptic_servo::wire::message::{
     Changes, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, ToBoard, ToHost,
 };
@@ -27,29 +25,29 @@ const TICKS: usize = 40;
 /// Frames that wait.
 const FRAMES: usize = 16;
 
-/// The servo of a scene before anything is changed, judged once.
-type First<E> = OnceLock<PreparedServo<E, f32, Latched>>;
+/// Scenes.
+const KINDS: usize = 6;
 
-macro_rules! scene {
-    ($environment:ty: $value:expr, $limit:expr, $data:expr) => {{
-        static FIRST: First<$environment> = OnceLock::new();
-        drive(&FIRST, program::<$environment>($value, $limit), $data)
-    }};
-}
+/// A servo that is ready to run.
+type Prepared = PreparedServo<Environment, f32, Latched>;
+/// The servo of a scene before anything is changed, judged once.
+type First = OnceLock<Prepared>;
 
 /// The first byte says which scene; sets and the hand's motion follow.
 pub fn run(data: &[u8]) {
+    static FIRST: [First; KINDS] = [const { OnceLock::new() }; KINDS];
     let Some((kind, rest)) = data.split_first() else { return };
-    let wall = DamperWall { stiffness: 22.0, damping: 0.01 };
-    let filtered = FilteredWall { stiffness: 10.0, damping: 0.01, filter: 0.5 };
-    match kind % 6 {
-        0 => scene!(OneSided<DamperWall<1>>: OneSided { face: 0.0, wall }, Some(1.0), rest),
-        1 => scene!(Placed<DamperWall<1>>: Placed { face: 0.01, wall }, None, rest),
-        2 => scene!(DelayedSpring<1>: DelayedSpring { stiffness: 21.0 }, None, rest),
-        3 => scene!(DelayedSpring<3>: DelayedSpring { stiffness: 7.0 }, Some(0.3), rest),
-        4 => scene!(FilteredWall<1>: filtered, Some(1.0), rest),
-        _ => scene!(FreeMode<1>: FreeMode { residual: 0.015 }, None, rest),
-    }
+    let kind = usize::from(*kind) % KINDS;
+    let wall = Wall::damped(22.0, 0.01, 1);
+    let (environment, limit) = match kind {
+        0 => (wall.behind(0.0).alone(), Some(1.0)),
+        1 => (Wall { side: Side::Displaced(0.01), ..wall }.alone(), None),
+        2 => (Wall::spring(21.0, 1).alone(), None),
+        3 => (Wall::spring(7.0, 3).alone(), Some(0.3)),
+        4 => (Wall::damped(10.0, 0.01, 1).filtered(0.5).alone(), Some(1.0)),
+        _ => (Canceller { residual: 0.015, delay: 1 }.alone(), None),
+    };
+    drive(&FIRST[kind], program(environment, limit), rest);
 }
 
 const TRANSDUCERS: Transducers = Transducers {
@@ -59,7 +57,7 @@ const TRANSDUCERS: Transducers = Transducers {
     largest_speed: Transducers::NO_HAND_IS_FASTER,
 };
 
-fn program<E>(environment: E, torque_limit: Option<f64>) -> Program<E> {
+fn program(environment: Environment, torque_limit: Option<f64>) -> Program<Environment> {
     Program {
         scene: Scene {
             device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
@@ -143,14 +141,14 @@ impl SimIo for Still {
 }
 
 /// A servo with what belongs to its interrupt.
-struct Running<'a, E: Tunable<f32>> {
-    servo_loop: ServoLoop<E, f32, Latched>,
+struct Running<'a> {
+    servo_loop: ServoLoop<Environment, f32, Latched>,
     device: SimHardware<Still>,
-    inbox: Inbox<'a, PreparedServo<E, f32, Latched>>,
+    inbox: Inbox<'a, Prepared>,
     frames: Frames<'a, FRAMES>,
 }
 
-impl<E: Tunable<f32>> Running<'_, E> {
+impl Running<'_> {
     fn tick(&mut self, count: i16) -> DacCode {
         self.device.lines.count = count;
         self.servo_loop.run(&mut self.device, &mut self.inbox, &mut self.frames);
@@ -158,10 +156,7 @@ impl<E: Tunable<f32>> Running<'_, E> {
     }
 }
 
-fn drive<E>(first: &First<E>, program: Program<E>, data: &[u8])
-where
-    E: Tunable<f32> + SupportsTiming<Latched>,
-{
+fn drive(first: &First, program: Program<Environment>, data: &[u8]) {
     let Program { scene, transducers, rendering, options } = &program;
     let judged = || {
         let prepared = tuning::prepare(scene, &[], transducers, rendering);

@@ -3,12 +3,9 @@
 //! Without the certificate, which takes a hundred times as long as all of this; see `judgement`.
 
 use haptic_servo::certificate::Parameter;
-use haptic_servo::environment::{
-    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, OneSided, Placed,
-    Wall,
-};
+use haptic_servo::environment::{Canceller, Environment, Parts, Side, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
-use haptic_servo::tuning::{self, NamedParameters, TUNABLE, TuningError};
+use haptic_servo::tuning::{self, TUNABLE, TuningError};
 use haptic_servo::wire::message::{LONGEST_TO_BOARD, ToBoard};
 use haptic_servo::wire::{CHECKSUM, Decoder, encode, largest_frame};
 
@@ -21,30 +18,25 @@ pub fn run(data: &[u8]) {
     let mut decoder = Decoder::<{ LONGEST_TO_BOARD + CHECKSUM }>::new();
     let heard = frame.iter().find_map(|&byte| decoder.push::<ToBoard>(byte));
     let Some(ToBoard::Set { changes, .. }) = heard else { return };
-    let wall = DamperWall::<1> { stiffness: 22.0, damping: 0.01 };
-    let data = Wall {
-        stiffness: 22.0,
-        damping: 0.01,
-        filter: Some(0.5),
-        delay: 1,
-        face: 0.1,
-        one_sided: true,
+    let wall = Wall::damped(22.0, 0.01, 1);
+    let filtered = wall.filtered(0.5).behind(0.1);
+    let free = |wall| Parts { canceller: Some(Canceller::to(0.01)), wall, profile: None }.sum();
+    let environment = match kind % 9 {
+        0 => wall.behind(0.0).alone(),
+        1 => Wall { side: Side::Displaced(0.5), ..wall }.alone(),
+        2 => Wall::spring(3.0, 2).alone(),
+        3 => Wall::damped(3.0, 0.1, 1).filtered(0.5).alone(),
+        4 => free(None),
+        5 => free(Some(wall.behind(0.0))),
+        6 => filtered.alone(),
+        7 => Wall::spring(22.0, 1).behind(0.1).alone(),
+        _ => free(Some(filtered)),
     };
-    match kind % 9 {
-        0 => change(OneSided { face: 0.0, wall }, &changes),
-        1 => change(Placed { face: 0.5, wall }, &changes),
-        2 => change(DelayedSpring::<2> { stiffness: 3.0 }, &changes),
-        3 => change(FilteredWall::<1> { stiffness: 3.0, damping: 0.1, filter: 0.5 }, &changes),
-        4 => change(FreeMode::<1> { residual: 0.01 }, &changes),
-        5 => change(FreeModeWall { residual: 0.01, wall: OneSided { face: 0.0, wall } }, &changes),
-        6 => change(Environment::DamperWall(data), &changes),
-        7 => change(Environment::DelayedSpring(Wall { filter: None, ..data }), &changes),
-        _ => change(Environment::FreeModeWall { residual: 0.01, wall: data }, &changes),
-    }
+    change(environment, &changes);
 }
 
 /// All of the changes or none, and nothing else.
-fn change<E: NamedParameters + Copy + PartialEq>(environment: E, changes: &[(Parameter, f64)]) {
+fn change(environment: Environment, changes: &[(Parameter, f64)]) {
     let scene = Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },

@@ -78,25 +78,17 @@ impl LoopRequest {
 mod tests {
     use super::*;
     use haptic_servo::encoder::CounterWidth;
-    use haptic_servo::environment::{Environment, Wall};
+    use haptic_servo::environment::Wall;
     use haptic_servo::scene::{Coupling, Device, Latency, Timing};
 
     #[test]
     fn requests_survive_their_words() {
-        let wall = Wall {
-            stiffness: 1.0,
-            damping: 0.5,
-            filter: None,
-            delay: 4,
-            face: 0.0,
-            one_sided: false,
-        };
         let request = LoopRequest {
             scene: Scene {
                 device: Device { inertia: 0.1, damping: 0.2, passivity: None },
                 timing: Timing { period: 0.4, worst_period: Some(0.8) },
                 coupling: Coupling::Rigid,
-                environment: Environment::DamperWall(wall),
+                environment: Wall::damped(1.0, 0.5, 4).alone(),
                 latency: Latency::NONE,
                 torque_limit: None,
             },

@@ -4,7 +4,9 @@
 //! board's, to compare the three bit for bit. It is not a way to change the scene of a servo.
 
 use haptic_servo::certificate::{Assessment, Parameter, PassivityProblem, RuleAnswer, assess};
-use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
+use haptic_servo::environment::{
+    Canceller, Coefficients, Environment, MAX_DEGREE, Parts, Rational, Side, Wall,
+};
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
@@ -47,32 +49,41 @@ pub struct CertifyReply {
 /// A [`CertifyReply`] as words.
 pub type ReplyWords = [u64; 14];
 
+/// The walls of scenes without a torque profile: each has a word alone, and the next with a canceller.
+const WALLS: [Option<Wall>; 3] =
+    [None, Some(Wall::spring(0.0, 0)), Some(Wall::damped(0.0, 0.0, 0))];
+/// The word of a rational environment.
+const RATIONAL: u64 = 2 * WALLS.len() as u64;
 /// The word of an environment without a law on these boards: a type of another crate, an unknown table, or a
-/// sum.
-const STATED: u64 = 5;
+/// sum with a table.
+const STATED: u64 = RATIONAL + 1;
 /// The word of the first table of a torque profile.
-const TABLE: u64 = 6;
+const TABLE: u64 = STATED + 1;
 
 /// The words of a scene.
 pub fn encode(scene: &Scene) -> SceneWords {
     let mut words = Cursor { words: [0; _], next: 0 };
     words.push(match scene.environment {
-        Environment::DelayedSpring(_) => 0,
-        Environment::DamperWall(_) => 1,
-        Environment::FreeMode { .. } => 2,
-        Environment::FreeModeWall { .. } => 3,
-        Environment::Rational(_) => 4,
-        Environment::Stated(_) | Environment::Composed(_) => STATED,
-        Environment::Profile(profile) => {
+        Environment::Parts(Parts { canceller, wall, profile: None }) => {
+            let of_wall = wall.map_or(0, |wall| 1 + u64::from(wall.damper.is_some()));
+            2 * of_wall + u64::from(canceller.is_some())
+        }
+        Environment::Parts(Parts { canceller: None, wall: None, profile: Some(profile) }) => {
             tables::index_of(&profile).map_or(STATED, |table| TABLE + table as u64)
         }
+        Environment::Rational(_) => RATIONAL,
+        Environment::Parts(_) | Environment::Stated(_) => STATED,
     });
     words.push(matches!(scene.coupling, Coupling::Matched).into());
     words.push(scene.latency.actuator_updates.into());
     for parameter in Parameter::ALL {
         words.optional(scene.get(*parameter));
     }
-    words.push(scene.environment.wall().is_some_and(|wall| wall.one_sided).into());
+    words.push(scene.environment.wall().map_or(0, |wall| match wall.side {
+        Side::Centred => 0,
+        Side::Displaced(_) => 1,
+        Side::Face(_) => 2,
+    }));
     let rational = scene.environment.rational().unwrap_or(&NO_RATIONAL);
     words.polynomial(&rational.numerator);
     words.polynomial(&rational.denominator);
@@ -104,15 +115,14 @@ const BLANK: Scene = Scene {
 pub fn decode(words: &SceneWords) -> Option<Scene> {
     let mut words = Cursor { words: *words, next: 0 };
     let kind = words.take();
-    let wall = Wall::spring(0.0, 0);
     let environment = match kind {
-        0 => Environment::DelayedSpring(wall),
-        1 => Environment::DamperWall(wall),
-        2 => Environment::FreeMode { residual: 0.0, delay: 0 },
-        3 => Environment::FreeModeWall { residual: 0.0, wall },
-        4 => Environment::Rational(NO_RATIONAL),
+        RATIONAL => Environment::Rational(NO_RATIONAL),
         STATED => return None,
-        table => Environment::Profile(tables::from_index((table - TABLE) as usize)?),
+        TABLE.. => tables::from_index((kind - TABLE) as usize)?.alone(),
+        _ => {
+            let canceller = (kind % 2 == 1).then_some(Canceller::to(0.0));
+            Parts { canceller, wall: WALLS[kind as usize / 2], profile: None }.sum()
+        }
     };
     let mut scene = Scene { environment, ..BLANK };
     if words.take() != 0 {
@@ -120,13 +130,22 @@ pub fn decode(words: &SceneWords) -> Option<Scene> {
     }
     scene.latency.actuator_updates = words.take() as u16;
     for parameter in Parameter::ALL {
-        if let Some(value) = words.take_optional() {
-            scene = scene.with(*parameter, value)?;
+        let Some(value) = words.take_optional() else { continue };
+        match (parameter, &mut scene.environment) {
+            // A table's word does not tell whether it is damped.
+            (Parameter::Damping, Environment::Parts(Parts { profile: Some(profile), .. })) => {
+                profile.damping = Some(value);
+            }
+            _ => scene = scene.with(*parameter, value)?,
         }
     }
-    let one_sided = words.take() != 0;
+    let side = words.take();
     if let Some(wall) = scene.environment.wall_mut() {
-        wall.one_sided = one_sided;
+        wall.side = match side {
+            0 => Side::Centred,
+            1 => Side::Displaced(wall.face()),
+            _ => Side::Face(wall.face()),
+        };
     }
     let (numerator, denominator) = (words.take_polynomial()?, words.take_polynomial()?);
     if let Environment::Rational(rational) = &mut scene.environment {
@@ -271,14 +290,11 @@ mod tests {
 
     #[test]
     fn scenes_survive_their_words() {
-        let wall = Wall {
-            stiffness: -1.5,
-            damping: 2.5,
-            filter: Some(0.75),
-            delay: 3,
-            face: -0.0,
-            one_sided: true,
-        };
+        let spring = Wall::spring(-1.5, 3);
+        let wall = Wall::damped(-1.5, 2.5, 3);
+        let canceller = Canceller { residual: 0.25, delay: 1 };
+        let free =
+            |wall| Parts { canceller: Some(Canceller::to(0.25)), wall: Some(wall), profile: None };
         let rational = Rational {
             numerator: Coefficients::new(&[1.0, -0.0, 5e-324]).unwrap(),
             denominator: Coefficients::new(&[0.1; TERMS]).unwrap(),
@@ -286,16 +302,18 @@ mod tests {
             unit_zeros: 2,
         };
         let ends = Some(Ends { from: -1.0, to: 2.0, stiffness: 3.0 });
-        let magnet = Profile { ends, count: 3.0, ..Profile::<64, 2>::of(&tables::MAGNET) };
-        let knob = magnet.damped(0.01).as_any();
+        let magnet = Profile { ends, count: 3.0, ..Profile::of(&tables::MAGNET, 2) };
+        let knob = magnet.damped(0.01);
         for environment in [
-            Environment::DelayedSpring(Wall { damping: 0.0, filter: None, ..wall }),
-            Environment::DamperWall(Wall { filter: None, ..wall }),
-            Environment::FreeMode { residual: 0.25, delay: 1 },
-            Environment::FreeModeWall { residual: 0.25, wall },
+            spring.alone(),
+            Wall { side: Side::Displaced(-0.0), ..wall }.alone(),
+            wall.filtered(0.75).behind(-0.0).alone(),
+            canceller.alone(),
+            free(spring).sum(),
+            free(wall.filtered(0.75).behind(-0.0)).sum(),
             Environment::Rational(rational),
-            Environment::Profile(Profile::<16, 1>::of(&tables::DETENTS).as_any()),
-            Environment::Profile(knob),
+            Profile::of(&tables::DETENTS, 1).alone(),
+            knob.alone(),
         ] {
             let asked = scene(environment);
             assert_eq!(decode(&encode(&asked)), Some(asked));
@@ -306,8 +324,8 @@ mod tests {
     fn words_that_are_no_scene_are_refused() {
         assert!(decode(&[u64::MAX; WORDS]).is_none());
         assert!(decode(&[0; WORDS]).is_none());
-        let mut stated = encode(&scene(Environment::FreeMode { residual: 0.0, delay: 1 }));
-        for kind in [5, 12, u64::MAX] {
+        let mut stated = encode(&scene(Canceller::to(0.0).alone()));
+        for kind in [STATED, TABLE + 6, u64::MAX] {
             stated[0] = kind;
             assert!(decode(&stated).is_none(), "{kind}");
         }
@@ -315,11 +333,10 @@ mod tests {
 
     #[test]
     fn a_reply_carries_the_bits_of_the_assessment() {
-        let spring = Wall::spring(1.0, 1);
         let scene = Scene {
             torque_limit: None,
             coupling: Coupling::Rigid,
-            ..scene(Environment::DelayedSpring(spring))
+            ..scene(Wall::spring(1.0, 1).alone())
         };
         let words = encode(&scene);
         let words = certify(&words, |run| {

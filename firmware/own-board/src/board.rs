@@ -14,7 +14,7 @@ use heapless::spsc::{Producer, Queue};
 use stm32_metapac::{DAC1, DBGMCU, GPIOC, IWDG, RCC, TIM3, TIM5, TIM6, iwdg::vals::Key};
 
 use crate::chip::{self, PERIOD, TIMER_CLOCK};
-use crate::scene::{Environment, PROGRAM};
+use crate::scene::{PROGRAM, Rendered};
 use crate::serial::{self, Serial};
 
 /// The board in the servo's interrupt.
@@ -84,13 +84,13 @@ mod app {
 
     #[local]
     struct Local {
-        isr: servo::ServoIsr<Board, Environment, f32, Latched>,
-        link: wire::Link<Serial, Environment, f32, Latched>,
+        isr: servo::ServoIsr<Board, Rendered, f32, Latched>,
+        link: wire::Link<Serial, Rendered, f32, Latched>,
         received: Producer<'static, u8>,
     }
 
     #[init(local = [
-        mailbox: servo::Mailbox<PreparedServo<Environment, f32, Latched>> = servo::Mailbox::new(),
+        mailbox: servo::Mailbox<PreparedServo<Rendered, f32, Latched>> = servo::Mailbox::new(),
         queue: servo::FrameQueue<{ servo::FRAMES }> = servo::FrameQueue::new(),
         bytes: Queue<u8, 257> = Queue::new(),
     ])]

@@ -124,7 +124,7 @@ impl<N: Number, const DELAY: usize> Discretize<N> for ProgressiveSpring<DELAY> {
                 self.stiff - self.soft,
             )?,
             knee: BuildError::number("knee", self.knee)?,
-            delay: FixedDelay::at_rest(),
+            delay: FixedDelay::at_rest(DELAY)?,
         })
     }
 }

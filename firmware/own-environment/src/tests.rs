@@ -1,6 +1,6 @@
 use haptic_servo::certificate::{Certified, Rejection, certify_scene, timing_checked};
 use haptic_servo::encoder::{CounterWidth, RawCount};
-use haptic_servo::environment::DelayedSpring;
+use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, Servo, Step, Transducers};
@@ -112,10 +112,10 @@ impl StatedEnvironment for Hasty {
 impl Delayed for Hasty {}
 
 impl<N: Number> Discretize<N> for Hasty {
-    type Law = <DelayedSpring<0> as Discretize<N>>::Law;
+    type Law = <Environment as Discretize<N>>::Law;
 
     fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
-        DelayedSpring::<0> { stiffness: 20.0 }.law(context)
+        Wall::spring(20.0, 0).alone().law(context)
     }
 }
 

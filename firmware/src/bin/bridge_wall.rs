@@ -6,21 +6,16 @@ mod bridge_paddle;
 
 pub use bridge_paddle::{CURRENT_LOOP, DRIVE, TRANSDUCERS};
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::{DamperWall, Matched, OneSided};
+use haptic_servo::environment::Wall;
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::{Coupling, Scene, Timing};
 
-/// The environment that the hand feels, behind a coupling that absorbs the current loop's lag.
-pub type Environment = Matched<OneSided<DamperWall<1>>, 0, 1, true>;
-
 /// The scene.
-pub const SCENE: Scene<Environment> = Scene {
+pub const SCENE: Scene = Scene {
     device: bridge_paddle::DEVICE,
     timing: Timing { period: bridge_paddle::PERIOD, worst_period: None },
     coupling: Coupling::Matched,
-    environment: Matched {
-        environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 20.0, damping: 0.009 } },
-    },
+    environment: Wall::damped(20.0, 0.009, 1).behind(0.0).alone(),
     latency: CURRENT_LOOP.latency(OutputTiming::Latched),
     // Half of full scale: with more, the bare paddle would exceed its largest speed against its damping when a hand
     // lets go at the limit.
@@ -28,13 +23,13 @@ pub const SCENE: Scene<Environment> = Scene {
 };
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
 haptic_servo::scene_program! {
-    scene: SCENE: Environment,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

@@ -4,7 +4,7 @@
 
 mod brushless_shaft;
 
-pub use brushless_shaft::{DRIVE, Environment, Fixed, SCENE, TRANSDUCERS};
+pub use brushless_shaft::{DRIVE, Fixed, SCENE, TRANSDUCERS};
 use haptic_servo::certificate::Certified;
 use haptic_servo::current::{CurrentLoop, EncoderIndex, IndexOffset};
 use haptic_servo::scene::Scene;
@@ -18,10 +18,10 @@ pub const CURRENT_LOOP: CurrentLoop =
     brushless_shaft::CURRENT_LOOP.with_index(EncoderIndex { offset: Some(OFFSET) });
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 haptic_servo::scene_program! {
-    scene: SCENE: Environment,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

@@ -4,15 +4,15 @@
 
 mod brushless_shaft;
 
-pub use brushless_shaft::{CURRENT_LOOP, DRIVE, Environment, Fixed, SCENE, TRANSDUCERS};
+pub use brushless_shaft::{CURRENT_LOOP, DRIVE, Fixed, SCENE, TRANSDUCERS};
 use haptic_servo::certificate::Certified;
 use haptic_servo::scene::Scene;
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 haptic_servo::scene_program! {
-    scene: SCENE: Environment,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

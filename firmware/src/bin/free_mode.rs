@@ -5,20 +5,17 @@
 mod paddle;
 
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::FreeMode;
+use haptic_servo::environment::Canceller;
 use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 use haptic_servo::servo::Transducers;
 
-/// The environment that the hand feels: the paper's canceller with the delay of a board's torque. It needs
-/// the same damping of the device with and without a sample of delay.
-pub type Environment = FreeMode<1>;
-
-/// The scene.
-pub const SCENE: Scene<Environment> = Scene {
+/// The scene: the paper's canceller with the delay of a board's torque. It needs the same damping of the device
+/// with and without a sample of delay.
+pub const SCENE: Scene = Scene {
     device: paddle::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: FreeMode { residual: 0.001 },
+    environment: Canceller { residual: 0.001, delay: 1 }.alone(),
     // The DAC range is the only limit. The certificate covers it: a limited torque of the canceller needs at
     // most 0.021 N m s/rad.
     latency: Latency::NONE,
@@ -26,7 +23,7 @@ pub const SCENE: Scene<Environment> = Scene {
 };
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 /// The device's transducers with another amplifier gain. Full scale is the torque at 12 rad/s. Half a DAC
 /// step keeps a device without friction turning, at the speed of that torque divided by the residual; a finer
@@ -37,7 +34,7 @@ pub const TRANSDUCERS: Transducers = Transducers { full_scale_torque: 0.25, ..pa
 pub type Fixed = fixed::types::I12F20;
 
 haptic_servo::scene_program! {
-    scene: SCENE: Environment,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

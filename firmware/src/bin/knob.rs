@@ -8,31 +8,28 @@ use haptic_servo::environment::{Knots, Profile, Shape};
 use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 pub use paddle::TRANSDUCERS;
 
-/// The environment that the hand feels.
-pub type Environment = Profile<16, 1>;
-
 /// Ten detents in each direction, and the end stops: a table of one detent, in flash.
 static KNOTS: Knots<16> =
     Knots::of(&[Shape::detents(24, 0.05), Shape::end_stops(-2.618, 2.618, 15.0)]);
 
 /// The scene.
-pub const SCENE: Scene<Environment> = Scene {
+pub const SCENE: Scene = Scene {
     device: paddle::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: Profile::of(&KNOTS),
+    environment: Profile::of(&KNOTS, 1).alone(),
     latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
 haptic_servo::scene_program! {
-    scene: SCENE: Environment,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

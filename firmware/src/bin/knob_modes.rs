@@ -4,31 +4,28 @@
 mod paddle;
 
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::{KNOB_MODES, ProfileModes};
+use haptic_servo::environment::{KNOB_MODES, Profile};
 use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 pub use paddle::TRANSDUCERS;
 
-/// The environment that the hand feels.
-pub type Environment = ProfileModes<1>;
-
 /// The scene, which starts with a freely turning knob. Every mode is certified.
-pub const SCENE: Scene<Environment> = Scene {
+pub const SCENE: Scene = Scene {
     device: paddle::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: ProfileModes::of(&KNOB_MODES),
+    environment: Profile::of_modes(&KNOB_MODES, 1).alone(),
     latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 
 /// Its certificate: a mode that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
 haptic_servo::scene_program! {
-    scene: SCENE: Environment,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

@@ -8,24 +8,21 @@
 mod paddle;
 
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::{DelayedSpring, Matched};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 use haptic_servo::servo::AtPhase;
 use haptic_servo::servo_loop::READ_WITHIN;
 pub use paddle::TRANSDUCERS;
 
-/// The environment that the hand feels, behind a coupling that absorbs the amplifier's lag.
-pub type Environment = Matched<DelayedSpring<0>, 0, 1>;
-
 /// The time of the output: the shortest possible phase.
 pub type Output = AtPhase<5_000>;
 
 /// The scene.
-pub const SCENE: Scene<Environment> = Scene {
+pub const SCENE: Scene = Scene {
     device: paddle::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Matched,
-    environment: Matched { environment: DelayedSpring { stiffness: 2400.0 } },
+    environment: Wall::spring(2400.0, 0).alone(),
     latency: Latency {
         // A count may be read this late, and is then nearer to its torque by the same time.
         output_jitter: READ_WITHIN,
@@ -37,13 +34,13 @@ pub const SCENE: Scene<Environment> = Scene {
 };
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
 haptic_servo::scene_program! {
-    scene: SCENE: Environment,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

@@ -6,29 +6,26 @@
 mod paddle;
 
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::{DamperWall, FreeModeWall, Matched, OneSided};
+use haptic_servo::environment::{Canceller, Parts, Wall};
 use haptic_servo::scene::{Coupling, Latency, Scene, Timing};
 use haptic_servo::servo::AtPhase;
 use haptic_servo::servo_loop::READ_WITHIN;
 pub use paddle::TRANSDUCERS;
 
-/// The environment that the hand feels, behind a coupling that absorbs the amplifier's lag.
-pub type Environment = Matched<FreeModeWall<OneSided<DamperWall<0>>>, 0, 1>;
-
 /// The time of the output: 1680 cycles of the slowest board, for about 150 instructions.
 pub type Output = AtPhase<10_000>;
 
 /// The scene.
-pub const SCENE: Scene<Environment> = Scene {
+pub const SCENE: Scene = Scene {
     device: paddle::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Matched,
-    environment: Matched {
-        environment: FreeModeWall {
-            residual: 0.004,
-            wall: OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },
-        },
-    },
+    environment: Parts {
+        canceller: Some(Canceller::to(0.004)),
+        wall: Some(Wall::damped(22.0, 0.01, 0).behind(0.0)),
+        ..Parts::NONE
+    }
+    .sum(),
     latency: Latency {
         // A count may be read this late, and is then nearer to its torque by the same time.
         output_jitter: READ_WITHIN,
@@ -40,13 +37,13 @@ pub const SCENE: Scene<Environment> = Scene {
 };
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;
 
 haptic_servo::scene_program! {
-    scene: SCENE: Environment,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

@@ -51,8 +51,8 @@ pub const BAUD: u32 = 460_800;
 
 /// Makes a program of a certified scene.
 ///
-/// Takes the scene, its certificate (a constant, so that an unsafe scene does not compile), the
-/// transducers, and the type to compute in: `float` by default, `fixed` with the feature
+/// Takes the scene, its certificate (a constant, so that an unsafe scene does not compile), for an environment
+/// of another crate the environment's type after the scene, `scene: SCENE: MyEnvironment`, the transducers, and the type to compute in: `float` by default, `fixed` with the feature
 /// `fixed-point`. On a board the program runs the servo; on the host it prints the certificate.
 ///
 /// What may follow, in this order, are a type and constant expressions:
@@ -87,6 +87,20 @@ pub const BAUD: u32 = 460_800;
 /// ```
 #[macro_export]
 macro_rules! scene_program {
+    (scene: $scene:ident, certified: $certified:ident, $($rest:tt)*) => {
+        $crate::scene_type! {
+            /// The structure of the scene.
+            pub ThisScene: $certified
+        }
+
+        /// The environment that the servo renders: the parts of the scene and no others.
+        pub type Rendered = $crate::scene_type::Typed<ThisScene>;
+
+        const RENDERED: $crate::certificate::Certified<$crate::scene::Scene<Rendered>> =
+            Rendered::certified();
+
+        $crate::scene_program! { scene: $scene: Rendered, certified: RENDERED, $($rest)* }
+    };
     (
         scene: $scene:ident: $environment:ty,
         certified: $certified:ident,

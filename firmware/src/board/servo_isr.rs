@@ -2,8 +2,8 @@
 
 use static_cell::StaticCell;
 
-use crate::environment::Discretize;
 use crate::number::Number;
+use crate::rendering::Rendering;
 use crate::servo::{OutputMode, PreparedServo};
 pub use crate::servo_loop::{Endpoints, FRAMES, ServoIsr};
 use crate::servo_loop::{FrameQueue, Mailbox};
@@ -13,7 +13,7 @@ use crate::servo_loop::{FrameQueue, Mailbox};
 pub type MailboxCell<E, N, M> = StaticCell<Mailbox<PreparedServo<E, N, M>>>;
 
 /// Makes the mailbox and the queue of frames. Call it once.
-pub fn endpoints<E: Discretize<N>, N: Number, M: OutputMode>(
+pub fn endpoints<E: Rendering<N>, N: Number, M: OutputMode>(
     mailbox: &'static MailboxCell<E, N, M>,
 ) -> Endpoints<E, N, M> {
     static QUEUE: StaticCell<FrameQueue<FRAMES>> = StaticCell::new();

@@ -41,7 +41,7 @@
 
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
-use crate::environment::{AnyProfile, Composed, Environment};
+use crate::environment::{Canceller, Parts, Profile};
 use crate::number::Format;
 use crate::parameter::Parameter;
 use crate::scene::Scene;
@@ -67,10 +67,11 @@ pub(super) const fn between(
     value: f64,
 ) -> Between {
     let n = LoopIntervals::of(scene, format);
-    match &scene.environment {
-        Environment::Profile(profile) => return between_profiles(profile, &n, parameter),
-        Environment::Composed(composed) => return between_sums(composed, parameter),
-        _ => {}
+    let parts = scene.environment.parts();
+    match &parts.profile {
+        Some(profile) if parts.count() == 1 => return between_profiles(profile, &n, parameter),
+        Some(_) => return between_sums(parts, parameter),
+        None => {}
     }
     let passes = match parameter {
         Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, &n),
@@ -84,11 +85,7 @@ pub(super) const fn between(
     if passes { Between::Passes } else { Between::Unknown }
 }
 
-const fn between_profiles(
-    profile: &AnyProfile,
-    n: &LoopIntervals,
-    parameter: Parameter,
-) -> Between {
+const fn between_profiles(profile: &Profile, n: &LoopIntervals, parameter: Parameter) -> Between {
     match parameter {
         // The line to a snap point, which reduces a fall, is rounded separately.
         Parameter::ProfileTorque
@@ -100,7 +97,7 @@ const fn between_profiles(
             Between::PassesDownToZero
         }
         Parameter::Period if n.latency.is_some() => Between::Unknown,
-        Parameter::Period if profile.damping == 0.0 => Between::PassesDownToZero,
+        Parameter::Period if profile.damping() == 0.0 => Between::PassesDownToZero,
         Parameter::Period if matches!(n.format, Format::F64) => Between::Passes,
         _ => Between::Unknown,
     }
@@ -108,8 +105,8 @@ const fn between_profiles(
 
 /// Each part of a sum has its own bound, independent of the other parts. The bound of a late wall is affine
 /// in its stiffness and in the magnitude of its damping.
-const fn between_sums(composed: &Composed, parameter: Parameter) -> Between {
-    let is_late = match &composed.wall {
+const fn between_sums(parts: &Parts, parameter: Parameter) -> Between {
+    let is_late = match &parts.wall {
         Some(wall) => wall.delay > 0,
         None => true,
     };
@@ -128,7 +125,9 @@ const fn is_affine_in_wall(scene: &Scene, n: &LoopIntervals) -> bool {
 
 /// Only an undelayed free mode has `T C = -be (z - 1) / z` for every coupling.
 const fn is_affine_in_residual(scene: &Scene, n: &LoopIntervals) -> bool {
-    let is_undelayed_alone = matches!(scene.environment, Environment::FreeMode { delay: 0, .. });
+    let parts = scene.environment.parts();
+    let is_undelayed_alone =
+        parts.count() == 1 && matches!(parts.canceller, Some(Canceller { delay: 0, .. }));
     let is_affine = n.missed.is_none() && (n.coupling.is_none() || is_undelayed_alone);
     matches!(n.format, Format::F64) && (is_nonlinear(scene) || is_affine)
 }
@@ -143,7 +142,7 @@ const fn between_periods(scene: &Scene, n: &LoopIntervals, longest: f64) -> Betw
     let wall = scene.environment.wall();
     let cancels = !n.cancelled.is_zero();
     let damping = match wall {
-        Some(wall) => wall.damping,
+        Some(wall) => wall.damping(),
         None => 0.0,
     };
     let is_f64 = matches!(n.format, Format::F64);
@@ -167,7 +166,7 @@ const fn between_periods(scene: &Scene, n: &LoopIntervals, longest: f64) -> Betw
         };
     }
     let is_late = matches!(wall, Some(wall) if wall.delay > 0);
-    let is_passive = matches!(wall, Some(wall) if wall.filter.is_none());
+    let is_passive = matches!(wall, Some(wall) if wall.filter().is_none());
     if n.cancelled.is_negative() || damping < 0.0 {
         Between::Unknown
     } else if is_late || !is_passive || cancels {

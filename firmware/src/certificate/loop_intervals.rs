@@ -148,9 +148,9 @@ impl LoopIntervals {
             }
             None => (delta, None),
         };
-        let cancelled = match scene.environment.residual() {
-            Some(residual) => {
-                Interval::decimal(scene.device.damping).sub(Interval::decimal(residual))
+        let cancelled = match scene.environment.canceller() {
+            Some(canceller) => {
+                Interval::decimal(scene.device.damping).sub(Interval::decimal(canceller.residual))
             }
             None => Interval::ZERO,
         };

@@ -6,23 +6,22 @@
 //!
 //! ```
 //! use haptic_servo::certificate::Certified;
-//! use haptic_servo::environment::DamperWall;
+//! use haptic_servo::environment::Wall;
 //! use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 //!
-//! type WallScene = Scene<DamperWall<1>>;
-//! const WALL: WallScene = Scene {
+//! const WALL: Scene = Scene {
 //!     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
 //!     timing: Timing { period: 0.001, worst_period: None },
 //!     coupling: Coupling::Spring { stiffness: 44.0 },
-//!     environment: DamperWall { stiffness: 22.0, damping: 0.01 },
+//!     environment: Wall::damped(22.0, 0.01, 1).alone(),
 //!     latency: Latency::NONE, torque_limit: None,
 //! };
 //! // A constant that would not pass stops the compiler here, with the sentence below.
-//! const CERTIFIED: Certified<WallScene> = WALL.certified();
+//! const CERTIFIED: Certified<Scene> = WALL.certified();
 //! let alpha = CERTIFIED.assessment().alpha.unwrap();
 //! assert!(alpha.contains(0.021) && alpha.hi() < 0.022);
 //!
-//! let stiffer = Scene { environment: DamperWall { stiffness: 25.0, damping: 0.01 }, ..WALL };
+//! let stiffer = Scene { environment: Wall::damped(25.0, 0.01, 1).alone(), ..WALL };
 //! let rejection = stiffer.certify().unwrap_err();
 //! assert_eq!(rejection.reason(), "shortage");
 //! assert!(rejection.to_string().contains("it would pass with stiffness <= 23.9 N m/rad"));
@@ -30,8 +29,8 @@
 
 mod assessment;
 mod assumption;
+mod beside_profile;
 mod between;
-mod composed;
 mod deviation;
 mod digits;
 mod linearity;
@@ -106,6 +105,14 @@ impl<S> Certified<S> {
     }
 }
 
+impl Certified<Scene> {
+    /// The same certificate of the scene with its environment in another type.
+    pub(crate) const fn with_environment<E>(self, environment: E) -> Certified<Scene<E>> {
+        let Self { scene, data, assessment } = self;
+        Certified { scene: scene.in_environment(environment), data, assessment }
+    }
+}
+
 /// Judges a scene given as data, with unrounded coefficients: the certificate's numbers, or the rejection.
 pub const fn certify(scene: &Scene) -> Result<Assessment, Rejection> {
     certify_in(scene, Format::F64)
@@ -136,18 +143,6 @@ const fn refuse_scene(data: &Scene, rejection: &Rejection, format: Format) -> ! 
 }
 
 impl<E: Copy> Scene<E> {
-    /// The scene with other data for its environment.
-    const fn described_as(&self, environment: Environment) -> Scene {
-        Scene {
-            device: self.device,
-            timing: self.timing,
-            coupling: self.coupling,
-            environment,
-            latency: self.latency,
-            torque_limit: self.torque_limit,
-        }
-    }
-
     const fn judged(self, data: Scene, format: Format) -> Result<Certified<Self>, Rejection> {
         if let Some(RefusedMode { reason, .. }) = first_refused_mode(&data, format) {
             return Err(reason);
@@ -166,7 +161,7 @@ impl<E: StatedEnvironment> Scene<E> {
     /// # Errors
     /// The reason why the scene is not certified.
     pub const fn certify_as(self, stated: StatedModel) -> Result<Certified<Self>, Rejection> {
-        self.judged(self.described_as(Environment::Stated(stated)), Format::F64)
+        self.judged(self.in_environment(Environment::Stated(stated)), Format::F64)
     }
 
     /// For constants: the certified scene of an environment of another crate, or a compile error with the
@@ -185,7 +180,7 @@ impl<E: StatedEnvironment> Scene<E> {
 
 /// The scene with its environment, of any type, as data.
 pub fn scene_data<E: EnvironmentModel>(scene: &Scene<E>) -> Scene {
-    scene.described_as(scene.environment.as_data(&scene.context()))
+    scene.in_environment(scene.environment.as_data(&scene.context()))
 }
 
 /// Certifies the coefficients rounded to a number format, for any type of environment.
@@ -287,53 +282,32 @@ impl<E: Copy> Certified<Scene<E>> {
     }
 }
 
-macro_rules! certify_for {
-    ($(
-        [$($generics:tt)*] $environment:ty:
-        $cancels:literal, $memory:ident, $profile:expr;
-    )*) => {$(
-        certify_for! { @ [$($generics)*] $environment }
-        certify_for! { @ [$($generics)*] Uncoupled<$environment> }
-        certify_for! { @
-            [const WHOLE: usize, const LAGS: usize, const UPDATES: bool, $($generics)*]
-            Matched<$environment, WHOLE, LAGS, UPDATES>
+impl Scene {
+    /// Certifies the scene with unrounded coefficients; only a scene proved passive becomes [`Certified`].
+    ///
+    /// # Errors
+    /// The reason why the scene is not certified.
+    pub const fn certify(self) -> Result<Certified<Self>, Rejection> {
+        self.certify_in(Format::F64)
+    }
+
+    /// Certifies the scene with the coefficients rounded to this number format.
+    ///
+    /// # Errors
+    /// The reason why the scene is not certified.
+    pub const fn certify_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
+        self.judged(self, format)
+    }
+
+    /// For constants: the certified scene, or a compile error with the reason.
+    ///
+    /// # Panics
+    /// If the scene is not certified; in a constant this is a compile error.
+    #[track_caller]
+    pub const fn certified(self) -> Certified<Self> {
+        match self.certify() {
+            Ok(certified) => certified,
+            Err(rejection) => refuse_scene(&self, &rejection, Format::F64),
         }
-    )*};
-    (@ [$($generics:tt)*] $environment:ty) => {
-        impl<$($generics)*> Scene<$environment> {
-            /// The same scene with its environment as data.
-            pub const fn as_data(&self) -> Scene {
-                self.described_as(self.environment.as_data())
-            }
-
-            /// Certifies the scene with unrounded coefficients; only a scene proved passive becomes
-            /// [`Certified`].
-            pub const fn certify(self) -> Result<Certified<Self>, Rejection> {
-                self.certify_in(Format::F64)
-            }
-
-            /// Certifies the scene with the coefficients rounded to this number format.
-            pub const fn certify_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
-                let memory = <$environment as EnvironmentModel>::MEMORY;
-                if !memory.serves(&self.coupling, &self.latency, self.timing.period) {
-                    return Err(Rejection::CouplingMemory);
-                }
-                self.judged(self.as_data(), format)
-            }
-
-            /// For constants: the certified scene, or a compile error with the reason.
-            ///
-            /// # Panics
-            /// If the scene is not certified; in a constant this is a compile error.
-            #[track_caller]
-            pub const fn certified(self) -> Certified<Self> {
-                match self.certify() {
-                    Ok(certified) => certified,
-                    Err(rejection) => refuse_scene(&self.as_data(), &rejection, Format::F64),
-                }
-            }
-        }
-    };
+    }
 }
-
-for_every_environment!(certify_for);

@@ -9,7 +9,7 @@ use super::loop_intervals::LoopIntervals;
 use super::profile::{profile_bound, profile_gain};
 use super::validity::first_invalid;
 use crate::environment::{
-    Composed, Environment, EnvironmentModel, MAX_DEGREE, Rational, StatedModel, Wall,
+    Canceller, Environment, EnvironmentModel, MAX_DEGREE, Parts, Rational, StatedModel, Wall,
 };
 use crate::number::Format;
 use crate::passivity::interval::Interval;
@@ -23,22 +23,13 @@ pub(super) const fn transfer(
     environment: &Environment,
     n: &LoopIntervals,
 ) -> Result<Transfer, Unbuildable> {
-    let built = match (environment, environment.wall(), environment.rational()) {
-        // The linear part of a sum with a late torque profile.
-        (Environment::Composed(Composed { residual: Some(_), .. }), None, _) => Some(free_mode(n)),
-        (Environment::Composed(Composed { residual: Some(_), .. }), Some(w), _) => {
-            free_mode(n).plus(&wall(&w, n))
-        }
-        (Environment::FreeModeWall { .. }, Some(w), _) => free_mode(n).plus(&wall(&w, n)),
-        (Environment::FreeMode { delay, .. }, ..) => {
-            let mut free = free_mode(n);
-            free.shift -= *delay as i32;
-            Some(free)
-        }
-        (_, Some(w), _) => Some(wall(&w, n)),
-        (_, _, Some(r)) => rational(r, n),
-        // Stated only by its bound, and late: without feedthrough.
-        _ => {
+    let built = match (environment.rational(), environment.canceller(), environment.wall()) {
+        (Some(r), ..) => rational(r, n),
+        (None, Some(canceller), None) => Some(free_mode(canceller, n)),
+        (None, Some(canceller), Some(w)) => free_mode(canceller, n).plus(&wall(w, n)),
+        (None, None, Some(w)) => Some(wall(w, n)),
+        // A late torque profile, or stated only by its bound and late: without feedthrough.
+        (None, None, None) => {
             Some(Transfer::new(Polynomial::ascending(&[]), Polynomial::ascending(&[Interval::ONE])))
         }
     };
@@ -92,13 +83,13 @@ impl Washout {
 
 /// The damper of a wall.
 pub(super) const fn damper(w: &Wall, n: &LoopIntervals) -> Washout {
-    let b = Interval::decimal(w.damping);
-    let rate = match w.filter {
-        Some(a) if w.damping != 0.0 => Interval::ONE.sub(Interval::decimal(a)),
+    let b = Interval::decimal(w.damping());
+    let rate = match w.filter() {
+        Some(a) if w.damping() != 0.0 => Interval::ONE.sub(Interval::decimal(a)),
         _ => Interval::ONE,
     };
-    match (n.format, w.filter) {
-        (Format::F64, Some(a)) if w.damping != 0.0 => {
+    match (n.format, w.filter()) {
+        (Format::F64, Some(a)) if w.damping() != 0.0 => {
             Washout { gain: b.mul(rate), pole: Interval::decimal(a) }
         }
         (Format::F64, _) => Washout { gain: b, pole: Interval::ZERO },
@@ -107,8 +98,8 @@ pub(super) const fn damper(w: &Wall, n: &LoopIntervals) -> Washout {
 }
 
 /// `-be K (z - 1) / ((K T + be) z - be)`, for a rigid coupling `-be (z - 1) / (T z)` (equation
-/// 23, generalised from `K = 2 b / T` to any coupling spring).
-const fn free_mode(n: &LoopIntervals) -> Transfer {
+/// 23, generalised from `K = 2 b / T` to any coupling spring), late by the canceller's delay.
+pub(super) const fn free_mode(canceller: &Canceller, n: &LoopIntervals) -> Transfer {
     let be = n.cancelled;
     let (gain, denominator) = match (n.format, n.coupling) {
         (Format::F64, Some(k)) => {
@@ -117,12 +108,13 @@ const fn free_mode(n: &LoopIntervals) -> Transfer {
         }
         (Format::F64, None) => (be, Polynomial::ascending(&[Interval::ZERO, n.period])),
         _ => {
-            let Washout { gain, pole } = canceller(n);
+            let Washout { gain, pole } = self::canceller(n);
             (gain, Polynomial::ascending(&[pole.neg().mul(n.period), n.period]))
         }
     };
     let numerator = Polynomial::ascending(&[gain.neg()]);
-    Transfer { ones: 1, ..Transfer::new(numerator, denominator) }
+    let shift = -(canceller.delay as i32);
+    Transfer { shift, ones: 1, ..Transfer::new(numerator, denominator) }
 }
 
 /// The canceller as a servo computes it, with the opposite sign.
@@ -211,17 +203,15 @@ pub(super) const fn largest_solved<E: EnvironmentModel>(
     if matches!(n.format, Format::F64) || environment.is_late() {
         return Some(Interval::ONE);
     }
-    if E::PROFILE.exists && matches!(environment, Environment::Profile(_)) {
+    let parts = environment.parts();
+    if E::PROFILE.exists && parts.profile.is_some() && parts.count() == 1 {
         // The profile is solved in front of the coupling, without a gain.
         return Some(Interval::ONE);
     }
     let Some(contact) = scale::<E>(environment, n) else { return None };
-    Some(match environment {
-        Environment::FreeModeWall { .. }
-        | Environment::Composed(Composed { residual: Some(_), .. })
-            if E::CANCELS_DAMPING =>
-        {
-            n.solved(feedthrough_of_canceller(n)).max(contact)
+    Some(match &parts.canceller {
+        Some(canceller) if E::CANCELS_DAMPING && parts.count() > 1 => {
+            n.solved(free_mode(canceller, n).feedthrough()).max(contact)
         }
         _ => contact.max(Interval::ONE),
     })
@@ -233,94 +223,80 @@ const fn scale<E: EnvironmentModel>(
     environment: &Environment,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    let feedthrough = match (environment, environment.wall()) {
-        (Environment::FreeModeWall { .. }, Some(w)) if E::CANCELS_DAMPING => {
-            free_mode(n).feedthrough().add(wall(&w, n).feedthrough())
-        }
-        (Environment::FreeMode { .. }, _) if E::CANCELS_DAMPING => free_mode(n).feedthrough(),
-        (Environment::DelayedSpring(_) | Environment::DamperWall(_), Some(w)) => {
-            wall(&w, n).feedthrough()
-        }
-        (Environment::Composed(composed), beside) if E::PROFILE.is_composed => {
-            let mut sum = match beside {
-                Some(w) => wall(&w, n).feedthrough(),
-                None => Interval::ZERO,
-            };
-            if composed.residual.is_some() {
-                if !E::CANCELS_DAMPING {
-                    return None;
-                }
-                sum = sum.add(feedthrough_of_canceller(n));
-            }
-            sum
-        }
-        _ => return None,
+    let Environment::Parts(Parts { canceller, wall, profile }) = environment else { return None };
+    if profile.is_some() && !E::PROFILE.is_composed {
+        return None;
+    }
+    let mut feedthrough = match wall {
+        Some(w) => self::wall(w, n).feedthrough(),
+        None => Interval::ZERO,
     };
+    if let Some(canceller) = canceller {
+        if !E::CANCELS_DAMPING {
+            return None;
+        }
+        feedthrough = feedthrough.add(free_mode(canceller, n).feedthrough());
+    }
     let scale = n.solved(feedthrough);
     if scale.is_finite() { Some(scale) } else { None }
-}
-
-/// The feedthrough of a canceller in N m/rad.
-pub(super) const fn feedthrough_of_canceller(n: &LoopIntervals) -> Interval {
-    free_mode(n).feedthrough()
 }
 
 const fn exactly_solved_bound<E: EnvironmentModel>(
     environment: &Environment,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    let wall = match environment.wall() {
+    let parts = match environment {
+        Environment::Parts(parts) => parts,
+        Environment::Stated(StatedModel::Bounded { bound, .. }) => {
+            return Some(Interval::decimal(bound.index));
+        }
+        Environment::Stated(StatedModel::Linear(_)) | Environment::Rational(_) => return None,
+    };
+    let wall = match &parts.wall {
         // A negative spring is not a monotone law.
         Some(w) if w.stiffness < 0.0 => return None,
-        Some(w) => wall_bound(&w, n),
+        Some(w) if parts.count() == 1 => wall_alone_bound(w, n),
+        Some(w) => wall_bound(w, n),
         None => Interval::ZERO,
     };
-    match environment {
-        Environment::DamperWall(w) if w.filter.is_some() => Some(match filtered_bound(w, n) {
-            Some(filtered) => filtered.min(wall),
-            None => wall,
-        }),
-        Environment::DelayedSpring(_) | Environment::DamperWall(_) => Some(wall),
-        Environment::FreeMode { .. } | Environment::FreeModeWall { .. } if E::CANCELS_DAMPING => {
-            match canceller_bound(n) {
-                Some(bound) => Some(bound.add(wall)),
-                None => None,
-            }
-        }
-        Environment::Stated(StatedModel::Bounded { bound, .. }) => {
-            Some(Interval::decimal(bound.index))
-        }
-        Environment::Profile(profile) if E::PROFILE.exists => profile_bound::<E>(profile, n),
-        Environment::Composed(composed)
-            if E::PROFILE.is_composed && composed.profile.snap.is_none() =>
-        {
-            sum_of::<E>(composed, n, wall, profile_bound::<E>(&composed.profile, n), Interval::ONE)
+    let profile = match &parts.profile {
+        Some(profile) if E::PROFILE.exists && !(parts.count() > 1 && profile.snap.is_some()) => {
+            profile_bound::<E>(profile, n)
         }
         _ => None,
-    }
+    };
+    sum_of::<E>(parts, wall, profile, canceller_of::<E>(parts, n))
 }
 
-/// The sum of a quantity of a wall and of a torque profile, plus `cancelled` times the bound of a canceller,
-/// if there is one.
+/// [`canceller_bound`], if there is a canceller.
+const fn canceller_of<E: EnvironmentModel>(parts: &Parts, n: &LoopIntervals) -> Option<Interval> {
+    if E::CANCELS_DAMPING && parts.canceller.is_some() { canceller_bound(n) } else { None }
+}
+
+/// The sum of a quantity of the parts of an environment, each `None` where no bound is known; `None` also if the
+/// program of the type `E` has no such sum.
 const fn sum_of<E: EnvironmentModel>(
-    composed: &Composed,
-    n: &LoopIntervals,
+    parts: &Parts,
     wall: Interval,
     profile: Option<Interval>,
-    cancelled: Interval,
+    canceller: Option<Interval>,
 ) -> Option<Interval> {
-    let Some(profile) = profile else { return None };
-    let sum = profile.add(wall);
-    if composed.residual.is_none() {
-        return Some(sum);
+    let mut sum = wall;
+    if parts.profile.is_some() {
+        match profile {
+            Some(profile) if parts.count() == 1 || E::PROFILE.is_composed => {
+                sum = profile.add(sum);
+            }
+            _ => return None,
+        }
     }
-    if !E::CANCELS_DAMPING {
-        return None;
+    if parts.canceller.is_some() {
+        match canceller {
+            Some(canceller) if E::CANCELS_DAMPING => sum = sum.add(canceller),
+            _ => return None,
+        }
     }
-    match canceller_bound(n) {
-        Some(canceller) => Some(sum.add(canceller.mul(cancelled))),
-        None => None,
-    }
+    Some(sum)
 }
 
 /// The gain of an environment from changes of position to changes of torque, in the l2 norm and times the
@@ -335,33 +311,29 @@ pub(super) const fn largest_gain<E: EnvironmentModel>(
     solved: Interval,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    let wall = match environment.wall() {
-        Some(w) => wall_gain(&w, n),
+    let parts = match environment {
+        Environment::Parts(parts) => parts,
+        Environment::Stated(StatedModel::Bounded { bound, .. }) => {
+            return Some(Interval::decimal(bound.gain).mul(solved));
+        }
+        Environment::Stated(StatedModel::Linear(_)) | Environment::Rational(_) => return None,
+    };
+    let wall = match &parts.wall {
+        Some(w) => wall_gain(w, n),
         None => Interval::ZERO,
     };
-    let gain = match environment {
-        Environment::DelayedSpring(_) | Environment::DamperWall(_) => wall,
-        Environment::FreeMode { .. } | Environment::FreeModeWall { .. } if E::CANCELS_DAMPING => {
-            match canceller_bound(n) {
-                Some(canceller) => canceller.double().add(wall),
-                None => return None,
-            }
-        }
-        Environment::Stated(StatedModel::Bounded { bound, .. }) => Interval::decimal(bound.gain),
-        Environment::Profile(profile) if E::PROFILE.exists => match profile_gain::<E>(profile, n) {
-            Some(gain) => gain,
-            None => return None,
-        },
-        Environment::Composed(composed) if E::PROFILE.is_composed => {
-            let profile = profile_gain::<E>(&composed.profile, n);
-            match sum_of::<E>(composed, n, wall, profile, Interval::ONE.double()) {
-                Some(gain) => gain,
-                None => return None,
-            }
-        }
-        _ => return None,
+    let profile = match &parts.profile {
+        Some(profile) if E::PROFILE.exists => profile_gain::<E>(profile, n),
+        _ => None,
     };
-    Some(gain.mul(solved))
+    let canceller = match canceller_of::<E>(parts, n) {
+        Some(canceller) => Some(canceller.double()),
+        None => None,
+    };
+    match sum_of::<E>(parts, wall, profile, canceller) {
+        Some(gain) => Some(gain.mul(solved)),
+        None => None,
+    }
 }
 
 const fn wall_gain(w: &Wall, n: &LoopIntervals) -> Interval {
@@ -372,7 +344,7 @@ const fn wall_gain(w: &Wall, n: &LoopIntervals) -> Interval {
 /// Sum of the magnitudes of a wall's torques for a unit of velocity.
 pub(super) const fn switched_damping(w: &Wall, n: &LoopIntervals) -> Interval {
     match n.format {
-        Format::F64 => Interval::decimal(w.damping).abs(),
+        Format::F64 => Interval::decimal(w.damping()).abs(),
         _ => damper(w, n).l1_norm(),
     }
 }
@@ -380,7 +352,7 @@ pub(super) const fn switched_damping(w: &Wall, n: &LoopIntervals) -> Interval {
 const fn wall_bound(w: &Wall, n: &LoopIntervals) -> Interval {
     let damping = switched_damping(w, n);
     if w.delay == 0 {
-        let passive = w.filter.is_none() && w.damping >= 0.0;
+        let passive = w.filter().is_none() && w.damping() >= 0.0;
         return if passive { Interval::ZERO } else { damping };
     }
     let samples = Interval::exact(w.delay as f64 - 0.5);
@@ -388,12 +360,24 @@ const fn wall_bound(w: &Wall, n: &LoopIntervals) -> Interval {
     k.mul(n.period).mul(samples).add(damping)
 }
 
+/// The same for a wall that is the only part.
+const fn wall_alone_bound(w: &Wall, n: &LoopIntervals) -> Interval {
+    let bound = wall_bound(w, n);
+    if w.filter().is_none() {
+        return bound;
+    }
+    match filtered_bound(w, n) {
+        Some(filtered) => filtered.min(bound),
+        None => bound,
+    }
+}
+
 /// The same for a wall on both sides whose velocity is filtered: `(2 n - 1) B (1 - a) / (1 + a)` in place of
 /// `abs(B)`, and 0 without delay (equation 61). `None` if the wall or the filter is another.
 const fn filtered_bound(w: &Wall, n: &LoopIntervals) -> Option<Interval> {
     let Washout { gain, pole } = damper(w, n);
     let is_filter = gain.lo() >= 0.0 && pole.lo() >= 0.0 && pole.hi() < 1.0;
-    if w.one_sided || !is_filter {
+    if w.is_one_sided() || !is_filter {
         return None;
     }
     if w.delay == 0 {

@@ -9,7 +9,7 @@ use super::remedy::Remedies;
 use super::rules::{Rule, RuleAnswer, compare, exact_limit, paper_limit};
 use super::static_law::{IndexAtPort, index_at_port};
 use super::validity::first_invalid;
-use crate::environment::{AnyProfile, Composed, Environment, FULL_SCALE, Wall};
+use crate::environment::{Environment, FULL_SCALE, Parts, Profile, Wall};
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::{RealPart, index_looked_at, reduced_index, velocity_reduced};
@@ -29,22 +29,14 @@ const ROUGHLY: f64 = 1e-4;
 ///
 /// ```
 /// use haptic_servo::certificate::PassivityProblem;
-/// use haptic_servo::environment::{Environment, Wall};
+/// use haptic_servo::environment::Wall;
 /// use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 ///
-/// let wall = |stiffness| Wall {
-///     stiffness,
-///     damping: 0.01,
-///     delay: 1,
-///     filter: None,
-///     face: 0.0,
-///     one_sided: false,
-/// };
 /// let scene = |stiffness| Scene {
 ///     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
 ///     timing: Timing { period: 0.001, worst_period: None },
 ///     coupling: Coupling::Spring { stiffness: 44.0 },
-///     environment: Environment::DamperWall(wall(stiffness)),
+///     environment: Wall::damped(stiffness, 0.01, 1).alone(),
 ///     latency: Latency::NONE, torque_limit: None,
 /// };
 /// let passes = |stiffness| PassivityProblem::of(&scene(stiffness)).is_ok_and(|posed| posed.is_certified());
@@ -98,11 +90,11 @@ impl PassivityProblem {
             return Err(rejection);
         }
         // Its bound in a sum with a profile does not detect this.
-        if let Environment::Composed(Composed { wall: Some(Wall { stiffness, .. }), .. }) =
-            scene.environment
-            && stiffness < 0.0
+        if let Parts { wall: Some(Wall { stiffness, .. }), profile: Some(_), .. } =
+            scene.environment.parts()
+            && *stiffness < 0.0
         {
-            let residue = Interval::decimal(stiffness).mul(numbers.period);
+            let residue = Interval::decimal(*stiffness).mul(numbers.period);
             return Err(Rejection::NegativeResidue { residue });
         }
         let environment = match transfer(&scene.environment, &numbers) {
@@ -140,9 +132,7 @@ impl PassivityProblem {
         let stated = if scene.environment.has_transfer() { None } else { bound };
         let no_transfer = match &scene.environment {
             environment if environment.snaps() => Some(UndecidedReason::NoSnapBound),
-            Environment::Profile(_) | Environment::Composed(_) => {
-                Some(UndecidedReason::NoBoundAtPort)
-            }
+            environment if environment.profile().is_some() => Some(UndecidedReason::NoBoundAtPort),
             environment if environment.has_transfer() => None,
             _ => Some(UndecidedReason::NoTransferFunction),
         };
@@ -473,7 +463,7 @@ impl PassivityProblem {
 
 /// The obstacle of a torque profile for any device.
 const fn profile_rejection(
-    profile: &AnyProfile,
+    profile: &Profile,
     scene: &Scene,
     n: &LoopIntervals,
 ) -> Option<Rejection> {

@@ -1,7 +1,7 @@
 //! The index of a torque profile, which depends only on its extreme slopes (theory, section 14).
 
 use super::loop_intervals::LoopIntervals;
-use crate::environment::{AnyProfile, Ends, Environment, EnvironmentModel, SnapPoint};
+use crate::environment::{Ends, Environment, EnvironmentModel, Profile, SnapPoint};
 use crate::passivity::interval::Interval;
 
 /// The steepest slopes of a profile with rounded coefficients, in N m/rad, both not negative. For an
@@ -18,7 +18,7 @@ impl ExtremeSlopes {
     /// `None` if there is none, because a torque in front of the coupling rises faster than the coupling's
     /// own.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub const fn of<E: EnvironmentModel>(profile: &AnyProfile, n: &LoopIntervals) -> Option<Self> {
+    pub const fn of<E: EnvironmentModel>(profile: &Profile, n: &LoopIntervals) -> Option<Self> {
         let Self { rise, fall } = Self::of_table::<E>(profile, n);
         if profile.delay > 0 || !E::PROFILE.is_prompt {
             return Some(Self { rise, fall });
@@ -33,7 +33,7 @@ impl ExtremeSlopes {
 
     /// The slopes of the table, its end stops and the line to a snap point, independently of the coupling:
     /// all branches have the same slopes.
-    pub const fn of_table<E: EnvironmentModel>(profile: &AnyProfile, n: &LoopIntervals) -> Self {
+    pub const fn of_table<E: EnvironmentModel>(profile: &Profile, n: &LoopIntervals) -> Self {
         let outline = profile.outline();
         let unit = around(n.format.torque_of_part(profile.scale().torque_of_part));
         let unit = unit.mul(parts_per_rad(profile, n));
@@ -59,14 +59,14 @@ impl ExtremeSlopes {
 }
 
 /// Slope in N m/rad of the line to a snap point, with the law's rounding.
-const fn line(snap: &SnapPoint, profile: &AnyProfile, n: &LoopIntervals) -> Interval {
+const fn line(snap: &SnapPoint, profile: &Profile, n: &LoopIntervals) -> Interval {
     let part = snap.torque_of_part(profile.torque, profile.outline().knots);
     around(n.format.torque_of_part(part)).mul(parts_per_rad(profile, n))
 }
 
 /// Whether branches may change between the torques of a profile: the steps of a profile that is late by at
 /// most a sample telescope from branch to branch; at the port none do (theory, section 14.5).
-const fn snaps_unproved(profile: &AnyProfile, n: &LoopIntervals) -> bool {
+const fn snaps_unproved(profile: &Profile, n: &LoopIntervals) -> bool {
     profile.snap.is_some() && (profile.delay > 1 || n.coupling.is_none())
 }
 
@@ -76,7 +76,7 @@ const fn snaps_unproved(profile: &AnyProfile, n: &LoopIntervals) -> bool {
 ///
 /// A limit on the torque reduces slopes and adds none.
 pub(super) const fn profile_bound<E: EnvironmentModel>(
-    profile: &AnyProfile,
+    profile: &Profile,
     n: &LoopIntervals,
 ) -> Option<Interval> {
     if is_motor(profile) || E::PROFILE.snaps && snaps_unproved(profile, n) {
@@ -96,7 +96,7 @@ pub(super) const fn profile_bound<E: EnvironmentModel>(
 /// The gain from changes of position to changes of torque, times the period: [`super::model::largest_gain`].
 /// With snap points, that of a branch.
 pub(super) const fn profile_gain<E: EnvironmentModel>(
-    profile: &AnyProfile,
+    profile: &Profile,
     n: &LoopIntervals,
 ) -> Option<Interval> {
     let Some(slopes) = ExtremeSlopes::of::<E>(profile, n) else { return None };
@@ -109,7 +109,7 @@ pub(super) const fn profile_gain<E: EnvironmentModel>(
 /// are fed back through a coupling whose compliances add up to `V`, and the sum is `M / (1 - M V)`. `None` if
 /// the sum diverges.
 pub(super) const fn peak_gain(
-    profile: &AnyProfile,
+    profile: &Profile,
     beside: f64,
     n: &LoopIntervals,
     compliance: f64,
@@ -126,7 +126,7 @@ pub(super) const fn peak_gain(
 }
 
 /// Largest torque in N m over a part of a cell, which is the smallest step of a place.
-pub(super) const fn step_of_part(profile: &AnyProfile, n: &LoopIntervals) -> f64 {
+pub(super) const fn step_of_part(profile: &Profile, n: &LoopIntervals) -> f64 {
     ExtremeSlopes::of_table::<Environment>(profile, n)
         .steepest()
         .div(parts_per_rad(profile, n))
@@ -134,7 +134,7 @@ pub(super) const fn step_of_part(profile: &AnyProfile, n: &LoopIntervals) -> f64
 }
 
 /// Whether a nonzero mean torque would turn the device without end.
-pub(super) const fn is_motor(profile: &AnyProfile) -> bool {
+pub(super) const fn is_motor(profile: &Profile) -> bool {
     let outline = profile.outline();
     match profile.ends {
         // Only springs that push back keep the device within its ends.
@@ -145,7 +145,7 @@ pub(super) const fn is_motor(profile: &AnyProfile) -> bool {
 
 /// Whether a torque limit may make it a motor: if it repeats without end and its torque is clipped more on
 /// one side than on the other.
-pub(super) const fn is_motor_where_limited<E: EnvironmentModel>(profile: &AnyProfile) -> bool {
+pub(super) const fn is_motor_where_limited<E: EnvironmentModel>(profile: &Profile) -> bool {
     let is_odd = profile.outline().is_odd
         && match &profile.snap {
             Some(snap) if E::PROFILE.snaps => snap.is_centred(),
@@ -155,18 +155,17 @@ pub(super) const fn is_motor_where_limited<E: EnvironmentModel>(profile: &AnyPro
 }
 
 /// `B / T` in N m/rad of its damper.
-pub(super) const fn damper<E: EnvironmentModel>(
-    profile: &AnyProfile,
-    n: &LoopIntervals,
-) -> Interval {
-    if !E::PROFILE.is_damped {
-        return Interval::ZERO;
+pub(super) const fn damper<E: EnvironmentModel>(profile: &Profile, n: &LoopIntervals) -> Interval {
+    match profile.damping {
+        Some(damping) if E::PROFILE.is_damped => {
+            n.coefficient(Interval::decimal(damping).div(n.period))
+        }
+        _ => Interval::ZERO,
     }
-    n.coefficient(Interval::decimal(profile.damping).div(n.period))
 }
 
 /// Parts of a cell per rad, with the law's rounding.
-const fn parts_per_rad(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
+const fn parts_per_rad(profile: &Profile, n: &LoopIntervals) -> Interval {
     around(n.format.parts_per_rad(profile.scale().parts_per_rad))
 }
 

@@ -15,14 +15,14 @@
 use core::f64::consts::TAU;
 use core::fmt;
 
-use super::composed::{jump_at_face, peak_gain_beside};
+use super::beside_profile::{jump_at_face, peak_gain_beside};
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
 use super::model::{LoopTransfers, Washout, canceller, damper};
 use super::profile::{peak_gain, step_of_part};
 use crate::current::CurrentResolution;
 use crate::dac::DacCode;
-use crate::environment::{Environment, Rational};
+use crate::environment::Rational;
 use crate::matched::{MatchedCoupling, Trail};
 use crate::number::Format;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
@@ -220,13 +220,10 @@ struct Peak {
 /// A torque profile has no impulse response and is bounded by its steepest slope; the other parts are bounded
 /// by the norm of their impulse response.
 fn peak(scene: &Scene, format: Format) -> Option<Peak> {
-    let switched = scene.environment.wall().is_some_and(|w| w.one_sided && w.damping != 0.0);
+    let switched = scene.environment.wall().is_some_and(|w| w.is_one_sided() && w.damping() != 0.0);
     if let Some(profile) = scene.environment.profile() {
         let n = LoopIntervals::of(scene, format);
-        let beside = match &scene.environment {
-            Environment::Composed(composed) => peak_gain_beside(composed, &n),
-            _ => 0.0,
-        };
+        let beside = peak_gain_beside(scene.environment.parts(), &n);
         let norm = peak_gain(profile, beside, &n, compliance(scene, format))?;
         return Some(Peak { norm, in_any_motion: !switched });
     }
@@ -296,14 +293,14 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
         }
         None => (at_torque, at_position),
     };
-    let at_torque = match &scene.environment {
+    let parts = scene.environment.parts();
+    let at_torque = if parts.profile.is_some() && parts.count() > 1 {
         // A product of the table and a sum for each part; the face of a wall that is solved in the tick
         // changes the other parts.
-        Environment::Composed(composed) => {
-            let n = LoopIntervals::of(scene, format);
-            at_torque + torque * roundings(format, 2.0, 3.0) + limit * jump_at_face(composed, &n)
-        }
-        _ => at_torque,
+        let n = LoopIntervals::of(scene, format);
+        at_torque + torque * roundings(format, 2.0, 3.0) + limit * jump_at_face(parts, &n)
+    } else {
+        at_torque
     };
     Some(peak * at_position + (1.0 + peak * compliance(scene, format)) * at_torque)
 }
@@ -337,9 +334,9 @@ fn states(scene: &Scene, format: Format, angle: f64) -> f64 {
         let gain = state.gain.magnitude() / scene.timing.period;
         gain * angle * roundings(format, 1.0, 2.0) / (1.0 - state.pole.magnitude())
     };
-    let filter = scene.environment.wall().filter(|wall| wall.filter.is_some());
-    let cancels = scene.environment.residual().is_some();
-    filter.map_or(0.0, |wall| stops(damper(&wall, &n)))
+    let filter = scene.environment.wall().filter(|wall| wall.filter().is_some());
+    let cancels = scene.environment.canceller().is_some();
+    filter.map_or(0.0, |wall| stops(damper(wall, &n)))
         + if cancels { stops(canceller(&n)) } else { 0.0 }
 }
 
@@ -394,7 +391,7 @@ fn l1_norm(g: &Transfer) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::environment::{AnyProfile, Environment, Shape};
+    use crate::environment::{Profile, Shape};
     use crate::number::Number;
     use crate::scene::{Coupling, Device, Latency, Timing};
     use crate::servo::Servo;
@@ -405,12 +402,12 @@ mod tests {
 
     fn scene(torque: f64, delay: usize) -> Scene {
         let units = vec![0; 16].leak();
-        let profile = AnyProfile::sampled(&[Shape::detents(24, torque)], units, delay).unwrap();
+        let profile = Profile::sampled(&[Shape::detents(24, torque)], units, delay).unwrap();
         Scene {
             device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
             timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
-            environment: Environment::Profile(profile),
+            environment: profile.alone(),
             latency: Latency::NONE,
             torque_limit: Some(FULL_SCALE),
         }

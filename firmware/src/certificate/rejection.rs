@@ -21,8 +21,6 @@ pub enum Rejection {
         /// `1 + E(inf) V`; 0 where the environment's own denominator degenerates.
         loop_gain: Interval,
     },
-    /// The law of the environment's type does not store the past torques that the coupling needs.
-    CouplingMemory,
     /// The device has no passivity.
     NoPassivity {
         /// Its output strict passivity.
@@ -134,7 +132,7 @@ impl Rejection {
             Self::RepeatedUnitPole { .. } => "repeated_unit_pole",
             Self::ResidueAngle { .. } | Self::HiddenMode { .. } => "residue_angle",
             Self::NegativeResidue { .. } | Self::Motor { .. } | Self::Uneven => "negative_residue",
-            Self::Coupling { .. } | Self::CouplingMemory => "coupling",
+            Self::Coupling { .. } => "coupling",
             Self::Undecided { .. } => "undecided",
         }
     }
@@ -179,10 +177,6 @@ impl Rejection {
                 t.push_number(if loop_gain.contains(0.0) { 0.0 } else { loop_gain.midpoint() });
                 t.push("); delay the environment or change the coupling stiffness");
             }
-            Self::CouplingMemory => t.push(
-                "a matched coupling goes with an environment that is `Matched`, with as many whole samples \
-                 and lags as the scene's latency has, and no other coupling does",
-            ),
             Self::NoPassivity { delta } => {
                 t.push("the device's passivity delta = ");
                 t.push_number(delta.midpoint());

@@ -52,7 +52,7 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
             }
             Parameter::Damping
                 if scene.environment.profile().is_some()
-                    && scene.environment.residual().is_some() =>
+                    && scene.environment.canceller().is_some() =>
             {
                 Parameter::Residual
             }
@@ -144,7 +144,7 @@ const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
 /// A device with more damping or, if its passivity is declared, with more passivity, up to the damping. With
 /// a canceller there is no such remedy, because the residual damping depends on it.
 const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
-    let cancels = scene.environment.residual().is_some();
+    let cancels = scene.environment.canceller().is_some();
     let parameter = match scene.device.passivity {
         Some(_) => Parameter::Passivity,
         None if !cancels => Parameter::DeviceDamping,
@@ -183,7 +183,7 @@ const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::certificate::certify;
-    use crate::environment::{AnyProfile, Shape, Wall};
+    use crate::environment::{Profile, Shape, Wall};
     use crate::scene::{Device, Latency, Timing};
 
     fn scene(stiffness: f64, coupling: Coupling) -> Scene {
@@ -191,14 +191,7 @@ mod tests {
             device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
             timing: Timing { period: 0.001, worst_period: None },
             coupling,
-            environment: Environment::DamperWall(Wall {
-                stiffness,
-                damping: 0.01,
-                filter: None,
-                delay: 1,
-                face: 0.0,
-                one_sided: false,
-            }),
+            environment: Wall::damped(stiffness, 0.01, 1).alone(),
             latency: Latency::NONE,
             torque_limit: None,
         }
@@ -207,9 +200,9 @@ mod tests {
     /// An undelayed wall beyond a face, whose torque lags: a bound asks for a softer one behind a spring.
     #[test]
     fn a_face_behind_a_lag_passes_behind_the_matched_coupling() {
-        let wall = Wall { one_sided: true, ..Wall::spring(100.0, 0) };
+        let wall = Wall::damped(100.0, 0.0, 0).behind(0.0);
         let lagging = Scene {
-            environment: Environment::DamperWall(wall),
+            environment: wall.alone(),
             latency: Latency::delayed(1e-5).with_actuator_lag(5.3e-5),
             ..scene(100.0, Coupling::Spring { stiffness: 44.0 })
         };
@@ -221,7 +214,7 @@ mod tests {
         // Nothing lags, or nothing helps.
         let at_once = scene(100.0, Coupling::Spring { stiffness: 44.0 });
         let active = Wall { stiffness: -1.0, ..wall };
-        let pulling = Scene { environment: Environment::DamperWall(active), ..lagging };
+        let pulling = Scene { environment: active.alone(), ..lagging };
         for scene in [at_once, pulling] {
             assert_eq!(certify(&scene).unwrap_err().remedies().matched(), None);
         }
@@ -266,8 +259,8 @@ mod tests {
 
     fn detents(count: u32, torque: f64, delay: usize, coupling: Coupling) -> Scene {
         let units = vec![0; 16].leak();
-        let profile = AnyProfile::sampled(&[Shape::detents(count, torque)], units, delay).unwrap();
-        Scene { environment: Environment::Profile(profile), ..scene(0.0, coupling) }
+        let profile = Profile::sampled(&[Shape::detents(count, torque)], units, delay).unwrap();
+        Scene { environment: profile.alone(), ..scene(0.0, coupling) }
     }
 
     /// The largest values by the formulas of the theory: slope `4 count torque / (2 pi)`, to be below

@@ -7,7 +7,7 @@
 use super::loop_intervals::LoopIntervals;
 use super::model::{canceller_bound, switched_damping};
 use super::profile::{ExtremeSlopes, damper, is_motor};
-use crate::environment::{AnyProfile, Composed, Environment, EnvironmentModel, Wall};
+use crate::environment::{Environment, EnvironmentModel, Parts, Profile, Wall};
 use crate::latency::Latency;
 use crate::passivity::interval::Interval;
 use crate::passivity::lagged::{SampledLag, left};
@@ -129,31 +129,30 @@ impl Law {
     /// `None` if no bound is known: for rational and stated environments, negative springs, motors and snap
     /// points.
     const fn of<E: EnvironmentModel>(environment: &Environment, n: &LoopIntervals) -> Option<Self> {
-        let beside = match environment.wall() {
-            Some(wall) if wall.stiffness < 0.0 => return None,
-            Some(wall) => Self::of_wall(&wall, n),
-            None => Self::NONE,
+        let Environment::Parts(Parts { canceller, wall, profile }) = environment else {
+            return None;
         };
-        match environment {
-            Environment::DelayedSpring(_) | Environment::DamperWall(_) => Some(beside),
-            Environment::FreeMode { .. } | Environment::FreeModeWall { .. } => {
-                beside.with_canceller::<E>(n)
+        let mut sum = match wall {
+            Some(wall) if wall.stiffness < 0.0 => return None,
+            Some(wall) => Some(Self::of_wall(wall, n)),
+            None => None,
+        };
+        if let Some(profile) = profile {
+            if !E::PROFILE.exists || environment.parts().count() > 1 && !E::PROFILE.is_composed {
+                return None;
             }
-            Environment::Profile(profile) if E::PROFILE.exists => Self::of_profile::<E>(profile, n),
-            Environment::Composed(Composed { residual, profile, wall })
-                if E::PROFILE.is_composed =>
-            {
-                let sum = match Self::of_profile::<E>(profile, n) {
-                    Some(law) if wall.is_some() => law.plus(beside),
-                    Some(law) => law,
-                    None => return None,
-                };
-                match residual {
-                    Some(_) => sum.with_canceller::<E>(n),
-                    None => Some(sum),
-                }
-            }
-            _ => None,
+            sum = match (Self::of_profile::<E>(profile, n), sum) {
+                (Some(law), Some(wall)) => Some(law.plus(wall)),
+                (Some(law), None) => Some(law),
+                (None, _) => return None,
+            };
+        }
+        if canceller.is_none() {
+            return sum;
+        }
+        match sum {
+            Some(sum) => sum.with_canceller::<E>(n),
+            None => Self::NONE.with_canceller::<E>(n),
         }
     }
 
@@ -188,14 +187,11 @@ impl Law {
             steepest: spring,
             late: spring.mul(Interval::exact(wall.delay as f64)),
             damping: switched_damping(wall, n).div(n.period),
-            is_spring_somewhere: wall.damping == 0.0,
+            is_spring_somewhere: wall.damping() == 0.0,
         }
     }
 
-    const fn of_profile<E: EnvironmentModel>(
-        profile: &AnyProfile,
-        n: &LoopIntervals,
-    ) -> Option<Self> {
+    const fn of_profile<E: EnvironmentModel>(profile: &Profile, n: &LoopIntervals) -> Option<Self> {
         if is_motor(profile) || E::PROFILE.snaps && profile.snap.is_some() {
             return None;
         }

@@ -1,6 +1,8 @@
 //! The valid range of each number of a scene.
 
-use crate::environment::{AnyProfile, Composed, Environment, MOST_KNOTS, ProfileUse, StatedModel};
+use crate::environment::{
+    Canceller, Environment, MOST_KNOTS, Parts, Profile, ProfileUse, StatedModel,
+};
 use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
 use crate::parameter::{Parameter, Range};
 use crate::scene::Scene;
@@ -121,10 +123,7 @@ pub(super) const fn first_invalid_number(
         }
         list += 1;
     }
-    match environment {
-        Environment::Composed(composed) if profile.is_composed => sum_conflict(composed),
-        _ => None,
-    }
+    sum_conflict(environment.parts(), profile)
 }
 
 /// A number that is out of the range of all numbers of its kind.
@@ -187,19 +186,30 @@ const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<Inv
 }
 
 /// The torque profile that has the number: in a sum with a wall, stiffness and damping are the wall's.
-const fn profile_of(environment: &Environment, parameter: Parameter) -> Option<&AnyProfile> {
-    match (environment, parameter) {
-        (
-            Environment::Composed(Composed { wall: Some(_), .. }),
-            Parameter::Stiffness | Parameter::Damping,
-        ) => None,
+const fn profile_of(environment: &Environment, parameter: Parameter) -> Option<&Profile> {
+    match (environment.wall(), parameter) {
+        (Some(_), Parameter::Stiffness | Parameter::Damping) => None,
         _ => environment.profile(),
     }
 }
 
-/// A number of a sum that conflicts with the other part, or has no name there.
-const fn sum_conflict(composed: &Composed) -> Option<InvalidParameter> {
-    let Composed { wall, profile, .. } = composed;
+/// A number of a sum that conflicts with another part, or has no name there.
+const fn sum_conflict(parts: &Parts, has: ProfileUse) -> Option<InvalidParameter> {
+    let Parts { canceller, wall, profile } = parts;
+    if parts.count() < 2 {
+        return None;
+    }
+    if let Some(Canceller { delay, .. }) = canceller
+        && *delay > 0
+    {
+        let value = *delay as f64;
+        let bound = "0 for a canceller beside another part";
+        return Some(InvalidParameter { parameter: Parameter::Delay, value, bound, limit: None });
+    }
+    let Some(profile) = profile else { return None };
+    if !has.is_composed {
+        return None;
+    }
     if profile.delay == 0 {
         let bound = "at least 1 where a wall or a canceller is beside the torque profile";
         return Some(InvalidParameter {
@@ -211,13 +221,13 @@ const fn sum_conflict(composed: &Composed) -> Option<InvalidParameter> {
     }
     let Some(wall) = wall else { return None };
     let Some(ends) = profile.ends else {
-        let (parameter, value) = (Parameter::Face, wall.face);
+        let (parameter, value) = (Parameter::Face, wall.face());
         return Some(InvalidParameter { parameter, value, bound: BESIDE_ENDS, limit: None });
     };
     let hidden = [
         (Parameter::Delay, wall.delay as f64),
         (Parameter::Stiffness, ends.stiffness),
-        (Parameter::Damping, profile.damping),
+        (Parameter::Damping, profile.damping()),
     ];
     let mut i = 0;
     while i < hidden.len() {
@@ -240,7 +250,7 @@ const BESIDE_ENDS: &str = "beside a torque profile with end stops: one without t
 /// The same of a number of a torque profile.
 #[inline(always)]
 const fn profile_conflict(
-    profile: &AnyProfile,
+    profile: &Profile,
     parameter: Parameter,
     value: f64,
     has: ProfileUse,
@@ -295,7 +305,7 @@ const fn profile_conflict(
 }
 
 /// Whether a profile has detents with a snap point, none of them between its ends.
-const fn holds_nothing(profile: &AnyProfile) -> bool {
+const fn holds_nothing(profile: &Profile) -> bool {
     match &profile.snap {
         Some(snap) => {
             let (lowest, highest) = snap.branches(&profile.layout());
@@ -442,7 +452,7 @@ const fn first_not_finite(coefficients: &[f64]) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::certificate::{Rejection, certify};
-    use crate::environment::{Environment, Wall};
+    use crate::environment::Wall;
     use crate::scene::{Coupling, Device, Latency, Timing};
 
     fn with_passivity(passivity: f64) -> Result<(), Rejection> {
@@ -451,7 +461,7 @@ mod tests {
             device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(passivity) },
             timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
-            environment: Environment::DelayedSpring(wall),
+            environment: wall.alone(),
             latency: Latency::NONE,
             torque_limit: None,
         };

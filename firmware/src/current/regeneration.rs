@@ -6,7 +6,7 @@
 
 use core::f64::consts::TAU;
 
-use crate::environment::{AnyProfile, Environment, Wall};
+use crate::environment::{Parts, Profile, Wall};
 use crate::matched::MatchedCoupling;
 use crate::number::Format;
 use crate::passivity::interval::Interval;
@@ -88,15 +88,15 @@ impl ReturnedEnergy {
 const fn pushed(scene: &Scene, push: &Push) -> Option<Interval> {
     let torque = Interval::decimal(push.torque);
     let Some(coupling) = compliance(scene) else { return None };
-    let environment = &scene.environment;
-    let depth = match (environment.profile(), environment.wall(), environment) {
-        (None, Some(wall), _) => match depth(&wall, torque) {
-            Some(depth) if coupling.is_zero() => return Some(at_the_port(&wall, depth, push)),
+    let Parts { profile, wall, canceller } = scene.environment.parts();
+    let depth = match (profile, wall) {
+        (None, Some(wall)) => match depth(wall, torque) {
+            Some(depth) if coupling.is_zero() => return Some(at_the_port(wall, depth, push)),
             other => other,
         },
-        (Some(profile), wall, _) => beside(profile, wall, torque),
-        (None, None, Environment::FreeMode { .. }) => Some(Interval::ZERO),
-        _ => None,
+        (Some(profile), wall) => beside(profile, wall.as_ref(), torque),
+        (None, None) if canceller.is_some() => Some(Interval::ZERO),
+        (None, None) => None,
     };
     match depth {
         Some(depth) => Some(torque.mul(depth.add(torque.mul(coupling)))),
@@ -107,7 +107,7 @@ const fn pushed(scene: &Scene, push: &Push) -> Option<Interval> {
 /// Of a wall without a coupling: the spring's energy, and what dampers take over its depth.
 const fn at_the_port(wall: &Wall, depth: Interval, push: &Push) -> Interval {
     let torque = Interval::decimal(push.torque);
-    let damping = Interval::decimal(wall.damping.max(0.0)).add(Interval::decimal(push.injected));
+    let damping = Interval::decimal(wall.damping().max(0.0)).add(Interval::decimal(push.injected));
     let damped = damping.mul(Interval::decimal(push.speed)).add(torque.half());
     torque.min(damped).mul(depth)
 }
@@ -120,9 +120,9 @@ const fn depth(wall: &Wall, torque: Interval) -> Option<Interval> {
 
 /// The depth for a torque profile beside a wall: in the profile's range and the springs beyond it, a period of
 /// a profile without ends; or where the wall alone has both torques.
-const fn beside(profile: &AnyProfile, wall: Option<Wall>, torque: Interval) -> Option<Interval> {
+const fn beside(profile: &Profile, wall: Option<&Wall>, torque: Interval) -> Option<Interval> {
     if let Some(wall) = wall {
-        return depth(&wall, torque.add(Interval::decimal(profile.torque.abs())));
+        return depth(wall, torque.add(Interval::decimal(profile.torque.abs())));
     }
     match profile.ends {
         Some(ends) => {

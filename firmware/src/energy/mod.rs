@@ -173,7 +173,7 @@ impl<N: Number> Injector<N> {
 impl<N: Number> Action<N> for Injector<N> {
     #[inline(always)]
     fn add_to(&self, offer: Response<N>) -> Response<N> {
-        if self.on { offer.plus(self.movement.times(self.gain)) } else { offer }
+        if self.on { offer.plus(Response::Held(self.movement.times(self.gain))) } else { offer }
     }
 
     #[inline(always)]

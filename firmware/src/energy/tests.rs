@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::encoder::{CounterWidth, RawCount};
-use crate::environment::{DelayedSpring, Discretize, Law, LawContext};
+use crate::environment::{Discretize, Environment, Law, LawContext, Wall};
 use crate::scene::{Coupling, Device, Latency, Scene, Timing};
 use crate::servo::{
     AtPhase, Latched, PreparedServo, RenderingOptions, Servo, Simultaneous, Transducers,
@@ -21,12 +21,12 @@ const TRANSDUCERS: Transducers = Transducers {
     largest_speed: 100.0,
 };
 
-const fn spring(stiffness: f64) -> Scene<DelayedSpring<1>> {
+const fn spring(stiffness: f64) -> Scene {
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: PERIOD, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: DelayedSpring { stiffness },
+        environment: Wall::spring(stiffness, 1).alone(),
         latency: Latency::NONE,
         torque_limit: Some(1.5),
     }
@@ -133,13 +133,13 @@ proptest! {
     ) {
         let setting = LawContext {
             period: PERIOD,
-worst_period: None,
+            worst_period: None,
             damping: 0.022,
             passivity: 0.022,
             coupling: Coupling::Spring { stiffness: 44.0 },
             latency: Latency::NONE,
         };
-        let mut law = Discretize::<f64>::law(&DelayedSpring::<1> { stiffness }, &setting).unwrap();
+        let mut law = Discretize::<f64>::law(&Wall::spring(stiffness, 1).alone(), &setting).unwrap();
         let mut injector = Injector::<f64>::new(damping, PERIOD).unwrap();
         let (mut x, mut supplied, mut squares) = (0.0, 0.0, 0.0);
         for (step, on) in moves {
@@ -166,9 +166,9 @@ fn the_unit_is_a_turn_at_full_torque() {
 fn rendering<M: OutputMode>(
     stiffness: f64,
     injection: Option<f64>,
-) -> PreparedServo<DelayedSpring<1>, f64, M>
+) -> PreparedServo<Environment, f64, M>
 where
-    DelayedSpring<1>: crate::servo::SupportsTiming<M>,
+    Environment: crate::servo::SupportsTiming<M>,
 {
     let timed = spring(stiffness).certified().timing_checked::<M>();
     let options = RenderingOptions { injection, ..RenderingOptions::DEFAULT };

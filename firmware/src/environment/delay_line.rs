@@ -5,7 +5,12 @@ use crate::build_error::BuildError;
 use crate::number::Number;
 
 /// The torques of the last ticks that are not due yet.
-pub trait DelayLine<N>: Clone + core::fmt::Debug {
+pub trait DelayLine<N>: Clone + core::fmt::Debug + Sized {
+    /// A line full of zeros.
+    ///
+    /// # Errors
+    /// If it cannot have this length.
+    fn at_rest(delay: usize) -> Result<Self, BuildError>;
     /// The torque that is due in this tick; `None` without a delay.
     fn due(&self) -> Option<N>;
     /// The sum of the torques.
@@ -23,14 +28,14 @@ pub struct FixedDelay<N, const DELAY: usize> {
     oldest_first: [N; DELAY],
 }
 
-impl<N: Number, const DELAY: usize> FixedDelay<N, DELAY> {
-    /// A line full of zeros.
-    pub const fn at_rest() -> Self {
-        Self { oldest_first: [N::ZERO; DELAY] }
-    }
-}
-
 impl<N: Number, const DELAY: usize> DelayLine<N> for FixedDelay<N, DELAY> {
+    fn at_rest(delay: usize) -> Result<Self, BuildError> {
+        if delay != DELAY {
+            return Err(BuildError::Structure);
+        }
+        Ok(Self { oldest_first: [N::ZERO; DELAY] })
+    }
+
     #[inline(always)]
     fn due(&self) -> Option<N> {
         self.oldest_first.first().copied()
@@ -58,20 +63,14 @@ pub struct VariableDelay<N> {
     delay: usize,
 }
 
-impl<N: Number> VariableDelay<N> {
-    /// A line full of zeros.
-    ///
-    /// # Errors
-    /// If the delay is longer than [`MAX_DELAY`].
-    pub(crate) fn at_rest(delay: usize) -> Result<Self, BuildError> {
+impl<N: Number> DelayLine<N> for VariableDelay<N> {
+    fn at_rest(delay: usize) -> Result<Self, BuildError> {
         if delay > MAX_DELAY {
             return Err(BuildError::Delay { delay, largest: MAX_DELAY });
         }
         Ok(Self { oldest_first: [N::ZERO; MAX_DELAY], delay })
     }
-}
 
-impl<N: Number> DelayLine<N> for VariableDelay<N> {
     fn due(&self) -> Option<N> {
         if self.delay == 0 { None } else { self.oldest_first.first().copied() }
     }

@@ -4,13 +4,10 @@ use super::turn::Turn;
 use crate::build_error::BuildError;
 use crate::coupling::{Coupling, Response, Slopes};
 use crate::latency::Latency;
-use crate::matched::MatchedCoupling;
-use crate::number::{Format, Number};
+use crate::number::Number;
 
 /// The difference equation of an environment, initially at rest at zero.
 pub trait Law<N: Number> {
-    /// Whether it is always behind a compliant coupling, independently of the scene.
-    const IS_COMPLIANT: bool = false;
     /// The torque in this tick as a function of `x_E`, given by its value at `x_E = x` (rad); the
     /// slopes are those of [`Law::slopes`].
     fn evaluate(&self, x: N) -> Response<N>;
@@ -18,27 +15,6 @@ pub trait Law<N: Number> {
     fn update(&mut self, x_e: N);
     /// Resets the state as if the environment had always been at `x_e` (rad). Call it between two ticks.
     fn rest_at(&mut self, x_e: N);
-    /// Deflection in rad of the coupling in this tick by the torques of earlier ticks; the argument is the
-    /// last of them in N m. Zero except behind a coupling with memory. Call it once per tick, before anything
-    /// else.
-    #[inline(always)]
-    fn deflection_after(&mut self, _torque: N) -> N {
-        N::ZERO
-    }
-    /// The same for ticks that begin with a known torque: by the torques passed to
-    /// [`remember`](Law::remember).
-    #[inline(always)]
-    fn lasting_deflection(&self) -> N {
-        N::ZERO
-    }
-    /// Compliance in rad/(N m), for the torque of the same tick, of a coupling whose torques it stores;
-    /// `None` if it stores none.
-    fn matched_compliance(&self) -> Option<f64> {
-        None
-    }
-    /// Ends such a tick for the coupling, and stores this torque in N m.
-    #[inline(always)]
-    fn remember(&mut self, _torque: N) {}
     /// The turn of its angles, for a law that repeats without end.
     #[inline(always)]
     fn turn(&mut self) -> Option<&mut Turn<N>> {
@@ -55,6 +31,15 @@ pub trait Law<N: Number> {
     fn slopes(&self) -> Slopes;
 }
 
+/// The law of a part of an environment, built from its data of the type `D`.
+pub trait LawOf<N: Number, D>: Law<N> + Clone + core::fmt::Debug {
+    /// Computes the coefficients.
+    ///
+    /// # Errors
+    /// If a coefficient does not fit the format or does not exist, or the part has another structure.
+    fn law_of(part: &D, context: &LawContext) -> Result<Self, BuildError>;
+}
+
 /// An environment that can run in the number format `N`.
 pub trait Discretize<N: Number> {
     /// Its difference equation: only the state and the coefficients that it uses.
@@ -64,22 +49,6 @@ pub trait Discretize<N: Number> {
     /// # Errors
     /// If a coefficient does not fit the format or does not exist.
     fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError>;
-}
-
-impl LawContext {
-    /// The matched coupling in a number format; without `UPDATES` for an amplifier that is not updated within
-    /// the period.
-    ///
-    /// # Errors
-    /// If it does not exist.
-    pub(crate) fn matched<const UPDATES: bool>(
-        &self,
-        format: Format,
-    ) -> Result<MatchedCoupling, BuildError> {
-        let Self { period, worst_period, passivity, latency, .. } = self;
-        MatchedCoupling::of_kind::<UPDATES>(*period, *worst_period, *passivity, latency, format)
-            .ok_or(BuildError::NoMatchedCoupling)
-    }
 }
 
 /// The scene's other quantities that an environment's coefficients depend on.

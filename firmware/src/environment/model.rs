@@ -9,10 +9,18 @@
 //! compile time ([`Scene::certified_as`](crate::scene::Scene::certified_as)). A board calls the trait's
 //! method at its start and for each change, and does not run a scene that passes only with the value.
 
-use super::*;
+use super::any::Environment;
+use super::law::LawContext;
+use super::parts::Parts;
+use super::stated::StatedModel;
 use crate::coupling::Coupling;
-use crate::latency::Latency;
 use crate::parameter::NamedParameters;
+use crate::scene::Scene;
+
+/// Traits for this crate's types alone.
+pub(crate) mod sealed {
+    pub trait Sealed {}
+}
 
 /// An environment of another crate.
 ///
@@ -28,43 +36,31 @@ pub trait StatedEnvironment: NamedParameters + Copy + 'static {
 pub enum Memory {
     /// None: it has no coupling, or a spring.
     None,
-    /// Those for the latency in the parameters of [`Matched`].
-    Of {
-        /// [Whole samples](Latency::whole_samples) of the output delay.
-        whole: usize,
-        /// The number of [lags](Latency::trails) of amplifier and sensor, where a lag in a range counts twice.
-        lags: usize,
+    /// Those of the matched coupling.
+    Matched {
         /// Whether the amplifier is updated several times in a period.
         updates: bool,
     },
-    /// None, because it has no coupling, as [`Uncoupled`].
+    /// None, because it has no coupling.
     Uncoupled,
     /// Those that the scene requires.
     Any,
 }
 
 impl Memory {
-    /// Whether it is sufficient for a scene with this coupling and latency.
-    pub const fn serves(self, coupling: &Coupling, latency: &Latency, period: f64) -> bool {
-        let is_matched = matches!(coupling, Coupling::Matched);
-        match self {
-            Self::None => !is_matched,
-            Self::Uncoupled => matches!(coupling, Coupling::Rigid),
-            Self::Any => true,
-            Self::Of { whole, lags, updates } => {
-                let is_updated = latency.actuator_updates != 0;
-                is_matched
-                    && latency.whole_samples(period) == whole
-                    && latency.trails() == lags
-                    && is_updated == updates
-            }
+    /// That of a program's scene.
+    pub(crate) const fn of(scene: &Scene) -> Self {
+        match scene.coupling {
+            Coupling::Rigid => Self::Uncoupled,
+            Coupling::Spring { .. } => Self::None,
+            Coupling::Matched => Self::Matched { updates: scene.latency.actuator_updates != 0 },
         }
     }
 
     /// Whether it may be behind a coupling that stores torques. If not, the program omits the code for such
     /// a coupling.
     pub const fn is_stored(self) -> bool {
-        matches!(self, Self::Any | Self::Of { .. })
+        matches!(self, Self::Any | Self::Matched { .. })
     }
 
     /// Whether a board renders it without a coupling. If not, the program omits the certificate's code for
@@ -76,7 +72,7 @@ impl Memory {
     /// Whether the amplifier may be updated several times in a period. If not, the program omits the code for
     /// such a coupling.
     pub const fn has_updates(self) -> bool {
-        matches!(self, Self::Any | Self::Of { updates: true, .. })
+        matches!(self, Self::Any | Self::Matched { updates: true })
     }
 }
 
@@ -118,29 +114,19 @@ impl ProfileUse {
         is_composed: true,
     };
 
-    /// A table, late by `delay` samples.
-    pub const fn table(delay: usize) -> Self {
-        Self { exists: true, is_prompt: delay == 0, ..Self::NONE }
-    }
-
-    /// A table with a damper.
-    pub const fn damped(delay: usize) -> Self {
-        Self { is_damped: true, ..Self::table(delay) }
-    }
-
-    /// A table with a snap point.
-    pub const fn snap(delay: usize) -> Self {
-        Self { snaps: true, ..Self::table(delay) }
-    }
-
-    /// Tables, one of which is selected.
-    pub const fn modes(delay: usize) -> Self {
-        Self { has_modes: true, ..Self::snap(delay) }
-    }
-
-    /// A table in a sum.
-    pub const fn sum(delay: usize) -> Self {
-        Self { is_composed: true, ..Self::table(delay) }
+    /// That of a program's environment.
+    pub(crate) const fn of(parts: &Parts) -> Self {
+        match &parts.profile {
+            Some(profile) => Self {
+                exists: true,
+                is_prompt: profile.delay == 0,
+                is_damped: profile.damping.is_some(),
+                snaps: profile.snap.is_some() || profile.modes.is_some(),
+                has_modes: profile.modes.is_some(),
+                is_composed: parts.count() > 1,
+            },
+            None => Self::NONE,
+        }
     }
 }
 
@@ -172,69 +158,14 @@ impl<E: StatedEnvironment> EnvironmentModel for E {
     }
 }
 
-macro_rules! known_models {
-    ($(
-        [$($generics:tt)*] $environment:ty:
-        $cancels:literal, $memory:ident, $profile:expr;
-    )*) => {$(
-        impl<const WHOLE: usize, const LAGS: usize, const UPDATES: bool, $($generics)*> sealed::Sealed
-            for Matched<$environment, WHOLE, LAGS, UPDATES>
-        {
-        }
+impl sealed::Sealed for Environment {}
 
-        impl<const WHOLE: usize, const LAGS: usize, const UPDATES: bool, $($generics)*> EnvironmentModel
-            for Matched<$environment, WHOLE, LAGS, UPDATES>
-        {
-            const CANCELS_DAMPING: bool = $cancels;
-            const PROFILE: ProfileUse = $profile;
-            const MEMORY: Memory = Memory::Of { whole: WHOLE, lags: LAGS, updates: UPDATES };
+impl EnvironmentModel for Environment {
+    const CANCELS_DAMPING: bool = true;
+    const PROFILE: ProfileUse = ProfileUse::ANY;
+    const MEMORY: Memory = Memory::Any;
 
-            fn as_data(&self, _: &LawContext) -> Environment {
-                Self::as_data(self)
-            }
-        }
-
-        impl<const WHOLE: usize, const LAGS: usize, const UPDATES: bool, $($generics)*>
-            Matched<$environment, WHOLE, LAGS, UPDATES>
-        {
-            /// The environment as data.
-            pub const fn as_data(&self) -> Environment {
-                self.environment.as_data()
-            }
-        }
-
-        impl<$($generics)*> sealed::Sealed for Uncoupled<$environment> {}
-
-        impl<$($generics)*> EnvironmentModel for Uncoupled<$environment> {
-            const CANCELS_DAMPING: bool = $cancels;
-            const PROFILE: ProfileUse = $profile;
-            const MEMORY: Memory = Memory::Uncoupled;
-
-            fn as_data(&self, _: &LawContext) -> Environment {
-                Self::as_data(self)
-            }
-        }
-
-        impl<$($generics)*> Uncoupled<$environment> {
-            /// The environment as data.
-            pub const fn as_data(&self) -> Environment {
-                self.environment.as_data()
-            }
-        }
-
-        impl<$($generics)*> sealed::Sealed for $environment {}
-
-        impl<$($generics)*> EnvironmentModel for $environment {
-            const CANCELS_DAMPING: bool = $cancels;
-            const PROFILE: ProfileUse = $profile;
-            const MEMORY: Memory = Memory::$memory;
-
-            fn as_data(&self, _: &LawContext) -> Environment {
-                // The constant function of the type, which has the same name.
-                <$environment>::as_data(self)
-            }
-        }
-    )*};
+    fn as_data(&self, _: &LawContext) -> Environment {
+        *self
+    }
 }
-
-for_every_environment!(known_models);

@@ -1,19 +1,21 @@
 //! The numbers of any environment by name.
 
 use super::any::Environment;
-use super::any_wall::Wall;
-use super::composed::Composed;
-use super::profile::{AnyProfile, Ends, ModeSelection};
+use super::canceller::Canceller;
+use super::parts::Parts;
+use super::profile::{Ends, ModeSelection, Profile};
 use super::stated::{StatedBound, StatedModel};
+use super::wall::{Damper, Side, Wall};
 use crate::parameter::{NamedParameters, Parameter, numbers};
 
 impl Environment {
     /// The value of a parameter, including whole numbers; `None` if the environment does not have it.
     pub const fn get(&self, parameter: Parameter) -> Option<f64> {
-        match (parameter, self.rational()) {
-            (Parameter::Delay, Some(rational)) => Some(rational.delay as f64),
-            (Parameter::Delay, None) => Some(self.delay() as f64),
-            (Parameter::UnitZeros, Some(rational)) => Some(rational.unit_zeros as f64),
+        match (parameter, self.rational(), self.wall()) {
+            (Parameter::Delay, Some(rational), _) => Some(rational.delay as f64),
+            (Parameter::Delay, None, _) => Some(self.delay() as f64),
+            (Parameter::UnitZeros, Some(rational), _) => Some(rational.unit_zeros as f64),
+            (Parameter::Face, _, Some(wall)) => Some(wall.face()),
             _ => match self.number(parameter) {
                 Some(value) => Some(*value),
                 None => None,
@@ -27,23 +29,27 @@ impl Environment {
         let mut changed = *self;
         let is_whole = parameter.range().admits(value);
         match (parameter, &mut changed) {
-            (Parameter::Delay, _) if is_whole => *changed.delay_mut() = value as usize,
+            (Parameter::Delay, _) if is_whole => match changed.delay_mut() {
+                Some(delay) => *delay = value as usize,
+                None => return None,
+            },
             (
                 Parameter::UnitZeros,
                 Self::Rational(rational) | Self::Stated(StatedModel::Linear(rational)),
             ) if is_whole => rational.unit_zeros = value as usize,
             (
                 Parameter::Filter,
-                Self::DamperWall(wall)
-                | Self::FreeModeWall { wall, .. }
-                | Self::Composed(Composed { wall: Some(wall), .. }),
-            ) => {
-                wall.filter = Some(value);
+                Self::Parts(Parts { wall: Some(Wall { damper: Some(damper), .. }), .. }),
+            ) => damper.filter = Some(value),
+            (Parameter::Face, Self::Parts(Parts { wall: Some(wall), .. })) => {
+                wall.side = wall.side.at(value);
             }
-            (Parameter::Mode, Self::Profile(profile)) => match profile.selecting(value) {
-                Some(selected) => *profile = selected,
-                None => return None,
-            },
+            (Parameter::Mode, Self::Parts(Parts { profile: Some(profile), .. })) => {
+                match profile.selecting(value) {
+                    Some(selected) => *profile = selected,
+                    None => return None,
+                }
+            }
             _ => match changed.number_mut(parameter) {
                 Some(place) => *place = value,
                 None => return None,
@@ -55,58 +61,45 @@ impl Environment {
     numbers! {
         number, number_mut, numbers, value;
         Stiffness:
-            Self::DelayedSpring(Wall { stiffness: value, .. })
-            | Self::DamperWall(Wall { stiffness: value, .. })
-            | Self::FreeModeWall { wall: Wall { stiffness: value, .. }, .. }
-            | Self::Profile(AnyProfile { ends: Some(Ends { stiffness: value, .. }), .. })
-            | Self::Composed(Composed { wall: Some(Wall { stiffness: value, .. }), .. })
-            | Self::Composed(Composed {
+            Self::Parts(Parts { wall: Some(Wall { stiffness: value, .. }), .. })
+            | Self::Parts(Parts {
                 wall: None,
-                profile: AnyProfile { ends: Some(Ends { stiffness: value, .. }), .. },
+                profile: Some(Profile { ends: Some(Ends { stiffness: value, .. }), .. }),
                 ..
             }),
-        // A spring ignores its wall's damping.
         Damping:
-            Self::DamperWall(Wall { damping: value, .. })
-            | Self::FreeModeWall { wall: Wall { damping: value, .. }, .. }
-            | Self::Profile(AnyProfile { damping: value, .. })
-            | Self::Composed(Composed { wall: Some(Wall { damping: value, .. }), .. })
-            | Self::Composed(Composed { wall: None, profile: AnyProfile { damping: value, .. }, .. }),
+            Self::Parts(Parts {
+                wall: Some(Wall { damper: Some(Damper { damping: value, .. }), .. }), ..
+            })
+            | Self::Parts(Parts {
+                wall: None, profile: Some(Profile { damping: Some(value), .. }), ..
+            }),
         Filter:
-            Self::DamperWall(Wall { filter: Some(value), .. })
-            | Self::FreeModeWall { wall: Wall { filter: Some(value), .. }, .. }
-            | Self::Composed(Composed { wall: Some(Wall { filter: Some(value), .. }), .. }),
+            Self::Parts(Parts {
+                wall: Some(Wall { damper: Some(Damper { filter: Some(value), .. }), .. }), ..
+            }),
         Face:
-            Self::DelayedSpring(Wall { face: value, .. })
-            | Self::DamperWall(Wall { face: value, .. })
-            | Self::FreeModeWall { wall: Wall { face: value, .. }, .. }
-            | Self::Composed(Composed { wall: Some(Wall { face: value, .. }), .. }),
-        Residual:
-            Self::FreeMode { residual: value, .. }
-            | Self::FreeModeWall { residual: value, .. }
-            | Self::Composed(Composed { residual: Some(value), .. }),
+            Self::Parts(Parts {
+                wall: Some(Wall { side: Side::Displaced(value) | Side::Face(value), .. }), ..
+            }),
+        Residual: Self::Parts(Parts { canceller: Some(Canceller { residual: value, .. }), .. }),
         StatedIndex:
             Self::Stated(StatedModel::Bounded { bound: StatedBound { index: value, .. }, .. }),
-        ProfileTorque:
-            Self::Profile(AnyProfile { torque: value, .. })
-            | Self::Composed(Composed { profile: AnyProfile { torque: value, .. }, .. }),
-        Count:
-            Self::Profile(AnyProfile { count: value, .. })
-            | Self::Composed(Composed { profile: AnyProfile { count: value, .. }, .. }),
-        Centre:
-            Self::Profile(AnyProfile { centre: value, .. })
-            | Self::Composed(Composed { profile: AnyProfile { centre: value, .. }, .. }),
+        ProfileTorque: Self::Parts(Parts { profile: Some(Profile { torque: value, .. }), .. }),
+        Count: Self::Parts(Parts { profile: Some(Profile { count: value, .. }), .. }),
+        Centre: Self::Parts(Parts { profile: Some(Profile { centre: value, .. }), .. }),
         From:
-            Self::Profile(AnyProfile { ends: Some(Ends { from: value, .. }), .. })
-            | Self::Composed(Composed {
-                profile: AnyProfile { ends: Some(Ends { from: value, .. }), .. }, ..
+            Self::Parts(Parts {
+                profile: Some(Profile { ends: Some(Ends { from: value, .. }), .. }), ..
             }),
         To:
-            Self::Profile(AnyProfile { ends: Some(Ends { to: value, .. }), .. })
-            | Self::Composed(Composed {
-                profile: AnyProfile { ends: Some(Ends { to: value, .. }), .. }, ..
+            Self::Parts(Parts {
+                profile: Some(Profile { ends: Some(Ends { to: value, .. }), .. }), ..
             }),
-        Mode: Self::Profile(AnyProfile { modes: Some(ModeSelection { mode: value, .. }), .. }),
+        Mode:
+            Self::Parts(Parts {
+                profile: Some(Profile { modes: Some(ModeSelection { mode: value, .. }), .. }), ..
+            }),
         StatedGain: Self::Stated(StatedModel::Bounded { bound: StatedBound { gain: value, .. }, .. }),
     }
 }

@@ -6,7 +6,6 @@ use super::{MAX_DEGREE, MAX_DELAY};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
 use crate::number::Number;
-use crate::parameter::named_parameters;
 
 /// Any proper rational `E(z)` up to degree 8, with up to 8 additional samples of delay:
 /// `E(z) = z^-delay (z - 1)^unit_zeros numerator(z) / denominator(z)`.
@@ -24,11 +23,6 @@ pub struct Rational {
     /// Zeros at `z = 1` that multiply the numerator. Declared zeros are exact, even if the coefficients of
     /// the product would not sum to zero in binary.
     pub unit_zeros: usize,
-}
-
-// Its coefficients belong together; none is changed alone.
-named_parameters! {
-    [] Rational: ;
 }
 
 /// A polynomial's coefficients in descending powers, at most `MAX_DEGREE + 1` of them.

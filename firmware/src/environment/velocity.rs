@@ -4,11 +4,17 @@
 //! the state `s += (1 - a) (x - s)`. A backward difference is the case `a = 0`, where the state is the last
 //! position.
 
+use super::wall::Damper;
 use crate::build_error::BuildError;
 use crate::number::Number;
 
 /// Adds a torque for the velocity to a torque for the position.
-pub trait Velocity<N: Number>: Clone + core::fmt::Debug {
+pub trait Velocity<N: Number>: Clone + core::fmt::Debug + Sized {
+    /// That of a damper, with the period in s; `None`: without a damper.
+    ///
+    /// # Errors
+    /// If a coefficient does not fit the number format, or it is not such a damper.
+    fn of(damper: Option<&Damper>, period: f64) -> Result<Self, BuildError>;
     /// `torque` plus the torque for the velocity in N m, with the environment at `x` (rad).
     fn add_to(&self, torque: N, x: N) -> N;
     /// Ends the tick with the environment at `x_e` (rad).
@@ -26,6 +32,13 @@ pub trait Velocity<N: Number>: Clone + core::fmt::Debug {
 pub struct NoDamping;
 
 impl<N: Number> Velocity<N> for NoDamping {
+    fn of(damper: Option<&Damper>, _: f64) -> Result<Self, BuildError> {
+        match damper {
+            None => Ok(Self),
+            Some(_) => Err(BuildError::Structure),
+        }
+    }
+
     #[inline(always)]
     fn add_to(&self, torque: N, _: N) -> N {
         torque
@@ -50,15 +63,15 @@ pub struct Difference<N: Number> {
     previous: N,
 }
 
-impl<N: Number> Difference<N> {
-    /// A damper from `B` in N m s/rad and the period in s.
-    pub(crate) fn new(damping: f64, period: f64) -> Result<Self, BuildError> {
+impl<N: Number> Velocity<N> for Difference<N> {
+    fn of(damper: Option<&Damper>, period: f64) -> Result<Self, BuildError> {
+        let Some(Damper { damping, filter: None }) = damper else {
+            return Err(BuildError::Structure);
+        };
         let gain = BuildError::coefficient::<N>("wall damping / period", damping / period)?;
         Ok(Self { gain, previous: N::ZERO })
     }
-}
 
-impl<N: Number> Velocity<N> for Difference<N> {
     #[inline(always)]
     fn add_to(&self, torque: N, x: N) -> N {
         torque.plus(x.minus(self.previous).times(self.gain))
@@ -100,11 +113,6 @@ impl<N: Number> Washout<N> {
         })
     }
 
-    /// A damper `B` (N m s/rad) behind the velocity filter `(1 - a) / (1 - a / z)`.
-    pub(crate) fn filtered(damping: f64, period: f64, pole: f64) -> Result<Self, BuildError> {
-        Self::new(damping / period * (1.0 - pole), 1.0 - pole)
-    }
-
     /// The torque in N m with the environment at `x` (rad).
     #[inline(always)]
     pub fn torque(&self, x: N) -> N {
@@ -113,6 +121,15 @@ impl<N: Number> Washout<N> {
 }
 
 impl<N: Number> Velocity<N> for Washout<N> {
+    fn of(damper: Option<&Damper>, period: f64) -> Result<Self, BuildError> {
+        match damper {
+            Some(Damper { damping, filter: Some(pole) }) => {
+                Self::new(damping / period * (1.0 - pole), 1.0 - pole)
+            }
+            _ => Err(BuildError::Structure),
+        }
+    }
+
     #[inline(always)]
     fn add_to(&self, torque: N, x: N) -> N {
         torque.plus(self.torque(x))
@@ -148,6 +165,14 @@ pub enum AnyVelocity<N: Number> {
 }
 
 impl<N: Number> Velocity<N> for AnyVelocity<N> {
+    fn of(damper: Option<&Damper>, period: f64) -> Result<Self, BuildError> {
+        Ok(match damper {
+            None => Self::None(NoDamping),
+            Some(Damper { filter: None, .. }) => Self::Difference(Difference::of(damper, period)?),
+            Some(Damper { filter: Some(_), .. }) => Self::Filtered(Washout::of(damper, period)?),
+        })
+    }
+
     fn add_to(&self, torque: N, x: N) -> N {
         match self {
             Self::None(velocity) => velocity.add_to(torque, x),

@@ -1,14 +1,20 @@
 //! The law of every wall: a spring with an optional damper, face and delay.
 
 use super::delay_line::DelayLine;
-use super::law::Law;
+use super::law::{Law, LawContext, LawOf};
 use super::velocity::Velocity;
+use super::wall::{Side, Wall};
 use crate::build_error::BuildError;
 use crate::coupling::{Contact, Response, Slopes};
 use crate::number::Number;
 
 /// The position of a wall, and whether it can pull.
-pub trait Side<N>: Clone + core::fmt::Debug {
+pub trait Place<N>: Clone + core::fmt::Debug + Sized {
+    /// That of a side.
+    ///
+    /// # Errors
+    /// If the number format cannot represent its position, or it is not such a side.
+    fn of(side: Side) -> Result<Self, BuildError>;
     /// Depth in rad of the position `x` (rad) behind the wall's rest position.
     fn depth(&self, x: N) -> N;
     /// Whether the wall acts only at positive depths and only pushes.
@@ -19,7 +25,14 @@ pub trait Side<N>: Clone + core::fmt::Debug {
 #[derive(Clone, Copy, Debug)]
 pub struct Centred;
 
-impl<N> Side<N> for Centred {
+impl<N> Place<N> for Centred {
+    fn of(side: Side) -> Result<Self, BuildError> {
+        match side {
+            Side::Centred => Ok(Self),
+            _ => Err(BuildError::Structure),
+        }
+    }
+
     #[inline(always)]
     fn depth(&self, x: N) -> N {
         x
@@ -35,7 +48,14 @@ impl<N> Side<N> for Centred {
 #[derive(Clone, Copy, Debug)]
 pub struct Displaced<N>(pub(crate) N);
 
-impl<N: Number> Side<N> for Displaced<N> {
+impl<N: Number> Place<N> for Displaced<N> {
+    fn of(side: Side) -> Result<Self, BuildError> {
+        match side {
+            Side::Displaced(position) => Ok(Self(BuildError::number("wall face", position)?)),
+            _ => Err(BuildError::Structure),
+        }
+    }
+
     #[inline(always)]
     fn depth(&self, x: N) -> N {
         x.minus(self.0)
@@ -51,7 +71,14 @@ impl<N: Number> Side<N> for Displaced<N> {
 #[derive(Clone, Copy, Debug)]
 pub struct Face<N>(pub(crate) N);
 
-impl<N: Number> Side<N> for Face<N> {
+impl<N: Number> Place<N> for Face<N> {
+    fn of(side: Side) -> Result<Self, BuildError> {
+        match side {
+            Side::Face(position) => Ok(Self(BuildError::number("wall face", position)?)),
+            _ => Err(BuildError::Structure),
+        }
+    }
+
     #[inline(always)]
     fn depth(&self, x: N) -> N {
         x.minus(self.0)
@@ -65,12 +92,17 @@ impl<N: Number> Side<N> for Face<N> {
 
 /// Any of these, for scenes as data.
 #[derive(Clone, Copy, Debug)]
-pub struct AnySide<N> {
+pub struct AnyPlace<N> {
     pub(crate) face: N,
     pub(crate) one_sided: bool,
 }
 
-impl<N: Number> Side<N> for AnySide<N> {
+impl<N: Number> Place<N> for AnyPlace<N> {
+    fn of(side: Side) -> Result<Self, BuildError> {
+        let face = BuildError::number("wall face", side.position())?;
+        Ok(Self { face, one_sided: side.is_one_sided() })
+    }
+
     fn depth(&self, x: N) -> N {
         x.minus(self.face)
     }
@@ -89,13 +121,7 @@ pub struct WallLaw<N: Number, V, S, D> {
     delay: D,
 }
 
-impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> WallLaw<N, V, S, D> {
-    /// A wall from `K` in N m/rad and its parts.
-    pub(crate) fn new(stiffness: f64, velocity: V, side: S, delay: D) -> Result<Self, BuildError> {
-        let stiffness = BuildError::coefficient::<N>("wall stiffness", stiffness)?;
-        Ok(Self { stiffness, velocity, side, delay })
-    }
-
+impl<N: Number, V: Velocity<N>, S: Place<N>, D: DelayLine<N>> WallLaw<N, V, S, D> {
     /// Torque of the spring and damper alone, as if the wall had no face.
     #[inline(always)]
     fn line(&self, x: N, depth: N) -> N {
@@ -129,7 +155,22 @@ impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> WallLaw<N, V, S, D>
     }
 }
 
-impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> Law<N> for WallLaw<N, V, S, D> {
+impl<N, V, S, D> LawOf<N, Wall> for WallLaw<N, V, S, D>
+where
+    N: Number,
+    V: Velocity<N>,
+    S: Place<N>,
+    D: DelayLine<N>,
+{
+    fn law_of(wall: &Wall, context: &LawContext) -> Result<Self, BuildError> {
+        let velocity = V::of(wall.damper.as_ref(), context.period)?;
+        let (side, delay) = (S::of(wall.side)?, D::at_rest(wall.delay)?);
+        let stiffness = BuildError::coefficient::<N>("wall stiffness", wall.stiffness)?;
+        Ok(Self { stiffness, velocity, side, delay })
+    }
+}
+
+impl<N: Number, V: Velocity<N>, S: Place<N>, D: DelayLine<N>> Law<N> for WallLaw<N, V, S, D> {
     #[inline(always)]
     fn evaluate(&self, x: N) -> Response<N> {
         match self.delay.due() {

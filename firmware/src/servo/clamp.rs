@@ -2,11 +2,13 @@
 
 use super::Servo;
 use crate::build_error::BuildError;
+use crate::coupling_memory::CouplingMemory;
 use crate::current::HeatStep;
-use crate::environment::{Discretize, Law};
+use crate::environment::Law;
 use crate::number::Number;
+use crate::rendering::Rendering;
 
-impl<E: Discretize<N>, N: Number> Servo<E, N> {
+impl<E: Rendering<N>, N: Number> Servo<E, N> {
     /// The same servo with a clamp that opens and closes within `ticks`.
     ///
     /// # Errors
@@ -69,6 +71,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         let (x, _) = N::angle(count, self.angle_scale);
         self.torque = N::ZERO;
         self.law.rest_at(x);
+        self.memory.rest();
         x
     }
 

@@ -15,11 +15,13 @@ use core::hint::cold_path;
 
 use crate::certificate::{Certified, certify_scene};
 use crate::coupling::{Response, Solver};
+use crate::coupling_memory::CouplingMemory;
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
-use crate::environment::{Discretize, EnvironmentModel, Law};
+use crate::environment::{EnvironmentModel, Law};
 use crate::number::{Number, OutOfRange};
+use crate::rendering::Rendering;
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
 
@@ -36,7 +38,7 @@ pub struct Output {
 ///
 /// ```
 /// use haptic_servo::encoder::{CounterWidth, RawCount};
-/// use haptic_servo::environment::DelayedSpring;
+/// use haptic_servo::environment::Wall;
 /// use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 /// use haptic_servo::servo::{Servo, Transducers};
 ///
@@ -44,7 +46,7 @@ pub struct Output {
 ///     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
 ///     timing: Timing { period: 1e-3, worst_period: None },
 ///     coupling: Coupling::Spring { stiffness: 44.0 },
-///     environment: DelayedSpring::<1> { stiffness: 22.0 },
+///     environment: Wall::spring(22.0, 1).alone(),
 ///     latency: Latency::NONE, torque_limit: None,
 /// };
 /// let transducers = Transducers {
@@ -59,10 +61,11 @@ pub struct Output {
 /// # Ok::<(), haptic_servo::servo::BuildError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Servo<E: Discretize<N>, N: Number> {
+pub struct Servo<E: Rendering<N>, N: Number> {
     position: Position,
     angle_scale: N::Coefficient,
     law: E::Law,
+    memory: E::Memory,
     solver: Solver<N>,
     limiter: Limiter<N>,
     code_scale: N::Coefficient,
@@ -70,7 +73,7 @@ pub struct Servo<E: Discretize<N>, N: Number> {
     radians_per_count: f64,
 }
 
-impl<E: EnvironmentModel + Discretize<N>, N: Number> Servo<E, N> {
+impl<E: EnvironmentModel + Rendering<N>, N: Number> Servo<E, N> {
     /// The servo of a certified scene, at rest at zero. The scene is certified again if its certificate is
     /// for coefficients other than those of this number format, for instance the unrounded ones, or for a
     /// statement that differs from the environment's present statement.
@@ -87,12 +90,14 @@ impl<E: EnvironmentModel + Discretize<N>, N: Number> Servo<E, N> {
     }
 }
 
-impl<E: Discretize<N>, N: Number> Servo<E, N> {
+impl<E: Rendering<N>, N: Number> Servo<E, N> {
     /// The servo of a scene that the caller has certified.
     pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let radians_per_count = transducers.radians_per_count()?;
         let codes_per_torque = transducers.codes_per_torque()?;
-        let mut law = scene.environment.law(&scene.setting()?)?;
+        let context = scene.setting()?;
+        let memory = E::Memory::of(&context)?;
+        let mut law = scene.environment.law(&context)?;
         if let Some(turn) = law.turn() {
             turn.set_counts(transducers.counts_per_turn)?;
         }
@@ -100,13 +105,14 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         if hysteresis <= radians_per_count {
             return Err(BuildError::Hysteresis { hysteresis, count: radians_per_count });
         }
-        let compliance = scene.coupling.compliance(law.matched_compliance())?;
+        let compliance = scene.coupling.compliance(memory.compliance())?;
         Ok(Self {
             position: Position::new(transducers.counter),
             angle_scale: N::angle_scale(radians_per_count)
                 .map_err(|reason| BuildError::Unrepresentable { name: "encoder step", reason })?,
             solver: Solver::new(compliance, law.slopes())?,
             law,
+            memory,
             limiter: transducers.limiter(scene.torque_limit)?,
             code_scale: N::code_scale(codes_per_torque)
                 .map_err(|reason| BuildError::Unrepresentable { name: "codes per N m", reason })?,
@@ -147,7 +153,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     #[inline(always)]
     fn tick_zero_delay(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, standing_still) = self.angle(raw, action);
-        let x = x.minus(self.law.deflection_after(self.torque));
+        let x = x.minus(self.memory.deflection_after(self.torque));
         let offer = action.add_to(self.law.evaluate(x));
         let output = self.solve_to_code(offer, standing_still);
         self.update_environment(x, action);
@@ -160,9 +166,9 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     #[inline(always)]
     fn tick_latched(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, standing_still) = self.angle(raw, action);
-        let x = x.minus(self.law.lasting_deflection());
+        let x = x.minus(self.memory.lasting_deflection());
         // The previous tick computed the torque of this tick.
-        self.law.remember(self.torque);
+        self.memory.remember(self.torque);
         self.update_environment(x, action);
         let offer = action.add_to(self.law.evaluate(x));
         self.solve_to_code(offer, standing_still)
@@ -176,7 +182,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
         let angle = self.law.turn().map_or(angle, |turn| turn.wrapped(angle));
         let x = N::from_f64(angle)?;
-        let x = x.minus(self.law.deflection_after(self.torque));
+        let x = x.minus(self.memory.deflection_after(self.torque));
         self.solve_to_code(self.law.evaluate(x), LimitReason::None);
         self.update_environment(x, &mut NoAction);
         Ok(self.torque_nm())
@@ -234,7 +240,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     #[inline(always)]
     fn limited(&self, offer: Response<N>, otherwise: LimitReason) -> (N, LimitReason) {
         match offer {
-            Response::Wall(wall) if E::Law::IS_COMPLIANT || !self.solver.is_rigid() => {
+            Response::Wall(wall) if E::Memory::IS_COMPLIANT || !self.solver.is_rigid() => {
                 let wanted = self.solver.wall_or_face(wall.torque, wall.depth);
                 self.limiter.limit_push(wanted, otherwise)
             }

@@ -8,9 +8,10 @@ use crate::build_error::BuildError;
 use crate::certificate::{TimingChecked, timing_checked};
 use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
-use crate::environment::{Discretize, EnvironmentModel, SupportsTiming};
+use crate::environment::{EnvironmentModel, SupportsTiming};
 use crate::number::Number;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN};
+use crate::rendering::Rendering;
 use crate::scene::Scene;
 use crate::transducers::Transducers;
 
@@ -62,7 +63,7 @@ impl Default for RenderingOptions {
 
 /// The servo of a scene that was checked for the timing of mode `M`, ready to be swapped in.
 #[derive(Clone, Debug)]
-pub struct PreparedServo<E: Discretize<N>, N: Number, M> {
+pub struct PreparedServo<E: Rendering<N>, N: Number, M> {
     servo: Servo<E, N>,
     injector: Option<Injector<N>>,
     pace: TimingLimits,
@@ -88,7 +89,7 @@ pub struct TimingLimits {
 
 impl<E, N: Number, M: OutputMode> PreparedServo<E, N, M>
 where
-    E: EnvironmentModel + Discretize<N> + SupportsTiming<M>,
+    E: EnvironmentModel + Rendering<N> + SupportsTiming<M>,
 {
     /// The servo of a timed scene, at rest at zero and with its clamp shut. The scene is certified again in
     /// this number format: its certificate may be for other coefficients, for instance the unrounded ones, or
@@ -108,7 +109,7 @@ where
     }
 }
 
-impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
+impl<E: Rendering<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
     /// From a certificate in this number format.
     // Not inlined, so that its frame is not on the stack while a scene is certified.
     #[inline(never)]

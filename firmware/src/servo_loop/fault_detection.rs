@@ -11,7 +11,7 @@ use crate::torque_output::OutputEvent;
 /// Ticks in a row without a fault before the servo may be armed.
 const FAULT_FREE_TICKS: u32 = MAX_DELAY as u32 + 2;
 
-impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
+impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// The code in a state other than running: mid-scale unless the servo is armed and renders.
     #[cold]
     #[inline(never)]

@@ -40,10 +40,10 @@ pub use crate::output_timing::READ_WITHIN;
 
 use crate::dac::DacCode;
 use crate::energy::EnergyMonitor;
-use crate::environment::Discretize;
 use crate::fault::Fault;
 use crate::number::Number;
 use crate::output_timing::OutputMode;
+use crate::rendering::Rendering;
 use crate::servo::{PreparedServo, TimingLimits};
 use crate::torque::LimitReason;
 
@@ -67,7 +67,7 @@ struct MissedUpdates {
 
 /// The servo loop of a board: the servo, its state, and its fault detection.
 #[derive(Clone, Debug)]
-pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
+pub struct ServoLoop<E: Rendering<N>, N: Number, M> {
     rendering: PreparedServo<E, N, M>,
     energy: EnergyMonitor,
     state: State,
@@ -100,7 +100,7 @@ pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
     link_lost: bool,
 }
 
-impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
+impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// A disarmed loop with this servo.
     ///
     /// `period` is the number of timer counts in a period, and `previous_fault` the fault from

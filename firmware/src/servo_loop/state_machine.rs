@@ -5,7 +5,7 @@ use super::*;
 use crate::current::PowerFault;
 use crate::fault::FaultRecord;
 
-impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
+impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// Called in every tick except that of a running servo without requests.
     #[cold]
     #[inline(never)]

@@ -52,7 +52,7 @@ pub fn longest_gap(options: &RenderingOptions, period: f64) -> f64 {
     f64::from(ticks.saturating_add(SETTLING + 2)) * period
 }
 
-impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
+impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// Begins to close the clamp of a running servo if a set is waiting.
     pub(super) fn begin_swap(&mut self, inbox: &Inbox<'_, PreparedServo<E, N, M>>) {
         if inbox.has_set() {

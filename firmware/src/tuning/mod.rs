@@ -15,9 +15,10 @@ use core::fmt;
 use crate::build_error::BuildError;
 use crate::certificate::{Parameter, certify_scene, scene_data, timing_checked};
 use crate::current::{Push, ReturnedEnergy};
-use crate::environment::{Discretize, EnvironmentModel, SupportsTiming};
+use crate::environment::{EnvironmentModel, SupportsTiming};
 use crate::number::Number;
 use crate::output_timing::OutputMode;
+use crate::rendering::Rendering;
 use crate::scene::Scene;
 use crate::servo::{PreparedServo, RenderingOptions};
 use crate::step::Step;
@@ -25,9 +26,9 @@ use crate::transducers::Transducers;
 
 /// An environment whose scenes can be certified, checked for timing, rendered in the number format `N`, and
 /// changed while they run.
-pub trait Tunable<N: Number>: EnvironmentModel + Discretize<N> {}
+pub trait Tunable<N: Number>: EnvironmentModel + Rendering<N> {}
 
-impl<N: Number, E: EnvironmentModel + Discretize<N>> Tunable<N> for E {}
+impl<N: Number, E: EnvironmentModel + Rendering<N>> Tunable<N> for E {}
 
 /// The tunable parameter of this name.
 pub fn parameter(name: &str) -> Option<Parameter> {
@@ -133,7 +134,7 @@ pub fn apply<E: NamedParameters + Copy>(
 
 /// A set that is ready to run.
 #[derive(Clone, Debug)]
-pub struct Prepared<E: Discretize<N>, N: Number, M> {
+pub struct Prepared<E: Rendering<N>, N: Number, M> {
     /// The certified scene with checked timing.
     pub scene: Scene<E>,
     /// Damping in N m s/rad that the device may lose while this set runs; see

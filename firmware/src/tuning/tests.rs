@@ -1,10 +1,9 @@
 use super::*;
+use crate::certificate::Certified;
 use crate::encoder::CounterWidth;
-use crate::environment::{
-    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, KNOB_MODES,
-    Knots, OneSided, Placed, Profile, ProfileModes, Shape,
-};
+use crate::environment::{Canceller, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Wall};
 use crate::scene::{Coupling, Device, Latency, Timing};
+use crate::scene_type::Typed;
 use crate::servo::Latched;
 
 const TRANSDUCERS: Transducers = Transducers {
@@ -14,7 +13,7 @@ const TRANSDUCERS: Transducers = Transducers {
     largest_speed: 100.0,
 };
 
-const fn scene<E>(environment: E) -> Scene<E> {
+const fn scene(environment: Environment) -> Scene {
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 1e-3, worst_period: None },
@@ -25,8 +24,21 @@ const fn scene<E>(environment: E) -> Scene<E> {
     }
 }
 
-const WALL: Scene<OneSided<DamperWall<1>>> =
-    scene(OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } });
+const WALL: Scene = scene(Wall::damped(22.0, 0.01, 1).behind(0.0).alone());
+
+/// The scene of a program with this environment.
+macro_rules! program {
+    ($environment:expr) => {{
+        const CERTIFIED: Certified<Scene> = scene($environment).certified();
+        crate::scene_type!(Of: CERTIFIED);
+        *Typed::<Of>::certified().scene()
+    }};
+}
+
+/// A wall with an undelayed canceller.
+fn free_mode_wall(residual: f64, wall: Wall) -> Environment {
+    Parts { canceller: Some(Canceller::to(residual)), wall: Some(wall), ..Parts::NONE }.sum()
+}
 
 fn refusal(changes: &[(Parameter, f64)]) -> String {
     let options = RenderingOptions::DEFAULT;
@@ -37,32 +49,27 @@ fn refusal(changes: &[(Parameter, f64)]) -> String {
 }
 
 #[test]
-fn every_scene_has_the_parameters_that_its_type_has() {
-    let damper = DamperWall::<1> { stiffness: 2.0, damping: 0.01 };
-    let filtered = FilteredWall::<1> { stiffness: 2.0, damping: 0.01, filter: 0.5 };
+fn every_scene_has_the_parameters_of_its_parts() {
+    let damper = Wall::damped(2.0, 0.01, 1);
+    let filtered = Wall::damped(2.0, 0.01, 1).filtered(0.5);
     let names = |parameters: Parameters| parameters.to_string();
     assert_eq!(
-        names(parameters(&scene(DelayedSpring::<1> { stiffness: 2.0 }))),
+        names(parameters(&scene(Wall::spring(2.0, 1).alone()))),
         "stiffness, coupling.stiffness, torque_limit"
     );
     assert_eq!(
-        names(parameters(&scene(Placed { face: 0.1, wall: filtered }))),
+        names(parameters(&scene(filtered.placed(0.1).alone()))),
         "stiffness, damping, filter, face, coupling.stiffness, torque_limit"
     );
-    let free = Scene { torque_limit: None, ..scene(FreeMode::<1> { residual: 0.01 }) };
+    let free =
+        Scene { torque_limit: None, ..scene(Canceller { residual: 0.01, delay: 1 }.alone()) };
     assert_eq!(names(parameters(&free)), "residual, coupling.stiffness");
-    let both = FreeModeWall { residual: 0.01, wall: OneSided { face: 0.0, wall: damper } };
+    let both = free_mode_wall(0.01, damper.behind(0.0));
     let both = Scene { coupling: Coupling::Rigid, ..scene(both) };
     assert_eq!(names(parameters(&both)), "stiffness, damping, face, residual, torque_limit");
-    assert_eq!(parameters(&both.as_data()), parameters(&both));
     assert_eq!(
-        names(parameters(&scene(Profile::<16, 1>::of(&DETENTS)))),
+        names(parameters(&scene(Profile::of(&DETENTS, 1).alone()))),
         "coupling.stiffness, torque_limit, torque, count, centre"
-    );
-    let spring: Environment = DelayedSpring::<1> { stiffness: 2.0 }.as_data();
-    assert_eq!(
-        names(parameters(&scene(spring))),
-        "stiffness, face, coupling.stiffness, torque_limit"
     );
 }
 
@@ -89,13 +96,13 @@ fn a_change_is_made_where_it_belongs_and_nowhere_else() {
             // Of torque profiles alone.
             continue;
         }
-        let filtered = FilteredWall::<1> { stiffness: 2.0, damping: 0.01, filter: 0.5 };
-        let wall = FreeModeWall { residual: 0.02, wall: OneSided { face: 0.1, wall: filtered } };
+        let filtered = Wall::damped(2.0, 0.01, 1).filtered(0.5);
+        let wall = free_mode_wall(0.02, filtered.behind(0.1));
         let value = 0.125 + i as f64;
         // No scene has the numbers of both.
         match wanted {
             Parameter::ProfileTorque | Parameter::Count | Parameter::Centre => {
-                changes_one(scene(Profile::<16, 1>::of(&DETENTS)), wanted, value);
+                changes_one(scene(Profile::of(&DETENTS, 1).alone()), wanted, value);
             }
             _ => changes_one(scene(wall), wanted, value),
         }
@@ -110,26 +117,26 @@ fn a_torque_profile_has_its_own() {
         Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-1.0, 1.0, 5.0)]);
     static RANGE: Knots<64> = Knots::of(&[Shape::bistable(0.4, 0.05)]);
     let names = |parameters: Parameters| parameters.to_string();
-    let endless = scene(Profile::<16, 1>::of(&KNOTS));
+    let endless = program!(Profile::of(&KNOTS, 1).alone());
     assert_eq!(
         names(parameters(&endless)),
         "coupling.stiffness, torque_limit, torque, count, centre"
     );
-    let knob = scene(Profile::<16, 1>::of(&KNOB).damped(0.001));
+    let knob = program!(Profile::of(&KNOB, 1).damped(0.001).alone());
     assert_eq!(
         names(parameters(&knob)),
         "stiffness, damping, coupling.stiffness, torque_limit, torque, count, centre"
     );
-    let range = scene(Profile::<64, 1>::of(&RANGE));
+    let range = program!(Profile::of(&RANGE, 1).alone());
     assert_eq!(names(parameters(&range)), "stiffness, coupling.stiffness, torque_limit, torque");
     let more = apply(&knob, &[(Parameter::Count, 36.0), (Parameter::ProfileTorque, 0.03)]).unwrap();
-    let Profile { count, torque, .. } = more.environment.profile;
-    assert_eq!((count, torque), (36.0, 0.03));
+    assert_eq!(get(&more, Parameter::Count), Some(36.0));
+    assert_eq!(get(&more, Parameter::ProfileTorque), Some(0.03));
 }
 
 #[test]
 fn a_knob_of_several_modes_has_the_number_of_the_selected_one() {
-    let knob = scene(ProfileModes::<1>::of(&KNOB_MODES));
+    let knob = program!(Profile::of_modes(&KNOB_MODES, 1).alone());
     let names = parameters(&knob).to_string();
     assert_eq!(names, "coupling.stiffness, torque_limit, mode");
     changes_one(knob, Parameter::Mode, 4.0);
@@ -138,7 +145,8 @@ fn a_knob_of_several_modes_has_the_number_of_the_selected_one() {
         prepare::<_, f32, Latched>(&knob, &[(Parameter::Mode, mode)], &TRANSDUCERS, &options)
     };
     for mode in 0..KNOB_MODES.len() {
-        assert_eq!(prepared(mode as f64).unwrap().scene.environment.mode, mode as f64);
+        let scene = prepared(mode as f64).unwrap().scene;
+        assert_eq!(get(&scene, Parameter::Mode), Some(mode as f64));
     }
     for (mode, shown) in
         [(11.0, "11"), (-1.0, "-1"), (2.5, "2.5"), (4_294_967_296.0, "4.294967296e9")]
@@ -173,20 +181,14 @@ fn what_cannot_be_changed_is_refused_in_a_sentence() {
 
 #[test]
 fn a_set_is_judged_as_a_whole_and_by_the_compilers_own_sentence() {
-    let stiff = Scene {
-        environment: OneSided {
-            face: 0.0,
-            wall: DamperWall::<1> { stiffness: 30.0, damping: 0.01 },
-        },
-        ..WALL
-    };
+    let stiff = Scene { environment: Wall::damped(30.0, 0.01, 1).behind(0.0).alone(), ..WALL };
     let sentence = stiff.certify().unwrap_err().sentence();
     assert_eq!(refusal(&[(Parameter::Stiffness, 30.0)]), sentence.as_str());
     // Each alone would not pass, or would; together they do.
     let softer = [(Parameter::Stiffness, 30.0), (Parameter::Damping, 0.005)];
     let options = RenderingOptions::DEFAULT;
     let scene = prepare::<_, f32, Latched>(&WALL, &softer, &TRANSDUCERS, &options).unwrap().scene;
-    assert_eq!(scene.environment.wall, DamperWall { stiffness: 30.0, damping: 0.005 });
+    assert_eq!(scene.environment, Wall::damped(30.0, 0.005, 1).behind(0.0).alone());
     assert_eq!(
         refusal(&[(Parameter::TorqueLimit, 2.5)]),
         "the torque limit of 2.5 N m is above the DAC's full scale of 2 N m: lower it to \

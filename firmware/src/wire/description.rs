@@ -34,7 +34,7 @@ pub struct Description {
 fn with_spring(scene: &Scene) -> Scene {
     const WEAK: f64 = 1e-3;
     let spring = Wall::spring(WEAK, scene.environment.delay().max(1));
-    Scene { environment: Environment::DelayedSpring(spring), ..*scene }
+    Scene { environment: spring.alone(), ..*scene }
 }
 
 impl Description {

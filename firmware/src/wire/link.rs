@@ -2,8 +2,8 @@
 
 use super::{BoardInfo, Session};
 use crate::boot::{Booted, Program, Startup, boot};
-use crate::environment::Discretize;
 use crate::number::Number;
+use crate::rendering::Rendering;
 use crate::servo::{OutputMode, Step, SupportsTiming};
 use crate::servo_loop::{Endpoints, FRAMES, ServoIsr};
 use crate::tuning::Tunable;
@@ -17,7 +17,7 @@ pub trait Port {
 }
 
 /// A port and its session.
-pub struct Link<P, E: Discretize<N> + 'static, N: Number, M: 'static> {
+pub struct Link<P, E: Rendering<N> + 'static, N: Number, M: 'static> {
     /// The port.
     pub port: P,
     /// Its session.

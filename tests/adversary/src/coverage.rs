@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use haptic_servo::environment::Environment;
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::Coupling;
 
 use crate::plan::{Pattern, Plan, Request, Signs, TickTiming};
@@ -52,7 +52,7 @@ impl Coverage {
             }
         ));
         let ranges = [latency.output_delay, latency.actuator_lag, latency.sensor_lag];
-        let profile = scene.environment.profile();
+        let (wall, profile) = (scene.environment.wall(), scene.environment.profile());
         let has = [
             ("latency: none", latency.is_none()),
             ("latency: output delay", !latency.output_delay.is_zero()),
@@ -69,15 +69,12 @@ impl Coverage {
             ("profile: mode", profile.is_some_and(|p| p.modes.is_some())),
             ("torque limit", scene.torque_limit.is_some()),
             ("worst period", scene.timing.worst_period.is_some()),
-            ("one-sided wall", scene.environment.wall().is_some_and(|wall| wall.one_sided)),
+            ("one-sided wall", wall.is_some_and(Wall::is_one_sided)),
+            ("wall without coupling", wall.is_some() && scene.coupling == Coupling::Rigid),
             ("other set", drawn.other.is_some()),
             ("injected damping", drawn.injected.is_some()),
         ];
-        let rigid = scene.coupling == Coupling::Rigid;
-        let wall =
-            matches!(scene.environment, Environment::DelayedSpring(_) | Environment::DamperWall(_));
-        let more = [("wall without coupling", rigid && wall)];
-        for (what, _) in has.into_iter().chain(more).filter(|(_, has)| *has) {
+        for (what, _) in has.into_iter().filter(|(_, has)| *has) {
             count(what.to_owned());
         }
     }

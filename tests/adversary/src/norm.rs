@@ -1,7 +1,9 @@
 //! How much an error can become: norms of impulse responses.
 
 use haptic_servo::certificate::LoopTransfers;
-use haptic_servo::environment::{AnyProfile, Composed, Environment, FULL_SCALE, Rational, Wall};
+use haptic_servo::environment::{
+    Canceller, Environment, FULL_SCALE, Parts, Profile, Rational, Wall,
+};
 use haptic_servo::number::Format;
 use haptic_servo::passivity::polynomial::Polynomial;
 use haptic_servo::scene::{Coupling, Scene};
@@ -83,7 +85,7 @@ pub fn compliance(scene: &Scene) -> f64 {
 }
 
 /// The steepest slope of a profile in N m/rad, or more.
-pub fn slope(profile: &AnyProfile) -> f64 {
+pub fn slope(profile: &Profile) -> f64 {
     let outline = profile.outline();
     let step = f64::from(outline.rise.max(outline.fall)) / f64::from(FULL_SCALE);
     let table = profile.torque.abs() * step * profile.knots_per_rad();
@@ -142,6 +144,9 @@ impl Errors {
     /// The torque of the environment, at the position where it is: a wall that switches or is
     /// clipped included. `None`: of another environment.
     pub fn alone(scene: &Scene, format: Format, bound: f64) -> Option<Self> {
+        let Environment::Parts(Parts { canceller, wall, profile }) = &scene.environment else {
+            return None;
+        };
         let period = scene.timing.period;
         let compliance = compliance(scene);
         // A state follows by the share `rate` of the rest, and no closer than rounding allows.
@@ -149,38 +154,27 @@ impl Errors {
             let gain = 2.0 * damping.abs() / period;
             (gain, gain / rate)
         };
-        let of = |w: &Wall| {
-            let (gain, state) = washout(w.damping, 1.0 - w.filter.unwrap_or(0.0));
+        let of_wall = |w: &Wall| {
+            let (gain, state) = washout(w.damping(), 1.0 - w.filter().unwrap_or(0.0));
             (w.stiffness.abs() + gain, w.stiffness.abs() + state)
         };
-        let canceller = |residual: f64| {
-            let cancelled = scene.device.damping - residual;
+        let of_canceller = |canceller: &Canceller| {
+            let cancelled = scene.device.damping - canceller.residual;
             let rate = 1.0 / (1.0 + (cancelled * compliance / period).max(0.0));
             washout(cancelled, rate)
         };
-        let of_profile = |profile: &AnyProfile| {
-            let gain = slope(profile) + 2.0 * profile.damping.abs() / period;
+        let of_profile = |profile: &Profile| {
+            let gain = slope(profile) + 2.0 * profile.damping().abs() / period;
             (gain, gain)
         };
-        let (position, states) = match &scene.environment {
-            Environment::DelayedSpring(w) => (w.stiffness.abs(), w.stiffness.abs()),
-            Environment::DamperWall(w) => of(w),
-            Environment::FreeMode { residual, .. } => canceller(*residual),
-            Environment::FreeModeWall { residual, wall } => {
-                let (a, b) = (canceller(*residual), of(wall));
-                (a.0 + b.0, a.1 + b.1)
-            }
-            Environment::Profile(profile) => of_profile(profile),
-            Environment::Composed(Composed { residual, wall, profile }) => {
-                let parts = [
-                    residual.map_or((0.0, 0.0), canceller),
-                    wall.as_ref().map_or((0.0, 0.0), of),
-                    of_profile(profile),
-                ];
-                (parts.iter().map(|p| p.0).sum(), parts.iter().map(|p| p.1).sum())
-            }
-            Environment::Rational(_) | Environment::Stated(_) => return None,
-        };
+        let parts = [
+            canceller.as_ref().map(of_canceller),
+            wall.as_ref().map(of_wall),
+            profile.as_ref().map(of_profile),
+        ]
+        .map(Option::unwrap_or_default);
+        let position = parts.iter().map(|part| part.0).sum();
+        let states: f64 = parts.iter().map(|part| part.1).sum();
         let angle = rounding(format, std::f64::consts::TAU + compliance * bound);
         let numbers = 4.0 * states * angle + 8.0 * rounding(format, bound);
         Some(Self { position, numbers })

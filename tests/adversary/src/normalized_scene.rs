@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use haptic_servo::certificate::{Assessment, QuantizationBound, Resolution, RuleAnswer};
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::AnyProfile;
+use haptic_servo::environment::Profile;
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Scene, TimeRange};
 use haptic_servo::servo::Simultaneous;
@@ -138,7 +138,7 @@ impl NormalizedScene {
             numbers = numbers.max(errors.numbers);
             bound = bound.max(largest);
             soft = soft.max(compliance(scene));
-            face = face.max(scene.environment.wall().map_or(0.0, |wall| wall.face.abs()));
+            face = face.max(scene.environment.wall().map_or(0.0, |wall| wall.face().abs()));
             let lost = match actual.passivity {
                 Some(_) => 0.0,
                 None => drawn.taken * margin(assessment, scene, drawn.rendering.injection),
@@ -243,8 +243,8 @@ impl NormalizedScene {
     /// The energy in N m rad that a servo's environment may release that is at rest at the servo's zero.
     fn stored_at_zero(scene: &Scene) -> f64 {
         let environment = &scene.environment;
-        let wall = environment.wall().map_or(0.0, |w| w.stiffness.abs() * w.face * w.face);
-        let of = |profile: &AnyProfile| {
+        let wall = environment.wall().map_or(0.0, |w| w.stiffness.abs() * w.face() * w.face());
+        let of = |profile: &Profile| {
             let steepest = slope(profile);
             let away = match profile.ends {
                 Some(ends) => ends.from.abs().max(ends.to.abs()),

@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 use haptic_servo::certificate::{LoopTransfers, PassivityProblem};
-use haptic_servo::environment::Environment;
+use haptic_servo::environment::{Environment, Parts};
 use haptic_servo::latency::{Latency, TimeRange};
 use haptic_servo::number::Format;
 use haptic_servo::output_timing::READ_WITHIN;
@@ -117,15 +117,8 @@ fn with_passivity(scene: &Scene, factor: f64) -> Scene {
     let mut with = *scene;
     with.device = Device { damping: factor * damping, passivity, ..scene.device };
     // A canceller cancels as much as it did.
-    let residual = match &mut with.environment {
-        Environment::FreeMode { residual, .. } | Environment::FreeModeWall { residual, .. } => {
-            Some(residual)
-        }
-        Environment::Composed(sum) => sum.residual.as_mut(),
-        _ => None,
-    };
-    if let Some(residual) = residual {
-        *residual += with.device.damping - damping;
+    if let Environment::Parts(Parts { canceller: Some(canceller), .. }) = &mut with.environment {
+        canceller.residual += with.device.damping - damping;
     }
     with
 }

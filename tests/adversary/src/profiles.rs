@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-use haptic_servo::environment::{AnyProfile, KNOB_MODES, ProfileModes, Shape};
+use haptic_servo::environment::{KNOB_MODES, Profile, Shape};
 use rand::Rng;
 use tests::scenes::log_uniform;
 
@@ -11,7 +11,7 @@ use tests::scenes::log_uniform;
 const KNOTS: usize = 64;
 
 /// The tables, late by one sample, with torques about 1 N m.
-static TABLES: LazyLock<Vec<AnyProfile>> = LazyLock::new(|| {
+static TABLES: LazyLock<Vec<Profile>> = LazyLock::new(|| {
     let stops = Shape::end_stops(-1.0, 1.5, 4.0);
     let sums: [&[Shape]; 16] = [
         &[Shape::detents(12, 1.0)],
@@ -33,30 +33,23 @@ static TABLES: LazyLock<Vec<AnyProfile>> = LazyLock::new(|| {
     ];
     let table = |shapes: &[Shape]| {
         let units = Box::leak(Box::new([0_i16; KNOTS]));
-        AnyProfile::sampled(shapes, units, 1).ok()
+        Profile::sampled(shapes, units, 1).ok()
     };
     sums.into_iter().filter_map(table).collect()
 });
 
-/// A mode of a knob, as one of its modes.
-fn mode(rng: &mut impl Rng) -> AnyProfile {
-    let mode = rng.random_range(1..KNOB_MODES.len());
-    ProfileModes::<1>::of(&KNOB_MODES).selecting(mode as f64).as_any()
-}
-
 /// A profile with slopes of about `unit` N m/rad, or a mode of a knob: the tables of all modes are the
 /// program's, so that no number of one changes.
-pub fn draw(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize) -> AnyProfile {
+pub fn draw(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize) -> Profile {
     if rng.random_bool(0.2) {
-        let mut mode = mode(rng);
-        mode.delay = delay;
-        return mode;
+        let mode = rng.random_range(1..KNOB_MODES.len());
+        return Profile::of_modes(&KNOB_MODES, delay).selecting(mode as f64).expect("a mode");
     }
     table(rng, unit, delta, delay)
 }
 
 /// A profile of one table with slopes of about `unit` N m/rad.
-pub fn table(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize) -> AnyProfile {
+pub fn table(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize) -> Profile {
     let mut profile = TABLES[rng.random_range(0..TABLES.len())];
     profile.delay = delay;
     if profile.outline().wraps && profile.ends.is_none() {
@@ -66,7 +59,7 @@ pub fn table(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize) -> AnyProf
         }
     }
     if profile.snap.is_none() && rng.random_bool(0.25) {
-        profile.damping = delta * log_uniform(rng, 0.01, 0.5);
+        profile = profile.damped(delta * log_uniform(rng, 0.01, 0.5));
     }
     let slope = crate::norm::slope(&profile);
     scaled(&mut profile, unit / slope.max(f64::MIN_POSITIVE));
@@ -74,7 +67,7 @@ pub fn table(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize) -> AnyProf
 }
 
 /// The same shape with other torques.
-pub fn scaled(profile: &mut AnyProfile, by: f64) {
+pub fn scaled(profile: &mut Profile, by: f64) {
     profile.torque *= by;
     if let Some(ends) = &mut profile.ends {
         ends.stiffness *= by;
@@ -83,6 +76,6 @@ pub fn scaled(profile: &mut AnyProfile, by: f64) {
 
 /// The number of tables, by whether they have ends and snap points: so that none is missing.
 pub fn tables() -> [usize; 3] {
-    let count = |is: &dyn Fn(&AnyProfile) -> bool| TABLES.iter().filter(|p| is(p)).count();
+    let count = |is: &dyn Fn(&Profile) -> bool| TABLES.iter().filter(|p| is(p)).count();
     [TABLES.len(), count(&|p| p.ends.is_some()), count(&|p| p.snap.is_some())]
 }

@@ -27,11 +27,6 @@ fn scene(coupling: f64, environment: Environment) -> Scene {
     }
 }
 
-/// A wall that pulls, too.
-pub const fn wall(stiffness: f64, damping: f64, delay: usize) -> Wall {
-    Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false }
-}
-
 fn rational(numerator: &[f64], denominator: &[f64]) -> Environment {
     let coefficients = |c| Coefficients::new(c).expect("at most eight poles");
     Environment::Rational(Rational {
@@ -50,7 +45,7 @@ fn at_rest(environment: Environment) -> Environment {
 
 /// All values.
 pub fn all() -> Vec<RefutedScene> {
-    let damper = |k, b, n| Environment::DamperWall(wall(k, b, n));
+    let damper = |k, b, n| Wall::damped(k, b, n).alone();
     let refuted = |name, scene| RefutedScene { name, scene, judged_as: None };
     let hidden = |name, numerator: &[f64], denominator: &[f64]| RefutedScene {
         name,

@@ -4,7 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use haptic_servo::certificate::{PassivityProblem, TimingError, assess_in};
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{Coefficients, Composed, Environment, Rational, Wall};
+use haptic_servo::environment::{
+    Canceller, Coefficients, Damper, Environment, Parts, Rational, Side, Wall,
+};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
@@ -395,7 +397,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         device: Device { inertia: delta * period, damping, passivity },
         timing: Timing { period, worst_period: (worst > 1.0).then_some(worst * period) },
         coupling,
-        environment: Environment::FreeMode { residual: 0.0, delay: 0 },
+        environment: Parts::NONE.sum(),
         latency: match lags {
             true if kind == Kind::Sharp && mode == Mode::Bare => plain(rng, period),
             true => draw_latency(rng, mode, period),
@@ -403,7 +405,6 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         },
         torque_limit: limited.then(|| full_scale * log_uniform(rng, 0.15, 0.999)),
     };
-    let mut face = 0.0;
     let reach = match rng.random_range(0..12) {
         0 => format.reach(),
         1..=3 => 5.0 * size,
@@ -415,38 +416,34 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let knob = match kind {
         Kind::Wall | Kind::Overstated => {
             let delay = if rng.random_bool(0.7) { least } else { rng.random_range(least..=3) };
-            let wall = wall(rng, unit, delta, delay, reach);
-            face = wall.face;
-            if wall.damping == 0.0 && rng.random_bool(0.5) {
-                scene.environment = Environment::DelayedSpring(wall);
-            } else {
-                scene.environment = Environment::DamperWall(wall);
+            let mut wall = wall(rng, unit, delta, delay, reach);
+            let is_spring = wall.damping() == 0.0;
+            if is_spring && rng.random_bool(0.5) {
+                wall.damper = None;
             }
-            if wall.damping != 0.0 && rng.random_bool(0.5) { Knob::Damping } else { Knob::Gain }
+            scene.environment = wall.alone();
+            if !is_spring && rng.random_bool(0.5) { Knob::Damping } else { Knob::Gain }
         }
         Kind::Sharp => {
             scene.environment = sharp(rng, unit, delta, least);
-            match scene.environment {
-                Environment::DamperWall(_) => Knob::Damping,
-                Environment::Rational(_) if mode == Mode::Bare && lags => {
-                    scene.coupling = Coupling::Rigid;
-                    Knob::Gain
-                }
-                _ => Knob::Gain,
+            if mode == Mode::Bare && lags && scene.environment.rational().is_some() {
+                scene.coupling = Coupling::Rigid;
             }
+            let is_damped = scene.environment.wall().is_some_and(|wall| wall.damper.is_some());
+            if is_damped { Knob::Damping } else { Knob::Gain }
         }
         Kind::FreeMode => {
             let residual = damping * rng.random_range(-0.1..1.0);
             let delay = rng.random_range(least..=2);
-            scene.environment = Environment::FreeMode { residual, delay };
+            scene.environment = Canceller { residual, delay }.alone();
             Knob::Residual
         }
         Kind::FreeModeWall => {
             let residual = damping * rng.random_range(0.0..1.0);
             let delay = rng.random_range(0..=2);
-            let wall = wall(rng, unit, delta, delay, reach);
-            face = wall.face;
-            scene.environment = Environment::FreeModeWall { residual, wall };
+            let wall = Some(wall(rng, unit, delta, delay, reach));
+            let canceller = Some(Canceller::to(residual));
+            scene.environment = Parts { canceller, wall, profile: None }.sum();
             if rng.random_bool(0.3) { Knob::Residual } else { Knob::Gain }
         }
         Kind::Rational | Kind::Unstable => {
@@ -457,7 +454,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         Kind::Profile => {
             let delay = rng.random_range(least..=2);
             let profile = profiles::draw(rng, unit, delta, delay);
-            scene.environment = Environment::Profile(profile);
+            scene.environment = profile.alone();
             if profile.modes.is_some() { Knob::Device } else { Knob::Gain }
         }
         Kind::Sum => {
@@ -465,14 +462,15 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             let profile = profiles::table(rng, 0.5 * unit, delta, delay);
             let which = if latched { 0 } else { rng.random_range(0..3) };
             let delay = rng.random_range(least..=2);
-            let beside = wall(rng, 0.5 * unit, delta, delay, size);
-            face = beside.face;
+            let mut beside = wall(rng, 0.5 * unit, delta, delay, size);
+            beside.damper = beside.damper.map(|damper| Damper { filter: None, ..damper });
             let residual = damping * rng.random_range(0.3..1.0);
-            scene.environment = Environment::Composed(Composed {
-                residual: (which > 0).then_some(residual),
-                wall: (which < 2).then_some(Wall { filter: None, ..beside }),
-                profile,
-            });
+            scene.environment = Parts {
+                canceller: (which > 0).then_some(Canceller::to(residual)),
+                wall: (which < 2).then_some(beside),
+                profile: Some(profile),
+            }
+            .sum();
             Knob::Gain
         }
         Kind::Hidden => {
@@ -495,8 +493,10 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     if mode == Mode::Bare {
         // What it rests at is at rest.
         if let Some(wall) = scene.environment.wall_mut() {
-            wall.face = if wall.one_sided { wall.face.abs().min(0.5 * size) } else { 0.0 };
-            face = wall.face;
+            wall.side = match wall.side {
+                Side::Face(face) => Side::Face(face.abs().min(0.5 * size)),
+                Side::Centred | Side::Displaced(_) => Side::Centred,
+            };
         }
     }
     let exponent = rng.random_range(16..=22);
@@ -522,11 +522,8 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let fade = period * log_uniform(rng, 1.0, 200.0);
     if choice.weakened.is_some() {
         scene.torque_limit = None;
-        if let Environment::DelayedSpring(w)
-        | Environment::DamperWall(w)
-        | Environment::FreeModeWall { wall: w, .. } = &mut scene.environment
-        {
-            w.one_sided = false;
+        if let Some(wall) = scene.environment.wall_mut() {
+            wall.side = Side::Displaced(wall.face());
         }
     }
     let format_of = format.format();
@@ -566,7 +563,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         mode,
         actual,
         size,
-        reach: reach.max(face.abs()),
+        reach,
         taken: choice.taken,
         damping,
         overrun: choice.overrun,
@@ -593,7 +590,8 @@ fn wall(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize, reach: f64) -> 
     };
     let one_sided = rng.random_bool(0.4);
     let face = if one_sided || rng.random_bool(0.5) { face } else { 0.0 };
-    Wall { stiffness, damping, filter, delay, face, one_sided }
+    let side = if one_sided { Side::Face(face) } else { Side::Displaced(face) };
+    Wall { stiffness, damper: Some(Damper { damping, filter }), side, delay }
 }
 
 fn multiplied(a: &[f64], b: &[f64]) -> Vec<f64> {
@@ -650,22 +648,14 @@ fn rational_with(rng: &mut impl Rng, unit: f64, delay: usize, unstable: bool) ->
 
 /// A spring that is late by a sample, a damper below zero, or a filter.
 fn sharp(rng: &mut impl Rng, unit: f64, delta: f64, least: usize) -> Environment {
-    let wall = |stiffness, damping, delay, one_sided| Wall {
-        stiffness,
-        damping,
-        filter: None,
-        delay,
-        face: 0.0,
-        one_sided,
-    };
     match rng.random_range(0..4) {
         0 | 1 => {
-            let stiffness = unit * log_uniform(rng, 0.1, 2.0);
-            Environment::DelayedSpring(wall(stiffness, 0.0, 1, rng.random_bool(0.2)))
+            let spring = Wall::spring(unit * log_uniform(rng, 0.1, 2.0), 1);
+            if rng.random_bool(0.2) { spring.behind(0.0).alone() } else { spring.alone() }
         }
         2 => {
             let damping = -delta * log_uniform(rng, 0.1, 1.0);
-            Environment::DamperWall(wall(0.01 * unit, damping, least, false))
+            Wall::damped(0.01 * unit, damping, least).alone()
         }
         _ => crossing(rng, unit, least),
     }
@@ -744,34 +734,33 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
     }
     let damping = scene.device.damping;
     match &mut scene.environment {
-        Environment::FreeModeWall { residual, .. } | Environment::FreeMode { residual, .. }
-            if knob == Knob::Residual =>
-        {
+        Environment::Parts(Parts { canceller, .. }) if knob == Knob::Residual => {
             // The cancelled damping is scaled.
-            *residual = damping - (damping - *residual) * by;
-        }
-        Environment::FreeMode { .. } | Environment::Stated(_) => {}
-        Environment::Composed(sum) => {
-            profiles::scaled(&mut sum.profile, by);
-            if let Some(wall) = &mut sum.wall {
-                wall.stiffness *= by;
-                wall.damping *= by;
+            if let Some(Canceller { residual, .. }) = canceller {
+                *residual = damping - (damping - *residual) * by;
             }
         }
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => match knob {
-            Knob::Damping => wall.damping *= by,
-            _ => wall.stiffness *= by,
-        },
+        Environment::Parts(Parts { wall, profile, .. }) => {
+            if let Some(wall) = wall {
+                if knob == Knob::Gain {
+                    wall.stiffness *= by;
+                }
+                // Beside a profile all of the wall is scaled.
+                if let Some(damper) = &mut wall.damper
+                    && (knob == Knob::Damping || profile.is_some())
+                {
+                    damper.damping *= by;
+                }
+            }
+            if let Some(profile) = profile {
+                profiles::scaled(profile, by);
+            }
+        }
+        Environment::Stated(_) => {}
         Environment::Rational(rational) => {
             let scaled: Vec<f64> = rational.numerator.as_slice().iter().map(|c| c * by).collect();
             rational.numerator = coefficients(&scaled);
         }
-        Environment::Profile(profile) => match knob {
-            Knob::Damping => profile.damping *= by,
-            _ => profiles::scaled(profile, by),
-        },
     }
     scene
 }
@@ -849,31 +838,28 @@ fn another(rng: &mut impl Rng, scene: &Scene, size: f64, format: Numbers) -> Opt
         other = scaled(&other, Knob::Coupling, log_uniform(rng, 0.5, 1.0));
     }
     match &mut other.environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => {
+        Environment::Parts(Parts { wall: Some(wall), profile: None, .. }) => {
             wall.stiffness *= log_uniform(rng, 0.1, 1.0);
-            wall.damping *= log_uniform(rng, 0.3, 1.0);
-            if let Some(pole) = &mut wall.filter {
-                *pole *= rng.random_range(0.9..1.0);
+            let damping = log_uniform(rng, 0.3, 1.0);
+            if let Some(damper) = &mut wall.damper {
+                damper.damping *= damping;
+                damper.filter = damper.filter.map(|pole| pole * rng.random_range(0.9..1.0));
             }
             if rng.random_bool(0.5) {
-                wall.face += size * rng.random_range(-1.0..1.0);
+                wall.side = wall.side.at(wall.face() + size * rng.random_range(-1.0..1.0));
             }
         }
-        Environment::FreeMode { .. } => {
+        Environment::Parts(Parts { profile: None, .. }) => {
             other = scaled(&other, Knob::Residual, log_uniform(rng, 0.1, 1.0));
         }
-        Environment::Rational(_) => other = scaled(&other, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
-        Environment::Profile(profile) => {
+        Environment::Parts(Parts { canceller: None, wall: None, profile: Some(profile) }) => {
             let mode = f64::from(rng.random_range(1..11_u8));
             match profile.selecting(mode) {
                 Some(selected) => *profile = selected,
                 None => profiles::scaled(profile, log_uniform(rng, 0.1, 1.0)),
             }
         }
-        Environment::Composed(_) => other = scaled(&other, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
-        Environment::Stated(_) => {}
+        _ => other = scaled(&other, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
     }
     passes(&other, format.format()).then_some(other)
 }

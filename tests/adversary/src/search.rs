@@ -100,6 +100,11 @@ pub struct PeriodicMotion {
 }
 
 impl Found {
+    /// No scene, below any height and rate.
+    fn nothing() -> Self {
+        Self { largest: -1.0, rate: -1.0, ..Self::default() }
+    }
+
     fn add(&mut self, other: Self) {
         self.scenes += other.scenes;
         self.accepted += other.accepted;
@@ -309,7 +314,7 @@ impl Task for Climb<'_> {
         Environment: Tunable<N> + SupportsTiming<M>,
     {
         let effort = self.search.effort;
-        let mut found = Found { accepted: 1, largest: -1.0, rate: -1.0, ..Found::default() };
+        let mut found = Found { accepted: 1, ..Found::nothing() };
         found.coverage.scene(self.drawn);
         let rng = &mut self.rng;
         let run = |found: &mut Found, plan: &Plan, audited: bool| -> Outcome {
@@ -396,11 +401,11 @@ impl Search {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(number);
         let Some(drawn) = scenes::draw(&mut rng, &self.choice) else {
-            return Found { scenes: 1, largest: -1.0, rate: -1.0, ..Found::default() };
+            return Found { scenes: 1, ..Found::nothing() };
         };
         // What a planted rule does not judge is the same scene of the search without it.
         if self.choice.planted.is_some() && drawn.actual == Actual::default() {
-            return Found { scenes: 1, largest: -1.0, rate: -1.0, ..Found::default() };
+            return Found { scenes: 1, ..Found::nothing() };
         }
         let mut found = self.climb(number, &drawn, rng);
         if found.accepted > 0 && drawn.mode == Mode::Bare {
@@ -412,7 +417,7 @@ impl Search {
     /// Searches through the runs of a scene.
     pub fn climb(&self, number: u64, drawn: &RandomScene, rng: ChaCha8Rng) -> Found {
         let climb = Climb { search: self, number, drawn, rng };
-        let nothing = Found { largest: -1.0, rate: -1.0, ..Found::default() };
+        let nothing = Found::nothing();
         match booted(drawn, climb) {
             Ok(found) => Found { scenes: 1, ..found },
             Err(Unjudged::Refused) => Found { scenes: 1, ..nothing },
@@ -424,11 +429,11 @@ impl Search {
     pub fn run(&self) -> Found {
         let began = Instant::now();
         let next = AtomicU64::new(0);
-        let all = Mutex::new(Found { largest: -1.0, rate: -1.0, ..Found::default() });
+        let all = Mutex::new(Found::nothing());
         std::thread::scope(|scope| {
             for _ in 0..2 {
                 scope.spawn(|| {
-                    let mut found = Found { largest: -1.0, rate: -1.0, ..Found::default() };
+                    let mut found = Found::nothing();
                     loop {
                         let number = next.fetch_add(1, Ordering::Relaxed);
                         let over = self.time.is_some_and(|time| began.elapsed() > time);

@@ -4,7 +4,7 @@ use haptic_servo::certificate::Certified;
 use haptic_servo::current::{
     B_G431B_ESC1, CurrentLoop, Drive, EncoderIndex, IndexOffset, Motor, Winding,
 };
-use haptic_servo::environment::{DelayedSpring, Matched};
+use haptic_servo::environment::Wall;
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::{Coupling, Scene};
 use refusals::{CURRENT_LOOP, DRIVE, MOTORISED, scene};
@@ -12,16 +12,14 @@ use refusals::{CURRENT_LOOP, DRIVE, MOTORISED, scene};
 const SLOWER: CurrentLoop =
     CurrentLoop::checked(&Drive { bandwidth: 1000.0, ..DRIVE }, &B_G431B_ESC1, &MOTORISED, 0.001);
 
-type Environment = Matched<DelayedSpring<1>, 0, 1, true>;
-
-const SCENE: Scene<Environment> = Scene {
+const SCENE: Scene = Scene {
     coupling: Coupling::Matched,
     latency: CURRENT_LOOP.latency(OutputTiming::Latched),
     torque_limit: Some(1.0),
-    ..scene(Matched { environment: DelayedSpring { stiffness: 5.0 } })
+    ..scene(Wall::spring(5.0, 1).alone())
 };
 
-const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 /// The scene declares the whole damping of its device as passivity, of which motion takes a part through the
 /// current loop.
@@ -46,7 +44,7 @@ const _: CurrentLoop = CurrentLoop::checked(&BRUSHLESS, &B_G431B_ESC1, &MOTORISE
 
 // The scene is certified for a faster current loop than the program's.
 haptic_servo::scene_program! {
-    scene: SCENE: Environment,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: MOTORISED,
     float: f32,

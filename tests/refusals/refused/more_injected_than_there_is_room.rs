@@ -1,10 +1,9 @@
 //! Damping that would take the certificate away.
-use haptic_servo::environment::DelayedSpring;
 use haptic_servo::servo::RenderingOptions;
 use refusals::*;
 
 haptic_servo::scene_program! {
-    scene: SCENE: DelayedSpring<1>,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

@@ -1,8 +1,7 @@
 //! A servo from an uncertified scene: there is no such constructor.
-use haptic_servo::environment::DelayedSpring;
 use haptic_servo::servo::Servo;
 use refusals::{SCENE, TRANSDUCERS};
 
 fn main() {
-    let _ = Servo::<DelayedSpring<1>, f32>::new(&SCENE, &TRANSDUCERS);
+    let _ = Servo::<_, f32>::new(&SCENE, &TRANSDUCERS);
 }

@@ -1,14 +1,13 @@
 //! More torque than the motor has.
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::DelayedSpring;
 use haptic_servo::scene::Scene;
 use refusals::TRANSDUCERS;
 
-const SCENE: Scene<DelayedSpring<1>> = Scene { torque_limit: Some(3.0), ..refusals::SCENE };
-const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
+const SCENE: Scene = Scene { torque_limit: Some(3.0), ..refusals::SCENE };
+const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 haptic_servo::scene_program! {
-    scene: SCENE: DelayedSpring<1>,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

@@ -5,7 +5,7 @@
 use haptic_servo::certificate::Certified;
 use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{DamperWall, DelayedSpring, Matched};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::Transducers;
 use haptic_servo::servo_loop::READ_WITHIN;
@@ -22,22 +22,17 @@ pub const fn scene<E: Copy>(environment: E) -> Scene<E> {
     }
 }
 
-/// A wall that is not late, behind the coupling that absorbs an output delay.
-pub type UndelayedWall = Matched<DamperWall<0>>;
-
-/// Such a wall in a scene with this output delay in s.
-pub const fn at_phase(output_delay: f64) -> Scene<UndelayedWall> {
-    let wall = Matched { environment: DamperWall { stiffness: 2.0, damping: 0.002 } };
+/// A wall that is not late, behind the coupling that absorbs this output delay in s.
+pub const fn at_phase(output_delay: f64) -> Scene {
     let latency = Latency { output_jitter: READ_WITHIN, ..Latency::delayed(output_delay) };
-    Scene { coupling: Coupling::Matched, latency, ..scene(wall) }
+    Scene { coupling: Coupling::Matched, latency, ..scene(Wall::damped(2.0, 0.002, 0).alone()) }
 }
 
 /// A spring that boards can render.
-pub const SCENE: Scene<DelayedSpring<1>> =
-    Scene { torque_limit: Some(1.0), ..scene(DelayedSpring { stiffness: 14.0 }) };
+pub const SCENE: Scene = Scene { torque_limit: Some(1.0), ..scene(Wall::spring(14.0, 1).alone()) };
 
 /// Its certificate.
-pub const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 /// Sensor and motor.
 pub const TRANSDUCERS: Transducers = Transducers {

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use haptic_servo::certificate::{Rejection, assess, certify};
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Canceller, Wall};
 use haptic_servo::parameter::Parameter;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use nalgebra::Complex;
@@ -154,7 +154,7 @@ fn spring(stiffness: f64, latency: Latency) -> Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 1e-3, worst_period: None },
         coupling: Coupling::Rigid,
-        environment: Environment::DelayedSpring(Wall::spring(stiffness, 0)),
+        environment: Wall::spring(stiffness, 0).alone(),
         latency,
         torque_limit: None,
     }
@@ -231,7 +231,7 @@ fn a_linear_scene_behind_the_matched_coupling_passes_where_the_limited_one_does(
             device: Device { inertia: 2.2e-5, damping: delta, passivity: None },
             timing: Timing { period, worst_period: None },
             coupling: Coupling::Matched,
-            environment: Environment::FreeMode { residual: delta - share * left, delay: 0 },
+            environment: Canceller::to(delta - share * left).alone(),
             latency: Latency::delayed(delay).with_actuator_response(begin, end),
             torque_limit,
         };

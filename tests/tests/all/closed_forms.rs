@@ -5,16 +5,14 @@
 //! filter on the spring too, the sign of the canceller) moves the index away from its formula.
 
 use haptic_servo::certificate::assess;
-use haptic_servo::environment::Environment;
+use haptic_servo::environment::{Canceller, Environment, Wall};
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::Coupling;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::cmp::Ordering;
 use tests::exact::{Q, of_f64, ratio};
-use tests::scenes::{
-    ExactScene, Frame, free_fraction, log_uniform, short, sum_of, wall_data, wall_fraction,
-};
+use tests::scenes::{ExactScene, Frame, log_uniform, short};
 
 const ROUNDS: usize = 200;
 
@@ -48,10 +46,8 @@ impl Draw {
         q(self.damping)
     }
 
-    fn wall(&self, damping: f64, filter: Option<f64>, delay: usize) -> ExactScene {
-        let wall = wall_data(self.stiffness, damping, filter, delay);
-        let fraction = wall_fraction(&wall, self.frame.period);
-        self.frame.with(Environment::DamperWall(wall), fraction)
+    fn wall(&self, damping: f64, delay: usize) -> ExactScene {
+        self.frame.with_parts(None, Some(Wall::damped(self.stiffness, damping, delay)))
     }
 }
 
@@ -81,9 +77,7 @@ fn springs() {
     for seed in 0..ROUNDS {
         let draw = Draw::new(seed);
         let delay = seed % 9;
-        let wall = wall_data(draw.stiffness, 0.0, None, delay);
-        let fraction = wall_fraction(&wall, draw.frame.period);
-        let drawn = draw.frame.with(Environment::DelayedSpring(wall), fraction);
+        let drawn = draw.frame.with_parts(None, Some(Wall::spring(draw.stiffness, delay)));
         let samples = 2 * i64::try_from(delay).unwrap() - 1;
         agree(&drawn, &(draw.kt() * ratio(samples, 2)));
     }
@@ -93,7 +87,7 @@ fn springs() {
 fn undelayed_walls() {
     for seed in 0..ROUNDS {
         let draw = Draw::new(seed);
-        agree(&draw.wall(draw.damping, None, 0), &-(draw.kt() * ratio(1, 2) + draw.b()));
+        agree(&draw.wall(draw.damping, 0), &-(draw.kt() * ratio(1, 2) + draw.b()));
     }
 }
 
@@ -102,8 +96,8 @@ fn walls_one_sample_late() {
     for seed in 0..ROUNDS {
         let draw = Draw::new(seed);
         let alpha = draw.kt() * ratio(1, 2) + draw.b();
-        agree(&draw.wall(draw.damping, None, 1), &alpha);
-        agree(&draw.wall(-draw.damping, None, 1), &alpha);
+        agree(&draw.wall(draw.damping, 1), &alpha);
+        agree(&draw.wall(-draw.damping, 1), &alpha);
     }
 }
 
@@ -117,7 +111,7 @@ fn walls_two_samples_late() {
         } else {
             kt * ratio(3, 2) - b
         };
-        agree(&draw.wall(draw.damping, None, 2), &alpha);
+        agree(&draw.wall(draw.damping, 2), &alpha);
     }
 }
 
@@ -134,7 +128,7 @@ fn walls_three_samples_late() {
         } else {
             (2.5 * kt - b).max(0.5 * kt + b)
         };
-        agree_closely(&draw.wall(draw.damping, None, 3), alpha);
+        agree_closely(&draw.wall(draw.damping, 3), alpha);
     }
 }
 
@@ -144,7 +138,7 @@ fn walls_three_samples_late() {
 fn walls_later_than_that() {
     for seed in 0..ROUNDS {
         let draw = Draw::new(seed);
-        let drawn = draw.wall(draw.damping, None, 4 + seed % 5);
+        let drawn = draw.wall(draw.damping, 4 + seed % 5);
         let reference = drawn.exact.alpha().expect("the index exists");
         let found = enclosure(&drawn);
         assert_ne!(reference.compare(&q(found.lo())), Ordering::Less, "{:?}", drawn.scene);
@@ -161,7 +155,8 @@ fn filtered_walls_one_sample_late() {
         let a = short(draw.rng.random_range(0.0..0.99), 20);
         let lag = (Q::from_integer(1.into()) - q(a)) / (Q::from_integer(1.into()) + q(a));
         let alpha = draw.kt() * ratio(1, 2) + draw.b() * lag;
-        agree(&draw.wall(draw.damping, Some(a), 1), &alpha);
+        let wall = Wall::damped(draw.stiffness, draw.damping, 1).filtered(a);
+        agree(&draw.frame.with_parts(None, Some(wall)), &alpha);
     }
 }
 
@@ -170,8 +165,8 @@ fn negative_dampers() {
     for seed in 0..ROUNDS {
         let mut draw = Draw::new(seed);
         draw.stiffness = 0.0;
-        agree(&draw.wall(-draw.damping, None, 0), &draw.b());
-        agree(&draw.wall(-draw.damping, None, 1), &draw.b());
+        agree(&draw.wall(-draw.damping, 0), &draw.b());
+        agree(&draw.wall(-draw.damping, 1), &draw.b());
     }
 }
 
@@ -204,18 +199,17 @@ fn tustin_dampers() {
 }
 
 /// Behind the standard coupling `2 b / T`, with a residual between zero and the damping.
-fn free(draw: &mut Draw) -> (f64, Q) {
+fn free(draw: &mut Draw) -> (Canceller, Q) {
     let residual = short(draw.frame.delta * draw.rng.random_range(0.01..0.99), 24);
-    (residual, q(draw.frame.delta) - q(residual))
+    (Canceller::to(residual), q(draw.frame.delta) - q(residual))
 }
 
 #[test]
 fn free_modes() {
     for seed in 0..ROUNDS {
         let mut draw = Draw::new(seed);
-        let (residual, be) = free(&mut draw);
-        let fraction = free_fraction(draw.frame.delta - residual, &draw.frame, 0);
-        agree(&draw.frame.with(Environment::FreeMode { residual, delay: 0 }, fraction), &be);
+        let (canceller, be) = free(&mut draw);
+        agree(&draw.frame.with_parts(Some(canceller), None), &be);
     }
 }
 
@@ -223,13 +217,11 @@ fn free_modes() {
 fn free_modes_with_a_wall() {
     for seed in 0..ROUNDS {
         let mut draw = Draw::new(seed);
-        let (residual, be) = free(&mut draw);
+        let (canceller, be) = free(&mut draw);
         let half_kt = draw.kt() * ratio(1, 2);
         for delay in [0, 1] {
-            let wall = wall_data(draw.stiffness, draw.damping, None, delay);
-            let free = free_fraction(draw.frame.delta - residual, &draw.frame, 0);
-            let fraction = sum_of(&free, &wall_fraction(&wall, draw.frame.period));
-            let drawn = draw.frame.with(Environment::FreeModeWall { residual, wall }, fraction);
+            let wall = Wall::damped(draw.stiffness, draw.damping, delay);
+            let drawn = draw.frame.with_parts(Some(canceller), Some(wall));
             let b = q(draw.frame.delta);
             let alpha = if delay == 0 {
                 &be - &half_kt - draw.b()

@@ -5,7 +5,7 @@
 //! `COMPOSED_RUNS=20000 cargo test -p tests --test all composed` searches longer.
 
 use haptic_servo::certificate::PassivityProblem;
-use haptic_servo::environment::{AnyProfile, Composed, Ends, Environment, Shape, Wall};
+use haptic_servo::environment::{Canceller, Ends, Parts, Profile, Shape, Side, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use rand::Rng;
 use rand::SeedableRng;
@@ -67,17 +67,18 @@ impl Sum {
             let half = pitch * random.random_range(1.0..4.0);
             Ends { from: -half, to: half, stiffness: slope * random.random_range(0.05..1.0) }
         });
-        let wall = has_wall.then(|| Wall {
-            stiffness: slope * log_uniform(random, 0.05, 2.0),
-            damping: if random.random_bool(0.5) {
+        let wall = has_wall.then(|| {
+            let stiffness = slope * log_uniform(random, 0.05, 2.0);
+            let damping = if random.random_bool(0.5) {
                 0.0
             } else {
                 slope * PERIOD * log_uniform(random, 0.05, 2.0)
-            },
-            filter: None,
-            delay: random.random_range(0..4),
-            face: pitch * random.random_range(-1.0..1.0),
-            one_sided: random.random_bool(0.6),
+            };
+            let delay = random.random_range(0..4);
+            let face = pitch * random.random_range(-1.0..1.0);
+            let side =
+                if random.random_bool(0.6) { Side::Face(face) } else { Side::Displaced(face) };
+            Wall { side, ..Wall::damped(stiffness, damping, delay) }
         });
         let cancelled = cancels.then(|| slope * PERIOD * log_uniform(random, 0.05, 2.0));
         let limit =
@@ -96,7 +97,7 @@ impl Sum {
         self
     }
 
-    fn profile(&self) -> AnyProfile {
+    fn profile(&self) -> Profile {
         let cell = self.pitch / KNOTS as f64;
         let knots: Vec<(f64, f64)> =
             (0..=KNOTS).map(|i| (i as f64 * cell, self.torques[i % KNOTS])).collect();
@@ -104,11 +105,11 @@ impl Sum {
         shapes.extend(
             self.ends.map(|Ends { from, to, stiffness }| Shape::end_stops(from, to, stiffness)),
         );
-        AnyProfile::sampled(&shapes, vec![0; KNOTS].leak(), self.delay).unwrap()
+        Profile::sampled(&shapes, vec![0; KNOTS].leak(), self.delay).unwrap()
     }
 
     fn scene(&self, damping: f64) -> Scene {
-        let residual = self.cancelled.map(|cancelled| damping - cancelled);
+        let canceller = self.cancelled.map(|cancelled| Canceller::to(damping - cancelled));
         Scene {
             device: Device { inertia: 1e-5, damping, passivity: None },
             timing: Timing { period: PERIOD, worst_period: None },
@@ -116,11 +117,7 @@ impl Sum {
                 Some(_) => Coupling::Rigid,
                 None => Coupling::Spring { stiffness: 2.0 * damping / PERIOD },
             },
-            environment: Environment::Composed(Composed {
-                residual,
-                wall: self.wall,
-                profile: self.profile(),
-            }),
+            environment: Parts { canceller, wall: self.wall, profile: Some(self.profile()) }.sum(),
             latency: Latency::delayed(self.at_port.unwrap_or(0.0) * PERIOD),
             torque_limit: Some(self.limit).filter(|limit| limit.is_finite()),
         }
@@ -150,9 +147,9 @@ impl Sum {
     }
 
     fn of_wall(wall: &Wall, angle: f64, before: f64) -> f64 {
-        let depth = angle - wall.face;
-        let torque = wall.stiffness * depth + wall.damping / PERIOD * (angle - before);
-        match wall.one_sided {
+        let depth = angle - wall.face();
+        let torque = wall.stiffness * depth + wall.damping() / PERIOD * (angle - before);
+        match wall.is_one_sided() {
             true if depth <= 0.0 => 0.0,
             true => torque.max(0.0),
             false => torque,
@@ -339,7 +336,7 @@ fn no_closed_motion_at_the_port_takes_more_than_the_damping() {
     while shares.len() < runs {
         let mut sum = Sum { cancelled: None, ..Sum::random(&mut random) };
         let Some(wall) = &mut sum.wall else { continue };
-        wall.damping = 0.0;
+        wall.damper = None;
         sum.at_port = Some(if random.random_bool(0.3) { 0.0 } else { random.random() });
         let damping = sum.least_damping();
         let taken = |motion: &[f64]| taken_at_port(&sum, damping, motion);

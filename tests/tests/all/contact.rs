@@ -6,7 +6,7 @@
 //! oscillation breaks both.
 
 use haptic_servo::certificate::{RuleAnswer, assess};
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
@@ -38,14 +38,9 @@ fn scene(contact: &Contact) -> Scene {
         device: Device { inertia: 1.0, damping: 1.0, passivity: None },
         timing: Timing { period: 1.0, worst_period: None },
         coupling: Coupling::Spring { stiffness: contact.coupling },
-        environment: Environment::DamperWall(Wall {
-            stiffness: contact.stiffness,
-            damping: contact.damping,
-            filter: None,
-            delay: contact.delay,
-            face: 0.0,
-            one_sided: true,
-        }),
+        environment: Wall::damped(contact.stiffness, contact.damping, contact.delay)
+            .behind(0.0)
+            .alone(),
         latency: Latency::NONE,
         torque_limit: contact.limit.is_finite().then_some(contact.limit),
     }

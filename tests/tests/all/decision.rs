@@ -5,7 +5,7 @@ use fixed::types::{I8F24, I12F20};
 use haptic_servo::certificate::{
     PassivityProblem, Rejection, RuleAnswer, assess, assess_in, timing_checked,
 };
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Canceller, Environment, Parts, Wall};
 use haptic_servo::number::{Format, Number};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{Latched, OutputMode, Simultaneous, Step, SupportsTiming};
@@ -84,24 +84,20 @@ fn couplings(delta: f64, period: f64) -> [Coupling; 5] {
 /// A wall of every kind on the paper's device.
 fn wall(rng: &mut ChaCha8Rng, delay: usize, coupling: Coupling) -> Scene {
     let (damping, period) = (0.022, 0.001);
-    let wall = Wall {
-        stiffness: 1.0,
-        damping: rng.random_range(-0.6..1.25) * damping,
-        delay,
-        filter: rng.random_bool(0.3).then(|| rng.random_range(0.0..0.95)),
-        face: 0.0,
-        one_sided: rng.random_bool(0.2),
-    };
-    let environment = if rng.random_bool(0.3) {
-        Environment::FreeModeWall { residual: rng.random_range(0.0..1.0) * damping, wall }
-    } else {
-        Environment::DamperWall(wall)
-    };
+    let mut wall = Wall::damped(1.0, rng.random_range(-0.6..1.25) * damping, delay);
+    if rng.random_bool(0.3) {
+        wall = wall.filtered(rng.random_range(0.0..0.95));
+    }
+    if rng.random_bool(0.2) {
+        wall = wall.behind(0.0);
+    }
+    let residual = rng.random_bool(0.3).then(|| rng.random_range(0.0..1.0) * damping);
+    let canceller = residual.map(Canceller::to);
     Scene {
         device: Device { inertia: 2.2e-5, damping, passivity: None },
         timing: Timing { period, worst_period: rng.random_bool(0.2).then_some(0.0015) },
         coupling,
-        environment,
+        environment: Parts { canceller, wall: Some(wall), profile: None }.sum(),
         latency: Latency::NONE,
         torque_limit: rng.random_bool(0.1).then_some(1.0),
     }
@@ -109,12 +105,7 @@ fn wall(rng: &mut ChaCha8Rng, delay: usize, coupling: Coupling) -> Scene {
 
 fn with_stiffness(scene: &Scene, value: f64) -> Scene {
     let mut changed = *scene;
-    match &mut changed.environment {
-        Environment::DamperWall(wall) | Environment::FreeModeWall { wall, .. } => {
-            wall.stiffness = value;
-        }
-        _ => unreachable!("only walls are drawn"),
-    }
+    changed.environment.wall_mut().expect("only walls are drawn").stiffness = value;
     changed
 }
 

@@ -21,7 +21,7 @@ use firmware_harness::scene_codec::{CertifyReply, IntervalBits};
 use firmware_harness::sines::Sine;
 use haptic_servo::certificate::{Certified, Parameter, assess};
 use haptic_servo::encoder::RawCount;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Canceller, Wall};
 use haptic_servo::number::{Arithmetic, Number};
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::{Coupling, Latency, Scene};
@@ -218,7 +218,7 @@ fn every_format_computes_as_the_host_does() {
     }
     // A type of scene that the program has not is refused, and the next question is answered.
     let problem = servo::cases()[0].problem;
-    let environment = Environment::FreeMode { residual: 0.01, delay: 3 };
+    let environment = Canceller { residual: 0.01, delay: 3 }.alone();
     let other = BenchRequest::Servo {
         scene: Scene { environment, ..problem.scene },
         transducers: problem.transducers,
@@ -235,15 +235,7 @@ fn every_format_computes_as_the_host_does() {
 fn behind_the_matched_coupling_a_board_computes_as_the_host_does() {
     let elf = TOOLCHAIN.build_harness("bench_programs").unwrap_or_else(|error| panic!("{error}"));
     let mut board = BenchClient::boot(&elf).unwrap();
-    let wall = Wall {
-        stiffness: 22.0,
-        damping: 0.01,
-        filter: None,
-        delay: 0,
-        face: 0.01,
-        one_sided: true,
-    };
-    let environment = Environment::DamperWall(wall);
+    let environment = Wall::damped(22.0, 0.01, 0).behind(0.01).alone();
     let prompt = Latency::delayed(1e-5);
     for latency in [prompt, prompt.with_actuator_lag(5e-5)] {
         let mut problem = servo::cases()[0].problem;

@@ -4,7 +4,9 @@
 use haptic_servo::certificate::{
     Assumptions, Rejection, Resolution, Rule, RuleAnswer, assess_in, certify,
 };
-use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::environment::{
+    Canceller, Coefficients, Damper, Environment, Parts, Rational, Side, Wall,
+};
 use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
@@ -28,17 +30,15 @@ fn positive() -> impl Strategy<Value = f64> {
 
 fn wall() -> impl Strategy<Value = Wall> {
     let filter = prop::option::of(prop_oneof![0.0..1.0, float()]);
+    let damper = (float(), filter).prop_map(|(damping, filter)| Damper { damping, filter });
+    let side = prop_oneof![
+        Just(Side::Centred),
+        float().prop_map(Side::Displaced),
+        float().prop_map(Side::Face),
+    ];
     let delay = prop_oneof![0_usize..9, any::<usize>()];
-    (float(), float(), filter, delay, float(), any::<bool>()).prop_map(
-        |(stiffness, damping, filter, delay, face, one_sided)| Wall {
-            stiffness,
-            damping,
-            filter,
-            delay,
-            face,
-            one_sided,
-        },
-    )
+    (float(), prop::option::of(damper), side, delay)
+        .prop_map(|(stiffness, damper, side, delay)| Wall { stiffness, damper, side, delay })
 }
 
 fn coefficients() -> impl Strategy<Value = Coefficients> {
@@ -50,11 +50,13 @@ fn environment() -> impl Strategy<Value = Environment> {
     let small = || prop_oneof![4 => 0_usize..9, 1 => any::<usize>()];
     let rational = (coefficients(), coefficients(), small(), small());
     prop_oneof![
-        wall().prop_map(Environment::DelayedSpring),
-        wall().prop_map(Environment::DamperWall),
-        (float(), small()).prop_map(|(residual, delay)| Environment::FreeMode { residual, delay }),
-        (float(), wall()).prop_map(|(residual, wall)| Environment::FreeModeWall { residual, wall }),
-        rational.prop_map(|(numerator, denominator, delay, unit_zeros)| {
+        2 => wall().prop_map(Wall::alone),
+        1 => (float(), small()).prop_map(|(residual, delay)| Canceller { residual, delay }.alone()),
+        1 => (float(), wall()).prop_map(|(residual, wall)| {
+            let (canceller, wall) = (Some(Canceller::to(residual)), Some(wall));
+            Parts { canceller, wall, profile: None }.sum()
+        }),
+        1 => rational.prop_map(|(numerator, denominator, delay, unit_zeros)| {
             Environment::Rational(Rational { numerator, denominator, delay, unit_zeros })
         }),
     ]
@@ -99,16 +101,15 @@ fn format() -> impl Strategy<Value = Format> {
 /// Whether every number of the scene is finite.
 fn is_finite(scene: &Scene) -> bool {
     let wall = |w: &Wall| {
-        let all = [w.stiffness, w.damping, w.filter.unwrap_or(0.0), w.face];
+        let all = [w.stiffness, w.damping(), w.filter().unwrap_or(0.0), w.face()];
         all.iter().all(|x| x.is_finite())
     };
     let polynomials = scene.environment.rational().is_none_or(|r| {
         let all = r.numerator.as_slice().iter().chain(r.denominator.as_slice());
         all.into_iter().all(|x| x.is_finite())
     });
-    // Of a spring only what it has: its wall's damper is not felt.
-    let environment = scene.environment.wall().is_none_or(|w| wall(&w))
-        && scene.environment.residual().is_none_or(f64::is_finite)
+    let environment = scene.environment.wall().is_none_or(wall)
+        && scene.environment.canceller().is_none_or(|canceller| canceller.residual.is_finite())
         && polynomials;
     let stiffness = match scene.coupling {
         Coupling::Rigid => 1.0,

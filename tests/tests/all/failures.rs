@@ -16,7 +16,7 @@ use analysis::studies::failures::varying_hand::VaryingHand;
 use analysis::studies::failures::{ALL, Case, roots, setting, varying_hand, walls as wall, zigzag};
 use analysis::toolchain::{Tools, prepare};
 use analysis::worst_hand::{Absorber, HandImpedance, search};
-use haptic_servo::environment::{Environment, Rational};
+use haptic_servo::environment::{Environment, Parts, Rational};
 use haptic_servo::scene::{Coupling, Scene};
 use nalgebra::{SMatrix, SVector};
 use rand::SeedableRng;
@@ -158,8 +158,8 @@ fn q(value: f64) -> Q {
 /// A linear scene of springs and rational environments in exact numbers.
 fn exact(scene: &Scene) -> Exact {
     let (numerator, denominator) = match scene.environment {
-        Environment::DamperWall(wall) => {
-            assert_eq!(wall.damping, 0.0);
+        Environment::Parts(Parts { canceller: None, wall: Some(wall), profile: None }) => {
+            assert_eq!(wall.damping(), 0.0);
             (Poly::ascending(vec![q(wall.stiffness)]), Poly::integers(&[1]).raised(wall.delay))
         }
         Environment::Rational(Rational { numerator, denominator, delay, unit_zeros }) => {
@@ -253,7 +253,7 @@ fn in_units_of_the_loop(hand: &HandImpedance) -> HandImpedance {
 fn the_sum_of_delays_allows_a_spring_that_grows() {
     let result = Case::find("mean-delay").unwrap().evaluate().unwrap();
     let scene = result.runs[0].experiment.scene;
-    let Environment::DamperWall(wall) = scene.environment else { panic!("a spring") };
+    let wall = scene.environment.wall().expect("a spring");
     near(wall.stiffness, 0.99 * 0.022 / (1e-3 + 1.0 / (TAU * 3e3)), 1e-12);
     let device = Chain::rigid(PADDLE.inertia, PADDLE.damping).unwrap();
     let found = search(&scene, &device).unwrap();

@@ -3,7 +3,7 @@
 //! take no more than that; and the exact rule of the wall without the limit.
 
 use haptic_servo::certificate::PassivityProblem;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::Coupling;
 use num_traits::{One, Signed};
 use rand::{Rng, SeedableRng};
@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use tests::exact::{Q, of_f64};
 use tests::index::{is_negative_somewhere, real_part};
 use tests::poly::Poly;
-use tests::scenes::{ExactScene, Frame, log_uniform, short, wall_data, wall_fraction};
+use tests::scenes::{ExactScene, Frame, log_uniform, short, wall_fraction};
 
 use super::composed::{SETTLED, worst};
 
@@ -36,14 +36,13 @@ impl Limited {
         let damping = short(frame.delta * log_uniform(rng, 0.01, 4.0), 24);
         let pole = short(rng.random_range(0.0..SLOWEST), 20);
         let limit = frame.unit() * log_uniform(rng, 0.01, 10.0);
-        Self { frame, wall: wall_data(stiffness, damping, Some(pole), delay), limit }
+        Self { frame, wall: Wall::damped(stiffness, damping, delay).filtered(pole), limit }
     }
 
     /// The wall without its limit behind the standard coupling, on a device of this passivity in N m s/rad.
     fn unlimited(&self, delta: f64) -> ExactScene {
         let coupling = Coupling::Spring { stiffness: 2.0 * delta / self.frame.period };
-        let frame = Frame { delta, coupling, ..self.frame };
-        frame.with(Environment::DamperWall(self.wall), wall_fraction(&self.wall, frame.period))
+        Frame { delta, coupling, ..self.frame }.with_parts(None, Some(self.wall))
     }
 
     /// What the certificate uses of the limited wall, in N m s/rad.
@@ -56,7 +55,7 @@ impl Limited {
     /// The index in N m s/rad without which a closed motion, of these angles in turn, takes energy.
     fn needed(&self, motion: &[f64]) -> f64 {
         let (wall, period) = (&self.wall, self.frame.period);
-        let pole = wall.filter.expect("a filter is drawn");
+        let pole = wall.filter().expect("a filter is drawn");
         let (mut velocity, mut late) = (0.0, vec![0.0; wall.delay]);
         let (mut work, mut squares, mut before) = (0.0, 0.0, motion[0]);
         for _ in 0..=SETTLED.div_ceil(motion.len()) {
@@ -64,7 +63,7 @@ impl Limited {
             for &angle in motion {
                 let step = angle - before;
                 velocity = pole * velocity + (1.0 - pole) * step / period;
-                let torque = wall.stiffness * angle + wall.damping * velocity;
+                let torque = wall.stiffness * angle + wall.damping() * velocity;
                 late.insert(0, torque.clamp(-self.limit, self.limit));
                 work += late.pop().expect("one was put in") * step;
                 squares += step * step;
@@ -135,7 +134,7 @@ fn the_bound_is_proved_by_a_multiplier() {
 /// What equation 31 bounds the index by, in N m s/rad: a filter has the l1 norm 1.
 fn unfiltered(drawn: &Limited) -> f64 {
     let wall = &drawn.wall;
-    wall.stiffness * drawn.frame.period * (wall.delay as f64 - 0.5) + wall.damping
+    wall.stiffness * drawn.frame.period * (wall.delay as f64 - 0.5) + wall.damping()
 }
 
 /// The signs of the impulse response of `over / under` are those of a multiplier.

@@ -49,10 +49,12 @@ fn scene(case: &Value) -> Scene {
             Some(stiffness) => Coupling::Spring { stiffness },
             None => Coupling::Matched,
         },
-        environment: Environment::DamperWall(Wall {
-            damping: number(&wall["damping"]),
-            ..Wall::spring(number(&wall["stiffness"]), wall["delay"].as_u64().unwrap() as usize)
-        }),
+        environment: Wall::damped(
+            number(&wall["stiffness"]),
+            number(&wall["damping"]),
+            wall["delay"].as_u64().unwrap() as usize,
+        )
+        .alone(),
         latency: Latency {
             output_delay: exactly("output_delay"),
             output_jitter: of("output_jitter"),
@@ -148,10 +150,6 @@ type State = SVector<f64, 4>;
 
 impl<'a> Sampled<'a> {
     fn of(scene: &'a Scene, compliances: &'a [f64], mass: f64, spring: f64) -> Self {
-        let (Environment::DamperWall(wall) | Environment::DelayedSpring(wall)) = &scene.environment
-        else {
-            unreachable!()
-        };
         Self {
             period: scene.timing.period,
             mass,
@@ -159,7 +157,7 @@ impl<'a> Sampled<'a> {
             damping: scene.device.passivity(),
             lag: scene.latency.actuator_lag.middle(),
             delay: scene.latency.output_delay.middle(),
-            wall,
+            wall: scene.environment.wall().expect("only walls are drawn"),
             compliances,
         }
     }
@@ -199,7 +197,7 @@ impl<'a> Sampled<'a> {
         let mut begun = 0;
         let mut past_torques = vec![0.0; self.compliances.len()];
         let mut past_places = vec![0.0; self.wall.delay + 2];
-        let (slope, viscous) = (self.wall.stiffness, self.wall.damping / self.period);
+        let (slope, viscous) = (self.wall.stiffness, self.wall.damping() / self.period);
         let mut now = 0.0;
         let (mut logarithm, mut growth) = (0.0, 0.0);
         for tick in 0..TICKS {
@@ -375,19 +373,13 @@ fn limited(rng: &mut ChaCha8Rng, part: f64) -> Option<Scene> {
     } else {
         Coupling::Spring { stiffness: 2.0 * delta / period / log_uniform(rng, 1.05, 16.0) }
     };
-    let wall = Wall {
-        damping: if rng.random_bool(0.5) { 0.0 } else { delta * rng.random_range(0.0..0.3) },
-        ..Wall::spring(delta / period, rng.random_range(1..=2))
-    };
+    let damping = if rng.random_bool(0.5) { 0.0 } else { delta * rng.random_range(0.0..0.3) };
+    let (stiffness, whole) = (delta / period, rng.random_range(1..=2));
     let scene = |factor: f64| Scene {
         device: Device { inertia: 2.2e-5, damping: delta, passivity: None },
         timing: Timing { period, worst_period: None },
         coupling,
-        environment: Environment::DamperWall(Wall {
-            stiffness: factor * wall.stiffness,
-            damping: factor * wall.damping,
-            ..wall
-        }),
+        environment: Wall::damped(factor * stiffness, factor * damping, whole).alone(),
         latency: Latency {
             output_jitter: share * period,
             ..Latency::delayed(delay * period).with_actuator_lag(lag * period)
@@ -453,7 +445,7 @@ fn torques_and_counts_that_deviate_at_once_do_not_grow() {
             device: Device { inertia: 2.2e-5, damping: delta, passivity: None },
             timing: Timing { period, worst_period: None },
             coupling: Coupling::Matched,
-            environment: Environment::DamperWall(Wall::spring(0.999 * 2.0 * limit / period, 1)),
+            environment: Wall::spring(0.999 * 2.0 * limit / period, 1).alone(),
             latency,
             torque_limit: Some(1.0),
         };
@@ -578,7 +570,7 @@ fn missed_updates_behind_a_matched_coupling_have_their_limit() {
             device: Device { inertia: 2.2e-5, damping: delta, passivity: None },
             timing: Timing { period, worst_period: Some(longest * period) },
             coupling: Coupling::Matched,
-            environment: Environment::DamperWall(Wall::spring(stiffness, 1)),
+            environment: Wall::spring(stiffness, 1).alone(),
             latency: Latency { output_jitter: jitter * period, ..Latency::delayed(delay * period) },
             torque_limit,
         };

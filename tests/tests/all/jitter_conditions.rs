@@ -4,7 +4,7 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 use haptic_servo::certificate::PassivityProblem;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
@@ -70,10 +70,8 @@ impl Loop {
                 Some(stiffness) => Coupling::Spring { stiffness },
                 None => Coupling::Rigid,
             },
-            environment: Environment::DamperWall(Wall {
-                damping: factor * self.damping,
-                ..Wall::spring(factor * self.stiffness, self.whole)
-            }),
+            environment: Wall::damped(factor * self.stiffness, factor * self.damping, self.whole)
+                .alone(),
             latency: Latency {
                 output_jitter: self.jitter,
                 count_jitter: self.counts,

@@ -102,14 +102,8 @@ impl Loop {
 
     fn environment(&self) -> Environment {
         if self.section.is_none() {
-            return Environment::DamperWall(Wall {
-                stiffness: self.stiffness,
-                damping: self.damping,
-                filter: (self.filter > 0.0).then_some(self.filter),
-                delay: self.delay,
-                face: 0.0,
-                one_sided: false,
-            });
+            let wall = Wall::damped(self.stiffness, self.damping, self.delay);
+            return if self.filter > 0.0 { wall.filtered(self.filter) } else { wall }.alone();
         }
         let descending = |ascending: Vec<f64>| {
             let values: Vec<f64> = ascending.into_iter().rev().collect();

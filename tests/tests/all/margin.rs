@@ -2,7 +2,7 @@
 //! taken away the scene passes the exact rule in exact numbers, with a little more it does not.
 
 use haptic_servo::certificate::{Rule, assess};
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -50,14 +50,7 @@ fn wall(stiffness: f64, damping: f64, delay: usize, limit: Option<f64>) -> Scene
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: Environment::DamperWall(Wall {
-            stiffness,
-            damping,
-            filter: None,
-            delay,
-            face: 0.0,
-            one_sided: false,
-        }),
+        environment: Wall::damped(stiffness, damping, delay).alone(),
         latency: Latency::NONE,
         torque_limit: limit,
     }

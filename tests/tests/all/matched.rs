@@ -3,7 +3,7 @@
 
 use haptic_servo::certificate::Certified;
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Canceller, Environment, Parts, Wall};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use haptic_servo::servo::{Servo, Transducers};
@@ -173,27 +173,18 @@ fn speeds(
 fn environment(rng: &mut ChaCha8Rng) -> Environment {
     let delay = if rng.random_bool(0.6) { 0 } else { rng.random_range(1..=2) };
     let standard = 2.0 * DAMPING / PERIOD;
-    let wall = |stiffness: f64, damping: f64| Wall {
-        stiffness,
-        damping,
-        filter: None,
-        delay,
-        face: 1e-3,
-        one_sided: true,
-    };
     let stiffness = if delay == 0 {
         standard * 10_f64.powf(rng.random_range(-1.5..1.5))
     } else {
         standard * rng.random_range(0.05..1.0) / (2 * delay - 1) as f64
     };
-    match rng.random_range(0..3) {
-        0 => Environment::DelayedSpring(wall(stiffness, 0.0)),
-        1 => Environment::DamperWall(wall(stiffness, DAMPING * rng.random_range(0.0..1.5))),
-        _ => Environment::FreeModeWall {
-            residual: DAMPING * rng.random_range(0.1..0.9),
-            wall: wall(stiffness, 0.0),
-        },
-    }
+    let spring = Wall::spring(stiffness, delay);
+    let (canceller, wall) = match rng.random_range(0..3) {
+        0 => (None, spring),
+        1 => (None, Wall::damped(stiffness, DAMPING * rng.random_range(0.0..1.5), delay)),
+        _ => (Some(Canceller::to(DAMPING * rng.random_range(0.1..0.9))), spring),
+    };
+    Parts { canceller, wall: Some(wall.behind(1e-3)), profile: None }.sum()
 }
 
 fn latency(rng: &mut ChaCha8Rng) -> Latency {

@@ -4,7 +4,7 @@
 //! `PROFILE_RUNS=100000 cargo test -p tests --test all profiles` searches longer.
 
 use haptic_servo::certificate::{PassivityProblem, certify};
-use haptic_servo::environment::{AnyProfile, Environment, Shape};
+use haptic_servo::environment::{Profile, Shape};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use rand::Rng;
 use rand::SeedableRng;
@@ -50,12 +50,12 @@ impl Wave {
         at(knot as usize) * (1.0 - part) + at(knot as usize + 1) * part
     }
 
-    fn profile(&self, delay: usize) -> AnyProfile {
+    fn profile(&self, delay: usize) -> Profile {
         let cell = self.pitch / KNOTS as f64;
         let knots: Vec<(f64, f64)> =
             (0..=KNOTS).map(|i| (i as f64 * cell, self.torques[i % KNOTS])).collect();
         let units = vec![0; KNOTS].leak();
-        AnyProfile::sampled(&[Shape::Periodic(knots.leak())], units, delay).unwrap()
+        Profile::sampled(&[Shape::Periodic(knots.leak())], units, delay).unwrap()
     }
 }
 
@@ -88,7 +88,7 @@ impl Case {
             } else {
                 Coupling::Rigid
             },
-            environment: Environment::Profile(self.wave.profile(self.delay)),
+            environment: self.wave.profile(self.delay).alone(),
             latency: Latency::delayed(self.late * PERIOD),
             torque_limit: None,
         }

@@ -117,12 +117,7 @@ fn scale_to_the_line(drawn: &mut ExactScene, share: f64) -> bool {
 /// The same wall with another stiffness; `None` for an environment without one.
 fn with_stiffness(scene: &Scene, value: f64) -> Option<Scene> {
     let mut changed = *scene;
-    match &mut changed.environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => wall.stiffness = value,
-        _ => return None,
-    }
+    changed.environment.wall_mut()?.stiffness = value;
     Some(changed)
 }
 

@@ -22,20 +22,13 @@ fn with(scene: &Scene, parameter: Parameter, value: f64) -> Option<Scene> {
         (Parameter::DeviceDamping, _) => scene.device.damping = value,
         (Parameter::Passivity, _) => scene.device.passivity = Some(value),
         (Parameter::CouplingStiffness, _) => scene.coupling = Coupling::Spring { stiffness: value },
-        (
-            Parameter::Stiffness,
-            Environment::DelayedSpring(wall)
-            | Environment::DamperWall(wall)
-            | Environment::FreeModeWall { wall, .. },
-        ) => wall.stiffness = value,
-        (
-            Parameter::Damping,
-            Environment::DamperWall(wall) | Environment::FreeModeWall { wall, .. },
-        ) => wall.damping = value,
-        (
-            Parameter::Residual,
-            Environment::FreeMode { residual, .. } | Environment::FreeModeWall { residual, .. },
-        ) => *residual = value,
+        (Parameter::Stiffness, environment) => environment.wall_mut()?.stiffness = value,
+        (Parameter::Damping, environment) => {
+            environment.wall_mut()?.damper.as_mut()?.damping = value;
+        }
+        (Parameter::Residual, Environment::Parts(parts)) => {
+            parts.canceller.as_mut()?.residual = value;
+        }
         _ => return None,
     }
     Some(scene)

@@ -1,14 +1,12 @@
 //! Current loops that are updated a whole number of times in a period: the certificate's response and ripple
 //! against the torque over time, drawn from update to update.
 
-use haptic_servo::certificate::{Certified, Rejection, assess, certify};
-use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{DelayedSpring, Environment, Matched, Wall};
+use haptic_servo::certificate::{Rejection, assess, certify};
+use haptic_servo::environment::Wall;
 use haptic_servo::parameter::Parameter;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::passivity::lagged::{LagIntervals, SampledResponse, delay_of_updates};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
-use haptic_servo::servo::{Servo, Transducers};
 use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -156,7 +154,7 @@ fn spring(stiffness: f64, delay: usize, latency: Latency) -> Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: PERIOD, worst_period: None },
         coupling: Coupling::Rigid,
-        environment: Environment::DelayedSpring(Wall::spring(stiffness, delay)),
+        environment: Wall::spring(stiffness, delay).alone(),
         latency,
         torque_limit: None,
     }
@@ -226,45 +224,4 @@ fn what_a_current_loop_in_updates_does_not_allow_is_refused_with_value_and_bound
     let range = Latency { actuator_lag: between(7e-5, 8e-5), ..fine };
     let [one, other] = [range, fine].map(|it| assess(&spring(20.0, 1, it)).alpha_port.unwrap());
     assert!(one.hi() >= other.hi() && one.hi() < 1.1 * other.hi(), "{one:?} {other:?}");
-}
-
-/// A spring of a program, behind the coupling that absorbs an amplifier in updates.
-const fn undelayed<const UPDATES: bool>() -> Scene<Matched<DelayedSpring<0>, 0, 1, UPDATES>> {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: PERIOD, worst_period: None },
-        coupling: Coupling::Matched,
-        environment: Matched { environment: DelayedSpring { stiffness: 2400.0 } },
-        latency: Latency::sampled(4, 8e-5, PERIOD),
-        torque_limit: Some(1.0),
-    }
-}
-
-/// The compiler certifies it, where the type says that the amplifier is updated.
-const CERTIFIED: Certified<Scene<Matched<DelayedSpring<0>, 0, 1, true>>> =
-    undelayed::<true>().certified();
-
-#[test]
-fn the_type_of_a_program_says_whether_its_amplifier_is_updated() {
-    let transducers = Transducers {
-        counts_per_turn: 65_536.0,
-        counter: CounterWidth::Bits32,
-        full_scale_torque: 2.0,
-        largest_speed: 100.0,
-    };
-    let mut typed: Servo<_, f32> = Servo::new(&CERTIFIED, &transducers).unwrap();
-    let data = undelayed::<true>().as_data().certify().unwrap();
-    let mut as_data: Servo<_, f32> = Servo::new(&data, &transducers).unwrap();
-    for tick in 0..50 {
-        let angle = 1e-3 * f64::from(tick);
-        let [one, other] = [typed.tick_at(angle), as_data.tick_at(angle)];
-        assert_eq!(one, other);
-    }
-    let refused = undelayed::<false>().certify();
-    assert!(matches!(refused, Err(Rejection::CouplingMemory)), "{refused:?}");
-    let continuous = Scene {
-        latency: Latency { actuator_updates: 0, ..undelayed::<true>().latency },
-        ..undelayed::<true>()
-    };
-    assert!(matches!(continuous.certify(), Err(Rejection::CouplingMemory)));
 }

@@ -12,7 +12,7 @@ use analysis::simulation::{Experiment, Integration, Trajectory, simulate};
 use analysis::stability::{StabilityVerdict, judge};
 use analysis::verdict;
 use haptic_servo::certificate::LoopTransfers;
-use haptic_servo::environment::Environment;
+use haptic_servo::environment::{Environment, Parts, Wall};
 use haptic_servo::scene::{Coupling, Scene};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -37,10 +37,11 @@ pub(super) fn drawn(rng: &mut ChaCha8Rng) -> SceneFile {
         scene.torque_limit = Some(0.1);
         scene.coupling = Coupling::Spring { stiffness: short(2.0 * damping / period, 20) };
     }
-    if let Environment::DamperWall(wall) | Environment::FreeModeWall { wall, .. } =
-        &mut scene.environment
+    if let Some(wall) = scene.environment.wall_mut()
+        && wall.damper.is_some()
+        && rng.random_bool(0.3)
     {
-        wall.one_sided = rng.random_bool(0.3);
+        *wall = wall.behind(0.0);
     }
     if rng.random_bool(0.1) {
         scene.timing.worst_period = Some(1.25 * period);
@@ -83,12 +84,11 @@ pub(super) fn drawn(rng: &mut ChaCha8Rng) -> SceneFile {
 /// that are not asymptotically stable are these, and theirs is the eigenvalue 1 of the position.
 pub(super) fn stays_anywhere(scene: &Scene) -> bool {
     match scene.environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => wall.stiffness == 0.0,
-        Environment::FreeMode { .. } => true,
+        Environment::Parts(Parts { wall, profile: None, .. }) => {
+            wall.is_none_or(|wall| wall.stiffness == 0.0)
+        }
         Environment::Rational(rational) => rational.unit_zeros > 0,
-        Environment::Stated(_) | Environment::Profile(_) | Environment::Composed(_) => false,
+        Environment::Parts(_) | Environment::Stated(_) => false,
     }
 }
 
@@ -150,15 +150,12 @@ fn a_certified_scene_is_stable_and_its_motion_ends() {
             simulate(&experiment, integration).unwrap_or_else(|why| panic!("{seed}: {why}"));
         assert!(is_bounded(scene, &motion), "seed {seed}: certified, and moves on\n{text}");
         assert!(LoopTransfers::of(scene).is_ok(), "seed {seed}");
-        certified[match scene.environment {
-            Environment::DelayedSpring(_) => 0,
-            Environment::DamperWall(_) => 1,
-            Environment::FreeMode { .. } => 2,
-            Environment::FreeModeWall { .. } => 3,
-            Environment::Rational(_)
-            | Environment::Stated(_)
-            | Environment::Profile(_)
-            | Environment::Composed(_) => 4,
+        certified[match (scene.environment.canceller(), scene.environment.wall()) {
+            (None, Some(Wall { damper: None, .. })) => 0,
+            (None, Some(_)) => 1,
+            (Some(_), None) => 2,
+            (Some(_), Some(_)) => 3,
+            (None, None) => 4,
         }] += 1;
     }
     println!(

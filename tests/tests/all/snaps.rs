@@ -5,7 +5,7 @@
 
 use haptic_servo::certificate::PassivityProblem;
 use haptic_servo::coupling::Response;
-use haptic_servo::environment::{AnyProfile, Discretize, Environment, Law, Shape};
+use haptic_servo::environment::{Discretize, Law, Profile, Shape};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use rand::Rng;
 use rand::SeedableRng;
@@ -132,7 +132,7 @@ impl Knob {
         })
     }
 
-    fn profile(&self) -> AnyProfile {
+    fn profile(&self) -> Profile {
         let cell = std::f64::consts::TAU / f64::from(self.count) / KNOTS as f64;
         let knots: Vec<(f64, f64)> =
             (0..=KNOTS).map(|i| (i as f64 * cell, self.base[i % KNOTS])).collect();
@@ -147,7 +147,7 @@ impl Knob {
             to,
             stiffness,
         }));
-        AnyProfile::sampled(&shapes, vec![0; CELLS].leak(), self.delay).unwrap()
+        Profile::sampled(&shapes, vec![0; CELLS].leak(), self.delay).unwrap()
     }
 
     /// Behind the standard coupling.
@@ -156,7 +156,7 @@ impl Knob {
             device: Device { inertia: 1e-5, damping, passivity: None },
             timing: Timing { period: PERIOD, worst_period: None },
             coupling: Coupling::Spring { stiffness: 2.0 * damping / PERIOD },
-            environment: Environment::Profile(self.profile()),
+            environment: self.profile().alone(),
             latency: Latency::NONE,
             torque_limit: self.limit,
         }

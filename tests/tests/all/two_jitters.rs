@@ -3,7 +3,7 @@
 
 use analysis::file;
 use haptic_servo::certificate::PassivityProblem;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::latency::TimeRange;
 use haptic_servo::matched::MatchedCoupling;
 use haptic_servo::number::Format;
@@ -251,13 +251,12 @@ fn a_count_jitter_alone_is_an_output_jitter() {
     for coupling in [Coupling::Rigid, Coupling::Matched, Coupling::Spring { stiffness: 8.0 }] {
         for (damping, torque_limit) in [(0.0, None), (0.001, None), (0.001, Some(1.0))] {
             let judged = |latency| {
-                let wall = Wall { damping, ..Wall::spring(3.0, 1) };
                 let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
                 let posed = PassivityProblem::of(&Scene {
                     device,
                     timing: Timing { period: 1e-3, worst_period: None },
                     coupling,
-                    environment: Environment::DamperWall(wall),
+                    environment: Wall::damped(3.0, damping, 1).alone(),
                     latency,
                     torque_limit,
                 })
@@ -299,7 +298,7 @@ fn what_is_not_proved_is_refused() {
             device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
             timing: Timing { period: 1e-3, worst_period: None },
             coupling: Coupling::Matched,
-            environment: Environment::DamperWall(Wall::spring(1.0, 1)),
+            environment: Wall::spring(1.0, 1).alone(),
             latency,
             torque_limit: None,
         };

@@ -15,6 +15,8 @@ pub enum Expression {
     List(Vec<Expression>),
     /// A call with one argument.
     Call(&'static str, Box<Expression>),
+    /// A call of a method without arguments.
+    Method(Box<Expression>, &'static str),
 }
 
 /// A verbatim text.
@@ -56,6 +58,11 @@ impl Expression {
         Self::Call(call, Box::new(self))
     }
 
+    /// With a method called on it.
+    pub fn method(self, name: &'static str) -> Self {
+        Self::Method(Box::new(self), name)
+    }
+
     /// After the `=` of a constant whose beginning has `columns` columns: on its own line if it fits only
     /// there.
     pub fn after(&self, columns: usize) -> String {
@@ -84,6 +91,7 @@ impl Expression {
                 format!("&[{}]", all.join(", "))
             }
             Self::Call(name, argument) => format!("{name}({})", argument.line()),
+            Self::Method(of, name) => format!("{}.{name}()", of.line()),
         }
     }
 
@@ -109,6 +117,7 @@ impl Expression {
                 format!("&[\n{all}{outer}]")
             }
             Self::Call(name, argument) => format!("{name}({})", argument.broken(indent)),
+            Self::Method(of, name) => format!("{}\n{outer}.{name}()", of.broken(indent)),
         }
     }
 

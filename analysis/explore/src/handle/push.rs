@@ -2,7 +2,7 @@
 
 use haptic_model::device::HandSetpoint;
 use haptic_model::hand::HandTrajectory;
-use haptic_servo::environment::Environment;
+use haptic_servo::environment::{Environment, Wall};
 
 /// Time in s in which the set-point moves to the beginning of the trajectory.
 const APPROACH: f64 = 0.5;
@@ -18,7 +18,7 @@ impl Push {
     /// The trajectory that demonstrates an environment, at its face, from a set-point in rad on.
     pub fn new(environment: &Environment, setpoint: f64, period: f64) -> Self {
         let mut trajectory = HandTrajectory::for_environment(environment);
-        let face = environment.wall().map_or(0.0, |wall| wall.face);
+        let face = environment.wall().map_or(0.0, Wall::face);
         for (time, position) in &mut trajectory.path {
             *time += APPROACH;
             *position += face;

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use haptic_model::device::{Energy, HandSetpoint};
 use haptic_servo::dac::DacCode;
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 use serde::{Deserialize, Serialize};
@@ -174,8 +175,8 @@ impl Simulated {
             full_scale,
             torque_limit: self.scene.torque_limit.unwrap_or(full_scale),
             is_knob: !is_paddle,
-            face: environment.wall().map(|wall| wall.face),
-            one_sided: environment.wall().is_some_and(|wall| wall.one_sided),
+            face: environment.wall().map(Wall::face),
+            one_sided: environment.wall().is_some_and(Wall::is_one_sided),
         }
     }
 

@@ -2,9 +2,11 @@
 
 use haptic_model::device::{Hand, HandSetpoint, Motion};
 use haptic_model::simulation::held_device::HeldDevice;
+use haptic_servo::certificate::Certified;
 use haptic_servo::encoder::{CounterWidth, RawCount};
-use haptic_servo::environment::DamperWall;
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene_type::Typed;
 use haptic_servo::servo::{Servo, Transducers};
 use serde_json::{Value, json};
 
@@ -59,21 +61,24 @@ fn record() -> Vec<(i32, u16)> {
 
 #[test]
 fn the_codes_are_those_of_the_servo_that_is_compiled_for_a_board() {
-    let scene = Scene {
+    const CERTIFIED: Certified<Scene> = Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 1e-3, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: DamperWall::<1> { stiffness: STIFFNESS, damping: 0.01 },
+        environment: Wall::damped(STIFFNESS, 0.01, 1).alone(),
         latency: Latency::NONE,
         torque_limit: Some(2.0),
-    };
+    }
+    .certified();
+    haptic_servo::scene_type!(Compiled: CERTIFIED);
+    let certified = Typed::<Compiled>::certified();
     let transducers = Transducers {
         counts_per_turn: 61_440.0,
         counter: CounterWidth::Bits32,
         full_scale_torque: 2.0,
         largest_speed: 100.0,
     };
-    let mut servo: Servo<_, f32> = Servo::new(&scene.certified(), &transducers).unwrap();
+    let mut servo: Servo<_, f32> = Servo::new(&certified, &transducers).unwrap();
     assert_eq!(held(&wall(STIFFNESS), true)["rendering"], "certified");
     let mut rows = Vec::new();
     for (setpoint, is_held) in [(0.1, true), (0.35, true), (-0.02, true), (0.2, true), (0.2, false)]

@@ -1,16 +1,13 @@
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::{DelayedSpring, Matched};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 
-/// The environment that the hand feels.
-pub type Environment = Matched<DelayedSpring<1>, 0, 1, true>;
-
 /// The scene.
-pub const SCENE: Scene<Environment> = Scene {
+pub const SCENE: Scene = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.0215) },
     timing: Timing { period: 0.0001, worst_period: None },
     coupling: Coupling::Matched,
-    environment: Matched { environment: DelayedSpring { stiffness: 20.0 } },
+    environment: Wall::spring(20.0, 1).alone(),
     latency: Latency {
         output_delay: TimeRange::exactly(2.5e-5),
         actuator_lag: TimeRange::exactly(7.957747154594768e-5),
@@ -21,4 +18,4 @@ pub const SCENE: Scene<Environment> = Scene {
 };
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();

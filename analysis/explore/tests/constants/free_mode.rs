@@ -1,19 +1,16 @@
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::FreeMode;
+use haptic_servo::environment::Canceller;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-/// The environment that the hand feels.
-pub type Environment = FreeMode<1>;
-
 /// The scene.
-pub const SCENE: Scene<Environment> = Scene {
+pub const SCENE: Scene = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: FreeMode { residual: 0.001 },
+    environment: Canceller { residual: 0.001, delay: 1 }.alone(),
     latency: Latency::NONE,
     torque_limit: None,
 };
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();

@@ -1,16 +1,13 @@
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::{DelayedSpring, Matched};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 
-/// The environment that the hand feels.
-pub type Environment = Matched<DelayedSpring<1>>;
-
 /// The scene.
-pub const SCENE: Scene<Environment> = Scene {
+pub const SCENE: Scene = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Matched,
-    environment: Matched { environment: DelayedSpring { stiffness: 2.0 } },
+    environment: Wall::spring(2.0, 1).alone(),
     latency: Latency {
         output_delay: TimeRange::exactly(6e-6),
         actuator_response: TimeRange::between(2e-5, 0.00025),
@@ -20,4 +17,4 @@ pub const SCENE: Scene<Environment> = Scene {
 };
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();

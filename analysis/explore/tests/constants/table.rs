@@ -2,9 +2,6 @@ use haptic_servo::certificate::Certified;
 use haptic_servo::environment::{Knots, Profile, Shape};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-/// The environment that the hand feels.
-pub type Environment = Profile<32, 1>;
-
 /// Torque over angle: a table, which stays in flash.
 static KNOTS: Knots<32> = Knots::of(&[
     Shape::Table(&[(0.0, 0.0), (0.1, 0.02), (0.3, -0.02), (0.4, 0.0)]),
@@ -13,14 +10,14 @@ static KNOTS: Knots<32> = Knots::of(&[
 ]);
 
 /// The scene.
-pub const SCENE: Scene<Environment> = Scene {
+pub const SCENE: Scene = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: Profile::of(&KNOTS),
+    environment: Profile::of(&KNOTS, 1).alone(),
     latency: Latency::NONE,
     torque_limit: Some(1.5),
 };
 
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
-pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();

@@ -1,7 +1,7 @@
 use super::*;
 use crate::chain::{Link, Mass};
 use crate::file::{Format, parse, write};
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Canceller, Environment, Wall};
 use haptic_servo::scene::{Device, Latency, TimeRange, Timing};
 
 fn scene(environment: Environment) -> Scene {
@@ -16,8 +16,7 @@ fn scene(environment: Environment) -> Scene {
 }
 
 fn wall(stiffness: f64, damping: f64, delay: usize) -> Environment {
-    let one_sided = false;
-    Environment::DamperWall(Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided })
+    Wall::damped(stiffness, damping, delay).alone()
 }
 
 fn file(scene: Scene) -> SceneFile {
@@ -61,7 +60,7 @@ fn near(is: f64, should: f64) {
 
 fn delayed_spring(stiffness: f64) -> Scene {
     let coupling = Coupling::Spring { stiffness: 1e12 };
-    Scene { coupling, ..scene(Environment::DelayedSpring(Wall::spring(stiffness, 1))) }
+    Scene { coupling, ..scene(Wall::spring(stiffness, 1).alone()) }
 }
 
 /// For a spring behind `n + eps` samples, nearly rigid: with `e = 1 + 2 n + 2 eps + 2 tau / T`,
@@ -154,7 +153,7 @@ fn what_has_no_limit_and_what_has_no_such_number() {
         panic!("a limit")
     };
     assert!(passes(&read(&file(found))));
-    let free = scene(Environment::FreeMode { residual: 0.01, delay: 0 });
+    let free = scene(Canceller::to(0.01).alone());
     assert_eq!(largest(&free, Quantity::Stiffness, &terms), DesignLimit::NoSuchNumber);
     near(limit(largest(&free, Quantity::Cancellation, &terms)).0, 0.022);
     let DesignLimit::Unlimited(found) = period(&[file(free)], &terms) else { panic!("a limit") };
@@ -194,7 +193,7 @@ fn border_of_stiffness_and_damping() {
 #[test]
 fn the_border_of_free_mode_is_where_a_pole_meets_the_circle() {
     for residual in [0.001, 0.03, 7.0] {
-        let free = scene(Environment::FreeMode { residual, delay: 0 });
+        let free = scene(Canceller::to(residual).alone());
         let (damping, found) = limit(device(&[file(free)], &Terms::default()));
         assert!(damping > 0.5 * residual);
         assert!((damping / (0.5 * residual) - 1.0).abs() < 1e-12, "{damping} for {residual}");

@@ -1,6 +1,8 @@
 //! The types of environment, and which keys each takes.
 
-use haptic_servo::environment::{Coefficients, Environment, Knots, Profile, Rational, Shape, Wall};
+use haptic_servo::environment::{
+    Canceller, Coefficients, Environment, Knots, Parts, Profile, Rational, Shape, Side, Wall,
+};
 
 use super::key::{self, Key};
 
@@ -30,6 +32,9 @@ const ZERO: Coefficients = match Coefficients::new(&[0.0]) {
     None => panic!("one coefficient fits"),
 };
 
+const WALL: Wall = Wall::damped(0.0, 0.0, 0);
+const CANCELLER: Canceller = Canceller::to(0.0);
+
 const BLANK: Environment =
     Environment::Rational(Rational { numerator: ZERO, denominator: ZERO, delay: 0, unit_zeros: 0 });
 
@@ -40,7 +45,7 @@ pub const ALL: &[Kind] = &[
         doc: "A spring without a damper.",
         needed: &[&key::STIFFNESS, &key::DELAY_SAMPLES],
         optional: &[],
-        blank: Environment::DelayedSpring(Wall::spring(0.0, 0)),
+        blank: Wall::spring(0.0, 0).alone(),
         values: &[],
     },
     Kind {
@@ -48,7 +53,7 @@ pub const ALL: &[Kind] = &[
         doc: "A wall: spring and damper, everywhere or behind a face.",
         needed: &[&key::STIFFNESS, &key::DAMPING, &key::DELAY_SAMPLES],
         optional: OF_A_WALL,
-        blank: Environment::DamperWall(Wall::spring(0.0, 0)),
+        blank: WALL.alone(),
         values: &[],
     },
     Kind {
@@ -56,7 +61,7 @@ pub const ALL: &[Kind] = &[
         doc: "Free motion, with the device's own damping cancelled as far as the residual.",
         needed: &[&key::RESIDUAL],
         optional: &[&key::DELAY_SAMPLES],
-        blank: Environment::FreeMode { residual: 0.0, delay: 0 },
+        blank: CANCELLER.alone(),
         values: &[],
     },
     Kind {
@@ -64,7 +69,7 @@ pub const ALL: &[Kind] = &[
         doc: "Free motion with a wall in it.",
         needed: &[&key::RESIDUAL, &key::STIFFNESS, &key::DAMPING, &key::DELAY_SAMPLES],
         optional: OF_A_WALL,
-        blank: Environment::FreeModeWall { residual: 0.0, wall: Wall::spring(0.0, 0) },
+        blank: Parts { canceller: Some(CANCELLER), wall: Some(WALL), profile: None }.sum(),
         values: &[(&key::STIFFNESS, "5.0"), (&key::DAMPING, "0.003")],
     },
     Kind {
@@ -110,7 +115,7 @@ pub const ALL: &[Kind] = &[
             &key::WALL,
             &key::SHAPE,
         ],
-        blank: Environment::Profile(Profile::<16, 1>::of(&DETENT).as_any()),
+        blank: Profile::of(&DETENT, 1).alone(),
         values: &[],
     },
 ];
@@ -132,18 +137,17 @@ impl Kind {
 
     /// The type that a file has for an environment; `None` for stated environments and for torque profiles.
     pub fn of(environment: &Environment) -> Option<&'static Self> {
-        let name = match environment {
+        let Parts { canceller, wall, profile } = environment.parts();
+        let name = match (canceller, wall, profile) {
+            (None, None, None) if matches!(environment, Environment::Rational(_)) => "rational",
+            (Some(_), None, None) => "free-mode",
+            (Some(_), Some(_), None) => "free-mode-wall",
             // In a file, a spring with a face is a wall without damping.
-            Environment::DelayedSpring(Wall { one_sided: false, face: 0.0, .. }) => {
-                "delayed-spring"
-            }
-            Environment::DelayedSpring(_) | Environment::DamperWall(_) => "damper-wall",
-            Environment::FreeMode { .. } => "free-mode",
-            Environment::FreeModeWall { .. } => "free-mode-wall",
-            Environment::Rational(_) => "rational",
-            Environment::Stated(_) | Environment::Profile(_) | Environment::Composed(_) => {
-                return None;
-            }
+            (None, Some(wall), None) => match (wall.damper, wall.side) {
+                (None, Side::Centred | Side::Displaced(0.0)) => "delayed-spring",
+                _ => "damper-wall",
+            },
+            _ => return None,
         };
         Self::find(name)
     }
@@ -151,6 +155,16 @@ impl Kind {
     /// Its keys, first those that it must have.
     pub fn keys(&self) -> impl Iterator<Item = &'static Key> {
         self.needed.iter().chain(self.optional).copied()
+    }
+}
+
+/// The side of a wall by its keys: a face of 0 that it does not stop at is none.
+pub const fn side(face: f64, one_sided: Option<bool>) -> Side {
+    match one_sided {
+        Some(true) => Side::Face(face),
+        // By its bits: -0.0 is another number than 0.0.
+        _ if face.to_bits() == 0 => Side::Centred,
+        _ => Side::Displaced(face),
     }
 }
 

@@ -1,13 +1,15 @@
 //! The torque profile of a file: knots and named shapes, which add up to one table.
 
 use haptic_servo::environment::{
-    AnyProfile, Composed, Ends, Environment, MOST_KNOTS as MOST_IN_A_TURN, Shape, ShapeError, Wall,
+    Canceller, Damper, Ends, Environment, MOST_KNOTS as MOST_IN_A_TURN, Parts, Profile, Shape,
+    ShapeError, Wall,
 };
 use haptic_servo::parameter::Parameter;
 use std::f64::consts::TAU;
 
 use super::faults::{Read, Reported, all};
 use super::key::{self, Key, Presence};
+use super::kind;
 use super::problem::Problem;
 use super::section::{Found, Pair, Section};
 use super::shape::ShapeKind;
@@ -42,14 +44,14 @@ impl Shapes {
     ///
     /// # Errors
     /// If they are not a valid profile.
-    pub fn sampled(&self, delay: usize) -> Result<AnyProfile, ShapeError> {
+    pub fn sampled(&self, delay: usize) -> Result<Profile, ShapeError> {
         let mut shapes = self.shapes.clone();
         shapes.extend(self.ends.map(|Ends { from, to, stiffness }| Shape::EndStops {
             from,
             to,
             stiffness,
         }));
-        let sampled = |cells: usize| AnyProfile::sampled(&shapes, vec![0; cells].leak(), delay);
+        let sampled = |cells: usize| Profile::sampled(&shapes, vec![0; cells].leak(), delay);
         if let Some(cells) = self.cells {
             return sampled(cells);
         }
@@ -150,7 +152,7 @@ pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
             }
         }
     }
-    profile.damping = value(&damping).unwrap_or(0.0);
+    profile.damping = value(&damping);
     profile.torque = value(&torque).unwrap_or(profile.torque);
     profile.count = value(&count).unwrap_or(profile.count);
     profile.centre = value(&centre).unwrap_or(profile.centre);
@@ -159,11 +161,8 @@ pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
         ends.to = value(&to).unwrap_or(ends.to);
         ends.stiffness = value(&stiffness).unwrap_or(ends.stiffness);
     }
-    let environment = if residual.is_some() || wall.is_some() {
-        Environment::Composed(Composed { residual, wall, profile })
-    } else {
-        Environment::Profile(profile)
-    };
+    let canceller = residual.map(Canceller::to);
+    let environment = Parts { canceller, wall, profile: Some(profile) }.sum();
     Ok(ProfileTable { environment, shapes, places, torque: torque.map(|found| found.span) })
 }
 
@@ -177,8 +176,8 @@ fn wall_of(mut section: Section<'_>) -> Read<Wall> {
     let [stiffness, damping, face] = numbers;
     let (stiffness, damping, face) = (stiffness?, damping?, face?);
     let (delay, filter) = (delay?, filter?);
-    let one_sided = one_sided?.unwrap_or(false);
-    Ok(Wall { stiffness, damping, filter, delay, face, one_sided })
+    let (damper, side) = (Some(Damper { damping, filter }), kind::side(face, one_sided?));
+    Ok(Wall { stiffness, damper, side, delay })
 }
 
 fn value(found: &Option<Found<f64>>) -> Option<f64> {
@@ -385,7 +384,7 @@ fn fine_enough(
     section: &Section<'_>,
     shapes: &Shapes,
     places: &[Place],
-    profile: &AnyProfile,
+    profile: &Profile,
 ) -> Read<()> {
     let in_a_turn = TAU * profile.knots_per_rad();
     if in_a_turn <= f64::from(MOST_IN_A_TURN) {

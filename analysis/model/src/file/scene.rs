@@ -281,10 +281,10 @@ fn environment_of(mut section: Section<'_>) -> Read<EnvironmentTable> {
     let environment = match kind {
         Ok(kind) => {
             section.specialize(format!("a {} [environment]", kind.name), kind.needed);
-            match kind.blank {
-                Environment::Profile(_) => profile::profile(&mut section)
+            match kind.blank.profile() {
+                Some(_) => profile::profile(&mut section)
                     .map(|table| EnvironmentTable::Profile(Box::new(table))),
-                _ => of_kind(kind, &mut section)
+                None => of_kind(kind, &mut section)
                     .map(|other| EnvironmentTable::Other(Box::new(other))),
             }
         }
@@ -320,7 +320,7 @@ fn of_kind(kind: &Kind, section: &mut Section<'_>) -> Read<Environment> {
         environment = changed.unwrap_or(environment);
     }
     if let Some(wall) = environment.wall_mut() {
-        wall.one_sided = one_sided.unwrap_or(false);
+        wall.side = kind::side(wall.face(), one_sided);
     }
     Ok(environment)
 }

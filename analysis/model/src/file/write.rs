@@ -6,7 +6,7 @@ mod shaped;
 use std::fmt::Write;
 
 use haptic_servo::current::Bus;
-use haptic_servo::environment::{Coefficients, Composed, Environment};
+use haptic_servo::environment::{Coefficients, Environment, Wall};
 use haptic_servo::parameter::{Parameter, Range};
 use haptic_servo::scene::{Coupling, Scene, TimeRange};
 
@@ -47,16 +47,12 @@ pub fn toml(file: &SceneFile) -> String {
         }
     }
     lines.push("[environment]".to_owned());
-    match (&scene.environment, shapes) {
-        (Environment::Profile(profile), Some(shapes)) => {
-            shaped::profile(&mut lines, None, profile, shapes);
+    match (scene.environment.profile(), shapes) {
+        (Some(profile), Some(shapes)) => {
+            shaped::profile(&mut lines, scene.environment.canceller(), profile, shapes);
+            lines.extend(scene.environment.wall().into_iter().flat_map(shaped::wall));
         }
-        (Environment::Composed(composed), Some(shapes)) => {
-            let Composed { residual, wall, profile } = composed;
-            shaped::profile(&mut lines, *residual, profile, shapes);
-            lines.extend(wall.iter().flat_map(shaped::wall));
-        }
-        (other, _) => environment(&mut lines, other),
+        _ => environment(&mut lines, &scene.environment),
     }
     if let Some(simulation) = simulation {
         moving::simulation(&mut lines, simulation);
@@ -178,7 +174,7 @@ fn environment(lines: &mut Vec<String>, environment: &Environment) {
             _ => {}
         }
     }
-    if environment.wall().is_some_and(|wall| wall.one_sided) {
+    if environment.wall().is_some_and(Wall::is_one_sided) {
         lines.push("one_sided = true".to_owned());
     }
 }
@@ -245,6 +241,11 @@ mod tests {
             let [first, second] = again(&text(RIGID, &format!("[environment]\n{environment}")));
             assert_eq!(first, second);
         }
+        let wall =
+            "[environment]\ntype = \"damper-wall\"\nstiffness = 3\ndamping = 0.2\ndelay = 1\n";
+        let [absent, zero] =
+            ["", "face = 0.0\n"].map(|face| again(&text(RIGID, &format!("{wall}{face}"))));
+        assert_eq!(absent, zero);
     }
 
     #[test]

@@ -100,8 +100,8 @@ impl Experiment {
 
     /// Whether the loop is linear and the same in every tick.
     pub(super) fn is_linear(&self) -> bool {
-        let centred =
-            self.scene.environment.wall().is_none_or(|wall| !wall.one_sided && wall.face == 0.0);
+        let wall = self.scene.environment.wall();
+        let centred = wall.is_none_or(|wall| !wall.is_one_sided() && wall.face() == 0.0);
         let unlimited = self.scene.torque_limit.is_none() && self.encoder_step.is_none();
         centred && unlimited && self.friction == 0.0 && self.missed == Missed::None
     }

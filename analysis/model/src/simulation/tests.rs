@@ -1,5 +1,5 @@
 use haptic_servo::certificate::{Assumption, Assumptions, QuantizationBound, Resolution, assess};
-use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::environment::{Canceller, Coefficients, Environment, Parts, Rational, Wall};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use haptic_servo::torque::LimitReason;
@@ -8,10 +8,6 @@ use super::method::Method;
 use super::*;
 use crate::device::{Hand, Motion};
 use crate::missed::Missed;
-
-fn wall(stiffness: f64, damping: f64, delay: usize) -> Wall {
-    Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false }
-}
 
 fn scene(device: Device, stiffness: Option<f64>, environment: Environment) -> Scene {
     Scene {
@@ -42,16 +38,20 @@ fn furthest(is: &[f64], should: &[f64]) -> f64 {
 /// The firmware's law tick by tick against the certificate's transfer function as one matrix.
 #[test]
 fn both_ways_of_running_a_linear_loop_agree() {
-    let filtered = Wall { filter: Some(0.8), ..wall(10.0, 0.008, 2) };
     let numerator = Coefficients::new(&[3.0, -2.5]).unwrap();
     let denominator = Coefficients::new(&[1.0, -0.9, 0.2]).unwrap();
     let environments = [
-        Environment::DelayedSpring(wall(22.0, 0.0, 1)),
-        Environment::DamperWall(wall(22.0, 0.01, 1)),
-        Environment::DamperWall(wall(22.0, 0.01, 0)),
-        Environment::DamperWall(filtered),
-        Environment::FreeMode { residual: 0.001, delay: 0 },
-        Environment::FreeModeWall { residual: 0.01, wall: wall(5.0, 0.001, 1) },
+        Wall::spring(22.0, 1).alone(),
+        Wall::damped(22.0, 0.01, 1).alone(),
+        Wall::damped(22.0, 0.01, 0).alone(),
+        Wall::damped(10.0, 0.008, 2).filtered(0.8).alone(),
+        Canceller::to(0.001).alone(),
+        Parts {
+            canceller: Some(Canceller::to(0.01)),
+            wall: Some(Wall::damped(5.0, 0.001, 1)),
+            profile: None,
+        }
+        .sum(),
         Environment::Rational(Rational { numerator, denominator, delay: 1, unit_zeros: 1 }),
     ];
     for environment in environments {
@@ -85,7 +85,7 @@ fn both_ways_of_running_a_linear_loop_agree() {
 fn chunks_are_one_motion() {
     let hand_torque = TorqueSignal::Sine { amplitude: 0.01, omega: 300.0, phase: 0.4 };
     for limit in [None, Some(0.05)] {
-        let mut scene = paper(Environment::DamperWall(wall(22.0, 0.01, 1)));
+        let mut scene = paper(Wall::damped(22.0, 0.01, 1).alone());
         scene.torque_limit = limit;
         let experiment =
             Experiment { hand_torque: hand_torque.clone(), ..moving(&scene, 30, 0.01) };
@@ -116,7 +116,7 @@ fn decay(experiment: &Experiment) -> f64 {
 fn missed_ticks_need_the_longest_time_between_updates() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     let spring = |stiffness| {
-        let scene = scene(device, None, Environment::DelayedSpring(wall(stiffness, 0.0, 0)));
+        let scene = scene(device, None, Wall::spring(stiffness, 0).alone());
         moving(&scene, 4000, 1e-3)
     };
     // The remaining damping, b - K T / 2, takes seconds.
@@ -131,7 +131,7 @@ fn missed_ticks_need_the_longest_time_between_updates() {
 #[test]
 fn latency_moves_the_limit() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
-    let scene = scene(device, None, Environment::DelayedSpring(wall(1.0, 0.0, 0)));
+    let scene = scene(device, None, Wall::spring(1.0, 0).alone());
     for latency in [1e-4, 3.3e-4, 9e-4] {
         let experiment = Experiment { latency, ..Experiment::still(&scene) };
         let found = crate::stability::critical_stiffness(&experiment, Integration::default());
@@ -145,7 +145,7 @@ fn latency_moves_the_limit() {
 #[test]
 fn dry_friction_lets_a_spring_behind_an_encoder_rest() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
-    let scene = scene(device, None, Environment::DelayedSpring(wall(500.0, 0.0, 0)));
+    let scene = scene(device, None, Wall::spring(500.0, 0).alone());
     let step = 1e-4;
     let end = |friction: f64| {
         let encoder_step = Some(step);
@@ -162,7 +162,7 @@ fn dry_friction_lets_a_spring_behind_an_encoder_rest() {
 /// smallest torque that moves does not.
 #[test]
 fn a_device_behind_an_encoder_hums_and_rests_as_the_certificate_says() {
-    let scene = paper(Environment::DamperWall(wall(22.0, 0.01, 1)));
+    let scene = paper(Wall::damped(22.0, 0.01, 1).alone());
     let step = 1e-4;
     let run = |friction: f64| {
         let experiment =
@@ -198,11 +198,12 @@ fn a_device_behind_an_encoder_hums_and_rests_as_the_certificate_says() {
 fn a_device_behind_the_matched_coupling_hums_and_rests_as_the_certificate_says() {
     let (step, compliance) = (1e-4, 1e-3 / (2.0 * 0.022));
     for (stiffness, one_sided) in [(10.0, true), (18.0, false), (120.0, false)] {
-        let wall = Wall { one_sided, ..wall(stiffness, 0.0, 0) };
+        let spring = Wall::spring(stiffness, 0);
+        let wall = if one_sided { spring.behind(0.0) } else { spring };
         let scene = Scene {
             coupling: Coupling::Matched,
             latency: Latency::delayed(1.4e-3),
-            ..paper(Environment::DelayedSpring(wall))
+            ..paper(wall.alone())
         };
         // Pressed against the wall with half a count of its torque more than a whole number.
         let push = 40.5 * step * stiffness / (1.0 + 2.4 * compliance * stiffness);
@@ -247,7 +248,7 @@ fn a_device_behind_the_matched_coupling_hums_and_rests_as_the_certificate_says()
 fn friction_dissipates_what_the_controller_generates_up_to_the_stated_speed() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     for (stiffness, friction) in [(1400.0, 0.05), (1200.0, 0.02)] {
-        let scene = scene(device, None, Environment::DelayedSpring(wall(stiffness, 0.0, 0)));
+        let scene = scene(device, None, Wall::spring(stiffness, 0).alone());
         let steps = Resolution { friction: Some(friction), ..Resolution::default() };
         let assumptions = Assumptions::of(&scene, &assess(&scene), &steps);
         let speed = assumptions.iter().find_map(|one| match one {
@@ -272,7 +273,7 @@ fn friction_dissipates_what_the_controller_generates_up_to_the_stated_speed() {
 
 /// The sum over ticks of what friction, damping and controller take, for motions of random mean speeds.
 fn energy_of_a_varied_motion(scene: &Scene, friction: f64, speed: f64) {
-    let Environment::DelayedSpring(wall) = scene.environment else { panic!("a spring") };
+    let stiffness = scene.environment.wall().expect("a spring").stiffness;
     let (period, damping) = (scene.timing.period, scene.device.damping);
     let mut random = fastrand::Rng::with_seed(7);
     for _ in 0..200 {
@@ -282,21 +283,20 @@ fn energy_of_a_varied_motion(scene: &Scene, friction: f64, speed: f64) {
             sign = if random.f64() < turning { -sign } else { sign };
             let v = sign * speed * random.f64().sqrt();
             // The torque of the sampled position, held while the device moves on.
-            taken +=
-                period * (friction * v.abs() + damping * v * v + wall.stiffness * position * v);
+            taken += period * (friction * v.abs() + damping * v * v + stiffness * position * v);
             position += period * v;
             assert!(taken >= -1e-15, "{taken}");
         }
     }
     // Always back and forth at a higher speed, the controller generates more.
     let v = 1.05 * speed;
-    let there_and_back = 2.0 * (friction * v + damping * v * v) - wall.stiffness * period * v * v;
+    let there_and_back = 2.0 * (friction * v + damping * v * v) - stiffness * period * v * v;
     assert!(there_and_back < 0.0, "{there_and_back}");
 }
 
 #[test]
 fn torque_is_limited_before_the_coupling_is_solved() {
-    let mut scene = paper(Environment::DamperWall(wall(22.0, 0.0, 0)));
+    let mut scene = paper(Wall::damped(22.0, 0.0, 0).alone());
     scene.torque_limit = Some(0.1);
     let motion = simulate(&moving(&scene, 50, 0.05), Integration::default()).unwrap();
     // K x / (1 + K / K_vc) would be 0.73.
@@ -309,7 +309,7 @@ fn torque_is_limited_before_the_coupling_is_solved() {
 
 #[test]
 fn the_record_says_which_ticks_were_missed_and_where_counts_ended() {
-    let scene = paper(Environment::DamperWall(wall(22.0, 0.0, 0)));
+    let scene = paper(Wall::damped(22.0, 0.0, 0).alone());
     let missed = Experiment { missed: Missed::Every(3), ..moving(&scene, 6, 0.01) };
     let motion = simulate(&missed, Integration::default()).unwrap();
     let (ran, not) = (TickStatus::UNLIMITED, TickStatus::Missed);
@@ -431,7 +431,7 @@ fn late_loops() -> [LateLoop; 8] {
 #[test]
 fn delays_lags_and_a_matched_coupling_move_as_many_small_steps_have_it() {
     for case in late_loops() {
-        let mut late = paper(Environment::DelayedSpring(wall(30.0, 0.0, 0)));
+        let mut late = paper(Wall::spring(30.0, 0).alone());
         late.latency = case.latency;
         late.coupling = if case.matched { Coupling::Matched } else { Coupling::Rigid };
         let experiment = moving(&late, 60, 0.01);
@@ -475,7 +475,7 @@ fn the_sampled_plant_is_the_sum_over_the_aliases() {
     let (m, b, period) = (2.2e-5, 0.022, 1e-3);
     for case in late_loops() {
         let Latency { output_delay, actuator_lag, sensor_lag, .. } = case.latency;
-        let mut late = paper(Environment::DelayedSpring(wall(30.0, 0.0, 0)));
+        let mut late = paper(Wall::spring(30.0, 0).alone());
         late.latency = case.latency;
         let tick = Experiment::still(&late).tick(Integration::default()).unwrap();
         let plant = SampledPlant::new(&tick);
@@ -506,7 +506,7 @@ fn the_sampled_plant_is_the_sum_over_the_aliases() {
 fn stability_ends_where_an_eigenvalue_reaches_the_circle() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     for case in late_loops() {
-        let mut late = scene(device, None, Environment::DelayedSpring(wall(1.0, 0.0, 1)));
+        let mut late = scene(device, None, Wall::spring(1.0, 1).alone());
         late.latency = case.latency;
         if case.matched {
             late.coupling = Coupling::Matched;
@@ -515,7 +515,7 @@ fn stability_ends_where_an_eigenvalue_reaches_the_circle() {
         let critical = crate::stability::critical_stiffness(&experiment, Integration::default());
         let critical = critical.unwrap().unwrap();
         let mut border = experiment.clone();
-        border.scene.environment = Environment::DelayedSpring(wall(critical, 0.0, 1));
+        border.scene.environment = Wall::spring(critical, 1).alone();
         let closed = crate::stability::closed_loop(&border, Integration::default()).unwrap();
         let radius =
             crate::stability::radius(&crate::stability::eigenvalues(&closed.matrix).unwrap());

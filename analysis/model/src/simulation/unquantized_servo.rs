@@ -3,7 +3,8 @@
 //! Nothing here is certified: a scene is simulated before it is known to be safe.
 
 use haptic_servo::coupling::Solver;
-use haptic_servo::environment::{DataLaw, Discretize, Law};
+use haptic_servo::coupling_memory::{AnyMemory, CouplingMemory};
+use haptic_servo::environment::{AnyLaw, Discretize, Law};
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::BuildError;
 use haptic_servo::torque::{LimitReason, Limiter};
@@ -11,7 +12,8 @@ use haptic_servo::torque::{LimitReason, Limiter};
 /// Environment and coupling of a scene, initially at rest at zero.
 #[derive(Clone, Debug)]
 pub struct UnquantizedServo {
-    law: DataLaw<f64>,
+    law: AnyLaw<f64>,
+    memory: AnyMemory<f64>,
     solver: Solver<f64>,
     limiter: Limiter<f64>,
     torque: f64,
@@ -25,20 +27,21 @@ impl UnquantizedServo {
     /// from the future.
     pub fn new(scene: &Scene) -> Result<Self, BuildError> {
         let context = scene.context();
+        let memory = AnyMemory::of(&context)?;
         let law = Discretize::<f64>::law(&scene.environment, &context)?;
-        let compliance = scene.coupling.compliance(law.matched_compliance())?;
+        let compliance = scene.coupling.compliance(memory.compliance())?;
         let solver = Solver::new(compliance, law.slopes())?;
         // There is no DAC range here.
         let bound = scene.torque_limit.unwrap_or(f64::INFINITY);
         let limiter = Limiter::new(bound, LimitReason::Torque);
-        Ok(Self { law, solver, limiter, torque: 0.0 })
+        Ok(Self { law, memory, solver, limiter, torque: 0.0 })
     }
 
     /// One tick with the encoder at `x` rad: the coupling torque `F` in N m, limited before the
     /// coupling is solved, and the reason if it was limited; `otherwise` if not. The motor applies
     /// `-F`.
     pub fn tick(&mut self, x: f64, otherwise: LimitReason) -> (f64, LimitReason) {
-        let x = x - self.law.deflection_after(self.torque);
+        let x = x - self.memory.deflection_after(self.torque);
         let wanted = self.solver.torque(self.law.evaluate(x));
         let (torque, limit) = self.limiter.limit(wanted, otherwise);
         self.law.update(self.solver.environment_position(x, torque));

@@ -1,4 +1,4 @@
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use super::*;
@@ -12,13 +12,12 @@ use crate::simulation::torque_signal::TorqueSignal;
 const DEVICE: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
 
 pub fn spring(stiffness: f64, delay: usize, coupling: Coupling) -> Experiment {
-    let wall = Wall { stiffness, damping: 0.0, filter: None, delay, face: 0.0, one_sided: false };
     Experiment {
         scene: Scene {
             device: DEVICE,
             timing: Timing { period: 1e-3, worst_period: None },
             coupling,
-            environment: Environment::DelayedSpring(wall),
+            environment: Wall::spring(stiffness, delay).alone(),
             latency: Latency::NONE,
             torque_limit: None,
         },
@@ -150,8 +149,7 @@ fn the_crossing_is_the_first_that_a_scan_sees() {
         (0.45, 3, Coupling::Spring { stiffness: 1000.0 }),
     ] {
         let mut experiment = spring(1.0, delay, coupling);
-        let Environment::DelayedSpring(wall) = experiment.scene.environment else { panic!() };
-        experiment.scene.environment = Environment::DamperWall(Wall { damping, ..wall });
+        experiment.scene.environment = Wall::damped(1.0, damping, delay).alone();
         let stable = |stiffness: f64| {
             let scene = experiment.scene.with(Parameter::Stiffness, stiffness).unwrap();
             let experiment = Experiment { scene, ..experiment.clone() };

@@ -1,7 +1,7 @@
 //! The certified border by the formulas of theory, section 5.
 
 use haptic_servo::certificate::PassivityProblem;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Parts, Wall};
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::{Coupling, Scene};
 
@@ -73,7 +73,7 @@ impl Formula {
 }
 
 fn is_linear(scene: &Scene) -> bool {
-    scene.torque_limit.is_none() && scene.environment.wall().is_none_or(|w| !w.one_sided)
+    scene.torque_limit.is_none() && scene.environment.wall().is_none_or(|wall| !wall.is_one_sided())
 }
 
 /// The border on which a closed form reaches its limit: none of the points that it encloses is
@@ -102,38 +102,32 @@ pub fn closed_form_border(family: &Family, map: &Map) -> Option<Border> {
 /// formula for it.
 fn index_of(scene: &Scene, later: usize) -> Option<Interval> {
     let period = Interval::decimal(scene.timing.period);
-    match scene.environment {
-        Environment::DelayedSpring(wall) | Environment::DamperWall(wall) => {
-            wall_index(&Wall { delay: wall.delay + later, ..wall }, period)
+    let &Parts { canceller, wall: Some(wall), profile: None } = scene.environment.parts() else {
+        return None;
+    };
+    let Some(canceller) = canceller else {
+        return wall_index(&Wall { delay: wall.delay + later, ..wall }, period);
+    };
+    let Coupling::Spring { stiffness } = scene.coupling else { return None };
+    let cancelled = Interval::decimal(scene.device.damping - canceller.residual);
+    let (k, b) = numbers(&wall);
+    match (wall.delay, wall.filter()) {
+        _ if later > 0 => None,
+        (0, None) => Some(closed_form::free_mode_undelayed_wall(cancelled, k, b, period)),
+        (1, None) if wall.damping() >= 0.0 => {
+            let coupling = Interval::decimal(stiffness);
+            Some(closed_form::free_mode_delayed_wall(cancelled, coupling, k, b, period))
         }
-        Environment::FreeModeWall { residual, wall } if later == 0 => {
-            let Coupling::Spring { stiffness } = scene.coupling else { return None };
-            let cancelled = Interval::decimal(scene.device.damping - residual);
-            let (k, b) = numbers(&wall);
-            match (wall.delay, wall.filter) {
-                (0, None) => Some(closed_form::free_mode_undelayed_wall(cancelled, k, b, period)),
-                (1, None) if wall.damping >= 0.0 => {
-                    let coupling = Interval::decimal(stiffness);
-                    Some(closed_form::free_mode_delayed_wall(cancelled, coupling, k, b, period))
-                }
-                _ => None,
-            }
-        }
-        Environment::FreeModeWall { .. }
-        | Environment::FreeMode { .. }
-        | Environment::Stated(_)
-        | Environment::Profile(_)
-        | Environment::Composed(_)
-        | Environment::Rational(_) => None,
+        _ => None,
     }
 }
 
 fn wall_index(wall: &Wall, period: Interval) -> Option<Interval> {
     let (k, b) = numbers(wall);
-    match wall.filter {
-        _ if wall.damping == 0.0 => Some(closed_form::delayed_spring(k, period, wall.delay)),
+    match wall.filter() {
+        _ if wall.damping() == 0.0 => Some(closed_form::delayed_spring(k, period, wall.delay)),
         None => closed_form::damper_wall(k, b, period, wall.delay),
-        Some(pole) if wall.delay == 1 && wall.damping > 0.0 => {
+        Some(pole) if wall.delay == 1 && wall.damping() > 0.0 => {
             Some(closed_form::filtered_wall(k, b, Interval::decimal(pole), period))
         }
         Some(_) => None,
@@ -141,5 +135,5 @@ fn wall_index(wall: &Wall, period: Interval) -> Option<Interval> {
 }
 
 fn numbers(wall: &Wall) -> (Interval, Interval) {
-    (Interval::decimal(wall.stiffness), Interval::decimal(wall.damping))
+    (Interval::decimal(wall.stiffness), Interval::decimal(wall.damping()))
 }

@@ -8,7 +8,7 @@ pub mod schur_cohn;
 use std::ops::Range;
 
 use haptic_servo::certificate::{KeptResponses, PassivityProblem, RuleAnswer, assess};
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Damper, Wall};
 use haptic_servo::passivity::lagged::SampledResponse;
 use haptic_servo::scene::{Coupling, Latency, Scene};
 use rayon::prelude::*;
@@ -152,18 +152,12 @@ impl Family {
 
     /// The scene with another stiffness (N m/rad) and damping (N m s/rad) of its wall.
     pub fn member(&self, stiffness: f64, damping: f64) -> Scene {
-        let damped = |wall: Wall| Wall { stiffness, damping, ..wall };
-        let environment = match self.scene.environment {
-            // A spring with a damper is a wall.
-            Environment::DelayedSpring(wall) | Environment::DamperWall(wall) => {
-                Environment::DamperWall(damped(wall))
-            }
-            Environment::FreeModeWall { residual, wall } => {
-                Environment::FreeModeWall { residual, wall: damped(wall) }
-            }
-            other => other,
-        };
-        Scene { environment, ..self.scene }
+        let mut scene = self.scene;
+        if let Some(wall) = scene.environment.wall_mut() {
+            let damper = Some(Damper { damping, filter: wall.filter() });
+            *wall = Wall { stiffness, damper, ..*wall };
+        }
+        scene
     }
 
     /// The verdict on a wall. Stability comes first, as it is by far the cheapest: no hand at all is

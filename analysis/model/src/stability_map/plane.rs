@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use haptic_servo::certificate::assess;
-use haptic_servo::environment::Environment;
 use haptic_servo::parameter::Parameter;
 use haptic_servo::scene::Scene;
 use thiserror::Error;
@@ -96,13 +95,12 @@ enum Judge {
 impl Plane {
     /// The numbers of a scene that an axis may go along.
     pub fn choice(scene: &Scene) -> Vec<Parameter> {
-        let is_sum = matches!(scene.environment, Environment::Composed(_));
-        let is_wall = is_family(scene);
+        let (profile, is_wall) = (scene.environment.profile(), is_family(scene));
         let has = |parameter: &Parameter| match parameter {
             Parameter::Stiffness | Parameter::Damping => is_wall,
             // A filter without damping filters nothing, and a sum's keys have other names.
-            Parameter::Filter if is_sum => false,
-            Parameter::Count => scene.environment.profile().is_some_and(|p| p.outline().wraps),
+            Parameter::Filter if profile.is_some() => false,
+            Parameter::Count => profile.is_some_and(|p| p.outline().wraps),
             _ => scene.get(*parameter).is_some(),
         };
         CHOICE.into_iter().filter(has).collect()
@@ -278,12 +276,7 @@ pub fn nearest(axis: Parameter, value: f64) -> f64 {
 
 /// Whether the scene is a wall of the family that differs in stiffness and damping.
 fn is_family(scene: &Scene) -> bool {
-    matches!(
-        scene.environment,
-        Environment::DelayedSpring(_)
-            | Environment::DamperWall(_)
-            | Environment::FreeModeWall { .. }
-    )
+    scene.environment.wall().is_some() && scene.environment.profile().is_none()
 }
 
 fn has_transfer(scene: &Scene) -> bool {
@@ -293,7 +286,7 @@ fn has_transfer(scene: &Scene) -> bool {
 fn own_number(scene: &Scene, axis: Parameter) -> f64 {
     match (axis, scene.environment.wall().filter(|_| is_family(scene))) {
         (Parameter::Stiffness, Some(wall)) => wall.stiffness,
-        (Parameter::Damping, Some(wall)) => wall.damping,
+        (Parameter::Damping, Some(wall)) => wall.damping(),
         _ => scene.get(axis).unwrap_or(0.0),
     }
 }

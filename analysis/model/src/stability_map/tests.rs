@@ -120,8 +120,8 @@ fn nothing_that_the_dashed_border_encloses_is_rejected() {
             (2, true, true),
         ] {
             let mut file = wall(delay, coupling);
-            if let Environment::DamperWall(wall) = &mut file.scene.environment {
-                wall.one_sided = one_sided;
+            if one_sided && let Some(wall) = file.scene.environment.wall_mut() {
+                *wall = wall.behind(0.0);
             }
             file.scene.timing.worst_period = worst.then_some(0.0015);
             let family = Family::of(&file).unwrap();

@@ -1,7 +1,7 @@
 use super::*;
 use crate::chain::{EncoderPlace, Link, Mass};
 use haptic_servo::certificate::certify;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, TimeRange, Timing};
 
 fn device() -> Chain {
@@ -9,12 +9,11 @@ fn device() -> Chain {
 }
 
 fn scene(stiffness: f64, damping: f64, delay: usize, coupling: Coupling) -> Scene {
-    let wall = Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false };
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },
         coupling,
-        environment: Environment::DamperWall(wall),
+        environment: Wall::damped(stiffness, damping, delay).alone(),
         latency: Latency::NONE,
         torque_limit: None,
     }
@@ -87,20 +86,12 @@ fn no_hand_shakes_what_is_certified_behind_a_matched_coupling() {
 /// The climb from a soft link must not end at a mass that nothing holds.
 #[test]
 fn a_mass_behind_nothing_is_no_hand() {
-    let wall = Wall {
-        stiffness: 8.3155701205929,
-        damping: 0.009421656226762594,
-        filter: None,
-        delay: 1,
-        face: 0.0,
-        one_sided: false,
-    };
     let (inertia, damping) = (2.912708129978716e-5, 0.03430654821215887);
     let scene = Scene {
         device: Device { inertia, damping, passivity: None },
         timing: Timing { period: 0.003042550575872087, worst_period: None },
         coupling: Coupling::Spring { stiffness: 15.785823866956035 },
-        environment: Environment::DamperWall(wall),
+        environment: Wall::damped(8.3155701205929, 0.009421656226762594, 1).alone(),
         latency: Latency::NONE,
         torque_limit: None,
     };

@@ -16,8 +16,8 @@ use super::stroke::Stroke;
 use super::*;
 use crate::nyquist::{Curve, NyquistScene, Role, critical_lines, usual_window};
 
-/// The lines of the axes, of an asymptote, of the line that is not to be crossed, and of a bound that is judged
-/// in place of a curve.
+/// The lines of the axes, of an asymptote, of the line that is not to be crossed, and of a bound that is
+/// judged in place of a curve.
 const AXIS: Stroke = Stroke::solid(1);
 const ASYMPTOTE: Stroke = Stroke::dashed(&[1, 7], 1);
 const CRITICAL: Stroke = Stroke::dashed(&[8, 5], 2);

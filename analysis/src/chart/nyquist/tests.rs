@@ -1,14 +1,10 @@
 use std::collections::BTreeMap;
 
 use haptic_servo::certificate::assess;
-use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::environment::{Canceller, Coefficients, Environment, Parts, Rational, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 
 use super::*;
-
-fn wall(stiffness: f64, damping: f64, delay: usize) -> Wall {
-    Wall { stiffness, damping, delay, filter: None, face: 0.0, one_sided: false }
-}
 
 fn scene(environment: Environment, coupling: Coupling) -> Scene {
     Scene {
@@ -32,7 +28,7 @@ fn judged(scene: &Scene) -> NyquistScene {
 
 #[test]
 fn what_is_drawn_of_a_rigid_coupling_crosses_the_line_where_the_scene_is_rejected() {
-    let rejected = scene(Environment::DamperWall(wall(20.0, 0.01, 1)), Coupling::Rigid);
+    let rejected = scene(Wall::damped(20.0, 0.01, 1).alone(), Coupling::Rigid);
     assert!(assess(&rejected).outcome.is_err());
     let found = judged(&rejected);
     let least = |role| {
@@ -53,21 +49,26 @@ fn random(random: &mut fastrand::Rng) -> Scene {
     let between =
         |random: &mut fastrand::Rng, from: f64, to: f64| from + (to - from) * random.f64();
     let delay = random.usize(0..4);
-    let mut wall = wall(between(random, -4.0, 40.0), between(random, -0.01, 0.03), delay);
+    let mut wall = Wall::damped(between(random, -4.0, 40.0), between(random, -0.01, 0.03), delay);
     if random.u8(0..4) == 0 {
-        wall.filter = Some(between(random, 0.0, 0.95));
+        wall = wall.filtered(between(random, 0.0, 0.95));
     }
-    wall.one_sided = random.u8(0..4) == 0;
+    if random.u8(0..4) == 0 {
+        wall = wall.behind(0.0);
+    }
     let residual = between(random, 0.0, 0.03);
     let environment = match random.u8(0..5) {
-        0 => Environment::FreeMode { residual, delay },
-        1 => Environment::FreeModeWall { residual, wall },
+        0 => Canceller { residual, delay }.alone(),
+        1 => {
+            let canceller = Some(Canceller::to(residual));
+            Parts { canceller, wall: Some(wall), ..Parts::NONE }.sum()
+        }
         2 => {
             let numerator = [between(random, -20.0, 20.0), between(random, -20.0, 20.0)];
             let denominator = [1.0, between(random, -1.2, 1.2), between(random, -0.9, 0.9)];
             Environment::Rational(rational(&numerator, &denominator, delay))
         }
-        _ => Environment::DamperWall(wall),
+        _ => wall.alone(),
     };
     let coupling = match random.u8(0..4) {
         0 => Coupling::Rigid,
@@ -158,12 +159,12 @@ fn the_drawn_side_of_the_line_is_the_verdict() {
 fn margins_are_what_it_takes_to_touch_the_line() {
     const STANDARD: Coupling = Coupling::Spring { stiffness: 44.0 };
     // alpha = K T / 2 + B = 0.021
-    let found = judged(&scene(Environment::DamperWall(wall(22.0, 0.01, 1)), STANDARD));
+    let found = judged(&scene(Wall::damped(22.0, 0.01, 1).alone(), STANDARD));
     assert!((found.gain_margin().unwrap() - 22.0 / 21.0).abs() < 1e-9);
     // Its curve goes to infinity, where any lag turns it across the line.
     assert!(found.phase_margin(&found.curves[0]).is_none());
     // A circle around the origin of radius B: never as far as the line.
-    let damper = judged(&scene(Environment::DamperWall(wall(0.0, 0.01, 1)), STANDARD));
+    let damper = judged(&scene(Wall::damped(0.0, 0.01, 1).alone(), STANDARD));
     assert!(damper.phase_margin(&damper.curves[0]).is_none());
     // A curve whose delayed value is at -B only where it is far below: turned by the angle found, its least
     // real part is on the line.
@@ -178,8 +179,7 @@ fn margins_are_what_it_takes_to_touch_the_line() {
 
 #[test]
 fn ranges_of_the_axes_are_those_that_are_asked_for() {
-    let named =
-        [("w".to_owned(), scene(Environment::DamperWall(wall(9.0, 0.0, 1)), Coupling::Rigid))];
+    let named = [("w".to_owned(), scene(Wall::damped(9.0, 0.0, 1).alone(), Coupling::Rigid))];
     let usual = nyquist("w", &named, &Window::default()).unwrap();
     let wanted = Window { x: Some(-0.03..0.0), y: Some(0.25..0.75) };
     let asked = nyquist("w", &named, &wanted).unwrap();

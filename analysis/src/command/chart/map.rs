@@ -135,7 +135,7 @@ pub fn of_file(
     let overlay = Overlay {
         title: format!("{}: walls of delay {delay}, T = {period} ms", shortened(&file.name, 40)),
         border: closed_form_border(&family, &map),
-        scene: wall.map_or((0.0, 0.0), |wall| (wall.stiffness, wall.damping)),
+        scene: wall.map_or((0.0, 0.0), |wall| (wall.stiffness, wall.damping())),
     };
     let picture = chart::map::map(&map, &overlay)?;
     let row = |(k, b, region): (f64, f64, Region)| vec![k.into(), b.into(), region.as_str().into()];

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use firmware_harness::bench_request::BenchRequest;
 use haptic_servo::dac::DacCode;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::number::Arithmetic;
 use haptic_servo::scene::{Coupling, Latency, Scene};
 
@@ -32,10 +32,8 @@ pub fn contact_instructions(elf: &Path) -> Result<[u32; 2], EmulatorError> {
 }
 
 fn most_in_contact(board: &mut BenchClient, latency: Latency) -> Result<u32, EmulatorError> {
-    let scene = damper_wall::SCENE.as_data();
-    let wall =
-        Wall { stiffness: 22.0, damping: 0.01, filter: None, delay: 0, face: 0.0, one_sided: true };
-    let environment = Environment::DamperWall(wall);
+    let scene = damper_wall::SCENE;
+    let environment = Wall::damped(22.0, 0.01, 0).behind(0.0).alone();
     let request = BenchRequest::Servo {
         scene: Scene { environment, coupling: Coupling::Matched, latency, ..scene },
         transducers: damper_wall::TRANSDUCERS,

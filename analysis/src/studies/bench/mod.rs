@@ -23,8 +23,8 @@ use std::time::Instant;
 use self::figure::{Pair, median};
 use crate::latency_limits::{lag_of, largest_spring};
 use crate::stability_map::{Family, Map, MapError};
-use haptic_servo::certificate::assess;
-use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::certificate::{PassivityProblem, assess};
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// Instructions per second of a board's core: 170 MHz, at one cycle per instruction.
@@ -143,6 +143,22 @@ pub fn lagging_springs() -> Pair {
     Pair::computed(|| largest(early, 0), || largest(Latency::NONE, 2))
 }
 
+/// The part of the device's passivity that certified springs may need behind the matched coupling, where
+/// torques or counts deviate by up to a hundredth of a period from tick to tick.
+pub fn spring_with_jitter() -> f64 {
+    let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+    let scene = Scene {
+        device,
+        timing: Timing { period: 1e-3, worst_period: None },
+        coupling: Coupling::Matched,
+        environment: Wall::spring(20.0, 1).alone(),
+        latency: Latency { output_jitter: 1e-5, ..Latency::delayed(1e-4) },
+        torque_limit: Some(1.0),
+    };
+    let limit = PassivityProblem::of(&scene).ok().and_then(|posed| posed.limit());
+    limit.map_or(0.0, |limit| limit.lo() / device.damping)
+}
+
 /// Milliseconds that a certificate adds to the compilation of a program: the difference between a program
 /// with `COPIES` certified scenes and the same program without, divided by their number. The two are compiled
 /// alternately, so that other load of the machine affects both.
@@ -185,14 +201,12 @@ pub fn compile_time(
 }
 
 /// One-sided walls without latency and with limited torque.
-pub const AT_ONCE: &str = "type Wall = OneSided<DamperWall<1>>;
-const fn wall(wall: DamperWall<1>) -> Wall { OneSided { face: 0.0, wall } }
+pub const AT_ONCE: &str = "const fn placed(wall: Wall) -> Wall { wall.behind(0.0) }
 const LATENCY: Latency = Latency::NONE;
 const LIMIT: Option<f64> = Some(1.0);
 ";
 /// Linear walls behind a delay and a lag.
-pub const LAGGING: &str = "type Wall = DamperWall<1>;
-const fn wall(wall: DamperWall<1>) -> Wall { wall }
+pub const LAGGING: &str = "const fn placed(wall: Wall) -> Wall { wall }
 const LATENCY: Latency = Latency::delayed(1e-5).with_actuator_lag(53e-6);
 const LIMIT: Option<f64> = None;
 ";
@@ -203,12 +217,12 @@ const COPIES: usize = 8;
 fn program(copies: usize, latency: &str) -> String {
     let mut text = String::from(
         "use haptic_servo::{certificate::Certified, environment::*, scene::*};
-pub const fn scene(stiffness: f64) -> Scene<Wall> {
+pub const fn scene(stiffness: f64) -> Scene {
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: wall(DamperWall { stiffness, damping: 0.01 }),
+        environment: placed(Wall::damped(stiffness, 0.01, 1)).alone(),
         latency: LATENCY,
         torque_limit: LIMIT,
     }
@@ -218,7 +232,7 @@ pub const fn scene(stiffness: f64) -> Scene<Wall> {
     text += latency;
     for copy in 0..copies {
         text += &format!(
-            "pub const C{copy}: Certified<Scene<Wall>> = scene({:?}).certified();\n",
+            "pub const C{copy}: Certified<Scene> = scene({:?}).certified();\n",
             10.0 + copy as f64
         );
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use firmware_harness::tables::MAGNET;
-use haptic_servo::environment::{AnyProfile, Ends, Environment, Profile};
+use haptic_servo::environment::{Ends, Profile};
 use haptic_servo::scene::Scene;
 
 use crate::emulator::{CertifyClient, EmulatorError};
@@ -15,10 +15,8 @@ pub fn scenes() -> Vec<Scene> {
     for torque in [0.02, 0.2, 20.0] {
         for delay in 1..=3 {
             for ends in [None, Some(Ends { from: -2.0, to: 2.0, stiffness: 12.0 })] {
-                let mut profile: AnyProfile = Profile::<64, 1>::of(&MAGNET).as_any();
-                (profile.torque, profile.delay, profile.ends) = (torque, delay, ends);
-                let environment = Environment::Profile(profile);
-                scenes.push(Scene { environment, ..knob::SCENE.as_data() });
+                let profile = Profile { torque, ends, ..Profile::of(&MAGNET, delay) };
+                scenes.push(Scene { environment: profile.alone(), ..knob::SCENE });
             }
         }
     }

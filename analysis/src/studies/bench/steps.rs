@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::process::Command;
 use std::time::Instant;
 
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use super::figure::{Pair, median};
@@ -35,13 +35,11 @@ const C_OPTIONS: [&str; 2] = ["-O2", "-ffp-contract=off"];
 
 /// A wall of degree 1 on the paper's device, released from a millirad.
 fn experiment() -> Experiment {
-    let (stiffness, damping, delay) = (STIFFNESS, 0.0, 1);
-    let wall = Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false };
     let scene = Scene {
         device: DEVICE,
         timing: Timing { period: PERIOD, worst_period: None },
         coupling: Coupling::Spring { stiffness: COUPLING },
-        environment: Environment::DamperWall(wall),
+        environment: Wall::damped(STIFFNESS, 0.0, 1).alone(),
         latency: Latency::NONE,
         torque_limit: None,
     };

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use haptic_servo::environment::{AnyProfile, Environment, Shape, ShapeError};
+use haptic_servo::environment::{Environment, Profile, Shape, ShapeError};
 use haptic_servo::scene::{Scene, Timing};
 
 use super::case::{CaseResult, FailureError};
@@ -119,7 +119,7 @@ fn turning(
 /// Shapes as an environment, of 16 knots.
 fn profile(shapes: &[Shape], delay: usize) -> Result<Environment, ShapeError> {
     let units = Box::leak(vec![0; 16].into_boxed_slice());
-    Ok(Environment::Profile(AnyProfile::sampled(shapes, units, delay)?))
+    Ok(Profile::sampled(shapes, units, delay)?.alone())
 }
 
 /// A tooth: a torque that swings about a mean.

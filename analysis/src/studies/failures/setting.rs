@@ -42,8 +42,7 @@ pub const PADDLES: Transducers = Transducers {
 
 /// A wall that acts on both sides: stiffness in N m/rad, damping in N m s/rad, delay in samples.
 pub fn wall_of(stiffness: f64, damping: f64, delay: usize) -> Environment {
-    let (filter, face, one_sided) = (None, 0.0, false);
-    Environment::DamperWall(Wall { stiffness, damping, filter, delay, face, one_sided })
+    Wall::damped(stiffness, damping, delay).alone()
 }
 
 /// A scene without a coupling.
@@ -83,7 +82,7 @@ pub fn encoder_friction(scene: &Scene, transducers: &Transducers) -> f64 {
         return 0.5 * slope * step;
     }
     let Some(wall) = scene.environment.wall() else { return 0.0 };
-    (0.5 * wall.stiffness + wall.damping / scene.timing.period) * step
+    (0.5 * wall.stiffness + wall.damping() / scene.timing.period) * step
 }
 
 /// A run of a scene on its rigid device, with the friction that its board needs for rest.

@@ -91,11 +91,11 @@ fn ticks(time: f64, period: f64) -> usize {
 /// Whether the environment has a spring.
 fn has_spring(environment: &Environment) -> bool {
     match environment {
-        Environment::FreeMode { .. } => false,
+        Environment::Parts(parts) => parts.wall.is_some() || parts.profile.is_some(),
         Environment::Rational(rational) => {
             rational.unit_zeros == 0 && rational.numerator.as_slice().iter().sum::<f64>() != 0.0
         }
-        _ => true,
+        Environment::Stated(_) => true,
     }
 }
 
@@ -171,14 +171,7 @@ mod tests {
     fn problem(inertia: f64, margin: f64) -> FormatProblem {
         let damping = 1e-4;
         let stiffness = 2.0 * (damping - margin) / 1e-3;
-        let environment = Environment::DelayedSpring(Wall {
-            stiffness,
-            damping: 0.0,
-            delay: 1,
-            filter: None,
-            face: 0.0,
-            one_sided: false,
-        });
+        let environment = Wall::spring(stiffness, 1).alone();
         let transducers = Transducers {
             counts_per_turn: 4096.0,
             counter: CounterWidth::Bits16,

@@ -109,7 +109,9 @@ impl InEach for Build {
 #[cfg(test)]
 mod tests {
     use haptic_servo::encoder::CounterWidth;
-    use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+    use haptic_servo::environment::{
+        Canceller, Coefficients, Environment, Parts, Rational, Side, Wall,
+    };
     use haptic_servo::scene::{Coupling, Device, Latency, Timing};
 
     use super::*;
@@ -117,14 +119,10 @@ mod tests {
     /// Units are powers of two: the same bits come out, whatever a servo counts in.
     #[test]
     fn units_round_nothing() {
-        let wall = Wall {
-            stiffness: 22.0,
-            damping: 0.01,
-            filter: None,
-            delay: 1,
-            face: 0.01,
-            one_sided: true,
-        };
+        let wall = Wall::damped(22.0, 0.01, 1).behind(0.01);
+        let spring = Wall { side: Side::Displaced(0.01), ..Wall::spring(22.0, 1) }.alone();
+        let undamped = Wall::damped(22.0, 0.0, 1).behind(0.01);
+        let canceller = Some(Canceller::to(0.02));
         let numbers = |numbers: &[f64]| Coefficients::new(numbers).unwrap();
         let rational = Rational {
             numerator: numbers(&[13.0, -3.0]),
@@ -133,12 +131,12 @@ mod tests {
             unit_zeros: 0,
         };
         for environment in [
-            Environment::DelayedSpring(Wall { one_sided: false, ..wall }),
-            Environment::DamperWall(wall),
-            Environment::FreeMode { residual: 0.002, delay: 0 },
-            Environment::FreeModeWall { residual: 0.02, wall: Wall { damping: 0.0, ..wall } },
+            spring,
+            wall.alone(),
+            Canceller::to(0.002).alone(),
+            Parts { canceller, wall: Some(undamped), ..Parts::NONE }.sum(),
             Environment::Rational(rational),
-            Environment::Profile(crate::program::knob::SCENE.environment.as_any()),
+            crate::program::knob::SCENE.environment,
         ] {
             let scene = Scene {
                 device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.021999) },
@@ -146,10 +144,7 @@ mod tests {
                 coupling: Coupling::Spring { stiffness: 43.9 },
                 environment,
                 latency: Latency::NONE,
-                torque_limit: match environment {
-                    Environment::DelayedSpring(_) => Some(0.3),
-                    _ => None,
-                },
+                torque_limit: (environment == spring).then_some(0.3),
             };
             let transducers = Transducers {
                 counts_per_turn: 61_440.0,

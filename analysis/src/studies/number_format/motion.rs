@@ -57,7 +57,7 @@ impl Motion {
             Environment::Rational(_) | Environment::Stated(_) => return None,
             ref mut environment => {
                 if let Some(wall) = environment.wall_mut() {
-                    wall.face += place;
+                    wall.side = wall.side.at(wall.face() + place);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Units of angle and torque, which scale a scene to a format with a range of 1.
 
 use haptic_servo::environment::{Coefficients, Environment, Rational};
-use haptic_servo::parameter::Parameter;
+use haptic_servo::parameter::{NamedParameters, Parameter};
 use haptic_servo::scene::{Coupling, Device, Scene};
 use haptic_servo::servo::Transducers;
 
@@ -59,18 +59,18 @@ impl Units {
     fn environment(&self, environment: Environment) -> Environment {
         // N m/rad, and N m s/rad as well.
         let slope = |value: f64| value * self.angle / self.torque;
-        let scaled = |environment: Environment, parameter| {
-            let value = environment.get(parameter).unwrap_or(0.0);
-            let value = match parameter {
+        let scaled = |mut environment: Environment, parameter| {
+            let Some(number) = environment.value(parameter) else { return environment };
+            *number = match parameter {
                 Parameter::Face | Parameter::Centre | Parameter::From | Parameter::To => {
-                    value / self.angle
+                    *number / self.angle
                 }
-                Parameter::ProfileTorque => value / self.torque,
+                Parameter::ProfileTorque => *number / self.torque,
                 // A turn has fewer units.
-                Parameter::Count => value * self.angle,
-                _ => slope(value),
+                Parameter::Count => *number * self.angle,
+                _ => slope(*number),
             };
-            environment.with(parameter, value).unwrap_or(environment)
+            environment
         };
         let numbers = [
             Parameter::Stiffness,

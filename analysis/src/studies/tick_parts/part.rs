@@ -39,7 +39,7 @@ const TICK: (&str, &str) = ("<haptic_servo::servo::prepared_servo::PreparedServo
 const NAMES: [(&str, &str, Part); 18] = [
     ("<haptic_servo::energy::Injector<", "", Part::Injection),
     ("<haptic_servo::environment::velocity::Difference<", "", Part::Damper),
-    ("<haptic_servo::environment::free_mode::", "", Part::Canceller),
+    ("<haptic_servo::environment::canceller::", "", Part::Canceller),
     ("<haptic_servo::environment::velocity::Washout<", "", Part::Filter),
     ("<haptic_servo::environment::wall_law::Face<", "", Part::Face),
     ("<haptic_servo::environment::wall_law::Displaced<", "", Part::Face),
@@ -49,7 +49,7 @@ const NAMES: [(&str, &str, Part); 18] = [
     ("<haptic_servo::environment::delay_line::", "", Part::Delay),
     ("<haptic_servo::environment::wall_law::WallLaw<", "", Part::Spring),
     ("<haptic_servo::coupling::", "", Part::Coupling),
-    ("<haptic_servo::environment::matched::CouplingMemory<", "", Part::Coupling),
+    ("<haptic_servo::coupling_memory::", "", Part::Coupling),
     ("<haptic_servo::torque::", "", Part::Limit),
     ("<haptic_servo::encoder::", "", Part::Encoder),
     ("<haptic_servo::servo::Servo<", "::angle", Part::Encoder),
@@ -134,7 +134,7 @@ mod tests {
         let filter = "<haptic_servo::environment::velocity::Washout<f32>>::torque";
         let wall = "<haptic_servo::environment::wall_law::WallLaw<f32, V, S, D>>::line";
         let canceller =
-            "<haptic_servo::environment::free_mode::FreeModeLaw<f32, D> as Law>::evaluate";
+            "<haptic_servo::environment::canceller::CancellerLaw<f32, D> as Law>::evaluate";
         for (inner, part) in [
             (&[number, damper, wall][..], Part::Damper),
             (&[number, wall], Part::Spring),

@@ -45,7 +45,7 @@ fn row(program: &Program, instructions: f64, rate: f64) -> Option<Method> {
         return None;
     };
     // The delay is one sample with any coupling.
-    let damping = scene.environment.wall()?.damping;
+    let damping = scene.environment.wall()?.damping();
     let ripple = (stiffness + damping * rate) * TAU / COUNTS;
     let processor = 100.0 * instructions * rate / CORE_CLOCK;
     let family = program.name.replace('_', " ");

@@ -3,7 +3,7 @@
 
 use haptic_servo::certificate::Resolution;
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::{Environment, Side, Wall};
 use haptic_servo::number::Arithmetic;
 use haptic_servo::servo::Transducers;
 
@@ -80,12 +80,10 @@ impl Case {
 pub fn cases() -> Vec<Case> {
     let is_linear = |program: &&Program| program.scene.environment.has_transfer();
     let mut cases: Vec<_> = program::ALL.iter().filter(is_linear).map(Case::of).collect();
-    let pulls = |case: &Case| match case.problem.scene.environment {
-        Environment::DamperWall(wall) => {
-            let wall = Wall { one_sided: false, ..wall };
-            Some(case.clone().with("damper_wall, two-sided", Environment::DamperWall(wall)))
-        }
-        _ => None,
+    let pulls = |case: &Case| {
+        let wall = case.problem.scene.environment.wall().filter(|wall| wall.is_one_sided())?;
+        let wall = Wall { side: Side::Centred, ..*wall };
+        Some(case.clone().with("damper_wall, two-sided", wall.alone()))
     };
     cases.extend(cases.iter().filter_map(pulls).collect::<Vec<_>>());
     cases

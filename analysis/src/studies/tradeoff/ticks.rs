@@ -6,7 +6,8 @@
 //! depends on the numbers, which are those of one scene in one hand.
 
 use haptic_servo::environment::{
-    AnyProfile, Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational, Wall,
+    Canceller, Coefficients, Damper, Environment, MAX_DEGREE, MAX_DELAY, Parts, Profile, Rational,
+    Side, Wall,
 };
 use haptic_servo::number::Arithmetic;
 
@@ -64,37 +65,47 @@ pub fn types() -> usize {
 /// delays and degrees.
 fn type_of(environment: &Environment) -> String {
     let delay = |delay: usize| format!("delay {}", measured(&DELAYS, delay));
-    match environment {
-        Environment::DelayedSpring(wall) => format!("spring, {}", delay(wall.delay)),
-        Environment::DamperWall(wall) => format!("{}, {}", wall_type(wall), delay(wall.delay)),
-        Environment::FreeMode { delay: samples, .. } => format!("free mode, {}", delay(*samples)),
-        Environment::FreeModeWall { wall, .. } => {
-            format!("free mode and {}, {}", wall_type(wall), delay(wall.delay))
-        }
-        Environment::Stated(_) => "of another crate".to_owned(),
-        Environment::Profile(profile) => {
-            format!("{}, {}", profile_type(profile), delay(profile.delay))
-        }
-        Environment::Composed(_) => "sum with a torque profile".to_owned(),
+    let parts = match environment {
+        Environment::Parts(parts) => parts,
+        Environment::Stated(_) => return "of another crate".to_owned(),
         Environment::Rational(rational) => {
             let degree = rational.denominator.as_slice().len().saturating_sub(1);
-            format!("rational of degree {}, {}", measured(&DEGREES, degree), delay(rational.delay))
+            let degree = measured(&DEGREES, degree);
+            return format!("rational of degree {degree}, {}", delay(rational.delay));
+        }
+    };
+    match (&parts.canceller, &parts.wall, &parts.profile) {
+        (None, None, Some(profile)) => {
+            format!("{}, {}", profile_type(profile), delay(profile.delay))
+        }
+        (_, _, Some(_)) => "sum with a torque profile".to_owned(),
+        (None, Some(wall), None) => format!("{}, {}", wall_type(wall), delay(wall.delay)),
+        (Some(_), Some(wall), None) => {
+            format!("free mode and {}, {}", wall_type(wall), delay(wall.delay))
+        }
+        (canceller, None, None) => {
+            let samples = canceller.map_or(0, |canceller| canceller.delay);
+            format!("free mode, {}", delay(samples))
         }
     }
 }
 
-fn profile_type(profile: &AnyProfile) -> String {
-    let damped = if profile.damping == 0.0 { "torque profile" } else { "damped torque profile" };
+fn profile_type(profile: &Profile) -> String {
+    let damped = if profile.damping() == 0.0 { "torque profile" } else { "damped torque profile" };
     let endless = if profile.ends.is_some() { "" } else { ", endless" };
     format!("{damped}{endless}")
 }
 
 fn wall_type(wall: &Wall) -> String {
-    let filter = if wall.filter.is_some() { "filtered wall" } else { "wall" };
-    match wall {
-        Wall { one_sided: true, .. } => format!("{filter}, one-sided"),
-        Wall { face: 0.0, .. } => filter.to_owned(),
-        _ => format!("{filter}, placed"),
+    let kind = match wall.damper {
+        None => "spring",
+        Some(Damper { filter: None, .. }) => "wall",
+        Some(Damper { filter: Some(_), .. }) => "filtered wall",
+    };
+    match wall.side {
+        Side::Face(_) => format!("{kind}, one-sided"),
+        Side::Displaced(_) => format!("{kind}, placed"),
+        Side::Centred => kind.to_owned(),
     }
 }
 
@@ -110,16 +121,14 @@ fn cases() -> Vec<Case> {
 
 fn of_delay(delay: usize) -> Vec<Case> {
     let soft = delay == MAX_DELAY;
-    let wall = |stiffness: f64, damping: f64| {
-        let stiffness = if soft { 1.0 } else { stiffness };
-        Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false }
-    };
-    let spring = Environment::DelayedSpring(wall(22.0, 0.0));
-    let walls = of_sides(wall(22.0, 0.01)).map(Environment::DamperWall);
+    let stiffness = |stiffness: f64| if soft { 1.0 } else { stiffness };
+    let spring = Wall::spring(stiffness(22.0), delay).alone();
+    let walls = of_sides(Wall::damped(stiffness(22.0), 0.01, delay)).map(Wall::alone);
     let residual = if delay == 0 { 0.001 } else { 0.01 };
-    let free = Environment::FreeMode { residual, delay };
-    let ended = |wall| Environment::FreeModeWall { residual: 0.018, wall };
-    let ended = of_sides(wall(5.0, 0.003)).map(ended);
+    let free = Canceller { residual, delay }.alone();
+    let canceller = Some(Canceller::to(0.018));
+    let ended = of_sides(Wall::damped(stiffness(5.0), 0.003, delay))
+        .map(|wall| Parts { canceller, wall: Some(wall), ..Parts::NONE }.sum());
     let rational = DEGREES.map(|degree| Environment::Rational(of_degree(degree, delay)));
     let case = |program: &str, environment| {
         Program::find(program).map(|program| Case::of(program).with(program.name, environment))
@@ -134,17 +143,16 @@ fn of_delay(delay: usize) -> Vec<Case> {
 /// The wall with all kinds of rest positions, with and without a filter.
 fn of_sides(wall: Wall) -> [Wall; 6] {
     const PLACE: f64 = 0.01;
-    let filtered = Wall { filter: Some(0.5), ..wall };
-    let [placed, one_sided] =
-        [|wall| Wall { face: PLACE, ..wall }, |wall| Wall { one_sided: true, ..wall }];
-    [wall, placed(wall), one_sided(wall), filtered, placed(filtered), one_sided(filtered)]
+    let filtered = wall.filtered(0.5);
+    let placed = |wall: Wall| wall.placed(PLACE);
+    [wall, placed(wall), wall.behind(0.0), filtered, placed(filtered), filtered.behind(0.0)]
 }
 
 /// The knob: a profile with ends for latched torques. A profile without ends contains a turn, which not every
 /// format can represent, and other types do not fit the board's program.
 fn between_ends(delay: usize) -> Option<Environment> {
-    let knob = knob::SCENE.environment.as_any();
-    (knob.delay == delay).then_some(Environment::Profile(knob))
+    let knob = knob::SCENE.environment;
+    (knob.delay() == delay).then_some(knob)
 }
 
 /// A spring of about 1 N m/rad with the largest number of nonzero coefficients.

@@ -8,7 +8,6 @@ use analysis::program::{Program, damper_wall, delayed_spring, free_mode, knob, u
 use analysis::toolchain::NumberFormat;
 use haptic_servo::boot;
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::FreeMode;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::{Latched, OutputMode, RenderingOptions, SupportsTiming, Transducers};
 use haptic_servo::servo_loop::Options;
@@ -23,16 +22,6 @@ use crate::device::{HandHeldDevice, Sample};
 const SAMPLES: u64 = 5000;
 /// Samples within which the clamp is open.
 const OPEN: usize = 110;
-
-/// Free mode as the boards run it: as late as their DAC.
-const FREE_MODE: Scene<FreeMode<1>> = Scene {
-    device: free_mode::SCENE.device,
-    timing: free_mode::SCENE.timing,
-    coupling: free_mode::SCENE.coupling,
-    environment: FreeMode { residual: free_mode::SCENE.environment.residual },
-    latency: free_mode::SCENE.latency,
-    torque_limit: free_mode::SCENE.torque_limit,
-};
 
 #[test]
 fn the_wall_gives_the_host_s_codes() {
@@ -52,7 +41,7 @@ fn the_spring_gives_the_host_s_codes() {
 #[test]
 fn free_mode_gives_the_host_s_codes() {
     on_both(|chip| {
-        compare::<_, Latched>(chip, "free_mode", FREE_MODE, &free_mode::TRANSDUCERS);
+        compare::<_, Latched>(chip, "free_mode", free_mode::SCENE, &free_mode::TRANSDUCERS);
     });
 }
 
@@ -82,7 +71,7 @@ fn the_knob_gives_the_host_s_codes_through_its_detents_and_into_its_stops() {
             .iter()
             .map(angle)
             .fold((0.0, 0.0), |(least, most): (f64, f64), at| (least.min(at), most.max(at)));
-        let ends = scene.environment.ends.unwrap();
+        let ends = scene.environment.profile().unwrap().ends.unwrap();
         assert!(furthest.0 < ends.from && furthest.1 > ends.to, "{}: {furthest:?}", chip.name);
     });
 }

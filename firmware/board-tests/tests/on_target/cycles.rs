@@ -14,13 +14,18 @@ use haptic_servo::certificate::TimingChecked;
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::RawCount;
 use haptic_servo::scene::Scene;
+use haptic_servo::scene_type::Typed;
 use haptic_servo::servo::{OutputMode, PreparedServo, RenderingOptions};
 use haptic_servo::servo_loop::{Hardware, Options, ServoLoop};
 
-use super::{Environment, FILTER, Failure, SCENE, TRANSDUCERS};
+use super::{CERTIFIED, FILTER, Failure, TRANSDUCERS};
+
+haptic_servo::scene_type!(OfTheTests: CERTIFIED);
+
+type Rendered = Typed<OfTheTests>;
 
 /// The scene, as late as the board's DAC.
-const TIMED: TimingChecked<Scene<Environment>, Mode> = SCENE.certified().timing_checked();
+const TIMED: TimingChecked<Scene<Rendered>, Mode> = Rendered::certified().timing_checked();
 
 /// The board without the outputs that would move the motor.
 struct Muted(Registers);
@@ -56,8 +61,8 @@ impl Hardware for Muted {
     }
 }
 
-static ISR_STATE: IsrCell<ServoIsr<Muted, Environment, f32, Mode>> = IsrCell::empty();
-static MAILBOX: MailboxCell<Environment, f32, Mode> = static_cell::StaticCell::new();
+static ISR_STATE: IsrCell<ServoIsr<Muted, Rendered, f32, Mode>> = IsrCell::empty();
+static MAILBOX: MailboxCell<Rendered, f32, Mode> = static_cell::StaticCell::new();
 
 /// What the interrupt has measured, in cycles.
 struct Measured {

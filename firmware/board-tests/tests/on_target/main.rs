@@ -13,9 +13,10 @@ use haptic_servo::board::stm32::registers::Registers;
 use haptic_servo::board::stm32::wiring::{CHIP, DAC, ENCODER, TIMER_CLOCK};
 use haptic_servo::board::stm32::{Mode, init_chip, registers, width};
 use haptic_servo::boot::Startup;
+use haptic_servo::certificate::Certified;
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::Position;
-use haptic_servo::environment::{DamperWall, OneSided};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{OutputMode, Transducers};
 use haptic_servo::servo_loop::Hardware;
@@ -31,17 +32,16 @@ const TRANSDUCERS: Transducers = Transducers {
 /// The filter of the encoder's inputs.
 const FILTER: InputFilter = InputFilter::of_encoder(&TRANSDUCERS, TIMER_CLOCK);
 
-/// The environment of these tests: the wall of the program `damper_wall`.
-type Environment = OneSided<DamperWall<1>>;
-
-const SCENE: Scene<Environment> = Scene {
+/// The scene of these tests: that of the program `damper_wall`.
+const CERTIFIED: Certified<Scene> = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },
+    environment: Wall::damped(22.0, 0.01, 1).behind(0.0).alone(),
     latency: Latency::NONE,
     torque_limit: Some(1.0),
-};
+}
+.certified();
 
 /// The reason of a failure.
 type Failure = &'static str;

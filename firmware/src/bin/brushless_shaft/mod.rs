@@ -8,7 +8,7 @@ use haptic_servo::current::{
     B_G431B_ESC1, CurrentLoop, Drive, EncoderIndex, Motor, Regeneration, Supply, Winding,
 };
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{DamperWall, Matched, OneSided};
+use haptic_servo::environment::Wall;
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::{Coupling, Device, Scene, Timing};
 use haptic_servo::servo::Transducers;
@@ -47,18 +47,13 @@ pub const CURRENT_LOOP: CurrentLoop =
     CurrentLoop::checked(&DRIVE, &B_G431B_ESC1, &TRANSDUCERS, PERIOD)
         .with_index(EncoderIndex { offset: None });
 
-/// The environment that the hand feels, behind a coupling that absorbs the current loop's lag.
-pub type Environment = Matched<OneSided<DamperWall<1>>, 0, 1, true>;
-
 /// The scene.
-pub const SCENE: Scene<Environment> = Scene {
+pub const SCENE: Scene = Scene {
     // Through the current loop, motion takes 0.0001 of the damping (`CurrentLoop::motion_loss`).
     device: Device { inertia: 1.5e-5, damping: 0.0005, passivity: Some(0.00039) },
     timing: Timing { period: PERIOD, worst_period: None },
     coupling: Coupling::Matched,
-    environment: Matched {
-        environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 2.0, damping: 0.0001 } },
-    },
+    environment: Wall::damped(2.0, 0.0001, 1).behind(0.0).alone(),
     latency: CURRENT_LOOP.latency(OutputTiming::Latched),
     torque_limit: Some(0.1),
 };

@@ -11,8 +11,8 @@ use core::sync::atomic::{Ordering, compiler_fence};
 pub use super::tick_timer::now;
 use super::tick_timer::{COUNTER, now_at};
 
-use crate::environment::Discretize;
 use crate::number::Number;
+use crate::rendering::Rendering;
 use crate::scene::Scene;
 use crate::servo::{BuildError, Servo, Transducers};
 
@@ -22,7 +22,7 @@ use crate::servo::{BuildError, Servo, Transducers};
 /// # Errors
 /// If this number format cannot represent the scene or the transducers.
 #[doc(hidden)]
-pub fn uncertified_servo<E: Discretize<N>, N: Number>(
+pub fn uncertified_servo<E: Rendering<N>, N: Number>(
     scene: &Scene<E>,
     transducers: &Transducers,
 ) -> Result<Servo<E, N>, BuildError> {

@@ -19,10 +19,10 @@ use crate::board::isr_cell::IsrCell;
 use crate::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
 use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, Startup, boot};
-use crate::environment::Discretize;
 use crate::fault::FaultRecord;
 use crate::number::Number;
 use crate::period as periods;
+use crate::rendering::Rendering;
 use crate::reset::ResetCause;
 use crate::servo::{OutputMode, OutputTiming, SupportsTiming, Transducers};
 use crate::servo_loop::Reason;
@@ -42,7 +42,7 @@ pub type LinkCell<E, N, M> = StaticCell<HostLink<E, N, M>>;
 pub type Task<E, N, M, S> = fn(&'static mut HostLink<E, N, M>) -> Result<SpawnToken<S>, SpawnError>;
 
 /// The statics of a program, with its scene's types.
-pub struct Statics<E: Discretize<N> + 'static, N: Number, M: 'static> {
+pub struct Statics<E: Rendering<N> + 'static, N: Number, M: 'static> {
     /// State of the servo's interrupt.
     pub servo: &'static ServoCell<E, N, M>,
     /// The mailbox between the interrupt and the task below.

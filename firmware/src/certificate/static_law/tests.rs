@@ -1,12 +1,15 @@
 use core::ops::Range;
 
 use super::*;
-use crate::certificate::{Assessment, Rejection, TimingError, assess, certify, timing_checked};
+use crate::certificate::{
+    Assessment, Certified, Rejection, TimingError, assess, certify, certify_scene, timing_checked,
+};
 use crate::coupling::Coupling;
-use crate::environment::{DamperWall, OneSided, Uncoupled};
+use crate::environment::Side;
 use crate::number::Format;
 use crate::output_timing::OutputTiming;
 use crate::scene::{Device, TimeRange, Timing};
+use crate::scene_type::Typed;
 use crate::servo::{AtPhase, Latched};
 
 fn scene(period: f64, delta: f64, wall: Wall, latency: Latency) -> Scene {
@@ -14,14 +17,14 @@ fn scene(period: f64, delta: f64, wall: Wall, latency: Latency) -> Scene {
         device: Device { inertia: 1e-4, damping: delta, passivity: None },
         timing: Timing { period, worst_period: None },
         coupling: Coupling::Rigid,
-        environment: Environment::DamperWall(wall),
+        environment: wall.alone(),
         latency,
         torque_limit: None,
     }
 }
 
 fn one_sided(stiffness: f64, damping: f64, delay: usize) -> Wall {
-    Wall { damping, one_sided: true, ..Wall::spring(stiffness, delay) }
+    Wall::damped(stiffness, damping, delay).behind(0.0)
 }
 
 /// A law with these slopes, `delay` samples late, and without dampers.
@@ -116,7 +119,7 @@ fn a_wall_with_a_damper_needs_at_least_what_the_linear_wall_needs() {
         (1e-4, 3.0, 0.0002, 1, 8.5e-5, 0.000_529_757_571_059),
     ] {
         let wall = one_sided(stiffness, damping, delay);
-        let linear = Wall { one_sided: false, ..wall };
+        let linear = Wall { side: Side::Centred, ..wall };
         let scene = |wall| scene(period, 0.1, wall, Latency::delayed(oldest));
         let found = assess(&scene(linear)).alpha_port.unwrap();
         assert!((found.midpoint() / exact - 1.0).abs() < 1e-9, "{found:?} {exact}");
@@ -144,7 +147,7 @@ fn a_one_sided_spring_needs_what_the_linear_spring_needs() {
         for delay in [0, 1, 2] {
             let wall = one_sided(10.0, 0.0, delay);
             let bound = assess(&scene(1e-3, 0.1, wall, latency)).bound.unwrap();
-            let linear = Wall { one_sided: false, ..wall };
+            let linear = Wall { side: Side::Centred, ..wall };
             let exact = assess(&scene(1e-3, 0.1, linear, latency));
             let exact = exact.alpha_port.or(exact.alpha_coupled).unwrap_or_else(|| {
                 panic!("{latency:?}: {:?}", exact.outcome);
@@ -179,8 +182,7 @@ fn the_textbook_wall_needs_half_a_period_of_its_stiffness_and_its_damping() {
 fn jitter_and_missed_updates_cost_what_their_worst_case_costs() {
     let jittering = Latency { output_jitter: 1e-4, ..Latency::delayed(2e-4) };
     let oldest = Latency::delayed(3e-4);
-    for one_sided in [false, true] {
-        let wall = Wall { one_sided, ..Wall::spring(10.0, 1) };
+    for wall in [Wall::damped(10.0, 0.0, 1), one_sided(10.0, 0.0, 1)] {
         let bound = assess(&scene(1e-3, 0.1, wall, jittering)).bound.unwrap();
         let law = law(10.0, 10.0, 1.0);
         assert!((bound.midpoint() / needed(law, 1e-3, oldest) - 1.0).abs() < 1e-12);
@@ -315,45 +317,44 @@ fn the_margin_is_the_damping_that_may_be_lost() {
     }
 }
 
-/// A board limits the torque and reads counts late; without a coupling a wall passes there as well, if its
-/// type has the code for it.
+/// A board limits the torque and reads counts late; without a coupling a wall passes there as well.
 #[test]
 fn a_board_renders_a_wall_without_a_coupling() {
-    type Wall<const N: usize> = Uncoupled<OneSided<DamperWall<N>>>;
-    const fn rigid<E>(environment: E, latency: Latency) -> Scene<E> {
+    const fn scene(wall: Wall, latency: Latency) -> Scene {
         Scene {
             device: Device { inertia: 1e-4, damping: 0.022, passivity: None },
             timing: Timing { period: 1e-3, worst_period: None },
             coupling: Coupling::Rigid,
-            environment,
+            environment: wall.behind(0.1).alone(),
             latency,
             torque_limit: None,
         }
     }
-    const fn wall<const N: usize>(stiffness: f64, damping: f64) -> OneSided<DamperWall<N>> {
-        OneSided { face: 0.1, wall: DamperWall { stiffness, damping } }
+    const fn rigid(stiffness: f64) -> Scene {
+        scene(Wall::damped(stiffness, 0.004, 1), Latency::NONE)
     }
-    let latched = |stiffness| {
-        let scene = rigid(Uncoupled { environment: wall::<1>(stiffness, 0.004) }, Latency::NONE);
-        timing_checked::<Wall<1>, Latched>(scene, Format::F32)
-    };
+    let latched = |stiffness| timing_checked::<_, Latched>(rigid(stiffness), Format::F32);
     // 1.5 K T + B, with B in counts up to 1 us late.
     assert!(latched(11.99).is_ok() && latched(12.0).is_err());
-    let scene = rigid(Uncoupled { environment: wall::<1>(11.0, 0.004) }, Latency::NONE);
-    let timed = scene.certify_in(Format::F32).unwrap().time::<Latched>().unwrap();
-    let judged = timing_checked::<Wall<1>, Latched>(scene, Format::F32).unwrap();
+    let timed = rigid(11.0).certify_in(Format::F32).unwrap().time::<Latched>().unwrap();
+    let judged = latched(11.0).unwrap();
     assert_eq!(
         (timed.margin(), timed.injectable_damping()),
         (judged.margin(), judged.injectable_damping())
     );
     let left = 0.022 - 1.5 * 0.011 - 0.004 * f64::sqrt(1.001);
     assert!((timed.margin() - left).abs() < 1e-9 && timed.margin_with(left) < 1e-6);
-    // The same type without `Uncoupled` has no code for it, and says so at compile time.
-    let plain = rigid(wall::<1>(11.0, 0.004), Latency::NONE);
-    assert_eq!(plain.certify().unwrap().time::<Latched>().unwrap_err(), TimingError::Coupled);
+    // A program whose own scene has a coupling has no code for it, and says so.
+    const COUPLED: Certified<Scene> =
+        Scene { coupling: Coupling::Spring { stiffness: 44.0 }, ..rigid(11.0) }.certified();
+    crate::scene_type!(Coupled: COUPLED);
+    let coupled = *Typed::<Coupled>::certified().scene();
+    let plain = Scene { coupling: Coupling::Rigid, ..coupled };
+    let certified = certify_scene(plain, Format::F64).unwrap();
+    assert_eq!(certified.time::<Latched>().unwrap_err(), TimingError::Coupled);
     assert!(timing_checked::<_, Latched>(plain, Format::F64).is_err());
     // At a phase an undelayed wall is late by the phase.
-    let phase = rigid(Uncoupled { environment: wall::<0>(30.0, 0.0) }, Latency::delayed(1e-4));
+    let phase = scene(Wall::damped(30.0, 0.0, 0), Latency::delayed(1e-4));
     let timed = phase.certify().unwrap().time::<AtPhase<100_000>>().unwrap();
     let judged = timing_checked::<_, AtPhase<100_000>>(phase, Format::F64).unwrap();
     assert_eq!(timed.margin(), judged.margin());

@@ -30,21 +30,20 @@ use crate::text::Sentence;
 ///
 /// ```
 /// use haptic_servo::certificate::{Certified, TimingChecked};
-/// use haptic_servo::environment::DelayedSpring;
+/// use haptic_servo::environment::Wall;
 /// use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 /// use haptic_servo::servo::Latched;
 ///
-/// type SpringScene = Scene<DelayedSpring<1>>;
-/// const SPRING: SpringScene = Scene {
+/// const SPRING: Scene = Scene {
 ///     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
 ///     timing: Timing { period: 0.001, worst_period: None },
 ///     coupling: Coupling::Spring { stiffness: 44.0 },
-///     environment: DelayedSpring { stiffness: 22.0 },
+///     environment: Wall::spring(22.0, 1).alone(),
 ///     latency: Latency::NONE, torque_limit: None,
 /// };
-/// const CERTIFIED: Certified<SpringScene> = SPRING.certified();
+/// const CERTIFIED: Certified<Scene> = SPRING.certified();
 /// // Late by one sample, which is what the latch takes: this compiles.
-/// const TIMED: TimingChecked<SpringScene, Latched> = CERTIFIED.timing_checked::<Latched>();
+/// const TIMED: TimingChecked<Scene, Latched> = CERTIFIED.timing_checked::<Latched>();
 /// # let _ = TIMED;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,8 +131,7 @@ pub enum TimingError {
     },
     /// The torque lags, and the coupling does not absorb the lag.
     Unmatched,
-    /// The scene has no coupling, and its environment's type is not
-    /// [`Uncoupled`](crate::environment::Uncoupled).
+    /// The scene has no coupling, and its program has one.
     Coupled,
     /// A board reads counts later than the scene allows.
     Jitter {
@@ -196,11 +194,11 @@ impl TimingError {
             }
             Self::Unmatched => t.push(
                 "where torques lag, a servo renders only environments behind the matched coupling: give the \
-                 scene that, and its environment's type `Matched`",
+                 scene that",
             ),
             Self::Coupled => t.push(
-                "without a coupling a board renders environments of the type `Uncoupled`: give the scene \
-                 that, or a coupling",
+                "the scene has no coupling, and its program is that of a coupled scene: give the scene a \
+                 coupling",
             ),
             Self::Jitter { jitter } => {
                 t.push("a board reads a count up to ");

@@ -1,12 +1,10 @@
 use super::*;
 use crate::certificate::Certified;
-use crate::environment::{
-    DamperWall, DelayedSpring, Environment, FreeMode, FreeModeWall, Matched, OneSided, Rational,
-};
+use crate::environment::{Canceller, Environment, Parts, Rational, Wall};
 use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::{AtPhase, Latched, Simultaneous};
 
-const fn scene<E>(environment: E, coupling: f64) -> Scene<E> {
+const fn scene(environment: Environment, coupling: f64) -> Scene {
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 1e-3, worst_period: None },
@@ -23,17 +21,18 @@ fn data(environment: Environment) -> Certified<Scene> {
 
 #[test]
 fn an_undelayed_scene_is_for_simulations_alone() {
-    let undelayed = DamperWall::<0> { stiffness: 20.0, damping: 0.01 }.as_data();
-    let late = DamperWall::<1> { stiffness: 2.0, damping: 0.002 };
-    let free = FreeMode::<0> { residual: 0.001 }.as_data();
+    let undelayed = Wall::damped(20.0, 0.01, 0).alone();
+    let late = Wall::damped(2.0, 0.002, 1);
+    let free = Canceller { residual: 0.001, delay: 0 }.alone();
     // Its wall is late, but its canceller is not.
-    let both = FreeModeWall { residual: 0.015, wall: late }.as_data();
+    let canceller = Some(Canceller::to(0.015));
+    let both = Parts { canceller, wall: Some(late), ..Parts::NONE }.sum();
     for environment in [undelayed, free, both] {
         let certified = data(environment);
         assert!(certified.time::<Simultaneous>().is_ok());
         assert_eq!(certified.time::<Latched>().unwrap_err(), TimingError::NotLate);
     }
-    for environment in [late.as_data(), FreeMode::<1> { residual: 0.001 }.as_data()] {
+    for environment in [late.alone(), Canceller { residual: 0.001, delay: 1 }.alone()] {
         assert!(data(environment).time::<Latched>().is_ok());
     }
 }
@@ -43,7 +42,7 @@ fn an_undelayed_scene_is_for_simulations_alone() {
 fn a_scene_that_must_not_be_limited_is_for_simulations_alone() {
     // Its coupling is softer than the standard one, and condition 18 requires more than the exact
     // rule.
-    let stiff = scene(DelayedSpring::<2> { stiffness: 15.0 }, 33.0);
+    let stiff = scene(Wall::spring(15.0, 2).alone(), 33.0);
     let certified = stiff.certify().unwrap();
     let Err(TimingError::Limited { bound: Some(bound), limit: Some(limit) }) =
         certified.time::<Latched>()
@@ -56,7 +55,7 @@ fn a_scene_that_must_not_be_limited_is_for_simulations_alone() {
         TimingError::Limited { bound: Some(bound), limit: Some(limit) }
     );
     // A coupling that is stiffer than the standard one has no limit that is known to do.
-    let stiff = scene(DelayedSpring::<1> { stiffness: 5.0 }, 60.0).certify().unwrap();
+    let stiff = scene(Wall::spring(5.0, 1).alone(), 60.0).certify().unwrap();
     let error = stiff.time::<Latched>().unwrap_err();
     assert!(matches!(error, TimingError::Limited { bound: Some(_), limit: None }), "{error}");
     assert!(error.to_string().contains("soften the coupling"), "{error}");
@@ -65,11 +64,13 @@ fn a_scene_that_must_not_be_limited_is_for_simulations_alone() {
 #[test]
 fn no_board_renders_a_rational_environment() {
     use crate::environment::Coefficients;
-    let of = |delay| Rational {
-        numerator: Coefficients::new(&[8.0, -2.0]).unwrap(),
-        denominator: Coefficients::new(&[1.0, -0.5]).unwrap(),
-        delay,
-        unit_zeros: 0,
+    let of = |delay| {
+        Environment::Rational(Rational {
+            numerator: Coefficients::new(&[8.0, -2.0]).unwrap(),
+            denominator: Coefficients::new(&[1.0, -0.5]).unwrap(),
+            delay,
+            unit_zeros: 0,
+        })
     };
     let late = |delay| scene(of(delay), 44.0).certify().unwrap().time::<Latched>();
     assert_eq!(late(0).unwrap_err(), TimingError::NotLate);
@@ -85,39 +86,29 @@ fn the_room_is_what_the_index_leaves() {
     let close = |room: f64, expected: f64| {
         assert!(room <= expected && room > expected - 1e-12, "{room} for {expected}");
     };
-    let wall = DamperWall::<1> { stiffness: 4.0, damping: 0.003 };
+    let sided = Wall::damped(4.0, 0.003, 1).behind(0.1);
+    let wall = Wall::damped(4.0, 0.003, 1).alone();
     // Linear: K T / 2 + B, below delta; below K_vc T / 2 where the coupling is softer.
-    let room = |scene: Scene<DamperWall<1>>| {
-        scene.certify().unwrap().timing_checked::<Latched>().injectable_damping()
-    };
+    let room =
+        |scene: Scene| scene.certify().unwrap().timing_checked::<Latched>().injectable_damping();
     close(room(scene(wall, 44.0)), 0.022 - 0.005);
     close(room(scene(wall, 20.0)), 0.010 - 0.005);
     // Limited and one-sided: the bound is the same for this wall.
     close(room(Scene { torque_limit: Some(1.0), ..scene(wall, 44.0) }), 0.022 - 0.005);
-    let sided = scene(OneSided { face: 0.1, wall }, 44.0).certify().unwrap();
+    let sided = scene(sided.alone(), 44.0).certify().unwrap();
     close(sided.timing_checked::<Latched>().injectable_damping(), 0.022 - 0.005);
     // The bound of a wall that is later: K T (n - 1/2) + B.
-    let later = DamperWall::<3> { stiffness: 2.0, damping: 0.003 };
-    let later = scene(OneSided { face: 0.1, wall: later }, 44.0).certify().unwrap();
+    let later = Wall::damped(2.0, 0.003, 3).behind(0.1).alone();
+    let later = scene(later, 44.0).certify().unwrap();
     close(later.timing_checked::<Latched>().injectable_damping(), 0.022 - 0.008);
 }
 
 /// A wall that is not late, behind the coupling that absorbs this output delay.
-fn at_phase(output_delay: f64, output_jitter: f64) -> Certified<Scene<UndelayedWall<0>>> {
-    absorbed(output_delay, output_jitter)
-}
-
-/// The same with this many whole samples.
-fn absorbed<const WHOLE: usize>(
-    output_delay: f64,
-    output_jitter: f64,
-) -> Certified<Scene<UndelayedWall<WHOLE>>> {
+fn at_phase(output_delay: f64, output_jitter: f64) -> Certified<Scene> {
     let latency = Latency { output_jitter, ..Latency::delayed(output_delay) };
-    let wall = Matched { environment: DamperWall { stiffness: 2.0, damping: 0.002 } };
+    let wall = Wall::damped(2.0, 0.002, 0).alone();
     Scene { coupling: Coupling::Matched, latency, ..scene(wall, 44.0) }.certify().unwrap()
 }
-
-type UndelayedWall<const WHOLE: usize> = Matched<DamperWall<0>, WHOLE, 0>;
 
 #[test]
 fn a_board_s_phase_is_the_scene_s_output_delay() {
@@ -134,9 +125,8 @@ fn a_board_s_phase_is_the_scene_s_output_delay() {
 fn a_board_s_counts_deviate_by_the_count_jitter_of_the_scene_if_it_states_one() {
     let at = |output_jitter: f64, count_jitter: f64| {
         let latency = Latency { output_jitter, count_jitter, ..Latency::delayed(1e-5) };
-        let wall = Matched { environment: DamperWall { stiffness: 2.0, damping: 0.002 } };
-        let scene: Scene<UndelayedWall<0>> =
-            Scene { coupling: Coupling::Matched, latency, ..scene(wall, 44.0) };
+        let wall = Wall::damped(2.0, 0.002, 0).alone();
+        let scene = Scene { coupling: Coupling::Matched, latency, ..scene(wall, 44.0) };
         scene.certify().unwrap().time::<AtPhase<10_000>>().err()
     };
     assert_eq!(at(2e-6, 5e-7), Some(TimingError::Jitter { jitter: 5e-7 }));
@@ -153,12 +143,12 @@ fn a_phase_has_its_range() {
     assert_eq!(short, range(4.999e-6));
     assert!(short.to_string().ends_with("between 5e-6 s and 0.000999 s"), "{short}");
     // Counts that are read late reach the torque of the next period.
-    let long = absorbed::<1>(0.0009991, READ_WITHIN).time::<AtPhase<999_100>>().unwrap_err();
+    let long = at_phase(0.0009991, READ_WITHIN).time::<AtPhase<999_100>>().unwrap_err();
     assert_eq!(long, range(0.0009991));
     assert!(at_phase(5e-6, READ_WITHIN).time::<AtPhase<5_000>>().is_ok());
-    assert!(absorbed::<1>(0.000999, READ_WITHIN).time::<AtPhase<999_000>>().is_ok());
+    assert!(at_phase(0.000999, READ_WITHIN).time::<AtPhase<999_000>>().is_ok());
     // And a board that judges for itself refuses the same.
-    let judged = |scene: Certified<Scene<UndelayedWall<0>>>| {
+    let judged = |scene: Certified<Scene>| {
         crate::certificate::timing_checked::<_, AtPhase<4_999>>(*scene.scene(), Format::F32)
     };
     assert_eq!(judged(at_phase(4.999e-6, READ_WITHIN)).unwrap_err(), Step::Certificate);

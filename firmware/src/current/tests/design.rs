@@ -223,7 +223,7 @@ fn the_push_has_the_winding_at_over_current() {
             device: crate::scene::Device { inertia: 1e-5, damping: 0.01, passivity: None },
             timing: crate::scene::Timing { period: PERIOD, worst_period: None },
             coupling: crate::scene::Coupling::Matched,
-            environment: crate::environment::Environment::FreeMode { residual: 0.01, delay: 1 },
+            environment: crate::environment::Canceller { residual: 0.01, delay: 1 }.alone(),
             latency: crate::scene::Latency::NONE,
             torque_limit: None,
         };

@@ -121,13 +121,60 @@ impl Cell {
     }
 }
 
+/// The table of a torque profile.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Table {
+    #[cfg_attr(feature = "wire", serde(skip))]
+    units: &'static [i16],
+    /// The same in cells, which make a tick shorter; empty: none.
+    #[cfg_attr(feature = "wire", serde(skip))]
+    cells: &'static [Cell],
+    outline: Outline,
+}
+
+/// The cells follow from the units.
+impl PartialEq for Table {
+    fn eq(&self, other: &Self) -> bool {
+        self.units == other.units && self.outline == other.outline
+    }
+}
+
+impl Table {
+    pub(super) const fn new(
+        units: &'static [i16],
+        cells: &'static [Cell],
+        outline: Outline,
+    ) -> Self {
+        Self { units, cells, outline }
+    }
+
+    pub(super) const fn units(&self) -> &'static [i16] {
+        self.units
+    }
+
+    pub(super) const fn cells(&self) -> &'static [Cell] {
+        self.cells
+    }
+
+    pub(super) const fn outline(&self) -> Outline {
+        self.outline
+    }
+}
+
 /// A table that a law can read.
-pub trait KnotTable: Copy + core::fmt::Debug {
+pub trait KnotTable: Copy + core::fmt::Debug + Sized {
+    /// That of a profile; `None` if it is stored in another form.
+    fn of(table: &Table) -> Option<Self>;
     /// Units in parts at a place, in parts of a cell from the first knot; every number is a valid place.
     fn units_at(self, place: i32) -> i32;
 }
 
 impl<const KNOTS: usize> KnotTable for &'static [Cell; KNOTS] {
+    fn of(table: &Table) -> Option<Self> {
+        table.cells.try_into().ok()
+    }
+
     #[inline(always)]
     fn units_at(self, place: i32) -> i32 {
         let cell = (place >> PART_BITS).cast_unsigned() as usize;
@@ -138,6 +185,12 @@ impl<const KNOTS: usize> KnotTable for &'static [Cell; KNOTS] {
 
 /// The knots of a profile as data.
 impl KnotTable for &'static [i16] {
+    fn of(table: &Table) -> Option<Self> {
+        let units = table.units;
+        let is_whole = units.len() == table.outline.knots as usize;
+        (is_whole && units.len().is_power_of_two()).then_some(units)
+    }
+
     #[inline(always)]
     fn units_at(self, place: i32) -> i32 {
         let mask = self.len().wrapping_sub(1);

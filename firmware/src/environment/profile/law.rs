@@ -1,5 +1,6 @@
 //! The law of a torque profile: one table look-up per tick.
 
+use super::data::Profile;
 use super::knots::{KnotTable, Outline};
 use super::layout::{Ends, Layout};
 use super::scale::Scale;
@@ -7,7 +8,7 @@ use super::snap::Holding;
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
 use crate::environment::delay_line::DelayLine;
-use crate::environment::law::Law;
+use crate::environment::law::{Law, LawContext, LawOf};
 use crate::environment::turn::Turn;
 use crate::environment::velocity::Velocity;
 use crate::number::Number;
@@ -34,8 +35,8 @@ pub struct ProfileLaw<N: Number, K, V, D, S> {
     velocity: V,
     delay: D,
     snap: S,
-    /// The steepest rise in N m/rad.
-    steepest: f64,
+    /// The steepest rise in N m/rad, an `f64` as bytes, so that the law needs no alignment of its own.
+    steepest: [u8; 8],
 }
 
 /// An end of the range.
@@ -47,18 +48,39 @@ struct End<N> {
     torque: N,
 }
 
+impl<N, K, V, D, S> LawOf<N, Profile> for ProfileLaw<N, K, V, D, S>
+where
+    N: Number,
+    K: KnotTable,
+    V: Velocity<N>,
+    D: DelayLine<N>,
+    S: Holding<N>,
+{
+    fn law_of(profile: &Profile, context: &LawContext) -> Result<Self, BuildError> {
+        let Some(selection) = &profile.modes else { return Self::of_one(profile, context) };
+        // A number format that cannot represent one of the modes is refused for the program, so that no mode
+        // is refused later.
+        for mode in selection.modes() {
+            Self::of_one(&Profile::of_mode(mode, *selection, profile.delay), context)?;
+        }
+        // Before this mode the device may have turned freely.
+        let law = Self::of_one(profile, context)?;
+        Ok(match profile.ends {
+            Some(Ends { from, to, .. }) => Self { turn: Turn::nearest_to([from, to]), ..law },
+            None => law,
+        })
+    }
+}
+
 impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>>
     ProfileLaw<N, K, V, D, S>
 {
-    /// `snap` makes the law of its snap point from the place of the first knot.
-    pub(super) fn new(
-        knots: K,
-        outline: &Outline,
-        layout: &Layout,
-        velocity: V,
-        delay: D,
-        snap: impl FnOnce(i32) -> Result<S, BuildError>,
-    ) -> Result<Self, BuildError> {
+    /// The law of a profile alone or of a mode.
+    fn of_one(profile: &Profile, context: &LawContext) -> Result<Self, BuildError> {
+        let Some(knots) = K::of(&profile.table) else { return Err(BuildError::LawElsewhere) };
+        let (outline, layout) = (&profile.outline(), &profile.layout());
+        let velocity = V::of(profile.damper().as_ref(), context.period)?;
+        let delay = D::at_rest(profile.delay)?;
         let scale = Scale::of(layout, outline);
         let unrepresentable = |name| move |reason| BuildError::Unrepresentable { name, reason };
         let parts =
@@ -80,23 +102,14 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>>
             turn: Turn::none(),
             velocity,
             delay,
-            snap: snap(origin)?,
-            steepest: steepest_rise(layout, outline).max(f64::MIN_POSITIVE),
+            snap: S::of(profile, origin)?,
+            steepest: steepest_rise(layout, outline).max(f64::MIN_POSITIVE).to_ne_bytes(),
         };
         match &layout.ends {
             Some(ends) => law.limit(ends)?,
             None => law.turn = Turn::endless()?,
         }
         Ok(law)
-    }
-
-    /// The same law, but each start is in the turn nearest to its range: for one of several modes, before
-    /// which the device may have turned freely.
-    pub(super) fn counting_turns_anew(self, layout: &Layout) -> Self {
-        match layout.ends {
-            Some(Ends { from, to, .. }) => Self { turn: Turn::nearest_to([from, to]), ..self },
-            None => self,
-        }
     }
 
     /// Sets the ends.
@@ -173,7 +186,7 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>> La
         match self.delay.due() {
             Some(_) => Slopes::default(),
             // In front of the coupling, where `1 + line V` must be positive.
-            None => Slopes { line: -self.steepest, wall: 0.0 },
+            None => Slopes { line: -f64::from_ne_bytes(self.steepest), wall: 0.0 },
         }
     }
 

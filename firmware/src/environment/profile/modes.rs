@@ -91,3 +91,6 @@ const ON: f64 = 42.0 * DEGREE;
 const MAGNET: f64 = 6.0 * DEGREE;
 /// Stiffness in N m/rad of the end stops.
 const STOP: f64 = 15.0;
+
+#[cfg(test)]
+mod tests;

@@ -8,12 +8,18 @@
 
 use core::hint::cold_path;
 
+use super::data::Profile;
 use super::layout::{Layout, SnapPoint};
 use crate::build_error::BuildError;
 use crate::number::Number;
 
 /// The law of a profile's snap points, in whole parts of a cell, so that any number of turns changes nothing.
-pub trait Holding<N: Number>: Clone + core::fmt::Debug {
+pub trait Holding<N: Number>: Clone + core::fmt::Debug + Sized {
+    /// That of a profile, with the place of its first knot.
+    ///
+    /// # Errors
+    /// If a coefficient does not fit the number format, or it does not hold the knob in this way.
+    fn of(profile: &Profile, origin: i32) -> Result<Self, BuildError>;
     /// `torque` plus the torque of the branch that holds the knob, in N m, at a place in parts.
     fn add_to(&self, torque: N, place: i32) -> N;
     /// Ends the tick with the environment at a place: the knob snaps if the place is beyond the snap point.
@@ -31,6 +37,13 @@ pub trait Holding<N: Number>: Clone + core::fmt::Debug {
 pub struct NoSnap;
 
 impl<N: Number> Holding<N> for NoSnap {
+    fn of(profile: &Profile, _: i32) -> Result<Self, BuildError> {
+        match profile.snap {
+            None => Ok(Self),
+            Some(_) => Err(BuildError::Structure),
+        }
+    }
+
     #[inline(always)]
     fn add_to(&self, torque: N, _: i32) -> N {
         torque
@@ -64,12 +77,7 @@ pub struct Snap<N: Number> {
 
 impl<N: Number> Snap<N> {
     /// The law for a table of `knots` knots, the first at the place `origin`.
-    pub(super) fn new(
-        snap: &SnapPoint,
-        layout: &Layout,
-        knots: u32,
-        origin: i32,
-    ) -> Result<Self, BuildError> {
+    fn new(snap: &SnapPoint, layout: &Layout, knots: u32, origin: i32) -> Result<Self, BuildError> {
         let (lowest, highest) = snap.branches(layout);
         if lowest > highest {
             let name = "number of detents between the end stops";
@@ -114,6 +122,11 @@ impl<N: Number> Snap<N> {
 }
 
 impl<N: Number> Holding<N> for Snap<N> {
+    fn of(profile: &Profile, origin: i32) -> Result<Self, BuildError> {
+        let Some(snap) = &profile.snap else { return Err(BuildError::Structure) };
+        Self::new(snap, &profile.layout(), profile.outline().knots, origin)
+    }
+
     #[inline(always)]
     fn add_to(&self, torque: N, place: i32) -> N {
         torque.plus(N::of_parts(place.saturating_sub(self.centre), self.slope))
@@ -151,6 +164,13 @@ pub enum AnySnap<N: Number> {
 }
 
 impl<N: Number> Holding<N> for AnySnap<N> {
+    fn of(profile: &Profile, origin: i32) -> Result<Self, BuildError> {
+        Ok(match profile.snap {
+            None => Self::None(NoSnap),
+            Some(_) => Self::Snap(Snap::of(profile, origin)?),
+        })
+    }
+
     #[inline(always)]
     fn add_to(&self, torque: N, place: i32) -> N {
         match self {

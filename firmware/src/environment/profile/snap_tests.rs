@@ -1,14 +1,11 @@
 use core::f64::consts::TAU;
 
-use fixed::types::I8F24;
-
 use super::tests::TRANSDUCERS;
 use super::*;
 use crate::certificate::{Rejection, certify};
 use crate::coupling::Response;
 use crate::encoder::RawCount;
-use crate::environment::{Discretize, Environment, Law, Matched};
-use crate::number::{Number, Truncated};
+use crate::environment::{Discretize, Law};
 use crate::output_timing::Latched;
 use crate::passivity::poles::UndecidedReason;
 use crate::scene::{Coupling, Latency, Scene};
@@ -23,20 +20,12 @@ fn scene<E>(environment: E) -> Scene<E> {
     Scene { torque_limit: Some(0.5), ..tests::scene(environment) }
 }
 
-fn counts() -> impl Iterator<Item = RawCount> {
-    let angle = |tick: i32| {
-        let tick = f64::from(tick);
-        1.9 * (tick * 3e-3).sin() + 0.3 * (tick * 0.071).sin() + 0.02 * (tick * 0.37).sin()
-    };
-    (0..6000).map(move |tick| RawCount::from((angle(tick) * 61_440.0 / TAU) as i32 as u32))
-}
-
 #[test]
 fn a_detent_holds_the_knob_up_to_its_snap_point() {
-    let profile = SnapProfile::<64, 1>::of(&KNOB).as_any();
+    let profile = Profile::of(&KNOB, 1);
     assert_eq!((profile.torque, profile.count), (0.02, 24.0));
     assert_eq!((profile.outline().rise, profile.outline().fall), (0, 0));
-    let mut law = Discretize::<f64>::law(&profile, &scene(()).context()).unwrap();
+    let mut law = Discretize::<f64>::law(&profile.alone(), &scene(()).context()).unwrap();
     law.rest_at(0.0);
     let pitch = TAU / 24.0;
     let mut at = |pitches: f64| {
@@ -64,36 +53,10 @@ fn a_detent_holds_the_knob_up_to_its_snap_point() {
     }
 }
 
-/// To the bit, in every number format.
-#[test]
-fn data_runs_as_its_type_does() {
-    fn same<N: Number>() {
-        fn servo<E, N: Number>(environment: E) -> Vec<u16>
-        where
-            E: crate::environment::EnvironmentModel + Discretize<N>,
-            Scene<E>: Copy,
-        {
-            let scene = scene(environment);
-            let mut servo = Servo::<E, N>::build(&scene, &TRANSDUCERS).unwrap();
-            counts().map(|count| servo.tick(count).code.get()).collect()
-        }
-        let late = SnapProfile::<64, 1>::of(&KNOB);
-        let codes = servo::<_, N>(late);
-        assert_eq!(codes, servo::<_, N>(late.as_data()));
-        let at_once = SnapProfile::<64, 0>::of(&ENDLESS);
-        assert_eq!(servo::<_, N>(at_once), servo::<_, N>(at_once.as_data()));
-        // Codes on both sides, and snaps between them.
-        assert!(codes.iter().min() < Some(&2030) && codes.iter().max() > Some(&2066));
-    }
-    same::<f32>();
-    same::<I8F24>();
-    same::<Truncated<I8F24>>();
-}
-
 /// After a million turns either way the codes are those of the first turn.
 #[test]
 fn no_turn_moves_a_snap_point() {
-    let certified = scene(SnapProfile::<64, 1>::of(&ENDLESS)).certify().unwrap();
+    let certified = scene(Profile::of(&ENDLESS, 1).alone()).certify().unwrap();
     for sign in [1, -1] {
         let mut near = Servo::<_, f32>::new(&certified, &TRANSDUCERS).unwrap();
         let mut far = Servo::<_, f32>::new(&certified, &TRANSDUCERS).unwrap();
@@ -120,10 +83,10 @@ fn no_turn_moves_a_snap_point() {
 #[test]
 fn the_index_is_that_of_the_steepest_branch() {
     let knob = |torque: f64| {
-        let mut profile = SnapProfile::<64, 1>::of(&KNOB);
-        profile.profile.torque = torque;
+        let mut profile = Profile::of(&KNOB, 1);
+        profile.torque = torque;
         // The end stops, 5 N m/rad steep, add to it.
-        certify(&scene(profile.as_data()))
+        certify(&scene(profile.alone()))
     };
     let limit = (44.0 - 5.0) * 1.1 * TAU / 24.0;
     let found = knob(0.999 * limit).unwrap().bound.unwrap();
@@ -134,12 +97,12 @@ fn the_index_is_that_of_the_steepest_branch() {
     let line = 0.05 * 24.0 / (0.6 * TAU);
     let fall = 0.01 * 4.0 * 8.0 / TAU;
     assert!(fall < line);
-    let at_once = certify(&scene(SnapProfile::<64, 0>::of(&ENDLESS).as_data())).unwrap();
+    let at_once = certify(&scene(Profile::of(&ENDLESS, 0).alone())).unwrap();
     assert_eq!(at_once.bound.unwrap().hi(), 0.0);
     let steep = |torque: f64| {
-        let mut profile = SnapProfile::<64, 0>::of(&KNOB);
-        profile.profile.torque = torque;
-        certify(&scene(profile.as_data()))
+        let mut profile = Profile::of(&KNOB, 0);
+        profile.torque = torque;
+        certify(&scene(profile.alone()))
     };
     assert!(steep(0.999 * limit).is_ok());
     assert!(matches!(steep(1.001 * limit), Err(Rejection::Steep { .. })));
@@ -155,36 +118,30 @@ fn what_no_proof_covers_is_refused_with_a_sentence() {
         );
         assert!(error.to_string().contains("give it a delay of 0 or 1, a coupling"), "{error}");
     };
-    no_proof(&scene(SnapProfile::<64, 2>::of(&KNOB).as_data()));
-    for delayed in
-        [SnapProfile::<64, 0>::of(&KNOB).as_data(), SnapProfile::<64, 1>::of(&KNOB).as_data()]
-    {
+    no_proof(&scene(Profile::of(&KNOB, 2).alone()));
+    for delayed in [Profile::of(&KNOB, 0).alone(), Profile::of(&KNOB, 1).alone()] {
         no_proof(&Scene { coupling: Coupling::Rigid, ..scene(delayed) });
     }
     // Where torques lag, behind the coupling that absorbs it, and behind a spring that is soft enough.
-    let once = SnapProfile::<64, 0>::of(&ENDLESS);
+    let once = Profile::of(&ENDLESS, 0).alone();
     let latency = Latency::delayed(0.5e-3);
-    let matched = Scene {
-        coupling: Coupling::Matched,
-        latency,
-        ..scene(Matched::<_, 0, 0> { environment: once })
-    };
+    let matched = Scene { coupling: Coupling::Matched, latency, ..scene(once) };
     assert!(matched.certify().is_ok(), "{:?}", matched.certify().map(|_| ()));
     let spring = Coupling::Spring { stiffness: 16.0 };
     assert!(Scene { coupling: spring, latency, ..scene(once) }.certify().is_ok());
     // A board renders profiles that are late by a sample, and gives no damping away.
-    let late = scene(SnapProfile::<64, 1>::of(&KNOB)).certified();
+    let late = scene(Profile::of(&KNOB, 1).alone()).certified();
     assert_eq!(late.time::<Latched>().unwrap().margin(), 0.0);
-    assert!(scene(SnapProfile::<64, 1>::of(&ENDLESS)).certified().time::<Latched>().is_ok());
+    assert!(scene(Profile::of(&ENDLESS, 1).alone()).certified().time::<Latched>().is_ok());
 
     let shapes = [
         Shape::Detents { count: 24, torque: 0.05, centre: 0.05 }.snap(1.1),
         Shape::end_stops(0.06, 0.1, 5.0),
     ];
-    let between = AnyProfile::sampled(&shapes, vec![0; 64].leak(), 1).unwrap();
-    let nothing = certify(&scene(Environment::Profile(between))).unwrap_err().to_string();
+    let between = Profile::sampled(&shapes, vec![0; 64].leak(), 1).unwrap();
+    let nothing = certify(&scene(between.alone())).unwrap_err().to_string();
     assert!(nothing.contains("detent with a snap point is between the end stops"), "{nothing}");
-    let law = Discretize::<f32>::law(&between, &scene(()).context());
+    let law = Discretize::<f32>::law(&between.alone(), &scene(()).context());
     assert!(matches!(law, Err(BuildError::NotPositive { .. })));
 }
 
@@ -194,8 +151,8 @@ fn detents_beside_the_centre_of_a_table_that_repeats_are_no_board_s() {
     let beside = |centre: f64| {
         let shapes =
             [Shape::detents(8, 0.01), Shape::Detents { count: 24, torque: 0.05, centre }.snap(1.1)];
-        let profile = AnyProfile::sampled(&shapes, vec![0; 64].leak(), 1).unwrap();
-        scene(Environment::Profile(profile))
+        let profile = Profile::sampled(&shapes, vec![0; 64].leak(), 1).unwrap();
+        scene(profile.alone())
     };
     let half = 0.5 * TAU / 24.0;
     assert!(certify(&beside(0.0)).is_ok() && certify(&beside(half)).is_ok());
@@ -233,8 +190,8 @@ fn shapes_with_a_snap_point_that_make_no_sense_are_named() {
 fn the_encoder_sees_the_hysteresis() {
     let coarse = |snap: f64, counts_per_turn: f64| {
         let shapes = [Shape::detents(24, 0.02).snap(snap)];
-        let profile = AnyProfile::sampled(&shapes, vec![0; 64].leak(), 1).unwrap();
-        let scene = scene(Environment::Profile(profile));
+        let profile = Profile::sampled(&shapes, vec![0; 64].leak(), 1).unwrap();
+        let scene = scene(profile.alone());
         let transducers = Transducers { counts_per_turn, ..TRANSDUCERS };
         Servo::<_, f32>::build(&scene, &transducers).map(|_| ())
     };

@@ -8,8 +8,8 @@ use super::*;
 use crate::certificate::{Rejection, certify, certify_in};
 use crate::coupling::Response;
 use crate::encoder::{CounterWidth, RawCount};
-use crate::environment::{Environment, Law};
-use crate::number::{Format, Truncated};
+use crate::environment::{Discretize, Law};
+use crate::number::{Format, Number, Truncated};
 use crate::scene::{Coupling, Device, Latency, Scene, Timing};
 use crate::servo::{Servo, Transducers};
 
@@ -35,12 +35,19 @@ pub(super) fn scene<E>(environment: E) -> Scene<E> {
     }
 }
 
+/// Detents with another torque.
+fn detents_of(torque: f64, delay: usize) -> Profile {
+    let mut profile = Profile::of(&DETENTS, delay);
+    profile.torque = torque;
+    profile
+}
+
 /// The torque of a law at an angle, undelayed.
-fn torque<N: Number>(profile: &AnyProfile, angle: f64) -> f64 {
+fn torque<N: Number>(profile: &Profile, angle: f64) -> f64 {
     let mut undelayed = *profile;
     undelayed.delay = 0;
-    let law = undelayed.law(&scene(()).context()).unwrap();
-    match Law::<N>::evaluate(&law, N::from_f64(angle).unwrap()) {
+    let law = Discretize::<N>::law(&undelayed.alone(), &scene(()).context()).unwrap();
+    match law.evaluate(N::from_f64(angle).unwrap()) {
         Response::Held(torque) => torque.to_f64(),
         other => panic!("{other:?}"),
     }
@@ -48,7 +55,7 @@ fn torque<N: Number>(profile: &AnyProfile, angle: f64) -> f64 {
 
 #[test]
 fn detents_are_a_wave_of_straight_lines() {
-    let profile = Profile::<64, 1>::of(&DETENTS);
+    let profile = Profile::of(&DETENTS, 1);
     assert_eq!((profile.count, profile.torque, profile.centre), (24.0, 0.02, 0.0));
     let outline = DETENTS.outline();
     assert_eq!((outline.sum, outline.is_odd, outline.wraps), (0, true, true));
@@ -57,7 +64,7 @@ fn detents_are_a_wave_of_straight_lines() {
         [(0.0, 0.0), (0.125, 0.01), (0.25, 0.02), (0.4, 0.008), (0.5, 0.0), (0.75, -0.02)]
     {
         for detent in [-12.0, -3.0, 0.0, 7.0] {
-            let found = torque::<f64>(&profile.as_any(), (detent + part) * pitch);
+            let found = torque::<f64>(&profile, (detent + part) * pitch);
             assert!((found - expected).abs() < 1e-6, "{detent} {part}: {found}");
         }
     }
@@ -65,12 +72,11 @@ fn detents_are_a_wave_of_straight_lines() {
 
 #[test]
 fn end_stops_are_springs_beyond_the_range() {
-    let profile = Profile::<16, 1>::of(&KNOB);
+    let profile = Profile::of(&KNOB, 1);
     assert_eq!(profile.ends, Some(Ends { from: -2.0, to: 2.0, stiffness: 5.0 }));
-    let any = profile.as_any();
-    let at_end = torque::<f64>(&any, 2.0);
-    assert!((torque::<f64>(&any, 2.5) - at_end - 2.5).abs() < 1e-4);
-    assert!((torque::<f64>(&any, -2.5) + at_end + 2.5).abs() < 1e-4);
+    let at_end = torque::<f64>(&profile, 2.0);
+    assert!((torque::<f64>(&profile, 2.5) - at_end - 2.5).abs() < 1e-4);
+    assert!((torque::<f64>(&profile, -2.5) + at_end + 2.5).abs() < 1e-4);
 }
 
 /// Against the shapes' own torques, from which the table was sampled.
@@ -89,7 +95,7 @@ fn every_format_gives_the_sum_of_the_shapes() {
     ];
     for shapes in cases {
         let units = vec![0; 1024].leak();
-        let profile = AnyProfile::sampled(shapes, units, 1).unwrap();
+        let profile = Profile::sampled(shapes, units, 1).unwrap();
         let steepest = f64::from(profile.outline().rise.max(profile.outline().fall)) / 32767.0
             * profile.torque;
         for i in -300..300 {
@@ -164,35 +170,26 @@ const MOTOR: &[(f64, f64)] = &[(0.0, 0.0), (0.1, 0.02), (TAU / 24.0, 0.0)];
 /// The paper's limits: a sample late it is the steepest rise alone, `L < 2 delta / T`.
 #[test]
 fn the_steepest_rise_decides_where_the_torque_is_a_sample_late() {
-    let detents = |torque: f64| {
-        let profile = Profile::<64, 1> { torque, ..Profile::of(&DETENTS) };
-        certify(&scene(profile.as_data()))
-    };
+    let detents = |torque: f64| certify(&scene(detents_of(torque, 1).alone()));
     // 44 N m/rad over a quarter of the pitch.
     let limit = 44.0 * TAU / 24.0 / 4.0;
     let found = detents(0.999 * limit).unwrap().bound.unwrap();
     assert!((found.hi() / 0.022 - 0.999).abs() < 1e-3, "{found:?}");
     assert!(matches!(detents(1.001 * limit), Err(Rejection::Shortage { .. })));
     // Two samples late: L/2 + M.
-    let late = |torque: f64| {
-        let profile = Profile::<64, 2> { torque, ..Profile::of(&DETENTS) };
-        certify(&scene(profile.as_data())).is_ok()
-    };
+    let late = |torque: f64| certify(&scene(detents_of(torque, 2).alone())).is_ok();
     assert!(late(0.999 * limit / 3.0) && !late(1.001 * limit / 3.0));
     // Without a coupling and a sample late, L/2 + M again (equation 48).
     let rigid = |torque: f64| {
-        let profile = Profile::<64, 1> { torque, ..Profile::of(&DETENTS) };
-        certify(&Scene { coupling: Coupling::Rigid, ..scene(profile.as_data()) }).is_ok()
+        let detents = detents_of(torque, 1).alone();
+        certify(&Scene { coupling: Coupling::Rigid, ..scene(detents) }).is_ok()
     };
     assert!(rigid(0.999 * limit / 3.0) && !rigid(1.001 * limit / 3.0));
 }
 
 #[test]
 fn without_delay_tops_between_detents_cost_and_slopes_that_push_back_are_free() {
-    let detents = |torque: f64| {
-        let profile = Profile::<64, 0> { torque, ..Profile::of(&DETENTS) };
-        certify(&scene(profile.as_data()))
-    };
+    let detents = |torque: f64| certify(&scene(detents_of(torque, 0).alone()));
     let at = |slope: f64| slope * TAU / 24.0 / 4.0;
     // The fall of 43.9 in front of the coupling is one of 43.9 / (1 + 43.9 / 44) behind it.
     let bound = detents(at(43.9)).unwrap().bound.unwrap().hi();
@@ -203,17 +200,17 @@ fn without_delay_tops_between_detents_cost_and_slopes_that_push_back_are_free() 
 
 #[test]
 fn motors_are_refused() {
-    let data = |change: fn(&mut AnyProfile)| {
-        let mut profile = Profile::<16, 1>::of(&KNOB).as_any();
+    let data = |change: fn(&mut Profile)| {
+        let mut profile = Profile::of(&KNOB, 1);
         change(&mut profile);
-        scene(Environment::Profile(profile))
+        scene(profile.alone())
     };
     let reason = |scene: &Scene| certify(scene).unwrap_err().sentence().as_str().to_owned();
     let slack = data(|profile| profile.ends = Some(Ends { from: -2.0, to: 2.0, stiffness: 0.0 }));
     assert!(reason(&slack).contains("greater than 0 beyond end stops"), "{}", reason(&slack));
     let units = vec![0; 64].leak();
-    let lopsided = AnyProfile::sampled(&[Shape::Periodic(LOPSIDED)], units, 1).unwrap();
-    let free = scene(Environment::Profile(lopsided));
+    let lopsided = Profile::sampled(&[Shape::Periodic(LOPSIDED)], units, 1).unwrap();
+    let free = scene(lopsided.alone());
     assert!(certify(&free).is_ok(), "{:?}", certify(&free));
     let limited = Scene { torque_limit: Some(0.01), ..free };
     assert!(reason(&limited).contains("as a motor does"));
@@ -221,9 +218,9 @@ fn motors_are_refused() {
     let endless = {
         let units = vec![0; 64].leak();
         let shapes = [Shape::centre(1.0, 0.5), Shape::magnet(0.5, 0.2, 0.01)];
-        let mut profile = AnyProfile::sampled(&shapes, units, 1).unwrap();
+        let mut profile = Profile::sampled(&shapes, units, 1).unwrap();
         (profile.ends, profile.count) = (None, 1.0);
-        scene(Environment::Profile(profile))
+        scene(profile.alone())
     };
     assert!(matches!(certify(&endless), Err(Rejection::Motor { .. })));
 }
@@ -235,10 +232,10 @@ const LOPSIDED: &[(f64, f64)] =
 #[test]
 fn every_mode_of_a_knob_is_certified() {
     for mode in MODES.iter().filter(|mode| !mode.shapes.is_empty()) {
-        let sampled = |knots| AnyProfile::sampled(mode.shapes, vec![0; knots].leak(), 1);
+        let sampled = |knots| Profile::sampled(mode.shapes, vec![0; knots].leak(), 1);
         let profile = [16, 64, 512].into_iter().find_map(|knots| sampled(knots).ok());
         let profile = profile.unwrap_or_else(|| panic!("{}: too few knots", mode.name));
-        let scene = Scene { torque_limit: Some(1.0), ..scene(Environment::Profile(profile)) };
+        let scene = Scene { torque_limit: Some(1.0), ..scene(profile.alone()) };
         for format in [Format::F64, Format::F32, I8F24::FORMAT] {
             let assessment = certify_in(&scene, format)
                 .unwrap_or_else(|error| panic!("{}: {}", mode.name, error.sentence().as_str()));
@@ -251,7 +248,7 @@ fn every_mode_of_a_knob_is_certified() {
 /// A position that is far away is that of a turn, to the bit.
 #[test]
 fn nothing_is_lost_after_any_number_of_turns() {
-    let certified = scene(Profile::<64, 1>::of(&DETENTS)).certify().unwrap();
+    let certified = scene(Profile::of(&DETENTS, 1).alone()).certify().unwrap();
     let mut near = Servo::<_, f32>::new(&certified, &TRANSDUCERS).unwrap();
     let mut far = Servo::<_, f32>::new(&certified, &TRANSDUCERS).unwrap();
     let mut count = 0_u32;
@@ -278,7 +275,7 @@ fn nothing_is_lost_after_any_number_of_turns() {
 /// A damper beside the profile does not see the turn begin anew.
 #[test]
 fn a_turn_that_begins_anew_is_not_felt() {
-    let damped = scene(Profile::<64, 1>::of(&DETENTS).damped(0.001));
+    let damped = scene(Profile::of(&DETENTS, 1).damped(0.001).alone());
     let certified = damped.certify().unwrap();
     let mut servo = Servo::<_, f32>::new(&certified, &TRANSDUCERS).unwrap();
     let torques: Vec<f64> = (0..200_000_u32)
@@ -294,12 +291,7 @@ fn a_turn_that_begins_anew_is_not_felt() {
 }
 
 /// One passive hand on one device, integrated exactly between ticks.
-fn keeps_moving(
-    profile: &AnyProfile,
-    coupling: Option<f64>,
-    damping: f64,
-    hand: (f64, f64),
-) -> bool {
+fn keeps_moving(profile: &Profile, coupling: Option<f64>, damping: f64, hand: (f64, f64)) -> bool {
     let period = 1e-3;
     let (mass, spring) = hand;
     let context = Scene {
@@ -308,7 +300,7 @@ fn keeps_moving(
         ..scene(())
     }
     .context();
-    let mut law = Discretize::<f64>::law(profile, &context).unwrap();
+    let mut law = Discretize::<f64>::law(&profile.alone(), &context).unwrap();
     let (mut x, mut v, mut f) = (0.01, 20.0, 0.0);
     let mut late = 0.0_f64;
     let ticks = 60_000;
@@ -362,7 +354,7 @@ proptest! {
         knots.push((pitch, knots[0].1));
         let shapes = [Shape::Periodic(knots.leak())];
         let units = vec![0; 128].leak();
-        let Ok(profile) = AnyProfile::sampled(&shapes, units, delay) else { return Ok(()) };
+        let Ok(profile) = Profile::sampled(&shapes, units, delay) else { return Ok(()) };
         let at = |damping: f64, coupled: bool| Scene {
             device: Device { inertia: 1e-4, damping, passivity: None },
             coupling: if coupled {
@@ -370,7 +362,7 @@ proptest! {
             } else {
                 Coupling::Rigid
             },
-            ..scene(Environment::Profile(profile))
+            ..scene(profile.alone())
         };
         let (mut fails, mut passes) = (1e-6, 10.0);
         for _ in 0..40 {

@@ -133,15 +133,7 @@ fn check<N: Number>(scene: &Scene) {
 
 /// Environments of every kind, with numbers that no format has exactly.
 fn environments() -> [Environment; 16] {
-    let wall = |damping, filter, delay| Wall {
-        stiffness: 17.3,
-        damping,
-        filter,
-        delay,
-        face: 0.0,
-        one_sided: false,
-    };
-    let filtered = wall(0.0071, Some(0.37), 1);
+    let filtered = Wall::damped(17.3, 0.0071, 1).filtered(0.37);
     let coefficients = |c: &[f64]| Coefficients::new(c).unwrap();
     let rational = |delay, unit_zeros| {
         Environment::Rational(Rational {
@@ -152,19 +144,19 @@ fn environments() -> [Environment; 16] {
         })
     };
     [
-        Environment::DelayedSpring(wall(0.0, None, 1)),
-        Environment::DelayedSpring(wall(0.0, None, 0)),
-        Environment::DamperWall(wall(0.0071, None, 2)),
-        Environment::DamperWall(wall(0.0071, None, 0)),
-        Environment::DamperWall(filtered),
-        Environment::DamperWall(Wall { delay: 0, ..filtered }),
-        Environment::DamperWall(Wall { stiffness: 0.0, ..filtered }),
-        Environment::FreeMode { residual: 0.0013, delay: 0 },
-        Environment::FreeMode { residual: 0.0013, delay: 1 },
-        Environment::FreeMode { residual: 0.0253, delay: 0 },
-        Environment::FreeModeWall { residual: 0.0157, wall: wall(0.0013, None, 1) },
-        Environment::FreeModeWall { residual: 0.0157, wall: filtered },
-        Environment::FreeModeWall { residual: 0.0157, wall: wall(0.0013, None, 0) },
+        Wall::spring(17.3, 1).alone(),
+        Wall::spring(17.3, 0).alone(),
+        Wall::damped(17.3, 0.0071, 2).alone(),
+        Wall::damped(17.3, 0.0071, 0).alone(),
+        filtered.alone(),
+        Wall { delay: 0, ..filtered }.alone(),
+        Wall { stiffness: 0.0, ..filtered }.alone(),
+        Canceller { residual: 0.0013, delay: 0 }.alone(),
+        Canceller { residual: 0.0013, delay: 1 }.alone(),
+        Canceller { residual: 0.0253, delay: 0 }.alone(),
+        free_mode_wall(0.0157, Wall::damped(17.3, 0.0013, 1)),
+        free_mode_wall(0.0157, filtered),
+        free_mode_wall(0.0157, Wall::damped(17.3, 0.0013, 0)),
         rational(0, 0),
         rational(2, 1),
         rational(0, 1),

@@ -44,7 +44,7 @@ fn hand() -> impl Iterator<Item = i32> {
     })
 }
 
-fn torques<E: Discretize<N>, N: Number>(mut servo: Servo<E, N>) -> Vec<f64> {
+fn torques<E: Rendering<N>, N: Number>(mut servo: Servo<E, N>) -> Vec<f64> {
     let tick = |count: i32| {
         servo.tick(RawCount::from(count));
         servo.torque_nm()
@@ -59,9 +59,16 @@ fn wall() -> impl Strategy<Value = Wall> {
             // The bound K T (n - 1/2) + B of the certificate, below delta = 0.022.
             let index = 0.022 * size;
             let stiffness = index * (1.0 - share) / (1e-3 * (delay as f64 - 0.5).abs());
-            Wall { stiffness, damping: index * share, filter, delay, face, one_sided }
+            let damper = Some(Damper { damping: index * share, filter });
+            let side = if one_sided { Side::Face(face) } else { Side::Displaced(face) };
+            Wall { stiffness, damper, side, delay }
         },
     )
+}
+
+/// A wall with an undelayed canceller.
+fn free_mode_wall(residual: f64, wall: Wall) -> Environment {
+    Parts { canceller: Some(Canceller::to(residual)), wall: Some(wall), ..Parts::NONE }.sum()
 }
 
 fn rational() -> impl Strategy<Value = Rational> {
@@ -91,12 +98,11 @@ fn rational() -> impl Strategy<Value = Rational> {
 fn environment() -> impl Strategy<Value = Environment> {
     let residual = 0.002..0.022_f64;
     prop_oneof![
-        wall().prop_map(|w| Environment::DelayedSpring(Wall { damping: 0.0, filter: None, ..w })),
-        wall().prop_map(Environment::DamperWall),
+        wall().prop_map(|wall| Wall { damper: None, ..wall }.alone()),
+        wall().prop_map(Wall::alone),
         (residual.clone(), 0..=4_usize)
-            .prop_map(|(residual, delay)| Environment::FreeMode { residual, delay }),
-        (residual, wall())
-            .prop_map(|(residual, wall)| Environment::FreeModeWall { residual, wall }),
+            .prop_map(|(residual, delay)| Canceller { residual, delay }.alone()),
+        (residual, wall()).prop_map(|(residual, wall)| free_mode_wall(residual, wall)),
         rational().prop_map(Environment::Rational),
     ]
 }
@@ -139,7 +145,7 @@ fn free_mode_is_equation_23() {
     let numerator = [-2.0 * b * be, 2.0 * b * be];
     let denominator = [period * (3.0 * b - residual), -period * (b - residual)];
     let response = impulse_response(&numerator, &denominator, 3000);
-    let scene = scene(FreeMode::<0> { residual });
+    let scene = scene(Canceller { residual, delay: 0 }.alone());
     let certified = scene.certify().unwrap();
     let mut servo: Servo<_, f64> = Servo::new(&certified, &TRANSDUCERS).unwrap();
     let mut positions = Vec::new();
@@ -152,7 +158,7 @@ fn free_mode_is_equation_23() {
 }
 
 /// Largest torque error against f64 in N m.
-fn error<E: Discretize<N> + Discretize<f64>, N: Number>(scene: &Scene<E>) -> f64 {
+fn error<E: Rendering<N> + Rendering<f64>, N: Number>(scene: &Scene<E>) -> f64 {
     let exact = torques(Servo::<E, f64>::build(scene, &TRANSDUCERS).unwrap());
     let rounded = torques(Servo::<E, N>::build(scene, &TRANSDUCERS).unwrap());
     exact.iter().zip(&rounded).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
@@ -162,8 +168,8 @@ fn error<E: Discretize<N> + Discretize<f64>, N: Number>(scene: &Scene<E>) -> f64
 fn formats_are_as_exact_as_their_step_times_the_loops_gain() {
     fn bounded<E>(scene: Scene<E>, gain: f64)
     where
-        E: Discretize<f32> + Discretize<f64>,
-        E: Discretize<FixedI32<U16>> + Discretize<FixedI32<U20>>,
+        E: Rendering<f32> + Rendering<f64>,
+        E: Rendering<FixedI32<U16>> + Rendering<FixedI32<U20>>,
     {
         // A step of f32 at 0.2 rad, and half a step of the fixed formats a rounding: angle,
         // compliance and law, so three halves in all; `gain` is the l1 norm of the loop's
@@ -172,56 +178,8 @@ fn formats_are_as_exact_as_their_step_times_the_loops_gain() {
         assert!(error::<_, FixedI32<U16>>(&scene) <= 1.5 * 2_f64.powi(-16) * gain);
         assert!(error::<_, FixedI32<U20>>(&scene) <= 1.5 * 2_f64.powi(-20) * gain);
     }
-    bounded(scene(DelayedSpring::<1> { stiffness: 22.0 }), 44.0);
-    bounded(scene(DamperWall::<1> { stiffness: 22.0, damping: 0.01 }), 924.0);
-    bounded(
-        scene(OneSided { face: 0.0, wall: DamperWall::<1> { stiffness: 22.0, damping: 0.01 } }),
-        924.0,
-    );
-    bounded(scene(FreeMode::<0> { residual: 0.001 }), 44.0);
-}
-
-/// Typed and as data, in every format.
-macro_rules! same_bits {
-    ($($environment:expr),* $(,)?) => {$({
-        let typed = scene($environment);
-        let data = scene(typed.environment.as_data());
-        same_bits!(@ typed, data, f32);
-        same_bits!(@ typed, data, f64);
-        same_bits!(@ typed, data, FixedI32<U16>);
-    })*};
-    (@ $typed:ident, $data:ident, $number:ty) => {
-        let bits = |torques: Vec<f64>| torques.into_iter().map(f64::to_bits).collect::<Vec<_>>();
-        let typed = bits(torques(Servo::<_, $number>::build(&$typed, &TRANSDUCERS).unwrap()));
-        let data = bits(torques(Servo::<_, $number>::build(&$data, &TRANSDUCERS).unwrap()));
-        assert!(typed.iter().any(|bits| bits << 1 != 0), "{:?} gives no torque", $typed);
-        assert_eq!(typed, data, "{:?}", $typed);
-    };
-}
-
-#[test]
-fn a_typed_scene_and_the_same_as_data_give_the_same_bits() {
-    let damper = DamperWall::<1> { stiffness: 12.0, damping: 0.005 };
-    let undelayed = DamperWall::<0> { stiffness: 20.0, damping: 0.01 };
-    let filtered = FilteredWall::<2> { stiffness: 5.0, damping: 0.01, filter: 0.8 };
-    same_bits![
-        DelayedSpring::<1> { stiffness: 22.0 },
-        DelayedSpring::<0> { stiffness: 22.0 },
-        DelayedSpring::<8> { stiffness: 2.0 },
-        damper,
-        undelayed,
-        filtered,
-        Placed { face: 0.05, wall: damper },
-        Placed { face: -0.05, wall: undelayed },
-        Placed { face: 0.02, wall: filtered },
-        OneSided { face: 0.05, wall: damper },
-        OneSided { face: -0.05, wall: undelayed },
-        OneSided { face: 0.02, wall: filtered },
-        OneSided { face: 0.02, wall: DelayedSpring::<3> { stiffness: 4.0 } },
-        FreeMode::<0> { residual: 0.001 },
-        FreeMode::<1> { residual: 0.015 },
-        FreeModeWall { residual: 0.015, wall: damper },
-        FreeModeWall { residual: 0.015, wall: OneSided { face: 0.05, wall: damper } },
-        FreeModeWall { residual: 0.015, wall: OneSided { face: 0.05, wall: undelayed } },
-    ];
+    bounded(scene(Wall::spring(22.0, 1).alone()), 44.0);
+    bounded(scene(Wall::damped(22.0, 0.01, 1).alone()), 924.0);
+    bounded(scene(Wall::damped(22.0, 0.01, 1).behind(0.0).alone()), 924.0);
+    bounded(scene(Canceller { residual: 0.001, delay: 0 }.alone()), 44.0);
 }

@@ -1,7 +1,7 @@
 //! The same loops, computed another way: the environment as the sum over its whole past, the
 //! algebraic loop by bisection. Slow, in f64, and without one formula in common with the laws.
 
-use crate::environment::{Environment, Rational, Wall};
+use crate::environment::{Environment, Parts, Rational, Wall};
 use crate::scene::{Coupling, Scene};
 
 /// First `length` samples of the impulse response of a rational function, by long division of
@@ -45,9 +45,9 @@ impl Sum {
                     .zip(filter)
                     .map(|(pair, weight)| weight * (pair[1] - pair[0]) / period)
                     .sum();
-                let depth = now - wall.face;
-                let torque = wall.stiffness * depth + wall.damping * velocity;
-                match wall.one_sided {
+                let depth = now - wall.face();
+                let torque = wall.stiffness * depth + wall.damping() * velocity;
+                match wall.is_one_sided() {
                     false => torque,
                     true if depth > 0.0 => torque.max(0.0),
                     true => 0.0,
@@ -91,7 +91,7 @@ impl Reference {
         };
         let wall = |wall: Wall| {
             let filter = (0..length)
-                .map(|i| match wall.filter {
+                .map(|i| match wall.filter() {
                     Some(pole) => (1.0 - pole) * pole.powi(i as i32),
                     None => f64::from(u8::from(i == 0)),
                 })
@@ -109,14 +109,11 @@ impl Reference {
             Part { sum: Sum::Linear(response), delay, given: Vec::new() }
         };
         let parts = match scene.environment {
-            Environment::DelayedSpring(data) | Environment::DamperWall(data) => vec![wall(data)],
-            Environment::FreeMode { residual, delay } => vec![free(residual, delay)],
-            Environment::FreeModeWall { residual, wall: data } => {
-                vec![free(residual, 0), wall(data)]
+            Environment::Parts(Parts { canceller, wall: data, profile: None }) => {
+                let free = canceller.map(|canceller| free(canceller.residual, canceller.delay));
+                free.into_iter().chain(data.map(wall)).collect()
             }
-            Environment::Stated(_) | Environment::Profile(_) | Environment::Composed(_) => {
-                panic!("no law is known of it here")
-            }
+            Environment::Parts(_) | Environment::Stated(_) => panic!("no law is known of it here"),
             Environment::Rational(data) => {
                 let sum = Sum::Linear(rational_response(&data, length));
                 vec![Part { sum, delay: data.delay, given: Vec::new() }]

@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn the_limit_and_its_reason_belong_together() {
-    let spring = scene(DelayedSpring::<1> { stiffness: 22.0 });
+    let spring = scene(Wall::spring(22.0, 1).alone());
     for (torque_limit, reason, far) in [
         (None, LimitReason::DacRange, 1791),
         (Some(1.0), LimitReason::Torque, 1791),
@@ -38,7 +38,7 @@ fn an_encoder_and_a_dac_in_one_call() {
         }
     }
     let narrow = Transducers { counter: CounterWidth::Bits16, ..TRANSDUCERS };
-    let certified = scene(DelayedSpring::<1> { stiffness: 22.0 }).certified();
+    let certified = scene(Wall::spring(22.0, 1).alone()).certified();
     let mut servo: Servo<_, f32> = Servo::new(&certified, &narrow).unwrap();
     let (mut counter, mut held) = (Counter(0), Held(None));
     for ticks in 1..=1000 {
@@ -52,9 +52,9 @@ fn an_encoder_and_a_dac_in_one_call() {
 
 #[test]
 fn what_cannot_be_built_is_refused_in_a_sentence() {
-    let spring = scene(DelayedSpring::<1> { stiffness: 22.0 });
+    let spring = scene(Wall::spring(22.0, 1).alone());
     let build = |scene: &Scene<_>, transducers: Transducers| {
-        Servo::<DelayedSpring<1>, f32>::build(scene, &transducers).unwrap_err().to_string()
+        Servo::<_, f32>::build(scene, &transducers).unwrap_err().to_string()
     };
     assert_eq!(
         build(&spring, Transducers { counts_per_turn: 0.0, ..TRANSDUCERS }),
@@ -69,7 +69,7 @@ fn what_cannot_be_built_is_refused_in_a_sentence() {
         "the torque limit of 1.5 N m is above the DAC's full scale of 1 N m: lower it to \
          that, or scale the amplifier up"
     );
-    let stiff = scene(DelayedSpring::<1> { stiffness: 1e300 });
+    let stiff = scene(Wall::spring(1e300, 1).alone());
     assert_eq!(
         build(&stiff, TRANSDUCERS),
         "the wall stiffness: 1e300 does not fit f32: its magnitude may be at most 1.099511628e12"
@@ -79,7 +79,10 @@ fn what_cannot_be_built_is_refused_in_a_sentence() {
         Servo::<_, FixedI32<U16>>::build(&spring, &weak).unwrap_err().to_string(),
         "the torque limit in the servo's number format must be positive and finite, and is 0"
     );
-    let of = |data: Rational| Servo::<_, f32>::build(&scene(data), &TRANSDUCERS).unwrap_err();
+    let of = |data: Rational| {
+        let scene = scene(Environment::Rational(data));
+        Servo::<_, f32>::build(&scene, &TRANSDUCERS).unwrap_err()
+    };
     let coefficients = |c: &[f64]| Coefficients::new(c).unwrap();
     let data = Rational {
         numerator: coefficients(&[1.0, 0.0]),
@@ -101,13 +104,10 @@ fn number() -> impl Strategy<Value = f64> {
 fn any_wall() -> impl Strategy<Value = Wall> {
     let filter = proptest::option::of(number());
     (number(), number(), filter, 0..12_usize, number(), any::<bool>()).prop_map(
-        |(stiffness, damping, filter, delay, face, one_sided)| Wall {
-            stiffness,
-            damping,
-            filter,
-            delay,
-            face,
-            one_sided,
+        |(stiffness, damping, filter, delay, face, one_sided)| {
+            let damper = Some(Damper { damping, filter });
+            let side = if one_sided { Side::Face(face) } else { Side::Displaced(face) };
+            Wall { stiffness, damper, side, delay }
         },
     )
 }
@@ -123,12 +123,10 @@ fn any_environment() -> impl Strategy<Value = Environment> {
                 Environment::Rational(Rational { numerator, denominator, delay, unit_zeros })
             });
     prop_oneof![
-        any_wall().prop_map(Environment::DelayedSpring),
-        any_wall().prop_map(Environment::DamperWall),
-        (number(), 0..12_usize)
-            .prop_map(|(residual, delay)| Environment::FreeMode { residual, delay }),
-        (number(), any_wall())
-            .prop_map(|(residual, wall)| Environment::FreeModeWall { residual, wall }),
+        any_wall().prop_map(|wall| Wall { damper: None, ..wall }.alone()),
+        any_wall().prop_map(Wall::alone),
+        (number(), 0..12_usize).prop_map(|(residual, delay)| Canceller { residual, delay }.alone()),
+        (number(), any_wall()).prop_map(|(residual, wall)| free_mode_wall(residual, wall)),
         rational,
     ]
 }
@@ -136,7 +134,7 @@ fn any_environment() -> impl Strategy<Value = Environment> {
 /// Every servo that builds: no panic, and torque within its limit.
 fn endures<N: Number>(scene: &Scene<Environment>, transducers: &Transducers, raw: &[u32])
 where
-    Environment: Discretize<N>,
+    Environment: Rendering<N>,
 {
     let Ok(mut servo) = Servo::<Environment, N>::build(scene, transducers) else { return };
     let largest = scene.torque_limit.unwrap_or(transducers.full_scale_torque);

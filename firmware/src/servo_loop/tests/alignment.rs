@@ -6,7 +6,7 @@ use crate::current::PowerFault;
 use crate::torque_output::OutputEvent;
 
 /// A board whose motor is being aligned, for so many ticks.
-fn aligning(ticks: u32) -> Bench<Spring, f32, Latched> {
+fn aligning(ticks: u32) -> Bench<Environment, f32, Latched> {
     let mut bench = Bench::boot(&SPRING, Board { alignment: Some(ticks), ..Board::new() }).unwrap();
     bench.requests.align();
     bench.stand(0, 1);
@@ -70,7 +70,7 @@ fn is_refused_by_an_armed_servo_and_by_a_board_without_such_a_motor() {
     bench.stand(500, 1);
     assert_eq!(bench.notices(), [Notice::NotAligning(None)]);
     assert_eq!(bench.servo_loop.state(), State::Running);
-    let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, Board::new()).unwrap();
+    let mut bench: Bench<Environment, f32, Latched> = Bench::boot(&SPRING, Board::new()).unwrap();
     bench.requests.align();
     bench.stand(0, 1);
     assert_eq!(bench.notices(), [Notice::NotAligning(Some(NO_MOTOR))]);

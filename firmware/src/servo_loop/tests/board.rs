@@ -154,7 +154,7 @@ struct Seen {
 }
 
 /// A board with its cycle, and both ends of its connection.
-pub struct Bench<E: Discretize<N> + 'static, N: Number, M: 'static> {
+pub struct Bench<E: Rendering<N> + 'static, N: Number, M: 'static> {
     pub board: Board,
     pub servo_loop: ServoLoop<E, N, M>,
     pub inbox: Inbox<'static, PreparedServo<E, N, M>>,

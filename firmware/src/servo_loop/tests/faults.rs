@@ -6,7 +6,7 @@ use crate::reset::ResetCause;
 use crate::torque_output::OutputEvent;
 
 /// The servo has just been stopped by this fault: no torque, amplifier off, a record of it.
-fn assert_stopped(bench: &mut Bench<Spring, f32, Latched>, fault: Fault) {
+fn assert_stopped(bench: &mut Bench<Environment, f32, Latched>, fault: Fault) {
     assert_eq!(bench.servo_loop.state(), State::Faulted);
     assert_eq!(bench.servo_loop.fault(), Some(fault));
     assert!(!bench.board.is_on());
@@ -22,7 +22,7 @@ fn assert_stopped(bench: &mut Bench<Spring, f32, Latched>, fault: Fault) {
 }
 
 /// Arms again, which works: the clamp opens from nothing.
-fn assert_armed_again(bench: &mut Bench<Spring, f32, Latched>) {
+fn assert_armed_again(bench: &mut Bench<Environment, f32, Latched>) {
     bench.requests.arm();
     bench.stand(bench.board.count, 102);
     assert_eq!(bench.notices(), [Notice::Armed]);
@@ -68,7 +68,7 @@ fn a_bridge_that_took_the_torque_away() {
 /// As a supply that is too low before the gates are ever on.
 #[test]
 fn a_bridge_that_cannot_start_is_not_armed_until_it_can() {
-    let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, Board::new()).unwrap();
+    let mut bench: Bench<Environment, f32, Latched> = Bench::boot(&SPRING, Board::new()).unwrap();
     bench.board.output_event = Some(OutputEvent::Fault(OVER_CURRENT));
     bench.stand(0, 1);
     assert_eq!(bench.notices(), []);
@@ -81,10 +81,10 @@ fn a_bridge_that_cannot_start_is_not_armed_until_it_can() {
 }
 
 /// A spring that stands two missed updates in a row.
-fn with_misses() -> Program<Spring> {
+fn with_misses() -> Program<Environment> {
     let mut program = SPRING;
     program.scene.timing.worst_period = Some(3e-3);
-    program.scene.environment.stiffness = 2.5;
+    program.scene.environment.wall_mut().unwrap().stiffness = 2.5;
     program.scene.coupling = Coupling::Spring { stiffness: 14.0 };
     program
 }
@@ -199,7 +199,7 @@ fn a_torque_that_is_not_a_number() {
 fn a_fault_before_the_servo_is_armed_keeps_it_from_being_armed() {
     let mut board = Board::new();
     board.reset = ResetCause::IndependentWatchdog;
-    let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
+    let mut bench: Bench<Environment, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
     bench.board.passed = 2;
     bench.requests.arm();
     bench.tick(0);
@@ -219,7 +219,7 @@ fn what_was_left_from_before_a_reset_is_reported_and_must_be_cleared() {
         (FaultRecord::NOTHING, by_watchdog, watchdog),
     ] {
         let board = Board { stored, reset, ..Board::new() };
-        let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
+        let mut bench: Bench<Environment, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
         assert_eq!(bench.previous_fault, Some(previous_fault));
         bench.stand(300, 200);
         assert!(!bench.board.is_on() && bench.board.codes().iter().all(|code| *code == 2048));
@@ -230,7 +230,7 @@ fn what_was_left_from_before_a_reset_is_reported_and_must_be_cleared() {
     }
 }
 
-fn with_link(link: LinkPolicy) -> Program<Spring> {
+fn with_link(link: LinkPolicy) -> Program<Environment> {
     Program { options: Options { link, link_timeout: 0.2, ..Options::DEFAULT }, ..SPRING }
 }
 

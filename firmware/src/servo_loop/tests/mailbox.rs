@@ -49,7 +49,7 @@ fn disarming_overrules_what_was_requested_in_the_same_tick() {
 #[test]
 fn a_set_is_swapped_while_a_motor_is_aligned() {
     let board = Board { alignment: Some(1000), ..Board::new() };
-    let mut bench = Bench::<Spring, f32, Latched>::boot(&SPRING, board).unwrap();
+    let mut bench = Bench::<Environment, f32, Latched>::boot(&SPRING, board).unwrap();
     bench.requests.align();
     bench.stand(500, 10);
     let number = bench.requests.submit(swap::set(&SPRING, &[])).unwrap();

@@ -15,14 +15,11 @@ use board::{Bench, Board, Event, Notice, PERIOD};
 use super::*;
 use crate::boot::Program;
 use crate::encoder::CounterWidth;
-use crate::environment::DelayedSpring;
+use crate::environment::{Environment, Wall};
 use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
 use crate::scene::{Coupling, Device, Latency, Scene, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
-
-/// A spring that pulls to both sides, so that any deflection shows.
-type Spring = DelayedSpring<1>;
 
 /// The paper's device and coupling; ramps of a hundred ticks.
 const fn program<E: Copy>(environment: E) -> Program<E> {
@@ -46,15 +43,16 @@ const fn program<E: Copy>(environment: E) -> Program<E> {
     }
 }
 
-const SPRING: Program<Spring> = program(DelayedSpring { stiffness: 11.0 });
+/// A spring that pulls to both sides, so that any deflection shows.
+const SPRING: Program<Environment> = program(Wall::spring(11.0, 1).alone());
 
 /// A bench that was asked to be armed.
-fn bench(program: &Program<Spring>) -> Bench<Spring, f32, Latched> {
+fn bench(program: &Program<Environment>) -> Bench<Environment, f32, Latched> {
     Bench::armed(program, Board::new()).unwrap()
 }
 
 /// A bench whose servo runs, with the device at this count.
-fn running(program: &Program<Spring>, count: i32) -> Bench<Spring, f32, Latched> {
+fn running(program: &Program<Environment>, count: i32) -> Bench<Environment, f32, Latched> {
     let mut bench = bench(program);
     bench.stand(count, 102);
     assert_eq!(bench.servo_loop.state(), State::Running);
@@ -87,7 +85,7 @@ fn boots_in_an_order_in_which_nothing_can_move() {
 fn the_clamp_stays_shut_until_the_output_has_started_up() {
     let mut board = Board::new();
     board.start_up_ticks = 12;
-    let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
+    let mut bench: Bench<Environment, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
     bench.requests.arm();
     for tick in 0..=12 {
         let frame = bench.tick(500);
@@ -102,9 +100,9 @@ fn the_clamp_stays_shut_until_the_output_has_started_up() {
 #[test]
 fn a_scene_that_fails_the_self_check_leaves_the_amplifier_off() {
     let mut program = SPRING;
-    program.scene.environment.stiffness = 45.0;
+    program.scene.environment.wall_mut().unwrap().stiffness = 45.0;
     let mut board = Board::new();
-    let mut mailbox = Mailbox::<PreparedServo<Spring, f32, Latched>>::new();
+    let mut mailbox = Mailbox::<PreparedServo<Environment, f32, Latched>>::new();
     let (requests, _inbox) = mailbox.split();
     let result = crate::boot::boot(&program, &mut board, &requests);
     let error = result.map(|_| ()).unwrap_err();
@@ -117,7 +115,7 @@ fn a_scene_that_fails_the_self_check_leaves_the_amplifier_off() {
 fn no_reset_arms_a_servo_that_nobody_has_asked_to_arm() {
     for reset in ResetCause::ALL {
         let board = Board { reset, ..Board::new() };
-        let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
+        let mut bench: Bench<Environment, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
         bench.stand(900, 300);
         assert_eq!(bench.servo_loop.state(), State::Disarmed, "{reset:?}");
         assert!(!bench.board.is_on(), "{reset:?}");
@@ -135,7 +133,7 @@ fn a_program_that_says_so_is_armed_at_power_on_and_after_no_other_reset() {
     let program = Program { options: OPTIONS, ..SPRING };
     for reset in ResetCause::ALL {
         let board = Board { reset, ..Board::new() };
-        let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&program, board).unwrap();
+        let mut bench: Bench<Environment, f32, Latched> = Bench::boot(&program, board).unwrap();
         let arms = reset == ResetCause::PowerOn;
         let because = arms.then_some(Reason::new("nobody can reach it"));
         assert_eq!(bench.arms_because, because, "{reset:?}");
@@ -183,7 +181,7 @@ fn a_fault_that_was_kept_is_armed_at_no_power_on() {
     let options = Options::DEFAULT.armed_at_power_on("nobody can reach it");
     let program = Program { options, ..SPRING };
     let board = Board { stored, ..Board::new() };
-    let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&program, board).unwrap();
+    let mut bench: Bench<Environment, f32, Latched> = Bench::boot(&program, board).unwrap();
     bench.stand(0, 300);
     assert!(!bench.board.is_on());
     assert_eq!(bench.status().fault, Some(Fault::ClockLost));

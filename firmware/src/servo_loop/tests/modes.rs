@@ -14,9 +14,9 @@ fn hand() -> impl Iterator<Item = i32> {
 /// Codes that are written while the hand moves, from the first tick on.
 fn codes<N: Number, M: OutputMode>() -> Vec<i32>
 where
-    Spring: Tunable<N> + SupportsTiming<M>,
+    Environment: Tunable<N> + SupportsTiming<M>,
 {
-    let mut bench: Bench<Spring, N, M> = Bench::armed(&SPRING, Board::new()).unwrap();
+    let mut bench: Bench<Environment, N, M> = Bench::armed(&SPRING, Board::new()).unwrap();
     hand().for_each(|count| {
         bench.tick(count);
     });
@@ -75,6 +75,6 @@ fn injected_damping_is_felt_only_while_there_is_a_deficit() {
     }
     assert!(differed > 100, "{differed}");
     program.rendering.injection = Some(0.02);
-    let refused = Bench::<Spring, f32, Latched>::boot(&program, Board::new()).map(|_| ());
+    let refused = Bench::<Environment, f32, Latched>::boot(&program, Board::new()).map(|_| ());
     assert_eq!(refused.err(), Some(Step::Servo));
 }

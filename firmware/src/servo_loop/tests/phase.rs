@@ -1,27 +1,25 @@
 //! Torques that are put out at a phase of their own period: a tick's deadline, and what a late one leaves.
 
 use super::*;
-use crate::environment::{DamperWall, Matched};
 use crate::scene::Latency as Between;
 use crate::servo::AtPhase;
 
 /// Half a period: a board here takes 300 of 1000 timer counts for a tick.
 type Half = AtPhase<500_000>;
-type Wall = Matched<DamperWall<0>, 0, 0>;
 
 /// Timer counts up to the phase.
 const DEADLINE: u32 = PERIOD / 2;
 /// Timer counts after which a count is read too late: two per cent of a period.
 const READ: u32 = 20;
 
-const WALL: Program<Wall> = {
-    let wall = program(Matched { environment: DamperWall { stiffness: 5.0, damping: 0.001 } });
+const WALL: Program<Environment> = {
+    let wall = program(Wall::damped(5.0, 0.001, 0).alone());
     let latency = Between { output_jitter: 2e-5, ..Between::delayed(Half::DELAY) };
     Program { scene: Scene { coupling: Coupling::Matched, latency, ..wall.scene }, ..wall }
 };
 
-fn running(count: i32) -> Bench<Wall, f32, Half> {
-    let mut bench: Bench<Wall, f32, Half> = Bench::armed(&WALL, Board::new()).unwrap();
+fn running(count: i32) -> Bench<Environment, f32, Half> {
+    let mut bench: Bench<Environment, f32, Half> = Bench::armed(&WALL, Board::new()).unwrap();
     bench.stand(count, 102);
     assert_eq!(bench.servo_loop.state(), State::Running);
     bench.notices();
@@ -30,7 +28,7 @@ fn running(count: i32) -> Bench<Wall, f32, Half> {
 }
 
 /// Stopped by this fault in the last tick, and nothing but mid-scale is left to be put out.
-fn assert_stopped(bench: &mut Bench<Wall, f32, Half>, fault: Fault) {
+fn assert_stopped(bench: &mut Bench<Environment, f32, Half>, fault: Fault) {
     assert_eq!((bench.servo_loop.state(), bench.servo_loop.fault()), (State::Faulted, Some(fault)));
     assert!(!bench.board.is_on());
     assert_eq!(bench.board.codes().last(), Some(&2048));
@@ -105,7 +103,7 @@ fn no_update_may_be_missed() {
 /// The motor has the code of the tick before for half of each period, and then the tick's own.
 #[test]
 fn the_energy_is_that_of_both_codes_of_a_period() {
-    let mut bench: Bench<Wall, f32, Half> = Bench::armed(&WALL, Board::new()).unwrap();
+    let mut bench: Bench<Environment, f32, Half> = Bench::armed(&WALL, Board::new()).unwrap();
     let (mut twice, mut last) = (0_i64, 0);
     let hand = (0..2000).map(|k: i32| (500.0 * (f64::from(k) * 0.02).sin()) as i32);
     for (k, count) in hand.enumerate() {

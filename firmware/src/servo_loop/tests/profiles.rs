@@ -2,15 +2,19 @@
 
 use super::swap::{largest_step, set};
 use super::*;
-use crate::certificate::Parameter;
-use crate::environment::{KNOB_MODES, Knots, Profile, ProfileModes, Shape};
+use crate::certificate::{Certified, Parameter};
+use crate::environment::{KNOB_MODES, Knots, Profile, Shape};
+use crate::scene_type::Typed;
 use crate::tuning;
 
 static DETENTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.05)]);
 
 /// With a torque limit near their torque, so that a step of the fade is small beside it.
-const KNOB: Program<Profile<16, 1>> = limited(program(Profile::of(&DETENTS)), 0.1);
-const MODES: Program<ProfileModes<1>> = limited(program(ProfileModes::of(&KNOB_MODES)), 0.2);
+const KNOB: Program<Environment> = limited(program(Profile::of(&DETENTS, 1).alone()), 0.1);
+const CERTIFIED: Certified<Scene> =
+    limited(program(Profile::of_modes(&KNOB_MODES, 1).alone()), 0.2).scene.certified();
+crate::scene_type!(KnobModes: CERTIFIED);
+const MODES: Program<Typed<KnobModes>> = limited(program(Typed::<KnobModes>::ENVIRONMENT), 0.2);
 
 const fn limited<E: Copy>(mut program: Program<E>, torque: f64) -> Program<E> {
     program.scene.torque_limit = Some(torque);

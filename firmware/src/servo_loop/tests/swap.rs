@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::certificate::Parameter;
-use crate::environment::{DamperWall, FilteredWall, FreeMode, OneSided};
+use crate::environment::Canceller;
 use crate::servo::SupportsTiming;
 use crate::tuning::{self, Tunable};
 
@@ -27,12 +27,9 @@ fn hand() -> impl Iterator<Item = i32> {
 
 /// Swaps sets while the hand moves, at moments that fall anywhere in the ramps, and sees to it
 /// that no code is further from the last one than a step of a swap's ramp and the scene's own change.
-fn swaps_without_a_step<E>(environment: E, changes: [&[(Parameter, f64)]; 2], own: i32)
-where
-    E: Tunable<f32> + SupportsTiming<Latched>,
-{
-    let program = program(environment);
-    let mut bench: Bench<E, f32, Latched> = Bench::armed(&program, Board::new()).unwrap();
+fn swaps_without_a_step(wall: Wall, changes: [&[(Parameter, f64)]; 2], own: i32) {
+    let program = program(wall.alone());
+    let mut bench: Bench<_, f32, Latched> = Bench::armed(&program, Board::new()).unwrap();
     let mut applied = 0;
     for (k, count) in hand().take(20_000).enumerate() {
         if k % 397 == 0 {
@@ -58,19 +55,19 @@ where
 #[test]
 fn no_swap_makes_a_step() {
     use Parameter::{Damping, Face, Filter, Residual, Stiffness, TorqueLimit};
-    let spring = DelayedSpring::<1> { stiffness: 11.0 };
+    let spring = Wall::spring(11.0, 1);
     swaps_without_a_step(spring, [&[(Stiffness, 3.0)], &[(Stiffness, 21.0)]], 8);
-    let wall = DamperWall::<2> { stiffness: 6.0, damping: 0.002 };
+    let wall = Wall::damped(6.0, 0.002, 2);
     swaps_without_a_step(
         wall,
         [&[(Stiffness, 2.0), (TorqueLimit, 0.3)], &[(Stiffness, 9.0), (Damping, 0.004)]],
         8,
     );
-    let faced = OneSided { face: 0.02, wall: DamperWall::<1> { stiffness: 9.0, damping: 0.002 } };
+    let faced = Wall::damped(9.0, 0.002, 1).behind(0.02);
     swaps_without_a_step(faced, [&[(Face, -0.05)], &[(Face, 0.04), (Stiffness, 19.0)]], 8);
-    let filtered = FilteredWall::<8> { stiffness: 1.0, damping: 0.004, filter: 0.8 };
+    let filtered = Wall::damped(1.0, 0.004, 8).filtered(0.8);
     swaps_without_a_step(filtered, [&[(Filter, 0.2)], &[(Stiffness, 2.0)]], 8);
-    let free = FreeMode::<1> { residual: 0.015 };
+    let free = Canceller { residual: 0.015, delay: 1 }.alone();
     let scene = program(free);
     assert!(
         tuning::prepare::<_, f32, Latched>(
@@ -103,7 +100,7 @@ fn a_set_is_the_one_that_was_built_and_runs_as_one_that_always_ran() {
 /// A velocity filter that takes a hundred ticks to forget a position: it never was at another one.
 #[test]
 fn a_new_set_starts_at_rest_where_the_device_is() {
-    let program = program(FilteredWall::<1> { stiffness: 2.0, damping: 0.015, filter: 0.98 });
+    let program = program(Wall::damped(2.0, 0.015, 1).filtered(0.98).alone());
     let mut bench: Bench<_, f32, Latched> = Bench::armed(&program, Board::new()).unwrap();
     let swing = |bench: &mut Bench<_, f32, Latched>| {
         let codes = bench.board.codes().len();

@@ -37,10 +37,10 @@ use super::message::{
 };
 use crate::boot::Program;
 use crate::certificate::scene_data;
-use crate::environment::Discretize;
 use crate::fault::FaultRecord;
 use crate::number::Number;
 use crate::power_reading::PowerReading;
+use crate::rendering::Rendering;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, PreparedServo, SupportsTiming};
@@ -82,7 +82,7 @@ struct Submitted<E> {
 }
 
 /// The board's end of the wire; `LENGTH` is the length of the servo's queue of frames.
-pub struct Session<'a, E: Discretize<N>, N: Number, M, const LENGTH: usize> {
+pub struct Session<'a, E: Rendering<N>, N: Number, M, const LENGTH: usize> {
     info: BoardInfo,
     program: Program<E>,
     requests: Requests<'a, PreparedServo<E, N, M>>,

@@ -16,8 +16,7 @@ use crate::current::IndexOffset;
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{
-    Composed, DamperWall, Ends, Environment, KNOB_MODES, Knots, OneSided, ProfileModes, Shape,
-    SnapProfile,
+    Canceller, Damper, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side, Wall,
 };
 use crate::fault::Fault;
 use crate::number::Format;
@@ -29,18 +28,16 @@ use crate::tuning::RenderError;
 use crate::wire::message::LONGEST_TO_HOST;
 use crate::wire::{Discarded, encode, largest_frame};
 
-type Wall = OneSided<DamperWall<1>>;
-
-const SCENE: Scene<Wall> = Scene {
+const SCENE: Scene = Scene {
     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },
+    environment: Wall::damped(22.0, 0.01, 1).behind(0.0).alone(),
     latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 
-fn program() -> Program<Wall> {
+fn program() -> Program<Environment> {
     Program {
         scene: SCENE,
         transducers: Transducers {
@@ -115,10 +112,10 @@ const FRAMES: usize = 32;
 
 /// A session, the servo behind it, and the host's ear.
 struct Bench {
-    session: Session<'static, Wall, f32, Latched, FRAMES>,
-    servo_loop: ServoLoop<Wall, f32, Latched>,
+    session: Session<'static, Environment, f32, Latched, FRAMES>,
+    servo_loop: ServoLoop<Environment, f32, Latched>,
     hardware: Still,
-    inbox: Inbox<'static, PreparedServo<Wall, f32, Latched>>,
+    inbox: Inbox<'static, PreparedServo<Environment, f32, Latched>>,
     frames: Frames<'static, FRAMES>,
     ear: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
 }
@@ -245,21 +242,20 @@ fn longest_status(fault: FaultCode) -> Status {
 }
 
 fn largest_description() -> Description {
-    let wall = crate::environment::Wall {
+    let canceller = Some(Canceller::to(1.0));
+    let wall = Some(Wall {
         stiffness: 1.0,
-        damping: 1.0,
-        filter: Some(1.0),
+        damper: Some(Damper { damping: 1.0, filter: Some(1.0) }),
+        side: Side::Face(1.0),
         delay: usize::MAX,
-        face: 1.0,
-        one_sided: true,
-    };
+    });
     let program = program();
     Description {
         scene: Scene {
             device: Device { passivity: Some(1.0), ..SCENE.device },
             timing: Timing { worst_period: Some(1.0), ..SCENE.timing },
             coupling: SCENE.coupling,
-            environment: crate::environment::Environment::FreeModeWall { residual: 1.0, wall },
+            environment: Parts { canceller, wall, profile: None }.sum(),
             latency: Latency::NONE,
             torque_limit: Some(1.0),
         },
@@ -277,24 +273,18 @@ fn largest_description() -> Description {
 /// The same of a torque profile.
 fn largest_profile() -> Description {
     static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0).snap(1.1)]);
-    let mut profile = SnapProfile::<1024, 8>::of(&KNOTS);
-    profile.profile.ends = Some(Ends { from: -1.0, to: 1.0, stiffness: 1.0 });
-    let (mut profile, largest) = (profile.as_any(), largest_description());
-    profile.modes = ProfileModes::<1>::of(&KNOB_MODES).as_any().modes;
+    let (mut profile, largest) = (Profile::of(&KNOTS, 8), largest_description());
+    profile.ends = Some(Ends { from: -1.0, to: 1.0, stiffness: 1.0 });
+    profile.modes = Profile::of_modes(&KNOB_MODES, 1).modes;
     profile.modes.as_mut().unwrap().count = u32::MAX;
-    let environment = Environment::Profile(profile);
-    Description { scene: Scene { environment, ..largest.scene }, ..largest }
+    Description { scene: Scene { environment: profile.alone(), ..largest.scene }, ..largest }
 }
 
 /// The same with a wall and a canceller beside it.
 fn largest_sum() -> Description {
     let largest = largest_profile();
-    let mut environment = largest.scene.environment;
-    if let Environment::Profile(profile) = environment {
-        let wall = crate::environment::Wall::spring(1.0, 8);
-        let wall = Some(crate::environment::Wall { filter: Some(0.5), ..wall });
-        environment = Environment::Composed(Composed { residual: Some(1.0), wall, profile });
-    }
+    let Parts { canceller, wall, .. } = *largest_description().scene.environment.parts();
+    let environment = Parts { canceller, wall, ..*largest.scene.environment.parts() }.sum();
     Description { scene: Scene { environment, ..largest.scene }, ..largest }
 }
 
@@ -336,7 +326,7 @@ fn greets_with_what_its_numbers_mean() {
 fn a_certified_set_runs_whole() {
     let mut bench = Bench::new(None);
     assert_eq!(bench.running().sets, 0);
-    let margin = SCENE.certify_in(Format::F32).unwrap().assessment().margin(&SCENE.as_data());
+    let margin = SCENE.certify_in(Format::F32).unwrap().assessment().margin(&SCENE);
     assert_eq!(bench.running().margin, margin);
     let changes = [(Parameter::Stiffness, 12.0), (Parameter::Damping, 0.002)];
     assert_eq!(bench.set(1, &changes), Outcome::Done);
@@ -358,7 +348,7 @@ fn a_refused_set_changes_nothing_and_its_host_has_the_compilers_sentence() {
     bench.run(500);
     let (before, code) = (bench.running(), bench.hardware.code);
     let mut scene = SCENE;
-    scene.environment.wall.stiffness = 30.0;
+    scene.environment.wall_mut().unwrap().stiffness = 30.0;
     let sentence = scene.certify_in(Format::F32).unwrap_err().to_string();
     assert!(sentence.starts_with("rejected: "));
     let changes = [(Parameter::Damping, 0.01), (Parameter::Stiffness, 30.0)];
@@ -566,8 +556,7 @@ proptest! {
         let mut scene = SCENE;
         for (id, (stiffness, damping, face)) in sets.into_iter().enumerate() {
             let mut wanted = scene;
-            wanted.environment =
-                OneSided { face, wall: DamperWall { stiffness, damping } };
+            wanted.environment = Wall::damped(stiffness, damping, 1).behind(face).alone();
             let changes = [
                 (Parameter::Face, face),
                 (Parameter::Damping, damping),
@@ -588,13 +577,13 @@ proptest! {
                 }
             }
             bench.run(400);
-            let OneSided { face, wall } = scene.environment;
+            let wall = scene.environment.wall().unwrap();
             // Near its limit (equation 27) a wall is certified and rings at half the sample rate for
             // as long as one likes: its torque at rest is still to come.
-            if wall.stiffness * 0.001 / 2.0 + wall.damping.abs() > 0.9 * 0.022 {
+            if wall.stiffness * 0.001 / 2.0 + wall.damping().abs() > 0.9 * 0.022 {
                 continue;
             }
-            let depth = 100.0 * core::f64::consts::TAU / 61_440.0 - face;
+            let depth = 100.0 * core::f64::consts::TAU / 61_440.0 - wall.face();
             let torque = (wall.stiffness * depth / (1.0 + wall.stiffness / 44.0)).clamp(0.0, 1.0);
             let offset = f64::from(bench.hardware.code.offset());
             prop_assert!((offset + torque * 1791.0 / 2.0).abs() <= 1.0, "{offset}, {torque}");

@@ -26,9 +26,7 @@ fn energy(scene: &Scene, delay: f64, jitter: f64) -> f64 {
 fn a_spring_gives_energy_away_beyond_its_limit() {
     for delay in [1.0, 2.0] {
         let limit = 1.0 / (0.5 + delay);
-        let of = |stiffness| {
-            energy(&scene(Environment::DelayedSpring(Wall::spring(stiffness, 0))), delay, 1e-9)
-        };
+        let of = |stiffness| energy(&scene(Wall::spring(stiffness, 0).alone()), delay, 1e-9);
         assert!(of(0.98 * limit) > 0.0 && of(1.02 * limit) < 0.0, "{delay}");
     }
 }

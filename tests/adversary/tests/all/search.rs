@@ -4,6 +4,7 @@ use adversary::normalized_scene::{declared, margin};
 use adversary::scenes::{self, Choice};
 use adversary::search::{Effort, Search};
 use haptic_servo::certificate::assess_in;
+use haptic_servo::environment::Side;
 use haptic_servo::scene::{Coupling, Scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -41,7 +42,7 @@ fn no_hand_takes_energy_out_of_a_certified_scene() {
 fn linear(scene: &Scene) -> Scene {
     let mut linear = Scene { torque_limit: None, ..*scene };
     if let Some(wall) = linear.environment.wall_mut() {
-        wall.one_sided = false;
+        wall.side = Side::Displaced(wall.face());
     }
     linear
 }

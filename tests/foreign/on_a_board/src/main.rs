@@ -3,28 +3,25 @@
 #![no_main]
 
 use haptic_servo::certificate::Certified;
-use haptic_servo::servo_loop::{LinkPolicy, Options};
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::DamperWall;
+use haptic_servo::environment::Wall;
 use haptic_servo::number::fixed::types::I8F24;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::Transducers;
+use haptic_servo::servo_loop::{LinkPolicy, Options};
 
 /// A detent, as late as the board's torque.
-pub type Detent = DamperWall<1>;
-
-/// The scene.
-pub const SCENE: Scene<Detent> = Scene {
+pub const SCENE: Scene = Scene {
     device: Device { inertia: 1e-5, damping: 0.01, passivity: None },
     timing: Timing { period: 0.0005, worst_period: None },
     coupling: Coupling::Spring { stiffness: 40.0 },
-    environment: DamperWall { stiffness: 12.0, damping: 0.004 },
+    environment: Wall::damped(12.0, 0.004, 1).alone(),
     latency: Latency::NONE,
     torque_limit: None,
 };
 
 /// Its certificate.
-pub const CERTIFIED: Certified<Scene<Detent>> = SCENE.certified();
+pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 /// The knob's encoder and motor.
 pub const TRANSDUCERS: Transducers = Transducers {
@@ -35,7 +32,7 @@ pub const TRANSDUCERS: Transducers = Transducers {
 };
 
 haptic_servo::scene_program! {
-    scene: SCENE: Detent,
+    scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
     float: f32,

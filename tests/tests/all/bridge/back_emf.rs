@@ -76,7 +76,7 @@ fn a_strong_motor_renders_what_is_certified_with_what_motion_leaves() {
     let scene =
         Scene { device: Device { passivity, ..DEVICE }, ..spring(1.0, Coupling::Rigid, latency) };
     let stiffness = 0.99 * limit_of(&scene);
-    let environment = Environment::DelayedSpring(Wall::spring(stiffness, 1));
+    let environment = Wall::spring(stiffness, 1).alone();
     let certified = Scene { environment, ..scene }.certify().unwrap();
     for inertia in [2e-5, 4e-5, 8e-5] {
         let hand = HandImpedance { inertia, ..HandImpedance::default() };

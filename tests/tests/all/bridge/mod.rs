@@ -14,7 +14,7 @@ use analysis::worst_hand::{Compliance, HandImpedance, search};
 use haptic_servo::certificate::{Certified, QuantizationBound, Resolution};
 use haptic_servo::current::{CurrentLoop, Drive, Motor, Supply, Winding};
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{DelayedSpring, Environment, Matched, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::number::Format;
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
@@ -58,7 +58,7 @@ fn spring(stiffness: f64, coupling: Coupling, latency: Latency) -> Scene {
         device: DEVICE,
         timing: Timing { period: PERIOD, worst_period: None },
         coupling,
-        environment: Environment::DelayedSpring(Wall::spring(stiffness, 1)),
+        environment: Wall::spring(stiffness, 1).alone(),
         latency,
         torque_limit: None,
     }
@@ -202,24 +202,17 @@ fn a_spring_5_per_cent_above_the_limit_grows_in_a_hand_in_which_a_certified_one_
     assert!(grown[0] > 2.0 && grown[1] < 0.5, "{grown:?}");
 }
 
-/// As a program states it.
-type Spring = Matched<DelayedSpring<1>, 0, 1, true>;
-
 #[test]
 fn a_boards_servo_behind_the_matched_coupling_is_what_was_certified_and_comes_to_rest() {
     let of = |stiffness: f64| Scene {
-        device: DEVICE,
-        timing: Timing { period: PERIOD, worst_period: None },
-        coupling: Coupling::Matched,
-        environment: Spring { environment: DelayedSpring { stiffness } },
-        latency: latency(&MACHINE.current_loop()),
         torque_limit: Some(MACHINE.transducers.full_scale_torque),
+        ..spring(stiffness, Coupling::Matched, latency(&MACHINE.current_loop()))
     };
-    let limit = limit_of(&of(1.0).as_data());
+    let limit = limit_of(&of(1.0));
     println!("{limit} N m/rad with a limited torque");
     let scene = of(0.99 * limit);
     let certified = scene.certify().unwrap();
-    let bound = bound(&MACHINE, &scene.as_data());
+    let bound = bound(&MACHINE, &scene);
     let mut largest = 0.0_f64;
     for hand in hands() {
         for friction in [0.0, bound.hum()] {
@@ -289,7 +282,7 @@ fn leaned_against(is_bridge: bool, hand: &HandImpedance, friction: f64) -> Vec<I
 /// Beside an amplifier outside whose torque is that of the same latency.
 #[test]
 fn the_wall_of_the_program_is_that_of_an_ideal_amplifier_up_to_the_resolution_and_stays_at_rest() {
-    let bound = bound(&WALL, &bridge_wall::SCENE.as_data());
+    let bound = bound(&WALL, &bridge_wall::SCENE);
     let resolution = bound.current.unwrap();
     for hand in leaning_hands() {
         for friction in [0.0, bound.hum()] {

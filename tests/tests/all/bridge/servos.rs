@@ -1,9 +1,8 @@
-//! Servos for a [`Rig`](super::rig::Rig): as a board runs them, as data, and without steps.
+//! Servos for a [`Rig`](super::rig::Rig): as a board runs them, by counts, and without steps.
 
 use haptic_servo::certificate::Certified;
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::RawCount;
-use haptic_servo::environment::{Delayed, Discretize, EnvironmentModel};
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, Servo};
 use haptic_servo::servo_loop::{Frame, FrameSink, Hardware, Mailbox, Options, ServoLoop, State};
@@ -14,21 +13,15 @@ use super::rig::{Codes, Machine, Torques};
 const PERIOD: u32 = 1000;
 
 /// A servo that gives a code for the instant of its count: that of a board's tick before.
-pub fn counted<E>(machine: &Machine, scene: &Certified<Scene<E>>) -> Codes
-where
-    E: EnvironmentModel + Discretize<f32> + 'static,
-{
+pub fn counted(machine: &Machine, scene: &Certified<Scene>) -> Codes {
     let machine = *machine;
-    let mut servo = Servo::<E, f32>::new(scene, &machine.transducers).unwrap();
+    let mut servo = Servo::<_, f32>::new(scene, &machine.transducers).unwrap();
     Box::new(move |angle| servo.tick(machine.count(angle)).code.offset())
 }
 
 /// The torque of a motor on a servo that knows its angles.
-pub fn exact<E>(machine: &Machine, scene: &Certified<Scene<E>>) -> Torques
-where
-    E: EnvironmentModel + Discretize<f64> + 'static,
-{
-    let mut servo = Servo::<E, f64>::new(scene, &machine.transducers).unwrap();
+pub fn exact(machine: &Machine, scene: &Certified<Scene>) -> Torques {
+    let mut servo = Servo::<_, f64>::new(scene, &machine.transducers).unwrap();
     Box::new(move |angle| -servo.tick_at(angle).unwrap())
 }
 
@@ -39,14 +32,11 @@ pub fn rounded(machine: &Machine, mut exact: Torques) -> Codes {
 }
 
 /// What a board's interrupt runs, armed in its first tick. It puts a code out at the next count.
-pub fn board<E>(machine: &Machine, scene: &Certified<Scene<E>>) -> Codes
-where
-    E: EnvironmentModel + Discretize<f32> + Delayed + 'static,
-{
+pub fn board(machine: &Machine, scene: &Certified<Scene>) -> Codes {
     let machine = *machine;
     let timed = (*scene).time::<Latched>().unwrap();
     let options = RenderingOptions::DEFAULT;
-    let rendering = PreparedServo::<E, f32, Latched>::new(&timed, &machine.transducers, &options);
+    let rendering = PreparedServo::<_, f32, Latched>::new(&timed, &machine.transducers, &options);
     let mut servo_loop = ServoLoop::new(rendering.unwrap(), &Options::DEFAULT, PERIOD, None);
     let (requests, mut inbox) = Box::leak(Box::new(Mailbox::new())).split();
     requests.arm();

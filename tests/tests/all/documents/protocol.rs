@@ -17,6 +17,7 @@ use super::{column, read, regex, table};
 
 const DOCUMENT: &str = "firmware/PROTOCOL.md";
 const MESSAGES: &str = "firmware/src/wire/message.rs";
+const WALL: &str = "firmware/src/environment/wall.rs";
 
 /// The text in the braces of a type in a source file.
 fn body(path: &str, kind: &str, name: &str) -> String {
@@ -69,9 +70,12 @@ fn every_field_of_every_message_is_there_in_order() {
         ("firmware/src/wire/decoder.rs", "Discarded"),
         ("firmware/src/wire/description.rs", "Description"),
         ("firmware/src/scene.rs", "Scene"),
-        ("firmware/src/environment/any_wall.rs", "Wall"),
-        ("firmware/src/environment/composed.rs", "Composed"),
-        ("firmware/src/environment/profile/any.rs", "AnyProfile"),
+        ("firmware/src/environment/parts.rs", "Parts"),
+        ("firmware/src/environment/canceller.rs", "Canceller"),
+        (WALL, "Wall"),
+        (WALL, "Damper"),
+        ("firmware/src/environment/profile/data.rs", "Profile"),
+        ("firmware/src/environment/profile/knots.rs", "Table"),
         ("firmware/src/environment/profile/knots.rs", "Outline"),
         ("firmware/src/transducers.rs", "Transducers"),
         ("firmware/src/servo/prepared_servo.rs", "RenderingOptions"),
@@ -99,6 +103,7 @@ fn every_variant_is_there_with_its_number() {
         ("firmware/src/wire/sweep.rs", "SweepRequest", "## A sweep", Some(2)),
         (MESSAGES, "Outcome", "### Outcome", None),
         (MESSAGES, "Refusal", "### Refusal", Some(2)),
+        (WALL, "Side", "### Side", Some(2)),
         ("firmware/src/step.rs", "Step", "### Step", None),
         ("firmware/src/number/mod.rs", "Format", "### Format", None),
         ("firmware/src/output_timing.rs", "OutputTiming", "### OutputTiming", None),

@@ -1,7 +1,7 @@
 //! `[environment]` of a torque profile: its shapes as they were read, and the numbers that differ from
 //! theirs.
 
-use haptic_servo::environment::{AnyProfile, Ends, Shape, Wall};
+use haptic_servo::environment::{Canceller, Ends, Profile, Shape, Wall};
 
 use super::{number, quoted};
 use crate::file::key::{self, Bound, Key};
@@ -10,23 +10,23 @@ use crate::file::profile::Shapes;
 use crate::file::shape;
 use crate::file::shape::span;
 
-/// A torque profile, with the residual damping of a canceller beside it.
+/// A torque profile, with the canceller beside it.
 pub fn profile(
     lines: &mut Vec<String>,
-    residual: Option<f64>,
-    profile: &AnyProfile,
+    canceller: Option<&Canceller>,
+    profile: &Profile,
     shapes: &Shapes,
 ) {
     lines.push(format!("type = {}\ndelay = {}", quoted(PROFILE), profile.delay));
-    number(lines, key::RESIDUAL.name(), residual);
+    number(lines, key::RESIDUAL.name(), canceller.map(|canceller| canceller.residual));
     // By its bits: -0.0 is another number than 0.0.
-    number(lines, "damping", Some(profile.damping).filter(|damping| damping.to_bits() != 0));
+    number(lines, "damping", profile.damping);
     let own = shapes.sampled(profile.delay).ok();
     let mut changed = |key: &Key, value: Option<f64>, own: Option<f64>| {
         let is_same = value.map(f64::to_bits) == own.map(f64::to_bits);
         number(lines, key.name(), value.filter(|_| !is_same));
     };
-    let was = |of: fn(&AnyProfile) -> f64| own.as_ref().map(of);
+    let was = |of: fn(&Profile) -> f64| own.as_ref().map(of);
     changed(&key::PROFILE_TORQUE, Some(profile.torque), was(|own| own.torque));
     changed(&key::COUNT, Some(profile.count), was(|own| own.count));
     changed(&key::CENTRE, Some(profile.centre), was(|own| own.centre));
@@ -47,14 +47,13 @@ pub fn profile(
 
 /// The wall beside it. It is written below the shapes, whose tables end the environment's own table.
 pub fn wall(wall: &Wall) -> Vec<String> {
-    let Wall { stiffness, damping, filter, delay, face, one_sided } = *wall;
     let mut lines = vec![format!("[{}]", key::WALL.path)];
-    number(&mut lines, key::WALL_STIFFNESS.name(), Some(stiffness));
-    number(&mut lines, key::WALL_DAMPING.name(), Some(damping));
-    lines.push(format!("{} = {delay}", key::WALL_DELAY.name()));
-    number(&mut lines, key::WALL_FILTER.name(), filter);
-    number(&mut lines, key::WALL_FACE.name(), Some(face));
-    if one_sided {
+    number(&mut lines, key::WALL_STIFFNESS.name(), Some(wall.stiffness));
+    number(&mut lines, key::WALL_DAMPING.name(), Some(wall.damping()));
+    lines.push(format!("{} = {}", key::WALL_DELAY.name(), wall.delay));
+    number(&mut lines, key::WALL_FILTER.name(), wall.filter());
+    number(&mut lines, key::WALL_FACE.name(), Some(wall.face()));
+    if wall.is_one_sided() {
         lines.push(format!("{} = true", key::WALL_ONE_SIDED.name()));
     }
     lines

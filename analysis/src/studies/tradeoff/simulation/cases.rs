@@ -1,6 +1,6 @@
 //! The motions of the measurements.
 
-use haptic_servo::environment::{Environment, Wall};
+use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use crate::chain::{Link, Mass};
@@ -36,19 +36,11 @@ pub fn cases() -> [Case; 2] {
 }
 
 fn released(plant: Plant, device: Device) -> Experiment {
-    let wall = Wall {
-        stiffness: STIFFNESS,
-        damping: 0.0,
-        filter: None,
-        delay: 0,
-        face: 0.0,
-        one_sided: false,
-    };
     let scene = Scene {
         device,
         timing: Timing { period: 1e-3, worst_period: None },
         coupling: Coupling::Rigid,
-        environment: Environment::DelayedSpring(wall),
+        environment: Wall::spring(STIFFNESS, 0).alone(),
         latency: Latency::NONE,
         torque_limit: None,
     };

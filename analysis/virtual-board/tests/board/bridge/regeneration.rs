@@ -99,8 +99,8 @@ fn bus() -> Bus {
 }
 
 fn energy() -> ReturnedEnergy {
-    let push = CURRENT_LOOP.push(&SCENE.as_data(), &TRANSDUCERS, None);
-    bus().check(&SCENE.as_data(), &push).expect("the program compiles")
+    let push = CURRENT_LOOP.push(&SCENE, &TRANSDUCERS, None);
+    bus().check(&SCENE, &push).expect("the program compiles")
 }
 
 /// With the capacitance that the compiler asks for, which is less than the program's: the voltage rises by what
@@ -122,8 +122,8 @@ fn the_wall_stays_with_a_supply_that_the_compiler_accepts() {
 #[test]
 fn the_wall_vanishes_with_a_supply_that_the_compiler_refuses() {
     let small = Bus { capacitance: 2e-4, ..bus() };
-    let push = CURRENT_LOOP.push(&SCENE.as_data(), &TRANSDUCERS, None);
-    assert!(small.check(&SCENE.as_data(), &push).is_err());
+    let push = CURRENT_LOOP.push(&SCENE, &TRANSDUCERS, None);
+    assert!(small.check(&SCENE, &push).is_err());
     let (highest, fault) = pushed(Supply::that_stores(small.voltage, small.capacitance));
     assert_eq!(fault, Some("over-voltage"));
     assert!(highest > small.fault_level, "{highest} V");

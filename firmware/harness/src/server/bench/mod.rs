@@ -3,6 +3,7 @@
 
 mod all_scenes;
 mod program_scenes;
+mod scene_types;
 
 pub use all_scenes::AllScenes;
 pub use program_scenes::ProgramScenes;
@@ -13,8 +14,8 @@ use core::marker::PhantomData;
 use haptic_servo::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, tick_timer};
 use haptic_servo::current::{CurrentController, Duties};
 use haptic_servo::encoder::RawCount;
-use haptic_servo::environment::Discretize;
 use haptic_servo::number::{InEach, Number};
+use haptic_servo::rendering::Rendering;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 use semihosting::fs::File;
@@ -110,7 +111,7 @@ impl Host {
     // SAFETY: the section is one of code, in flash that the emulated board has.
     #[unsafe(link_section = ".more")]
     #[inline(never)]
-    fn ticks<E: Discretize<N>, N: Number>(
+    fn ticks<E: Rendering<N>, N: Number>(
         &mut self,
         scene: Scene<E>,
         transducers: &Transducers,
@@ -256,10 +257,8 @@ pub struct BenchJob<'a> {
 }
 
 impl BenchJob<'_> {
-    /// Runs its ticks with a servo of this environment.
-    fn run<E: Discretize<N>, N: Number>(self, environment: E) -> Result<(), HostClosed> {
-        let Scene { device, timing, coupling, latency, torque_limit, .. } = *self.scene;
-        let scene = Scene { device, timing, coupling, environment, latency, torque_limit };
+    /// Runs its ticks with a servo of its scene in this type.
+    fn run<E: Rendering<N>, N: Number>(self, scene: Scene<E>) -> Result<(), HostClosed> {
         self.host.ticks::<E, N>(scene, self.transducers)
     }
 

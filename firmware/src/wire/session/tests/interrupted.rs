@@ -19,9 +19,9 @@ const SWAP: u32 = 60;
 
 /// The interrupt with what it owns.
 struct Interrupt {
-    servo_loop: ServoLoop<Wall, f32, Latched>,
+    servo_loop: ServoLoop<Environment, f32, Latched>,
     hardware: Still,
-    inbox: Inbox<'static, PreparedServo<Wall, f32, Latched>>,
+    inbox: Inbox<'static, PreparedServo<Environment, f32, Latched>>,
     frames: Frames<'static, FRAMES>,
     /// Ticks in each of the next instants; after the last none.
     plan: Vec<u32>,
@@ -118,7 +118,7 @@ fn play(plan: Vec<u32>) -> End {
     let shared = Rc::clone(&interrupt);
     interruption::set(move || shared.borrow_mut().interrupt());
     let mut said: Vec<Said> = Vec::new();
-    let mut poll = |session: &mut Session<'static, Wall, f32, Latched, FRAMES>| {
+    let mut poll = |session: &mut Session<'static, Environment, f32, Latched, FRAMES>| {
         session.poll();
         let bytes = session.outgoing().to_vec();
         session.sent(bytes.len());

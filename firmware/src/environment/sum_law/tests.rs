@@ -3,16 +3,14 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::certificate::{
-    Certified, QuantizationBound, Resolution, TimingChecked, certify, certify_in, certify_scene,
-    scene_data, timing_checked,
+    Certified, Parameter, QuantizationBound, Resolution, TimingChecked, certify, certify_in,
+    certify_scene, timing_checked,
 };
 use crate::encoder::{CounterWidth, RawCount};
 use crate::energy::NoAction;
-use crate::environment::{
-    DamperWall, DelayedSpring, Ends, Environment, EnvironmentModel, Knots, Matched, OneSided,
-    Profile, Shape,
-};
+use crate::environment::{Canceller, Ends, Environment, Knots, Parts, Profile, Shape, Wall};
 use crate::number::Format;
+use crate::parameter::NamedParameters;
 use crate::passivity::interval::Interval;
 use crate::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use crate::servo::{AtPhase, Latched, Servo, Transducers};
@@ -22,9 +20,11 @@ static KNOB: Knots<16> = Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(
 
 const DAMPING: f64 = 0.022;
 const PERIOD: f64 = 0.001;
-const WALL: DamperWall<1> = DamperWall { stiffness: 5.0, damping: 0.002 };
-const LATE: DamperWall<2> = DamperWall { stiffness: 3.0, damping: 0.001 };
-const UNDELAYED: DamperWall<0> = DamperWall { stiffness: 30.0, damping: 0.002 };
+const WALL: Wall = Wall::damped(5.0, 0.002, 1);
+const LATE: Wall = Wall::damped(3.0, 0.001, 2);
+const UNDELAYED: Wall = Wall::damped(30.0, 0.002, 0);
+/// Of the face of a wall.
+const FACE: f64 = 0.3;
 
 const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
@@ -33,7 +33,7 @@ const TRANSDUCERS: Transducers = Transducers {
     largest_speed: 100.0,
 };
 
-fn scene<E>(environment: E) -> Scene<E> {
+const fn scene(environment: Environment) -> Scene {
     Scene {
         device: Device { inertia: 2.2e-5, damping: DAMPING, passivity: None },
         timing: Timing { period: PERIOD, worst_period: None },
@@ -44,70 +44,21 @@ fn scene<E>(environment: E) -> Scene<E> {
     }
 }
 
-fn knob<const N: usize>() -> Profile<16, N> {
-    Profile::of(&KNOB)
+const fn knob(delay: usize) -> Profile {
+    Profile::of(&KNOB, delay)
 }
 
-fn behind<W: Copy>(wall: W) -> OneSided<W> {
-    OneSided { face: 0.3, wall }
+const fn endless(delay: usize) -> Profile {
+    Profile::of(&ENDLESS, delay)
 }
 
-/// Whether both give the same codes at these counts.
-fn is_same<N: Number, E: EnvironmentModel + Discretize<N>>(
-    scene: Scene<E>,
-    counts: &[i32],
-) -> bool {
-    let data = certify_scene(scene_data(&scene), N::FORMAT).unwrap_or_else(|why| panic!("{why}"));
-    let typed = certify_scene(scene, N::FORMAT).unwrap();
-    let mut typed: Servo<E, N> = Servo::new(&typed, &TRANSDUCERS).unwrap();
-    let mut data: Servo<Environment, N> = Servo::new(&data, &TRANSDUCERS).unwrap();
-    counts.iter().all(|&count| {
-        let raw = RawCount::from(count.cast_unsigned());
-        typed.tick(raw) == data.tick(raw) && typed.torque_nm() == data.torque_nm()
-    })
+const fn wall_and_profile(wall: Wall, profile: Profile) -> Environment {
+    Parts { canceller: None, wall: Some(wall), profile: Some(profile) }.sum()
 }
 
-fn every_type_is_its_data<N: Number>(counts: &[i32]) {
-    let endless = Profile::<16, 1>::of(&ENDLESS);
-    let residual = 0.018;
-    assert!(is_same::<N, _>(scene(FreeModeProfile { residual, profile: endless }), counts));
-    assert!(is_same::<N, _>(scene(FreeModeProfile { residual, profile: knob::<2>() }), counts));
-    let spring = DelayedSpring::<3> { stiffness: 2.0 };
-    let profile = knob::<2>();
-    assert!(is_same::<N, _>(scene(WallAndProfile { wall: spring, profile }), counts));
-    assert!(is_same::<N, _>(scene(WallAndProfile { wall: behind(spring), profile }), counts));
-    assert!(is_same::<N, _>(scene(WallAndProfile { wall: WALL, profile }), counts));
-    assert!(is_same::<N, _>(scene(WallAndProfile { wall: behind(UNDELAYED), profile }), counts));
-    let matched = |environment| Scene {
-        coupling: Coupling::Matched,
-        latency: Latency { output_jitter: 1e-6, ..Latency::delayed(2e-4) },
-        ..scene(Matched::<_, 0, 0> { environment })
-    };
-    let wall = behind(UNDELAYED);
-    assert!(is_same::<N, _>(matched(FreeModeWallAndProfile { residual, wall, profile }), counts));
-    let all = |wall| scene(FreeModeWallAndProfile { residual, wall, profile });
-    assert!(is_same::<N, _>(all(behind(LATE)), counts));
-    let scene = scene(FreeModeWallAndProfile { residual, wall: spring, profile });
-    assert!(is_same::<N, _>(scene, counts));
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
-
-    /// Across faces, end stops and turns.
-    #[test]
-    fn a_type_gives_the_torques_of_its_data(
-        steps in prop::collection::vec(prop_oneof![-40..40_i32, -4_000..4_000_i32], 400),
-    ) {
-        let walk = |count: &mut i32, step: &i32| {
-            *count = (*count + step).clamp(-600_000, 600_000);
-            Some(*count)
-        };
-        let counts: Vec<i32> = steps.iter().scan(0, walk).collect();
-        every_type_is_its_data::<f64>(&counts);
-        every_type_is_its_data::<f32>(&counts);
-        every_type_is_its_data::<I8F24>(&counts);
-    }
+/// A profile, with or without a wall, and an undelayed canceller.
+const fn free_mode(residual: f64, wall: Option<Wall>, profile: Profile) -> Environment {
+    Parts { canceller: Some(Canceller::to(residual)), wall, profile: Some(profile) }.sum()
 }
 
 /// Slope in N m/rad of the detents, `4 n F / (2 pi)`, by which they rise and fall.
@@ -125,22 +76,14 @@ fn indices_add() {
     let stops = |n: f64| PERIOD * (2.5 + (n - 1.0) * 5.0);
     let residual = 0.015;
     let cancelled = DAMPING - residual;
-    let endless = Profile::<16, 2>::of(&ENDLESS);
-    let free = FreeModeProfile { residual, profile: endless };
     let late = |k: f64, n: f64, b: f64| k * PERIOD * (n - 0.5) + b;
     for (environment, expected) in [
-        (free.as_data(), cancelled + detents(2.0)),
+        (free_mode(residual, None, endless(2)), cancelled + detents(2.0)),
+        (wall_and_profile(WALL, knob(1)), late(5.0, 1.0, 0.002) + stops(1.0)),
+        (wall_and_profile(LATE.behind(FACE), knob(1)), late(3.0, 2.0, 0.001) + stops(1.0)),
+        (wall_and_profile(UNDELAYED.behind(FACE), knob(2)), stops(2.0)),
         (
-            WallAndProfile { wall: WALL, profile: knob::<1>() }.as_data(),
-            late(5.0, 1.0, 0.002) + stops(1.0),
-        ),
-        (
-            WallAndProfile { wall: behind(LATE), profile: knob::<1>() }.as_data(),
-            late(3.0, 2.0, 0.001) + stops(1.0),
-        ),
-        (WallAndProfile { wall: behind(UNDELAYED), profile: knob::<2>() }.as_data(), stops(2.0)),
-        (
-            FreeModeWallAndProfile { residual, wall: behind(LATE), profile: knob::<1>() }.as_data(),
+            free_mode(residual, Some(LATE.behind(FACE)), knob(1)),
             cancelled + late(3.0, 2.0, 0.001) + stops(1.0),
         ),
     ] {
@@ -155,10 +98,9 @@ fn indices_add() {
 #[test]
 fn without_a_coupling_the_springs_add() {
     let (n, e) = (1.0, 0.3);
-    let wall = DelayedSpring::<1> { stiffness: 2.0 };
-    let environment = WallAndProfile { wall, profile: knob::<1>() };
-    let at_port =
-        |latency| Scene { coupling: Coupling::Rigid, latency, ..scene(environment.as_data()) };
+    let wall = Wall::spring(2.0, 1);
+    let environment = wall_and_profile(wall, knob(1));
+    let at_port = |latency| Scene { coupling: Coupling::Rigid, latency, ..scene(environment) };
     for (latency, e) in [(Latency::NONE, 0.0), (Latency::delayed(e * PERIOD), e)] {
         let found = certify(&at_port(latency)).unwrap_or_else(|why| panic!("{why}")).bound.unwrap();
         let slopes: f64 = 5.0 + 2.0;
@@ -176,35 +118,32 @@ fn refusal(environment: Environment, coupling: Coupling) -> String {
 #[test]
 fn what_has_no_proof_is_refused_with_a_sentence() {
     let spring = Coupling::Spring { stiffness: 44.0 };
-    let undelayed = FreeModeProfile { residual: 0.01, profile: Profile::<16, 0>::of(&ENDLESS) };
+    let undelayed = free_mode(0.01, None, endless(0));
     assert_eq!(
-        refusal(undelayed.as_data(), spring),
+        refusal(undelayed, spring),
         "rejected: the delay is 0 samples, and must be at least 1 where a wall or a canceller is beside the \
          torque profile"
     );
-    let endless = WallAndProfile { wall: behind(WALL), profile: Profile::<16, 1>::of(&ENDLESS) };
+    let endless = wall_and_profile(WALL.behind(FACE), endless(1));
     assert_eq!(
-        refusal(endless.as_data(), spring),
+        refusal(endless, spring),
         "rejected: the face is 0.3 rad, and must be beside a torque profile with end stops: one without them \
          repeats in every turn, and a wall stands in one of them"
     );
-    let pulling =
-        WallAndProfile { wall: DamperWall::<1> { stiffness: -1.0, ..WALL }, profile: knob::<1>() };
-    assert!(
-        refusal(pulling.as_data(), spring).contains("pulls away at rest like a negative spring")
-    );
+    let pulling = wall_and_profile(Wall { stiffness: -1.0, ..WALL }, knob(1));
+    assert!(refusal(pulling, spring).contains("pulls away at rest like a negative spring"));
     let missing = Scene {
         timing: Timing { period: PERIOD, worst_period: Some(2.0 * PERIOD) },
         latency: Latency { sensor_lag: TimeRange::exactly(1e-5), ..Latency::delayed(0.0) }
             .with_actuator_lag(1e-5),
         coupling: Coupling::Rigid,
-        ..scene(WallAndProfile { wall: WALL, profile: knob::<1>() }.as_data())
+        ..scene(wall_and_profile(WALL, knob(1)))
     };
     let sentence = certify(&missing).unwrap_err().to_string();
     assert!(sentence.contains("updates that are missed beside two lags"), "{sentence}");
-    let mut soft = knob::<1>();
+    let mut soft = knob(1);
     soft.ends = Some(Ends { from: -2.0, to: 2.0, stiffness: -1.0 });
-    let sentence = refusal(WallAndProfile { wall: WALL, profile: soft }.as_data(), spring);
+    let sentence = refusal(wall_and_profile(WALL, soft), spring);
     assert!(sentence.ends_with("must be greater than 0 beyond end stops"), "{sentence}");
 }
 
@@ -214,18 +153,8 @@ fn what_has_no_proof_is_refused_with_a_sentence() {
 fn without_a_coupling_dampers_add() {
     let late = 1.5 * PERIOD;
     for (environment, expected) in [
-        (
-            FreeModeProfile { residual: 0.015, profile: knob::<1>() }.as_data(),
-            late * 5.0 + DAMPING - 0.015,
-        ),
-        (
-            WallAndProfile {
-                wall: DamperWall::<1> { stiffness: 2.0, damping: 0.003 },
-                profile: knob::<1>(),
-            }
-            .as_data(),
-            late * 7.0 + 0.003,
-        ),
+        (free_mode(0.015, None, knob(1)), late * 5.0 + DAMPING - 0.015),
+        (wall_and_profile(Wall::damped(2.0, 0.003, 1), knob(1)), late * 7.0 + 0.003),
     ] {
         let found = certify(&Scene { coupling: Coupling::Rigid, ..scene(environment) }).unwrap();
         let bound = found.bound.unwrap();
@@ -236,9 +165,8 @@ fn without_a_coupling_dampers_add() {
 /// Each remedy is certified, and the one of a sum is of its parts by name.
 #[test]
 fn remedies_name_the_parts() {
-    let wall = DamperWall::<1> { stiffness: 20.0, damping: 0.002 };
-    let all = FreeModeWallAndProfile { residual: 0.012, wall, profile: knob::<1>() };
-    let scene = scene(all.as_data());
+    let wall = Wall::damped(20.0, 0.002, 1);
+    let scene = scene(free_mode(0.012, Some(wall), knob(1)));
     let rejection = certify(&scene).unwrap_err();
     let remedies: Vec<_> = rejection.remedies().iter().collect();
     for (parameter, is_there) in
@@ -257,9 +185,8 @@ fn remedies_name_the_parts() {
 
 #[test]
 fn names_are_of_the_part_that_the_documentation_says() {
-    let mut all =
-        FreeModeWallAndProfile { residual: 0.012, wall: behind(WALL), profile: knob::<1>() };
-    let data = all.as_data();
+    let mut all = free_mode(0.012, Some(WALL.behind(FACE)), knob(1));
+    let data = all;
     for (parameter, expected) in [
         (Parameter::Stiffness, 5.0),
         (Parameter::Damping, 0.002),
@@ -273,15 +200,14 @@ fn names_are_of_the_part_that_the_documentation_says() {
         assert_eq!(data.get(parameter), Some(expected), "{parameter:?}");
         assert_eq!(data.with(parameter, 1.0).unwrap().get(parameter), Some(1.0), "{parameter:?}");
     }
-    let free = FreeModeProfile { residual: 0.012, profile: knob::<1>() };
-    assert_eq!(free.as_data().get(Parameter::Stiffness), Some(5.0));
+    let free = free_mode(0.012, None, knob(1));
+    assert_eq!(free.get(Parameter::Stiffness), Some(5.0));
 }
 
 /// The gains that solve a tick are rounded; so are all other coefficients.
 #[test]
 fn every_format_has_nearly_the_same_bound() {
-    let all = FreeModeWallAndProfile { residual: 0.012, wall: behind(LATE), profile: knob::<1>() };
-    let scene = scene(all.as_data());
+    let scene = scene(free_mode(0.012, Some(LATE.behind(FACE)), knob(1)));
     let exact = certify(&scene).unwrap().bound.unwrap();
     for format in [Format::F32, Format::Fixed { fraction_bits: 24 }] {
         let found = certify_in(&scene, format).unwrap().bound.unwrap();
@@ -289,40 +215,28 @@ fn every_format_has_nearly_the_same_bound() {
     }
 }
 
-type KnobAndWall = Scene<WallAndProfile<OneSided<DamperWall<2>>, Profile<16, 1>>>;
-const KNOB_AND_WALL: KnobAndWall = Scene {
-    device: Device { inertia: 2.2e-5, damping: DAMPING, passivity: None },
-    timing: Timing { period: PERIOD, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: WallAndProfile {
-        wall: OneSided { face: 0.3, wall: LATE },
-        profile: Profile::of(&KNOB),
-    },
-    latency: Latency::NONE,
-    torque_limit: None,
-};
-const CERTIFIED: Certified<KnobAndWall> = KNOB_AND_WALL.certified();
-const TIMED: TimingChecked<KnobAndWall, Latched> = CERTIFIED.timing_checked::<Latched>();
+const KNOB_AND_WALL: Scene =
+    Scene { torque_limit: None, ..scene(wall_and_profile(LATE.behind(FACE), knob(1))) };
+const CERTIFIED: Certified<Scene> = KNOB_AND_WALL.certified();
+const TIMED: TimingChecked<Scene, Latched> = CERTIFIED.timing_checked::<Latched>();
 
 /// Late parts run latched, cancellers behind the matched coupling; a board reaches the same verdict when it
 /// starts.
 #[test]
 fn boards_render_them() {
     assert_eq!(TIMED.scene(), &KNOB_AND_WALL);
-    let environment =
-        FreeModeWallAndProfile { residual: 0.018, wall: behind(UNDELAYED), profile: knob::<1>() };
+    let environment = free_mode(0.018, Some(UNDELAYED.behind(FACE)), knob(1));
     let matched = Scene {
         coupling: Coupling::Matched,
         latency: Latency { output_jitter: 1e-6, ..Latency::delayed(2e-4) },
-        ..scene(Matched::<_, 0, 0> { environment })
+        ..scene(environment)
     };
     for format in [Format::F32, Format::Fixed { fraction_bits: 24 }] {
         assert!(timing_checked::<_, Latched>(KNOB_AND_WALL, format).is_ok(), "{format}");
         let certified = certify_scene(matched, format).unwrap_or_else(|why| panic!("{why}"));
         assert!(certified.time::<AtPhase<200_000>>().is_ok(), "{format}");
         assert!(timing_checked::<_, AtPhase<200_000>>(matched, format).is_ok(), "{format}");
-        let mut more = matched;
-        more.environment.environment.residual = 0.001;
+        let more = matched.with(Parameter::Residual, 0.001).unwrap();
         assert!(certify_scene(more, format).is_err(), "{format}");
         assert!(timing_checked::<_, AtPhase<200_000>>(more, format).is_err(), "{format}");
     }
@@ -333,10 +247,9 @@ fn boards_render_them() {
 fn a_canceller_beside_a_profile_without_ends_feels_no_turn() {
     static FAR: Knots<16> =
         Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-50.0, 50.0, 5.0)]);
-    let free = |profile| scene(FreeModeProfile { residual: 0.012, profile }).certify().unwrap();
+    let free = |profile| scene(free_mode(0.012, None, profile)).certify().unwrap();
     let servo = |profile| Servo::<_, f64>::new(&free(profile), &TRANSDUCERS).unwrap();
-    let (mut endless, mut ended) =
-        (servo(Profile::<16, 1>::of(&ENDLESS)), servo(Profile::of(&FAR)));
+    let (mut endless, mut ended) = (servo(endless(1)), servo(Profile::of(&FAR, 1)));
     let mut largest = 0.0_f64;
     for tick in 0..40_000 {
         let angle = 40.0 * (f64::from(tick) * 3e-4).sin() + 0.3 * (f64::from(tick) * 0.17).sin();
@@ -373,13 +286,13 @@ fn largest_error<N: Number>(scene: &Scene, counts_per_turn: f64) -> f64 {
 #[test]
 fn no_motion_has_a_torque_farther_off_than_the_bound_on_its_limit_cycle() {
     const COUNTS: f64 = 4096.0;
-    let spring = DelayedSpring::<1> { stiffness: 8.0 };
+    let spring = Wall::spring(8.0, 1);
     let residual = 0.016;
     for environment in [
-        FreeModeProfile { residual, profile: Profile::<16, 1>::of(&ENDLESS) }.as_data(),
-        WallAndProfile { wall: behind(spring), profile: knob::<1>() }.as_data(),
-        WallAndProfile { wall: WALL, profile: knob::<1>() }.as_data(),
-        FreeModeWallAndProfile { residual, wall: behind(spring), profile: knob::<1>() }.as_data(),
+        free_mode(residual, None, endless(1)),
+        wall_and_profile(spring.behind(FACE), knob(1)),
+        wall_and_profile(WALL, knob(1)),
+        free_mode(residual, Some(spring.behind(FACE)), knob(1)),
     ] {
         let scene = scene(environment);
         let steps = Resolution {

@@ -1,15 +1,16 @@
 use fixed::types::I8F24;
 
 use super::*;
-use crate::certificate::{Rejection, certify_in, certify_scene, first_refused_mode};
+use crate::certificate::{Certified, Rejection, certify_in, certify_scene, first_refused_mode};
 use crate::coupling::{Coupling, Response};
 use crate::encoder::{CounterWidth, RawCount};
-use crate::environment::{
-    Environment, KNOB_MODES, Knots, Law, MODES, ModeTable, Shape, SnapProfile,
-};
-use crate::number::Format;
+use crate::environment::{Discretize, Environment, Knots, Law, Profile};
+use crate::number::{Format, Number};
+use crate::parameter::Parameter;
 use crate::scene::{Device, Latency, Scene, Timing};
+use crate::scene_type::Typed;
 use crate::servo::{BuildError, Latched, PreparedServo, RenderingOptions, Servo, Transducers};
+use crate::tuning;
 
 const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
@@ -19,19 +20,24 @@ const TRANSDUCERS: Transducers = Transducers {
 };
 
 /// On the paper's paddle at 1 kHz.
-const fn scene(modes: ProfileModes<1>) -> Scene<ProfileModes<1>> {
+const fn scene(profile: Profile) -> Scene {
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: modes,
+        environment: profile.alone(),
         latency: Latency::NONE,
         torque_limit: Some(1.0),
     }
 }
 
-fn selected(mode: usize) -> Scene<ProfileModes<1>> {
-    scene(ProfileModes::of(&KNOB_MODES).selecting(mode as f64))
+/// Late by a sample.
+const fn of(modes: &'static [ProfileMode]) -> Profile {
+    Profile::of_modes(modes, 1)
+}
+
+fn selected(mode: usize) -> Scene {
+    scene(of(&KNOB_MODES).selecting(mode as f64).unwrap())
 }
 
 fn numbers() -> impl Iterator<Item = usize> {
@@ -42,7 +48,7 @@ fn numbers() -> impl Iterator<Item = usize> {
 fn each_mode_is_certified_and_rendered_in_the_boards_number_formats() {
     for mode in numbers() {
         let name = KNOB_MODES[mode].name;
-        let data = selected(mode).as_data();
+        let data = selected(mode);
         assert_eq!(data.environment.profile().unwrap().units(), KNOB_MODES[mode].units);
         for format in [Format::F64, Format::F32, I8F24::FORMAT] {
             let assessment =
@@ -67,10 +73,10 @@ fn each_mode_has_the_torque_of_its_shapes() {
     for mode in numbers() {
         let shapes = MODES[mode].shapes;
         assert_eq!(KNOB_MODES[mode].name, MODES[mode].name);
-        let (profile, context) = (selected(mode).environment.as_any(), selected(mode).context());
+        let (scene, profile) = (selected(mode), of(&KNOB_MODES).selecting(mode as f64).unwrap());
         let mut undelayed = profile;
         undelayed.delay = 0;
-        let law = Discretize::<f64>::law(&undelayed, &context).unwrap();
+        let law = Discretize::<f64>::law(&undelayed.alone(), &scene.context()).unwrap();
         let narrowest = shapes.iter().map(Shape::narrowest).fold(f64::INFINITY, f64::min);
         // A straight piece falls or rises by all of the torque, and less than a cell of it is cut.
         let torque = if profile.outline().rise > 0 { profile.torque } else { 0.0 };
@@ -90,13 +96,17 @@ fn each_mode_has_the_torque_of_its_shapes() {
     }
 }
 
-/// A table of two bytes a knot gives the torques of one of ten.
+/// A program selects a mode by its number alone.
 #[test]
 fn a_mode_is_rendered_as_the_profile_that_it_is() {
+    const CERTIFIED: Certified<Scene> = scene(of(&KNOB_MODES)).certified();
+    crate::scene_type!(Modes: CERTIFIED);
     for mode in numbers() {
-        let certified = selected(mode).certify().unwrap();
-        let data = selected(mode).as_data();
-        let as_data = data.certify().unwrap();
+        let changes = [(Parameter::Mode, mode as f64)];
+        let changed = tuning::apply(Typed::<Modes>::certified().scene(), &changes).unwrap();
+        let certified = certify_scene(changed, Format::F32).unwrap();
+        let as_data = selected(mode).certify().unwrap();
+        assert_eq!(certified.as_data(), as_data.scene());
         let mut typed = Servo::<_, f32>::new(&certified, &TRANSDUCERS).unwrap();
         let mut by_data = Servo::<Environment, f32>::new(&as_data, &TRANSDUCERS).unwrap();
         for count in (-20_000..80_000).step_by(37) {
@@ -125,22 +135,22 @@ static ONE_IS_BAD: [ProfileMode; 3] =
 /// A mode is refused with the scene, and not when it is selected.
 #[test]
 fn a_scene_is_certified_with_each_of_its_modes() {
-    let scene = scene(ProfileModes::of(&ONE_IS_BAD));
-    assert!(certify_in(&scene.as_data(), Format::F64).is_ok(), "the selected one is fair");
+    let scene = scene(of(&ONE_IS_BAD));
+    assert!(certify_in(&scene, Format::F64).is_ok(), "the selected one is fair");
     for format in [Format::F64, Format::F32, I8F24::FORMAT] {
         let rejection = scene.certify_in(format).unwrap_err();
         assert!(matches!(rejection, Rejection::Shortage { .. }), "{rejection}");
-        let refused = first_refused_mode(&scene.as_data(), format).unwrap();
+        let refused = first_refused_mode(&scene, format).unwrap();
         assert_eq!((refused.mode, refused.name, refused.reason), (1, "steep", rejection));
     }
-    let sentence = first_refused_mode(&scene.as_data(), Format::F64).unwrap();
+    let sentence = first_refused_mode(&scene, Format::F64).unwrap();
     let sentence = sentence.sentence_in(Format::F64);
     assert!(
         sentence.as_str().starts_with("mode 1, `steep`: rejected: the environment needs alpha")
     );
-    assert_eq!(first_refused_mode(&selected(3).as_data(), Format::F64), None);
+    assert_eq!(first_refused_mode(&selected(3), Format::F64), None);
     // As a scene that has that mode alone.
-    let alone = scene.as_data().with(crate::parameter::Parameter::Mode, 1.0).unwrap();
+    let alone = scene.with(Parameter::Mode, 1.0).unwrap();
     assert_eq!(alone.certify().unwrap_err(), scene.certify().unwrap_err());
 }
 
@@ -200,10 +210,11 @@ fn a_mode_has_its_snap_point() {
     static TABLE: ModeTable<16> = ModeTable::of(&SHAPES);
     static MODES: [ProfileMode; 1] = [TABLE.named("snap")];
     static KNOTS: Knots<16> = Knots::of(&SHAPES);
-    let modes = scene(ProfileModes::of(&MODES)).certified();
+    let modes = scene(of(&MODES)).certified();
     let context = modes.scene().context();
-    let mut law: ModeLaw<f32, 1> = Discretize::law(&modes.scene().environment, &context).unwrap();
-    let mut alone = Discretize::<f32>::law(&SnapProfile::<16, 1>::of(&KNOTS), &context).unwrap();
+    let mut law = Discretize::<f32>::law(&modes.scene().environment, &context).unwrap();
+    let alone = Profile::of(&KNOTS, 1).alone();
+    let mut alone = Discretize::<f32>::law(&alone, &context).unwrap();
     law.rest_at(0.0);
     alone.rest_at(0.0);
     let (mut seen, mut snaps) = ([0.0; 2], 0);

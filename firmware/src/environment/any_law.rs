@@ -1,0 +1,82 @@
+//! The law of any environment as data.
+
+use super::any::Environment;
+use super::law::{Discretize, Law, LawContext, LawOf};
+use super::rational::RationalLaw;
+use super::sum_law::AnySumLaw;
+use super::turn::Turn;
+use crate::build_error::BuildError;
+use crate::coupling::{Response, Slopes};
+use crate::number::Number;
+
+/// The law of any [`Environment`].
+#[derive(Clone, Debug)]
+pub enum AnyLaw<N: Number> {
+    /// Of a sum of parts.
+    Parts(AnySumLaw<N>),
+    /// Of a rational environment.
+    Rational(RationalLaw<N>),
+}
+
+impl<N: Number> Law<N> for AnyLaw<N> {
+    fn evaluate(&self, x: N) -> Response<N> {
+        match self {
+            Self::Parts(law) => law.evaluate(x),
+            Self::Rational(law) => law.evaluate(x),
+        }
+    }
+
+    fn update(&mut self, x_e: N) {
+        match self {
+            Self::Parts(law) => law.update(x_e),
+            Self::Rational(law) => law.update(x_e),
+        }
+    }
+
+    fn rest_at(&mut self, x_e: N) {
+        match self {
+            Self::Parts(law) => law.rest_at(x_e),
+            Self::Rational(law) => law.rest_at(x_e),
+        }
+    }
+
+    fn turn(&mut self) -> Option<&mut Turn<N>> {
+        match self {
+            Self::Parts(law) => law.turn(),
+            Self::Rational(_) => None,
+        }
+    }
+
+    fn shift(&mut self, by: N) {
+        if let Self::Parts(law) = self {
+            law.shift(by);
+        }
+    }
+
+    fn hysteresis(&self) -> f64 {
+        match self {
+            Self::Parts(law) => law.hysteresis(),
+            Self::Rational(_) => f64::INFINITY,
+        }
+    }
+
+    fn slopes(&self) -> Slopes {
+        match self {
+            Self::Parts(law) => law.slopes(),
+            Self::Rational(law) => law.slopes(),
+        }
+    }
+}
+
+impl<N: Number> Discretize<N> for Environment {
+    type Law = AnyLaw<N>;
+
+    fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
+        match self {
+            Self::Parts(parts) => Ok(AnyLaw::Parts(AnySumLaw::law_of(parts, context)?)),
+            Self::Rational(rational) => Ok(AnyLaw::Rational(rational.law(context)?)),
+            // Its statement does not contain its law.
+            Self::Stated(_) => Err(BuildError::LawElsewhere),
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! What a servo needs of a scene: the law of its environment, and the memory of its coupling.
+
+use crate::coupling_memory::{AnyMemory, CouplingMemory, NoMemory};
+use crate::environment::{Discretize, Environment, StatedEnvironment};
+use crate::number::Number;
+
+/// An environment that a servo renders in the number format `N`.
+pub trait Rendering<N: Number>: Discretize<N> {
+    /// The torques that its coupling stores.
+    type Memory: CouplingMemory<N>;
+}
+
+impl<N: Number> Rendering<N> for Environment {
+    type Memory = AnyMemory<N>;
+}
+
+impl<N: Number, E: StatedEnvironment + Discretize<N>> Rendering<N> for E {
+    type Memory = NoMemory;
+}

@@ -1,0 +1,382 @@
+//! The static type of a program's scene, computed from its constant: [`scene_type!`](crate::scene_type!).
+//!
+//! A program only contains the parts of its scene, their delays, and the memory of its coupling. The structure
+//! is that of the scene's options, variants, delays and lengths; a number never is, so that any number may be
+//! changed while the servo runs.
+
+use crate::build_error::BuildError;
+use crate::certificate::Certified;
+use crate::coupling::Coupling;
+use crate::coupling_memory::CouplingMemory;
+use crate::environment::{
+    Delayed, Discretize, Environment, EnvironmentModel, LawContext, LawOf, Memory, Parts,
+    ProfileUse, Side, SupportsTiming, Wall, sealed,
+};
+use crate::number::Number;
+use crate::output_timing::AtPhase;
+use crate::parameter::{NamedParameters, Parameter};
+use crate::rendering::Rendering;
+use crate::scene::Scene;
+
+/// The structure of a scene. [`scene_type!`](crate::scene_type!) makes one.
+pub trait SceneType: Copy + core::fmt::Debug + PartialEq + 'static {
+    /// The certified scene whose structure it is.
+    const CERTIFIED: Certified<Scene>;
+    /// The numbers of its environment.
+    const NUMBERS: Self::Numbers;
+    /// As many numbers as may be changed while the servo runs.
+    type Numbers: AsRef<[f64]> + AsMut<[f64]> + Copy + core::fmt::Debug + PartialEq;
+    /// The law of the environment.
+    type Law<N: Number>: LawOf<N, Parts>;
+    /// The torques that the coupling stores.
+    type Memory<N: Number>: CouplingMemory<N>;
+}
+
+/// An environment whose parts are known statically: the numbers of a program's scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Typed<S: SceneType> {
+    numbers: S::Numbers,
+}
+
+impl<S: SceneType> Typed<S> {
+    /// The structure's parts.
+    const LIKE: Parts = *S::CERTIFIED.scene().environment.parts();
+    /// With the structure's numbers.
+    pub(crate) const ENVIRONMENT: Self = Self { numbers: S::NUMBERS };
+    /// Where each parameter is among the numbers.
+    const PLACES: Places = places(Self::LIKE);
+
+    /// The certified scene of the structure.
+    pub const fn certified() -> Certified<Scene<Self>> {
+        S::CERTIFIED.with_environment(Self::ENVIRONMENT)
+    }
+
+    /// A scene that only differs from the structure's by its numbers; `None` if another does.
+    pub fn of(scene: &Scene) -> Option<Scene<Self>> {
+        let Environment::Parts(mut parts) = scene.environment else { return None };
+        let mut environment = Self::ENVIRONMENT;
+        for parameter in Parameter::ALL {
+            if let (Some(place), Some(number)) =
+                (environment.value(*parameter), parts.number_mut(*parameter))
+            {
+                *place = *number;
+            }
+        }
+        let is_same = Structure::of(scene) == Structure::of(S::CERTIFIED.scene())
+            && environment.parts() == parts;
+        is_same.then(|| scene.in_environment(environment))
+    }
+
+    /// The present number of a parameter; `None` if the structure has none of its name.
+    #[inline(always)]
+    fn number(&self, parameter: Parameter) -> Option<f64> {
+        let place = usize::from(Self::PLACES[parameter as usize]);
+        self.numbers.as_ref().get(place).copied()
+    }
+
+    /// The parts with their present numbers. All but the numbers is that of the structure, so that the compiler
+    /// leaves out what the scene does not have.
+    fn parts(&self) -> Parts {
+        let Parts { canceller, wall, profile } = Self::LIKE;
+        let of_wall = |parameter| wall.is_some() && Wall::has_name_of(parameter);
+        Parts {
+            canceller: canceller.map(|like| like.with_numbers(|it| self.number(it))),
+            wall: wall.map(|like| like.with_numbers(|it| self.number(it))),
+            profile: profile.map(|like| {
+                like.with_numbers(|it| if of_wall(it) { None } else { self.number(it) })
+            }),
+        }
+    }
+}
+
+impl<S: SceneType> NamedParameters for Typed<S> {
+    fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        self.numbers.as_mut().get_mut(usize::from(Self::PLACES[parameter as usize]))
+    }
+}
+
+impl<S: SceneType> sealed::Sealed for Typed<S> {}
+
+impl<S: SceneType> EnvironmentModel for Typed<S> {
+    const CANCELS_DAMPING: bool = Self::LIKE.canceller.is_some();
+    const PROFILE: ProfileUse = ProfileUse::of(&Self::LIKE);
+    const MEMORY: Memory = Memory::of(S::CERTIFIED.scene());
+
+    fn as_data(&self, _: &LawContext) -> Environment {
+        Environment::Parts(self.parts())
+    }
+}
+
+impl<N: Number, S: SceneType> Discretize<N> for Typed<S> {
+    type Law = S::Law<N>;
+
+    fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
+        S::Law::law_of(&self.parts(), context)
+    }
+}
+
+impl<N: Number, S: SceneType> Rendering<N> for Typed<S> {
+    type Memory = S::Memory<N>;
+}
+
+// With late torques, its numbers decide, which are checked with the timing of the scene.
+impl<S: SceneType> Delayed for Typed<S> {}
+
+impl<S: SceneType, const NANOSECONDS: u32> SupportsTiming<AtPhase<NANOSECONDS>> for Typed<S> {}
+
+/// The structure of a scene in numbers, for the types that [`scene_type!`](crate::scene_type!) computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Structure {
+    /// Number of cancellers.
+    pub cancellers: usize,
+    /// The canceller's delay.
+    pub canceller_delay: usize,
+    /// Number of walls.
+    pub walls: usize,
+    /// The wall's delay.
+    pub wall_delay: usize,
+    /// Whether the wall has a damper.
+    pub is_damped: bool,
+    /// Whether it has a filter.
+    pub is_filtered: bool,
+    /// Whether it pulls, at a position that is not zero.
+    pub is_displaced: bool,
+    /// Whether it only pushes.
+    pub is_one_sided: bool,
+    /// Number of profiles.
+    pub profiles: usize,
+    /// The profile's delay.
+    pub profile_delay: usize,
+    /// Cells of the profile's table; 0 without cells.
+    pub cells: usize,
+    /// Whether the profile has a damper.
+    pub is_profile_damped: bool,
+    /// Whether it has a snap point.
+    pub snaps: bool,
+    /// Whether it is one of several modes.
+    pub has_modes: bool,
+    /// Whether the coupling stores torques.
+    pub is_matched: bool,
+    /// The whole samples of output delay.
+    pub whole: usize,
+    /// The number of lags.
+    pub lags: usize,
+    /// Whether the amplifier is updated several times in a period.
+    pub has_updates: bool,
+}
+
+impl Structure {
+    /// Of a scene.
+    ///
+    /// # Panics
+    /// If its environment is not a sum of parts; in a constant this is a compile error.
+    pub const fn of(scene: &Scene) -> Self {
+        let Environment::Parts(Parts { canceller, wall, profile }) = &scene.environment else {
+            panic!("a board renders sums of parts, and no rational environment");
+        };
+        let (is_damped, is_filtered) = match wall {
+            Some(Wall { damper: Some(damper), .. }) => (true, damper.filter.is_some()),
+            _ => (false, false),
+        };
+        let (latency, is_matched) = (&scene.latency, matches!(scene.coupling, Coupling::Matched));
+        let mut out = Self {
+            cancellers: canceller.is_some() as usize,
+            canceller_delay: 0,
+            walls: wall.is_some() as usize,
+            wall_delay: 0,
+            is_damped,
+            is_filtered,
+            is_displaced: matches!(wall, Some(Wall { side: Side::Displaced(_), .. })),
+            is_one_sided: matches!(wall, Some(Wall { side: Side::Face(_), .. })),
+            profiles: profile.is_some() as usize,
+            profile_delay: 0,
+            cells: 0,
+            is_profile_damped: false,
+            snaps: false,
+            has_modes: false,
+            is_matched,
+            whole: if is_matched { latency.whole_samples(scene.timing.period) } else { 0 },
+            lags: latency.trails(),
+            has_updates: latency.actuator_updates != 0,
+        };
+        if let Some(canceller) = canceller {
+            out.canceller_delay = canceller.delay;
+        }
+        if let Some(wall) = wall {
+            out.wall_delay = wall.delay;
+        }
+        if let Some(profile) = profile {
+            out.profile_delay = profile.delay;
+            out.cells = profile.cells().len();
+            out.is_profile_damped = profile.damping.is_some();
+            out.snaps = profile.snap.is_some();
+            out.has_modes = profile.modes.is_some();
+        }
+        out
+    }
+}
+
+/// The first of two types, or the second.
+pub type Either<const IS_FIRST: bool, A, B> = <Choice<IS_FIRST> as Choose<A, B>>::Chosen;
+
+/// A choice between two types.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice<const IS_FIRST: bool>;
+
+/// The result of a [`Choice`].
+pub trait Choose<A, B> {
+    /// The chosen type.
+    type Chosen;
+}
+
+impl<A, B> Choose<A, B> for Choice<true> {
+    type Chosen = A;
+}
+
+impl<A, B> Choose<A, B> for Choice<false> {
+    type Chosen = B;
+}
+
+/// Where each parameter of an environment is among its numbers; beyond them if it has none of its name.
+type Places = [u8; Parameter::ALL.len()];
+
+const fn places(mut parts: Parts) -> Places {
+    let mut places = [u8::MAX; _];
+    let (mut index, mut next) = (0, 0);
+    while index < places.len() {
+        if parts.number_mut(Parameter::ALL[index]).is_some() {
+            places[index] = next;
+            next += 1;
+        }
+        index += 1;
+    }
+    places
+}
+
+/// As many numbers as an environment has.
+#[doc(hidden)]
+pub const fn count(mut parts: Parts) -> usize {
+    let (mut index, mut count) = (0, 0);
+    while index < Parameter::ALL.len() {
+        count += parts.number_mut(Parameter::ALL[index]).is_some() as usize;
+        index += 1;
+    }
+    count
+}
+
+/// The numbers of an environment in the order of the parameters.
+#[doc(hidden)]
+pub const fn numbers<const COUNT: usize>(mut parts: Parts) -> [f64; COUNT] {
+    let mut numbers = [0.0; COUNT];
+    let (mut index, mut next) = (0, 0);
+    while index < Parameter::ALL.len() {
+        if let Some(number) = parts.number_mut(Parameter::ALL[index]) {
+            numbers[next] = *number;
+            next += 1;
+        }
+        index += 1;
+    }
+    numbers
+}
+
+/// Makes a type of the structure of a certified scene: `scene_type!(pub MyScene: CERTIFIED)`, where `CERTIFIED` is a
+/// constant `Certified<Scene>`. The environment of such a program is `Typed<MyScene>`.
+///
+/// ```
+/// use haptic_servo::certificate::Certified;
+/// use haptic_servo::environment::Wall;
+/// use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+/// use haptic_servo::scene_type::Typed;
+/// use haptic_servo::servo::Servo;
+///
+/// const CERTIFIED: Certified<Scene> = Scene {
+///     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+///     timing: Timing { period: 0.001, worst_period: None },
+///     coupling: Coupling::Spring { stiffness: 44.0 },
+///     environment: Wall::damped(22.0, 0.01, 1).behind(0.1).alone(),
+///     latency: Latency::NONE,
+///     torque_limit: Some(1.0),
+/// }
+/// .certified();
+/// haptic_servo::scene_type!(WallScene: CERTIFIED);
+/// // A stiffness, a damper, a face, one stored sample, and no more.
+/// type WallServo = Servo<Typed<WallScene>, f32>;
+/// assert!(size_of::<WallServo>() < size_of::<Servo<haptic_servo::environment::Environment, f32>>());
+/// ```
+#[macro_export]
+macro_rules! scene_type {
+    ($(#[$attribute:meta])* $visibility:vis $name:ident: $certified:path) => {
+        $(#[$attribute])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        $visibility struct $name;
+
+        const _: () = {
+            use $crate::scene_type::names::*;
+
+            const OF: Structure = Structure::of($certified.scene());
+            const PARTS: Parts = *$certified.scene().environment.parts();
+
+            impl SceneType for $name {
+                const CERTIFIED: Certified<Scene> = $certified;
+                const NUMBERS: Self::Numbers = numbers(PARTS);
+                type Numbers = [f64; count(PARTS)];
+                type Law<N: Number> = SumLaw<
+                    [CancellerLaw<N, FixedDelay<N, { OF.canceller_delay }>>; OF.cancellers],
+                    [WallLaw<
+                        N,
+                        Either<
+                            { OF.is_filtered },
+                            Washout<N>,
+                            Either<{ OF.is_damped }, Difference<N>, NoDamping>,
+                        >,
+                        Either<
+                            { OF.is_one_sided },
+                            Face<N>,
+                            Either<{ OF.is_displaced }, Displaced<N>, Centred>,
+                        >,
+                        FixedDelay<N, { OF.wall_delay }>,
+                    >; OF.walls],
+                    [ProfileLaw<
+                        N,
+                        Either<{ OF.cells > 0 }, &'static [Cell; OF.cells], &'static [i16]>,
+                        Either<{ OF.is_profile_damped }, Difference<N>, NoDamping>,
+                        FixedDelay<N, { OF.profile_delay }>,
+                        Either<
+                            { OF.has_modes },
+                            AnySnap<N>,
+                            Either<{ OF.snaps }, Snap<N>, NoSnap>,
+                        >,
+                    >; OF.profiles],
+                >;
+                type Memory<N: Number> = Either<
+                    { OF.is_matched },
+                    MatchedMemory<
+                        N,
+                        FixedDelay<N, { OF.whole }>,
+                        { OF.lags },
+                        { OF.has_updates },
+                    >,
+                    NoMemory,
+                >;
+            }
+        };
+    };
+}
+
+/// All that [`scene_type!`](crate::scene_type!) names.
+#[doc(hidden)]
+pub mod names {
+    pub use crate::certificate::Certified;
+    pub use crate::coupling_memory::{MatchedMemory, NoMemory};
+    pub use crate::environment::{
+        AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, Face, FixedDelay, NoDamping,
+        NoSnap, Parts, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
+    };
+    pub use crate::number::Number;
+    pub use crate::scene::Scene;
+
+    pub use super::{Either, SceneType, Structure, count, numbers};
+}
+
+#[cfg(test)]
+mod tests;
