@@ -44,7 +44,7 @@ impl<S: SceneType> Typed<S> {
     /// With the structure's numbers.
     pub(crate) const ENVIRONMENT: Self = Self { numbers: S::NUMBERS };
     /// Where each parameter is among the numbers.
-    const PLACES: Places = places(Self::LIKE);
+    const PLACES: Places = places(S::CERTIFIED.scene().environment);
 
     /// The certified scene of the structure.
     pub const fn certified() -> Certified<Scene<Self>> {
@@ -53,11 +53,11 @@ impl<S: SceneType> Typed<S> {
 
     /// A scene that only differs from the structure's by its numbers; `None` if another does.
     pub fn of(scene: &Scene) -> Option<Scene<Self>> {
-        let Environment::Parts(mut parts) = scene.environment else { return None };
-        let mut environment = Self::ENVIRONMENT;
+        let Environment::Parts(parts) = scene.environment else { return None };
+        let (mut environment, mut data) = (Self::ENVIRONMENT, scene.environment);
         for parameter in Parameter::ALL {
             if let (Some(place), Some(number)) =
-                (environment.value(*parameter), parts.number_mut(*parameter))
+                (environment.value(*parameter), data.value(*parameter))
             {
                 *place = *number;
             }
@@ -78,7 +78,9 @@ impl<S: SceneType> Typed<S> {
     /// leaves out what the scene does not have.
     fn parts(&self) -> Parts {
         let Parts { canceller, wall, profile } = Self::LIKE;
-        let of_wall = |parameter| wall.is_some() && Wall::has_name_of(parameter);
+        // If both have them, these names are the wall's.
+        let of_wall =
+            |it| wall.is_some() && matches!(it, Parameter::Stiffness | Parameter::Damping);
         Parts {
             canceller: canceller.map(|like| like.with_numbers(|it| self.number(it))),
             wall: wall.map(|like| like.with_numbers(|it| self.number(it))),
@@ -240,11 +242,11 @@ impl<A, B> Choose<A, B> for Choice<false> {
 /// Where each parameter of an environment is among its numbers; beyond them if it has none of its name.
 type Places = [u8; Parameter::ALL.len()];
 
-const fn places(mut parts: Parts) -> Places {
+const fn places(mut environment: Environment) -> Places {
     let mut places = [u8::MAX; _];
     let (mut index, mut next) = (0, 0);
     while index < places.len() {
-        if parts.number_mut(Parameter::ALL[index]).is_some() {
+        if environment.tunable_mut(Parameter::ALL[index]).is_some() {
             places[index] = next;
             next += 1;
         }
@@ -255,10 +257,10 @@ const fn places(mut parts: Parts) -> Places {
 
 /// As many numbers as an environment has.
 #[doc(hidden)]
-pub const fn count(mut parts: Parts) -> usize {
+pub const fn count(mut environment: Environment) -> usize {
     let (mut index, mut count) = (0, 0);
     while index < Parameter::ALL.len() {
-        count += parts.number_mut(Parameter::ALL[index]).is_some() as usize;
+        count += environment.tunable_mut(Parameter::ALL[index]).is_some() as usize;
         index += 1;
     }
     count
@@ -266,11 +268,11 @@ pub const fn count(mut parts: Parts) -> usize {
 
 /// The numbers of an environment in the order of the parameters.
 #[doc(hidden)]
-pub const fn numbers<const COUNT: usize>(mut parts: Parts) -> [f64; COUNT] {
+pub const fn numbers<const COUNT: usize>(mut environment: Environment) -> [f64; COUNT] {
     let mut numbers = [0.0; COUNT];
     let (mut index, mut next) = (0, 0);
     while index < Parameter::ALL.len() {
-        if let Some(number) = parts.number_mut(Parameter::ALL[index]) {
+        if let Some(number) = environment.tunable_mut(Parameter::ALL[index]) {
             numbers[next] = *number;
             next += 1;
         }
@@ -314,12 +316,12 @@ macro_rules! scene_type {
             use $crate::scene_type::names::*;
 
             const OF: Structure = Structure::of($certified.scene());
-            const PARTS: Parts = *$certified.scene().environment.parts();
+            const ENVIRONMENT: Environment = $certified.scene().environment;
 
             impl SceneType for $name {
                 const CERTIFIED: Certified<Scene> = $certified;
-                const NUMBERS: Self::Numbers = numbers(PARTS);
-                type Numbers = [f64; count(PARTS)];
+                const NUMBERS: Self::Numbers = numbers(ENVIRONMENT);
+                type Numbers = [f64; count(ENVIRONMENT)];
                 type Law<N: Number> = SumLaw<
                     [CancellerLaw<N, FixedDelay<N, { OF.canceller_delay }>>; OF.cancellers],
                     [WallLaw<
@@ -369,8 +371,8 @@ pub mod names {
     pub use crate::certificate::Certified;
     pub use crate::coupling_memory::{MatchedMemory, NoMemory};
     pub use crate::environment::{
-        AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, Face, FixedDelay, NoDamping,
-        NoSnap, Parts, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
+        AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, Environment, Face, FixedDelay,
+        NoDamping, NoSnap, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
     };
     pub use crate::number::Number;
     pub use crate::scene::Scene;

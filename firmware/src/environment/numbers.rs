@@ -58,6 +58,23 @@ impl Environment {
         Some(changed)
     }
 
+    /// The number of this name that may be changed while a program's servo runs; `None` if there is none. Of several
+    /// modes it is only which of them is selected, because each has its own table, and a table that does not repeat
+    /// stays in its place.
+    pub(crate) const fn tunable_mut(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        use Parameter::{Centre, Count, Damping, From, ProfileTorque, Stiffness, To};
+        let is_fixed = match self.profile() {
+            Some(Profile { modes: Some(_), .. }) => match parameter {
+                ProfileTorque | Count | Centre | From | To => true,
+                Stiffness | Damping => self.wall().is_none(),
+                _ => false,
+            },
+            Some(profile) => !profile.outline().wraps && matches!(parameter, Count | Centre),
+            None => false,
+        };
+        if is_fixed { None } else { self.number_mut(parameter) }
+    }
+
     numbers! {
         number, number_mut, numbers, value;
         Stiffness:

@@ -13,7 +13,6 @@
 use super::canceller::Canceller;
 use super::profile::Profile;
 use super::wall::Wall;
-use crate::parameter::Parameter;
 
 /// The parts of an environment, whose torques add.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,20 +72,6 @@ impl Parts {
             Self { wall: Some(wall), .. } => Some(&mut wall.delay),
             Self { canceller: Some(canceller), .. } => Some(&mut canceller.delay),
             Self { canceller: None, wall: None, profile: None } => None,
-        }
-    }
-
-    /// The number of this name that may be changed while a servo runs; `None` if there is none.
-    pub(crate) const fn number_mut(&mut self, parameter: Parameter) -> Option<&mut f64> {
-        match self {
-            Self { canceller: Some(canceller), .. } if matches!(parameter, Parameter::Residual) => {
-                Some(&mut canceller.residual)
-            }
-            Self { wall: Some(wall), .. } if Wall::has_name_of(parameter) => {
-                wall.number_mut(parameter)
-            }
-            Self { profile: Some(profile), .. } => profile.number_mut(parameter),
-            _ => None,
         }
     }
 }

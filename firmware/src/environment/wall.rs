@@ -114,27 +114,6 @@ impl Wall {
         }
     }
 
-    /// Whether the name is of a wall, if an environment has one.
-    pub(crate) const fn has_name_of(parameter: Parameter) -> bool {
-        matches!(
-            parameter,
-            Parameter::Stiffness | Parameter::Damping | Parameter::Filter | Parameter::Face
-        )
-    }
-
-    /// The number of this name; `None` if it has none.
-    pub(crate) const fn number_mut(&mut self, parameter: Parameter) -> Option<&mut f64> {
-        match (parameter, &mut self.damper, &mut self.side) {
-            (Parameter::Stiffness, ..) => Some(&mut self.stiffness),
-            (Parameter::Damping, Some(damper), _) => Some(&mut damper.damping),
-            (Parameter::Filter, Some(Damper { filter: Some(filter), .. }), _) => Some(filter),
-            (Parameter::Face, _, Side::Displaced(position) | Side::Face(position)) => {
-                Some(position)
-            }
-            _ => None,
-        }
-    }
-
     /// Damping in N m s/rad; 0 without a damper.
     pub const fn damping(&self) -> f64 {
         match self.damper {

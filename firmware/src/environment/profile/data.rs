@@ -139,26 +139,6 @@ impl Profile {
         }
     }
 
-    /// The number of this name that may be changed; `None` if it has none. Of several modes only the number of the
-    /// selected one, because each has its own table.
-    pub(crate) const fn number_mut(&mut self, parameter: Parameter) -> Option<&mut f64> {
-        if let Some(modes) = &mut self.modes {
-            return if let Parameter::Mode = parameter { Some(&mut modes.mode) } else { None };
-        }
-        let wraps = self.table.outline().wraps;
-        match (parameter, &mut self.ends) {
-            (Parameter::ProfileTorque, _) => Some(&mut self.torque),
-            (Parameter::Damping, _) => self.damping.as_mut(),
-            // A profile with ends has no number of repetitions.
-            (Parameter::Count, _) if wraps => Some(&mut self.count),
-            (Parameter::Centre, _) if wraps => Some(&mut self.centre),
-            (Parameter::From, Some(ends)) => Some(&mut ends.from),
-            (Parameter::To, Some(ends)) => Some(&mut ends.to),
-            (Parameter::Stiffness, Some(ends)) => Some(&mut ends.stiffness),
-            _ => None,
-        }
-    }
-
     /// Damping in N m s/rad; 0 without a damper.
     pub const fn damping(&self) -> f64 {
         match self.damping {
