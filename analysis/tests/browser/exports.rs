@@ -47,7 +47,7 @@ pub fn what_the_page_exports_is_the_scene_to_the_bit() {
         let constant = exported(&mut page, "#export-rust");
         match constants(&name) {
             Some(kept) => assert_eq!(constant, kept, "{name}"),
-            None => assert!(constant.contains("stiffness: 60.0"), "{constant}"),
+            None => assert!(constant.contains("Wall::damped(60.0,"), "{constant}"),
         }
     }
     assert_silent(&page);
