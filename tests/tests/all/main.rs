@@ -37,7 +37,6 @@ mod own_environment;
 mod packages;
 mod profile_failures;
 mod profiles;
-mod public_api;
 mod random;
 mod reference;
 mod remedies;
