@@ -7,7 +7,7 @@
 
 use crate::exact::Q;
 use crate::poly::Poly;
-use crate::remainders::{is_hurwitz, is_schur, roots_inside};
+use crate::remainders::{is_schur, roots_inside};
 use num_traits::{One, Signed, Zero};
 use std::cmp::Ordering;
 
@@ -74,18 +74,6 @@ impl Index {
         Ok(Self { real: real_part(&rest, &inner), norm: real_part(&inner, &inner) })
     }
 
-    /// The same for a function of `s`: minus the least real part on the imaginary axis, infinity
-    /// included. With `w^2 = (1 + c) / (1 - c)` the axis becomes `[-1, 1]` too. `None` unless all
-    /// poles have negative real parts and there are no more zeros than poles.
-    pub fn continuous(numerator: &Poly, denominator: &Poly) -> Option<Self> {
-        let n = denominator.degree();
-        if numerator.degree() > n || !is_hurwitz(denominator) {
-            return None;
-        }
-        let real = |p: &Poly| on_axis(p, denominator, n);
-        Some(Self { real: real(numerator), norm: real(denominator) })
-    }
-
     /// Where `alpha` lies relative to `lambda`.
     pub fn compare(&self, lambda: &Q) -> Ordering {
         let f = self.real.plus(&self.norm.scaled(lambda));
@@ -102,7 +90,7 @@ impl Index {
 }
 
 /// Whether `f` is negative anywhere on `[-1, 1]`.
-pub fn is_negative_somewhere(f: &Poly) -> bool {
+fn is_negative_somewhere(f: &Poly) -> bool {
     !f.is_zero() && (ends(f).iter().any(Signed::is_negative) || changes_sign(f))
 }
 
@@ -139,7 +127,7 @@ fn is_negative_inside(f: &Poly) -> bool {
 }
 
 /// `Re(P(z) / D(z)) |D|^2` on the circle, as a polynomial in the cosine.
-pub fn real_part(p: &Poly, d: &Poly) -> Poly {
+fn real_part(p: &Poly, d: &Poly) -> Poly {
     let longest = p.degree().max(d.degree());
     let mut by_distance = vec![Q::zero(); longest + 1];
     for (i, a) in p.coefficients().iter().enumerate() {
@@ -149,23 +137,6 @@ pub fn real_part(p: &Poly, d: &Poly) -> Poly {
     }
     let terms = by_distance.iter().zip(chebyshev(longest));
     terms.fold(Poly::integers(&[]), |sum, (c, t)| sum.plus(&t.scaled(c)))
-}
-
-/// `Re(P(jw) conj(D(jw))) (1 - c)^n` as a polynomial in `c`.
-fn on_axis(p: &Poly, d: &Poly, n: usize) -> Poly {
-    let mut sum = Poly::integers(&[]);
-    for (i, a) in p.coefficients().iter().enumerate() {
-        for (k, b) in d.coefficients().iter().enumerate().filter(|(k, _)| (i + k) % 2 == 0) {
-            // j^i (-j)^k is real: it is (-1)^((i - k) / 2).
-            let sign = if i.abs_diff(k) % 4 == 0 { Q::one() } else { -Q::one() };
-            let power = (i + k) / 2;
-            let plus =
-                (0..power).fold(Poly::integers(&[1]), |x, _| x.times(&Poly::integers(&[1, 1])));
-            let term = (power..n).fold(plus, |x, _| x.times(&Poly::integers(&[1, -1])));
-            sum = sum.plus(&term.scaled(&(a * b * sign)));
-        }
-    }
-    sum
 }
 
 /// Chebyshev polynomials `T_0 ..= T_n`.
