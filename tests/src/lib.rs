@@ -10,6 +10,7 @@ pub mod exact;
 pub mod floats;
 pub mod hands;
 pub mod index;
+pub mod loops;
 pub mod plant;
 pub mod poly;
 pub mod remainders;

@@ -172,7 +172,8 @@ fn polynomial(rng: &mut impl Rng, count: usize, nearest: f64) -> Vec<f64> {
     product
 }
 
-fn multiply(a: &[f64], b: &[f64]) -> Vec<f64> {
+/// The product of two polynomials.
+pub fn multiply(a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut product = vec![0.0; a.len() + b.len() - 1];
     for (i, x) in a.iter().enumerate() {
         for (j, y) in b.iter().enumerate() {
@@ -196,7 +197,7 @@ fn least_real(numerator: &[f64], denominator: &[f64], delay: usize) -> f64 {
 }
 
 /// Transfer function of a wall: `z^-n (K + B q / T)`, the velocity through `(1 - a) / (1 - a / z)`.
-pub fn wall_fraction(wall: &Wall, period: f64) -> (Poly, Poly) {
+fn wall_fraction(wall: &Wall, period: f64) -> (Poly, Poly) {
     let a = wall.filter().map_or_else(Q::zero, q);
     let (k, b, t) = (q(wall.stiffness), q(wall.damping()) * (Q::one() - &a), q(period));
     let pole = Poly::ascending(vec![-a, Q::one()]);

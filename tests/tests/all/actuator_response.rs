@@ -1,5 +1,5 @@
 //! Amplifiers of which only the begin and end of the step response are known: mixtures of delays, by their
-//! own waveforms, never need more than the certified passivity, and no hand shakes a certified loop.
+//! own waveforms, never need more than the certified passivity.
 
 use std::f64::consts::PI;
 
@@ -10,9 +10,16 @@ use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use tests::hands::Hand;
+use tests::loops::Loop;
 
-use super::lagging::{Loop, Part};
+/// A part of the torque.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    /// Delay in periods.
+    delay: f64,
+    /// All of them together are 1.
+    weight: f64,
+}
 
 /// A loop with an amplifier whose response begins and ends then, in periods.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +72,6 @@ impl Unknown {
     /// equation 38 is made.
     fn needed(&self, parts: &[Part]) -> f64 {
         const ANGLES: usize = 400;
-        let (numerator, denominator) = self.drawn.controller();
         let mut times: Vec<f64> = parts.iter().map(|part| part.delay.fract()).collect();
         times.extend([0.0, 1.0]);
         times.sort_by(f64::total_cmp);
@@ -79,9 +85,7 @@ impl Unknown {
                 mean += torque * length;
                 square += torque.norm_sqr() * length;
             }
-            let value =
-                |p: &[f64]| p.iter().rev().fold(Complex::new(0.0, 0.0), |sum, c| sum * z + c);
-            let h = value(&numerator) / value(&denominator);
+            let h = self.drawn.controller_at(z);
             let step = z - 1.0;
             let real = (h * mean / step).re;
             let ripple = (square - mean.norm_sqr()) / step.norm_sqr();
@@ -95,7 +99,7 @@ impl Unknown {
 fn no_mixture_of_delays_needs_more_than_what_is_certified() {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let (mut loops, mut nearest) = (0, 0.0_f64);
-    while loops < 150 {
+    while loops < 60 {
         let unknown = Unknown::draw(&mut rng);
         let Some(certified) = unknown.certified() else { continue };
         loops += 1;
@@ -111,42 +115,6 @@ fn no_mixture_of_delays_needs_more_than_what_is_certified() {
     }
     // A bound that nothing comes near to would not be tested.
     assert!(nearest > 0.99, "{nearest}");
-}
-
-#[test]
-fn no_hand_destabilises_a_certified_loop_whatever_the_shape_of_the_response() {
-    let mut rng = ChaCha8Rng::seed_from_u64(2);
-    let (mut loops, mut shown) = (0, 0);
-    while loops < 40 {
-        let unknown = Unknown::draw(&mut rng);
-        let Some(certified) = unknown.certified().filter(|needed| *needed > 1e-3) else { continue };
-        loops += 1;
-        // The device of the model has a damping of 1: the controller is scaled, with its coupling.
-        let scaled = |times: f64| {
-            let mut drawn = unknown.drawn;
-            let gain = times / certified;
-            (drawn.stiffness, drawn.damping) = (gain * drawn.stiffness, gain * drawn.damping);
-            drawn.coupling = drawn.coupling.map(|stiffness| gain * stiffness);
-            drawn
-        };
-        let (below, above) = (scaled(0.995), scaled(1.3));
-        assert!(certify(&Unknown { drawn: below, ..unknown }.scene()).is_ok(), "{unknown:?}");
-        assert!(certify(&Unknown { drawn: above, ..unknown }.scene()).is_err(), "{unknown:?}");
-        let theta = assess(&unknown.scene()).cos_theta.map_or(PI, |c| c.midpoint().acos());
-        let mut is_shown = false;
-        for _ in 0..60 {
-            let hand = match rng.random_bool(0.5) {
-                true => Hand::draw(&mut rng),
-                false => Hand::tuned(&mut rng, theta),
-            };
-            let parts = unknown.mixture(&mut rng);
-            let radius = below.mixed_radius(&hand, &[], &parts);
-            assert!(radius <= 1.0 + 1e-7, "{unknown:?} {parts:?} {hand:?} {radius}");
-            is_shown |= above.mixed_radius(&hand, &[], &parts) > 1.0 + 1e-7;
-        }
-        shown += usize::from(is_shown);
-    }
-    assert!(3 * shown > loops, "{shown} of {loops}");
 }
 
 fn spring(stiffness: f64, latency: Latency) -> Scene {
