@@ -33,7 +33,6 @@ mod random;
 mod reference;
 mod remedies;
 mod sampled;
-mod simulated;
 mod soundness;
 mod two_jitters;
 mod vectors;
