@@ -5,7 +5,6 @@
 //! remainder sequences; the firmware encloses in binary intervals with Bernstein polynomials.
 
 pub mod agreement;
-pub mod debugger;
 pub mod exact;
 pub mod floats;
 pub mod hands;

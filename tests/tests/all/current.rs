@@ -1,11 +1,10 @@
 //! What an instant of the current loop takes on the emulated board, and that it computes as the host does.
 
-use analysis::emulator::BenchClient;
 use firmware_harness::bench_request::BenchRequest;
 use firmware_harness::currents::{CurrentBench, Input};
 use haptic_servo::current::{Duties, Winding};
 
-use crate::emulated::TOOLCHAIN;
+use crate::toolchain::bench_board;
 
 fn inputs() -> Vec<u32> {
     (1..=4000).map(|instant| Input::of_steps(instant).0).collect()
@@ -13,8 +12,7 @@ fn inputs() -> Vec<u32> {
 
 #[test]
 fn an_instant_is_within_its_budget_and_is_the_hosts() {
-    let elf = TOOLCHAIN.build_harness("bench_programs").unwrap_or_else(|error| panic!("{error}"));
-    let mut board = BenchClient::boot(&elf).unwrap();
+    let mut board = bench_board();
     for bench in CurrentBench::ALL {
         let outputs = board.compute(&BenchRequest::Current(bench), &inputs()).unwrap();
         let mut controller = bench.started();

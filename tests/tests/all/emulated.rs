@@ -3,19 +3,17 @@
 //! Fails if a single DAC code differs, if a certificate differs by a bit between compiler, host
 //! and board, or if the board drops a frame or misses a tick.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
 use std::time::Duration;
 
-use analysis::emulator::{BenchClient, CertifyClient, Emulator, EmulatorError, EmulatorReport};
+use analysis::emulator::{CertifyClient, Emulator, EmulatorError, EmulatorReport};
 use analysis::program::{damper_wall, delayed_spring, free_mode, knob, undelayed_wall};
 use analysis::studies::bench;
 use analysis::studies::bench::live::live_set;
 use analysis::studies::bench::matched::contact_instructions;
 use analysis::studies::number_format::{Motion, cost};
 use analysis::studies::tradeoff::{servo, sine};
-use analysis::toolchain::{NumberFormat, Program, Toolchain, Tools, prepare};
+use analysis::toolchain::{NumberFormat, Program};
 use firmware_harness::bench_request::BenchRequest;
 use firmware_harness::scene_codec::{CertifyReply, IntervalBits};
 use firmware_harness::sines::Sine;
@@ -32,24 +30,17 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tests::vectors;
 
+use crate::toolchain::{TOOLCHAIN, bench_board, harness};
+
 /// Ticks of each run.
 const TICKS: usize = 5_000;
 
-pub static TOOLCHAIN: LazyLock<Toolchain> = LazyLock::new(|| {
-    prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
-        .unwrap_or_else(|error| panic!("{error}"))
-});
+/// Judging may not need more instructions than 20 ms of a core at 170 MHz.
+const MOST_TO_JUDGE: u64 = 3_400_000;
 
-/// The scenes' programs in each format.
-static PROGRAMS: LazyLock<HashMap<(&str, NumberFormat), PathBuf>> = LazyLock::new(|| {
-    let names = ["delayed_spring", "damper_wall", "free_mode", "knob", "undelayed_wall"];
-    let build = |format| {
-        let files = TOOLCHAIN.build_scenes(&names, format);
-        let files = files.unwrap_or_else(|error| panic!("{error}"));
-        names.into_iter().map(move |name| (name, format)).zip(files)
-    };
-    NumberFormat::ALL.into_iter().flat_map(build).collect()
-});
+fn program(name: &str, format: NumberFormat) -> PathBuf {
+    TOOLCHAIN.build_scene(name, format).unwrap_or_else(|error| panic!("{error}"))
+}
 
 /// Counts of a hand that wanders, jerks, stands still, flings the device so far that the torque is
 /// limited, and turns through the counter's wrap; never faster than the device can be.
@@ -87,9 +78,8 @@ where
     E: Tunable<N>,
     N: Number,
 {
-    let elf = &PROGRAMS[&(name, format)];
     let mut servo = Servo::<E, N>::new(certified, transducers).unwrap();
-    let mut board = Emulator::boot(elf).unwrap();
+    let mut board = Emulator::boot(&program(name, format)).unwrap();
     board.arm_and_wait().unwrap();
     let counts = counts(1);
     assert!(counts.iter().any(|count| count.abs() > 1 << 15), "the counter wraps");
@@ -121,8 +111,7 @@ fn check<E>(report: &EmulatorReport, certified: &Certified<Scene<E>>) {
         assert_eq!(found.alpha_coupled, bits(assessment.alpha_coupled));
     }
     assert!(report.board.alpha.is_some());
-    // Judging may not need more instructions than 20 ms of a core at 170 MHz.
-    assert!(report.certify_instructions <= 3_400_000, "{}", report.certify_instructions);
+    assert!(report.certify_instructions <= MOST_TO_JUDGE, "{}", report.certify_instructions);
     // Judging needs the most stack; a kibibyte is kept for what a change may add to it.
     let (used, size) = (report.stack_used, report.stack_size);
     assert!(used + 1024 <= size, "{used} of {size} bytes of stack used");
@@ -145,60 +134,38 @@ fn judged_alike(board: &mut CertifyClient, scene: &Scene, name: &str) -> Certify
     reply
 }
 
-/// The board's judgement of all reference cases is that of the host, bit for bit.
+/// The same of the reference cases, of scenes whose torque lags, and of torque profiles of 64 knots; none takes
+/// longer than it may.
 #[test]
 fn the_board_judges_as_the_host_does() {
-    let elf = TOOLCHAIN.build_harness("certify_server").unwrap_or_else(|error| panic!("{error}"));
-    let mut board = CertifyClient::boot(&elf).unwrap();
-    let mut most = 0;
+    let mut board = CertifyClient::boot(&harness("certify_server")).unwrap();
     for case in vectors::all() {
-        let reply = judged_alike(&mut board, &case.scene(), &case.name);
-        assert!(reply.instructions > 0);
-        most = most.max(reply.instructions);
+        assert!(judged_alike(&mut board, &case.scene(), &case.name).instructions > 0);
     }
-    board.finish().unwrap();
-    println!("instructions of the longest judgement: {most}");
-}
-
-/// So is that of scenes whose torque lags; the board takes no longer for one than it may.
-#[test]
-fn the_board_judges_lagging_scenes_as_the_host_does() {
-    let elf = TOOLCHAIN.build_harness("certify_server").unwrap_or_else(|error| panic!("{error}"));
-    let mut board = CertifyClient::boot(&elf).unwrap();
-    let mut most = 0;
     let published = super::latency::scenes().into_iter().step_by(4);
-    for scene in published.chain(bench::lagging_scenes().into_iter().step_by(7)) {
+    let lagging = published.chain(bench::lagging_scenes().into_iter().step_by(7));
+    let profiles = bench::profile::scenes();
+    let (mut most, mut certified) = (0, 0);
+    for scene in lagging {
         let reply = judged_alike(&mut board, &scene, &format!("{scene:?}"));
         most = most.max(reply.verdict_instructions);
     }
-    board.finish().unwrap();
-    println!("instructions of the longest verdict with latency: {most}");
-    assert!(most <= 3_400_000, "{most}");
-}
-
-/// So is that of torque profiles of 64 knots.
-#[test]
-fn the_board_judges_torque_profiles_as_the_host_does() {
-    let elf = TOOLCHAIN.build_harness("certify_server").unwrap_or_else(|error| panic!("{error}"));
-    let mut board = CertifyClient::boot(&elf).unwrap();
-    let (mut most, mut certified) = (0, 0);
-    for scene in bench::profile::scenes() {
-        let reply = judged_alike(&mut board, &scene, &format!("{scene:?}"));
+    for scene in &profiles {
+        let reply = judged_alike(&mut board, scene, &format!("{scene:?}"));
         most = most.max(reply.instructions);
         certified += usize::from(reply.is_certified);
     }
     board.finish().unwrap();
-    println!("instructions of the longest judgement of a torque profile: {most}");
-    assert!(certified > 5 && certified < bench::profile::scenes().len(), "{certified}");
-    assert!(most <= 3_400_000, "{most}");
+    println!("instructions of the longest verdict: {most}");
+    assert!(certified > 5 && certified < profiles.len(), "{certified}");
+    assert!(most <= MOST_TO_JUDGE, "{most}");
 }
 
 /// Torques and codes are those of the host, bit for bit, in every number format; there the scene is
 /// data, on the board it is a type.
 #[test]
 fn every_format_computes_as_the_host_does() {
-    let elf = TOOLCHAIN.build_harness("bench_programs").unwrap_or_else(|error| panic!("{error}"));
-    let mut board = BenchClient::boot(&elf).unwrap();
+    let mut board = bench_board();
     for (number, case) in servo::cases().iter().enumerate() {
         let motion = Motion::recorded(&case.problem, counts(number as u64));
         for arithmetic in Arithmetic::ALL {
@@ -233,8 +200,7 @@ fn every_format_computes_as_the_host_does() {
 /// change what a tick does.
 #[test]
 fn behind_the_matched_coupling_a_board_computes_as_the_host_does() {
-    let elf = TOOLCHAIN.build_harness("bench_programs").unwrap_or_else(|error| panic!("{error}"));
-    let mut board = BenchClient::boot(&elf).unwrap();
+    let mut board = bench_board();
     let environment = Wall::damped(22.0, 0.01, 0).behind(0.01).alone();
     let prompt = Latency::delayed(1e-5);
     for latency in [prompt, prompt.with_actuator_lag(5e-5)] {
@@ -250,7 +216,7 @@ fn behind_the_matched_coupling_a_board_computes_as_the_host_does() {
         }
     }
     board.finish().unwrap();
-    let [most, with_a_lag] = contact_instructions(&elf).unwrap();
+    let [most, with_a_lag] = contact_instructions(&harness("bench_programs")).unwrap();
     println!("in contact: {most} instructions, {with_a_lag} with one lag");
     assert!(most <= 51 && with_a_lag <= 60, "{most}, {with_a_lag}");
 }
@@ -286,12 +252,12 @@ fn a_board_that_does_nothing_is_an_error() {
 #[test]
 fn every_set_is_answered_with_stack_to_spare() {
     for name in ["delayed_spring", "damper_wall", "free_mode", "knob"] {
-        let elf = &PROGRAMS[&(name, NumberFormat::F32)];
+        let elf = program(name, NumberFormat::F32);
         // The standard coupling; softer and stiffer couplings, for which another function is judged; a
         // coupling with which the loop has no solution.
         let mut taken = 0;
         for stiffness in [44.0, 43.0, 60.0, 88.0, 1e9] {
-            let set = live_set(elf, &[(Parameter::CouplingStiffness, stiffness)])
+            let set = live_set(&elf, &[(Parameter::CouplingStiffness, stiffness)])
                 .unwrap_or_else(|error| panic!("{name}, {stiffness} N m/rad: {error}"));
             let left = set.stack_left.expect("the emulated board knows its stack");
             assert!(left >= 1024, "{name}, {stiffness} N m/rad: {left} bytes left");
@@ -305,8 +271,7 @@ fn every_set_is_answered_with_stack_to_spare() {
 /// floating point, but not in fixed point, which a real board has five times as many cycles for.
 #[test]
 fn a_tick_that_is_longer_than_its_phase_keeps_the_board_from_being_armed() {
-    let elf = &PROGRAMS[&("undelayed_wall", NumberFormat::Fixed)];
-    let mut board = Emulator::boot(elf).unwrap();
+    let mut board = Emulator::boot(&program("undelayed_wall", NumberFormat::Fixed)).unwrap();
     let error = board.arm_and_wait().unwrap_err();
     assert!(matches!(error, EmulatorError::NotArmed), "{error}");
 }
@@ -322,34 +287,31 @@ fn a_board_that_crashes_is_an_error() {
     assert!(matches!(missing, Err(EmulatorError::Program { .. })));
 }
 
-// Each with the most instructions that its servo's interrupt may take, where that is promised.
+/// With the most instructions that its servo's interrupt may take, where that is promised.
 macro_rules! emulated {
-    ($($test:ident: $scene:ident, $format:expr, $number:ty, $most:expr;)*) => {$(
-        #[test]
-        fn $test() {
-            let report = run::<_, $number>(
-                stringify!($scene),
-                $format,
-                &$scene::CERTIFIED,
-                &$scene::TRANSDUCERS,
-            );
-            check(&report, &$scene::CERTIFIED.certified_in(<$number>::FORMAT));
-            if let Some(most) = $most {
-                let interrupt = report.interrupt_instructions;
-                assert!(interrupt.max <= most, "{interrupt:?}");
-            }
-        }
-    )*};
+    ($scene:ident, $format:expr, $number:ty, $most:expr) => {{
+        let (certified, name) = (&$scene::CERTIFIED, stringify!($scene));
+        let report = run::<_, $number>(name, $format, certified, &$scene::TRANSDUCERS);
+        check(&report, &certified.certified_in(<$number>::FORMAT));
+        let interrupt = report.interrupt_instructions;
+        assert!(interrupt.max <= $most, "{interrupt:?}");
+    }};
 }
 
-emulated! {
-    delayed_spring_in_f32: delayed_spring, NumberFormat::F32, f32, None::<u64>;
-    delayed_spring_in_fixed_point: delayed_spring, NumberFormat::Fixed, delayed_spring::Fixed, None::<u64>;
-    damper_wall_in_f32: damper_wall, NumberFormat::F32, f32, Some(150);
-    damper_wall_in_fixed_point: damper_wall, NumberFormat::Fixed, damper_wall::Fixed, None::<u64>;
-    free_mode_in_f32: free_mode, NumberFormat::F32, f32, None::<u64>;
-    free_mode_in_fixed_point: free_mode, NumberFormat::Fixed, free_mode::Fixed, None::<u64>;
-    knob_in_f32: knob, NumberFormat::F32, f32, Some(160);
-    knob_in_fixed_point: knob, NumberFormat::Fixed, knob::Fixed, None::<u64>;
-    undelayed_wall_in_f32: undelayed_wall, NumberFormat::F32, f32, None::<u64>;
+#[test]
+fn the_scenes_give_the_host_s_codes() {
+    emulated!(delayed_spring, NumberFormat::F32, f32, u64::MAX);
+    emulated!(damper_wall, NumberFormat::F32, f32, 150);
+    emulated!(free_mode, NumberFormat::F32, f32, u64::MAX);
+    emulated!(knob, NumberFormat::F32, f32, 160);
+    emulated!(undelayed_wall, NumberFormat::F32, f32, u64::MAX);
+    emulated!(damper_wall, NumberFormat::Fixed, damper_wall::Fixed, u64::MAX);
+}
+
+#[test]
+#[ignore = "builds for minutes"]
+fn the_other_scenes_in_fixed_point_give_the_host_s_codes() {
+    emulated!(delayed_spring, NumberFormat::Fixed, delayed_spring::Fixed, u64::MAX);
+    emulated!(free_mode, NumberFormat::Fixed, free_mode::Fixed, u64::MAX);
+    emulated!(knob, NumberFormat::Fixed, knob::Fixed, u64::MAX);
 }

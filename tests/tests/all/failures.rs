@@ -1,44 +1,29 @@
 //! Where methods fail, and both sides of the certificate's line: every verdict that has to be wrong is,
 //! ours is not, and the loops do what was said with the emulated board as their servo.
 //!
-//! The numbers are computed here once more, by other means.
+//! Figures of methods are computed here once more, by other means.
 
+use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
-use analysis::chain::Chain;
 use analysis::emulator::ServoClient;
 use analysis::studies::failures::loop_run::BoardResult;
 use analysis::studies::failures::method_result::Failure;
 use analysis::studies::failures::motion::Outcome;
 use analysis::studies::failures::report::{CaseReport, walls};
 use analysis::studies::failures::setting::{KNOB, PADDLE, PADDLES, PERIOD};
-use analysis::studies::failures::varying_hand::VaryingHand;
-use analysis::studies::failures::{ALL, Case, roots, setting, varying_hand, walls as wall, zigzag};
-use analysis::toolchain::{Tools, prepare};
-use analysis::worst_hand::{Absorber, HandImpedance, search};
-use haptic_servo::environment::{Environment, Parts, Rational};
-use haptic_servo::scene::{Coupling, Scene};
-use nalgebra::{SMatrix, SVector};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use std::cmp::Ordering;
+use analysis::studies::failures::{ALL, Case, roots, setting, walls as wall, zigzag};
+use haptic_servo::environment::{Environment, Rational};
+use haptic_servo::scene::Scene;
 use tests::exact::{Q, of_f64};
-use tests::hands::Hand;
-use tests::plant::{Controller, Plant};
+use tests::index::Index;
 use tests::poly::Poly;
 use tests::remainders::is_schur;
-use tests::rules::Exact;
 
-use super::lagging::Loop;
-use super::worst_hand::radius;
+use crate::toolchain::harness;
 
 fn board() -> ServoClient {
-    let toolchain = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
-        .unwrap_or_else(|error| panic!("{error}"));
-    ServoClient::boot(
-        &toolchain.build_harness("servo_server").unwrap_or_else(|error| panic!("{error}")),
-    )
-    .unwrap()
+    ServoClient::boot(&harness("servo_server")).unwrap()
 }
 
 /// The verdicts of each case that are wrong: those that say safe, and those that say unsafe.
@@ -155,46 +140,31 @@ fn q(value: f64) -> Q {
     of_f64(value).unwrap()
 }
 
-/// A linear scene of springs and rational environments in exact numbers.
-fn exact(scene: &Scene) -> Exact {
-    let (numerator, denominator) = match scene.environment {
-        Environment::Parts(Parts { canceller: None, wall: Some(wall), profile: None }) => {
-            assert_eq!(wall.damping(), 0.0);
-            (Poly::ascending(vec![q(wall.stiffness)]), Poly::integers(&[1]).raised(wall.delay))
-        }
-        Environment::Rational(Rational { numerator, denominator, delay, unit_zeros }) => {
-            let poly = |values: &[f64]| {
-                Poly::descending(&values.iter().map(|&value| q(value)).collect::<Vec<_>>())
-            };
-            let zeros = (0..unit_zeros)
-                .fold(Poly::integers(&[1]), |product, _| product.times(&Poly::integers(&[-1, 1])));
-            (poly(numerator.as_slice()).times(&zeros), poly(denominator.as_slice()).raised(delay))
-        }
-        _ => panic!("no other environment is asked about"),
+/// Numerator and denominator of a rational environment.
+fn fraction(scene: &Scene) -> (Poly, Poly) {
+    let Environment::Rational(Rational { numerator, denominator, delay, unit_zeros }) =
+        scene.environment
+    else {
+        panic!("a rational environment")
     };
-    Exact {
-        numerator,
-        denominator,
-        period: q(scene.timing.period),
-        delta: q(scene.device.passivity.unwrap_or(scene.device.damping)),
-        coupling: match scene.coupling {
-            Coupling::Rigid => None,
-            Coupling::Matched => unreachable!("not drawn"),
-            Coupling::Spring { stiffness } => Some(q(stiffness)),
-        },
-    }
+    let poly = |values: &[f64]| {
+        Poly::descending(&values.iter().map(|&value| q(value)).collect::<Vec<_>>())
+    };
+    let numerator =
+        (0..unit_zeros).fold(poly(numerator.as_slice()), |p, _| p.times(&Poly::integers(&[-1, 1])));
+    (numerator, poly(denominator.as_slice()).raised(delay))
 }
 
 #[test]
 fn what_grids_and_roots_miss_is_decided_in_rational_arithmetic() {
     let result = Case::find("grid").unwrap().evaluate().unwrap();
-    let resonance = exact(&result.runs[0].experiment.scene);
-    assert!(!resonance.passes_exact() && !resonance.passes_paper());
-    let alpha = resonance.alpha().unwrap();
+    let scene = result.runs[0].experiment.scene;
+    let (numerator, denominator) = fraction(&scene);
+    let alpha = Index::of(&numerator, &denominator, &q(scene.timing.period)).unwrap();
     assert_eq!(alpha.compare(&q(100.0 * PADDLE.damping)), Ordering::Greater);
     assert_eq!(alpha.compare(&q(101.0 * PADDLE.damping)), Ordering::Less);
     for (pole, is_inside) in [(1.0 + roots::BESIDE, false), (1.0 - roots::BESIDE, true)] {
-        let denominator = exact(&roots::scene(pole)).denominator;
+        let denominator = fraction(&roots::scene(pole)).1;
         assert!(denominator.at(&q(pole)) == q(0.0), "no coefficient is rounded");
         assert_eq!(is_schur(&denominator), is_inside);
     }
@@ -218,163 +188,6 @@ fn an_observer_asks_for_what_no_motor_has() {
     assert!(guarded.result.figure.unwrap() > 100.0 * PADDLES.full_scale_torque, "{guarded:?}");
 }
 
-/// In units of the loop: period and damping are 1.
-const SPRING: Loop = Loop {
-    stiffness: 0.0,
-    damping: 0.0,
-    filter: 0.0,
-    delay: 0,
-    coupling: None,
-    output_delay: 0.0,
-    actuator_lag: 0.0,
-    sensor_lag: 0.0,
-    updates: 0,
-    section: None,
-};
-
-fn in_units_of_the_loop(hand: &HandImpedance) -> HandImpedance {
-    let (mass, spring) = (PADDLE.damping * PERIOD, PADDLE.damping / PERIOD);
-    let absorber = |absorber: &Absorber| Absorber {
-        inertia: absorber.inertia / mass,
-        stiffness: absorber.stiffness / spring,
-    };
-    assert!(hand.link.is_none());
-    HandImpedance {
-        inertia: hand.inertia / mass,
-        damping: hand.damping / PADDLE.damping,
-        stiffness: hand.stiffness / spring,
-        link: None,
-        absorbers: hand.absorbers.iter().map(absorber).collect(),
-    }
-}
-
-/// The spring that the sum of all delays allows grows in a passive hand, by a model of the tests' own.
-#[test]
-fn the_sum_of_delays_allows_a_spring_that_grows() {
-    let result = Case::find("mean-delay").unwrap().evaluate().unwrap();
-    let scene = result.runs[0].experiment.scene;
-    let wall = scene.environment.wall().expect("a spring");
-    near(wall.stiffness, 0.99 * 0.022 / (1e-3 + 1.0 / (TAU * 3e3)), 1e-12);
-    let device = Chain::rigid(PADDLE.inertia, PADDLE.damping).unwrap();
-    let found = search(&scene, &device).unwrap();
-    let drawn = Loop {
-        stiffness: wall.stiffness * PERIOD / PADDLE.damping,
-        output_delay: 0.5,
-        actuator_lag: 1.0 / (TAU * 3e3) / PERIOD,
-        ..SPRING
-    };
-    let inertia = PADDLE.inertia / (PADDLE.damping * PERIOD);
-    let grown = radius(&drawn, inertia, 1.0, &in_units_of_the_loop(&found.worst.hand));
-    near(grown - 1.0, found.worst.spectral_radius - 1.0, 1e-3);
-    assert!(grown > 1.0 + 1e-4, "{grown}");
-    near(result.truth.figure.unwrap(), grown, 1e-6);
-}
-
-/// `F(k+1) = E (x(k) - V F(k))`, each written 5 us after its count, tick by tick.
-#[test]
-fn between_two_certified_ends_the_bare_device_shakes() {
-    let result = Case::find("between-ends").unwrap().evaluate().unwrap();
-    near(result.certificate.figure.unwrap(), 0.46, 2e-3);
-    let (stiffness, damping, written) = (22.0, 0.01, 5e-6);
-    let compliance = PERIOD / (2.0 * PADDLE.damping);
-    let rate = PADDLE.damping / PADDLE.inertia;
-    let step = |x: &mut f64, v: &mut f64, torque: f64, time: f64| {
-        let (rest, gone) = (torque / PADDLE.damping, -(-rate * time).exp_m1());
-        *x += rest * time + (*v - rest) * gone / rate;
-        *v += (rest - *v) * gone;
-    };
-    let (mut x, mut v, mut torque, mut deflected) = (0.0, 1e-3, 0.0, 0.0);
-    let mut most = Vec::new();
-    for _ in 0..4000 {
-        let now = x - compliance * torque;
-        let next = stiffness * now + damping * (now - deflected) / PERIOD;
-        step(&mut x, &mut v, -torque, written);
-        step(&mut x, &mut v, -next, PERIOD - written);
-        (torque, deflected) = (next, now);
-        most.push(x.abs());
-    }
-    let growth = (most[3999] / most[1999]).powf(1.0 / 2000.0);
-    near(growth - 1.0, result.truth.figure.unwrap() - 1.0, 1e-6);
-    near(growth, 1.022, 1e-3);
-}
-
-/// The loop in the hand that varies, for a device without inertia, in closed form; and that hand alone,
-/// which never gives more than it was given.
-#[test]
-fn a_passive_hand_that_varies_shakes_what_no_other_does() {
-    let limit = |times: f64| {
-        let scene = varying_hand::at(times);
-        let hand = VaryingHand::against(&scene).unwrap();
-        let [one, other] = hand.ways;
-        near(one.weight * one.weight + other.weight * other.weight, 1.0, 1e-12);
-        assert!(one.pole.abs() < 1.0 && other.pole.abs() < 1.0, "{hand:?}");
-        (hand.multiplier(&scene).unwrap(), without_inertia(&scene, &hand))
-    };
-    for (times, least, most) in [(0.995, -6e-4, -3e-4), (1.005, 3e-4, 6e-4), (1.02, 1.5e-3, 2e-3)] {
-        let (found, massless) = limit(times);
-        assert!((least..most).contains(&(found - 1.0)), "{times}: {found}");
-        assert!((least..most).contains(&(massless - 1.0)), "{times}: {massless}");
-    }
-    // At the limit itself the multiplier is 1.
-    assert!((limit(1.0).1 - 1.0).abs() < 1e-9);
-    let scene = varying_hand::at(1.005);
-    let Environment::Rational(Rational { numerator, .. }) = scene.environment else { panic!() };
-    let drawn = Loop {
-        stiffness: numerator.as_slice()[0] * PERIOD / PADDLE.damping,
-        delay: 1,
-        actuator_lag: varying_hand::LAG / PERIOD,
-        section: Some([0.0, 0.0, varying_hand::RESONANCE[1], varying_hand::RESONANCE[2]]),
-        ..SPRING
-    };
-    let mut rng = ChaCha8Rng::seed_from_u64(3);
-    for n in 0..300 {
-        let hand = if n % 2 == 0 { Hand::draw(&mut rng) } else { Hand::tuned(&mut rng, 2.688) };
-        let radius = drawn.radius(&hand, &[]);
-        assert!(radius < 1.0 + 1e-7, "{hand:?} {radius}");
-    }
-}
-
-/// Growth a period in the hand, without inertia: position, amplifier, both ways, the resonance. Torques over
-/// a period are `command + rest exp(-t/tau)`, whose integrals are known.
-fn without_inertia(scene: &Scene, hand: &VaryingHand) -> f64 {
-    let Environment::Rational(Rational { numerator, .. }) = scene.environment else { panic!() };
-    let gain = numerator.as_slice()[0] * PERIOD / PADDLE.damping;
-    let [_, linear, constant] = varying_hand::RESONANCE;
-    let tau = varying_hand::LAG / PERIOD;
-    let left = (-1.0 / tau).exp();
-    let mean = tau * (1.0 - left);
-    let norm = (0.5 * tau * (1.0 - left * left) - mean * mean).sqrt();
-    let period = |s: &[f64; 8]| {
-        let [x, amplifier, a, a1, b, b1, y, y1] = *s;
-        let (command, returned) = (-y, hand.ways[0].weight * a + hand.ways[1].weight * b);
-        let rest = amplifier - command;
-        let incident = [command + rest * mean, rest * norm];
-        let [p, q] = hand.ways.map(|way| way.pole);
-        [
-            x + 0.5 * (incident[0] + returned),
-            command + rest * left,
-            a1 + p * a - p * incident[0],
-            incident[0],
-            b1 + q * b - q * incident[1],
-            incident[1],
-            y1 - linear * y + gain * x,
-            -constant * y,
-        ]
-    };
-    let unit = |k: usize| std::array::from_fn(|i| f64::from(u8::from(i == k)));
-    let columns: Vec<_> = (0..8).map(|k| SVector::<f64, 8>::from(period(&unit(k)))).collect();
-    let mut power = SMatrix::<f64, 8, 8>::from_columns(&columns);
-    let (mut growth, mut share) = (0.0, 1.0);
-    for _ in 0..36 {
-        let norm = power.norm();
-        power /= norm;
-        growth += share * norm.ln();
-        power *= power;
-        share *= 0.5;
-    }
-    growth.exp()
-}
-
 #[test]
 fn walls_rest_below_the_limit_and_not_above_it() {
     let mut player = Some(board());
@@ -389,22 +202,7 @@ fn walls_rest_below_the_limit_and_not_above_it() {
         let hand = &report.hand.hand;
         let numbers = [hand.inertia, hand.damping, hand.stiffness];
         assert!(hand.link.is_none() && numbers.iter().all(|number| *number >= 0.0), "{hand:?}");
-        // The loop in that hand once more, by the tests' own exponential and eigenvalues.
-        let (mass, damping) = (PADDLE.damping * PERIOD, PADDLE.damping);
-        let plant = Plant::new(&Hand {
-            inertia: (PADDLE.inertia + hand.inertia) / mass,
-            damping: hand.damping / damping,
-            stiffness: hand.stiffness * PERIOD / damping,
-            segments: Vec::new(),
-        });
         let wall = wall::wall(report.delay).unwrap();
-        for (loop_run, grows) in
-            wall.below.iter().map(|below| (below, false)).chain([(&wall.above, true)])
-        {
-            let controller = Controller::new(&exact(&loop_run.experiment.scene)).unwrap();
-            let radius = controller.spectral_radius(&plant).unwrap();
-            assert_eq!(radius > 1.0, grows, "{} samples late: {radius}", report.delay);
-        }
         // For rest: the friction of section 8, and half a DAC step.
         let friction = 0.5 * 0.99 * report.limit * TAU / PADDLES.counts_per_turn
             + 0.5 * PADDLES.full_scale_torque / 1791.0;

@@ -3,7 +3,7 @@
 
 use analysis::emulator::Emulator;
 use analysis::studies::bench::live::live_set;
-use analysis::toolchain::{NumberFormat, Tools, prepare};
+use analysis::toolchain::NumberFormat;
 use fixed::types::I8F24;
 use haptic_servo::certificate::{Certified, Parameter};
 use haptic_servo::dac::DacCode;
@@ -14,6 +14,8 @@ use haptic_servo::servo::{Servo, Transducers};
 use own_environment::ProgressiveSpring;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+
+use crate::toolchain::TOOLCHAIN;
 
 /// That of the program `pedal`: a difference would show in the certificate and in the codes.
 const PEDAL: Scene<ProgressiveSpring<1>> = Scene {
@@ -52,9 +54,7 @@ fn plays<N: Number>(format: NumberFormat)
 where
     ProgressiveSpring<1>: haptic_servo::environment::Discretize<N>,
 {
-    let toolchain = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
-        .unwrap_or_else(|error| panic!("{error}"));
-    let elf = toolchain.build_own_environment(format).unwrap_or_else(|error| panic!("{error}"));
+    let elf = TOOLCHAIN.build_own_environment(format).unwrap_or_else(|error| panic!("{error}"));
     let mut servo = Servo::<_, N>::new(&CERTIFIED, &TRANSDUCERS).unwrap();
     let mut board = Emulator::boot(&elf).unwrap();
     board.arm_and_wait().unwrap();
@@ -81,6 +81,7 @@ fn an_environment_of_another_crate_plays_in_f32() {
 }
 
 #[test]
+#[ignore = "builds for a minute"]
 fn an_environment_of_another_crate_plays_in_fixed_point() {
     plays::<I8F24>(NumberFormat::Fixed);
 }
