@@ -1,10 +1,5 @@
 //! What a bridge renders, in closed loop.
 
-#[allow(dead_code, unexpected_cfgs)]
-#[path = "../../../../firmware/src/bin/bridge_wall.rs"]
-mod bridge_wall;
-
-mod back_emf;
 mod rig;
 mod servos;
 
@@ -168,7 +163,7 @@ fn a_spring_at_99_per_cent_of_the_limit_is_what_was_certified_and_comes_to_rest(
         for friction in [0.0, bound.hum()] {
             let codes = servos::counted(&MACHINE, &certified);
             let exact = servos::exact(&MACHINE, &certified);
-            let mut rig = Rig::bridge(&MACHINE, &hand, codes, exact);
+            let mut rig = Rig::new(&MACHINE, &hand, codes, exact);
             rig.friction = friction;
             let [first, then] = pushed(rig, stiffness, &hand);
             largest = largest.max(off(&first)).max(off(&then));
@@ -194,7 +189,7 @@ fn a_spring_5_per_cent_above_the_limit_grows_in_a_hand_in_which_a_certified_one_
         // Few counts of a swing are a spring of another stiffness.
         let codes = servos::rounded(&MACHINE, servos::exact(&MACHINE, &scene));
         let exact = servos::exact(&MACHINE, &scene);
-        let rig = Rig::bridge(&MACHINE, &found.worst.hand, codes, exact);
+        let rig = Rig::new(&MACHINE, &found.worst.hand, codes, exact);
         let [first, then] = pushed(rig, limit, &found.worst.hand);
         swing(last(&then)) / swing(&first)
     });
@@ -216,8 +211,8 @@ fn a_boards_servo_behind_the_matched_coupling_is_what_was_certified_and_comes_to
     let mut largest = 0.0_f64;
     for hand in hands() {
         for friction in [0.0, bound.hum()] {
-            let codes = servos::board(&MACHINE, &certified);
-            let mut rig = Rig::bridge(&MACHINE, &hand, codes, servos::exact(&MACHINE, &certified));
+            let codes = servos::board(&MACHINE, &scene);
+            let mut rig = Rig::new(&MACHINE, &hand, codes, servos::exact(&MACHINE, &certified));
             rig.friction = friction;
             let [first, then] = pushed(rig, 140.0, &hand);
             let (off, rest) = (off(&first).max(off(&then)), swing(last(&then)));
@@ -242,61 +237,4 @@ fn another_bandwidth_is_another_latency_and_a_lower_one_a_lower_limit() {
         let [(slow, lower), (fast, higher)] = [pair[0], pair[1]];
         assert!(slow > 1.1 * fast && lower < 0.99 * higher, "{limits:?}");
     }
-}
-
-/// The paddle of the program, its motor and its servo.
-const WALL: Machine = Machine {
-    device: bridge_wall::SCENE.device,
-    drive: bridge_wall::DRIVE,
-    transducers: bridge_wall::TRANSDUCERS,
-    period: bridge_wall::SCENE.timing.period,
-};
-
-/// Hands that lean against a wall.
-fn leaning_hands() -> [HandImpedance; 3] {
-    let light = HandImpedance { inertia: 1e-4, damping: 0.02, ..HandImpedance::default() };
-    let heavy = HandImpedance { inertia: 1e-3, damping: 0.1, stiffness: 5.0, ..light.clone() };
-    [HandImpedance::default(), light, heavy]
-}
-
-/// A wall that a hand leans against with 0.4 N m, after it has settled.
-fn leaned_against(is_bridge: bool, hand: &HandImpedance, friction: f64) -> Vec<Instant> {
-    let codes = servos::board(&WALL, &bridge_wall::CERTIFIED);
-    let exact = servos::exact(&WALL, &bridge_wall::CERTIFIED);
-    let mut rig = if is_bridge {
-        Rig::bridge(&WALL, hand, codes, exact)
-    } else {
-        Rig::ideal(&WALL, hand, codes, exact)
-    };
-    rig.friction = friction;
-    // Until its clamp is open.
-    rig.run(0.2).unwrap();
-    for step in 1..=100 {
-        rig.hand_torque = 0.004 * f64::from(step);
-        rig.run(0.005).unwrap();
-    }
-    rig.run(1.5).unwrap();
-    rig.run(0.5).unwrap()
-}
-
-/// Beside an amplifier outside whose torque is that of the same latency.
-#[test]
-fn the_wall_of_the_program_is_that_of_an_ideal_amplifier_up_to_the_resolution_and_stays_at_rest() {
-    let bound = bound(&WALL, &bridge_wall::SCENE);
-    let resolution = bound.current.unwrap();
-    for hand in leaning_hands() {
-        for friction in [0.0, bound.hum()] {
-            let runs = [true, false].map(|is_bridge| leaned_against(is_bridge, &hand, friction));
-            let [bridge, ideal] = runs.each_ref().map(|run| [off(run), swing(run), mean(run)]);
-            println!("{hand:?}, {friction}: bridge {bridge:?}, ideal {ideal:?}");
-            assert!(bridge[0] < bound.hum() && ideal[0] < bound.hum() - resolution, "{bound:?}");
-            assert!((bridge[2] - ideal[2]).abs() < bound.hum() && bridge[2] < -0.2);
-            let [moved, _] = runs.map(|run| (run[0].angle - run[run.len() - 1].angle).abs());
-            assert!(friction == 0.0 || bridge[1] < resolution && moved < 1e-6, "{moved}");
-        }
-    }
-}
-
-fn mean(instants: &[Instant]) -> f64 {
-    instants.iter().map(|instant| instant.torque).sum::<f64>() / instants.len() as f64
 }

@@ -28,14 +28,6 @@ pub type Codes = Box<dyn FnMut(f64) -> i16>;
 /// From an angle in rad at a count to the torque in N m of a motor without steps, at that count.
 pub type Torques = Box<dyn FnMut(f64) -> f64>;
 
-/// What makes a torque of a code.
-enum Output {
-    /// The bridge with its current loop, which switches a motor.
-    Bridge(Box<CurrentController>),
-    /// An amplifier whose torque is that of the certificate at each instant.
-    Ideal,
-}
-
 /// Numbers of a device with its motor, and of its servo.
 #[derive(Clone, Copy, Debug)]
 pub struct Machine {
@@ -52,9 +44,8 @@ impl Machine {
     }
 
     /// The count of an angle in rad: the nearest, as that of an encoder whose zero is half a count aside.
-    pub fn count(&self, angle: f64) -> RawCount {
-        let counts = angle / TAU * self.transducers.counts_per_turn;
-        RawCount::from(counts.round() as i64 as u32)
+    pub fn count(&self, angle: f64) -> i32 {
+        (angle / TAU * self.transducers.counts_per_turn).round() as i32
     }
 }
 
@@ -65,80 +56,58 @@ pub struct Instant {
     pub torque: f64,
     /// The certified one, of the positions as they are and of codes without steps.
     pub certified: f64,
-    /// Angle in rad.
-    pub angle: f64,
 }
 
 pub struct Rig {
     machine: Machine,
     design: CurrentLoop,
-    output: Output,
+    controller: CurrentController,
     codes: Codes,
     exact: Torques,
     code: i16,
     /// Torque in N m that the positions as they are ask for.
     wanted: f64,
-    /// That of the certificate at this instant, and at the next one; and the same of the codes.
+    /// That of the certificate at this instant, and at the next one.
     certified: [f64; 2],
-    of_codes: [f64; 2],
     /// What of a step is left at the next instant.
     left: f64,
     instant: usize,
     loaded: Duties,
-    /// Over an instant: angles and speeds, the current, and the constants of the output and the hand.
+    /// Over an instant: angles and speeds, the current, the voltage, and the friction.
     over: DMatrix<f64>,
     state: DVector<f64>,
     next: DVector<f64>,
-    /// Torque in N m of the hand.
-    pub hand_torque: f64,
     /// Coulomb friction of the device in N m.
     pub friction: f64,
 }
 
 impl Rig {
     /// A bridge whose gates have just been switched on, at rest.
-    pub fn bridge(machine: &Machine, hand: &HandImpedance, codes: Codes, exact: Torques) -> Self {
-        let mut controller = CurrentController::new(&machine.current_loop());
+    pub fn new(machine: &Machine, hand: &HandImpedance, codes: Codes, exact: Torques) -> Self {
+        let design = machine.current_loop();
+        let mut controller = CurrentController::new(&design);
         for _ in 0..300 {
             controller.measure_offset(&sample(machine, 0.0, 0.0));
         }
         controller.start().unwrap();
-        Self::new(machine, hand, Output::Bridge(Box::new(controller)), codes, exact)
-    }
-
-    /// An amplifier outside of the same latency, without steps.
-    pub fn ideal(machine: &Machine, hand: &HandImpedance, codes: Codes, exact: Torques) -> Self {
-        Self::new(machine, hand, Output::Ideal, codes, exact)
-    }
-
-    fn new(
-        machine: &Machine,
-        hand: &HandImpedance,
-        output: Output,
-        codes: Codes,
-        exact: Torques,
-    ) -> Self {
-        let design = machine.current_loop();
         let response = design.response();
-        let rates = rates(machine, hand, matches!(output, Output::Ideal));
+        let rates = rates(machine, hand);
         let states = rates.nrows();
         Self {
             machine: *machine,
             design,
-            output,
+            controller,
             codes,
             exact,
             code: 0,
             wanted: 0.0,
             certified: [0.0; 2],
-            of_codes: [0.0; 2],
             left: (-response.delay / response.lag).exp(),
             instant: 0,
             loaded: design.no_voltage(),
             over: (rates * response.delay).exp(),
             state: DVector::zeros(states),
             next: DVector::zeros(states),
-            hand_torque: 0.0,
             friction: 0.0,
         }
     }
@@ -159,34 +128,19 @@ impl Rig {
         let shown = Instant {
             torque: current * self.design.torque_per_amp(),
             certified: self.certified[0],
-            angle,
         };
-        let full_scale = self.machine.transducers.full_scale_torque;
-        let asked = f64::from(self.code) / 1791.0 * full_scale;
         follow(&mut self.certified, self.left, self.wanted);
-        let before = self.of_codes[0];
-        follow(&mut self.of_codes, self.left, asked);
-        let drives = match &mut self.output {
-            Output::Bridge(controller) => {
-                let [u, v, _] = self.loaded.0.map(f64::from);
-                self.loaded = controller.step(&sample(&self.machine, angle, current), self.code)?;
-                BUS * (u - v) / f64::from(self.design.timer_counts())
-            }
-            Output::Ideal => {
-                (self.of_codes[0] - before)
-                    / self.design.torque_per_amp()
-                    / self.design.response().delay
-            }
-        };
-        self.pass(drives);
+        let [u, v, _] = self.loaded.0.map(f64::from);
+        self.loaded = self.controller.step(&sample(&self.machine, angle, current), self.code)?;
+        self.pass(BUS * (u - v) / f64::from(self.design.timer_counts()));
         Ok(shown)
     }
 
     /// The time until the next instant. Friction stops the device if it can: over this time it is the torque that
     /// is nearest to that.
-    fn pass(&mut self, drives: f64) {
+    fn pass(&mut self, voltage: f64) {
         let constant = self.current() + 1;
-        (self.state[constant], self.state[constant + 1]) = (drives, self.hand_torque);
+        self.state[constant] = voltage;
         self.next.gemv(1.0, &self.over, &self.state, 0.0);
         if self.friction > 0.0 {
             let stops = -self.next[1] / self.over[(1, constant + 1)];
@@ -200,11 +154,6 @@ impl Rig {
     pub fn run(&mut self, time: f64) -> Result<Vec<Instant>, PowerFault> {
         let instants = (time / self.design.response().delay).round() as usize;
         (0..instants).map(|_| self.step()).collect()
-    }
-
-    /// Energy in J of a device of this inertia on this spring.
-    pub fn energy(&self, inertia: f64, stiffness: f64) -> f64 {
-        0.5 * (inertia * self.state[1].powi(2) + stiffness * self.state[0].powi(2))
     }
 
     fn current(&self) -> usize {
@@ -225,18 +174,18 @@ fn sample(machine: &Machine, angle: f64, current: f64) -> Sample {
         currents: [count(OFFSET - counts), count(OFFSET + counts)],
         bus: count(BUS / STAGE.volts_per_count),
         temperature: STAGE.thermistor.count(30.0),
-        position: machine.count(angle),
+        position: RawCount::from(machine.count(angle)),
     }
 }
 
-/// Rates of the device, of what of a hand is linked to it, of the current, and of the constants: the voltage,
-/// or the current's slope, and a torque of the hand.
-fn rates(machine: &Machine, hand: &HandImpedance, is_ideal: bool) -> DMatrix<f64> {
+/// Rates of the device, of what of a hand is linked to it, of the current, and of the constants: the voltage, and
+/// a torque of friction.
+fn rates(machine: &Machine, hand: &HandImpedance) -> DMatrix<f64> {
     let held = hand.link.is_none();
     let on_device = |value: f64| if held { value } else { 0.0 };
     let bodies = 1 + usize::from(!held) + hand.absorbers.len();
-    let (current, drives, leans) = (2 * bodies, 2 * bodies + 1, 2 * bodies + 2);
-    let mut rates = DMatrix::zeros(leans + 1, leans + 1);
+    let (current, voltage, rubs) = (2 * bodies, 2 * bodies + 1, 2 * bodies + 2);
+    let mut rates = DMatrix::zeros(rubs + 1, rubs + 1);
     for body in 0..bodies {
         rates[(2 * body, 2 * body + 1)] = 1.0;
     }
@@ -266,13 +215,9 @@ fn rates(machine: &Machine, hand: &HandImpedance, is_ideal: bool) -> DMatrix<f64
     }
     let motor = machine.drive.motor;
     rates[(1, current)] = motor.torque_constant / inertia;
-    rates[(1, leans)] = 1.0 / inertia;
-    if is_ideal {
-        rates[(current, drives)] = 1.0;
-    } else {
-        rates[(current, current)] = -motor.resistance / motor.inductance;
-        rates[(current, 1)] = -motor.back_emf() / motor.inductance;
-        rates[(current, drives)] = 1.0 / motor.inductance;
-    }
+    rates[(1, rubs)] = 1.0 / inertia;
+    rates[(current, current)] = -motor.resistance / motor.inductance;
+    rates[(current, 1)] = -motor.back_emf() / motor.inductance;
+    rates[(current, voltage)] = 1.0 / motor.inductance;
     rates
 }
