@@ -11,10 +11,10 @@ use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{Latched, OutputMode, Simultaneous, Step, SupportsTiming};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use tests::scenes::{self, Poles};
+use tests::scenes;
 
 /// Compares the answers of both rules and the verdict; returns whether there is a certificate.
-fn compare(scene: &Scene) -> bool {
+pub fn compare(scene: &Scene) -> bool {
     let assessment = assess(scene);
     match PassivityProblem::of(scene) {
         Ok(posed) => {
@@ -123,7 +123,7 @@ fn walls_of_every_delay_behind_every_coupling() {
         for (kind, coupling) in couplings(0.022, 0.001).into_iter().enumerate() {
             let seed = (delay * 100 + kind) as u64;
             let rng = &mut ChaCha8Rng::seed_from_u64(seed);
-            for _ in 0..6 {
+            for _ in 0..2 {
                 let scene = wall(rng, delay, coupling);
                 let stiffest = 80.0 / (1.0 + delay as f64);
                 let at = |stiffness: f64| with_stiffness(&scene, stiffness);
@@ -152,7 +152,7 @@ fn walls_of_every_delay_behind_every_coupling() {
         }
     }
     println!("scenes={judged} certified={certified} rendered={rendered}");
-    assert!(judged > 20_000 && certified * 5 > judged && certified * 5 < 4 * judged);
+    assert!(judged > 6_000 && certified * 5 > judged && certified * 5 < 4 * judged);
     assert!(rendered * 10 > judged && rendered < certified);
 }
 
@@ -165,17 +165,4 @@ fn environments_of_every_kind() {
         rendered += u32::from(compare_on_boards(&scene));
     }
     assert!(certified > 300 && rendered > 30, "{certified} {rendered}");
-}
-
-/// Where the subdivision has the most to do, and where it may have to give up.
-#[test]
-fn poles_near_the_circle() {
-    for (nearest, count) in [(1e-2, 8), (1e-4, 6), (1e-6, 8)] {
-        let poles = Poles { count, nearest, delay: 8 };
-        for seed in 0..1000 {
-            let drawn = scenes::rational(&mut ChaCha8Rng::seed_from_u64(seed), poles);
-            compare(&drawn.scene);
-            compare(&Scene { coupling: Coupling::Rigid, ..drawn.scene });
-        }
-    }
 }

@@ -1,5 +1,5 @@
-//! A foreign crate uses the library for its certificate alone: embassy is no dependency, a safe
-//! constant builds, an unsafe one does not. Another one links only if no tick can panic.
+//! A foreign crate uses the library for its certificate alone: embassy is no dependency, and a safe constant builds
+//! (`tests/refusals` has those that do not). Another crate links only if no tick can panic.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -48,19 +48,9 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn a_safe_scene_builds() {
-    let output = cargo(&copy("accepted"), &["build"]);
+fn a_safe_scene_is_accepted() {
+    let output = cargo(&copy("accepted"), &["check"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
-}
-
-#[test]
-fn an_unsafe_scene_does_not() {
-    let output = cargo(&copy("refused"), &["build"]);
-    let said = text(&output.stderr);
-    assert!(!output.status.success(), "it built: {said}");
-    for part in ["alpha = 0.011 N m s/rad", "delta = 0.01 N m s/rad", "damping <= 0.00699"] {
-        assert!(said.contains(part), "{part:?} is not in: {said}");
-    }
 }
 
 #[test]

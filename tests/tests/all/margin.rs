@@ -20,7 +20,7 @@ fn passes_without(exact: &Exact, loss: f64) -> bool {
 #[test]
 fn a_linear_scene_passes_up_to_its_margin_and_not_beyond() {
     let (mut certified, mut bounded, mut lacking) = (0, 0, 0);
-    for seed in 0..1_500 {
+    for seed in 0..600 {
         let drawn = scenes::any(&mut ChaCha8Rng::seed_from_u64(seed));
         let assessment = assess(&drawn.scene);
         let Some(margin) = assessment.margin(&drawn.scene) else { continue };
@@ -42,7 +42,7 @@ fn a_linear_scene_passes_up_to_its_margin_and_not_beyond() {
         }
     }
     println!("certified={certified} bounded={bounded} lacking={lacking}");
-    assert!(certified > 200 && bounded > 100 && lacking > 100);
+    assert!(certified > 80 && bounded > 40 && lacking > 40);
 }
 
 fn wall(stiffness: f64, damping: f64, delay: usize, limit: Option<f64>) -> Scene {

@@ -44,7 +44,7 @@ fn agrees(rule: &str, seed: u64, answer: RuleAnswer, truth: bool) {
 #[test]
 fn a_worst_period_holds_where_torques_are_latched_and_where_they_are_not() {
     let (mut late, mut only_at_once) = (0, 0);
-    for seed in 0..2_000 {
+    for seed in 0..700 {
         let drawn = scenes::any(&mut ChaCha8Rng::seed_from_u64(seed));
         let factor = [1.0, 1.5, 2.0, 4.0][usize::try_from(seed % 4).unwrap()];
         let mut slow = drawn.scene;
@@ -67,5 +67,5 @@ fn a_worst_period_holds_where_torques_are_latched_and_where_they_are_not() {
         only_at_once += usize::from(at_once.passes_exact() && !latched.passes_exact);
     }
     println!("late={late} only at once={only_at_once}");
-    assert!(late > 100 && only_at_once > 5, "{late} {only_at_once}");
+    assert!(late > 50 && only_at_once > 1, "{late} {only_at_once}");
 }

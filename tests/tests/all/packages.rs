@@ -3,19 +3,16 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
-use regex::Regex;
 use serde_json::Value;
+
+use crate::documents::{regex, root};
 
 /// Name and folder of each.
 const PUBLISHED: [(&str, &str); 2] =
     [("haptic-servo", "firmware"), ("haptic-model", "analysis/model")];
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace is above").to_owned()
-}
 
 /// What cargo prints, without the network, of files that need not be committed yet.
 fn cargo(arguments: &[&str]) -> String {
@@ -35,7 +32,7 @@ fn cargo(arguments: &[&str]) -> String {
 /// The files of a package, by their paths in it.
 fn files(package: &str) -> BTreeSet<String> {
     let listed = cargo(&["package", "--package", package, "--allow-dirty", "--list"]);
-    listed.lines().map(|name| name.replace('\\', "/")).collect()
+    listed.lines().map(str::to_owned).collect()
 }
 
 /// The packages of the workspace as cargo reads them.
@@ -96,9 +93,8 @@ fn the_one_names_the_version_of_the_other() {
 #[test]
 fn the_packages_have_all_that_they_speak_of_and_no_more() {
     // Files as documents name them: in a package, and not in the repository.
-    let named =
-        Regex::new(r"`((?:examples/\w+\.rs)|(?:\w+\.md)|(?:memory\.x))`").expect("it is one");
-    let link = Regex::new(r"\]\(([^)#:]+)\)").expect("it is one");
+    let named = regex(r"`((?:examples/\w+\.rs)|(?:\w+\.md)|(?:memory\.x))`");
+    let link = regex(r"\]\(([^)#:]+)\)");
     for (name, folder) in PUBLISHED {
         let folder = root().join(folder);
         let files = files(name);
@@ -126,11 +122,8 @@ fn the_packages_have_all_that_they_speak_of_and_no_more() {
         for file in &wanted {
             assert!(files.contains(file), "{name}: {file} is not in the package");
         }
-        let strange = |file: &&String| {
-            ["src/bin/", "tests/", "fuzz/", "harness/", "own-"]
-                .iter()
-                .any(|at| file.starts_with(at))
-        };
+        let others = ["src/bin/", "tests/", "fuzz/", "harness/", "own-"];
+        let strange = |file: &&String| others.iter().any(|at| file.starts_with(at));
         assert_eq!(files.iter().find(strange), None, "{name}");
         assert!(files.len() > 100, "{name}: {} files", files.len());
     }
@@ -149,14 +142,10 @@ fn no_source_takes_in_a_file_that_is_not_published() {
                 let taken = included.split('"').next().expect("a name");
                 let taken = path.parent().expect("a folder").join(taken).canonicalize();
                 let taken = taken.expect("a file of the repository");
-                let inside = taken
-                    .strip_prefix(&package)
-                    .ok()
-                    .map(|path| path.to_string_lossy().replace('\\', "/"));
-                assert!(
-                    inside.is_some_and(|path| files.contains(&path)),
-                    "{name}: {file}: {taken:?}"
-                );
+                let inside = taken.strip_prefix(&package).ok();
+                let is_published =
+                    inside.is_some_and(|path| files.contains(&*path.to_string_lossy()));
+                assert!(is_published, "{name}: {file}: {taken:?}");
             }
         }
     }

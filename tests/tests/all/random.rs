@@ -16,6 +16,8 @@ use tests::poly::Poly;
 use tests::rounding;
 use tests::scenes::{self, ExactScene, Poles};
 
+use super::decision::compare;
+
 /// Judges `count` scenes and returns how many the exact and the paper's rule left open.
 fn judge(count: u64, draw: impl Fn(&mut ChaCha8Rng) -> ExactScene) -> (u64, u64) {
     let (mut exact, mut paper, mut passed) = (0, 0, 0);
@@ -24,6 +26,9 @@ fn judge(count: u64, draw: impl Fn(&mut ChaCha8Rng) -> ExactScene) -> (u64, u64)
         let assessment = assess(&drawn.scene);
         let open = check(&assessment, &drawn.exact)
             .unwrap_or_else(|why| panic!("seed {seed}: {why}\n{:?}\n{assessment:?}", drawn.scene));
+        // Where the subdivision has the most to do, and where it may have to give up.
+        compare(&drawn.scene);
+        compare(&Scene { coupling: Coupling::Rigid, ..drawn.scene });
         exact += u64::from(open.exact);
         paper += u64::from(open.paper);
         passed += u64::from(assessment.outcome.is_ok());
@@ -38,33 +43,21 @@ fn rare(count: u64, open: (u64, u64)) {
     assert!(open.1 * 50 < count, "the paper's rule left {} of {count} open", open.1);
 }
 
+/// Poles at these distances from the circle and more. Next to it being undecided is no fault; being wrong is.
 #[test]
-fn poles_well_inside() {
-    let poles = Poles { count: 8, nearest: 1e-2, delay: 8 };
-    rare(600, judge(600, |rng| scenes::rational(rng, poles)));
+fn environments_with_poles_near_the_circle() {
+    for (scenes, count, nearest) in [(200, 8, 1e-2), (150, 6, 1e-4), (100, 8, 1e-6)] {
+        let open = judge(scenes, |rng| scenes::rational(rng, Poles { count, nearest, delay: 8 }));
+        if nearest > 1e-6 {
+            rare(scenes, open);
+        }
+    }
 }
 
 #[test]
-fn poles_ten_thousandths_from_the_circle() {
-    let poles = Poles { count: 6, nearest: 1e-4, delay: 8 };
-    rare(400, judge(400, |rng| scenes::rational(rng, poles)));
-}
-
-/// Here being undecided is no fault; being wrong is.
-#[test]
-fn poles_millionths_from_the_circle() {
-    let poles = Poles { count: 8, nearest: 1e-6, delay: 8 };
-    judge(300, |rng| scenes::rational(rng, poles));
-}
-
-#[test]
-fn walls_and_springs() {
-    rare(600, judge(600, scenes::wall));
-}
-
-#[test]
-fn free_modes() {
-    rare(600, judge(600, scenes::free));
+fn walls_springs_and_free_modes() {
+    rare(300, judge(300, scenes::wall));
+    rare(300, judge(300, scenes::free));
 }
 
 /// Scenes a hair from the line, behind a coupling a few last places off the standard one, where
@@ -73,7 +66,7 @@ fn free_modes() {
 fn a_hair_from_the_line() {
     let poles = Poles { count: 6, nearest: 1e-3, delay: 4 };
     let (mut judged, mut passed) = (0, 0);
-    for seed in 0..400 {
+    for seed in 0..150 {
         let rng = &mut ChaCha8Rng::seed_from_u64(seed);
         let mut drawn = scenes::rational(rng, poles);
         let standard = 2.0 * drawn.scene.device.damping / drawn.scene.timing.period;
@@ -95,7 +88,7 @@ fn a_hair_from_the_line() {
             .unwrap_or_else(|why| panic!("seed {seed}: {why}\n{:?}\n{assessment:?}", drawn.scene));
     }
     println!("near the line={judged} passed={passed}");
-    assert!(judged > 100 && passed > 20, "{passed} of {judged} passed");
+    assert!(judged > 40 && passed > 8, "{passed} of {judged} passed");
 }
 
 /// Scales the numerator so that the index is `share` of the device's passivity.

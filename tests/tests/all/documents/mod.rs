@@ -15,7 +15,7 @@ use std::sync::Mutex;
 use regex::Regex;
 
 /// The repository.
-fn root() -> PathBuf {
+pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace is above").to_owned()
 }
 
@@ -58,7 +58,7 @@ fn documents() -> BTreeMap<String, String> {
 }
 
 /// Each is compiled once: that takes longer than to search a file.
-fn regex(pattern: &str) -> Regex {
+pub fn regex(pattern: &str) -> Regex {
     static COMPILED: Mutex<BTreeMap<String, Regex>> = Mutex::new(BTreeMap::new());
     let mut compiled = COMPILED.lock().expect("nobody panics below");
     let known = compiled.get(pattern).cloned();

@@ -71,18 +71,3 @@ fn the_words_that_are_quoted_are_those_of_the_program() {
         assert!(all.iter().any(|text| text.contains(&words)), "{name}: nothing says `{words}`");
     }
 }
-
-/// A link inside the document leads to a heading, as GitHub names it.
-#[test]
-fn links_lead_to_headings() {
-    let document = read(DOCUMENT);
-    let heading = |line: &str| {
-        let kept = |c: &char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
-        line.chars().filter(kept).collect::<String>().trim().to_lowercase().replace(' ', "-")
-    };
-    let headings: Vec<_> =
-        document.lines().filter(|line| line.starts_with('#')).map(heading).collect();
-    for link in regex(r"\]\(#([^)]+)\)").captures_iter(&document) {
-        assert!(headings.iter().any(|heading| *heading == link[1]), "#{}", &link[1]);
-    }
-}
