@@ -37,8 +37,6 @@ pub mod isr_cell;
 #[allow(unsafe_code)]
 pub mod nucleo_g474re;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
-pub mod servo_isr;
-#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
 pub mod stack;
 #[cfg(all(target_os = "none", feature = "stm32"))]

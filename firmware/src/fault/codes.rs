@@ -38,14 +38,22 @@ impl Bits for bool {
     }
 }
 
-/// The methods of an enumeration of faults, from a row for each: its code, its word, the variant with at most two
+/// An enumeration of faults, from a row for each: its description, its code, its word, the variant with at most two
 /// numbers, and its sentence. The last row, of another enumeration's faults, has no code and no word.
 macro_rules! fault_table {
-    ($fault:ident {
-        $($code:literal $word:literal $variant:ident $({ $($number:ident),+ })?
+    ($(#[$about:meta])* $fault:ident {
+        $($(#[$doc:meta])* $code:literal $word:literal $variant:ident $({ $($number:ident: $type:ty),+ })?
             => ($sentence:literal $(, $argument:expr)?),)+
-        $(_ $other:ident($inner:ident: $kind:ident) => ($prefix:literal),)?
+        $(others: $(#[$others:meta])* $other:ident($inner:ident: $kind:ident) => ($prefix:literal),)?
     }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[allow(missing_docs, reason = "a row's description and sentence name its numbers")]
+        pub enum $fault {
+            $($(#[$doc])* $variant $({ $($number: $type),+ })?,)+
+            $($(#[$others])* $other($kind),)?
+        }
+
         impl $fault {
             /// The fault in one word, for tables.
             pub const fn as_str(self) -> &'static str {

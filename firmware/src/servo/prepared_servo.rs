@@ -39,9 +39,6 @@ impl RenderingOptions {
 impl RenderingOptions {
     /// For constants: a compile error if the injected damping is more than the scene allows; see
     /// [`TimingChecked::injectable_damping`].
-    ///
-    /// # Panics
-    /// If the damping is too large; in a constant this is a compile error.
     #[track_caller]
     pub const fn checked_beside(&self, room: f64) {
         if let Some(damping) = self.injection {

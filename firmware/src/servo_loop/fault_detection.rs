@@ -6,7 +6,6 @@ use crate::encoder::RawCount;
 use crate::environment::MAX_DELAY;
 use crate::fault::FaultRecord;
 use crate::output_timing::OutputTiming;
-use crate::torque_output::OutputEvent;
 
 /// Ticks in a row without a fault before the servo may be armed.
 const FAULT_FREE_TICKS: u32 = MAX_DELAY as u32 + 2;

@@ -3,8 +3,7 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::{DWT, NVIC};
-use haptic_servo::board::isr_cell::IsrCell;
-use haptic_servo::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
+use haptic_servo::board::isr_cell::{IsrCell, MailboxCell, endpoints};
 use haptic_servo::board::stm32::output::Setup;
 use haptic_servo::board::stm32::registers::Registers;
 use haptic_servo::board::stm32::wiring::AMPLIFIER;
@@ -16,7 +15,7 @@ use haptic_servo::encoder::RawCount;
 use haptic_servo::scene::Scene;
 use haptic_servo::scene_type::Typed;
 use haptic_servo::servo::{OutputMode, PreparedServo, RenderingOptions};
-use haptic_servo::servo_loop::{Hardware, Options, ServoLoop};
+use haptic_servo::servo_loop::{Endpoints, Hardware, Options, ServoIsr, ServoLoop};
 
 use super::{CERTIFIED, FILTER, Failure, TRANSDUCERS};
 

@@ -15,8 +15,7 @@ use super::stop::stop;
 use super::wiring::{self, ENCODER};
 use super::{BoardPeripherals, family, output};
 use crate::board::input_filter::InputFilter;
-use crate::board::isr_cell::IsrCell;
-use crate::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
+use crate::board::isr_cell::{IsrCell, MailboxCell, endpoints};
 use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, Startup, boot};
 use crate::fault::FaultRecord;
@@ -25,7 +24,7 @@ use crate::period as periods;
 use crate::rendering::Rendering;
 use crate::reset::ResetCause;
 use crate::servo::{OutputMode, OutputTiming, SupportsTiming, Transducers};
-use crate::servo_loop::Reason;
+use crate::servo_loop::{Endpoints, Reason, ServoIsr};
 use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Link, Session};
 
@@ -77,9 +76,6 @@ where
 }
 
 /// The program with the counter width of this board instead of its own, or a compile error.
-///
-/// # Panics
-/// If the counter could wrap undetected; in a constant this is a compile error.
 #[track_caller]
 pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
     let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
@@ -243,7 +239,7 @@ macro_rules! board_program {
 
         static ISR_STATE: $crate::board::stm32::ServoCell<$environment, $number, $mode> =
             $crate::board::isr_cell::IsrCell::empty();
-        static MAILBOX: $crate::board::servo_isr::MailboxCell<$environment, $number, $mode> =
+        static MAILBOX: $crate::board::isr_cell::MailboxCell<$environment, $number, $mode> =
             $crate::__private::static_cell::StaticCell::new();
 
         static LINK: $crate::board::stm32::LinkCell<$environment, $number, $mode> =

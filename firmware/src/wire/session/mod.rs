@@ -15,18 +15,14 @@
 //! Requests::swapped -> compare   has its number: it is the active set; ToHost::Answer
 //! ```
 
-mod outbox;
+mod outgoing;
 mod pending_replies;
-mod stream;
 #[cfg(test)]
 mod tests;
-mod turn;
 
-use self::outbox::Outbox;
+pub use self::outgoing::MESSAGES_AHEAD;
+use self::outgoing::{Outbox, Stream, Turn};
 use self::pending_replies::{Greeting, PendingReplies};
-use self::stream::Stream;
-pub use self::turn::MESSAGES_AHEAD;
-use self::turn::Turn;
 use super::PROTOCOL;
 use super::decoder::Decoder;
 use super::description::Description;

@@ -22,8 +22,9 @@ use crate::fault::Fault;
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
-use crate::servo_loop::{Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, ServoLoop, State};
-use crate::torque_output::OutputEvent;
+use crate::servo_loop::{
+    Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, OutputEvent, ServoLoop, State,
+};
 use crate::tuning::RenderError;
 use crate::wire::message::LONGEST_TO_HOST;
 use crate::wire::{Discarded, encode, largest_frame};
@@ -112,7 +113,7 @@ const FRAMES: usize = 32;
 
 /// A session, the servo behind it, and the host's ear.
 struct Bench {
-    session: Session<'static, Environment, f32, Latched, FRAMES>,
+    session: Served,
     servo_loop: ServoLoop<Environment, f32, Latched>,
     hardware: Still,
     inbox: Inbox<'static, PreparedServo<Environment, f32, Latched>>,
@@ -146,8 +147,12 @@ impl Bench {
     }
 
     fn tell(&mut self, message: &ToBoard) {
-        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-        self.session.receive(encode(message, &mut buffer).unwrap());
+        self.session.receive(&frame(message));
+    }
+
+    /// Serves the wire, which takes this number of bytes; returns the bytes and the board's messages.
+    fn serve(&mut self, most: usize) -> (usize, Vec<Said>) {
+        serve(&mut self.session, &mut self.ear, most)
     }
 
     fn tick(&mut self) {
@@ -159,10 +164,7 @@ impl Bench {
         let mut said = Vec::new();
         for _ in 0..ticks {
             self.tick();
-            self.session.poll();
-            let bytes = self.session.outgoing().to_vec();
-            self.session.sent(bytes.len());
-            said.extend(bytes.iter().filter_map(|&byte| self.ear.push::<Said>(byte)));
+            said.extend(self.serve(usize::MAX).1);
         }
         said
     }
@@ -174,8 +176,7 @@ impl Bench {
     }
 
     fn set(&mut self, id: Id, changes: &[(Parameter, f64)]) -> Outcome {
-        let changes = Changes::from_slice(changes).unwrap();
-        let said = self.ask(&ToBoard::Set { id, changes });
+        let said = self.ask(&set(id, changes));
         match said.as_slice() {
             [ToHost::Answer { id: answered, outcome }] if *answered == id => *outcome,
             other => panic!("{other:?}"),
@@ -206,6 +207,35 @@ impl Bench {
         });
         statuses.next().expect("a board says how it is going")
     }
+}
+
+type Served = Session<'static, Environment, f32, Latched, FRAMES>;
+
+/// Serves a session's wire once: the bytes that it took, and the messages in them.
+fn serve(
+    session: &mut Served,
+    ear: &mut Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
+    most: usize,
+) -> (usize, Vec<Said>) {
+    session.poll();
+    let bytes = session.outgoing();
+    let bytes = bytes[..bytes.len().min(most)].to_vec();
+    session.sent(bytes.len());
+    (bytes.len(), bytes.iter().filter_map(|&byte| ear.push::<Said>(byte)).collect())
+}
+
+fn frame(message: &ToBoard) -> Vec<u8> {
+    let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+    encode(message, &mut buffer).unwrap().to_vec()
+}
+
+fn set(id: Id, changes: &[(Parameter, f64)]) -> ToBoard {
+    ToBoard::Set { id, changes: Changes::from_slice(changes).unwrap() }
+}
+
+/// A set of this stiffness.
+fn stiffness(id: Id, stiffness: f64) -> ToBoard {
+    set(id, &[(Parameter::Stiffness, stiffness)])
 }
 
 fn refused(id: Id, refusal: Refusal) -> Said {
@@ -379,17 +409,13 @@ fn a_status_has_what_the_board_itself_knows() {
 fn one_set_at_a_time() {
     let mut bench = Bench::new(None);
     bench.run(500);
-    let set = |id, stiffness| {
-        let changes = Changes::from_slice(&[(Parameter::Stiffness, stiffness)]).unwrap();
-        ToBoard::Set { id, changes }
-    };
-    bench.tell(&set(1, 10.0));
+    bench.tell(&stiffness(1, 10.0));
     // Asked again, which is the same request and not another one.
-    bench.tell(&set(1, 10.0));
-    bench.tell(&set(2, 11.0));
+    bench.tell(&stiffness(1, 10.0));
+    bench.tell(&stiffness(2, 11.0));
     let said = bench.run(3);
     assert_eq!(said, [refused(2, Refusal::Busy)]);
-    bench.tell(&set(1, 10.0));
+    bench.tell(&stiffness(1, 10.0));
     assert_eq!(bench.run(500), [done(1)]);
     assert!(bench.running().values.contains(&(Parameter::Stiffness, 10.0)));
 }
@@ -452,9 +478,7 @@ fn ticks(said: &Said) -> Vec<Frame> {
 #[test]
 fn a_frame_may_take_its_time() {
     let mut bench = Bench::new(None);
-    let changes = Changes::from_slice(&[(Parameter::Stiffness, 9.0)]).unwrap();
-    let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-    let frame = encode(&ToBoard::Set { id: 5, changes }, &mut buffer).unwrap().to_vec();
+    let frame = frame(&stiffness(5, 9.0));
     let (first, second) = frame.split_at(frame.len() / 2);
     bench.session.receive(first);
     assert_eq!(bench.run(2000), []);
@@ -498,18 +522,16 @@ fn every_message_fits_its_frame() {
 /// Bytes that are noise, and frames in whole or in part.
 fn garbage() -> impl Strategy<Value = Vec<u8>> {
     let frame = (any::<u8>(), 0_usize..120, any::<u8>()).prop_map(|(kind, cut, flip)| {
-        let set = |value| Changes::from_slice(&[(Parameter::Stiffness, value)]).unwrap();
         let message = match kind % 6 {
             0 => ToBoard::Hello,
             1 => ToBoard::Get,
             2 => ToBoard::Status,
             // Never certified, with any neighbours.
-            3 => ToBoard::Set { id: 1, changes: set(1000.0) },
+            3 => stiffness(1, 1000.0),
             4 => ToBoard::Stream(core::num::NonZeroU32::new(3)),
             _ => ToBoard::Arm { id: 9 },
         };
-        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-        let mut frame = encode(&message, &mut buffer).unwrap().to_vec();
+        let mut frame = frame(&message);
         frame.truncate(cut);
         if flip % 4 == 0 && !frame.is_empty() {
             let place = usize::from(flip) % frame.len();

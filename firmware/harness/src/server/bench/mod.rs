@@ -1,11 +1,8 @@
 //! Runs [benchmarks](crate::bench_request) on the emulated board.
 
-mod all_scenes;
-mod program_scenes;
-mod scene_types;
+mod scenes;
 
-pub use all_scenes::AllScenes;
-pub use program_scenes::ProgramScenes;
+pub use scenes::{AllScenes, ProgramScenes};
 
 use core::hint::black_box;
 use core::marker::PhantomData;
