@@ -8,34 +8,23 @@ pub trait Bits {
     fn from_bits(bits: u32) -> Self;
 }
 
-impl Bits for u32 {
-    fn into_bits(self) -> u32 {
-        self
-    }
+macro_rules! bits {
+    ($($number:ty: $into:expr, $from:expr;)+) => {$(
+        impl Bits for $number {
+            fn into_bits(self) -> u32 {
+                ($into)(self)
+            }
 
-    fn from_bits(bits: u32) -> Self {
-        bits
-    }
+            fn from_bits(bits: u32) -> Self {
+                ($from)(bits)
+            }
+        }
+    )+};
 }
-
-impl Bits for i32 {
-    fn into_bits(self) -> u32 {
-        self.cast_unsigned()
-    }
-
-    fn from_bits(bits: u32) -> Self {
-        bits.cast_signed()
-    }
-}
-
-impl Bits for bool {
-    fn into_bits(self) -> u32 {
-        self.into()
-    }
-
-    fn from_bits(bits: u32) -> Self {
-        bits != 0
-    }
+bits! {
+    u32: u32::from, u32::from;
+    i32: i32::cast_unsigned, u32::cast_signed;
+    bool: u32::from, |bits| bits != 0;
 }
 
 /// An enumeration of faults, from a row for each: its description, its code, its word, the variant with at most two

@@ -41,6 +41,9 @@ use crate::rendering::Rendering;
 use crate::servo::{PreparedServo, TimingLimits};
 use crate::torque::LimitReason;
 
+/// The interrupt's end of the mailbox, with its sets.
+type Incoming<'a, E, N, M> = Inbox<'a, PreparedServo<E, N, M>>;
+
 /// The action after the clamp has closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum AfterFade {
@@ -143,7 +146,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     pub fn run(
         &mut self,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
         frames: &mut impl FrameSink,
     ) {
         // Sampling: the count and its time.
@@ -199,11 +202,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
 
     /// Timer counts left until the tick's deadline.
     #[inline(always)]
-    fn slack(
-        &mut self,
-        hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
-    ) -> u32 {
+    fn slack(&mut self, hardware: &mut impl Hardware, inbox: &mut Incoming<'_, E, N, M>) -> u32 {
         let elapsed = hardware.time_in_period();
         if elapsed > self.longest {
             return self.check_longest_tick(elapsed, hardware, inbox);

@@ -75,18 +75,6 @@ fn one_sample_of_noise_switches_nothing_off_and_two_do() {
     }
 }
 
-#[test]
-fn a_supply_out_of_its_range_is_found_at_the_second_sample() {
-    for (bus, is_under) in [(27.0, false), (21.0, true)] {
-        let mut rig = Rig::started(&BRUSHED);
-        rig.instant(0).unwrap();
-        rig.bus = bus;
-        let (instants, fault) = fault(&mut rig, 0, 3);
-        assert_eq!(instants, 1, "{fault:?}");
-        assert_eq!(matches!(fault, PowerFault::UnderVoltage { .. }), is_under, "{fault:?}");
-    }
-}
-
 /// A single phase above the limit, by counts: of W the sum of the two others, each below it.
 #[test]
 fn an_over_current_of_each_phase_is_found() {
@@ -172,30 +160,6 @@ fn a_hand_that_is_too_fast_for_the_supply_is_a_saturated_duty() {
     });
     let Some(PowerFault::SaturatedDuty { instants, allowed }) = fault else { panic!("{fault:?}") };
     assert!(instants == allowed + 1 && (340.0..400.0).contains(&rig.speed), "{}", rig.speed);
-}
-
-#[test]
-fn every_fault_comes_back_from_its_code() {
-    for code in (14..=22).chain(29..=31) {
-        let fault = PowerFault::decode(code, [7, 9]).unwrap();
-        assert_eq!(fault.encode(), (code, [7, 9]));
-        assert!(!fault.as_str().is_empty() && fault.to_string().ends_with("again"), "{fault}");
-        // No code belongs to two faults.
-        let decoded = crate::fault::Fault::decode(code, [7, 9]);
-        assert_eq!(decoded, Some(crate::fault::Fault::Power(fault)));
-    }
-    assert_eq!(PowerFault::decode(13, [0; 2]), None);
-    for by_index in [false, true] {
-        let fault = PowerFault::NotAligned { by_index };
-        assert_eq!(PowerFault::decode(23, [by_index.into(), 0]), Some(fault));
-        assert_eq!(fault.encode(), (23, [by_index.into(), 0]));
-        assert_eq!(fault.to_string().contains("past the encoder's index"), by_index);
-    }
-    // The next codes are those of an alignment.
-    for code in 24..=28 {
-        assert!(matches!(PowerFault::decode(code, [0; 2]), Some(PowerFault::Alignment(_))));
-    }
-    assert_eq!(PowerFault::decode(32, [0; 2]), None);
 }
 
 proptest! {

@@ -26,14 +26,7 @@ const TICKS: usize = 150;
 
 /// The paper's device behind the standard coupling.
 const fn scene<E>(environment: E) -> Scene<E> {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 1e-3, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
+    crate::fixture::scene(environment, None)
 }
 
 /// A hand that pushes in, holds, trembles and comes back: counts, at most about 0.2 rad.

@@ -14,13 +14,14 @@ use super::*;
 use crate::certificate::Parameter;
 use crate::current::IndexOffset;
 use crate::dac::DacCode;
-use crate::encoder::{CounterWidth, RawCount};
+use crate::encoder::RawCount;
 use crate::environment::{
     Canceller, Damper, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side, Wall,
 };
 use crate::fault::Fault;
+use crate::fixture;
 use crate::number::Format;
-use crate::scene::{Coupling, Device, Latency, Timing};
+use crate::scene::{Device, Latency, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
 use crate::servo_loop::{
     Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, OutputEvent, ServoLoop, State,
@@ -29,23 +30,14 @@ use crate::tuning::RenderError;
 use crate::wire::message::LONGEST_TO_HOST;
 use crate::wire::{Discarded, encode, largest_frame};
 
-const SCENE: Scene = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: Wall::damped(22.0, 0.01, 1).behind(0.0).alone(),
-    latency: Latency::NONE,
-    torque_limit: Some(1.0),
-};
+const SCENE: Scene = fixture::scene(Wall::damped(22.0, 0.01, 1).behind(0.0).alone(), Some(1.0));
 
 fn program() -> Program<Environment> {
     Program {
         scene: SCENE,
         transducers: Transducers {
-            counts_per_turn: 61_440.0,
-            counter: CounterWidth::Bits16,
-            full_scale_torque: 2.0,
             largest_speed: Transducers::NO_HAND_IS_FASTER,
+            ..fixture::TRANSDUCERS
         },
         rendering: RenderingOptions { fade: 0.02, injection: None, ..RenderingOptions::DEFAULT },
         options: servo_loop::Options::DEFAULT,
