@@ -119,7 +119,8 @@ pub fn measure() -> Result<(), Failure> {
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     core.DCB.enable_trace();
     core.DWT.enable_cycle_counter();
-    let hardware = registers(Setup::DAC, SCENE.timing.period, <Mode as OutputMode>::TIMING);
+    let hardware =
+        registers(Setup::DAC, CERTIFIED.scene().timing.period, <Mode as OutputMode>::TIMING);
     let Endpoints { requests, inbox, frames, mut frame_reader } = endpoints(&MAILBOX);
     let rendering = PreparedServo::new(&TIMED, &TRANSDUCERS, &RenderingOptions::DEFAULT);
     let rendering = rendering.map_err(|_| "no servo can be built of the scene")?;

@@ -56,7 +56,8 @@ static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 /// The board with only its pacing timer running: amplifier off, mid-scale, no watchdog.
 fn paced() -> Registers {
     let _ = init_chip(FILTER);
-    let mut hardware = registers(Setup::DAC, SCENE.timing.period, <Mode as OutputMode>::TIMING);
+    let mut hardware =
+        registers(Setup::DAC, CERTIFIED.scene().timing.period, <Mode as OutputMode>::TIMING);
     hardware.zero_encoder();
     hardware.start(<Mode as OutputMode>::TIMING);
     hardware
