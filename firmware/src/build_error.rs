@@ -40,7 +40,8 @@ pub enum BuildError {
     /// A push into the scene returns more energy in J to the supply than it takes below its fault level; infinite if
     /// no bound is known.
     Returned { energy: f64, largest: f64 },
-    /// The encoder's counter could wrap undetected: counts between two ticks at the largest speed, and half its range.
+    /// The encoder's counter could wrap undetected: counts between two ticks at the largest speed, and half its
+    /// range.
     Speed { counts: f64, half: f64 },
     /// No board can pace the scene's period in s; the range that every board can.
     Period { period: f64, shortest: f64, longest: f64 },

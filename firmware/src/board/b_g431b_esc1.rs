@@ -21,7 +21,8 @@ use super::stm32::output::OutputPin;
 use super::stm32::output::bridge::index::IndexPin;
 #[cfg(feature = "bridge")]
 use super::stm32::output::gates::{Gate, Gates};
-use super::stm32::{BoardPeripherals, clock_170, quadrature, serial};
+use super::stm32::serial::{self, Serial};
+use super::stm32::{clock_170, quadrature};
 
 /// The board's name as a feature and for `haptic flash`.
 pub const NAME: &str = "b-g431b-esc1";
@@ -69,8 +70,8 @@ pub fn clocks() -> Config {
     clock_170::from_crystal(Hertz(8_000_000), PllPreDiv::DIV2)
 }
 
-/// Configures each pin; the amplifier is off.
-pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
+/// Configures each pin; the amplifier is off. Returns the port to the host.
+pub fn connect_pins(chip: Peripherals) -> Serial {
     // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
     // registers.
     core::mem::forget((
@@ -95,8 +96,6 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     // 2's pin PA5 is in the middle of a current sense amplifier.
     #[cfg(not(feature = "bridge"))]
     super::stm32::output::dac::connect(chip.DAC1, chip.PA4);
-    BoardPeripherals {
-        // The virtual serial port of the board's debug probe; without the probe, the pads TX and RX of J3.
-        serial: serial::open(chip.USART2, chip.PB4, chip.PB3, Interrupts),
-    }
+    // The virtual serial port of the board's debug probe; without the probe, the pads TX and RX of J3.
+    serial::open(chip.USART2, chip.PB4, chip.PB3, Interrupts)
 }

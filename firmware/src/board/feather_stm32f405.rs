@@ -17,7 +17,8 @@ use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
 use super::stm32::output::OutputPin;
-use super::stm32::{BoardPeripherals, quadrature, serial};
+use super::stm32::quadrature;
+use super::stm32::serial::{self, Serial};
 
 /// The board's name as a feature and for `haptic flash`.
 pub const NAME: &str = "feather-stm32f405";
@@ -61,8 +62,8 @@ pub fn clocks() -> Config {
     config
 }
 
-/// Configures each pin; the amplifier is off.
-pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
+/// Configures each pin; the amplifier is off. Returns the port to the host.
+pub fn connect_pins(chip: Peripherals) -> Serial {
     // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
     // registers.
     core::mem::forget((
@@ -74,8 +75,6 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     ));
     // The DAC's pin is A0.
     super::stm32::output::dac::connect(chip.DAC1, chip.PA4);
-    BoardPeripherals {
-        // RX and TX of the header.
-        serial: serial::open(chip.USART3, chip.PB11, chip.PB10, Interrupts),
-    }
+    // RX and TX of the header.
+    serial::open(chip.USART3, chip.PB11, chip.PB10, Interrupts)
 }

@@ -13,7 +13,8 @@ use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
 use super::stm32::output::OutputPin;
-use super::stm32::{BoardPeripherals, clock_170, quadrature, serial};
+use super::stm32::serial::{self, Serial};
+use super::stm32::{clock_170, quadrature};
 
 /// The board's name as a feature and for `haptic flash`.
 pub const NAME: &str = "nucleo-g474re";
@@ -42,8 +43,8 @@ pub fn clocks() -> Config {
     clock_170::from_crystal(Hertz(24_000_000), PllPreDiv::DIV6)
 }
 
-/// Configures each pin; the amplifier is off.
-pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
+/// Configures each pin; the amplifier is off. Returns the port to the host.
+pub fn connect_pins(chip: Peripherals) -> Serial {
     // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
     // registers.
     core::mem::forget((
@@ -56,8 +57,6 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     ));
     // The DAC's pin is A2 on the Arduino header. Channel 2's pin PA5 drives the board's LED.
     super::stm32::output::dac::connect(chip.DAC1, chip.PA4);
-    BoardPeripherals {
-        // The virtual serial port of the board's debug probe.
-        serial: serial::open(chip.USART2, chip.PA3, chip.PA2, Interrupts),
-    }
+    // The virtual serial port of the board's debug probe.
+    serial::open(chip.USART2, chip.PA3, chip.PA2, Interrupts)
 }

@@ -20,8 +20,8 @@ fault_table! {
     17 "over-temperature" OverTemperature { temperature: i32, largest: i32 } => (
         "the power stage had {temperature} tenths of a degree Celsius, and {largest} are allowed: let it cool down, \
          then arm again"),
-    /// The count of a phase (0 is U, 1 is V) without a current is that of a broken amplifier, or is 0 because there are
-    /// not enough samples.
+    /// The count of a phase (0 is U, 1 is V) without a current is that of a broken amplifier, or 0 for lack of
+    /// samples.
     18 "current-offset" CurrentOffset { phase: u32, count: u32 } => (
         "the converter reads {count} for phase {} without a current, which no working amplifier gives: check the \
          power stage, then arm again", name(phase)),
@@ -50,8 +50,8 @@ fault_table! {
     29 "thermistor" Thermistor { count: u32, limit: u32 } => (
         "the converter reads {count} for the thermistor, and {limit} at the end of its range: it is disconnected or \
          shorted; repair it, then arm again"),
-    /// The over-current comparator of a phase (0 is U, 1 is V, 2 is W) does not trip where a working one does without a
-    /// current: the threshold in codes of its converter that did not separate the two outputs.
+    /// The over-current comparator of a phase (0 is U, 1 is V, 2 is W) does not trip where a working one does without
+    /// a current: the threshold in codes of its converter that did not separate the two outputs.
     30 "comparator" Comparator { phase: u32, threshold: u32 } => (
         "the over-current comparator of phase {} does not trip as a working one does without a current, at the \
          threshold {threshold}: keep the handle at rest, check the power stage, then arm again", name(phase)),

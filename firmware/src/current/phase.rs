@@ -153,14 +153,14 @@ impl Speed {
 pub(super) const WIDTH: u32 = 4;
 
 /// Current of a pulse of an [`OffsetCheck`], relative to the current of full-scale torque.
-const PART: f32 = 0.25;
+const PULSE_PART: f32 = 0.25;
 /// Time in s of one direction of a pulse; the rest behind a pulse is as long.
-const TIME: f64 = 5e-3;
+const PULSE_TIME: f64 = 5e-3;
 /// Least motion in counts that a torque shows.
-const LEAST: i32 = 4;
+const LEAST_MOTION: i32 = 4;
 /// Stretches of a pulse: forward, back, and at rest; and of both pulses.
-const STRETCHES: u32 = 3;
-const ALL: u32 = 2 * STRETCHES;
+const PULSE_STRETCHES: u32 = 3;
+const ALL_STRETCHES: u32 = 2 * PULSE_STRETCHES;
 
 /// An index that comes once per turn of the encoder, as a program states it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -240,12 +240,12 @@ pub struct OffsetCheck {
 impl OffsetCheck {
     /// A check with periods of the modulation in s.
     pub(super) const fn new(instant: f64) -> Self {
-        Self { stretch: Self::instants(instant) / ALL, time: 0, across: 0, along: 0 }
+        Self { stretch: Self::instants(instant) / ALL_STRETCHES, time: 0, across: 0, along: 0 }
     }
 
     /// Instants of a check.
     pub(super) const fn instants(instant: f64) -> u32 {
-        ALL * (TIME / instant) as u32
+        ALL_STRETCHES * (PULSE_TIME / instant) as u32
     }
 
     /// An instant in which the handle moved by `moved` counts; returns the current for the next instant, relative
@@ -255,18 +255,18 @@ impl OffsetCheck {
         // Only the way forward: inertia takes the handle further during the second half, damping takes it back.
         if place == 0 {
             self.across += moved;
-        } else if place == STRETCHES {
+        } else if place == PULSE_STRETCHES {
             self.along += moved;
         }
         self.time += 1;
-        let current = match place % STRETCHES {
-            0 => PART,
-            1 => -PART,
+        let current = match place % PULSE_STRETCHES {
+            0 => PULSE_PART,
+            1 => -PULSE_PART,
             _ => 0.0,
         };
         match place {
-            0..STRETCHES => Some(Vector { along: 0.0, across: current }),
-            STRETCHES..ALL => Some(Vector { along: current, across: 0.0 }),
+            0..PULSE_STRETCHES => Some(Vector { along: 0.0, across: current }),
+            PULSE_STRETCHES..ALL_STRETCHES => Some(Vector { along: current, across: 0.0 }),
             _ => None,
         }
     }
@@ -277,7 +277,7 @@ impl OffsetCheck {
     /// If the handle did not move as with the right phase.
     pub(super) const fn result(&self) -> Result<(), PowerFault> {
         let (across, along) = (self.across, self.along);
-        if across >= LEAST && along.unsigned_abs() < across.unsigned_abs() {
+        if across >= LEAST_MOTION && along.unsigned_abs() < across.unsigned_abs() {
             return Ok(());
         }
         Err(PowerFault::IndexOffset { across, along })

@@ -13,7 +13,7 @@ use super::registers::Registers;
 use super::serial::Serial;
 use super::stop::stop;
 use super::wiring::{self, ENCODER};
-use super::{BoardPeripherals, family, output};
+use super::{family, output};
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::{IsrCell, MailboxCell, endpoints};
 use crate::board::{critical, stack};
@@ -98,7 +98,7 @@ where
     N: Number,
     M: OutputMode,
 {
-    let port = init_chip(statics.filter).serial;
+    let port = init_chip(statics.filter);
     let mut hardware = registers(statics.output, program.scene.timing.period, M::TIMING);
     let timer_counts = hardware.period();
     let Endpoints { requests, inbox, frames, frame_reader } = endpoints(statics.mailbox);
@@ -162,8 +162,8 @@ fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_becaus
     }
 }
 
-/// Sets up clocks, interrupts and pins. The motor is off, and the next torque is zero.
-pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
+/// Sets up clocks, interrupts and pins; returns the port to the host. The motor is off, and the next torque is zero.
+pub fn init_chip(filter: InputFilter) -> Serial {
     let chip = embassy_stm32::init(wiring::clocks());
     family::full_speed();
     // From here on a stopped crystal is a fault and does not stop the core.
@@ -173,10 +173,10 @@ pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
     let mut core = cortex_m::Peripherals::take().expect("the core is taken once");
     critical::lower_all(&mut core.NVIC);
     interrupt::TIM6_DAC.set_priority(Priority::from(critical::SERVO << 4));
-    let connected = wiring::connect_pins(chip);
+    let port = wiring::connect_pins(chip);
     output::stop();
     ENCODER.complete(filter);
-    connected
+    port
 }
 
 /// The width of a counter.

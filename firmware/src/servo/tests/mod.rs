@@ -37,14 +37,6 @@ fn hand() -> impl Iterator<Item = i32> {
     })
 }
 
-fn torques<E: Rendering<N>, N: Number>(mut servo: Servo<E, N>) -> Vec<f64> {
-    let tick = |count: i32| {
-        servo.tick(RawCount::from(count));
-        servo.torque_nm()
-    };
-    hand().map(tick).collect()
-}
-
 fn wall() -> impl Strategy<Value = Wall> {
     let parameters = (0.1..1.0_f64, 0.0..0.9_f64, 0..=8_usize, proptest::option::of(0.1..0.9_f64));
     (parameters, -0.1..0.1_f64, any::<bool>()).prop_map(
@@ -148,31 +140,4 @@ fn free_mode_is_equation_23() {
         let torque: f64 = positions.iter().rev().zip(&response).map(|(x, e)| x * e).sum();
         assert!((torque - servo.torque_nm()).abs() < 1e-12);
     }
-}
-
-/// Largest torque error against f64 in N m.
-fn error<E: Rendering<N> + Rendering<f64>, N: Number>(scene: &Scene<E>) -> f64 {
-    let exact = torques(Servo::<E, f64>::build(scene, &TRANSDUCERS).unwrap());
-    let rounded = torques(Servo::<E, N>::build(scene, &TRANSDUCERS).unwrap());
-    exact.iter().zip(&rounded).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
-#[test]
-fn formats_are_as_exact_as_their_step_times_the_loops_gain() {
-    fn bounded<E>(scene: Scene<E>, gain: f64)
-    where
-        E: Rendering<f32> + Rendering<f64>,
-        E: Rendering<FixedI32<U16>> + Rendering<FixedI32<U20>>,
-    {
-        // A step of f32 at 0.2 rad, and half a step of the fixed formats a rounding: angle,
-        // compliance and law, so three halves in all; `gain` is the l1 norm of the loop's
-        // response (theory, section 6, item 7).
-        assert!(error::<_, f32>(&scene) <= 1.5 * 2_f64.powi(-26) * gain);
-        assert!(error::<_, FixedI32<U16>>(&scene) <= 1.5 * 2_f64.powi(-16) * gain);
-        assert!(error::<_, FixedI32<U20>>(&scene) <= 1.5 * 2_f64.powi(-20) * gain);
-    }
-    bounded(scene(Wall::spring(22.0, 1).alone()), 44.0);
-    bounded(scene(Wall::damped(22.0, 0.01, 1).alone()), 924.0);
-    bounded(scene(Wall::damped(22.0, 0.01, 1).behind(0.0).alone()), 924.0);
-    bounded(scene(Canceller { residual: 0.001, delay: 0 }.alone()), 44.0);
 }

@@ -1,5 +1,5 @@
-//! Frames to the host: the order in which they leave, the frame that is being sent, and the ticks of the servo's queue
-//! that are packed into messages, as many as the wire can carry.
+//! Frames to the host: the order in which they leave, the frame that is being sent, and the ticks of the servo's
+//! queue that are packed into messages, as many as the wire can carry.
 
 use core::num::NonZeroU32;
 
