@@ -166,7 +166,7 @@ where
     let timed = spring(stiffness).certified().timing_checked::<M>();
     let options = RenderingOptions { injection, ..RenderingOptions::DEFAULT };
     let mut rendering = PreparedServo::new(&timed, &TRANSDUCERS, &options).unwrap();
-    while !rendering.servo_mut().open() {}
+    while !rendering.servo_mut().clamp().open() {}
     rendering
 }
 

@@ -121,7 +121,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
         BuildError::unless_positive("time of fading", options.fade)?;
         let ticks = (options.fade / period).max(1.0);
         let mut servo = Servo::build(scene, transducers)?.fading(bound, ticks)?;
-        servo.shut();
+        servo.clamp().shut();
         if matches!(M::TIMING, OutputTiming::Latched) && !servo.is_late() {
             return Err(BuildError::NotLate);
         }

@@ -210,7 +210,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     ) {
         hardware.write(DacCode::MID_SCALE);
         hardware.amplifier(false);
-        self.rendering.servo_mut().shut();
+        self.rendering.servo_mut().clamp().shut();
         self.state = State::Faulted;
         self.fault = Some(fault);
         let count = self.rendering.servo().low_count();

@@ -83,7 +83,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
         self.fault = None;
         hardware.store_fault(&FaultRecord::NOTHING);
-        self.rendering.servo_mut().shut();
+        self.rendering.servo_mut().clamp().shut();
         self.state = State::Aligning;
         Reply::Done
     }
@@ -127,7 +127,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             return self.begin_fading_out(AfterFade::Render);
         }
         for _ in 0..self.ramp {
-            if self.rendering.servo_mut().open() {
+            if self.rendering.servo_mut().clamp().open() {
                 self.state = State::Running;
             }
         }
@@ -135,9 +135,9 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
 
     fn fade_out(&mut self, hardware: &mut impl Hardware, inbox: &mut Incoming<'_, E, N, M>) {
         // The clamp was shut before this tick, so this tick's code was mid-scale.
-        if !self.rendering.servo().is_shut() {
+        if !self.rendering.servo_mut().clamp().is_shut() {
             for _ in 0..self.ramp {
-                self.rendering.servo_mut().close();
+                self.rendering.servo_mut().clamp().close();
             }
             return;
         }

@@ -82,18 +82,12 @@ fn a_change_is_made_where_it_belongs_and_nowhere_else() {
     for (i, (name, wanted)) in TUNABLE.into_iter().enumerate() {
         assert_eq!(parameter(name), Some(wanted));
         assert_eq!(super::name(wanted), Some(name));
-        if matches!(
-            wanted,
-            Parameter::ProfileTorque | Parameter::Count | Parameter::Centre | Parameter::Mode
-        ) {
-            // Of torque profiles alone.
-            continue;
-        }
         let filtered = Wall::damped(2.0, 0.01, 1).filtered(0.5);
         let wall = free_mode_wall(0.02, filtered.behind(0.1));
         let value = 0.125 + i as f64;
-        // No scene has the numbers of both.
+        // No scene has the numbers of both, and those of several modes have no number but the mode's.
         match wanted {
+            Parameter::Mode => {}
             Parameter::ProfileTorque | Parameter::Count | Parameter::Centre => {
                 changes_one(scene(Profile::of(&DETENTS, 1).alone()), wanted, value);
             }

@@ -21,7 +21,7 @@ use crate::environment::{
 use crate::fault::Fault;
 use crate::fixture;
 use crate::number::Format;
-use crate::scene::{Device, Latency, Timing};
+use crate::scene::{Device, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
 use crate::servo_loop::{
     Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, OutputEvent, ServoLoop, State,
@@ -264,50 +264,34 @@ fn longest_status(fault: FaultCode) -> Status {
 }
 
 fn largest_description() -> Description {
-    let canceller = Some(Canceller::to(1.0));
-    let wall = Some(Wall {
+    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0).snap(1.1)]);
+    let mut modes = Profile::of_modes(&KNOB_MODES, 1).modes.unwrap();
+    modes.count = u32::MAX;
+    let profile = Profile {
+        ends: Some(Ends { from: -1.0, to: 1.0, stiffness: 1.0 }),
+        modes: Some(modes),
+        ..Profile::of(&KNOTS, 8)
+    };
+    let wall = Wall {
         stiffness: 1.0,
         damper: Some(Damper { damping: 1.0, filter: Some(1.0) }),
         side: Side::Face(1.0),
         delay: usize::MAX,
-    });
-    let program = program();
+    };
+    let canceller = Some(Canceller::to(1.0));
+    let environment = Parts { canceller, wall: Some(wall), profile: Some(profile) }.sum();
     Description {
         scene: Scene {
             device: Device { passivity: Some(1.0), ..SCENE.device },
             timing: Timing { worst_period: Some(1.0), ..SCENE.timing },
-            coupling: SCENE.coupling,
-            environment: Parts { canceller, wall, profile: None }.sum(),
-            latency: Latency::NONE,
-            torque_limit: Some(1.0),
+            environment,
+            ..SCENE
         },
-        transducers: program.transducers,
-        rendering: RenderingOptions {
-            fade: 1.0,
-            injection: Some(1.0),
-            ..RenderingOptions::DEFAULT
-        },
+        transducers: program().transducers,
+        rendering: RenderingOptions { injection: Some(1.0), ..program().rendering },
         format: Format::Fixed { fraction_bits: u32::MAX },
         timing: crate::servo::OutputTiming::AtPhase(u32::MAX),
     }
-}
-
-/// The same of a torque profile.
-fn largest_profile() -> Description {
-    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0).snap(1.1)]);
-    let (mut profile, largest) = (Profile::of(&KNOTS, 8), largest_description());
-    profile.ends = Some(Ends { from: -1.0, to: 1.0, stiffness: 1.0 });
-    profile.modes = Profile::of_modes(&KNOB_MODES, 1).modes;
-    profile.modes.as_mut().unwrap().count = u32::MAX;
-    Description { scene: Scene { environment: profile.alone(), ..largest.scene }, ..largest }
-}
-
-/// The same with a wall and a canceller beside it.
-fn largest_sum() -> Description {
-    let largest = largest_profile();
-    let Parts { canceller, wall, .. } = *largest_description().scene.environment.parts();
-    let environment = Parts { canceller, wall, ..*largest.scene.environment.parts() }.sum();
-    Description { scene: Scene { environment, ..largest.scene }, ..largest }
 }
 
 fn done(id: Id) -> Said {
@@ -503,8 +487,6 @@ fn every_message_fits_its_frame() {
             values: changes,
         }),
         ToHost::Described(largest_description()),
-        ToHost::Described(largest_profile()),
-        ToHost::Described(largest_sum()),
     ] {
         let bytes = postcard::to_slice(&message, &mut [0; 1024]).unwrap().len();
         assert!(bytes <= LONGEST_TO_HOST, "{bytes} bytes");
