@@ -62,9 +62,6 @@ impl<E: Copy> Program<E> {
     }
 
     /// For constants: the same program, or a compile error that names the invalid number.
-    ///
-    /// # Panics
-    /// If [`Program::check`] fails; in a constant this is a compile error.
     #[track_caller]
     pub const fn checked(self) -> Self {
         match self.check() {

@@ -5,107 +5,46 @@ use crate::text::{Sentence, error_with_sentence, push};
 
 /// The reason why a certified scene cannot run with these transducers in this number format.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "each variant's description and sentence name its fields")]
 pub enum BuildError {
     /// A scale, a period or a limit is zero, negative or not finite.
-    NotPositive {
-        /// Its name.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// The scene's torque limit is above the DAC range.
-    TorqueLimit {
-        /// The scene's limit in N m.
-        limit: f64,
-        /// The torque at the DAC's largest code in N m.
-        full_scale: f64,
-    },
+    NotPositive { name: &'static str, value: f64 },
+    /// The scene's torque limit in N m is above the torque at the DAC's largest code.
+    TorqueLimit { limit: f64, full_scale: f64 },
     /// A constant of the scene does not fit the number format.
-    Unrepresentable {
-        /// Its name.
-        name: &'static str,
-        /// Value, bound and format.
-        reason: OutOfRange,
-    },
+    Unrepresentable { name: &'static str, reason: OutOfRange },
     /// The scene is certified with unrounded coefficients or in another number format, but not with the
     /// coefficients rounded to this format.
-    Uncertified {
-        /// This format.
-        format: Format,
-    },
-    /// The loop of coupling and environment has no solution, or more than one.
-    IllPosed {
-        /// `1 + f / K_vc` with the environment's slope `f`, out of contact.
-        line: f64,
-        /// The same in contact with a wall that can only push.
-        contact: f64,
-    },
+    Uncertified { format: Format },
+    /// The loop of coupling and environment has no solution, or more than one: `1 + f / K_vc` with the environment's
+    /// slope `f`, out of contact and in contact with a wall that can only push.
+    IllPosed { line: f64, contact: f64 },
     /// The environment is delayed by more samples than are stored.
-    Delay {
-        /// The delay in samples.
-        delay: usize,
-        /// The largest number of stored samples.
-        largest: usize,
-    },
+    Delay { delay: usize, largest: usize },
     /// The law of an environment that is declared late computes a torque from the present position.
     NotLate,
     /// The numbers are those of a scene with other parts, delays or another coupling than the program's.
     Structure,
     /// There is no matched coupling for the scene's latency.
     NoMatchedCoupling,
-    /// The environment repeats in each turn, and a turn is not a whole number of encoder counts.
-    Turn {
-        /// The counts per turn.
-        counts: f64,
-        /// The largest allowed number.
-        largest: f64,
-    },
-    /// The knob would snap there and back within a count of the encoder.
-    Hysteresis {
-        /// Angle in rad from where it snaps to where it snaps back.
-        hysteresis: f64,
-        /// Angle of a count in rad.
-        count: f64,
-    },
+    /// The environment repeats in each turn, and a turn is not a whole number of encoder counts, up to the largest.
+    Turn { counts: f64, largest: f64 },
+    /// The knob would snap there and back within a count of the encoder, both in rad.
+    Hysteresis { hysteresis: f64, count: f64 },
     /// The environment is only known by its bounds; its law is in another crate.
     LawElsewhere,
     /// The numerator has a higher degree than the denominator, or the denominator is zero.
-    Improper {
-        /// Degree of the numerator.
-        numerator: usize,
-        /// Degree of the denominator.
-        denominator: usize,
-    },
-    /// The scene's certificate does not allow this much injected damping.
-    Injection {
-        /// The damping in N m s/rad.
-        damping: f64,
-        /// Its upper bound in N m s/rad.
-        room: f64,
-    },
-    /// A push into the scene returns more energy to the supply than it takes.
-    Returned {
-        /// The energy in J; infinite if no bound is known.
-        energy: f64,
-        /// The largest energy in J that the supply takes below its fault level.
-        largest: f64,
-    },
-    /// The encoder's counter could wrap undetected at the largest speed.
-    Speed {
-        /// Counts between two ticks at the largest speed.
-        counts: f64,
-        /// Half the counter's range.
-        half: f64,
-    },
-    /// No board can pace the scene's period.
-    Period {
-        /// The period in s.
-        period: f64,
-        /// The shortest period that every board can pace, in s.
-        shortest: f64,
-        /// The longest, in s.
-        longest: f64,
-    },
+    Improper { numerator: usize, denominator: usize },
+    /// The scene's certificate allows less injected damping in N m s/rad.
+    Injection { damping: f64, room: f64 },
+    /// A push into the scene returns more energy in J to the supply than it takes below its fault level; infinite if
+    /// no bound is known.
+    Returned { energy: f64, largest: f64 },
+    /// The encoder's counter could wrap undetected: counts between two ticks at the largest speed, and half its
+    /// range.
+    Speed { counts: f64, half: f64 },
+    /// No board can pace the scene's period in s; the range that every board can.
+    Period { period: f64, shortest: f64, longest: f64 },
 }
 
 impl BuildError {

@@ -94,7 +94,9 @@ pub mod torque;
 
 pub mod dac;
 pub mod power_reading;
-pub mod torque_output;
+
+#[cfg(test)]
+mod fixture;
 
 // The current of a motor on a board's own power stage.
 pub mod current;

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::text::words;
+
 /// The cause of a board's last reset, from its chip's reset flags.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
@@ -28,35 +30,11 @@ pub enum ResetCause {
     OptionBytes = 8,
 }
 
-impl ResetCause {
-    /// All causes, in the order of their numbers.
-    pub const ALL: [Self; 9] = [
-        Self::Unknown,
-        Self::PowerOn,
-        Self::BrownOut,
-        Self::Pin,
-        Self::Software,
-        Self::IndependentWatchdog,
-        Self::WindowWatchdog,
-        Self::LowPower,
-        Self::OptionBytes,
-    ];
-
-    /// The cause in one word, for tables.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Unknown => "unknown",
-            Self::PowerOn => "power-on",
-            Self::BrownOut => "brown-out",
-            Self::Pin => "pin",
-            Self::Software => "software",
-            Self::IndependentWatchdog => "independent-watchdog",
-            Self::WindowWatchdog => "window-watchdog",
-            Self::LowPower => "low-power",
-            Self::OptionBytes => "option-bytes",
-        }
-    }
-}
+words! { ResetCause {
+    Unknown "unknown", PowerOn "power-on", BrownOut "brown-out", Pin "pin", Software "software",
+    IndependentWatchdog "independent-watchdog", WindowWatchdog "window-watchdog",
+    LowPower "low-power", OptionBytes "option-bytes",
+} }
 
 /// The cause in words.
 impl fmt::Display for ResetCause {
@@ -72,23 +50,5 @@ impl fmt::Display for ResetCause {
             Self::LowPower => "a forbidden low-power mode",
             Self::OptionBytes => "the option bytes were loaded",
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::string::ToString;
-
-    use super::*;
-
-    #[test]
-    fn every_cause_has_a_number_a_word_and_a_sentence_of_its_own() {
-        for (number, cause) in ResetCause::ALL.into_iter().enumerate() {
-            assert_eq!(cause as usize, number);
-            for other in &ResetCause::ALL[..number] {
-                assert_ne!(other.as_str(), cause.as_str());
-                assert_ne!(other.to_string(), cause.to_string());
-            }
-        }
     }
 }

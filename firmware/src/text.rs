@@ -49,6 +49,35 @@ macro_rules! error_with_sentence {
 }
 pub(crate) use error_with_sentence;
 
+/// The value of a result, or the refusal of its error with the sentence.
+macro_rules! or_refuse {
+    ($result:expr) => {
+        match $result {
+            Ok(value) => value,
+            Err(error) => error.refuse(),
+        }
+    };
+}
+pub(crate) use or_refuse;
+
+/// All values of an enumeration, and each of them in one word.
+macro_rules! words {
+    ($name:ident { $($value:ident $word:literal,)+ }) => {
+        impl $name {
+            /// All values, in their order.
+            pub const ALL: [Self; [$($word),+].len()] = [$(Self::$value),+];
+
+            /// The value in one word, for tables.
+            pub const fn as_str(self) -> &'static str {
+                match self {
+                    $(Self::$value => $word,)+
+                }
+            }
+        }
+    };
+}
+pub(crate) use words;
+
 /// A piece of a text. Not by a trait, whose methods are not `const`.
 pub(crate) struct Piece<T>(pub T);
 

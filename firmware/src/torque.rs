@@ -6,6 +6,7 @@ use core::hint::cold_path;
 
 use crate::current::HeatStep;
 use crate::number::Number;
+use crate::text::words;
 
 /// The reason why a tick's output is below the environment's torque. This is telemetry, not a fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,31 +30,10 @@ pub enum LimitReason {
     Heat = 6,
 }
 
-impl LimitReason {
-    /// All reasons, in the order of their numbers.
-    pub const ALL: [Self; 7] = [
-        Self::None,
-        Self::Torque,
-        Self::DacRange,
-        Self::Angle,
-        Self::NotANumber,
-        Self::Ramp,
-        Self::Heat,
-    ];
-
-    /// The reason in one word, for tables.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Torque => "torque",
-            Self::DacRange => "converter",
-            Self::Angle => "angle",
-            Self::NotANumber => "not-a-number",
-            Self::Ramp => "ramp",
-            Self::Heat => "heat",
-        }
-    }
-}
+words! { LimitReason {
+    None "none", Torque "torque", DacRange "converter", Angle "angle", NotANumber "not-a-number",
+    Ramp "ramp", Heat "heat",
+} }
 
 impl fmt::Display for LimitReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

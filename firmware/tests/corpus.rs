@@ -2,8 +2,6 @@
 
 #[path = "../fuzz/bodies/decoder.rs"]
 mod decoder;
-#[path = "../fuzz/bodies/judgement.rs"]
-mod judgement;
 #[path = "../fuzz/bodies/parameters.rs"]
 mod parameters;
 
@@ -33,9 +31,4 @@ fn any_bytes_on_the_wire() {
 #[test]
 fn any_changes_of_any_scene() {
     replay("parameters", include_str!("../fuzz/corpus/parameters.hex"), parameters::run);
-}
-
-#[test]
-fn any_sets_into_a_running_servo() {
-    replay("judgement", include_str!("../fuzz/corpus/judgement.hex"), judgement::run);
 }

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use firmware_harness::bench_request::{
-    BLOCK, BenchRequest, BenchRequestWords, Inputs, Output, Outputs, READY,
-};
+use firmware_harness::bench_request::{BLOCK, BenchRequest, Output, Outputs};
 
+use super::transport::ask;
 use super::{EmulatorError, Guest, Transport};
 
 /// An emulated board that measures computations for the host.
@@ -38,9 +37,7 @@ impl BenchClient {
         request: &BenchRequest,
         inputs: &[u32],
     ) -> Result<Vec<Output>, EmulatorError> {
-        let mut ready = [0];
-        self.guest.ask(&request.encode(), &mut ready)?;
-        if ready != [READY] {
+        if !ask(&mut *self.guest, request)? {
             return Err(EmulatorError::NoBenchProgram);
         }
         let mut outputs = Vec::with_capacity(inputs.len() + BLOCK);
@@ -71,6 +68,3 @@ impl BenchClient {
         self.guest.finish()
     }
 }
-
-/// A request fits into a pipe's buffer, so that sending it never waits for the board.
-const _: () = assert!(size_of::<Inputs>() < 4096 && size_of::<BenchRequestWords>() < 4096);

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use firmware_harness::scene_codec::{CertifyReply, ReplyWords, SceneWords, decode_reply, encode};
+use firmware_harness::scene_codec::{CertifyReply, CertifyRequest};
 use haptic_servo::scene::Scene;
 
+use super::transport::ask;
 use super::{EmulatorError, Guest, Transport};
 
 /// An emulated board that certifies scenes.
@@ -31,9 +32,7 @@ impl CertifyClient {
     /// # Errors
     /// If the board has ended or does not answer.
     pub fn certify(&mut self, scene: &Scene) -> Result<CertifyReply, EmulatorError> {
-        let mut words = [[0; 8]; size_of::<ReplyWords>() / 8];
-        self.guest.ask(&encode(scene), words.as_flattened_mut())?;
-        decode_reply(&words.map(u64::from_le_bytes)).ok_or(EmulatorError::NoReply)
+        ask(&mut *self.guest, &CertifyRequest(*scene))
     }
 
     /// Ends the board.
@@ -44,6 +43,3 @@ impl CertifyClient {
         self.guest.finish()
     }
 }
-
-/// A request fits into a pipe's buffer, so that sending it never waits for the board.
-const _: () = assert!(size_of::<SceneWords>() <= 4096);

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use firmware_harness::loop_request::{LoopRequest, StartReply};
 
+use super::transport::ask;
 use super::{EmulatorError, Guest, Transport};
 use crate::lockstep::RemoteServo;
 
@@ -37,9 +38,7 @@ impl ServoClient {
         while self.ticks_left > 0 {
             self.exchange(0)?;
         }
-        let mut answer = [0; 8];
-        self.guest.ask(&request.encode(), &mut answer)?;
-        let reply = StartReply::from_bytes(answer).ok_or(EmulatorError::NoReply)?;
+        let reply = ask(&mut *self.guest, request)?;
         if reply == StartReply::Ready {
             self.ticks_left = request.ticks;
         }

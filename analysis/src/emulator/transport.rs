@@ -1,5 +1,9 @@
 //! The transport of requests to a measuring program, and of its answers.
 
+use firmware_harness::scene_codec::{FRAME, decode, encode};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use super::{EmulatorError, Guest};
 
 /// A board with a program that answers requests in bytes.
@@ -10,20 +14,24 @@ pub trait Transport {
     /// If it does not answer.
     fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError>;
 
-    /// The same with a request in words.
-    ///
-    /// # Errors
-    /// As of [`exchange`](Self::exchange).
-    fn ask(&mut self, request: &[u64], answer: &mut [u8]) -> Result<(), EmulatorError> {
-        let bytes: Vec<u8> = request.iter().flat_map(|word| word.to_le_bytes()).collect();
-        self.exchange(&bytes, answer)
-    }
-
     /// Ends the requests, and waits for the program's end.
     ///
     /// # Errors
     /// If it does not end, or ends with a failure.
     fn finish(self: Box<Self>) -> Result<(), EmulatorError>;
+}
+
+/// Sends a request to the board, and returns its reply.
+///
+/// # Errors
+/// If it does not answer.
+pub(super) fn ask<Q: Serialize, R: DeserializeOwned>(
+    guest: &mut dyn Transport,
+    request: &Q,
+) -> Result<R, EmulatorError> {
+    let mut reply = [0; FRAME];
+    guest.exchange(&encode(request), &mut reply)?;
+    decode(&reply).ok_or(EmulatorError::NoReply)
 }
 
 /// Through pipes to QEMU.

@@ -1,6 +1,7 @@
 //! Any changes to scenes of every kind: from the bytes of a frame to a changed scene.
 //!
-//! Without the certificate, which takes a hundred times as long as all of this; see `judgement`.
+//! Without the certificate, which takes a hundred times as long as all of this: `wire/session/tests.rs` has
+//! random sets in a running servo.
 
 use haptic_servo::certificate::Parameter;
 use haptic_servo::environment::{Canceller, Environment, Parts, Side, Wall};

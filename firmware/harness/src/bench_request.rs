@@ -1,27 +1,26 @@
 //! Instruction benchmarks: a request to compute torques, sines or compare values, and the results with the
 //! instructions of each.
 //!
-//! A [`BenchRequest`] goes to the board as [`BenchRequestWords`]; the board answers with one byte, whether it
-//! can compute it. Then the host sends [`Inputs`], any number of times, and the board answers each with
-//! [`Outputs`].
+//! The board answers a [`BenchRequest`] by whether it can compute it. Then the host sends [`Inputs`], any number of
+//! times, and the board answers each with [`Outputs`].
 
 use haptic_servo::number::Arithmetic;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
+use serde::{Deserialize, Serialize};
 
 use crate::currents::CurrentBench;
 use crate::rotations::Rotation;
-use crate::scene_codec::{self, SceneWords, encode};
 use crate::sines::Sine;
-use crate::transducer_codec::{self, TransducerWords};
 
 /// The computation that is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(clippy::large_enum_variant, reason = "there is no heap, and never more than one")]
 pub enum BenchRequest {
     /// The torque of a scene at each count of an encoder, from rest.
     Servo {
         /// The scene, which has been judged.
+        #[serde(with = "crate::scene_codec")]
         scene: Scene,
         /// Its sensor and its motor.
         transducers: Transducers,
@@ -74,59 +73,3 @@ impl Output {
         Self { value: f64::from_bits(words as u64), code, instructions }
     }
 }
-
-/// The board's first answer: it will compute.
-pub const READY: u8 = 1;
-/// The board's first answer: its program has no scene of this type, or its servo cannot be built.
-pub const REFUSED: u8 = 0;
-
-/// Words in front of the scene: a sine, or [`SERVO`], and the transducers.
-const HEAD: usize = 1 + size_of::<TransducerWords>() / 8;
-/// A request as words.
-pub type BenchRequestWords = [u64; HEAD + size_of::<SceneWords>() / 8];
-
-impl BenchRequest {
-    /// Its words.
-    pub fn encode(&self) -> BenchRequestWords {
-        let mut words = [0; _];
-        match self {
-            Self::Servo { scene, transducers, arithmetic } => {
-                words[0] = SERVO;
-                words[1..HEAD].copy_from_slice(&transducer_codec::encode(transducers, *arithmetic));
-                words[HEAD..].copy_from_slice(&encode(scene));
-            }
-            Self::Rotation(rotation) => {
-                words[0] = ROTATION;
-                words[1] = transducer_codec::index_of(&Rotation::ALL, rotation);
-            }
-            Self::Current(bench) => {
-                words[0] = CURRENT;
-                words[1] = transducer_codec::index_of(&CurrentBench::ALL, bench);
-            }
-            Self::Sine(sine) => words[0] = transducer_codec::index_of(&Sine::ALL, sine),
-        }
-        words
-    }
-
-    /// The request of the words; `None` if they are malformed.
-    pub fn decode(words: &BenchRequestWords) -> Option<Self> {
-        let (&[which, ref machine @ ..], scene) = words.split_first_chunk::<HEAD>()?;
-        if which == ROTATION {
-            return transducer_codec::from_index(&Rotation::ALL, machine[0]).map(Self::Rotation);
-        }
-        if which == CURRENT {
-            return transducer_codec::from_index(&CurrentBench::ALL, machine[0]).map(Self::Current);
-        }
-        if which != SERVO {
-            return transducer_codec::from_index(&Sine::ALL, which).map(Self::Sine);
-        }
-        let (transducers, arithmetic) = transducer_codec::decode(*machine)?;
-        let scene = scene_codec::decode(scene.try_into().ok()?)?;
-        Some(Self::Servo { scene, transducers, arithmetic })
-    }
-}
-
-/// Marks a request for a servo in the place of a sine.
-const SERVO: u64 = u64::MAX;
-const CURRENT: u64 = u64::MAX - 1;
-const ROTATION: u64 = u64::MAX - 2;

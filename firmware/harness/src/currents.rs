@@ -8,7 +8,7 @@ use haptic_servo::encoder::{CounterWidth, RawCount};
 use haptic_servo::servo::Transducers;
 
 /// A motor with a current loop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum CurrentBench {
     /// A brushed one.
     Brushed,

@@ -5,44 +5,31 @@ use core::f32::consts::TAU;
 use haptic_servo::current::sine_and_cosine;
 use haptic_servo::excitation::sine::{QUINTIC, sine};
 
+use crate::means;
 use crate::sines::{CUBIC, SEPTIC};
 
-/// A means of computing sine and cosine of an angle, which is a part of a turn in 32 bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rotation {
-    /// The crate `micromath`, in `f32`.
-    Micromath,
-    /// The crate `libm`, for `f32`.
-    Libm,
-    /// A polynomial of the third degree, twice.
-    Cubic,
-    /// A polynomial of the fifth degree, twice.
-    Quintic,
-    /// A polynomial of the seventh degree, twice.
-    Septic,
-    /// Straight lines between the entries of a table of 256 for a turn, in whole numbers: what a current loop has.
-    Table,
+means! {
+    /// A means of computing sine and cosine of an angle, which is a part of a turn in 32 bits.
+    Rotation {
+        /// The crate `micromath`, in `f32`.
+        Micromath: "micromath",
+        /// The crate `libm`, for `f32`.
+        Libm: "libm sincosf",
+        /// A polynomial of the third degree, twice.
+        Cubic: "degree 3",
+        /// A polynomial of the fifth degree, twice.
+        Quintic: "degree 5",
+        /// A polynomial of the seventh degree, twice.
+        Septic: "degree 7",
+        /// Straight lines between the entries of a table of 256 for a turn, in whole numbers: what a current loop
+        /// has.
+        Table: "table of 256",
+    }
 }
 
 const QUARTER: u32 = 1 << 30;
 
 impl Rotation {
-    /// All values.
-    pub const ALL: [Self; 6] =
-        [Self::Micromath, Self::Libm, Self::Cubic, Self::Quintic, Self::Septic, Self::Table];
-
-    /// Its name, for tables.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Micromath => "micromath",
-            Self::Libm => "libm sincosf",
-            Self::Cubic => "degree 3",
-            Self::Quintic => "degree 5",
-            Self::Septic => "degree 7",
-            Self::Table => "table of 256",
-        }
-    }
-
     /// Sine and cosine of an angle.
     #[inline(always)]
     pub fn of_angle(self, angle: u32) -> [f32; 2] {

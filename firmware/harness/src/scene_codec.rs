@@ -1,32 +1,80 @@
-//! Codec of a scene by the bits of its numbers, and of the board's certify reply.
+//! Requests and replies as frames of one length, with the codec of a scene by the bits of its numbers, and the
+//! certificate that a board replies.
 //!
 //! The compiler, the host and the board compute the same certificate; with this codec a test gets the
 //! board's, to compare the three bit for bit. It is not a way to change the scene of a servo.
 
-use haptic_servo::certificate::{Assessment, Parameter, PassivityProblem, RuleAnswer, assess};
-use haptic_servo::environment::{
-    Canceller, Coefficients, Environment, MAX_DEGREE, Parts, Rational, Side, Wall,
-};
+use haptic_servo::certificate::{Assessment, PassivityProblem, RuleAnswer, assess};
+use haptic_servo::environment::{Environment, Parts, Rational};
 use haptic_servo::passivity::interval::Interval;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::Scene;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::tables;
 
-/// Numbers in a polynomial.
-const TERMS: usize = MAX_DEGREE + 1;
+/// Bytes of a request or a reply: it fits a pipe's buffer, so that sending never waits for the other end.
+pub const FRAME: usize = 512;
+/// A request or a reply, padded with zeros.
+pub type Frame = [u8; FRAME];
 
-/// A scene as 64-bit words; an `f64` is its bits.
-pub type SceneWords = [u64; WORDS];
+/// The frame of a request or a reply.
+///
+/// # Panics
+/// If it is longer than a frame, as no request and no reply is.
+pub fn encode<T: Serialize>(message: &T) -> Frame {
+    let mut frame = [0; FRAME];
+    postcard::to_slice(message, &mut frame).expect("a frame has room for the longest scene");
+    frame
+}
 
-/// Words of a scene: the type of its environment, whether its coupling is matched, the updates of its
-/// amplifier, each number with a flag for its presence, the side of a wall, and two polynomials.
-const WORDS: usize = 3 + 2 * Parameter::ALL.len() + 1 + 2 * (1 + TERMS);
+/// The request or the reply of a frame; `None` if it is malformed.
+pub fn decode<T: DeserializeOwned>(frame: &Frame) -> Option<T> {
+    postcard::take_from_bytes(frame).ok().map(|(message, _)| message)
+}
+
+/// A scene with the parts of an environment that are not on a board's wire: polynomials, and a table of knots by its
+/// index among [`tables`].
+#[derive(Serialize, Deserialize)]
+struct Whole {
+    scene: Scene,
+    rational: Option<Rational>,
+    table: Option<usize>,
+}
+
+/// The form of a scene in a request.
+pub(crate) fn serialize<S: Serializer>(scene: &Scene, serializer: S) -> Result<S::Ok, S::Error> {
+    let (mut scene, rational) = (*scene, scene.environment.rational().copied());
+    if rational.is_some() {
+        scene.environment = Parts::NONE.sum();
+    }
+    let table = scene.environment.profile().and_then(tables::index_of);
+    Whole { scene, rational, table }.serialize(serializer)
+}
+
+/// The scene of a request. A table that the board does not have is left empty: a servo of it cannot be built.
+pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Scene, D::Error> {
+    let Whole { mut scene, rational, table } = Whole::deserialize(deserializer)?;
+    if let Some(rational) = rational {
+        scene.environment = Environment::Rational(rational);
+    }
+    if let Environment::Parts(Parts { profile: Some(profile), .. }) = &mut scene.environment
+        && let Some(known) = table.and_then(tables::from_index)
+    {
+        profile.table = known.table;
+    }
+    Ok(scene)
+}
+
+/// A request to certify a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CertifyRequest(#[serde(with = "self")] pub Scene);
 
 /// An enclosure's ends as bits; `None` if the index does not exist.
 pub type IntervalBits = Option<(u64, u64)>;
 
 /// Certificate that the board computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CertifyReply {
     /// Index of the environment alone.
     pub alpha: IntervalBits,
@@ -46,234 +94,38 @@ pub struct CertifyReply {
     pub verdict_instructions: u64,
 }
 
-/// A [`CertifyReply`] as words.
-pub type ReplyWords = [u64; 14];
-
-/// The walls of scenes without a torque profile: each has a word alone, and the next with a canceller.
-const WALLS: [Option<Wall>; 3] =
-    [None, Some(Wall::spring(0.0, 0)), Some(Wall::damped(0.0, 0.0, 0))];
-/// The word of a rational environment.
-const RATIONAL: u64 = 2 * WALLS.len() as u64;
-/// The word of an environment without a law on these boards: a type of another crate, an unknown table, or a
-/// sum with a table.
-const STATED: u64 = RATIONAL + 1;
-/// The word of the first table of a torque profile.
-const TABLE: u64 = STATED + 1;
-
-/// The words of a scene.
-pub fn encode(scene: &Scene) -> SceneWords {
-    let mut words = Cursor { words: [0; _], next: 0 };
-    words.push(match scene.environment {
-        Environment::Parts(Parts { canceller, wall, profile: None }) => {
-            let of_wall = wall.map_or(0, |wall| 1 + u64::from(wall.damper.is_some()));
-            2 * of_wall + u64::from(canceller.is_some())
-        }
-        Environment::Parts(Parts { canceller: None, wall: None, profile: Some(profile) }) => {
-            tables::index_of(&profile).map_or(STATED, |table| TABLE + table as u64)
-        }
-        Environment::Rational(_) => RATIONAL,
-        Environment::Parts(_) | Environment::Stated(_) => STATED,
-    });
-    words.push(matches!(scene.coupling, Coupling::Matched).into());
-    words.push(scene.latency.actuator_updates.into());
-    for parameter in Parameter::ALL {
-        words.optional(scene.get(*parameter));
-    }
-    words.push(scene.environment.wall().map_or(0, |wall| match wall.side {
-        Side::Centred => 0,
-        Side::Displaced(_) => 1,
-        Side::Face(_) => 2,
-    }));
-    let rational = scene.environment.rational().unwrap_or(&NO_RATIONAL);
-    words.polynomial(&rational.numerator);
-    words.polynomial(&rational.denominator);
-    words.words
-}
-
-/// A placeholder for a polynomial.
-const NOTHING: Coefficients = match Coefficients::new(&[1.0]) {
-    Some(one) => one,
-    None => panic!("one coefficient fits"),
-};
-
-/// A placeholder for environments that are not rational.
-const NO_RATIONAL: Rational =
-    Rational { numerator: NOTHING, denominator: NOTHING, delay: 0, unit_zeros: 0 };
-
-/// A scene without numbers.
-const BLANK: Scene = Scene {
-    device: Device { inertia: 0.0, damping: 0.0, passivity: None },
-    timing: Timing { period: 0.0, worst_period: None },
-    coupling: Coupling::Rigid,
-    environment: Environment::Rational(NO_RATIONAL),
-    latency: Latency::NONE,
-    torque_limit: None,
-};
-
-/// The scene of the words; `None` if they are invalid. These boards have no law for stated environments, and
-/// only the tables of knots in [`tables`].
-pub fn decode(words: &SceneWords) -> Option<Scene> {
-    let mut words = Cursor { words: *words, next: 0 };
-    let kind = words.take();
-    let environment = match kind {
-        RATIONAL => Environment::Rational(NO_RATIONAL),
-        STATED => return None,
-        TABLE.. => tables::from_index((kind - TABLE) as usize)?.alone(),
-        _ => {
-            let canceller = (kind % 2 == 1).then_some(Canceller::to(0.0));
-            Parts { canceller, wall: WALLS[kind as usize / 2], profile: None }.sum()
-        }
-    };
-    let mut scene = Scene { environment, ..BLANK };
-    if words.take() != 0 {
-        scene.coupling = Coupling::Matched;
-    }
-    scene.latency.actuator_updates = words.take() as u16;
-    for parameter in Parameter::ALL {
-        let Some(value) = words.take_optional() else { continue };
-        match (parameter, &mut scene.environment) {
-            // A table's word does not tell whether it is damped.
-            (Parameter::Damping, Environment::Parts(Parts { profile: Some(profile), .. })) => {
-                profile.damping = Some(value);
-            }
-            _ => scene = scene.with(*parameter, value)?,
-        }
-    }
-    let side = words.take();
-    if let Some(wall) = scene.environment.wall_mut() {
-        wall.side = match side {
-            0 => Side::Centred,
-            1 => Side::Displaced(wall.face()),
-            _ => Side::Face(wall.face()),
-        };
-    }
-    let (numerator, denominator) = (words.take_polynomial()?, words.take_polynomial()?);
-    if let Environment::Rational(rational) = &mut scene.environment {
-        (rational.numerator, rational.denominator) = (numerator, denominator);
-    }
-    Some(scene)
-}
-
-/// Certifies the scene of the words; `None` if they are malformed. `count` measures the
-/// instructions that this takes.
-pub fn certify(words: &SceneWords, count: impl Fn(&mut dyn FnMut()) -> u64) -> Option<ReplyWords> {
-    let scene = decode(words)?;
+/// Certifies a scene. `count` measures the instructions that this takes.
+pub fn certify(scene: &Scene, count: impl Fn(&mut dyn FnMut()) -> u64) -> Option<CertifyReply> {
     let mut found = None;
-    let instructions = count(&mut || found = Some(assess(&scene)));
+    let instructions = count(&mut || found = Some(assess(scene)));
     let mut is_certified = false;
     let verdict_instructions = count(&mut || {
-        is_certified = PassivityProblem::of(&scene).is_ok_and(|posed| posed.is_certified());
+        is_certified = PassivityProblem::of(scene).is_ok_and(|posed| posed.is_certified());
     });
     let Assessment { alpha, alpha_coupled, alpha_port, paper, exact, .. } = found?;
-    let mut words = Cursor { words: [0; _], next: 0 };
-    words.interval(alpha);
-    words.interval(alpha_coupled);
-    words.interval(alpha_port);
-    words.push(answer_code(paper));
-    words.push(answer_code(exact));
-    words.push(instructions);
-    words.push(is_certified.into());
-    words.push(verdict_instructions);
-    Some(words.words)
-}
-
-/// The reply of the words; `None` if they are malformed.
-pub fn decode_reply(words: &ReplyWords) -> Option<CertifyReply> {
-    let mut words = Cursor { words: *words, next: 0 };
+    let [alpha, alpha_coupled, alpha_port] = [alpha, alpha_coupled, alpha_port].map(bits);
     Some(CertifyReply {
-        alpha: words.take_interval(),
-        alpha_coupled: words.take_interval(),
-        alpha_port: words.take_interval(),
-        paper: answer_from_code(words.take())?,
-        exact: answer_from_code(words.take())?,
-        instructions: words.take(),
-        is_certified: words.take() != 0,
-        verdict_instructions: words.take(),
+        alpha,
+        alpha_coupled,
+        alpha_port,
+        paper,
+        exact,
+        instructions,
+        is_certified,
+        verdict_instructions,
     })
 }
 
-/// An answer as a word.
-fn answer_code(answer: RuleAnswer) -> u64 {
-    match answer {
-        RuleAnswer::Pass => 0,
-        RuleAnswer::Fail => 1,
-        RuleAnswer::Undecided => 2,
-    }
-}
-
-/// The answer of a word.
-fn answer_from_code(word: u64) -> Option<RuleAnswer> {
-    [RuleAnswer::Pass, RuleAnswer::Fail, RuleAnswer::Undecided]
-        .into_iter()
-        .find(|a| answer_code(*a) == word)
-}
-
-/// Words, and the place of the next one.
-struct Cursor<const N: usize> {
-    words: [u64; N],
-    next: usize,
-}
-
-impl<const N: usize> Cursor<N> {
-    fn push(&mut self, word: u64) {
-        self.words[self.next] = word;
-        self.next += 1;
-    }
-
-    fn take(&mut self) -> u64 {
-        self.next += 1;
-        self.words[self.next - 1]
-    }
-
-    fn number(&mut self, value: f64) {
-        self.push(value.to_bits());
-    }
-
-    fn take_number(&mut self) -> f64 {
-        f64::from_bits(self.take())
-    }
-
-    fn optional(&mut self, value: Option<f64>) {
-        self.push(value.is_some() as u64);
-        self.number(value.unwrap_or(0.0));
-    }
-
-    fn take_optional(&mut self) -> Option<f64> {
-        let is_some = self.take() != 0;
-        let value = self.take_number();
-        is_some.then_some(value)
-    }
-
-    fn polynomial(&mut self, polynomial: &Coefficients) {
-        let values = polynomial.as_slice();
-        self.push(values.len() as u64);
-        for i in 0..TERMS {
-            self.number(values.get(i).copied().unwrap_or(0.0));
-        }
-    }
-
-    fn take_polynomial(&mut self) -> Option<Coefficients> {
-        let len = self.take() as usize;
-        let values: [f64; TERMS] = core::array::from_fn(|_| self.take_number());
-        Coefficients::new(values.get(..len)?)
-    }
-
-    fn interval(&mut self, interval: Option<Interval>) {
-        self.push(interval.is_some() as u64);
-        self.number(interval.map_or(0.0, Interval::lo));
-        self.number(interval.map_or(0.0, Interval::hi));
-    }
-
-    fn take_interval(&mut self) -> IntervalBits {
-        let is_some = self.take() != 0;
-        let ends = (self.take(), self.take());
-        is_some.then_some(ends)
-    }
+fn bits(index: Option<Interval>) -> IntervalBits {
+    index.map(|index| (index.lo().to_bits(), index.hi().to_bits()))
 }
 
 #[cfg(test)]
 mod tests {
-    use haptic_servo::environment::{Ends, Profile};
+    use haptic_servo::environment::{
+        Canceller, Coefficients, Ends, MAX_DEGREE, Profile, Side, Wall,
+    };
+    use haptic_servo::scene::{Coupling, Device, Latency, Timing};
 
     use super::*;
 
@@ -289,45 +141,29 @@ mod tests {
     }
 
     #[test]
-    fn scenes_survive_their_words() {
-        let spring = Wall::spring(-1.5, 3);
+    fn scenes_survive_their_frames() {
         let wall = Wall::damped(-1.5, 2.5, 3);
-        let canceller = Canceller { residual: 0.25, delay: 1 };
         let free =
             |wall| Parts { canceller: Some(Canceller::to(0.25)), wall: Some(wall), profile: None };
         let rational = Rational {
             numerator: Coefficients::new(&[1.0, -0.0, 5e-324]).unwrap(),
-            denominator: Coefficients::new(&[0.1; TERMS]).unwrap(),
+            denominator: Coefficients::new(&[0.1; MAX_DEGREE + 1]).unwrap(),
             delay: 7,
             unit_zeros: 2,
         };
         let ends = Some(Ends { from: -1.0, to: 2.0, stiffness: 3.0 });
         let magnet = Profile { ends, count: 3.0, ..Profile::of(&tables::MAGNET, 2) };
-        let knob = magnet.damped(0.01);
         for environment in [
-            spring.alone(),
+            Wall::spring(-1.5, 3).alone(),
             Wall { side: Side::Displaced(-0.0), ..wall }.alone(),
-            wall.filtered(0.75).behind(-0.0).alone(),
-            canceller.alone(),
-            free(spring).sum(),
+            Canceller { residual: 0.25, delay: 1 }.alone(),
             free(wall.filtered(0.75).behind(-0.0)).sum(),
             Environment::Rational(rational),
             Profile::of(&tables::DETENTS, 1).alone(),
-            knob.alone(),
+            magnet.damped(0.01).alone(),
         ] {
-            let asked = scene(environment);
+            let asked = CertifyRequest(scene(environment));
             assert_eq!(decode(&encode(&asked)), Some(asked));
-        }
-    }
-
-    #[test]
-    fn words_that_are_no_scene_are_refused() {
-        assert!(decode(&[u64::MAX; WORDS]).is_none());
-        assert!(decode(&[0; WORDS]).is_none());
-        let mut stated = encode(&scene(Canceller::to(0.0).alone()));
-        for kind in [STATED, TABLE + 6, u64::MAX] {
-            stated[0] = kind;
-            assert!(decode(&stated).is_none(), "{kind}");
         }
     }
 
@@ -338,23 +174,20 @@ mod tests {
             coupling: Coupling::Rigid,
             ..scene(Wall::spring(1.0, 1).alone())
         };
-        let words = encode(&scene);
-        let words = certify(&words, |run| {
+        let count = |run: &mut dyn FnMut()| {
             run();
             17
-        });
-        let found = assess(&scene);
-        let bits = |i: Option<Interval>| i.map(|i| (i.lo().to_bits(), i.hi().to_bits()));
-        let expected = CertifyReply {
-            alpha: bits(found.alpha),
-            alpha_port: None,
-            alpha_coupled: bits(found.alpha_coupled),
-            paper: found.paper,
-            exact: found.exact,
-            instructions: 17,
-            is_certified: found.outcome.is_ok(),
-            verdict_instructions: 17,
         };
-        assert_eq!(decode_reply(&words.unwrap()), Some(expected));
+        let reply = certify(&scene, count).unwrap();
+        let found = assess(&scene);
+        assert_eq!(
+            (reply.alpha, reply.alpha_coupled),
+            (bits(found.alpha), bits(found.alpha_coupled))
+        );
+        assert_eq!((reply.paper, reply.exact), (found.paper, found.exact));
+        assert_eq!((reply.instructions, reply.verdict_instructions), (17, 17));
+        assert_eq!((reply.alpha_port, reply.is_certified), (None, found.outcome.is_ok()));
+        assert_eq!(decode(&encode(&reply)), Some(reply));
+        assert_eq!(decode::<CertifyReply>(&[u8::MAX; FRAME]), None);
     }
 }

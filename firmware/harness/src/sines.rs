@@ -4,23 +4,26 @@ use core::f32::consts::TAU;
 
 use haptic_servo::excitation::sine::{QUINTIC, sine};
 
-/// A means of computing the sine of a part of a turn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sine {
-    /// The crate `micromath`, in `f32`.
-    Micromath,
-    /// The crate `libm`, for `f32`; inside it computes in `f64`.
-    Libm,
-    /// The same crate, for `f64`.
-    LibmDouble,
-    /// A polynomial of the third degree.
-    Cubic,
-    /// A polynomial of the fifth degree: what a sweep is played with.
-    Quintic,
-    /// A polynomial of the seventh degree.
-    Septic,
-    /// A polynomial of the ninth degree.
-    Nonic,
+use crate::means;
+
+means! {
+    /// A means of computing the sine of a part of a turn.
+    Sine {
+        /// The crate `micromath`, in `f32`.
+        Micromath: "micromath",
+        /// The crate `libm`, for `f32`; inside it computes in `f64`.
+        Libm: "libm sinf",
+        /// The same crate, for `f64`.
+        LibmDouble: "libm sin",
+        /// A polynomial of the third degree.
+        Cubic: "degree 3",
+        /// A polynomial of the fifth degree: what a sweep is played with.
+        Quintic: "degree 5",
+        /// A polynomial of the seventh degree.
+        Septic: "degree 7",
+        /// A polynomial of the ninth degree.
+        Nonic: "degree 9",
+    }
 }
 
 /// Coefficients as those of [`QUINTIC`], with the least largest error of their degree.
@@ -30,30 +33,6 @@ pub(crate) const SEPTIC: [f32; 4] = [6.283_164, -41.337_143, 81.340_77, -70.993_
 const NONIC: [f32; 5] = [6.283_185, -41.341_656, 81.601_006, -76.549_78, 39.536_705];
 
 impl Sine {
-    /// All values.
-    pub const ALL: [Self; 7] = [
-        Self::Micromath,
-        Self::Libm,
-        Self::LibmDouble,
-        Self::Cubic,
-        Self::Quintic,
-        Self::Septic,
-        Self::Nonic,
-    ];
-
-    /// Its name, for tables.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Micromath => "micromath",
-            Self::Libm => "libm sinf",
-            Self::LibmDouble => "libm sin",
-            Self::Cubic => "degree 3",
-            Self::Quintic => "degree 5",
-            Self::Septic => "degree 7",
-            Self::Nonic => "degree 9",
-        }
-    }
-
     /// The sine of `turn` turns, from 0 to 1.
     #[inline(always)]
     pub fn of_turn(self, turn: f32) -> f32 {

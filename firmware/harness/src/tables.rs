@@ -1,7 +1,7 @@
-//! Tables of torque profiles that board and host both have: the words of a scene do not contain a table of
+//! Tables of torque profiles that board and host both have: the request of a scene does not contain a table of
 //! knots, but its index among these.
 
-use haptic_servo::environment::{Ends, Knots, Profile, Shape};
+use haptic_servo::environment::{Knots, Profile, Shape};
 
 /// Detents without ends, of any torque and number.
 pub static DETENTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.05)]);
@@ -16,18 +16,14 @@ pub static MAGNET: Knots<64> = Knots::of(&[Shape::detents(4, 0.05), Shape::magne
 const TABLES: [Profile; 3] =
     [Profile::of(&DETENTS, 1), Profile::of(&STOPPED, 1), Profile::of(&MAGNET, 1)];
 
-/// The index of a profile's table, including whether it has ends; `None` for another table.
+/// The index of a profile's table; `None` for another table.
 pub fn index_of(profile: &Profile) -> Option<usize> {
-    let is_same = |table: &Profile| table.units() == profile.units();
-    let index = TABLES.iter().position(is_same)?;
-    Some(2 * index + usize::from(profile.ends.is_some()))
+    TABLES.iter().position(|table| table.units() == profile.units())
 }
 
-/// The profile of such an index; its numbers are still to be set.
+/// A profile with the table of such an index.
 pub fn from_index(index: usize) -> Option<Profile> {
-    let mut profile = *TABLES.get(index / 2)?;
-    profile.ends = (index % 2 == 1).then_some(Ends { from: 0.0, to: 0.0, stiffness: 0.0 });
-    Some(profile)
+    TABLES.get(index).copied()
 }
 
 #[cfg(test)]
@@ -41,8 +37,8 @@ mod tests {
             Knots::of(&[Shape::detents(36, 0.01), Shape::end_stops(0.0, 9.0, 3.0)]);
         assert_eq!(index_of(&Profile::of(&OTHERS, 2)), Some(0));
         // By how its knots are rounded it has the one or the other table.
-        assert_eq!(index_of(&Profile::of(&KNOB, 1)), Some(1));
-        assert_eq!(index_of(&Profile::of(&STOPPED, 1)), Some(3));
-        assert!(from_index(6).is_none());
+        assert_eq!(index_of(&Profile::of(&KNOB, 1)), Some(0));
+        assert_eq!(index_of(&Profile::of(&STOPPED, 1)), Some(1));
+        assert!(from_index(3).is_none());
     }
 }

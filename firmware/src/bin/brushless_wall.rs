@@ -4,7 +4,7 @@
 
 mod brushless_shaft;
 
-pub use brushless_shaft::{CURRENT_LOOP, DRIVE, Fixed, SCENE, TRANSDUCERS};
+pub use brushless_shaft::{CURRENT_LOOP, DRIVE, SCENE, TRANSDUCERS};
 use haptic_servo::certificate::Certified;
 use haptic_servo::scene::Scene;
 
@@ -15,7 +15,5 @@ haptic_servo::scene_program! {
     scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
-    float: f32,
-    fixed: Fixed,
     bridge: CURRENT_LOOP,
 }

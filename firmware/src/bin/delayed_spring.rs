@@ -22,13 +22,8 @@ pub const SCENE: Scene = Scene {
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
-/// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
-pub type Fixed = fixed::types::I8F24;
-
 haptic_servo::scene_program! {
     scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
-    float: f32,
-    fixed: Fixed,
 }

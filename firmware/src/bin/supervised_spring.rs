@@ -24,15 +24,10 @@ pub const SCENE: Scene = Scene {
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
-/// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
-pub type Fixed = fixed::types::I8F24;
-
 haptic_servo::scene_program! {
     scene: SCENE,
     certified: CERTIFIED,
     transducers: TRANSDUCERS,
-    float: f32,
-    fixed: Fixed,
     // Damping while the net energy into the hand is positive. More damping than the scene allows does not
     // compile.
     rendering: RenderingOptions { injection: Some(0.004), ..RenderingOptions::DEFAULT },

@@ -5,7 +5,7 @@
 //!
 //! With the feature `bridge` the board's own power stage drives the motor. Without the feature the power
 //! stage stays off, with all six inputs of its gate drivers driven low, and the DAC commands an external
-//! current amplifier, although both pins of the DAC have other purposes on this board (see [`DAC`]).
+//! current amplifier, although both pins of the DAC have other purposes on this board (see [`connect_pins`]).
 
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::peripherals::USART2;
@@ -16,14 +16,13 @@ use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
+use super::stm32::output::OutputPin;
 #[cfg(feature = "bridge")]
 use super::stm32::output::bridge::index::IndexPin;
-use super::stm32::output::dac::DacChannel;
 #[cfg(feature = "bridge")]
 use super::stm32::output::gates::{Gate, Gates};
-use super::stm32::output::pin::OutputPin;
-use super::stm32::{BoardPeripherals, clock_170, quadrature, serial};
-use crate::dac::OutputRange;
+use super::stm32::serial::{self, Serial};
+use super::stm32::{clock_170, quadrature};
 
 /// The board's name as a feature and for `haptic flash`.
 pub const NAME: &str = "b-g431b-esc1";
@@ -39,16 +38,6 @@ pub const TIMER_CLOCK: f64 = clock_170::CLOCK;
 pub const ENCODER_PULL: Pull = Pull::None;
 /// The clock that measures the lateness of the servo: TIM2, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM2;
-/// The DAC: DAC1's channel 1 on PA4. The board uses PA4 to sense the back-EMF of its phase 1,
-/// so there is no pad: the wire to the amplifier is soldered to the pin's side of that divider, and
-/// nothing is connected to the board's motor output 1. Channel 2's pin PA5 is in the middle of a
-/// current sense amplifier.
-pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
-/// The range of the output buffer: 0.2 V from either rail (DS12589), with the board's 3.3 V at its lowest,
-/// three per cent below nominal.
-pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
-/// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
-pub const TIMER_TRIGGER: u8 = 7;
 /// The amplifier: PA15, which is the pad PWM of J3, the only pad that neither the encoder nor the serial port
 /// uses. In reset it belongs to the debug port, and the chip pulls it up by 25 to 55 kΩ: the resistor from
 /// the amplifier's input to ground must be 2.2 kΩ, which leaves 0.3 V at most.
@@ -81,8 +70,8 @@ pub fn clocks() -> Config {
     clock_170::from_crystal(Hertz(8_000_000), PllPreDiv::DIV2)
 }
 
-/// Configures each pin; the amplifier is off.
-pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
+/// Configures each pin; the amplifier is off. Returns the port to the host.
+pub fn connect_pins(chip: Peripherals) -> Serial {
     // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
     // registers.
     core::mem::forget((
@@ -102,10 +91,11 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
         Timer::new(chip.TIM6),
         Timer::new(chip.TIM7),
     ));
+    // The board uses PA4 to sense the back-EMF of its phase 1, so there is no pad: the wire to the amplifier is
+    // soldered to the pin's side of that divider, and nothing is connected to the board's motor output 1. Channel
+    // 2's pin PA5 is in the middle of a current sense amplifier.
     #[cfg(not(feature = "bridge"))]
-    DAC.connect(chip.DAC1, chip.PA4);
-    BoardPeripherals {
-        // The virtual serial port of the board's debug probe; without the probe, the pads TX and RX of J3.
-        serial: serial::open(chip.USART2, chip.PB4, chip.PB3, Interrupts),
-    }
+    super::stm32::output::dac::connect(chip.DAC1, chip.PA4);
+    // The virtual serial port of the board's debug probe; without the probe, the pads TX and RX of J3.
+    serial::open(chip.USART2, chip.PB4, chip.PB3, Interrupts)
 }

@@ -16,10 +16,9 @@ use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
-use super::stm32::output::dac::DacChannel;
-use super::stm32::output::pin::OutputPin;
-use super::stm32::{BoardPeripherals, quadrature, serial};
-use crate::dac::OutputRange;
+use super::stm32::output::OutputPin;
+use super::stm32::quadrature;
+use super::stm32::serial::{self, Serial};
 
 /// The board's name as a feature and for `haptic flash`.
 pub const NAME: &str = "feather-stm32f405";
@@ -35,14 +34,6 @@ pub const TIMER_CLOCK: f64 = 84e6;
 pub const ENCODER_PULL: Pull = Pull::None;
 /// The clock that measures the lateness of the servo: TIM5, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
-/// The DAC: channel 1, whose pin PA4 is A0.
-pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
-/// The range of the output buffer: 0.2 V from either rail (DS8626). The reference of the 64-pin package is its
-/// analogue supply: the board's 3.3 V behind a ferrite, at its lowest three per cent below nominal (an AP2112;
-/// its tolerance is not read in its data sheet).
-pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
-/// TIM6's update among the triggers of the F4's DAC (RM0090, DAC external triggers).
-pub const TIMER_TRIGGER: u8 = 0;
 /// The amplifier: PC3 (D11). It floats while the chip is in reset, so the amplifier's input needs a pull-down
 /// resistor. PB6 and PB7 (SCL, SDA) cannot serve: the board pulls them up.
 pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOC, pin: 3 };
@@ -71,8 +62,8 @@ pub fn clocks() -> Config {
     config
 }
 
-/// Configures each pin; the amplifier is off.
-pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
+/// Configures each pin; the amplifier is off. Returns the port to the host.
+pub fn connect_pins(chip: Peripherals) -> Serial {
     // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
     // registers.
     core::mem::forget((
@@ -82,9 +73,8 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
         Timer::new(chip.TIM6),
         Timer::new(chip.TIM7),
     ));
-    DAC.connect(chip.DAC1, chip.PA4);
-    BoardPeripherals {
-        // RX and TX of the header.
-        serial: serial::open(chip.USART3, chip.PB11, chip.PB10, Interrupts),
-    }
+    // The DAC's pin is A0.
+    super::stm32::output::dac::connect(chip.DAC1, chip.PA4);
+    // RX and TX of the header.
+    serial::open(chip.USART3, chip.PB11, chip.PB10, Interrupts)
 }

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use crate::servo::Transducers;
-use crate::text::{Text, error_with_sentence, push};
+use crate::text::{Text, error_with_sentence, or_refuse, push};
 
 /// A filter of an STM32 timer's input: a level counts after this many equal samples in a row, so shorter
 /// pulses are removed.
@@ -56,10 +56,7 @@ impl InputFilter {
     /// The same for a constant: an encoder that is too fast is a compile error.
     #[track_caller]
     pub const fn of_encoder(transducers: &Transducers, clock: f64) -> Self {
-        match Self::new(transducers, clock) {
-            Ok(filter) => filter,
-            Err(error) => error.refuse(),
-        }
+        or_refuse!(Self::new(transducers, clock))
     }
 
     /// The setting ICxF.

@@ -1,7 +1,14 @@
-//! A cell for the state of one interrupt.
+//! A cell for the state of one interrupt, and the statics that the servo's interrupt and the task below it share.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
+
+use static_cell::StaticCell;
+
+use crate::number::Number;
+use crate::rendering::Rendering;
+use crate::servo::{OutputMode, PreparedServo};
+use crate::servo_loop::{Endpoints, FRAMES, FrameQueue, Mailbox};
 
 /// Holds the state of one interrupt. The main program fills the cell before it enables the interrupt, and
 /// does not access it afterwards. So the interrupt needs no critical section for it, and no test whether it
@@ -55,4 +62,16 @@ impl<T> Default for IsrCell<T> {
     fn default() -> Self {
         Self::empty()
     }
+}
+
+/// The static for the mailbox between the servo's interrupt and the task below it. Each program has its own,
+/// because the types depend on its scene.
+pub type MailboxCell<E, N, M> = StaticCell<Mailbox<PreparedServo<E, N, M>>>;
+
+/// Makes the mailbox and the queue of frames. Call it once.
+pub fn endpoints<E: Rendering<N>, N: Number, M: OutputMode>(
+    mailbox: &'static MailboxCell<E, N, M>,
+) -> Endpoints<E, N, M> {
+    static QUEUE: StaticCell<FrameQueue<FRAMES>> = StaticCell::new();
+    Endpoints::of(mailbox.init_with(Mailbox::new), QUEUE.init_with(FrameQueue::new))
 }

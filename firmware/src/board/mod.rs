@@ -37,8 +37,6 @@ pub mod isr_cell;
 #[allow(unsafe_code)]
 pub mod nucleo_g474re;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
-pub mod servo_isr;
-#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
 pub mod stack;
 #[cfg(all(target_os = "none", feature = "stm32"))]
@@ -52,8 +50,9 @@ pub const BAUD: u32 = 460_800;
 /// Makes a program of a certified scene.
 ///
 /// Takes the scene, its certificate (a constant, so that an unsafe scene does not compile), for an environment
-/// of another crate the environment's type after the scene, `scene: SCENE: MyEnvironment`, the transducers, and the type to compute in: `float` by default, `fixed` with the feature
-/// `fixed-point`. On a board the program runs the servo; on the host it prints the certificate.
+/// of another crate the environment's type after the scene, `scene: SCENE: MyEnvironment`, the transducers, and the
+/// types to compute in: `float`, and `fixed` with the feature `fixed-point`; without them `f32` and a `Fixed` of its
+/// own. On a board the program runs the servo; on the host it prints the certificate.
 ///
 /// What may follow, in this order, are a type and constant expressions:
 ///
@@ -192,6 +191,32 @@ macro_rules! scene_program {
             [$($current_loop)?]
         );
     };
+    (
+        scene: $scene:ident: $environment:ty,
+        certified: $certified:ident,
+        transducers: $transducers:ident,
+        float: $($other:tt)*
+    ) => {
+        compile_error!("after `float` and `fixed` come the options of `scene_program!`, in their order");
+    };
+    (
+        scene: $scene:ident: $environment:ty,
+        certified: $certified:ident,
+        transducers: $transducers:ident
+        $($rest:tt)*
+    ) => {
+        /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
+        pub type Fixed = $crate::number::fixed::types::I8F24;
+
+        $crate::scene_program! {
+            scene: $scene: $environment,
+            certified: $certified,
+            transducers: $transducers,
+            float: f32,
+            fixed: Fixed
+            $($rest)*
+        }
+    };
 }
 
 /// The current loop of a program, where it has one, is that of its scene, its transducers and its output, and
@@ -312,9 +337,6 @@ macro_rules! board_program {
 #[macro_export]
 macro_rules! board_sweep {
     ($($any:tt)*) => {
-        compile_error!(
-            "name the board that this program is for: --features nucleo-g474re, b-g431b-esc1 or \
-             feather-stm32f405, or board-qemu,log for the emulated one"
-        );
+        $crate::board_program!();
     };
 }

@@ -12,10 +12,9 @@ use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
-use super::stm32::output::dac::DacChannel;
-use super::stm32::output::pin::OutputPin;
-use super::stm32::{BoardPeripherals, clock_170, quadrature, serial};
-use crate::dac::OutputRange;
+use super::stm32::output::OutputPin;
+use super::stm32::serial::{self, Serial};
+use super::stm32::{clock_170, quadrature};
 
 /// The board's name as a feature and for `haptic flash`.
 pub const NAME: &str = "nucleo-g474re";
@@ -31,14 +30,6 @@ pub const TIMER_CLOCK: f64 = clock_170::CLOCK;
 pub const ENCODER_PULL: Pull = Pull::Up;
 /// The clock that measures the lateness of the servo: TIM5, the other timer with 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
-/// The DAC: DAC1's channel 1, whose pin PA4 is A2 on the Arduino header. Channel 2's pin PA5
-/// drives the board's LED.
-pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
-/// The range of the output buffer: 0.2 V from either rail (DS12288), with the board's 3.3 V at its lowest,
-/// three per cent below nominal.
-pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
-/// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
-pub const TIMER_TRIGGER: u8 = 7;
 /// The amplifier: PB10, which is D6 on the Arduino header. It floats while the chip is in reset, so
 /// the amplifier's input needs a pull-down resistor.
 pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOB, pin: 10 };
@@ -52,8 +43,8 @@ pub fn clocks() -> Config {
     clock_170::from_crystal(Hertz(24_000_000), PllPreDiv::DIV6)
 }
 
-/// Configures each pin; the amplifier is off.
-pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
+/// Configures each pin; the amplifier is off. Returns the port to the host.
+pub fn connect_pins(chip: Peripherals) -> Serial {
     // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
     // registers.
     core::mem::forget((
@@ -64,9 +55,8 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
         Timer::new(chip.TIM6),
         Timer::new(chip.TIM7),
     ));
-    DAC.connect(chip.DAC1, chip.PA4);
-    BoardPeripherals {
-        // The virtual serial port of the board's debug probe.
-        serial: serial::open(chip.USART2, chip.PA3, chip.PA2, Interrupts),
-    }
+    // The DAC's pin is A2 on the Arduino header. Channel 2's pin PA5 drives the board's LED.
+    super::stm32::output::dac::connect(chip.DAC1, chip.PA4);
+    // The virtual serial port of the board's debug probe.
+    serial::open(chip.USART2, chip.PA3, chip.PA2, Interrupts)
 }

@@ -7,6 +7,7 @@ use crate::passivity::interval::Interval;
 
 /// Answer of one rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum RuleAnswer {
     /// Proved.
     Pass,

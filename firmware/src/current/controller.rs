@@ -1,17 +1,14 @@
-//! The current controller at run time: in each instant, from a sample and a code to compare values.
+//! The current controller at run time: in each instant, from a sample and a code to compare values, by the model of
+//! each current, its feed-forward and its feedback (theory, sections 15.1 and 15.2).
 
 use core::hint::cold_path;
 
 use super::alignment::{Alignment, AlignmentStep, Field};
-use super::current_loop::CurrentLoop;
-use super::encoder_index::{IndexOffset, OffsetCheck, check_index};
+use super::current_loop::{CurrentLoop, Law};
 use super::fault::PowerFault;
-use super::follower::{Follower, Wanted};
-use super::modulation::{Duties, Sample};
-use super::phase::{PhaseAlignment, Speed, Turn};
-use super::supervision::{Supervision, Surroundings};
-use super::vector::{Rotation, Vector};
-use super::zero_current::Offsets;
+use super::modulation::{Duties, Rotation, Sample, Vector};
+use super::phase::{IndexOffset, OffsetCheck, PhaseAlignment, Speed, Turn, check_index};
+use super::supervision::{Offsets, Supervision, Surroundings};
 use crate::encoder::RawCount;
 
 /// A running current loop.
@@ -218,9 +215,9 @@ impl CurrentController {
     #[inline(always)]
     pub fn step(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
         if self.design.is_brushless() {
-            self.step_brushless(sample, code_offset)
+            self.step_of::<true>(sample, code_offset)
         } else {
-            self.step_brushed(sample, code_offset)
+            self.step_of::<false>(sample, code_offset)
         }
     }
 
@@ -365,5 +362,64 @@ impl CurrentController {
         let model = Vector { along: self.along.twice_mean(), across: self.follower.twice_mean() };
         let (limited, model) = (limited.turned(rotation), model.turned(rotation));
         Ok(limited.duties(model.dead_time(output.dead), *timing))
+    }
+}
+
+/// A current that follows its model.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Follower {
+    /// The model's current in A at this instant, and at the next instant, whose voltage is already set.
+    model: f32,
+    next: f32,
+    /// The integral part of the feedback.
+    held: f32,
+}
+
+/// The requested voltage, and the deviation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wanted {
+    /// Voltage in V. It does not include the motor's back-EMF, which the feedback compensates (theory,
+    /// section 15.8).
+    pub volts: f32,
+    /// The model's current less the measured one, in A.
+    pub deviation: f32,
+}
+
+impl Follower {
+    /// No current and no voltage.
+    pub(super) const AT_REST: Self = Self { model: 0.0, next: 0.0, held: 0.0 };
+
+    /// Advances the model by an instant, independently of the available voltage, because it is the certified
+    /// model. The voltage moves the current to the model.
+    #[inline(always)]
+    pub(super) const fn follow(&mut self, law: &Law, reference: f32, current: f32) -> Wanted {
+        let deviation = self.model - current;
+        let after_next = self.next + law.model_gain * (reference - self.next);
+        let forward = (after_next - law.decay * self.next) * law.volts;
+        let feedback = law.proportional * deviation + (self.held + law.integral * deviation);
+        (self.model, self.next) = (self.next, after_next);
+        Wanted { volts: forward + feedback, deviation }
+    }
+
+    /// The voltage across the model's current for each rad that the current turns from an instant to the
+    /// middle of the next voltage. Call it after [`follow`](Self::follow).
+    #[inline(always)]
+    pub(super) const fn volts_across(&self, law: &Law) -> f32 {
+        (self.next + law.decay * self.model) * law.volts
+    }
+
+    /// Twice the model's mean current while the voltage acts. Call it after [`follow`](Self::follow). It has
+    /// no noise, so its sign does not flicker like that of a measured current.
+    #[inline(always)]
+    pub(super) const fn twice_mean(&self) -> f32 {
+        self.model + self.next
+    }
+
+    /// Updates the integral, unless the voltage is limited and the integral would wind up.
+    #[inline(always)]
+    pub(super) const fn integrate(&mut self, law: &Law, deviation: f32, is_limited: bool) {
+        if !is_limited {
+            self.held += law.integral * deviation;
+        }
     }
 }

@@ -1,12 +1,10 @@
 //! A current loop: every coefficient that an instant needs, and its numbers for a program.
 
-use super::encoder_index::{EncoderIndex, IndexOffset, OffsetCheck};
-use super::heating::{HeatLimit, Heating};
-use super::modulation::{Duties, PwmTiming};
 #[cfg(not(target_os = "none"))]
-use super::motor::Drive;
-use super::motor::Winding;
-use super::phase::Turn;
+use super::drive::Drive;
+use super::drive::Winding;
+use super::modulation::{Duties, PwmTiming};
+use super::phase::{EncoderIndex, IndexOffset, OffsetCheck, Turn};
 use super::power_stage::{PowerStage, ThermistorTable, TripRange};
 use super::regeneration::Bus;
 use super::response::{CurrentResolution, TorqueResponse, TorqueSource};
@@ -129,6 +127,17 @@ pub(super) struct Limits {
     pub thermistor: ThermistorTable,
 }
 
+/// The limit of a current loop whose full-scale current is above the continuous current.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct HeatLimit {
+    /// Square of the continuous current in A^2.
+    pub square: f32,
+    /// The continuous current in codes.
+    pub codes: f32,
+    /// Weight of a period of the servo in the mean.
+    pub weight: f32,
+}
+
 impl CurrentLoop {
     /// The motor and the supply, which a simulation needs.
     #[cfg(not(target_os = "none"))]
@@ -221,11 +230,6 @@ impl CurrentLoop {
         self.heat.is_some()
     }
 
-    /// The heat of a cold power stage under this loop.
-    pub const fn heating(&self) -> Heating {
-        Heating::new(self.heat)
-    }
-
     /// Instants in which the low sides conduct before the first high side.
     pub const fn charging_instants(&self) -> u32 {
         self.charging
@@ -251,6 +255,20 @@ impl CurrentLoop {
     /// Compare values of zero voltage: all phases at half.
     pub const fn no_voltage(&self) -> Duties {
         self.timing.no_voltage()
+    }
+
+    /// Compare values of a duty, which is the part of the supply from U to V, from -1 to 1: the nearest
+    /// values that leave the low sides their time.
+    pub const fn duties_at(&self, duty: f64) -> Duties {
+        let span = self.output.span as f32;
+        let difference = duty as f32 * self.timing.counts as f32;
+        self.timing.between_two(difference.clamp(-span, span))
+    }
+
+    /// Current in A between U and V, from the difference of the two phases' counts above those without a
+    /// current.
+    pub const fn current_between_two(&self, difference: f32) -> f32 {
+        self.law.between_two(difference)
     }
 
     /// Whether the program states an index.

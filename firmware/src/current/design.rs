@@ -2,18 +2,17 @@
 
 use core::f64::consts::TAU;
 
-use super::current_loop::{CurrentLoop, Law, Limits, Output};
-use super::encoder_index::EncoderIndex;
-use super::error::DriveError;
-use super::heating::{HeatLimit, TIME};
+use super::current_loop::{CurrentLoop, HeatLimit, Law, Limits, Output};
+use super::drive::{Drive, DriveError, Regeneration, Winding};
 use super::modulation::PwmTiming;
-use super::motor::{Drive, Regeneration, Winding};
-use super::phase::Turn;
+use super::phase::{EncoderIndex, Turn};
 use super::power_stage::{PowerStage, Thermistor};
 use super::regeneration::Bus;
 use super::response::{CurrentResolution, Plant, TorqueSource};
+use super::supervision::HEAT_TIME;
 use crate::dac::DacCode;
 use crate::passivity::interval::Interval;
+use crate::text::or_refuse;
 use crate::transducers::Transducers;
 
 /// Over-current, as a multiple of the current of full-scale torque: a step stays below it in a motor whose
@@ -34,7 +33,7 @@ const SETTLING: f64 = 8.0;
 /// torque by 0.1 per cent.
 const LEAST_ELECTRICAL_COUNTS: f64 = 64.0;
 
-/// The same with the phase from the index: its pulse is up to [`WIDTH`](super::encoder_index::WIDTH) counts wide and
+/// The same with the phase from the index: its pulse is up to [`WIDTH`](super::phase::WIDTH) counts wide and
 /// comes from either side, and the offset is rounded by up to half a count. With 256 counts the error is 0.11 rad,
 /// which reduces the torque by 0.6 per cent.
 const LEAST_COUNTS_WITH_INDEX: f64 = 256.0;
@@ -68,9 +67,6 @@ impl CurrentLoop {
     }
 
     /// For constants: a compile error if the drive cannot run.
-    ///
-    /// # Panics
-    /// If the drive cannot run; in a constant this is a compile error.
     #[track_caller]
     pub const fn checked(
         drive: &Drive,
@@ -78,10 +74,7 @@ impl CurrentLoop {
         transducers: &Transducers,
         period: f64,
     ) -> Self {
-        match Self::design(drive, stage, transducers, period) {
-            Ok(designed) => designed,
-            Err(error) => error.refuse(),
-        }
+        or_refuse!(Self::design(drive, stage, transducers, period))
     }
 
     /// The same loop with an index at the motor's encoder.
@@ -107,16 +100,10 @@ impl CurrentLoop {
     }
 
     /// For constants: a compile error if the index does not fit this motor's encoder.
-    ///
-    /// # Panics
-    /// If it does not fit; in a constant this is a compile error.
     #[must_use]
     #[track_caller]
     pub const fn with_index(self, index: EncoderIndex) -> Self {
-        match self.indexed(index) {
-            Ok(indexed) => indexed,
-            Err(error) => error.refuse(),
-        }
+        or_refuse!(self.indexed(index))
     }
 }
 
@@ -310,7 +297,7 @@ impl<'a> Design<'a> {
         Some(HeatLimit {
             square: (most * most) as f32,
             codes: (most / self.amps_per_code()) as f32,
-            weight: (self.instant * self.timing.updates as f64 / TIME) as f32,
+            weight: (self.instant * self.timing.updates as f64 / HEAT_TIME) as f32,
         })
     }
 

@@ -1,6 +1,5 @@
 //! The power stage of a board, from its data sheets and its schematic, and the network of its sensors.
 
-use super::motor::SupplyRange;
 use crate::passivity::interval::Interval;
 
 /// 0 degrees Celsius in K.
@@ -56,6 +55,15 @@ impl PowerStage {
         // The cast rounds a positive number down, and saturates.
         (self.dead_time * self.clock + (1.0 - 1e-6)) as u8
     }
+}
+
+/// A range of a supply's voltage in V.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupplyRange {
+    /// The lowest.
+    pub lowest: f64,
+    /// The highest.
+    pub highest: f64,
 }
 
 /// The range of codes of the thresholds' converter in which a working comparator trips without a current, and the

@@ -233,16 +233,11 @@ impl Bus {
 
 /// The reason why a supply that takes no energy back does not fit a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "each variant's description and sentence name its fields")]
 pub enum RegenerationError {
-    /// The returned energy raises it to its fault level.
-    OverVoltage {
-        /// The capacitance and its voltages.
-        bus: Bus,
-        /// The energy.
-        energy: ReturnedEnergy,
-        /// The largest torque limit in N m with which it stays below; zero if there is none.
-        torque: f64,
-    },
+    /// The returned energy raises it to its fault level; the largest torque limit in N m with which it stays below,
+    /// zero if there is none.
+    OverVoltage { bus: Bus, energy: ReturnedEnergy, torque: f64 },
     /// No bound on the energy is known for this environment.
     Unbounded,
 }

@@ -1,7 +1,7 @@
 //! The current loop as the actuator of a servo: the winding, the reference model and the feedback as numbers of one
 //! instant (theory, sections 15.1 and 15.2), and how the torque responds to codes and to motion.
 
-use super::motor::{Drive, Motor, Winding};
+use super::drive::{Drive, Motor, Winding};
 use super::power_stage::PowerStage;
 use crate::passivity::interval::Interval;
 

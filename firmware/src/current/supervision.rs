@@ -1,11 +1,23 @@
-//! The checks at each instant.
+//! The checks at each instant; the measurements without a current before each start; and the limit of the torque by
+//! the heat of the current.
+//!
+//! A comparator's offset, of up to 9 mV, is as much as the voltage of 5 A at its input. So the threshold is not
+//! computed from the converters' counts, but found at the comparator itself: while the gates are low, it falls by
+//! a code in each instant, over the whole range in which a working comparator trips.
+//!
+//! I2t takes the torque's limit down to the continuous current before the power stage gets too hot. The mean of the
+//! squared current, over the time constant of a first-order lag, is the heat. From nine tenths of the continuous
+//! current's heat on, the allowed current falls in a straight line, from full scale to the continuous current at its
+//! own heat: there the two stay, because a current at its own heat does not change the heat. The servo's limit moves
+//! by the steps of its clamp, and rises only above a torque that it did not limit.
 
 use core::hint::cold_path;
 
-use super::current_loop::Limits;
+use super::current_loop::{CurrentLoop, HeatLimit, Limits};
 use super::fault::PowerFault;
-use super::modulation::Sample;
-use super::vector::{Vector, larger};
+use super::modulation::{Sample, Vector, larger};
+use super::power_stage::TripRange;
+use crate::dac::DacCode;
 
 /// Consecutive samples out of range that are a fault: noise of the bridge's edges affects one sample, and a
 /// supply out of its range switches the gates off within three periods of the modulation.
@@ -199,6 +211,206 @@ impl Limits {
         PowerFault::OverTemperature {
             temperature: self.thermistor.tenths(sample.temperature),
             largest: self.thermistor.tenths(self.temperature),
+        }
+    }
+}
+
+/// The number of samples in a mean, whose noise is a sixteenth of that of a sample.
+const OFFSET_SAMPLES: u32 = 256;
+
+/// The mean of the last whole block of samples, taken while the gates are off.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Offsets {
+    sums: [u32; 2],
+    samples: u32,
+    /// Sums of the last whole block, so that they are the offsets with eight more bits.
+    blocks: Option<[u32; 2]>,
+}
+
+impl Offsets {
+    /// No block yet.
+    pub(super) const NONE: Self = Self { sums: [0; 2], samples: 0, blocks: None };
+
+    /// Takes a sample.
+    pub(super) const fn measure(&mut self, sample: &Sample) {
+        let [u, v] = self.sums;
+        // No sum is above 2^24.
+        self.sums = [u + sample.currents[0] as u32, v + sample.currents[1] as u32];
+        self.samples += 1;
+        if self.samples == OFFSET_SAMPLES {
+            *self = Self { blocks: Some(self.sums), ..Self::NONE };
+        }
+    }
+
+    /// The means in counts, which `f32` holds exactly.
+    ///
+    /// # Errors
+    /// If one is not that of a working amplifier, or no block is complete.
+    pub(super) fn checked(&self, limits: &Limits) -> Result<[f32; 2], PowerFault> {
+        let sums = self.blocks.unwrap_or_default();
+        let (lowest, highest) = (u32::from(limits.offsets.0), u32::from(limits.offsets.1));
+        for (phase, sum) in (0..).zip(sums) {
+            let count = sum / OFFSET_SAMPLES;
+            if self.blocks.is_none() || count < lowest || count > highest {
+                return Err(PowerFault::CurrentOffset { phase, count });
+            }
+        }
+        Ok(sums.map(|sum| sum as f32 / OFFSET_SAMPLES as f32))
+    }
+}
+
+/// The codes at which the comparators of the phases U, V and W trip without a current.
+pub type TripCodes = [u16; 3];
+
+/// A running search.
+#[derive(Clone, Copy, Debug)]
+pub struct TripSearch {
+    lowest: u16,
+    highest: u16,
+    /// The threshold now.
+    code: u16,
+    /// Zero before the comparator has tripped.
+    trips: TripCodes,
+}
+
+impl TripSearch {
+    /// A search that begins at the highest threshold.
+    pub const fn new(range: &TripRange) -> Self {
+        let TripRange { lowest, highest, .. } = *range;
+        Self { lowest, highest, code: highest, trips: [0; 3] }
+    }
+
+    /// The threshold whose outputs the next step takes.
+    pub const fn threshold(&self) -> u16 {
+        self.code
+    }
+
+    /// Takes the comparators' outputs at the threshold; returns the codes at the end of the search.
+    ///
+    /// # Errors
+    /// If a comparator trips already at the highest threshold, or not at the lowest: its phase.
+    pub fn step(&mut self, tripped: [bool; 3]) -> Result<Option<TripCodes>, PowerFault> {
+        let (code, is_first, is_last) =
+            (self.code, self.code == self.highest, self.code <= self.lowest);
+        for (phase, (trip, tripped)) in (0..).zip(self.trips.iter_mut().zip(tripped)) {
+            if tripped && *trip == 0 {
+                *trip = code;
+            }
+            if is_first && tripped || is_last && *trip == 0 {
+                return Err(PowerFault::Comparator { phase, threshold: code.into() });
+            }
+        }
+        self.code = code.saturating_sub(1);
+        Ok(is_last.then_some(self.trips))
+    }
+}
+
+/// Time constant in s of the heat: chosen, not from a data sheet, so that twice the continuous current lasts a
+/// second from cold.
+pub(super) const HEAT_TIME: f64 = 4.0;
+
+/// Parts of the continuous current's heat at which the limit begins to fall, below which it rises again, and below
+/// which it has risen: the heat takes longer from one to the other than a servo's limit takes to open.
+const FALLS: f32 = 0.9;
+const RISES: f32 = 0.8;
+const RISEN: f32 = 0.25;
+
+/// A step of the servo's torque limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeatStep {
+    /// The limit falls by a step.
+    Lower,
+    /// The limit rises by a step.
+    Raise,
+}
+
+/// The heat of a running current loop.
+#[derive(Clone, Copy, Debug)]
+pub struct Heating {
+    limit: Option<HeatLimit>,
+    mean_square: f32,
+    /// Whether the limit may not have risen since it last fell.
+    is_lowered: bool,
+}
+
+impl CurrentLoop {
+    /// The heat of a cold power stage under this loop.
+    pub const fn heating(&self) -> Heating {
+        Heating { limit: self.heat, mean_square: 0.0, is_lowered: false }
+    }
+}
+
+impl Heating {
+    /// Takes the current in A of a period of the servo and its code by
+    /// [`DacCode::offset`](crate::dac::DacCode::offset); returns the step of the torque limit, if one is due.
+    #[inline(always)]
+    pub fn observe(&mut self, current: f32, code_offset: i16) -> Option<HeatStep> {
+        let limit = self.limit.as_ref()?;
+        self.mean_square += (current * current - self.mean_square) * limit.weight;
+        if self.mean_square < FALLS * limit.square && !self.is_lowered {
+            return None;
+        }
+        Self::step(limit, self.mean_square, &mut self.is_lowered, code_offset)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn step(
+        limit: &HeatLimit,
+        mean_square: f32,
+        is_lowered: &mut bool,
+        code_offset: i16,
+    ) -> Option<HeatStep> {
+        let full = f32::from(DacCode::CODES_TO_FULL_SCALE);
+        let left = (1.0 - mean_square / limit.square) / (1.0 - FALLS);
+        let allowed = limit.codes + (full - limit.codes) * left.clamp(0.0, 1.0);
+        if f32::from(code_offset).abs() > allowed {
+            *is_lowered = true;
+            Some(HeatStep::Lower)
+        } else if mean_square < RISES * limit.square && *is_lowered {
+            *is_lowered = mean_square > RISEN * limit.square;
+            Some(HeatStep::Raise)
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RANGE: TripRange = TripRange { lowest: 140, highest: 180, amps_per_code: 0.5 };
+
+    /// With comparators that trip from these codes down.
+    fn found(levels: TripCodes) -> (u32, Result<TripCodes, PowerFault>) {
+        let mut search = TripSearch::new(&RANGE);
+        for instant in 1..=RANGE.instants() {
+            match search.step(levels.map(|level| search.threshold() <= level)) {
+                Ok(None) => {}
+                Ok(Some(codes)) => return (instant, Ok(codes)),
+                Err(fault) => return (instant, Err(fault)),
+            }
+        }
+        panic!("the search does not end")
+    }
+
+    #[test]
+    fn every_comparator_s_own_code_is_found_in_the_same_time() {
+        for levels in [[160, 150, 170], [140, 179, 141]] {
+            assert_eq!(found(levels), (RANGE.instants(), Ok(levels)));
+        }
+    }
+
+    #[test]
+    fn a_comparator_that_trips_outside_the_range_is_named() {
+        for phase in 0..3 {
+            for (level, threshold) in [(0, 140), (139, 140), (180, 180), (4095, 180)] {
+                let mut levels = [160; 3];
+                levels[phase as usize] = level;
+                let fault = PowerFault::Comparator { phase, threshold };
+                assert_eq!(found(levels).1, Err(fault));
+            }
         }
     }
 }

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{Discretize, Environment, Law, LawContext, Wall};
-use crate::scene::{Coupling, Device, Latency, Scene, Timing};
+use crate::scene::{Coupling, Latency, Scene};
 use crate::servo::{
     AtPhase, Latched, PreparedServo, RenderingOptions, Servo, Simultaneous, Transducers,
 };
@@ -22,14 +22,7 @@ const TRANSDUCERS: Transducers = Transducers {
 };
 
 const fn spring(stiffness: f64) -> Scene {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: PERIOD, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: Wall::spring(stiffness, 1).alone(),
-        latency: Latency::NONE,
-        torque_limit: Some(1.5),
-    }
+    crate::fixture::scene(Wall::spring(stiffness, 1).alone(), Some(1.5))
 }
 
 /// Ticks in which the encoder moved by `step` and a code was written.
@@ -173,7 +166,7 @@ where
     let timed = spring(stiffness).certified().timing_checked::<M>();
     let options = RenderingOptions { injection, ..RenderingOptions::DEFAULT };
     let mut rendering = PreparedServo::new(&timed, &TRANSDUCERS, &options).unwrap();
-    while !rendering.servo_mut().open() {}
+    while !rendering.servo_mut().clamp().open() {}
     rendering
 }
 

@@ -13,6 +13,7 @@ use crate::number::Number;
 /// Zeros at the end of the denominator are also delay, and count as delay if the degree of the numerator is
 /// lower by as many.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rational {
     /// Numerator, descending powers of z.
     pub numerator: Coefficients,
@@ -27,6 +28,7 @@ pub struct Rational {
 
 /// A polynomial's coefficients in descending powers, at most `MAX_DEGREE + 1` of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Coefficients {
     values: [f64; MAX_DEGREE + 1],
     len: usize,

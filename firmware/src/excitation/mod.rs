@@ -32,20 +32,15 @@
 //! assert!(error.to_string().contains("an amplitude of 2.5 N m"));
 //! ```
 
-mod end;
-mod error;
-mod exciter;
-mod guard;
+mod playing;
 pub mod sine;
 
 use core::fmt;
 
-pub use end::{SILENCE, SWEEP_PROTOCOL, SweepEnd};
-pub use error::SweepError;
-pub use exciter::{Excitation, Exciter};
-pub use guard::{Guard, MotionLimits};
+pub use playing::{Excitation, Exciter, Guard, MotionLimits, SILENCE, SWEEP_PROTOCOL, SweepEnd};
 
 use crate::dac::DacCode;
+use crate::text::{Text, error_with_sentence, or_refuse, push};
 use crate::transducers::Transducers;
 
 /// The smallest number of measured periods of a tone.
@@ -146,10 +141,7 @@ impl<const N: usize> Sweep<N> {
     /// The same for a constant: refused tones are a compile error.
     #[track_caller]
     pub const fn planned(period: f64, transducers: &Transducers, tones: [Tone; N]) -> Self {
-        match Self::new(period, transducers, tones) {
-            Ok(sweep) => sweep,
-            Err(error) => error.refuse(),
-        }
+        or_refuse!(Self::new(period, transducers, tones))
     }
 
     /// Sampling period in s.
@@ -231,6 +223,49 @@ impl<const N: usize> fmt::Display for Sweep<N> {
         writeln!(f, "{} ticks of {} s, {seconds:.3} s in all", self.ticks(), self.period)
     }
 }
+
+/// An error of a sweep. Tones are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "each variant's description and sentence name its fields")]
+pub enum SweepError {
+    /// The period or the motor's torque is zero, negative or not finite.
+    NotPositive { name: &'static str, value: f64 },
+    /// A frequency in Hz that is too high to sample as a sine: not below half the sampling rate.
+    Frequency { tone: usize, frequency: f64, largest: f64 },
+    /// An amplitude in N m outside the DAC's range, from the torque of one code to full scale.
+    Amplitude { tone: usize, amplitude: f64, least: f64, largest: f64 },
+    /// Too few periods to measure.
+    Periods { tone: usize, measured: u32 },
+    /// Periods that do not take a whole number of samples, or take too many.
+    Samples { tone: usize, periods: u32, samples: f64, most: f64 },
+}
+
+impl SweepError {
+    /// The error as a sentence, the same at compile time and later.
+    pub const fn sentence(&self) -> Text<240> {
+        let mut t = Text::new();
+        match *self {
+            Self::NotPositive { name, value } => {
+                push!(t, "the " {name} " is " {value} "; it must be positive and finite");
+            }
+            Self::Frequency { tone, frequency, largest } => push!(t,
+                "tone " {tone} " has a frequency of " {frequency} " Hz; it must be above 0 and below half the \
+                 sampling rate, " {largest} " Hz"),
+            Self::Amplitude { tone, amplitude, least, largest } => push!(t,
+                "tone " {tone} " has an amplitude of " {amplitude} " N m; the DAC gives " {least} " to " {largest}
+                " N m"),
+            Self::Periods { tone, measured } => push!(t,
+                "tone " {tone} " has a measured part of " {measured} " periods; it must be at least "
+                {LEAST_PERIODS}),
+            Self::Samples { tone, periods, samples, most } => push!(t,
+                "tone " {tone} " has a part of " {periods} " periods, which take " {samples} " samples; they must \
+                 take a whole number of samples, and at most " {most}),
+        }
+        t
+    }
+}
+
+error_with_sentence!(SweepError);
 
 #[cfg(test)]
 mod tests;

@@ -1,14 +1,8 @@
 //! Sweeps as they are played.
 
 use super::*;
-use crate::encoder::CounterWidth;
+use crate::fixture::TRANSDUCERS as MOTOR;
 
-const MOTOR: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 2.0,
-    largest_speed: 100.0,
-};
 const LOW: Tone = Tone { frequency: 4.0, amplitude: 0.5, settle: 2, measured: 6 };
 const HIGH: Tone = Tone { frequency: 240.0, amplitude: 2.0, settle: 6, measured: 24 };
 

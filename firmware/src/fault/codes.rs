@@ -8,44 +8,41 @@ pub trait Bits {
     fn from_bits(bits: u32) -> Self;
 }
 
-impl Bits for u32 {
-    fn into_bits(self) -> u32 {
-        self
-    }
+macro_rules! bits {
+    ($($number:ty: $into:expr, $from:expr;)+) => {$(
+        impl Bits for $number {
+            fn into_bits(self) -> u32 {
+                ($into)(self)
+            }
 
-    fn from_bits(bits: u32) -> Self {
-        bits
-    }
+            fn from_bits(bits: u32) -> Self {
+                ($from)(bits)
+            }
+        }
+    )+};
+}
+bits! {
+    u32: u32::from, u32::from;
+    i32: i32::cast_unsigned, u32::cast_signed;
+    bool: u32::from, |bits| bits != 0;
 }
 
-impl Bits for i32 {
-    fn into_bits(self) -> u32 {
-        self.cast_unsigned()
-    }
-
-    fn from_bits(bits: u32) -> Self {
-        bits.cast_signed()
-    }
-}
-
-impl Bits for bool {
-    fn into_bits(self) -> u32 {
-        self.into()
-    }
-
-    fn from_bits(bits: u32) -> Self {
-        bits != 0
-    }
-}
-
-/// The methods of an enumeration of faults, from a row for each: its code, its word, the variant with at most two
+/// An enumeration of faults, from a row for each: its description, its code, its word, the variant with at most two
 /// numbers, and its sentence. The last row, of another enumeration's faults, has no code and no word.
 macro_rules! fault_table {
-    ($fault:ident {
-        $($code:literal $word:literal $variant:ident $({ $($number:ident),+ })?
+    ($(#[$about:meta])* $fault:ident {
+        $($(#[$doc:meta])* $code:literal $word:literal $variant:ident $({ $($number:ident: $type:ty),+ })?
             => ($sentence:literal $(, $argument:expr)?),)+
-        $(_ $other:ident($inner:ident: $kind:ident) => ($prefix:literal),)?
+        $(others: $(#[$others:meta])* $other:ident($inner:ident: $kind:ident) => ($prefix:literal),)?
     }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[allow(missing_docs, reason = "a row's description and sentence name its numbers")]
+        pub enum $fault {
+            $($(#[$doc])* $variant $({ $($number: $type),+ })?,)+
+            $($(#[$others])* $other($kind),)?
+        }
+
         impl $fault {
             /// The fault in one word, for tables.
             pub const fn as_str(self) -> &'static str {

@@ -14,70 +14,56 @@ use codes::fault_table;
 
 use crate::current::PowerFault;
 
-/// A fault with its numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// More updates were missed than the certificate tolerates: a tick came late, or ended after
-    /// its update.
-    MissedTick {
-        /// Consecutive missed updates.
-        missed: u32,
-        /// Consecutive updates that may be missed under the certificate's worst period.
-        tolerated: u32,
-    },
-    /// The encoder moved further than the device can move.
-    EncoderJump {
-        /// The motion in counts, without its sign.
-        counts: u32,
-        /// The largest motion in counts in this time at the device's largest speed.
-        largest: u32,
-    },
+// 4 was the code of a fault that no longer exists; from 14 on codes are those of a power stage.
+fault_table! {
+    /// A fault with its numbers.
+    Fault {
+    /// More updates in a row were missed than the certificate's worst period tolerates: a tick came late, or ended
+    /// after its update.
+    1 "missed-tick" MissedTick { missed: u32, tolerated: u32 } => (
+        "{missed} update(s) in a row were missed, and the certificate allows {tolerated}: lengthen the scene's \
+         period or its worst period, then arm again"),
+    /// The encoder moved by more counts than the device can in this time at its largest speed.
+    2 "encoder-jump" EncoderJump { counts: u32, largest: u32 } => (
+        "the encoder jumped by {counts} counts, and the device's largest speed allows {largest} in that time: check \
+         the encoder's cable and the largest speed, then reset with the device at its zero"),
     /// The torque was not a number.
-    NotANumber,
-    /// The host has been silent for too long.
-    LinkLost {
-        /// Allowed ticks without a message.
-        allowed: u32,
-    },
+    3 "not-a-number" NotANumber => ("NaN torque: send another set of parameters, then arm again"),
+    /// The host has been silent for more than the allowed ticks.
+    5 "link-lost" LinkLost { allowed: u32 } => (
+        "the host was silent for more than the {allowed} ticks that are allowed: connect again, then arm again"),
     /// The servo's interrupt stopped, and the watchdog reset the chip.
-    Watchdog,
-    /// The program panicked.
-    Panic {
-        /// Line of the source.
-        line: u32,
-        /// Column of the source.
-        column: u32,
-    },
-    /// The processor raised a hard fault.
-    HardFault {
-        /// Program counter.
-        address: u32,
-        /// The processor's configurable fault status.
-        status: u32,
-    },
+    6 "watchdog" Watchdog => (
+        "the servo's interrupt stopped coming, and the watchdog reset the board: arm again"),
+    /// The program panicked at this line and column of its source.
+    7 "panic" Panic { line: u32, column: u32 } => (
+        "the program panicked at line {line}, column {column} of its source: this is a bug in the program; arm \
+         again"),
+    /// The processor raised a hard fault: the program counter, and the configurable fault status.
+    8 "hard-fault" HardFault { address: u32, status: u32 } => (
+        "hard fault at {address:#010x} with the status {status:#010x}: this is a bug in the program; arm again"),
     /// A tick began later in its period than the certificate allows for its count, or its code was not ready
-    /// at the time of the output.
-    LateTick {
-        /// Timer counts after the beginning of its period.
-        late: u32,
-        /// The largest allowed value.
-        allowed: u32,
-    },
+    /// at the time of the output, in timer counts after the beginning of the period.
+    9 "late-tick" LateTick { late: u32, allowed: u32 } => (
+        "a tick began, or had its code, {late} timer counts after the start of its period, and {allowed} are \
+         allowed: shorten the critical sections that mask interrupts, or lengthen the scene's period, or its output \
+         delay where it has one, then arm again"),
     /// The crystal of the core's clock has stopped.
-    ClockLost,
-    /// A word of the flash memory has more wrong bits than the error correction can repair.
-    FlashEcc {
-        /// The word's place in its bank of the flash memory, in bytes.
-        address: u32,
-        /// The content of the memory's error register.
-        status: u32,
-    },
+    10 "clock-lost" ClockLost => ("the crystal stopped: check it and its supply, then arm again"),
+    /// A word of the flash memory has more wrong bits than the error correction can repair: its place in its bank
+    /// in bytes, and the memory's error register.
+    11 "flash-ecc" FlashEcc { address: u32, status: u32 } => (
+        "uncorrectable flash error at {address:#010x} of its bank (error register: {status:#010x}): flash the \
+         program again, then arm again"),
     /// A word of RAM has a wrong parity.
-    RamParity,
+    12 "ram-parity" RamParity => ("RAM parity error: check the supply, then arm again"),
     /// A non-maskable interrupt without a cause in the chip's registers.
-    NonMaskable,
+    13 "non-maskable" NonMaskable => (
+        "a non-maskable interrupt came, and the chip does not report its cause: arm again"),
+    others:
     /// A fault of the board's bridge, or of its motor.
-    Power(PowerFault),
+    Power(fault: PowerFault) => (""),
+    }
 }
 
 impl Fault {
@@ -87,38 +73,6 @@ impl Fault {
         Self::Panic { line, column }
     }
 }
-
-// 4 was the code of a fault that no longer exists; from 14 on codes are those of a power stage.
-fault_table! { Fault {
-    1 "missed-tick" MissedTick { missed, tolerated } => (
-        "{missed} update(s) in a row were missed, and the certificate allows {tolerated}: lengthen the scene's \
-         period or its worst period, then arm again"),
-    2 "encoder-jump" EncoderJump { counts, largest } => (
-        "the encoder jumped by {counts} counts, and the device's largest speed allows {largest} in that time: check \
-         the encoder's cable and the largest speed, then reset with the device at its zero"),
-    3 "not-a-number" NotANumber => ("NaN torque: send another set of parameters, then arm again"),
-    5 "link-lost" LinkLost { allowed } => (
-        "the host was silent for more than the {allowed} ticks that are allowed: connect again, then arm again"),
-    6 "watchdog" Watchdog => (
-        "the servo's interrupt stopped coming, and the watchdog reset the board: arm again"),
-    7 "panic" Panic { line, column } => (
-        "the program panicked at line {line}, column {column} of its source: this is a bug in the program; arm \
-         again"),
-    8 "hard-fault" HardFault { address, status } => (
-        "hard fault at {address:#010x} with the status {status:#010x}: this is a bug in the program; arm again"),
-    9 "late-tick" LateTick { late, allowed } => (
-        "a tick began, or had its code, {late} timer counts after the start of its period, and {allowed} are \
-         allowed: shorten the critical sections that mask interrupts, or lengthen the scene's period, or its output \
-         delay where it has one, then arm again"),
-    10 "clock-lost" ClockLost => ("the crystal stopped: check it and its supply, then arm again"),
-    11 "flash-ecc" FlashEcc { address, status } => (
-        "uncorrectable flash error at {address:#010x} of its bank (error register: {status:#010x}): flash the \
-         program again, then arm again"),
-    12 "ram-parity" RamParity => ("RAM parity error: check the supply, then arm again"),
-    13 "non-maskable" NonMaskable => (
-        "a non-maskable interrupt came, and the chip does not report its cause: arm again"),
-    _ Power(fault: PowerFault) => (""),
-} }
 
 #[cfg(test)]
 mod tests;

@@ -6,6 +6,7 @@ use super::{Format, Number, Truncated};
 
 /// A number format for a servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Arithmetic {
     /// IEEE binary32, in the floating-point unit of the boards' cores.
     F32,

@@ -7,6 +7,7 @@ use crate::current::HeatStep;
 use crate::environment::Law;
 use crate::number::Number;
 use crate::rendering::Rendering;
+use crate::torque::Limiter;
 
 impl<E: Rendering<N>, N: Number> Servo<E, N> {
     /// The same servo with a clamp that opens and closes within `ticks`.
@@ -20,29 +21,14 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
         Ok(Self { limiter: self.limiter.stepping(step), ..self })
     }
 
-    /// Shuts the clamp: no torque from the next tick on.
-    pub(crate) fn shut(&mut self) {
-        self.limiter.shut();
-    }
-
-    /// Whether the clamp is shut.
-    pub(crate) fn is_shut(&self) -> bool {
-        self.limiter.is_shut()
-    }
-
-    /// Opens the clamp by a step; returns whether it is now open.
-    pub(crate) fn open(&mut self) -> bool {
-        self.limiter.open()
+    /// Its clamp.
+    pub(crate) fn clamp(&mut self) -> &mut Limiter<N> {
+        &mut self.limiter
     }
 
     /// Moves the open clamp by a step, because of the heat of the torque output.
     pub(crate) fn step_by_heat(&mut self, step: HeatStep) {
         self.limiter.step_by_heat(step, self.torque);
-    }
-
-    /// Closes the clamp by a step; returns whether it is now shut.
-    pub(crate) fn close(&mut self) -> bool {
-        self.limiter.close()
     }
 
     /// Lowers the clamp to the held torque, so that the next step reduces the torque at once.

@@ -39,9 +39,6 @@ impl RenderingOptions {
 impl RenderingOptions {
     /// For constants: a compile error if the injected damping is more than the scene allows; see
     /// [`TimingChecked::injectable_damping`].
-    ///
-    /// # Panics
-    /// If the damping is too large; in a constant this is a compile error.
     #[track_caller]
     pub const fn checked_beside(&self, room: f64) {
         if let Some(damping) = self.injection {
@@ -124,7 +121,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
         BuildError::unless_positive("time of fading", options.fade)?;
         let ticks = (options.fade / period).max(1.0);
         let mut servo = Servo::build(scene, transducers)?.fading(bound, ticks)?;
-        servo.shut();
+        servo.clamp().shut();
         if matches!(M::TIMING, OutputTiming::Latched) && !servo.is_late() {
             return Err(BuildError::NotLate);
         }

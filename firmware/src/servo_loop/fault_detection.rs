@@ -6,7 +6,6 @@ use crate::encoder::RawCount;
 use crate::environment::MAX_DELAY;
 use crate::fault::FaultRecord;
 use crate::output_timing::OutputTiming;
-use crate::torque_output::OutputEvent;
 
 /// Ticks in a row without a fault before the servo may be armed.
 const FAULT_FREE_TICKS: u32 = MAX_DELAY as u32 + 2;
@@ -28,7 +27,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         passed: u32,
         raw: RawCount,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
     ) -> u32 {
         let periods = passed.max(1);
         if passed == BEGAN_LATE {
@@ -55,7 +54,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     fn unless_read_in_time(
         &mut self,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
     ) {
         let late = hardware.time_in_period();
         let latest = self.rendering.timing_limits().latest_at_phase();
@@ -71,7 +70,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         &mut self,
         periods: u32,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
     ) {
         let period = self.period as f32;
         let late = hardware.time_in_period();
@@ -92,7 +91,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         passed: u32,
         step: i32,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
     ) {
         let largest = self.rendering.timing_limits().largest_step.saturating_mul(passed.max(1));
         let counts = step.unsigned_abs();
@@ -107,7 +106,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     pub(super) fn stop_on_nan(
         &mut self,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
     ) {
         self.fail(Fault::NotANumber, hardware, inbox);
     }
@@ -120,7 +119,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         &mut self,
         event: OutputEvent,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
     ) {
         match event {
             OutputEvent::Fault(fault) => self.fail(fault, hardware, inbox),
@@ -143,7 +142,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         &mut self,
         elapsed: u32,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
     ) -> u32 {
         let allowed = self.deadline;
         if elapsed < allowed {
@@ -193,7 +192,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         &mut self,
         fault: Fault,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
     ) {
         self.detected_fault = Some(fault);
         self.fault_free_ticks = 0;
@@ -207,11 +206,11 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         &mut self,
         fault: Fault,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
     ) {
         hardware.write(DacCode::MID_SCALE);
         hardware.amplifier(false);
-        self.rendering.servo_mut().shut();
+        self.rendering.servo_mut().clamp().shut();
         self.state = State::Faulted;
         self.fault = Some(fault);
         let count = self.rendering.servo().low_count();

@@ -1,15 +1,26 @@
-//! Hardware of the servo's interrupt.
+//! Hardware of the servo's interrupt, and the clock that counts its periods.
 
-use crate::current::{AlignmentError, PowerFault};
+use core::hint::cold_path;
+use core::num::NonZeroU32;
+
+use crate::current::{AlignmentError, HeatStep, PowerFault};
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::{Fault, FaultRecord};
 #[cfg(doc)]
 use crate::output_timing::READ_WITHIN;
-use crate::torque_output::OutputEvent;
 
 /// The result of [`Hardware::periods_since_last`] for one period whose tick began later than [`READ_WITHIN`].
 pub const BEGAN_LATE: u32 = 0;
+
+/// An event of a torque output for the servo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputEvent {
+    /// A fault: the output has already removed the torque.
+    Fault(Fault),
+    /// The torque's limit moves by a step, because of the heat of the current.
+    Heat(HeatStep),
+}
 
 /// The board in the servo's interrupt: each method is an access or two to a register.
 pub trait Hardware {
@@ -51,4 +62,64 @@ pub trait Hardware {
     fn feed_watchdog(&mut self);
     /// Keeps a [`FaultRecord`] in memory that survives a reset, or clears it. Rare.
     fn store_fault(&mut self, _record: &[u32; FaultRecord::WORDS]) {}
+}
+
+/// Counts the periods by a clock that wraps at 32 bits. The first period began at zero of the clock; its tick
+/// is due one period later.
+///
+/// ```
+/// use core::num::NonZeroU32;
+/// use haptic_servo::servo_loop::{BEGAN_LATE, PeriodClock};
+///
+/// let mut periods = PeriodClock::new(NonZeroU32::new(1000).unwrap(), 10);
+/// assert_eq!(periods.begun_by(1009), 1); // in time: 9 counts after its beginning
+/// assert_eq!(periods.elapsed_at(1300), 300);
+/// assert_eq!(periods.begun_by(2010), BEGAN_LATE);
+/// assert_eq!(periods.begun_by(5009), 3); // two ticks were missed
+/// assert_eq!(periods.begun_by(6000), 1);
+/// ```
+#[derive(Clone, Debug)]
+pub struct PeriodClock {
+    /// Clock counts in a period.
+    counts: NonZeroU32,
+    /// Clock counts after the beginning of a period within which its tick is in time.
+    in_time: u32,
+    /// The clock when the present period began.
+    began: u32,
+}
+
+impl PeriodClock {
+    /// Periods of `counts` clock counts; a tick is in time within the first `in_time` of them: the counts of
+    /// [`READ_WITHIN`](crate::output_timing::READ_WITHIN) seconds on a board whose certificate must hold.
+    pub const fn new(counts: NonZeroU32, in_time: u32) -> Self {
+        Self { counts, in_time, began: 0 }
+    }
+
+    /// The number of periods that began between the last call and this time of the clock: the result of
+    /// [`Hardware::periods_since_last`](Hardware::periods_since_last).
+    #[inline(always)]
+    pub fn begun_by(&mut self, time: u32) -> u32 {
+        let next = self.began.wrapping_add(self.counts.get());
+        let late = time.wrapping_sub(next);
+        if late < self.in_time {
+            self.began = next;
+            return 1;
+        }
+        cold_path();
+        let missed = late / self.counts;
+        self.began = next.wrapping_add(missed.wrapping_mul(self.counts.get()));
+        if missed == 0 { BEGAN_LATE } else { missed + 1 }
+    }
+
+    /// Clock counts in a period.
+    pub const fn counts(&self) -> u32 {
+        self.counts.get()
+    }
+
+    /// Clock counts since the present period began: the result of
+    /// [`Hardware::time_in_period`](Hardware::time_in_period).
+    #[inline(always)]
+    pub const fn elapsed_at(&self, time: u32) -> u32 {
+        time.wrapping_sub(self.began)
+    }
 }

@@ -16,12 +16,11 @@
 //! An interrupt between number and bit may still find the bit of an earlier request of the same kind. It then
 //! answers both with the later number, and does the same work again for the later bit.
 
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::{AtomicU32, Ordering, fence};
 
 use heapless::spsc::{Consumer, Producer, Queue};
 
 use super::interruption::may_interrupt;
-use super::published::Published;
 use super::state::{Reply, Status};
 
 /// Bits of the word of requests; the first are those of [`Kind`].
@@ -59,9 +58,8 @@ struct Shared {
     swapped: AtomicU32,
     /// The last request to disarm after which the amplifier was off.
     off: AtomicU32,
-    /// The last answered request to arm, and its reply.
+    /// The last answered requests to arm and for an alignment, and their replies.
     arming: Published<{ 1 + Reply::WORDS }>,
-    /// The last answered request for an alignment, and its reply.
     alignment: Published<{ 1 + Reply::WORDS }>,
     /// The last answered request for the status, and the status.
     status: Published<{ 1 + Status::WORDS }>,
@@ -297,5 +295,49 @@ impl<R> Inbox<'_, R> {
         let [_, rest @ ..] = &mut words;
         *rest = status.to_words();
         self.shared.status.publish(words);
+    }
+}
+
+/// The last published words; zeros before the first. One writer, which replaces them, and one reader.
+///
+/// A sequence lock. The writer stores an odd version, the words, and the next even version, and never waits.
+/// The reader loads the version, the words, and the version again. An interrupt between these loads that
+/// publishes changes the version, and the words are dropped.
+#[derive(Debug)]
+pub(super) struct Published<const WORDS: usize> {
+    version: AtomicU32,
+    words: [AtomicU32; WORDS],
+}
+
+impl<const WORDS: usize> Published<WORDS> {
+    pub(super) const fn new() -> Self {
+        Self { version: AtomicU32::new(0), words: [const { AtomicU32::new(0) }; WORDS] }
+    }
+
+    /// Replaces the words.
+    pub(super) fn publish(&self, words: [u32; WORDS]) {
+        let version = self.version.load(Ordering::Relaxed);
+        self.version.store(version.wrapping_add(1), Ordering::Relaxed);
+        // No word before the odd version.
+        fence(Ordering::Release);
+        for (place, word) in self.words.iter().zip(words) {
+            place.store(word, Ordering::Relaxed);
+        }
+        self.version.store(version.wrapping_add(2), Ordering::Release);
+    }
+
+    /// The words; `None` if they were replaced meanwhile: read them again at the next poll.
+    pub(super) fn read(&self) -> Option<[u32; WORDS]> {
+        let version = self.version.load(Ordering::Acquire);
+        let mut words = [0; WORDS];
+        for (word, place) in words.iter_mut().zip(&self.words) {
+            may_interrupt();
+            *word = place.load(Ordering::Relaxed);
+        }
+        may_interrupt();
+        // The second load of the version after all words.
+        fence(Ordering::Acquire);
+        let is_whole = version.is_multiple_of(2) && self.version.load(Ordering::Relaxed) == version;
+        is_whole.then_some(words)
     }
 }

@@ -1,4 +1,5 @@
-//! The servo loop in the interrupt of every board.
+//! The servo loop in the interrupt of every board, with the state of that interrupt and what it shares with the task
+//! below it.
 //!
 //! ```text
 //! count -> servo -> code -> DAC           in every tick, in every state
@@ -10,29 +11,22 @@
 //! are not inlined.
 
 mod fault_detection;
-mod frame;
-mod frame_queue;
+mod frames;
 mod hardware;
 #[cfg(not(all(test, feature = "wire")))]
 mod interruption;
 #[cfg(all(test, feature = "wire"))]
 pub(crate) mod interruption;
-mod isr;
 mod mailbox;
 mod options;
-mod period_clock;
-mod published;
 mod state;
 mod state_machine;
 mod swap;
 
-pub use frame::{Frame, FrameSink};
-pub use frame_queue::{FrameQueue, FrameReader, Frames};
-pub use hardware::{BEGAN_LATE, Hardware};
-pub use isr::{Endpoints, FRAMES, ServoIsr};
+pub use frames::{Frame, FrameQueue, FrameReader, FrameSink, Frames};
+pub use hardware::{BEGAN_LATE, Hardware, OutputEvent, PeriodClock};
 pub use mailbox::{Inbox, Mailbox, Requests};
 pub use options::{Arming, LinkPolicy, Options, Reason};
-pub use period_clock::PeriodClock;
 pub use state::{Reply, State, Status};
 pub use swap::longest_gap;
 
@@ -46,6 +40,9 @@ use crate::output_timing::OutputMode;
 use crate::rendering::Rendering;
 use crate::servo::{PreparedServo, TimingLimits};
 use crate::torque::LimitReason;
+
+/// The interrupt's end of the mailbox, with its sets.
+type Incoming<'a, E, N, M> = Inbox<'a, PreparedServo<E, N, M>>;
 
 /// The action after the clamp has closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,7 +146,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     pub fn run(
         &mut self,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
         frames: &mut impl FrameSink,
     ) {
         // Sampling: the count and its time.
@@ -205,11 +202,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
 
     /// Timer counts left until the tick's deadline.
     #[inline(always)]
-    fn slack(
-        &mut self,
-        hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
-    ) -> u32 {
+    fn slack(&mut self, hardware: &mut impl Hardware, inbox: &mut Incoming<'_, E, N, M>) -> u32 {
         let elapsed = hardware.time_in_period();
         if elapsed > self.longest {
             return self.check_longest_tick(elapsed, hardware, inbox);
@@ -230,6 +223,53 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// The fault that stopped the servo, until the next arming.
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
+    }
+}
+
+/// Capacity of the queue of frames, a power of two: 1.6 ms at 20 kHz.
+pub const FRAMES: usize = 32;
+
+/// State of the servo's interrupt.
+pub struct ServoIsr<H, E: Rendering<N> + 'static, N: Number, M: 'static> {
+    /// The servo and its state.
+    pub servo_loop: ServoLoop<E, N, M>,
+    /// The board's registers.
+    pub hardware: H,
+    /// Requests from the task.
+    pub inbox: Inbox<'static, PreparedServo<E, N, M>>,
+    /// Frames to the task.
+    pub frames: Frames<'static, FRAMES>,
+}
+
+impl<H: Hardware, E: Rendering<N>, N: Number, M: OutputMode> ServoIsr<H, E, N, M> {
+    /// One tick.
+    #[inline(always)]
+    pub fn tick(&mut self) {
+        self.servo_loop.run(&mut self.hardware, &mut self.inbox, &mut self.frames);
+    }
+}
+
+/// Endpoints of interrupt and task.
+pub struct Endpoints<E: Rendering<N> + 'static, N: Number, M: 'static> {
+    /// The task's end of the mailbox.
+    pub requests: Requests<'static, PreparedServo<E, N, M>>,
+    /// The interrupt's end of the mailbox.
+    pub inbox: Inbox<'static, PreparedServo<E, N, M>>,
+    /// The interrupt's end of the queue of frames.
+    pub frames: Frames<'static, FRAMES>,
+    /// The task's end of the queue of frames.
+    pub frame_reader: FrameReader<'static, FRAMES>,
+}
+
+impl<E: Rendering<N>, N: Number, M: OutputMode> Endpoints<E, N, M> {
+    /// The ends of a mailbox and of a queue of frames in statics.
+    pub fn of(
+        mailbox: &'static mut Mailbox<PreparedServo<E, N, M>>,
+        queue: &'static mut FrameQueue<FRAMES>,
+    ) -> Self {
+        let (requests, inbox) = mailbox.split();
+        let (frames, frame_reader) = queue.split();
+        Self { requests, inbox, frames, frame_reader }
     }
 }
 

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::fault::Fault;
+use crate::text::words;
 
 /// The servo's state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,31 +27,12 @@ pub enum State {
     Aligning = 6,
 }
 
+words! { State {
+    Disarmed "disarmed", FadingIn "fading-in", Running "running", FadingOut "fading-out",
+    Settling "settling", Faulted "faulted", Aligning "aligning",
+} }
+
 impl State {
-    /// All states, in the order of their numbers.
-    pub const ALL: [Self; 7] = [
-        Self::Disarmed,
-        Self::FadingIn,
-        Self::Running,
-        Self::FadingOut,
-        Self::Settling,
-        Self::Faulted,
-        Self::Aligning,
-    ];
-
-    /// The state in one word, for tables.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Disarmed => "disarmed",
-            Self::FadingIn => "fading-in",
-            Self::Running => "running",
-            Self::FadingOut => "fading-out",
-            Self::Settling => "settling",
-            Self::Faulted => "faulted",
-            Self::Aligning => "aligning",
-        }
-    }
-
     /// Whether the amplifier is on.
     pub const fn is_armed(self) -> bool {
         !matches!(self, Self::Disarmed | Self::Faulted)

@@ -12,7 +12,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     pub(super) fn run_state_machine(
         &mut self,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
         dropped: u32,
     ) {
         let requests = inbox.take();
@@ -83,7 +83,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
         self.fault = None;
         hardware.store_fault(&FaultRecord::NOTHING);
-        self.rendering.servo_mut().shut();
+        self.rendering.servo_mut().clamp().shut();
         self.state = State::Aligning;
         Reply::Done
     }
@@ -93,7 +93,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     fn wait_for_alignment(
         &mut self,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+        inbox: &mut Incoming<'_, E, N, M>,
     ) {
         self.swap(inbox);
         if !hardware.is_aligning() {
@@ -102,11 +102,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    fn disarm(
-        &mut self,
-        hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
-    ) {
+    fn disarm(&mut self, hardware: &mut impl Hardware, inbox: &mut Incoming<'_, E, N, M>) {
         if self.state == State::Aligning {
             hardware.amplifier(false);
             self.state = State::Disarmed;
@@ -126,26 +122,22 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.rendering.servo_mut().clamp_to_held_torque();
     }
 
-    fn fade_in(&mut self, inbox: &Inbox<'_, PreparedServo<E, N, M>>) {
+    fn fade_in(&mut self, inbox: &Incoming<'_, E, N, M>) {
         if inbox.has_set() {
             return self.begin_fading_out(AfterFade::Render);
         }
         for _ in 0..self.ramp {
-            if self.rendering.servo_mut().open() {
+            if self.rendering.servo_mut().clamp().open() {
                 self.state = State::Running;
             }
         }
     }
 
-    fn fade_out(
-        &mut self,
-        hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
-    ) {
+    fn fade_out(&mut self, hardware: &mut impl Hardware, inbox: &mut Incoming<'_, E, N, M>) {
         // The clamp was shut before this tick, so this tick's code was mid-scale.
-        if !self.rendering.servo().is_shut() {
+        if !self.rendering.servo_mut().clamp().is_shut() {
             for _ in 0..self.ramp {
-                self.rendering.servo_mut().close();
+                self.rendering.servo_mut().clamp().close();
             }
             return;
         }
@@ -164,7 +156,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     }
 
     /// A tick with the amplifier off.
-    fn idle(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
+    fn idle(&mut self, inbox: &mut Incoming<'_, E, N, M>) {
         self.swap(inbox);
         self.fault_free_ticks = self.fault_free_ticks.saturating_add(1);
     }

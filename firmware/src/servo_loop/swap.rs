@@ -54,7 +54,7 @@ pub fn longest_gap(options: &RenderingOptions, period: f64) -> f64 {
 
 impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// Begins to close the clamp of a running servo if a set is waiting.
-    pub(super) fn begin_swap(&mut self, inbox: &Inbox<'_, PreparedServo<E, N, M>>) {
+    pub(super) fn begin_swap(&mut self, inbox: &Incoming<'_, E, N, M>) {
         if inbox.has_set() {
             self.ramp = SWAPPING;
             self.begin_fading_out(AfterFade::Render);
@@ -63,7 +63,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
 
     /// Replaces the running set by the waiting set, as a whole and between two ticks. The clamps of both sets
     /// are shut.
-    pub(super) fn swap(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) -> bool {
+    pub(super) fn swap(&mut self, inbox: &mut Incoming<'_, E, N, M>) -> bool {
         let Some(mut set) = inbox.set() else { return false };
         set.servo_mut().take_position_from(self.rendering.servo());
         set.rest_here();
@@ -80,7 +80,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     }
 
     /// A tick of settling; another set may arrive meanwhile.
-    pub(super) fn settle(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
+    pub(super) fn settle(&mut self, inbox: &mut Incoming<'_, E, N, M>) {
         if self.swap(inbox) {
             self.settling = self.settling.max(SETTLING);
         }

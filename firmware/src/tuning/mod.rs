@@ -4,11 +4,9 @@
 //! servo's interrupt; a refused set changes nothing.
 
 mod error;
-mod render_error;
 
 pub use crate::parameter::{NamedParameters, TUNABLE};
-pub use error::TuningError;
-pub use render_error::RenderError;
+pub use error::{RenderError, TuningError};
 
 use core::fmt;
 

@@ -2,7 +2,7 @@ use super::*;
 use crate::certificate::Certified;
 use crate::encoder::CounterWidth;
 use crate::environment::{Canceller, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Wall};
-use crate::scene::{Coupling, Device, Latency, Timing};
+use crate::scene::Coupling;
 use crate::scene_type::Typed;
 use crate::servo::Latched;
 
@@ -14,14 +14,7 @@ const TRANSDUCERS: Transducers = Transducers {
 };
 
 const fn scene(environment: Environment) -> Scene {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 1e-3, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: Some(1.0),
-    }
+    crate::fixture::scene(environment, Some(1.0))
 }
 
 const WALL: Scene = scene(Wall::damped(22.0, 0.01, 1).behind(0.0).alone());
@@ -89,18 +82,12 @@ fn a_change_is_made_where_it_belongs_and_nowhere_else() {
     for (i, (name, wanted)) in TUNABLE.into_iter().enumerate() {
         assert_eq!(parameter(name), Some(wanted));
         assert_eq!(super::name(wanted), Some(name));
-        if matches!(
-            wanted,
-            Parameter::ProfileTorque | Parameter::Count | Parameter::Centre | Parameter::Mode
-        ) {
-            // Of torque profiles alone.
-            continue;
-        }
         let filtered = Wall::damped(2.0, 0.01, 1).filtered(0.5);
         let wall = free_mode_wall(0.02, filtered.behind(0.1));
         let value = 0.125 + i as f64;
-        // No scene has the numbers of both.
+        // No scene has the numbers of both, and those of several modes have no number but the mode's.
         match wanted {
+            Parameter::Mode => {}
             Parameter::ProfileTorque | Parameter::Count | Parameter::Centre => {
                 changes_one(scene(Profile::of(&DETENTS, 1).alone()), wanted, value);
             }
@@ -112,16 +99,10 @@ fn a_change_is_made_where_it_belongs_and_nowhere_else() {
 
 #[test]
 fn a_torque_profile_has_its_own() {
-    static KNOTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.02)]);
     static KNOB: Knots<16> =
         Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-1.0, 1.0, 5.0)]);
     static RANGE: Knots<64> = Knots::of(&[Shape::bistable(0.4, 0.05)]);
     let names = |parameters: Parameters| parameters.to_string();
-    let endless = program!(Profile::of(&KNOTS, 1).alone());
-    assert_eq!(
-        names(parameters(&endless)),
-        "coupling.stiffness, torque_limit, torque, count, centre"
-    );
     let knob = program!(Profile::of(&KNOB, 1).damped(0.001).alone());
     assert_eq!(
         names(parameters(&knob)),

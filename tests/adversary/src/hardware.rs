@@ -9,8 +9,7 @@ use haptic_servo::encoder::{CounterWidth, RawCount};
 use haptic_servo::fault::FaultRecord;
 use haptic_servo::reset::ResetCause;
 use haptic_servo::servo::Transducers;
-use haptic_servo::servo_loop::{BEGAN_LATE, Frame, FrameSink, Hardware, State};
-use haptic_servo::torque_output::OutputEvent;
+use haptic_servo::servo_loop::{BEGAN_LATE, Frame, FrameSink, Hardware, OutputEvent, State};
 
 /// Timer counts in a period.
 pub const PERIOD: u32 = 1000;

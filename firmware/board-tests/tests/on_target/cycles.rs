@@ -3,8 +3,7 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::{DWT, NVIC};
-use haptic_servo::board::isr_cell::IsrCell;
-use haptic_servo::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
+use haptic_servo::board::isr_cell::{IsrCell, MailboxCell, endpoints};
 use haptic_servo::board::stm32::output::Setup;
 use haptic_servo::board::stm32::registers::Registers;
 use haptic_servo::board::stm32::wiring::AMPLIFIER;
@@ -16,7 +15,7 @@ use haptic_servo::encoder::RawCount;
 use haptic_servo::scene::Scene;
 use haptic_servo::scene_type::Typed;
 use haptic_servo::servo::{OutputMode, PreparedServo, RenderingOptions};
-use haptic_servo::servo_loop::{Hardware, Options, ServoLoop};
+use haptic_servo::servo_loop::{Endpoints, Hardware, Options, ServoIsr, ServoLoop};
 
 use super::{CERTIFIED, FILTER, Failure, TRANSDUCERS};
 
@@ -120,7 +119,8 @@ pub fn measure() -> Result<(), Failure> {
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     core.DCB.enable_trace();
     core.DWT.enable_cycle_counter();
-    let hardware = registers(Setup::DAC, SCENE.timing.period, <Mode as OutputMode>::TIMING);
+    let hardware =
+        registers(Setup::DAC, CERTIFIED.scene().timing.period, <Mode as OutputMode>::TIMING);
     let Endpoints { requests, inbox, frames, mut frame_reader } = endpoints(&MAILBOX);
     let rendering = PreparedServo::new(&TIMED, &TRANSDUCERS, &RenderingOptions::DEFAULT);
     let rendering = rendering.map_err(|_| "no servo can be built of the scene")?;

@@ -8,9 +8,10 @@ mod cycles;
 
 use haptic_servo::board::input_filter::InputFilter;
 use haptic_servo::board::stm32::output::Setup;
+use haptic_servo::board::stm32::output::dac::present_code;
 use haptic_servo::board::stm32::quadrature::Counter;
 use haptic_servo::board::stm32::registers::Registers;
-use haptic_servo::board::stm32::wiring::{CHIP, DAC, ENCODER, TIMER_CLOCK};
+use haptic_servo::board::stm32::wiring::{CHIP, ENCODER, TIMER_CLOCK};
 use haptic_servo::board::stm32::{Mode, init_chip, registers, width};
 use haptic_servo::boot::Startup;
 use haptic_servo::certificate::Certified;
@@ -55,7 +56,8 @@ static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 /// The board with only its pacing timer running: amplifier off, mid-scale, no watchdog.
 fn paced() -> Registers {
     let _ = init_chip(FILTER);
-    let mut hardware = registers(Setup::DAC, SCENE.timing.period, <Mode as OutputMode>::TIMING);
+    let mut hardware =
+        registers(Setup::DAC, CERTIFIED.scene().timing.period, <Mode as OutputMode>::TIMING);
     hardware.zero_encoder();
     hardware.start(<Mode as OutputMode>::TIMING);
     hardware
@@ -117,15 +119,15 @@ fn latch() -> Result<(), Failure> {
     let mut hardware = paced();
     for code in [2048 - MOST, 1024, 2047, 2048, 3072, 2048 + MOST, 2048] {
         next(&mut hardware);
-        let before = DAC.output();
+        let before = present_code();
         hardware.write(DacCode::new(code).map_err(|_| "no code")?);
         cortex_m::asm::delay(1000);
-        if DAC.output() != before {
+        if present_code() != before {
             return Err("a code has appeared within its tick: the DAC is not latched");
         }
         next(&mut hardware);
         cortex_m::asm::delay(1000);
-        if DAC.output() != code {
+        if present_code() != code {
             return Err("a code has not appeared at the next update: is the trigger the timer's?");
         }
     }

@@ -2,13 +2,4 @@
 //! number formats comes from it. It drives no motor.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-#[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
-    firmware_harness::server::bench::run::<firmware_harness::server::bench::ProgramScenes>()
-}
-
-#[cfg(not(target_os = "none"))]
-fn main() {
-    println!("This program runs on the emulated board and is started by `haptic chart tradeoff`.");
-}
+firmware_harness::server_program!(bench::run::<bench::ProgramScenes>(), "`haptic chart tradeoff`");

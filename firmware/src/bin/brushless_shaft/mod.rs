@@ -57,6 +57,3 @@ pub const SCENE: Scene = Scene {
     latency: CURRENT_LOOP.latency(OutputTiming::Latched),
     torque_limit: Some(0.1),
 };
-
-/// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
-pub type Fixed = fixed::types::I8F24;

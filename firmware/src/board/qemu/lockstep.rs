@@ -10,8 +10,6 @@ use core::slice::from_raw_parts_mut;
 use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU16, AtomicU32, Ordering};
 
 use semihosting::fs::File;
-#[cfg(feature = "log")]
-use semihosting::io::Error;
 use semihosting::io::{Read, Write};
 
 use super::lines;
@@ -48,17 +46,6 @@ pub fn pipes() -> Result<(File, File), NoHost> {
     let counts = File::open(c"counts").map_err(|_| NoHost)?;
     let codes = File::create(c"codes").map_err(|_| NoHost)?;
     Ok((counts, codes))
-}
-
-/// The next words of a request from the host.
-///
-/// # Errors
-/// If the host has closed its end.
-#[cfg(feature = "log")]
-pub fn words<const N: usize>(from: &mut File) -> Result<[u64; N], Error> {
-    let mut bytes = [[0; 8]; N];
-    from.read_exact(bytes.as_flattened_mut())?;
-    Ok(bytes.map(u64::from_le_bytes))
 }
 
 /// Opens both pipes.

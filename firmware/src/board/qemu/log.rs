@@ -6,9 +6,8 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use heapless::spsc::{Consumer, Producer, Queue};
 use static_cell::StaticCell;
 
-use super::exit::EXIT_DONE;
-use super::instruction_stats::InstructionStats;
 use super::meter::{Scale, now};
+use super::stop::EXIT_DONE;
 use crate::board::isr_cell::IsrCell;
 use crate::certificate::Assessment;
 use crate::encoder::RawCount;
@@ -34,6 +33,41 @@ pub struct Measured {
     pub tick: u32,
     /// Time of the lockstep around it.
     pub lockstep: u32,
+}
+
+/// Smallest, largest and sum of a number of instructions.
+#[derive(Clone, Copy)]
+pub struct InstructionStats {
+    count: u32,
+    min: u32,
+    max: u32,
+    sum: u64,
+}
+
+impl InstructionStats {
+    /// Statistics of no values.
+    pub const EMPTY: Self = Self { count: 0, min: u32::MAX, max: 0, sum: 0 };
+
+    /// Adds a value.
+    pub fn add(&mut self, value: u32) {
+        self.count += 1;
+        self.min = self.min.min(value);
+        self.max = self.max.max(value);
+        self.sum += u64::from(value);
+    }
+
+    /// The number of values.
+    pub const fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Logs the statistics, if there are values.
+    pub fn log(&self, name: &str) {
+        let Self { count, min, max, sum } = *self;
+        if count > 0 {
+            defmt::info!("spread={=str} count={} min={} max={} sum={}", name, count, min, max, sum);
+        }
+    }
 }
 
 /// Analyses the parts of each tick.

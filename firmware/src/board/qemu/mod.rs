@@ -9,9 +9,6 @@
 //! The clocks keep their reset state in the emulator, where the set-up of a real F405's clocks would never
 //! return.
 
-mod exit;
-#[cfg(feature = "log")]
-mod instruction_stats;
 pub mod lines;
 pub mod lockstep;
 #[cfg(feature = "log")]
@@ -28,8 +25,8 @@ mod sweep;
 pub mod tick;
 pub mod tick_timer;
 
-pub use exit::{EXIT_DONE, EXIT_REFUSED};
 pub use start::{Mode, Statics, run};
+pub use stop::{EXIT_DONE, EXIT_REFUSED};
 pub use sweep::{SweepCell, measure};
 
 /// All interrupts except SysTick's arrive here, because the program has no table of the chip's interrupts.

@@ -6,18 +6,16 @@
 
 use core::hint::black_box;
 
-use super::exit::halt_with;
-use super::instruction_stats::InstructionStats;
-use super::log::{Measured, Parts};
+use super::log::{InstructionStats, Measured, Parts};
 use super::meter::{Scale, measure};
-use crate::board::servo_isr::FRAMES;
+use super::stop::halt_with;
 use crate::boot::Program;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::energy::EnergyMonitor;
 use crate::number::Number;
 use crate::servo::{OutputMode, Servo, Step};
-use crate::servo_loop::{Frame, FrameQueue, FrameSink, Frames, State};
+use crate::servo_loop::{FRAMES, Frame, FrameQueue, FrameSink, Frames, State};
 use crate::torque::LimitReason;
 use crate::tuning::Tunable;
 

@@ -3,18 +3,18 @@
 use cortex_m::peripheral::SYST;
 use static_cell::StaticCell;
 
-use super::exit::halt_with;
 use super::lockstep;
 use super::registers::Registers;
 use super::serial::{self, Serial};
+use super::stop::halt_with;
 use super::tick_timer::{self, Period};
-use crate::board::isr_cell::IsrCell;
-use crate::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
+use crate::board::isr_cell::{IsrCell, MailboxCell, endpoints};
 use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, boot};
 use crate::certificate::Assessment;
 use crate::number::Number;
 use crate::servo::{OutputMode, SupportsTiming};
+use crate::servo_loop::{Endpoints, ServoIsr};
 use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Link, Session};
 

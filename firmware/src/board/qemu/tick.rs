@@ -51,5 +51,5 @@ fn ended() {
     #[cfg(feature = "log")]
     log::end();
     #[cfg(not(feature = "log"))]
-    semihosting::process::exit(super::exit::EXIT_DONE)
+    semihosting::process::exit(super::stop::EXIT_DONE)
 }

@@ -11,6 +11,9 @@ pub const BROWN_OUT: u32 = 1 << 25;
 /// RCC_CSR: the option bytes were loaded; the chip has no such flag.
 pub const OPTION_BYTES: u32 = 0;
 
+/// TIM6's update among the triggers of the F4's DAC (RM0090, DAC external triggers).
+pub const TIMER_TRIGGER: u8 = 0;
+
 /// The cause of the non-maskable interrupt: the chip has only one.
 pub fn non_maskable() -> Fault {
     if RCC.cir().read().cssf() { Fault::ClockLost } else { Fault::NonMaskable }

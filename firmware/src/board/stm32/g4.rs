@@ -13,6 +13,10 @@ pub const BROWN_OUT: u32 = 0;
 /// RCC_CSR: the option bytes were loaded.
 pub const OPTION_BYTES: u32 = 1 << 25;
 
+/// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
+#[cfg(not(feature = "bridge"))]
+pub const TIMER_TRIGGER: u8 = 7;
+
 /// The cause of the non-maskable interrupt.
 pub fn non_maskable() -> Fault {
     if RCC.cifr().read().cssf() {

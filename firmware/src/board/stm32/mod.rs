@@ -47,9 +47,3 @@ pub use sweep::{Setup, SweepCell, measure};
 
 /// The default output mode of a program.
 pub type Mode = crate::servo::Latched;
-
-/// A board's peripherals that are not accessed by registers.
-pub struct BoardPeripherals {
-    /// The port to the host.
-    pub serial: serial::Serial,
-}

@@ -12,12 +12,15 @@ use crate::boot::Startup;
 use crate::build_error::BuildError;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
-use crate::fault::{Fault, FaultRecord};
+#[cfg(feature = "bridge")]
+use crate::fault::Fault;
+use crate::fault::FaultRecord;
 use crate::output_timing::OutputTiming;
 use crate::period;
 use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
-use crate::torque_output::{OutputEvent, TorqueOutput};
+#[cfg(feature = "bridge")]
+use crate::servo_loop::OutputEvent;
 
 /// The registers of the servo's interrupt.
 pub struct Registers {
@@ -57,19 +60,23 @@ impl Hardware for Registers {
         self.output.switch(on);
     }
 
+    #[cfg(feature = "bridge")]
     #[inline(always)]
     fn output_event(&mut self) -> Option<OutputEvent> {
         self.output.event()
     }
 
+    #[cfg(feature = "bridge")]
     fn start_up_ticks(&self) -> u32 {
         self.output.start_up_ticks()
     }
 
+    #[cfg(feature = "bridge")]
     fn align(&mut self) -> Result<(), Fault> {
         self.output.align()
     }
 
+    #[cfg(feature = "bridge")]
     fn is_aligning(&mut self) -> bool {
         self.output.is_aligning()
     }

@@ -13,10 +13,9 @@ use super::registers::Registers;
 use super::serial::Serial;
 use super::stop::stop;
 use super::wiring::{self, ENCODER};
-use super::{BoardPeripherals, family, output};
+use super::{family, output};
 use crate::board::input_filter::InputFilter;
-use crate::board::isr_cell::IsrCell;
-use crate::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
+use crate::board::isr_cell::{IsrCell, MailboxCell, endpoints};
 use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, Startup, boot};
 use crate::fault::FaultRecord;
@@ -25,7 +24,7 @@ use crate::period as periods;
 use crate::rendering::Rendering;
 use crate::reset::ResetCause;
 use crate::servo::{OutputMode, OutputTiming, SupportsTiming, Transducers};
-use crate::servo_loop::Reason;
+use crate::servo_loop::{Endpoints, Reason, ServoIsr};
 use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Link, Session};
 
@@ -77,9 +76,6 @@ where
 }
 
 /// The program with the counter width of this board instead of its own, or a compile error.
-///
-/// # Panics
-/// If the counter could wrap undetected; in a constant this is a compile error.
 #[track_caller]
 pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
     let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
@@ -102,7 +98,7 @@ where
     N: Number,
     M: OutputMode,
 {
-    let port = init_chip(statics.filter).serial;
+    let port = init_chip(statics.filter);
     let mut hardware = registers(statics.output, program.scene.timing.period, M::TIMING);
     let timer_counts = hardware.period();
     let Endpoints { requests, inbox, frames, frame_reader } = endpoints(statics.mailbox);
@@ -166,8 +162,8 @@ fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_becaus
     }
 }
 
-/// Sets up clocks, interrupts and pins. The motor is off, and the next torque is zero.
-pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
+/// Sets up clocks, interrupts and pins; returns the port to the host. The motor is off, and the next torque is zero.
+pub fn init_chip(filter: InputFilter) -> Serial {
     let chip = embassy_stm32::init(wiring::clocks());
     family::full_speed();
     // From here on a stopped crystal is a fault and does not stop the core.
@@ -177,10 +173,10 @@ pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
     let mut core = cortex_m::Peripherals::take().expect("the core is taken once");
     critical::lower_all(&mut core.NVIC);
     interrupt::TIM6_DAC.set_priority(Priority::from(critical::SERVO << 4));
-    let connected = wiring::connect_pins(chip);
+    let port = wiring::connect_pins(chip);
     output::stop();
     ENCODER.complete(filter);
-    connected
+    port
 }
 
 /// The width of a counter.
@@ -243,7 +239,7 @@ macro_rules! board_program {
 
         static ISR_STATE: $crate::board::stm32::ServoCell<$environment, $number, $mode> =
             $crate::board::isr_cell::IsrCell::empty();
-        static MAILBOX: $crate::board::servo_isr::MailboxCell<$environment, $number, $mode> =
+        static MAILBOX: $crate::board::isr_cell::MailboxCell<$environment, $number, $mode> =
             $crate::__private::static_cell::StaticCell::new();
 
         static LINK: $crate::board::stm32::LinkCell<$environment, $number, $mode> =

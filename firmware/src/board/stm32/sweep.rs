@@ -162,7 +162,7 @@ pub fn measure<const N: usize>(
     setup: &Setup,
     cell: &'static SweepCell,
 ) -> ! {
-    let mut serial = init_chip(setup.filter).serial;
+    let mut serial = init_chip(setup.filter);
     let mut hardware = registers(setup.output, sweep.period(), Mode::TIMING);
     hardware.zero_encoder();
     defmt::info!("last reset: {=str}", hardware.reset_cause().as_str());

@@ -219,14 +219,8 @@ fn room_and_voltage_agree() {
 #[test]
 fn the_push_has_the_winding_at_over_current() {
     for (current_loop, stored) in [(BRUSHED, 3.75e-3), (BRUSHLESS, 1.5 * 0.5 * 0.15e-3 * 25.0)] {
-        let scene = crate::scene::Scene {
-            device: crate::scene::Device { inertia: 1e-5, damping: 0.01, passivity: None },
-            timing: crate::scene::Timing { period: PERIOD, worst_period: None },
-            coupling: crate::scene::Coupling::Matched,
-            environment: crate::environment::Canceller { residual: 0.01, delay: 1 }.alone(),
-            latency: crate::scene::Latency::NONE,
-            torque_limit: None,
-        };
+        let free = crate::environment::Canceller { residual: 0.01, delay: 1 }.alone();
+        let scene = crate::fixture::scene(free, None);
         let push = current_loop.push(&scene, &TRANSDUCERS, Some(0.001));
         assert_eq!((push.torque, push.speed, push.injected), (0.2, 100.0, 0.001));
         assert!(push.stored >= stored && push.stored < stored * (1.0 + 1e-9), "{push:?}");

@@ -5,12 +5,8 @@ mod aligned;
 mod brushed;
 mod brushless;
 mod design;
-mod duty_current;
 mod faults;
-mod heating;
-mod index;
 mod rig;
-mod thrown;
 
 use super::*;
 use crate::encoder::CounterWidth;

@@ -33,9 +33,8 @@ impl Rig {
 
     /// The same, whose offsets have been measured.
     pub fn restarted(mut self) -> Self {
-        for _ in 0..300 {
-            self.controller.measure_offset(&self.sample());
-        }
+        let rest = self.sample();
+        (0..300).for_each(|_| self.controller.measure_offset(&rest));
         self.controller.start().unwrap();
         self
     }
@@ -58,15 +57,9 @@ impl Rig {
     }
 
     pub fn sample(&self) -> Sample {
-        let count = |value: f64| value.round().clamp(0.0, 4095.0) as u16;
         let counts = self.current / self.stage.amps_per_count;
-        let position = self.angle / TAU * TRANSDUCERS.counts_per_turn;
-        Sample {
-            currents: [count(self.offsets[0] - counts), count(self.offsets[1] + counts)],
-            bus: count(self.bus / self.stage.volts_per_count),
-            temperature: self.stage.thermistor.count(self.celsius),
-            position: RawCount::from(position.floor() as i64 as u32),
-        }
+        let currents = [self.offsets[0] - counts, self.offsets[1] + counts];
+        sample(currents, self.bus, self.celsius, self.angle)
     }
 
     /// An instant, and the time until the next one; gives the current in A at the instant.
@@ -122,6 +115,18 @@ impl Rig {
         self.current = if is_open && next * sign < 0.0 { 0.0 } else { next };
         let (least, most) = self.extremes;
         self.extremes = (least.min(self.current), most.max(self.current));
+    }
+}
+
+/// The sample of currents in counts, of the supply in V, and of the encoder's angle in rad.
+fn sample(currents: [f64; 2], bus: f64, celsius: f64, angle: f64) -> Sample {
+    let count = |value: f64| value.round().clamp(0.0, 4095.0) as u16;
+    let position = angle / TAU * TRANSDUCERS.counts_per_turn;
+    Sample {
+        currents: currents.map(count),
+        bus: count(bus / STAGE.volts_per_count),
+        temperature: STAGE.thermistor.count(celsius),
+        position: RawCount::from(position.floor() as i64 as u32),
     }
 }
 
@@ -237,9 +242,8 @@ impl ThreePhases {
 
     /// Offsets are measured.
     pub fn measured(mut self) -> Self {
-        for _ in 0..300 {
-            self.controller.measure_offset(&self.sample());
-        }
+        let rest = self.sample();
+        (0..300).for_each(|_| self.controller.measure_offset(&rest));
         self
     }
 
@@ -278,16 +282,9 @@ impl ThreePhases {
     }
 
     pub fn sample(&self) -> Sample {
-        let count = |value: f64| value.round().clamp(0.0, 4095.0) as u16;
         let currents = phases(self.current);
-        let of = |phase: usize| count(2553.0 - currents[self.wires[phase]] / STAGE.amps_per_count);
-        let position = self.encoder * self.angle / TAU * TRANSDUCERS.counts_per_turn;
-        Sample {
-            currents: [of(0), of(1)],
-            bus: count(self.bus / STAGE.volts_per_count),
-            temperature: STAGE.thermistor.count(30.0),
-            position: RawCount::from(position.floor() as i64 as u32),
-        }
+        let of = |phase: usize| 2553.0 - currents[self.wires[phase]] / STAGE.amps_per_count;
+        sample([of(0), of(1)], self.bus, 30.0, self.encoder * self.angle)
     }
 
     /// An instant with this code, and the time until the next one.

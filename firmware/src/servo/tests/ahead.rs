@@ -73,26 +73,3 @@ fn so_it_is_behind_the_matched_coupling() {
         is_ahead(environment, Coupling::Matched, Latency::NONE.with_actuator_lag(4e-4));
     }
 }
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
-    #[test]
-    fn so_it_is_for_any_wall_coupling_and_hand(
-        mut wall in wall(),
-        coupling in coupling(),
-        torque_limit in proptest::option::of(0.05..1.0_f64),
-        steps in proptest::collection::vec(-150..150_i32, TICKS),
-    ) {
-        wall.delay = wall.delay.max(1);
-        let environment = wall.alone();
-        let scene = Scene { coupling, torque_limit, ..scene(environment) };
-        let Ok(mut in_time) = Servo::<_, f32>::build(&scene, &TRANSDUCERS) else { return Ok(()) };
-        let mut early = in_time.clone();
-        let (mut count, mut latched) = (0, DacCode::MID_SCALE);
-        for step in steps {
-            count += step - count / 16;
-            prop_assert_eq!(in_time.tick(RawCount::from(count)).code, latched);
-            latched = early.timed_tick::<Latched>(RawCount::from(count), &mut NoAction).code;
-        }
-    }
-}

@@ -26,14 +26,7 @@ const TICKS: usize = 150;
 
 /// The paper's device behind the standard coupling.
 const fn scene<E>(environment: E) -> Scene<E> {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 1e-3, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
+    crate::fixture::scene(environment, None)
 }
 
 /// A hand that pushes in, holds, trembles and comes back: counts, at most about 0.2 rad.
@@ -42,14 +35,6 @@ fn hand() -> impl Iterator<Item = i32> {
         let t = f64::from(k) * 1e-3;
         (1200.0 * (3.0 * t).sin() + 700.0 * (11.0 * t).sin() + 40.0 * (150.0 * t).sin()) as i32
     })
-}
-
-fn torques<E: Rendering<N>, N: Number>(mut servo: Servo<E, N>) -> Vec<f64> {
-    let tick = |count: i32| {
-        servo.tick(RawCount::from(count));
-        servo.torque_nm()
-    };
-    hand().map(tick).collect()
 }
 
 fn wall() -> impl Strategy<Value = Wall> {
@@ -155,31 +140,4 @@ fn free_mode_is_equation_23() {
         let torque: f64 = positions.iter().rev().zip(&response).map(|(x, e)| x * e).sum();
         assert!((torque - servo.torque_nm()).abs() < 1e-12);
     }
-}
-
-/// Largest torque error against f64 in N m.
-fn error<E: Rendering<N> + Rendering<f64>, N: Number>(scene: &Scene<E>) -> f64 {
-    let exact = torques(Servo::<E, f64>::build(scene, &TRANSDUCERS).unwrap());
-    let rounded = torques(Servo::<E, N>::build(scene, &TRANSDUCERS).unwrap());
-    exact.iter().zip(&rounded).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
-#[test]
-fn formats_are_as_exact_as_their_step_times_the_loops_gain() {
-    fn bounded<E>(scene: Scene<E>, gain: f64)
-    where
-        E: Rendering<f32> + Rendering<f64>,
-        E: Rendering<FixedI32<U16>> + Rendering<FixedI32<U20>>,
-    {
-        // A step of f32 at 0.2 rad, and half a step of the fixed formats a rounding: angle,
-        // compliance and law, so three halves in all; `gain` is the l1 norm of the loop's
-        // response (theory, section 6, item 7).
-        assert!(error::<_, f32>(&scene) <= 1.5 * 2_f64.powi(-26) * gain);
-        assert!(error::<_, FixedI32<U16>>(&scene) <= 1.5 * 2_f64.powi(-16) * gain);
-        assert!(error::<_, FixedI32<U20>>(&scene) <= 1.5 * 2_f64.powi(-20) * gain);
-    }
-    bounded(scene(Wall::spring(22.0, 1).alone()), 44.0);
-    bounded(scene(Wall::damped(22.0, 0.01, 1).alone()), 924.0);
-    bounded(scene(Wall::damped(22.0, 0.01, 1).behind(0.0).alone()), 924.0);
-    bounded(scene(Canceller { residual: 0.001, delay: 0 }.alone()), 44.0);
 }

@@ -3,7 +3,6 @@
 use super::board::NO_MOTOR;
 use super::*;
 use crate::current::PowerFault;
-use crate::torque_output::OutputEvent;
 
 /// A board whose motor is being aligned, for so many ticks.
 fn aligning(ticks: u32) -> Bench<Environment, f32, Latched> {

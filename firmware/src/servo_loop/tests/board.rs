@@ -7,7 +7,6 @@ use crate::encoder::RawCount;
 use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
 use crate::servo::{Step, SupportsTiming};
-use crate::torque_output::OutputEvent;
 use crate::tuning::Tunable;
 
 /// Timer counts in a period of every board here.

@@ -3,7 +3,6 @@
 use super::*;
 use crate::current::{HeatStep, PowerFault};
 use crate::reset::ResetCause;
-use crate::torque_output::OutputEvent;
 
 /// The servo has just been stopped by this fault: no torque, amplifier off, a record of it.
 fn assert_stopped(bench: &mut Bench<Environment, f32, Latched>, fault: Fault) {

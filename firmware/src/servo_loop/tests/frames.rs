@@ -85,13 +85,3 @@ proptest! {
         prop_assert_eq!(reader.take(), Some(frame));
     }
 }
-
-#[test]
-fn every_state_has_a_word_and_a_number() {
-    let words =
-        ["disarmed", "fading-in", "running", "fading-out", "settling", "faulted", "aligning"];
-    assert_eq!(State::ALL.map(State::as_str), words);
-    for (number, state) in State::ALL.into_iter().enumerate() {
-        assert_eq!((state as usize, state.to_string()), (number, words[number].to_owned()));
-    }
-}

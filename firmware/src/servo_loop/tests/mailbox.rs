@@ -3,8 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::servo_loop::published::Published;
-use crate::torque_output::OutputEvent;
+use crate::servo_loop::mailbox::Published;
 
 /// A task that reads late misses nothing: twelve requests and their replies before the first look.
 #[test]

@@ -14,30 +14,18 @@ use board::{Bench, Board, Event, Notice, PERIOD};
 
 use super::*;
 use crate::boot::Program;
-use crate::encoder::CounterWidth;
 use crate::environment::{Environment, Wall};
 use crate::fault::FaultRecord;
+use crate::fixture;
 use crate::reset::ResetCause;
-use crate::scene::{Coupling, Device, Latency, Scene, Timing};
+use crate::scene::{Coupling, Scene, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
 
 /// The paper's device and coupling; ramps of a hundred ticks.
 const fn program<E: Copy>(environment: E) -> Program<E> {
     Program {
-        scene: Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 1e-3, worst_period: None },
-            coupling: Coupling::Spring { stiffness: 44.0 },
-            environment,
-            latency: Latency::NONE,
-            torque_limit: Some(1.0),
-        },
-        transducers: Transducers {
-            counts_per_turn: 61_440.0,
-            counter: CounterWidth::Bits16,
-            full_scale_torque: 2.0,
-            largest_speed: 100.0,
-        },
+        scene: fixture::scene(environment, Some(1.0)),
+        transducers: fixture::TRANSDUCERS,
         rendering: RenderingOptions { fade: 0.1, injection: None, ..RenderingOptions::DEFAULT },
         options: Options::DEFAULT,
     }

@@ -15,18 +15,14 @@
 //! Requests::swapped -> compare   has its number: it is the active set; ToHost::Answer
 //! ```
 
-mod outbox;
+mod outgoing;
 mod pending_replies;
-mod stream;
 #[cfg(test)]
 mod tests;
-mod turn;
 
-use self::outbox::Outbox;
+pub use self::outgoing::MESSAGES_AHEAD;
+use self::outgoing::{Outbox, Stream, Turn};
 use self::pending_replies::{Greeting, PendingReplies};
-use self::stream::Stream;
-pub use self::turn::MESSAGES_AHEAD;
-use self::turn::Turn;
 use super::PROTOCOL;
 use super::decoder::Decoder;
 use super::description::Description;
@@ -229,53 +225,32 @@ where
     /// Puts a reply of this kind into the outbox, if there is one.
     fn send(&mut self, turn: Turn) {
         let replies = &mut self.replies;
-        match turn {
-            Turn::Disarming => {
-                let answer = replies.disarming.answer();
-                self.send_answer(answer);
-            }
-            Turn::Arming => {
-                let answer = replies.arming.answer();
-                self.send_answer(answer);
-            }
-            Turn::Alignment => {
-                let answer = replies.alignment.answer();
-                self.send_answer(answer);
-            }
-            Turn::Refusal => {
-                let answer = replies.refusal();
-                self.send_answer(answer);
-            }
+        let answer = match turn {
+            Turn::Disarming => replies.disarming.answer(),
+            Turn::Arming => replies.arming.answer(),
+            Turn::Alignment => replies.alignment.answer(),
+            Turn::Refusal => replies.refusal(),
             Turn::Set => {
                 self.prepare_set();
-                let answer = self.replies.set.take();
-                self.send_answer(answer);
+                self.replies.set.take()
             }
-            Turn::Greeting => self.greet(),
+            Turn::Greeting => return self.greet(),
             Turn::Status => {
-                if let Some(status) = replies.status.take() {
-                    self.outbox.put(&ToHost::Status(self.status(&status)));
-                }
+                let Some(status) = replies.status.take() else { return };
+                return self.outbox.put(&ToHost::Status(self.status(&status)));
             }
-            Turn::Parameters => {
-                if core::mem::take(&mut replies.parameters) {
-                    self.outbox.put(&ToHost::ActiveParameters(self.parameters()));
-                }
+            Turn::Parameters if core::mem::take(&mut replies.parameters) => {
+                return self.outbox.put(&ToHost::ActiveParameters(self.parameters()));
             }
-            Turn::Description => {
-                if core::mem::take(&mut replies.description) {
-                    self.outbox.put(&ToHost::Described(self.description()));
-                }
+            Turn::Description if core::mem::take(&mut replies.description) => {
+                return self.outbox.put(&ToHost::Described(self.description()));
             }
             Turn::Telemetry => {
-                if let Some(batch) = self.stream.batch() {
-                    self.outbox.put(&ToHost::Telemetry(batch));
-                }
+                let Some(batch) = self.stream.batch() else { return };
+                return self.outbox.put(&ToHost::Telemetry(batch));
             }
-        }
-    }
-
-    fn send_answer(&mut self, answer: Option<(Id, Outcome)>) {
+            Turn::Parameters | Turn::Description => return,
+        };
         if let Some((id, outcome)) = answer {
             self.outbox.put(&ToHost::Answer { id, outcome });
         }

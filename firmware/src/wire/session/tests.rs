@@ -14,37 +14,30 @@ use super::*;
 use crate::certificate::Parameter;
 use crate::current::IndexOffset;
 use crate::dac::DacCode;
-use crate::encoder::{CounterWidth, RawCount};
+use crate::encoder::RawCount;
 use crate::environment::{
     Canceller, Damper, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side, Wall,
 };
 use crate::fault::Fault;
+use crate::fixture;
 use crate::number::Format;
-use crate::scene::{Coupling, Device, Latency, Timing};
+use crate::scene::{Device, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
-use crate::servo_loop::{Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, ServoLoop, State};
-use crate::torque_output::OutputEvent;
+use crate::servo_loop::{
+    Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, OutputEvent, ServoLoop, State,
+};
 use crate::tuning::RenderError;
 use crate::wire::message::LONGEST_TO_HOST;
 use crate::wire::{Discarded, encode, largest_frame};
 
-const SCENE: Scene = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: Wall::damped(22.0, 0.01, 1).behind(0.0).alone(),
-    latency: Latency::NONE,
-    torque_limit: Some(1.0),
-};
+const SCENE: Scene = fixture::scene(Wall::damped(22.0, 0.01, 1).behind(0.0).alone(), Some(1.0));
 
 fn program() -> Program<Environment> {
     Program {
         scene: SCENE,
         transducers: Transducers {
-            counts_per_turn: 61_440.0,
-            counter: CounterWidth::Bits16,
-            full_scale_torque: 2.0,
             largest_speed: Transducers::NO_HAND_IS_FASTER,
+            ..fixture::TRANSDUCERS
         },
         rendering: RenderingOptions { fade: 0.02, injection: None, ..RenderingOptions::DEFAULT },
         options: servo_loop::Options::DEFAULT,
@@ -112,7 +105,7 @@ const FRAMES: usize = 32;
 
 /// A session, the servo behind it, and the host's ear.
 struct Bench {
-    session: Session<'static, Environment, f32, Latched, FRAMES>,
+    session: Served,
     servo_loop: ServoLoop<Environment, f32, Latched>,
     hardware: Still,
     inbox: Inbox<'static, PreparedServo<Environment, f32, Latched>>,
@@ -146,8 +139,12 @@ impl Bench {
     }
 
     fn tell(&mut self, message: &ToBoard) {
-        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-        self.session.receive(encode(message, &mut buffer).unwrap());
+        self.session.receive(&frame(message));
+    }
+
+    /// Serves the wire, which takes this number of bytes; returns the bytes and the board's messages.
+    fn serve(&mut self, most: usize) -> (usize, Vec<Said>) {
+        serve(&mut self.session, &mut self.ear, most)
     }
 
     fn tick(&mut self) {
@@ -159,10 +156,7 @@ impl Bench {
         let mut said = Vec::new();
         for _ in 0..ticks {
             self.tick();
-            self.session.poll();
-            let bytes = self.session.outgoing().to_vec();
-            self.session.sent(bytes.len());
-            said.extend(bytes.iter().filter_map(|&byte| self.ear.push::<Said>(byte)));
+            said.extend(self.serve(usize::MAX).1);
         }
         said
     }
@@ -174,8 +168,7 @@ impl Bench {
     }
 
     fn set(&mut self, id: Id, changes: &[(Parameter, f64)]) -> Outcome {
-        let changes = Changes::from_slice(changes).unwrap();
-        let said = self.ask(&ToBoard::Set { id, changes });
+        let said = self.ask(&set(id, changes));
         match said.as_slice() {
             [ToHost::Answer { id: answered, outcome }] if *answered == id => *outcome,
             other => panic!("{other:?}"),
@@ -206,6 +199,35 @@ impl Bench {
         });
         statuses.next().expect("a board says how it is going")
     }
+}
+
+type Served = Session<'static, Environment, f32, Latched, FRAMES>;
+
+/// Serves a session's wire once: the bytes that it took, and the messages in them.
+fn serve(
+    session: &mut Served,
+    ear: &mut Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
+    most: usize,
+) -> (usize, Vec<Said>) {
+    session.poll();
+    let bytes = session.outgoing();
+    let bytes = bytes[..bytes.len().min(most)].to_vec();
+    session.sent(bytes.len());
+    (bytes.len(), bytes.iter().filter_map(|&byte| ear.push::<Said>(byte)).collect())
+}
+
+fn frame(message: &ToBoard) -> Vec<u8> {
+    let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+    encode(message, &mut buffer).unwrap().to_vec()
+}
+
+fn set(id: Id, changes: &[(Parameter, f64)]) -> ToBoard {
+    ToBoard::Set { id, changes: Changes::from_slice(changes).unwrap() }
+}
+
+/// A set of this stiffness.
+fn stiffness(id: Id, stiffness: f64) -> ToBoard {
+    set(id, &[(Parameter::Stiffness, stiffness)])
 }
 
 fn refused(id: Id, refusal: Refusal) -> Said {
@@ -242,50 +264,34 @@ fn longest_status(fault: FaultCode) -> Status {
 }
 
 fn largest_description() -> Description {
-    let canceller = Some(Canceller::to(1.0));
-    let wall = Some(Wall {
+    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0).snap(1.1)]);
+    let mut modes = Profile::of_modes(&KNOB_MODES, 1).modes.unwrap();
+    modes.count = u32::MAX;
+    let profile = Profile {
+        ends: Some(Ends { from: -1.0, to: 1.0, stiffness: 1.0 }),
+        modes: Some(modes),
+        ..Profile::of(&KNOTS, 8)
+    };
+    let wall = Wall {
         stiffness: 1.0,
         damper: Some(Damper { damping: 1.0, filter: Some(1.0) }),
         side: Side::Face(1.0),
         delay: usize::MAX,
-    });
-    let program = program();
+    };
+    let canceller = Some(Canceller::to(1.0));
+    let environment = Parts { canceller, wall: Some(wall), profile: Some(profile) }.sum();
     Description {
         scene: Scene {
             device: Device { passivity: Some(1.0), ..SCENE.device },
             timing: Timing { worst_period: Some(1.0), ..SCENE.timing },
-            coupling: SCENE.coupling,
-            environment: Parts { canceller, wall, profile: None }.sum(),
-            latency: Latency::NONE,
-            torque_limit: Some(1.0),
+            environment,
+            ..SCENE
         },
-        transducers: program.transducers,
-        rendering: RenderingOptions {
-            fade: 1.0,
-            injection: Some(1.0),
-            ..RenderingOptions::DEFAULT
-        },
+        transducers: program().transducers,
+        rendering: RenderingOptions { injection: Some(1.0), ..program().rendering },
         format: Format::Fixed { fraction_bits: u32::MAX },
         timing: crate::servo::OutputTiming::AtPhase(u32::MAX),
     }
-}
-
-/// The same of a torque profile.
-fn largest_profile() -> Description {
-    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0).snap(1.1)]);
-    let (mut profile, largest) = (Profile::of(&KNOTS, 8), largest_description());
-    profile.ends = Some(Ends { from: -1.0, to: 1.0, stiffness: 1.0 });
-    profile.modes = Profile::of_modes(&KNOB_MODES, 1).modes;
-    profile.modes.as_mut().unwrap().count = u32::MAX;
-    Description { scene: Scene { environment: profile.alone(), ..largest.scene }, ..largest }
-}
-
-/// The same with a wall and a canceller beside it.
-fn largest_sum() -> Description {
-    let largest = largest_profile();
-    let Parts { canceller, wall, .. } = *largest_description().scene.environment.parts();
-    let environment = Parts { canceller, wall, ..*largest.scene.environment.parts() }.sum();
-    Description { scene: Scene { environment, ..largest.scene }, ..largest }
 }
 
 fn done(id: Id) -> Said {
@@ -379,17 +385,13 @@ fn a_status_has_what_the_board_itself_knows() {
 fn one_set_at_a_time() {
     let mut bench = Bench::new(None);
     bench.run(500);
-    let set = |id, stiffness| {
-        let changes = Changes::from_slice(&[(Parameter::Stiffness, stiffness)]).unwrap();
-        ToBoard::Set { id, changes }
-    };
-    bench.tell(&set(1, 10.0));
+    bench.tell(&stiffness(1, 10.0));
     // Asked again, which is the same request and not another one.
-    bench.tell(&set(1, 10.0));
-    bench.tell(&set(2, 11.0));
+    bench.tell(&stiffness(1, 10.0));
+    bench.tell(&stiffness(2, 11.0));
     let said = bench.run(3);
     assert_eq!(said, [refused(2, Refusal::Busy)]);
-    bench.tell(&set(1, 10.0));
+    bench.tell(&stiffness(1, 10.0));
     assert_eq!(bench.run(500), [done(1)]);
     assert!(bench.running().values.contains(&(Parameter::Stiffness, 10.0)));
 }
@@ -452,9 +454,7 @@ fn ticks(said: &Said) -> Vec<Frame> {
 #[test]
 fn a_frame_may_take_its_time() {
     let mut bench = Bench::new(None);
-    let changes = Changes::from_slice(&[(Parameter::Stiffness, 9.0)]).unwrap();
-    let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-    let frame = encode(&ToBoard::Set { id: 5, changes }, &mut buffer).unwrap().to_vec();
+    let frame = frame(&stiffness(5, 9.0));
     let (first, second) = frame.split_at(frame.len() / 2);
     bench.session.receive(first);
     assert_eq!(bench.run(2000), []);
@@ -487,8 +487,6 @@ fn every_message_fits_its_frame() {
             values: changes,
         }),
         ToHost::Described(largest_description()),
-        ToHost::Described(largest_profile()),
-        ToHost::Described(largest_sum()),
     ] {
         let bytes = postcard::to_slice(&message, &mut [0; 1024]).unwrap().len();
         assert!(bytes <= LONGEST_TO_HOST, "{bytes} bytes");
@@ -498,18 +496,16 @@ fn every_message_fits_its_frame() {
 /// Bytes that are noise, and frames in whole or in part.
 fn garbage() -> impl Strategy<Value = Vec<u8>> {
     let frame = (any::<u8>(), 0_usize..120, any::<u8>()).prop_map(|(kind, cut, flip)| {
-        let set = |value| Changes::from_slice(&[(Parameter::Stiffness, value)]).unwrap();
         let message = match kind % 6 {
             0 => ToBoard::Hello,
             1 => ToBoard::Get,
             2 => ToBoard::Status,
             // Never certified, with any neighbours.
-            3 => ToBoard::Set { id: 1, changes: set(1000.0) },
+            3 => stiffness(1, 1000.0),
             4 => ToBoard::Stream(core::num::NonZeroU32::new(3)),
             _ => ToBoard::Arm { id: 9 },
         };
-        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-        let mut frame = encode(&message, &mut buffer).unwrap().to_vec();
+        let mut frame = frame(&message);
         frame.truncate(cut);
         if flip % 4 == 0 && !frame.is_empty() {
             let place = usize::from(flip) % frame.len();

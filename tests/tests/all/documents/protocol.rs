@@ -39,7 +39,7 @@ fn fields(path: &str, name: &str) -> Vec<(String, String)> {
 
 /// The variants of an enumeration in order, each with its fields as one text.
 pub fn variants(path: &str, name: &str) -> Vec<(String, String)> {
-    let variant = regex(r"(?ms)^    (\w+)(?: = \d+)?(?:\((.*?)\)| \{(.*?)^    \})?,$");
+    let variant = regex(r"(?ms)^    (\w+)(?: = \d+)?(?:\((.*?)\)| \{(.*?)(?:^    | )\})?,$");
     let body = body(path, "enum", name);
     let fields = |variant: &regex::Captures<'_>| match (variant.get(2), variant.get(3)) {
         (Some(tuple), _) => tuple.as_str().to_owned(),
@@ -64,7 +64,7 @@ fn every_field_of_every_message_is_there_in_order() {
         (MESSAGES, "ActiveParameters"),
         (MESSAGES, "Status"),
         ("firmware/src/power_reading.rs", "PowerReading"),
-        ("firmware/src/current/encoder_index.rs", "IndexOffset"),
+        ("firmware/src/current/phase.rs", "IndexOffset"),
         (MESSAGES, "FaultCode"),
         (MESSAGES, "PreviousFault"),
         ("firmware/src/wire/decoder.rs", "Discarded"),

@@ -5,21 +5,44 @@
 //! of the servo's interrupt, [`power_reading`] for the host, and [`off`] and [`stop`] for a program that
 //! ends.
 
-#[cfg(not(feature = "bridge"))]
-mod analog;
 #[cfg(feature = "bridge")]
 pub mod bridge;
+#[cfg(not(feature = "bridge"))]
 pub mod dac;
 #[cfg(feature = "bridge")]
 pub mod gates;
 mod periods;
-pub mod pin;
 #[cfg(not(feature = "bridge"))]
 mod tick_timer;
 
-#[cfg(not(feature = "bridge"))]
-pub use analog::{Output, Setup, off, power_reading, stop};
 #[cfg(feature = "bridge")]
 pub use bridge::{Output, Pace, Setup, off, power_reading, stop};
 #[cfg(not(feature = "bridge"))]
+pub use dac::{Output, Setup, off, power_reading, stop};
+#[cfg(not(feature = "bridge"))]
 pub use tick_timer::TickTimer as Pace;
+
+use embassy_stm32::pac;
+
+/// A pin of a port, for the servo's interrupt, which has no time for a driver, and for the panic handler,
+/// which cannot own a driver.
+///
+/// On every board 3.3 V means on. With a resistor to ground at the amplifier, a broken wire and a board
+/// without power mean off.
+#[derive(Clone, Copy)]
+pub struct OutputPin {
+    /// Its port.
+    pub port: pac::gpio::Gpio,
+    /// Its number in the port, 0 to 15.
+    pub pin: usize,
+}
+
+impl OutputPin {
+    /// Switches the pin with one write, which needs no critical section.
+    #[inline(always)]
+    pub fn set(self, on: bool) {
+        self.port
+            .bsrr()
+            .write(|w| if on { w.set_bs(self.pin, true) } else { w.set_br(self.pin, true) });
+    }
+}

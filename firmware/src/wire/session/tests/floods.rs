@@ -1,7 +1,6 @@
 //! A host that sends more than the wire can answer, and a servo that faults meanwhile.
 
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::*;
 
@@ -9,16 +8,6 @@ use super::*;
 const BYTES_PER_TICK: usize = 46;
 /// Ticks in which the line carries these messages, the answer, and what was on its way.
 const ROUND: usize = (MESSAGES_AHEAD + 2) * largest_frame(LONGEST_TO_HOST) / BYTES_PER_TICK + 2;
-
-fn frame(message: &ToBoard) -> Vec<u8> {
-    let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-    encode(message, &mut buffer).unwrap().to_vec()
-}
-
-fn set(id: Id, stiffness: f64) -> ToBoard {
-    let changes = Changes::from_slice(&[(Parameter::Stiffness, stiffness)]).unwrap();
-    ToBoard::Set { id, changes }
-}
 
 /// A board on a line that is as slow as a serial port, in both directions, with a host that always has more to
 /// send.
@@ -50,13 +39,8 @@ impl Flooded {
             self.bench.tick();
             let mut free = BYTES_PER_TICK;
             loop {
-                self.bench.session.poll();
-                let bytes = self.bench.session.outgoing();
-                let sent = bytes.len().min(free);
-                said.extend(
-                    bytes[..sent].iter().filter_map(|&byte| self.bench.ear.push::<Said>(byte)),
-                );
-                self.bench.session.sent(sent);
+                let (sent, more) = self.bench.serve(free);
+                said.extend(more);
                 free -= sent;
                 if sent == 0 || free == 0 {
                     break;
@@ -86,14 +70,14 @@ const QUESTIONS: [fn(Id) -> ToBoard; 8] = [
     |_| ToBoard::Stream(core::num::NonZeroU32::new(1)),
     |id| ToBoard::Align { id },
     // Never certified.
-    |id| set(id, 1000.0),
+    |id| stiffness(id, 1000.0),
     |id| match id % 6 {
         0 => ToBoard::Hello,
         1 => ToBoard::Get,
         2 => ToBoard::Status,
         3 => ToBoard::Describe,
         4 => ToBoard::Align { id },
-        _ => set(id, 1000.0),
+        _ => stiffness(id, 1000.0),
     },
 ];
 
@@ -110,7 +94,7 @@ fn a_flood_of_one_kind_of_message_keeps_no_request_from_its_answer() {
         let mut outcome = None;
         // A set between others is refused until it comes first.
         for id in 3..200 {
-            outcome = flooded.ask(id, &set(id, 7.0), 2 * ROUND + gap + 2 * fade);
+            outcome = flooded.ask(id, &stiffness(id, 7.0), 2 * ROUND + gap + 2 * fade);
             if outcome == Some(Outcome::Done) {
                 break;
             }
@@ -128,7 +112,7 @@ fn a_flood_of_requests_to_arm_or_to_disarm_keeps_no_set_from_its_answer() {
         |id| if id % 2 == 0 { ToBoard::Arm { id } } else { ToBoard::Disarm { id } },
     ] {
         let mut flooded = Flooded::new(flood);
-        let outcome = flooded.ask(3, &set(3, 7.0), 2 * ROUND + gap + 100);
+        let outcome = flooded.ask(3, &stiffness(3, 7.0), 2 * ROUND + gap + 100);
         assert_eq!(outcome, Some(Outcome::Done));
     }
 }
@@ -156,17 +140,14 @@ fn an_answer_waits_for_no_more_messages_than_the_bound() {
             ToBoard::Status,
             ToBoard::Describe,
             ToBoard::Align { id: other },
-            set(other, 1000.0),
-            set(other + 1, 1000.0),
+            stiffness(other, 1000.0),
+            stiffness(other + 1, 1000.0),
         ] {
             bench.tell(&message);
         }
         other += 2;
         (0..20).for_each(|_| bench.tick());
-        bench.session.poll();
-        let bytes = bench.session.outgoing().to_vec();
-        bench.session.sent(bytes.len());
-        bytes.iter().find_map(|&byte| bench.ear.push::<Said>(byte)).unwrap()
+        bench.serve(usize::MAX).1.swap_remove(0)
     };
     let mut ahead = |id| {
         bench.tell(&ToBoard::Arm { id });
@@ -228,10 +209,9 @@ impl Journal {
         let message = match random.below(12) {
             0..4 => {
                 // Every fourth is not certified.
-                let stiffness =
-                    if random.below(4) == 0 { 1000.0 } else { f64::from(id % 20) + 1.0 };
-                self.sets.insert(id, stiffness);
-                set(id, stiffness)
+                let value = if random.below(4) == 0 { 1000.0 } else { f64::from(id % 20) + 1.0 };
+                self.sets.insert(id, value);
+                stiffness(id, value)
             }
             4 | 5 => ToBoard::Arm { id },
             6 => ToBoard::Disarm { id },
@@ -272,13 +252,8 @@ fn flood(bench: &mut Bench, journal: &mut Journal, random: &mut Random) {
             3 | 4 => (0..random.below(12)).for_each(|_| bench.tick()),
             5 => bench.session.poll(),
             6 => {
-                bench.session.poll();
                 let sent = random.below(40) as usize;
-                let bytes = bench.session.outgoing();
-                let bytes = bytes[..sent.min(bytes.len())].to_vec();
-                bench.session.sent(bytes.len());
-                let said = bytes.iter().filter_map(|&byte| bench.ear.push::<Said>(byte));
-                journal.said.extend(said);
+                journal.said.extend(bench.serve(sent).1);
             }
             _ => match random.below(6) {
                 0 => bench.hardware.output_event = Some(OutputEvent::Fault(Fault::ClockLost)),
@@ -322,40 +297,4 @@ fn after_a_flood_every_accepted_set_is_answered_and_the_last_one_runs() {
 fn assert_quiet(bench: &Bench, seed: u64) {
     let Session { requested, submitted, replies, .. } = &bench.session;
     assert!(requested.is_none() && submitted.is_none() && replies.is_empty(), "{seed}");
-}
-
-/// The servo in a thread of its own, so that its ticks fall between any two accesses of the session.
-#[test]
-fn a_servo_that_ticks_at_any_moment_answers_every_request() {
-    let Bench { mut session, mut servo_loop, mut hardware, mut inbox, mut frames, mut ear } =
-        Bench::new(None);
-    let over = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        scope.spawn(|| {
-            while !over.load(Ordering::Relaxed) {
-                servo_loop.run(&mut hardware, &mut inbox, &mut frames);
-            }
-        });
-        let mut ask = |id: Id, message: &ToBoard| {
-            session.receive(&frame(message));
-            let until = std::time::Instant::now() + std::time::Duration::from_secs(60);
-            loop {
-                session.poll();
-                let bytes = session.outgoing().to_vec();
-                session.sent(bytes.len());
-                let mut said = bytes.iter().filter_map(|&byte| ear.push::<Said>(byte));
-                if said.any(|said| said == done(id)) {
-                    return;
-                }
-                assert!(std::time::Instant::now() < until, "{message:?} has no answer");
-            }
-        };
-        for id in (1..600).step_by(3) {
-            ask(id, &ToBoard::Arm { id });
-            ask(id + 1, &set(id + 1, f64::from(id % 20) + 1.0));
-            ask(id + 2, &ToBoard::Disarm { id: id + 2 });
-        }
-        over.store(true, Ordering::Relaxed);
-    });
-    assert_eq!(session.revision, 200);
 }

@@ -75,10 +75,7 @@ struct End {
 
 /// The list: more than one request of each kind is open at once, and not all of them are read soon.
 fn messages() -> Vec<Vec<ToBoard>> {
-    let set = |(id, stiffness): (Id, f64)| ToBoard::Set {
-        id,
-        changes: Changes::from_slice(&[(Parameter::Stiffness, stiffness)]).unwrap(),
-    };
+    let set = |(id, value): (Id, f64)| stiffness(id, value);
     vec![
         vec![ToBoard::Status, set(SETS[0])],
         vec![ToBoard::Disarm { id: 2 }, ToBoard::Status],
@@ -118,16 +115,10 @@ fn play(plan: Vec<u32>) -> End {
     let shared = Rc::clone(&interrupt);
     interruption::set(move || shared.borrow_mut().interrupt());
     let mut said: Vec<Said> = Vec::new();
-    let mut poll = |session: &mut Session<'static, Environment, f32, Latched, FRAMES>| {
-        session.poll();
-        let bytes = session.outgoing().to_vec();
-        session.sent(bytes.len());
-        said.extend(bytes.iter().filter_map(|&byte| ear.push::<Said>(byte)));
-    };
-    let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+    let mut poll = |session: &mut Served| said.extend(serve(session, &mut ear, usize::MAX).1);
     for burst in messages() {
         for message in burst {
-            session.receive(encode(&message, &mut buffer).unwrap());
+            session.receive(&frame(&message));
         }
         for _ in 0..3 {
             poll(&mut session);
@@ -135,18 +126,16 @@ fn play(plan: Vec<u32>) -> End {
     }
     let instants = interrupt.borrow().instant;
     interruption::clear();
-    let mut rest = |session: &mut _| {
+    let mut rest = |session: &mut Served| {
         for _ in 0..4 * SWAP {
             interrupt.borrow_mut().ticks(1);
             poll(session);
         }
     };
     rest(&mut session);
-    let (id, stiffness) = SETS[3];
-    let changes = Changes::from_slice(&[(Parameter::Stiffness, stiffness)]).unwrap();
-    session.receive(encode(&ToBoard::Set { id, changes }, &mut buffer).unwrap());
+    session.receive(&frame(&stiffness(SETS[3].0, SETS[3].1)));
     rest(&mut session);
-    session.receive(encode(&ToBoard::Get, &mut buffer).unwrap());
+    session.receive(&frame(&ToBoard::Get));
     rest(&mut session);
     let torn = core::mem::take(&mut interrupt.borrow_mut().torn);
     let mut end = End { instants, said, torn, wrong: Vec::new() };

@@ -21,8 +21,6 @@ mod interrupt;
 mod latest;
 #[cfg(feature = "on-target")]
 pub mod load;
-#[cfg(feature = "on-target")]
-mod no_motor;
 mod over_current;
 mod pace;
 mod pwm;
@@ -45,7 +43,7 @@ use crate::current::{AlignmentError, CurrentLoop, HeatStep, PowerFault, TorqueSo
 use crate::dac::DacCode;
 use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
-use crate::torque_output::{OutputEvent, TorqueOutput};
+use crate::servo_loop::OutputEvent;
 
 /// The state of the current interrupt.
 pub type CurrentCell<const BRUSHLESS: bool> = IsrCell<CurrentIsr<BRUSHLESS>>;
@@ -144,19 +142,18 @@ impl Output {
         unsafe { interrupts::ADC1_2.enable() };
         pace.start();
     }
-}
 
-impl TorqueOutput for Output {
+    /// Sets the code of the next torque, which the current loop takes over when it is due.
     #[inline(always)]
-    fn set(&mut self, code: DacCode) {
+    pub fn set(&mut self, code: DacCode) {
         WAITING.store(code.get(), Ordering::Relaxed);
     }
 
-    /// Off at once; on after [`start_up_ticks`](TorqueOutput::start_up_ticks), if the power stage finds no
+    /// Off at once; on after [`start_up_ticks`](Self::start_up_ticks), if the power stage finds no
     /// fault. The current interrupt has a higher priority than this one, and turns the gates on only after a
     /// request.
     #[inline(always)]
-    fn switch(&mut self, on: bool) {
+    pub fn switch(&mut self, on: bool) {
         if !on {
             return off();
         }
@@ -165,11 +162,16 @@ impl TorqueOutput for Output {
         }
     }
 
-    fn start_up_ticks(&self) -> u32 {
+    /// Periods after switching on for which the code must be that of zero torque.
+    pub fn start_up_ticks(&self) -> u32 {
         self.start_up
     }
 
-    fn align(&mut self) -> Result<(), Fault> {
+    /// Begins to align a brushless motor whose gates are off.
+    ///
+    /// # Errors
+    /// If the motor is brushed.
+    pub fn align(&mut self) -> Result<(), Fault> {
         if !self.is_brushless {
             return Err(Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded)));
         }
@@ -179,13 +181,15 @@ impl TorqueOutput for Output {
         Ok(())
     }
 
-    fn is_aligning(&self) -> bool {
+    /// Whether an alignment runs.
+    pub fn is_aligning(&self) -> bool {
         let state = STATE.load(Ordering::Relaxed);
         state == State::StartingAlignment as u8 || state == State::Aligning as u8
     }
 
+    /// An event since the last call.
     #[inline(always)]
-    fn event(&mut self) -> Option<OutputEvent> {
+    pub fn event(&mut self) -> Option<OutputEvent> {
         if FAULT.load(Ordering::Acquire) == 0 { None } else { take_event() }
     }
 }
@@ -246,7 +250,7 @@ pub fn stop() {
 #[macro_export]
 macro_rules! board_output {
     ([]) => {
-        $crate::not_for_the_bridge!(
+        compile_error!(
             "the bridge drives a motor that this program does not state: write `bridge: CURRENT_LOOP` in \
              scene_program! or sweep_program!, or build it with --output dac"
         );
@@ -286,27 +290,5 @@ macro_rules! board_output {
 macro_rules! sweep_output {
     ($bridge:tt) => {
         $crate::board_output!($bridge);
-    };
-}
-
-/// A compile error, except in the programs that cargo builds beside the tests on a board.
-#[cfg(not(feature = "on-target"))]
-#[doc(hidden)]
-#[macro_export]
-macro_rules! not_for_the_bridge {
-    ($why:literal) => {
-        compile_error!($why);
-    };
-}
-
-/// A program beside the tests on a board that ends at its start.
-#[cfg(feature = "on-target")]
-#[doc(hidden)]
-#[macro_export]
-macro_rules! not_for_the_bridge {
-    ($why:literal) => {
-        /// What the output has to know of this program.
-        const OUTPUT: $crate::board::stm32::output::Setup =
-            $crate::board::stm32::output::Setup::DAC;
     };
 }

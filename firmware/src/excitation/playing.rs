@@ -1,9 +1,76 @@
-//! Limits of a device's motion while it is driven open loop.
+//! A sweep as it is played: its codes, one per sample, the limits of the device's motion while it is driven open
+//! loop, and the end of the sweep, which is the last word of the record on the wire.
 
 use core::f64::consts::TAU;
 
-use super::SweepEnd;
+use super::sine::{QUINTIC, sine};
+use super::{Step, Sweep};
+use crate::dac::DacCode;
+use crate::text::words;
 use crate::transducers::Transducers;
+
+/// The output of a sweep in a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Excitation {
+    /// Code for the DAC.
+    pub code: DacCode,
+    /// The tone whose measured part contains this sample; `None` while the device settles and after the
+    /// sweep.
+    pub measured: Option<usize>,
+}
+
+/// Plays a sweep.
+///
+/// The sine is a polynomial whose error is below that of the nearest code, even at full scale. It is the
+/// cheapest such method: all others take more instructions or have errors of codes.
+#[derive(Clone, Debug)]
+pub struct Exciter<'a> {
+    steps: &'a [Step],
+    step: usize,
+    sample: u32,
+    /// Phase in parts of a turn, with as many parts as the step has measured samples.
+    phase: u32,
+}
+
+impl<'a> Exciter<'a> {
+    /// An exciter at the beginning of the sweep.
+    pub const fn new<const N: usize>(sweep: &'a Sweep<N>) -> Self {
+        Self { steps: &sweep.steps, step: 0, sample: 0, phase: 0 }
+    }
+
+    /// The next sample; no torque after the last.
+    #[expect(clippy::should_implement_trait, reason = "an exciter does not end")]
+    pub fn next(&mut self) -> Excitation {
+        let Some(step) = self.steps.get(self.step) else {
+            return Excitation { code: DacCode::MID_SCALE, measured: None };
+        };
+        let turn = self.phase as f32 / step.measured as f32;
+        let code = code(step.codes * sine(turn, &QUINTIC));
+        let measured = (self.sample >= step.settle).then_some(self.step);
+        self.advance(*step);
+        Excitation { code, measured }
+    }
+
+    fn advance(&mut self, step: Step) {
+        self.sample += 1;
+        self.phase += step.cycles;
+        if self.phase >= step.measured {
+            self.phase -= step.measured;
+        }
+        if self.sample == step.settle + step.measured {
+            (self.step, self.sample, self.phase) = (self.step + 1, 0, 0);
+        }
+    }
+}
+
+/// The nearest code to a torque in codes.
+fn code(codes: f32) -> DacCode {
+    const MOST: i16 = DacCode::CODES_TO_FULL_SCALE.cast_signed();
+    let half = if codes < 0.0 { -0.5 } else { 0.5 };
+    // The sine may be a little above 1.
+    let offset = ((codes + half) as i16).clamp(-MOST, MOST);
+    DacCode::from_low_bits(DacCode::MID_SCALE.get().wrapping_add_signed(offset))
+}
 
 /// Limits of the motion. Beyond any of them the sweep ends and the amplifier goes off.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,6 +131,47 @@ impl Guard {
         } else {
             None
         }
+    }
+}
+
+/// Version of the protocol of a board that plays a sweep.
+pub const SWEEP_PROTOCOL: u32 = 3;
+
+/// Time in s without a request of the host after which an unsupervised sweep ends.
+pub const SILENCE: f64 = 0.5;
+
+/// The end of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SweepEnd {
+    /// The sweep is complete.
+    Done,
+    /// The host stopped it.
+    Stopped,
+    /// The host has sent no request for [`SILENCE`].
+    Silent,
+    /// A tick came late or not at all, so that a torque was held for too long.
+    MissedTick,
+    /// A row was lost because the queue to the host was full.
+    LostRow,
+    /// The device left the limits of its travel.
+    Travel,
+    /// The device was faster than its limit.
+    Speed,
+    /// The encoder moved further than a device can.
+    Jump,
+    /// The board's bridge removed the torque.
+    OutputFault,
+}
+
+words! { SweepEnd {
+    Done "done", Stopped "stopped", Silent "silent", MissedTick "missed-tick", LostRow "lost-row",
+    Travel "travel", Speed "speed", Jump "jump", OutputFault "output-fault",
+} }
+
+impl SweepEnd {
+    /// The end with this word.
+    pub fn find(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|end| end.as_str() == word)
     }
 }
 

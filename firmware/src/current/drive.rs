@@ -1,0 +1,362 @@
+//! A motor, its supply, and the bandwidth of its current loop, as a program states them; the reasons why it cannot
+//! run on a power stage; and the current of a constant duty in it (theory, section 15.9).
+
+use super::power_stage::{PowerStage, SupplyRange};
+use crate::text::{Text, error_with_sentence, or_refuse, push};
+
+/// The kind of a motor's winding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Winding {
+    /// One winding and a commutator, between the phases U and V.
+    Brushed,
+    /// Three windings in a star, and magnets.
+    Brushless {
+        /// Electrical turns in a turn of the handle: the pole pairs of the motor, times its gearing.
+        pole_pairs: u16,
+    },
+}
+
+impl Winding {
+    /// Whether the motor has three phases and magnets.
+    pub const fn is_brushless(self) -> bool {
+        matches!(self, Self::Brushless { .. })
+    }
+
+    /// Electrical turns in a turn of the handle; zero for a brushed motor.
+    pub const fn pole_pairs(self) -> u16 {
+        match self {
+            Self::Brushed => 0,
+            Self::Brushless { pole_pairs } => pole_pairs,
+        }
+    }
+}
+
+/// The data of a motor for its current loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motor {
+    /// The kind of its winding.
+    pub winding: Winding,
+    /// Resistance in ohm: between the terminals of a brushed motor, of one phase of a brushless motor, which
+    /// is half of the resistance between two of its terminals.
+    pub resistance: f64,
+    /// Inductance in H, of the same.
+    pub inductance: f64,
+    /// Torque at the handle in N m/A: of a brushless motor per ampere of a phase current's amplitude.
+    pub torque_constant: f64,
+}
+
+impl Motor {
+    /// Induced voltage in V s/rad of the handle's speed: between the terminals of a brushed motor; for a
+    /// brushless motor the amplitude in a phase, where each phase has 2/3 of a direct current's power.
+    pub const fn back_emf(&self) -> f64 {
+        match self.winding {
+            Winding::Brushed => self.torque_constant,
+            Winding::Brushless { .. } => self.torque_constant * 2.0 / 3.0,
+        }
+    }
+}
+
+/// A supply: the range of its voltage in V, and what becomes of the energy that the motor returns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Supply {
+    /// The lowest voltage, under load.
+    pub lowest: f64,
+    /// The highest voltage, when the motor feeds it: above this, over-voltage is a fault.
+    pub highest: f64,
+    /// What becomes of the energy that the motor returns.
+    pub regeneration: Regeneration,
+}
+
+/// What becomes of the energy that a motor returns to its supply.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Regeneration {
+    /// The supply takes it and keeps its voltage: a battery, or a brake resistor with its own switch.
+    Sinks,
+    /// The supply takes nothing: the energy stays in the capacitance at the bridge, and its voltage rises.
+    Stores {
+        /// The highest voltage in V that the supply itself delivers, with its tolerance.
+        voltage: f64,
+        /// The least capacitance in F, with its tolerance and at the end of its life.
+        capacitance: f64,
+    },
+}
+
+impl Supply {
+    /// A supply that takes energy back, with this lowest and highest voltage in V.
+    pub const fn sinking(lowest: f64, highest: f64) -> Self {
+        Self { lowest, highest, regeneration: Regeneration::Sinks }
+    }
+
+    /// The range of its voltage.
+    pub const fn range(&self) -> SupplyRange {
+        SupplyRange { lowest: self.lowest, highest: self.highest }
+    }
+
+    /// Voltage in V while the motor returns nothing: the supply's own, or the middle of its range.
+    pub const fn open_voltage(&self) -> f64 {
+        match self.regeneration {
+            Regeneration::Sinks => 0.5 * (self.lowest + self.highest),
+            Regeneration::Stores { voltage, .. } => voltage,
+        }
+    }
+}
+
+/// The motor at a power stage, and the required speed of the current loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// The motor.
+    pub motor: Motor,
+    /// Its supply.
+    pub supply: Supply,
+    /// Bandwidth in Hz of the reference model that the current follows.
+    pub bandwidth: f64,
+    /// Temperature in degrees Celsius at the power stage's sensor above which it is switched off.
+    pub largest_temperature: f64,
+}
+
+/// The reason why there is no current loop, with the value and its bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "each variant's description and sentence name its fields")]
+pub enum DriveError {
+    /// A number is zero, negative or not finite.
+    NotPositive { name: &'static str, value: f64 },
+    /// An electrical turn has too few counts of the encoder, or none.
+    PolePairs { pole_pairs: u16, largest: u16 },
+    /// A brushless motor needs a whole number of counts per turn, up to the largest.
+    Counts { counts: f64, largest: f64 },
+    /// An index was given for a brushed motor, which has no phase.
+    IndexNotNeeded,
+    /// An electrical turn has too few counts for its phase to come from the index.
+    IndexCounts { counts: f64, least: f64 },
+    /// The phase at the index, in counts, is not within an electrical turn.
+    IndexOffset { offset: u32, counts: f64 },
+    /// The phase of a brushless motor turns too far in an instant: electrical turns per second at the largest speed.
+    ElectricalSpeed { turns: f64, largest: f64 },
+    /// The bandwidth in Hz is larger than the modulation allows.
+    Bandwidth { bandwidth: f64, largest: f64 },
+    /// No whole number of periods of the modulation, between two frequencies in Hz, fills a period of the servo in s;
+    /// the nearest possible period in s.
+    Period { period: f64, lowest: f64, highest: f64, nearest: f64 },
+    /// Full-scale torque in N m needs more current in A, with the margin to over-current, than the power stage can
+    /// deliver.
+    Current { torque: f64, current: f64, largest: f64 },
+    /// The drive's supply is outside the board's range.
+    Supply { supply: SupplyRange, board: SupplyRange },
+    /// The voltage in V that the supply itself delivers is not within its range.
+    OpenVoltage { voltage: f64, supply: SupplyRange },
+    /// The voltage in V at the lowest supply is insufficient for the largest step at the largest speed; the lowest
+    /// supply that is enough.
+    Voltage { needed: f64, available: f64, enough: f64 },
+    /// The largest temperature in degrees Celsius cannot be measured.
+    Temperature { temperature: f64, lowest: f64, highest: f64 },
+    /// The converter's range in A, at the worst offset, ends below the largest current of the board.
+    CurrentRange { current: f64, largest: f64 },
+}
+
+impl DriveError {
+    /// The error as a sentence, the same at compile time and later.
+    pub const fn sentence(&self) -> Text<320> {
+        let mut t = Text::new();
+        match *self {
+            Self::NotPositive { name, value } => {
+                push!(t, "the " {name} " must be positive and finite, and is " {value});
+            }
+            Self::PolePairs { pole_pairs, largest } => push!(t,
+                "the motor's " {pole_pairs} " pole pairs must be at least 1, and at most as many as leave an \
+                 electrical turn 64 encoder counts, so that no torque is lost between two of them: " {largest}),
+            Self::Counts { counts, largest } => push!(t,
+                "a turn has " {counts} " encoder counts, and the phase of a brushless motor needs a whole number of \
+                 them, up to " {largest} ": count at the shaft that the motor is on"),
+            Self::IndexNotNeeded => t.push(
+                "a brushed motor needs no index of its encoder: state none, or the winding of a brushless one",
+            ),
+            Self::IndexCounts { counts, least } => push!(t,
+                "an electrical turn has " {counts} " encoder counts, and a phase that comes from the index needs at \
+                 least " {least} ", since its pulse is some counts wide: take a finer encoder, or state no offset"),
+            Self::IndexOffset { offset, counts } => push!(t,
+                "the index offset of " {offset} " counts is not below the counts of an electrical turn, " {counts}
+                ": align the motor, and state the offset that the board tells"),
+            Self::ElectricalSpeed { turns, largest } => push!(t,
+                "at the largest speed the motor makes " {turns} " electrical turns a second, and a 32nd of the \
+                 modulation's frequency is " {largest} ": lower the largest speed"),
+            Self::Bandwidth { bandwidth, largest } => push!(t,
+                "the bandwidth of " {bandwidth} " Hz is above " {largest} " Hz, where the time constant of the \
+                 current is two periods of the modulation: a faster one leaves the feedback no time"),
+            Self::Period { period, lowest, highest, nearest } => push!(t,
+                "the period of " {period} " s is not filled by whole periods of a modulation between " {lowest}
+                " and " {highest} " Hz in whole counts of its timer: " {nearest} " s is"),
+            Self::Current { torque, current, largest } => push!(t,
+                "full-scale torque of " {torque} " N m, and the quarter more at which over-current trips, take "
+                {current} " A, and the power stage measures and bears " {largest} " A: lower the full-scale torque"),
+            Self::Supply { supply, board } => push!(t,
+                "a supply from " {supply.lowest} " to " {supply.highest} " V is not in the board's range from "
+                {board.lowest} " to " {board.highest} " V"),
+            Self::OpenVoltage { voltage, supply } => push!(t,
+                "the supply itself delivers up to " {voltage} " V, which must be between its lowest and its highest \
+                 voltage, " {supply.lowest} " and " {supply.highest} " V"),
+            Self::Voltage { needed, available, enough } => push!(t,
+                "the step from full-scale torque to its opposite at the largest speed needs " {needed} " V at the \
+                 motor, and the lowest supply gives " {available} " V: take " {enough}
+                " V, or lower bandwidth, torque or speed"),
+            Self::Temperature { temperature, lowest, highest } => push!(t,
+                "the largest temperature of " {temperature} " degrees Celsius is not between " {lowest} " and "
+                {highest}),
+            Self::CurrentRange { current, largest } => push!(t,
+                "the board's largest current of " {current} " A is above the " {largest}
+                " A that its converter can measure"),
+        }
+        t
+    }
+
+    /// Rejects the first of these numbers that is not positive and finite.
+    pub(super) const fn unless_positive(numbers: &[(&'static str, f64)]) -> Result<(), Self> {
+        let mut i = 0;
+        while i < numbers.len() {
+            let (name, value) = numbers[i];
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(Self::NotPositive { name, value });
+            }
+            i += 1;
+        }
+        Ok(())
+    }
+}
+
+error_with_sentence!(DriveError);
+
+/// Relative tolerance of the dead time: switching takes time, too.
+const DEAD_TIME_TOLERANCE: f64 = 0.5;
+
+/// Time constants after which a current counts as settled: the rest is below a count.
+const SETTLING: f64 = 10.0;
+
+/// The current that settles at a duty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DutyCurrent {
+    /// The lower bound in A.
+    pub least: f64,
+    /// The upper bound in A.
+    pub most: f64,
+    /// Instants until it has settled.
+    pub settling: u32,
+}
+
+/// The reason why there is no such current.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "each variant's description and sentence name its fields")]
+pub enum DutyError {
+    /// A number is zero, negative or not finite.
+    Drive(DriveError),
+    /// A load has two terminals.
+    Brushless,
+    /// The tolerance is not between 0 and 1.
+    Tolerance(f64),
+    /// The dead time takes all of the duty, or the low sides have no time: the duty and its bounds.
+    Duty { duty: f64, least: f64, most: f64 },
+    /// The largest current in A at this duty is more than the board tolerates.
+    Current { current: f64, largest: f64 },
+}
+
+impl Drive {
+    /// The current in A at a duty, which is the part of the supply between the terminals U and V, with a
+    /// winding at rest or a load in its place. `tolerance` is the relative tolerance of resistance and
+    /// inductance.
+    ///
+    /// In each period of the modulation the dead time takes away twice its part of the supply. In the middle
+    /// of the low sides' time the ripple is zero.
+    ///
+    /// # Errors
+    /// If a number is NaN or out of its bounds.
+    pub const fn current_at_duty(
+        &self,
+        stage: &PowerStage,
+        instant: f64,
+        duty: f64,
+        tolerance: f64,
+    ) -> Result<DutyCurrent, DutyError> {
+        ok!(self.check_load(instant, tolerance));
+        let dead = 2.0 * stage.dead_time / instant;
+        let (least, most) =
+            (dead * (1.0 + DEAD_TIME_TOLERANCE), 1.0 - 2.0 * stage.shortest_low / instant);
+        // Written so that NaN is refused.
+        let is_between = duty > least && duty <= most;
+        if !is_between {
+            return Err(DutyError::Duty { duty, least, most });
+        }
+        let (resistance, inductance) = (self.motor.resistance, self.motor.inductance);
+        let (high, low) = (1.0 + tolerance, 1.0 - tolerance);
+        let current = DutyCurrent {
+            least: self.supply.lowest * (duty - least) / (resistance * high),
+            most: self.supply.highest * (duty - dead * (1.0 - DEAD_TIME_TOLERANCE))
+                / (resistance * low),
+            // The cast rounds a positive number down.
+            settling: (SETTLING * inductance * high / (resistance * low * instant)) as u32 + 1,
+        };
+        if current.most > stage.largest_current {
+            let (current, largest) = (current.most, stage.largest_current);
+            return Err(DutyError::Current { current, largest });
+        }
+        Ok(current)
+    }
+
+    const fn check_load(&self, instant: f64, tolerance: f64) -> Result<(), DutyError> {
+        if self.motor.winding.is_brushless() {
+            return Err(DutyError::Brushless);
+        }
+        let is_part = tolerance >= 0.0 && tolerance < 1.0;
+        if !is_part {
+            return Err(DutyError::Tolerance(tolerance));
+        }
+        let numbers = DriveError::unless_positive(&[
+            ("load's resistance", self.motor.resistance),
+            ("load's inductance", self.motor.inductance),
+            ("lowest supply", self.supply.lowest),
+            ("highest supply", self.supply.highest),
+            ("period of the modulation", instant),
+        ]);
+        match numbers {
+            Ok(()) => Ok(()),
+            Err(error) => Err(DutyError::Drive(error)),
+        }
+    }
+
+    /// The same for constants.
+    ///
+    /// # Panics
+    /// If there is no such current; in a constant this is a compile error.
+    #[track_caller]
+    pub const fn checked_current_at_duty(
+        &self,
+        stage: &PowerStage,
+        instant: f64,
+        duty: f64,
+        tolerance: f64,
+    ) -> DutyCurrent {
+        or_refuse!(self.current_at_duty(stage, instant, duty, tolerance))
+    }
+}
+
+impl DutyError {
+    /// The error as a sentence.
+    pub const fn sentence(&self) -> Text<320> {
+        let mut t = Text::new();
+        match *self {
+            Self::Drive(error) => return error.sentence(),
+            Self::Brushless => {
+                t.push("a load has two terminals: state it as the winding of a brushed motor")
+            }
+            Self::Tolerance(tolerance) => {
+                push!(t, "the tolerance must be from 0 to below 1, and is " {tolerance});
+            }
+            Self::Duty { duty, least, most } => push!(t,
+                "the duty must be above " {least} ", which the dead time may take, and at most " {most}
+                ", which leaves the low sides their time, and is " {duty}),
+            Self::Current { current, largest } => push!(t,
+                "the load may take " {current} " A, and the power stage bears " {largest}
+                " A: take a larger resistance, a lower supply or a smaller duty"),
+        }
+        t
+    }
+}
+
+error_with_sentence!(DutyError);
