@@ -12,6 +12,20 @@ use haptic_servo::scene::{Latency, TimeRange};
 use crate::PageResult;
 use crate::scene_text::read;
 
+/// What an environment and its table may be made of.
+const NAMES: [&str; 10] = [
+    "Canceller",
+    "Coefficients",
+    "Ends",
+    "Environment",
+    "Knots",
+    "Parts",
+    "Profile",
+    "Rational",
+    "Shape",
+    "Wall",
+];
+
 /// The constants of a scene: the table of its torque profile, the scene, and its certificate.
 pub fn constant(text: &str, _: &mut Vec<f64>) -> PageResult {
     let file = read(text).map_err(|error| error.to_string())?;
@@ -23,13 +37,15 @@ fn of(file: &SceneFile) -> PageResult {
     let SceneFile { scene, shapes, .. } = file;
     let shapes = shapes.as_ref();
     let environment = environment(&scene.environment, shapes)?;
-    let uses = imports("haptic_servo::environment", &uses(&scene.environment, shapes)?);
     let is_late = scene.latency != Latency::NONE;
     let time_range = if is_late { ", TimeRange" } else { "" };
     let knots = match (scene.environment.profile(), shapes) {
         (Some(profile), Some(shapes)) => knots(shapes, profile.outline().knots) + "\n",
         _ => String::new(),
     };
+    let is_used = |name: &&str| knots.contains(*name) || environment.contains(*name);
+    let names: Vec<_> = NAMES.into_iter().filter(is_used).collect();
+    let uses = imports("haptic_servo::environment", &names);
     let constant = format!(
         "Scene {{ device: {:?}, timing: {:?}, coupling: Coupling::{:?}, environment: {environment}, \
          latency: {}, torque_limit: {:?} }}",
@@ -103,31 +119,6 @@ fn time(TimeRange { least, most }: TimeRange) -> String {
         return format!("TimeRange::exactly({least:?})");
     }
     format!("TimeRange::between({least:?}, {most:?})")
-}
-
-/// The names that the expression of an environment uses.
-fn uses(environment: &Environment, shapes: Option<&Shapes>) -> Result<Vec<&'static str>, String> {
-    let parts = environment.parts();
-    let changed = match &parts.profile {
-        Some(profile) => changes(profile, shapes)?,
-        None => Vec::new(),
-    };
-    let has_ends = changed.iter().any(|(name, _)| *name == "ends");
-    let is_rational = environment.rational().is_some();
-    let profile = parts.profile.is_some();
-    let names = [
-        ("Canceller", parts.canceller.is_some()),
-        ("Coefficients", is_rational),
-        ("Ends", has_ends),
-        ("Environment", is_rational),
-        ("Knots", profile),
-        ("Parts", parts.count() > 1),
-        ("Profile", profile),
-        ("Rational", is_rational),
-        ("Shape", profile),
-        ("Wall", parts.wall.is_some()),
-    ];
-    Ok(names.into_iter().filter(|(_, is_used)| *is_used).map(|(name, _)| name).collect())
 }
 
 fn environment(environment: &Environment, shapes: Option<&Shapes>) -> PageResult {

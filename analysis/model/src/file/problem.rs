@@ -53,7 +53,7 @@ pub enum Problem {
     OfKey {
         /// Full name of the key.
         key: String,
-        /// What is wrong.
+        /// The whole sentence.
         sentence: String,
     },
 }

@@ -303,7 +303,7 @@ impl<'t> Section<'t> {
         self.wrong(name, span, format_args!("is {found}; it must be {bound}"))
     }
 
-    /// Reports a value that is there, with what is wrong about it.
+    /// Reports a value that is there, with its fault.
     fn wrong(&self, name: &str, span: &Span, wrong: impl Display) -> Reported {
         self.report(span.clone(), Problem::value(name, &self.text[span.clone()], wrong))
     }

@@ -12,6 +12,7 @@ use super::plant::SampledPlant;
 use super::{Family, Kept, MapError, Region, judged, kept};
 use crate::design::{Choice, DesignLimit, Quantity, Terms, largest};
 use crate::file::SceneFile;
+use crate::simulation::closed_loop::transfers;
 use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Integration};
 
@@ -122,7 +123,7 @@ impl Plane {
         };
         let judge = if axes == [Parameter::Stiffness, Parameter::Damping] {
             Judge::Walls(Box::new(Family::of(file)?))
-        } else if !has_transfer(&file.scene) {
+        } else if transfers(&file.scene).is_err() {
             Judge::Certificate
         } else if of_loop(&axes[0]) {
             Judge::PlantOfMember
@@ -247,10 +248,6 @@ pub fn nearest(axis: Parameter, value: f64) -> f64 {
 /// Whether the scene is a wall of the family that differs in stiffness and damping.
 fn is_family(scene: &Scene) -> bool {
     scene.environment.wall().is_some() && scene.environment.profile().is_none()
-}
-
-fn has_transfer(scene: &Scene) -> bool {
-    crate::simulation::closed_loop::transfers(scene).is_ok()
 }
 
 fn own_number(scene: &Scene, axis: Parameter) -> f64 {

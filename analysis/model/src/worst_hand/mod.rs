@@ -28,6 +28,7 @@ use crate::simulation::{Experiment, Integration, SimulationError};
 use crate::stability::{Characteristic, closed_loop, eigenvalues};
 
 use constructed::LaggingLoop;
+use impedance::impedance_grid;
 
 pub use impedance::{Absorber, Compliance, HandImpedance, plant};
 
@@ -186,7 +187,8 @@ impl<'d> HandSearch<'d> {
 
     /// The worst of all hands that are tried.
     fn worst(&mut self) -> Result<HandCase, SimulationError> {
-        let hands = self.impedance_grid(self.angle());
+        let period = self.experiment.scene.timing.period;
+        let hands = impedance_grid(self.inertia(), period, self.angle());
         let found = hands.into_iter().map(|hand| self.of(hand));
         let mut found = found.collect::<Result<Vec<HandCase>, _>>()?;
         found.sort_by(|a, b| b.spectral_radius.total_cmp(&a.spectral_radius));
@@ -214,10 +216,6 @@ impl<'d> HandSearch<'d> {
     /// Inertia in kg m^2 of the device, all of it.
     fn inertia(&self) -> f64 {
         self.lighter * self.device.inertia()
-    }
-
-    fn impedance_grid(&self, angle: f64) -> Vec<HandImpedance> {
-        impedance::impedance_grid(self.inertia(), self.experiment.scene.timing.period, angle)
     }
 
     /// The angle in rad a tick at which the real part of the rule is smallest.
