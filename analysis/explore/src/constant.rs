@@ -1,17 +1,30 @@
 //! A scene as the constants of a Rust program, as in `firmware/src/bin`.
 
-mod expression;
+mod layout;
 
 use haptic_model::file::SceneFile;
 use haptic_model::file::profile::Shapes;
 use haptic_servo::environment::{
-    Canceller, Coefficients, Damper, Ends, Environment, Profile, Rational, Shape, Side, Wall,
+    Canceller, Coefficients, Damper, Environment, Profile, Rational, Shape, Side, Wall,
 };
-use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange};
+use haptic_servo::scene::{Latency, TimeRange};
 
 use crate::PageResult;
 use crate::scene_text::read;
-use expression::{Expression, number, optional, structure, word};
+
+/// What an environment and its table may be made of.
+const NAMES: [&str; 10] = [
+    "Canceller",
+    "Coefficients",
+    "Ends",
+    "Environment",
+    "Knots",
+    "Parts",
+    "Profile",
+    "Rational",
+    "Shape",
+    "Wall",
+];
 
 /// The constants of a scene: the table of its torque profile, the scene, and its certificate.
 pub fn constant(text: &str, _: &mut Vec<f64>) -> PageResult {
@@ -24,23 +37,23 @@ fn of(file: &SceneFile) -> PageResult {
     let SceneFile { scene, shapes, .. } = file;
     let shapes = shapes.as_ref();
     let environment = environment(&scene.environment, shapes)?;
-    let uses = imports("haptic_servo::environment", &uses(&scene.environment, shapes)?);
     let is_late = scene.latency != Latency::NONE;
     let time_range = if is_late { ", TimeRange" } else { "" };
     let knots = match (scene.environment.profile(), shapes) {
         (Some(profile), Some(shapes)) => knots(shapes, profile.outline().knots) + "\n",
         _ => String::new(),
     };
-    let constant = structure(
-        "Scene",
-        vec![
-            ("device", device(scene)),
-            ("timing", timing(scene)),
-            ("coupling", coupling(scene.coupling)),
-            ("environment", environment),
-            ("latency", latency(&scene.latency)),
-            ("torque_limit", optional(scene.torque_limit)),
-        ],
+    let is_used = |name: &&str| knots.contains(*name) || environment.contains(*name);
+    let names: Vec<_> = NAMES.into_iter().filter(is_used).collect();
+    let uses = imports("haptic_servo::environment", &names);
+    let constant = format!(
+        "Scene {{ device: {:?}, timing: {:?}, coupling: Coupling::{:?}, environment: {environment}, \
+         latency: {}, torque_limit: {:?} }}",
+        scene.device,
+        scene.timing,
+        scene.coupling,
+        latency(&scene.latency),
+        scene.torque_limit
     );
     Ok(format!(
         "use haptic_servo::certificate::Certified;\n\
@@ -51,7 +64,7 @@ fn of(file: &SceneFile) -> PageResult {
          pub const SCENE: Scene = {};\n\n\
          /// Its certificate: a scene that could oscillate in a hand is a compile error here.\n\
          pub const CERTIFIED: Certified<Scene> = SCENE.certified();\n",
-        constant.broken(0)
+        layout::broken(0, &constant)
     ))
 }
 
@@ -77,105 +90,38 @@ fn imports(module: &str, names: &[&str]) -> String {
     format!("use {module}::{{\n{lines}{last},\n}};")
 }
 
-fn device(scene: &Scene) -> Expression {
-    let device = &scene.device;
-    structure(
-        "Device",
-        vec![
-            ("inertia", number(device.inertia)),
-            ("damping", number(device.damping)),
-            ("passivity", optional(device.passivity)),
-        ],
-    )
-}
-
-fn timing(scene: &Scene) -> Expression {
-    let timing = &scene.timing;
-    structure(
-        "Timing",
-        vec![("period", number(timing.period)), ("worst_period", optional(timing.worst_period))],
-    )
-}
-
-fn coupling(coupling: Coupling) -> Expression {
-    match coupling {
-        Coupling::Rigid => word("Coupling::Rigid"),
-        Coupling::Spring { stiffness } => {
-            structure("Coupling::Spring", vec![("stiffness", number(stiffness))])
-        }
-        Coupling::Matched => word("Coupling::Matched"),
-    }
-}
-
 /// Only the nonzero parts.
-fn latency(latency: &Latency) -> Expression {
-    let Latency {
-        output_delay,
-        output_jitter,
-        count_jitter,
-        actuator_lag,
-        sensor_lag,
-        actuator_response,
-        actuator_updates,
-    } = *latency;
+fn latency(latency: &Latency) -> String {
     let times = [
-        ("output_delay", output_delay),
-        ("actuator_lag", actuator_lag),
-        ("sensor_lag", sensor_lag),
-        ("actuator_response", actuator_response),
+        ("output_delay", latency.output_delay),
+        ("actuator_lag", latency.actuator_lag),
+        ("sensor_lag", latency.sensor_lag),
+        ("actuator_response", latency.actuator_response),
     ];
-    let mut fields: Vec<_> = times
-        .into_iter()
-        .filter(|(_, time)| *time != TimeRange::ZERO)
-        .map(|(name, it)| (name, time(it)))
+    let times = times.into_iter().filter(|(_, time)| *time != TimeRange::ZERO);
+    let jitters =
+        [("output_jitter", latency.output_jitter), ("count_jitter", latency.count_jitter)];
+    let jitters = jitters.into_iter().filter(|(_, jitter)| *jitter != 0.0);
+    let updates = Some(latency.actuator_updates).filter(|updates| *updates != 0);
+    let fields: Vec<_> = times
+        .map(|(name, it)| format!("{name}: {}", time(it)))
+        .chain(jitters.map(|(name, jitter)| format!("{name}: {jitter:?}")))
+        .chain(updates.map(|updates| format!("actuator_updates: {updates}")))
         .collect();
-    for (name, jitter) in [("output_jitter", output_jitter), ("count_jitter", count_jitter)] {
-        if jitter != 0.0 {
-            fields.push((name, number(jitter)));
-        }
+    match fields[..] {
+        [] => "Latency::NONE".to_owned(),
+        _ => format!("Latency {{ {}, ..Latency::NONE }}", fields.join(", ")),
     }
-    if actuator_updates != 0 {
-        fields.push(("actuator_updates", word(actuator_updates)));
-    }
-    if fields.is_empty() {
-        return word("Latency::NONE");
-    }
-    structure("Latency", fields).with_rest("Latency::NONE")
 }
 
-fn time(TimeRange { least, most }: TimeRange) -> Expression {
+fn time(TimeRange { least, most }: TimeRange) -> String {
     if least == most {
-        return word(format!("TimeRange::exactly({least:?})"));
+        return format!("TimeRange::exactly({least:?})");
     }
-    word(format!("TimeRange::between({least:?}, {most:?})"))
+    format!("TimeRange::between({least:?}, {most:?})")
 }
 
-/// The names that the expression of an environment uses.
-fn uses(environment: &Environment, shapes: Option<&Shapes>) -> Result<Vec<&'static str>, String> {
-    let parts = environment.parts();
-    let changed = match &parts.profile {
-        Some(profile) => changes(profile, shapes)?,
-        None => Vec::new(),
-    };
-    let has_ends = changed.iter().any(|(name, _)| *name == "ends");
-    let is_rational = environment.rational().is_some();
-    let profile = parts.profile.is_some();
-    let names = [
-        ("Canceller", parts.canceller.is_some()),
-        ("Coefficients", is_rational),
-        ("Ends", has_ends),
-        ("Environment", is_rational),
-        ("Knots", profile),
-        ("Parts", parts.count() > 1),
-        ("Profile", profile),
-        ("Rational", is_rational),
-        ("Shape", profile),
-        ("Wall", parts.wall.is_some()),
-    ];
-    Ok(names.into_iter().filter(|(_, is_used)| *is_used).map(|(name, _)| name).collect())
-}
-
-fn environment(environment: &Environment, shapes: Option<&Shapes>) -> PageExpression {
+fn environment(environment: &Environment, shapes: Option<&Shapes>) -> PageResult {
     let parts = match environment {
         Environment::Parts(parts) => parts,
         Environment::Rational(rational) => return Ok(self::rational(rational)),
@@ -189,27 +135,22 @@ fn environment(environment: &Environment, shapes: Option<&Shapes>) -> PageExpres
     if let Some(it) = &parts.profile {
         all.push(("profile", profile(it, shapes)?));
     }
-    Ok(match <[_; 1]>::try_from(all) {
-        Ok([(_, part)]) => part.method("alone"),
-        Err(all) => {
-            let is_whole = all.len() == 3;
-            let some = all.into_iter().map(|(name, part)| (name, part.within("Some"))).collect();
-            let parts = structure("Parts", some);
-            if is_whole { parts } else { parts.with_rest("Parts::NONE") }.method("sum")
-        }
-    })
+    if let [(_, part)] = &all[..] {
+        return Ok(format!("{part}.alone()"));
+    }
+    let rest = if all.len() == 3 { "" } else { ", ..Parts::NONE" };
+    let some: Vec<_> = all.iter().map(|(name, part)| format!("{name}: Some({part})")).collect();
+    Ok(format!("Parts {{ {}{rest} }}.sum()", some.join(", ")))
 }
 
-type PageExpression = Result<Expression, String>;
-
-fn canceller(Canceller { residual, delay }: &Canceller) -> Expression {
-    match delay {
-        0 => word(format!("Canceller::to({residual:?})")),
-        _ => structure("Canceller", vec![("residual", number(*residual)), ("delay", word(delay))]),
+fn canceller(canceller: &Canceller) -> String {
+    match canceller {
+        Canceller { residual, delay: 0 } => format!("Canceller::to({residual:?})"),
+        late => format!("{late:?}"),
     }
 }
 
-fn wall(wall: &Wall) -> Expression {
+fn wall(wall: &Wall) -> String {
     let Wall { stiffness, damper, side, delay } = *wall;
     let spring = match damper {
         None => format!("Wall::spring({stiffness:?}, {delay})"),
@@ -218,99 +159,76 @@ fn wall(wall: &Wall) -> Expression {
             format!("Wall::damped({stiffness:?}, {damping:?}, {delay}){filter}")
         }
     };
-    word(match side {
+    match side {
         Side::Centred => spring,
         Side::Displaced(position) => format!("{spring}.placed({position:?})"),
         Side::Face(face) => format!("{spring}.behind({face:?})"),
-    })
+    }
 }
 
-fn rational(rational: &Rational) -> Expression {
-    let coefficients = |all: &Coefficients| {
-        let all: Vec<_> = all.as_slice().iter().map(|one| format!("{one:?}")).collect();
-        word(format!("Coefficients::new(&[{}]).unwrap()", all.join(", ")))
-    };
-    let fields = vec![
-        ("numerator", coefficients(&rational.numerator)),
-        ("denominator", coefficients(&rational.denominator)),
-        ("delay", word(rational.delay)),
-        ("unit_zeros", word(rational.unit_zeros)),
-    ];
-    structure("Rational", fields).within("Environment::Rational")
+fn rational(rational: &Rational) -> String {
+    let Rational { numerator, denominator, delay, unit_zeros } = rational;
+    let [numerator, denominator] = [numerator, denominator]
+        .map(|all: &Coefficients| format!("Coefficients::new(&{:?}).unwrap()", all.as_slice()));
+    format!(
+        "Environment::Rational(Rational {{ numerator: {numerator}, denominator: {denominator}, \
+         delay: {delay}, unit_zeros: {unit_zeros} }})"
+    )
 }
 
 /// A torque profile of the table, with the numbers that are not those of its shapes.
-fn profile(profile: &Profile, shapes: Option<&Shapes>) -> PageExpression {
+fn profile(profile: &Profile, shapes: Option<&Shapes>) -> PageResult {
     let of_shapes = format!("Profile::of(&KNOTS, {})", profile.delay);
     let changed = changes(profile, shapes)?;
     if changed.is_empty() {
-        return Ok(word(of_shapes));
+        return Ok(of_shapes);
     }
-    Ok(structure("Profile", changed).with_rest(of_shapes))
+    let fields = changed.iter().map(|(name, value)| format!("{name}: {value}, "));
+    Ok(format!("Profile {{ {}..{of_shapes} }}", fields.collect::<String>()))
 }
 
 /// The numbers of a profile that are not those of its shapes.
 fn changes(
     profile: &Profile,
     shapes: Option<&Shapes>,
-) -> Result<Vec<(&'static str, Expression)>, String> {
+) -> Result<Vec<(&'static str, String)>, String> {
     let shapes = shapes.ok_or("the profile has no shapes")?;
     let own = shapes.sampled(profile.delay).map_err(|error| error.to_string())?;
-    let mut changed = Vec::new();
-    let mut differs = |name, now: f64, was: f64| {
-        if now.to_bits() != was.to_bits() {
-            changed.push((name, number(now)));
-        }
-    };
-    differs("torque", profile.torque, own.torque);
-    differs("count", profile.count, own.count);
-    differs("centre", profile.centre, own.centre);
+    let numbers = [
+        ("torque", profile.torque, own.torque),
+        ("count", profile.count, own.count),
+        ("centre", profile.centre, own.centre),
+    ];
+    // By their bits: -0.0 is another number than 0.0.
+    let differ = numbers.into_iter().filter(|(_, now, was)| now.to_bits() != was.to_bits());
+    let mut changed: Vec<_> = differ.map(|(name, now, _)| (name, format!("{now:?}"))).collect();
     if profile.ends != own.ends {
-        changed.push(("ends", ends(profile.ends)));
+        changed.push(("ends", format!("{:?}", profile.ends)));
     }
     if profile.damping.is_some() {
-        changed.push(("damping", optional(profile.damping)));
+        changed.push(("damping", format!("{:?}", profile.damping)));
     }
     Ok(changed)
 }
 
-fn ends(ends: Option<Ends>) -> Expression {
-    let Some(Ends { from, to, stiffness }) = ends else { return word("None") };
-    structure(
-        "Ends",
-        vec![("from", number(from)), ("to", number(to)), ("stiffness", number(stiffness))],
-    )
-    .within("Some")
-}
-
 /// The table, which stays in flash.
 fn knots(shapes: &Shapes, cells: u32) -> String {
-    let ends =
-        shapes.ends.map(|Ends { from, to, stiffness }| Shape::EndStops { from, to, stiffness });
-    let all = shapes.shapes.iter().copied().chain(ends).map(|shape| self::shape(&shape)).collect();
-    let table = Expression::list(all).within("Knots::of");
+    let all: Vec<_> = shapes.with_ends().iter().map(shape).collect();
+    let table = format!("Knots::of(&[{}])", all.join(", "));
     let start = format!("static KNOTS: Knots<{cells}> =");
     format!(
         "/// Torque over angle: a table, which stays in flash.\n{start}{};\n",
-        table.after(start.len())
+        layout::after(start.len(), &table)
     )
 }
 
-fn shape(shape: &Shape) -> Expression {
-    word(match *shape {
+fn shape(shape: &Shape) -> String {
+    match *shape {
         Shape::Detents { count, torque, centre: 0.0 } => {
             format!("Shape::detents({count}, {torque:?})")
         }
         Shape::SnapDetents { count, torque, centre: 0.0, snap } => {
             format!("Shape::detents({count}, {torque:?}).snap({snap:?})")
-        }
-        Shape::Detents { count, torque, centre } => {
-            format!("Shape::Detents {{ count: {count}, torque: {torque:?}, centre: {centre:?} }}")
-        }
-        Shape::SnapDetents { count, torque, centre, snap } => {
-            let fields =
-                format!("count: {count}, torque: {torque:?}, centre: {centre:?}, snap: {snap:?}");
-            format!("Shape::SnapDetents {{ {fields} }}")
         }
         Shape::EndStops { from, to, stiffness } => {
             format!("Shape::end_stops({from:?}, {to:?}, {stiffness:?})")
@@ -325,5 +243,6 @@ fn shape(shape: &Shape) -> Expression {
         }
         Shape::Table(knots) => format!("Shape::Table(&{knots:?})"),
         Shape::Periodic(knots) => format!("Shape::Periodic(&{knots:?})"),
-    })
+        other => format!("Shape::{other:?}"),
+    }
 }

@@ -5,12 +5,11 @@ use std::path::Path;
 use haptic_model::file::SceneFile;
 use haptic_model::file::simulation::HandTorque;
 use haptic_model::hand::HandTrajectory;
+use haptic_model::simulation::Experiment;
 use haptic_model::simulation::plant::Plant;
 use haptic_model::simulation::torque_signal::TorqueSignal;
-use haptic_model::simulation::{Experiment, Integration, simulate};
 use haptic_model::trace::Trace;
 use haptic_model::worst_hand;
-use haptic_servo::environment::Wall;
 use serde_json::json;
 
 use crate::PageResult;
@@ -138,18 +137,7 @@ fn run(file: &SceneFile, experiment: &Experiment, what: String) -> Result<Run, S
         friction: file.friction.unwrap_or(0.0),
         ..experiment.clone()
     };
-    let motion =
-        simulate(&experiment, Integration::default()).map_err(|error| error.to_string())?;
-    let period = file.scene.timing.period;
-    let trace = Trace {
-        time: (0..experiment.samples).map(|sample| sample as f64 * period).collect(),
-        position: motion.position,
-        velocity: motion.velocity,
-        torque: motion.torque,
-        limit: motion.limit,
-        face: file.scene.environment.wall().filter(|wall| wall.is_one_sided()).map(Wall::face),
-        ..Trace::default()
-    };
+    let trace = Trace::of(file, &experiment).map_err(|error| error.to_string())?;
     Ok(Run { what, trace: trace.until(|value| value.abs() <= FARTHEST.max(TAP)) })
 }
 
@@ -158,6 +146,8 @@ mod tests {
     use serde_json::Value;
 
     use super::*;
+    use haptic_model::simulation::{Integration, simulate};
+
     use crate::test_scenes::{FREE_MODE, LATE_WALL, PROFILE, WALL};
 
     fn moved(text: &str) -> (Value, Vec<Vec<f64>>) {

@@ -1,9 +1,10 @@
 //! The surroundings of the servo in a simulation: a hand, an encoder, and the motion between them.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A passive hand that holds the device; all three numbers are 0 or more, and with all at 0 there is no hand.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Hand {
     /// Inertia `m_h` in kg m^2 that moves with the device.
     pub inertia: f64,

@@ -84,6 +84,9 @@ pub mod number;
 pub mod quantity;
 pub mod text_width;
 
+#[cfg(test)]
+mod fixture;
+
 /// The page of the package, so that its example is tested.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

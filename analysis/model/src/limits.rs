@@ -193,20 +193,12 @@ impl Curves {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haptic_servo::scene::{Device, Latency};
+    use crate::fixture::{STANDARD, on_paddle};
+    use haptic_servo::scene::Latency;
 
     fn wall(damping: f64, delay: usize, coupling: Coupling) -> Scene {
-        Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 0.001, worst_period: None },
-            coupling,
-            environment: Wall::damped(22.0, damping, delay).alone(),
-            latency: Latency::NONE,
-            torque_limit: None,
-        }
+        on_paddle(Wall::damped(22.0, damping, delay).alone(), coupling)
     }
-
-    const STANDARD: Coupling = Coupling::Spring { stiffness: 44.0 };
 
     fn near(a: f64, b: f64, part: f64) {
         assert!((a - b).abs() <= part * b.abs(), "{a} {b}");

@@ -19,7 +19,7 @@ pub enum Missed {
 
 impl Missed {
     /// Whether a tick is missed, tick by tick.
-    pub fn ticks(self) -> impl Iterator<Item = bool> + Clone + std::fmt::Debug {
+    pub fn ticks(self) -> Ticks {
         Ticks { missed: self, random: fastrand::Rng::with_seed(self.seed()), k: 0 }
     }
 
@@ -28,8 +28,9 @@ impl Missed {
     }
 }
 
+/// Whether each tick is missed.
 #[derive(Clone, Debug)]
-struct Ticks {
+pub struct Ticks {
     missed: Missed,
     random: fastrand::Rng,
     k: u64,

@@ -148,16 +148,15 @@ fn crossing(at: &impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file::{Format, SceneFile, parse};
+    use crate::file::SceneFile;
+    use crate::fixture::file_on_paddle;
     use crate::stability::{self, critical_stiffness};
 
     fn file(stiffness: f64, damping: f64, delay: usize) -> SceneFile {
-        let text = format!(
-            "name = \"a wall\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n[servo]\nperiod = 0.001\n\
-             [environment]\ntype = \"damper-wall\"\nstiffness = {stiffness}\ndamping = {damping}\n\
+        file_on_paddle(&format!(
+            "[environment]\ntype = \"damper-wall\"\nstiffness = {stiffness}\ndamping = {damping}\n\
              delay = {delay}\n"
-        );
-        parse("wall.toml", Format::Toml, &text).unwrap()
+        ))
     }
 
     #[test]

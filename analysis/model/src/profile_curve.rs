@@ -213,14 +213,13 @@ impl DetentLimits {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file::{Format, parse};
+    use crate::fixture::file_on_paddle;
 
-    const DETENTS: &str = "name = \"knob\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n[servo]\n\
-        period = 0.001\n[coupling]\nstiffness = 44.0\n[environment]\ntype = \"profile\"\ndelay = 1\n\
+    const DETENTS: &str = "[coupling]\nstiffness = 44.0\n[environment]\ntype = \"profile\"\ndelay = 1\n\
         [[environment.shape]]\ntype = \"detents\"\ncount = 24\ntorque = 0.05\n";
 
     fn curve(text: &str) -> ProfileCurve {
-        ProfileCurve::of(&parse("a.toml", Format::Toml, text).unwrap().scene).unwrap()
+        ProfileCurve::of(&file_on_paddle(text).scene).unwrap()
     }
 
     /// A wave of straight lines: slope `4 n F / (2 pi)`, and the area of a triangle between a place to
@@ -254,7 +253,7 @@ mod tests {
 
     #[test]
     fn more_repetitions_leave_less_torque() {
-        let scene = parse("a.toml", Format::Toml, DETENTS).unwrap().scene;
+        let scene = file_on_paddle(DETENTS).scene;
         for (delay, slope) in [(1, 44.0), (2, 44.0 / 3.0)] {
             let limits = DetentLimits::of(&scene, delay, [1, 6, 48].into_iter());
             for (count, torque) in &limits.points {

@@ -108,19 +108,13 @@ impl Filter {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixture::{STANDARD, on_paddle};
     use haptic_servo::certificate::LoopTransfers;
     use haptic_servo::environment::Wall;
-    use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+    use haptic_servo::scene::Scene;
 
     fn wall(delay: usize) -> Scene {
-        Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 0.001, worst_period: None },
-            coupling: Coupling::Spring { stiffness: 44.0 },
-            environment: Wall::damped(22.0, 0.01, delay).alone(),
-            latency: Latency::NONE,
-            torque_limit: None,
-        }
+        on_paddle(Wall::damped(22.0, 0.01, delay).alone(), STANDARD)
     }
 
     #[test]

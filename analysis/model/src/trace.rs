@@ -65,14 +65,21 @@ impl Trace {
     /// # Errors
     /// Where the file has no `[simulation]`, or its scene cannot run.
     pub fn simulated(file: &SceneFile, folder: &Path) -> Result<Self, SimulationError> {
-        let experiment = Experiment::of(file, folder)?;
-        let motion = simulate(&experiment, Integration::default())?;
+        Self::of(file, &Experiment::of(file, folder)?)
+    }
+
+    /// The simulation of an experiment with a file's scene.
+    ///
+    /// # Errors
+    /// Where the scene cannot run.
+    pub fn of(file: &SceneFile, experiment: &Experiment) -> Result<Self, SimulationError> {
+        let motion = simulate(experiment, Integration::default())?;
         let period = file.scene.timing.period;
         let hand_torque =
             |k: usize| experiment.hand_torque.held(k) + experiment.hand_torque.sine(k, period)[0];
         let is_driven = experiment.hand_torque != TorqueSignal::Free;
         let driven = is_driven.then(|| (0..experiment.samples).map(hand_torque).collect());
-        let trace = Self {
+        Ok(Self {
             title: titled(&file.name, [&file.scene.latency]),
             time_unit: TimeUnit::Seconds,
             time: (0..experiment.samples).map(|sample| sample as f64 * period).collect(),
@@ -84,8 +91,7 @@ impl Trace {
             limit: motion.limit,
             face: file.scene.environment.wall().filter(|wall| wall.is_one_sided()).map(Wall::face),
             ..Self::default()
-        };
-        Ok(trace)
+        })
     }
 
     /// Ends the run at the first sample that is not fine, or at the end of the recording.

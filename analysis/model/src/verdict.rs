@@ -3,14 +3,14 @@
 use std::fmt;
 
 use haptic_servo::certificate::{
-    self, Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Rejection,
-    Remedies, Resolution, Rule, assess_in, certify_in,
+    Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Rejection,
+    Remedies, Resolution, Rule, RuleAnswer, assess_in, certify_in,
 };
 use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::{Coupling, Scene};
 use haptic_servo::servo::OutputTiming;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::file::SceneFile;
 use crate::line_search::minimizing_angle;
@@ -40,25 +40,19 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// The answer of one rule.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum RuleAnswer {
-    /// Proved.
-    Pass,
-    /// Disproved.
-    Fail,
-    /// Neither.
-    Undecided,
-}
-
 /// Both rules' answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Rules {
     /// Equations 17 to 19 (theory, section 4).
+    #[serde(serialize_with = "in_a_word")]
     pub paper: RuleAnswer,
     /// The exact rule (theory, section 4.1).
+    #[serde(serialize_with = "in_a_word")]
     pub exact: RuleAnswer,
+}
+
+fn in_a_word<S: Serializer>(answer: &RuleAnswer, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&format!("{answer:?}").to_lowercase())
 }
 
 /// An enclosure in N m s/rad; both ends are `None` where the value does not exist.
@@ -99,26 +93,16 @@ pub struct AtRest {
 impl AtRest {
     /// Of the certificate's bound.
     pub fn of(rest: &QuantizationBound) -> Self {
-        let QuantizationBound {
-            encoder,
-            numbers,
-            converter,
-            current,
-            crossing,
-            friction,
-            in_any_motion,
-        } = *rest;
-        let (hum, comes_to_rest) = (rest.hum(), rest.comes_to_rest());
         Self {
-            encoder,
-            numbers,
-            converter,
-            current,
-            crossing,
-            hum,
-            friction,
-            comes_to_rest,
-            in_any_motion,
+            encoder: rest.encoder,
+            numbers: rest.numbers,
+            converter: rest.converter,
+            current: rest.current,
+            crossing: rest.crossing,
+            hum: rest.hum(),
+            friction: rest.friction,
+            comes_to_rest: rest.comes_to_rest(),
+            in_any_motion: rest.in_any_motion,
         }
     }
 }
@@ -248,7 +232,7 @@ fn reported(
     VerdictReport {
         name: name.to_owned(),
         verdict,
-        rules: Rules { paper: answer(assessment.paper), exact: answer(assessment.exact) },
+        rules: Rules { paper: assessment.paper, exact: assessment.exact },
         reason: rejection.as_ref().map_or("ok", |rejection| rejection.reason()),
         alpha: enclosure(assessment.alpha),
         alpha_coupled: enclosure(assessment.alpha_coupled),
@@ -338,14 +322,6 @@ fn passed(margin: Option<f64>, rest: Option<&QuantizationBound>) -> String {
     });
     let rest = rest.map_or_else(String::new, |rest| format!("; at rest {rest}"));
     format!("certified: no passive hand can make it oscillate{to_spare}{rest}")
-}
-
-fn answer(answer: certificate::RuleAnswer) -> RuleAnswer {
-    match answer {
-        certificate::RuleAnswer::Pass => RuleAnswer::Pass,
-        certificate::RuleAnswer::Fail => RuleAnswer::Fail,
-        certificate::RuleAnswer::Undecided => RuleAnswer::Undecided,
-    }
 }
 
 fn enclosure(interval: Option<Interval>) -> Enclosure {

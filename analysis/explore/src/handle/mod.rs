@@ -9,7 +9,6 @@
 mod device_in_hand;
 mod oscillation;
 mod push;
-mod record;
 mod rim;
 mod servo;
 mod settings;

@@ -1,14 +1,10 @@
 //! The servo that renders a scene: the certified servo; or a servo without proof, in simulation only; or
 //! none.
 
-use haptic_model::controller::{Controller, Tick, controller};
+use haptic_model::controller::{Controller, controller};
 use haptic_model::file::SceneFile;
 use haptic_servo::certificate::assess;
-use haptic_servo::dac::DacCode;
-use haptic_servo::encoder::{CounterWidth, Position, RawCount};
-use haptic_servo::number::OutOfRange;
 use haptic_servo::servo::Transducers;
-use haptic_servo::torque::LimitReason;
 use serde::Serialize;
 
 use super::unchecked::Unchecked;
@@ -54,7 +50,7 @@ impl Rendered {
                 refusal: Some(refusal),
             },
             Err(error) => Self {
-                servo: Box::new(Off::new(transducers)),
+                servo: Box::new(Unchecked::off(transducers)),
                 rendering: Rendering::Off,
                 refusal: Some(error.map_or(refusal, |error| error.to_string())),
             },
@@ -76,35 +72,4 @@ pub fn certified(
     assess(&file.scene).outcome.map_err(|rejection| rejection.to_string())?;
     let certified = file.scene.certify().map_err(|rejection| rejection.to_string())?;
     controller::<_, f32>(&certified, transducers).map_err(|error| error.to_string())
-}
-
-/// A motor that is off: the encoder is read, and every code is mid-scale.
-struct Off {
-    position: Position,
-    radians_per_count: f64,
-}
-
-impl Off {
-    fn new(transducers: &Transducers) -> Self {
-        let radians_per_count = std::f64::consts::TAU / transducers.counts_per_turn;
-        Self { position: Position::new(CounterWidth::Bits32), radians_per_count }
-    }
-}
-
-impl Controller for Off {
-    fn tick(&mut self, raw: i32) -> Tick {
-        self.position.update(RawCount::from(raw));
-        let count = self.position.count();
-        Tick {
-            count,
-            angle: count as f64 * self.radians_per_count,
-            torque: 0.0,
-            code: DacCode::MID_SCALE.get(),
-            limit: LimitReason::None,
-        }
-    }
-
-    fn tick_at(&mut self, _: f64) -> Result<f64, OutOfRange> {
-        Ok(0.0)
-    }
 }

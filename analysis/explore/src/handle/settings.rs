@@ -12,30 +12,18 @@ pub struct Settings {
     /// Encoder counts per turn; default: those of the scene.
     pub counts_per_turn: Option<f64>,
     /// The hand.
-    pub hand: HandSettings,
+    pub hand: Hand,
     /// Whether only a certified scene has torque.
     pub is_checked: bool,
 }
 
-/// A requested hand.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct HandSettings {
-    /// In N m/rad.
-    pub stiffness: f64,
-    /// In N m s/rad.
-    pub damping: f64,
-    /// In kg m^2.
-    pub inertia: f64,
-}
-
-impl HandSettings {
+impl Settings {
     /// The hand, if it is passive.
     ///
     /// # Errors
     /// The number that is out of its bounds.
-    pub fn hand(self) -> Result<Hand, String> {
-        let Self { stiffness, damping, inertia } = self;
+    pub fn passive_hand(&self) -> Result<Hand, String> {
+        let Hand { stiffness, damping, inertia } = self.hand;
         for (name, value, unit) in [
             ("stiffness", stiffness, "N m/rad"),
             ("damping", damping, "N m s/rad"),
@@ -47,6 +35,6 @@ impl HandSettings {
                 ));
             }
         }
-        Ok(Hand { inertia, damping, stiffness })
+        Ok(self.hand)
     }
 }

@@ -12,7 +12,6 @@ use serde::{Deserialize, Serialize};
 use super::device_in_hand::DeviceInHand;
 use super::oscillation::{Oscillation, Watch};
 use super::push::Push;
-use super::record::Record;
 use super::servo::{Rendered, Rendering};
 use super::settings::Settings;
 use crate::scene_text::read;
@@ -21,6 +20,8 @@ use crate::scene_text::read;
 const MOST_SETTLING: u32 = 1000;
 /// Ticks with the same code after which it has settled.
 const SETTLED: u32 = 16;
+/// Largest number of kept ticks: a quarter of an hour at 1 kHz.
+const MOST_KEPT: usize = 1 << 20;
 /// Largest speed of the hand's set-point in rad/s, even if a pointer jumps.
 const FASTEST: f64 = 40.0;
 
@@ -34,7 +35,8 @@ pub struct Simulated {
     /// The hand's set-point in rad; the device's angle without a hand.
     setpoint: f64,
     push: Option<Push>,
-    record: Record,
+    /// Counts and codes of the servo from its first tick on; later ones are dropped when it is full.
+    record: Vec<(i32, u16)>,
     watch: Watch,
 }
 
@@ -118,7 +120,7 @@ impl Simulated {
     /// If the scene is invalid, or has no motion.
     pub fn new(settings: Settings, before: Option<&Self>) -> Result<Self, String> {
         let file = read(&settings.scene).map_err(|error| error.to_string())?;
-        let hand = settings.hand.hand()?;
+        let hand = settings.passive_hand()?;
         let transducers = file.transducers(settings.counts_per_turn, None);
         let counts = transducers.counts_per_turn;
         if !(counts > 0.0 && counts.is_finite()) {
@@ -139,7 +141,7 @@ impl Simulated {
             transducers,
             device,
             push: None,
-            record: Record::default(),
+            record: Vec::new(),
             watch: Watch::new(period, step, TAU / counts),
         };
         simulated.settle();
@@ -156,7 +158,7 @@ impl Simulated {
     /// # Errors
     /// If the hand is invalid, or there is no motion in it.
     pub fn change_hand(&mut self, settings: Settings) -> Result<(), String> {
-        let hand = settings.hand.hand()?;
+        let hand = settings.passive_hand()?;
         self.device.change_hand(&self.scene, hand).map_err(|error| error.to_string())?;
         self.settings = settings;
         Ok(())
@@ -187,7 +189,8 @@ impl Simulated {
 
     /// Count and code of each tick of the servo.
     pub fn recorded(&self, numbers: &mut Vec<f64>) {
-        numbers.extend(self.record.numbers());
+        let numbers_of = |&(count, code): &(i32, u16)| [f64::from(count), f64::from(code)];
+        numbers.extend(self.record.iter().flat_map(numbers_of));
     }
 
     /// Begins the push that demonstrates the environment.
@@ -229,7 +232,7 @@ impl Simulated {
     fn tick(&mut self, setpoint: Option<HandSetpoint>, numbers: &mut Vec<f64>) {
         let raw = self.device.count();
         let tick = self.rendered.servo.tick(raw);
-        self.record.add(raw, tick.code);
+        self.keep(raw, tick.code);
         self.device.step(tick.code, setpoint);
         self.setpoint = setpoint.map_or(self.device.position(), |setpoint| setpoint.to);
         let rests = setpoint.is_none_or(|setpoint| setpoint.from == setpoint.to);
@@ -245,13 +248,19 @@ impl Simulated {
         ]);
     }
 
+    fn keep(&mut self, count: i32, code: u16) {
+        if self.record.len() < MOST_KEPT {
+            self.record.push((count, code));
+        }
+    }
+
     /// Runs the servo with the device at its present angle until the servo's memory has settled.
     fn settle(&mut self) {
         let count = self.device.count();
         let (mut code, mut same) = (DacCode::MID_SCALE.get(), 0);
         for _ in 0..MOST_SETTLING {
             let next = self.rendered.servo.tick(count).code;
-            self.record.add(count, next);
+            self.keep(count, next);
             same = if next == code { same + 1 } else { 0 };
             code = next;
             if same == SETTLED {

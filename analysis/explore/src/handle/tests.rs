@@ -11,6 +11,7 @@ use haptic_servo::servo::{Servo, Transducers};
 use serde_json::{Value, json};
 
 use super::{hold, motion, push, recorded, replay};
+use crate::scene_text::read;
 
 /// Numbers of a tick.
 const COLUMNS: usize = 7;
@@ -108,8 +109,7 @@ fn the_device_moves_by_the_codes_and_the_hand() {
     held(&wall(STIFFNESS), true);
     let rows = moved(400, 0.3, true).1;
     let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 6.0 };
-    let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
-    let device = HeldDevice::new(device, hand, 1e-3).unwrap();
+    let device = HeldDevice::of(&read(&wall(STIFFNESS)).unwrap().scene, hand).unwrap();
     let mut state = device.at(Motion::default());
     for (tick, row) in rows.iter().enumerate() {
         assert_eq!(row[0], (state.motion().position * 61_440.0 / std::f64::consts::TAU).floor());

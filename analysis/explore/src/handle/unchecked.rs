@@ -12,10 +12,11 @@ use haptic_servo::scene::Scene;
 use haptic_servo::servo::{BuildError, Transducers};
 use haptic_servo::torque::LimitReason;
 
-/// An uncertified servo, initially at rest at zero.
+/// An uncertified servo, initially at rest at zero, or a motor that is off.
 #[derive(Clone, Debug)]
 pub struct Unchecked {
-    servo: UnquantizedServo,
+    /// `None`: the encoder is read, and every code is mid-scale.
+    servo: Option<UnquantizedServo>,
     position: Position,
     radians_per_count: f64,
     code_scale: f64,
@@ -36,12 +37,27 @@ impl Unchecked {
         let code_scale = f64::code_scale(f64::from(DacCode::CODES_TO_FULL_SCALE) / full_scale)
             .map_err(|reason| BuildError::Unrepresentable { name: "codes per N m", reason })?;
         Ok(Self {
-            servo: UnquantizedServo::new(&Scene { torque_limit, ..*scene })?,
-            position: Position::new(transducers.counter),
-            radians_per_count: TAU / transducers.counts_per_turn,
+            servo: Some(UnquantizedServo::new(&Scene { torque_limit, ..*scene })?),
             code_scale,
             limit: if has_limit { LimitReason::Torque } else { LimitReason::DacRange },
+            ..Self::off(transducers)
         })
+    }
+
+    /// A motor that is off.
+    pub fn off(transducers: &Transducers) -> Self {
+        Self {
+            servo: None,
+            position: Position::new(transducers.counter),
+            radians_per_count: TAU / transducers.counts_per_turn,
+            code_scale: 0.0,
+            limit: LimitReason::None,
+        }
+    }
+
+    fn torque(&mut self, angle: f64) -> (f64, LimitReason) {
+        let none = LimitReason::None;
+        self.servo.as_mut().map_or((0.0, none), |servo| servo.tick(angle, none))
     }
 }
 
@@ -50,7 +66,7 @@ impl Controller for Unchecked {
         self.position.update(RawCount::from(raw));
         let count = self.position.count();
         let angle = count as f64 * self.radians_per_count;
-        let (torque, limit) = self.servo.tick(angle, LimitReason::None);
+        let (torque, limit) = self.torque(angle);
         Tick {
             count,
             angle,
@@ -61,6 +77,6 @@ impl Controller for Unchecked {
     }
 
     fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
-        Ok(self.servo.tick(angle, LimitReason::None).0)
+        Ok(self.torque(angle).0)
     }
 }

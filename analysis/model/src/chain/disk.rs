@@ -26,45 +26,19 @@ use num_traits::One;
 use super::exact::{Decimal, Polynomial};
 use super::{Chain, Link, Mass};
 
-/// The disk as polynomials in `u = w^2`; `unit` stands for the number 1.
-struct Disk {
+/// The disk as polynomials in `u = w^2`; `unit` stands for the number 1. Its least real part is
+/// `d = touch / curvature`; both are zero where no damper holds the hand's end, so that the disk is a half
+/// plane, or where there is no link.
+pub struct Disk {
     unit: Polynomial,
     /// `G`.
-    curvature: Polynomial,
+    pub curvature: Polynomial,
     /// `A`.
-    touch: Polynomial,
+    pub touch: Polynomial,
     /// `E`.
     height: Polynomial,
     /// `f`.
     admittance: Polynomial,
-}
-
-/// `d = touch / curvature` as polynomials in `u = w^2`; both zero where no damper holds the hand's
-/// end, so that the disk is a half plane, or where there is no link.
-pub struct LeastReal {
-    /// `A`.
-    pub touch: Polynomial,
-    /// `G`.
-    pub curvature: Polynomial,
-}
-
-impl LeastReal {
-    /// Of the impedance behind the first mass: everything except its own inertia and damping, in units of
-    /// `10^-places` N m s/rad.
-    pub fn behind_motor(chain: &Chain, places: u32) -> Self {
-        let mut disk = Disk {
-            unit: Polynomial::new(vec![BigInt::one()]),
-            curvature: Polynomial::default(),
-            touch: Polynomial::default(),
-            height: Polynomial::default(),
-            admittance: Polynomial::default(),
-        };
-        let masses = chain.masses();
-        for (index, link) in chain.links().iter().enumerate().rev() {
-            disk = disk.with_mass(&masses[index + 1], places).through(link, places);
-        }
-        Self { touch: disk.touch, curvature: disk.curvature }
-    }
 }
 
 /// Power of ten that makes every number of a chain whole.
@@ -75,6 +49,23 @@ pub fn places(chain: &Chain) -> u32 {
 }
 
 impl Disk {
+    /// Of the impedance behind the first mass: everything except its own inertia and damping, in units of
+    /// `10^-places` N m s/rad.
+    pub fn behind_motor(chain: &Chain, places: u32) -> Self {
+        let mut disk = Self {
+            unit: Polynomial::new(vec![BigInt::one()]),
+            curvature: Polynomial::default(),
+            touch: Polynomial::default(),
+            height: Polynomial::default(),
+            admittance: Polynomial::default(),
+        };
+        let masses = chain.masses();
+        for (index, link) in chain.links().iter().enumerate().rev() {
+            disk = disk.with_mass(&masses[index + 1], places).through(link, places);
+        }
+        disk
+    }
+
     fn with_mass(self, mass: &Mass, places: u32) -> Self {
         let [m, b] = [mass.inertia, mass.damping].map(|value| Decimal::of(value).whole(places));
         // b (1 + 2 a) + 2 m w e + (b^2 + m^2 w^2) g

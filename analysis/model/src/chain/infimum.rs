@@ -17,19 +17,8 @@ pub struct Infimum {
     pub lower: BigRational,
     /// An upper bound of it.
     pub upper: BigRational,
-    /// The place where it is reached.
-    pub minimizer: Minimizer,
-}
-
-/// The place of an infimum over the half line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Minimizer {
-    /// At 0.
-    Zero,
-    /// At this number.
-    At(f64),
-    /// In the limit of infinity.
-    Infinity,
+    /// The number at which it is reached; infinity: in the limit.
+    pub minimizer: f64,
 }
 
 /// Encloses the infimum of `p(x) / r(x)` over all `x >= 0`, the limit at infinity included, to
@@ -72,9 +61,9 @@ pub fn infimum(
     }
     let reach = &best.0 + tolerance(&best.0);
     let minimizer = match (zero <= reach, infinity <= reach) {
-        (true, _) => Minimizer::Zero,
-        (_, true) => Minimizer::Infinity,
-        _ => Minimizer::At(critical_point(p, r, &best.1, w)),
+        (true, _) => 0.0,
+        (_, true) => f64::INFINITY,
+        _ => critical_point(p, r, &best.1, w),
     };
     Infimum { lower, upper: best.0, minimizer }
 }

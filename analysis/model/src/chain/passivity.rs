@@ -6,9 +6,9 @@ use num_rational::BigRational;
 use num_traits::{One, Pow, ToPrimitive, Zero};
 use thiserror::Error;
 
-use super::disk::{LeastReal, places};
+use super::disk::{Disk, places};
 use super::exact::Decimal;
-use super::infimum::{Minimizer, infimum};
+use super::infimum::infimum;
 use super::two_port::TwoPort;
 use super::{Chain, EncoderPlace};
 use crate::quantity::significant;
@@ -131,7 +131,7 @@ impl Chain {
 
     /// Bounds of the damping that the rest of the chain adds to `motor`, the damping of its first mass.
     fn behind_motor(&self, places: u32, motor: &BigInt) -> (BigRational, BigRational, Reached) {
-        let LeastReal { touch, curvature } = LeastReal::behind_motor(self, places);
+        let Disk { touch, curvature, .. } = Disk::behind_motor(self, places);
         if touch.is_zero() || curvature.is_zero() {
             // There is no damper behind the motor's mass that a hand could not bypass.
             return (BigRational::zero(), BigRational::zero(), Reached::Everywhere);
@@ -149,9 +149,9 @@ impl Chain {
         let found = infimum(&p, &r, tolerance);
         let reached = match found.minimizer {
             _ if p.degree().max(r.degree()) == 0 => Reached::Everywhere,
-            Minimizer::Zero => Reached::AtRest,
-            Minimizer::At(square) => Reached::At(square.sqrt()),
-            Minimizer::Infinity => Reached::AtInfinity,
+            0.0 => Reached::AtRest,
+            f64::INFINITY => Reached::AtInfinity,
+            square => Reached::At(square.sqrt()),
         };
         (found.lower, found.upper, reached)
     }

@@ -3,7 +3,7 @@
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::{FromPrimitive, Num, ToPrimitive};
+use num_traits::{Num, ToPrimitive};
 use proptest::prelude::*;
 
 use super::*;
@@ -271,15 +271,4 @@ proptest! {
             prop_assert!(grid <= hi + 1e-9 * (hi + device.damping()), "{grid} {found:?}");
         }
     }
-}
-
-#[test]
-fn the_reference_is_what_it_says() {
-    let device = chain(&[(0.05, 0.5), (0.02, 0.25)], &[(700.0, 0.125)]);
-    let third = BigRational::new(BigInt::from_i32(1).unwrap(), BigInt::from(3));
-    let sum = bound_at(&device, third);
-    assert_eq!(
-        sum,
-        BigRational::from_decimal(0.5) + BigRational::new(BigInt::from(1), BigInt::from(12))
-    );
 }

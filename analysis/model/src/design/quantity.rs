@@ -33,29 +33,31 @@ impl Quantity {
     /// Name and unit.
     pub fn name_and_unit(self) -> (&'static str, &'static str) {
         match self {
-            Self::Stiffness => ("stiffness", "N m/rad"),
-            Self::Damping => ("damping", "N m s/rad"),
-            Self::Delay => ("delay", SAMPLES),
             Self::Cancellation => ("cancellation", "N m s/rad"),
-            Self::ActuatorLag => Parameter::ActuatorLag.name_and_unit(),
-            Self::OutputDelay => Parameter::OutputDelay.name_and_unit(),
-            Self::Torque => Parameter::ProfileTorque.name_and_unit(),
-            Self::Count => Parameter::Count.name_and_unit(),
+            _ => self.parameter().name_and_unit(),
+        }
+    }
+
+    /// The number of the scene that it sets.
+    fn parameter(self) -> Parameter {
+        match self {
+            Self::Stiffness => Parameter::Stiffness,
+            Self::Damping => Parameter::Damping,
+            Self::Delay => Parameter::Delay,
+            Self::Cancellation => Parameter::Residual,
+            Self::ActuatorLag => Parameter::ActuatorLag,
+            Self::OutputDelay => Parameter::OutputDelay,
+            Self::Torque => Parameter::ProfileTorque,
+            Self::Count => Parameter::Count,
         }
     }
 
     /// The scene with this value of the quantity; `None` where its environment has no such number.
     pub(crate) fn set(self, scene: &Scene, value: f64) -> Option<Scene> {
         match self {
-            Self::Stiffness => scene.with(Parameter::Stiffness, value),
-            Self::Damping => scene.with(Parameter::Damping, value),
-            Self::Delay => scene.with(Parameter::Delay, value),
             Self::Cancellation => scene.with(Parameter::Residual, scene.device.damping - value),
-            Self::ActuatorLag => scene.with(Parameter::ActuatorLag, value),
-            Self::Torque => scene.with(Parameter::ProfileTorque, value),
             // A profile that does not repeat has no number of repetitions.
             Self::Count if !scene.environment.profile()?.outline().wraps => None,
-            Self::Count => scene.with(Parameter::Count, value),
             Self::OutputDelay => {
                 let value = last_update(scene, value);
                 let mut delayed = scene.with(Parameter::OutputDelay, value)?;
@@ -68,6 +70,7 @@ impl Quantity {
                 }
                 Some(delayed)
             }
+            _ => scene.with(self.parameter(), value),
         }
     }
 

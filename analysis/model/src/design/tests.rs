@@ -1,18 +1,12 @@
 use super::*;
 use crate::chain::{Link, Mass};
 use crate::file::{Format, parse, write};
+use crate::fixture::on_paddle;
 use haptic_servo::environment::{Canceller, Environment, Wall};
-use haptic_servo::scene::{Device, Latency, TimeRange, Timing};
+use haptic_servo::scene::{Latency, TimeRange};
 
 fn scene(environment: Environment) -> Scene {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
-        coupling: Coupling::Rigid,
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
+    on_paddle(environment, Coupling::Rigid)
 }
 
 fn wall(stiffness: f64, damping: f64, delay: usize) -> Environment {
@@ -20,22 +14,17 @@ fn wall(stiffness: f64, damping: f64, delay: usize) -> Environment {
 }
 
 fn file(scene: Scene) -> SceneFile {
-    let chain = Chain::rigid(scene.device.inertia, scene.device.damping).unwrap();
-    let name = "designed".to_owned();
-    let (simulation, hand) = (None, None);
-    let (encoder_step, full_scale, friction) = (None, None, None);
-    let shapes = None;
     SceneFile {
-        name,
+        name: "designed".to_owned(),
         scene,
-        chain,
-        simulation,
-        hand,
-        encoder_step,
-        full_scale,
-        friction,
+        chain: Chain::rigid(scene.device.inertia, scene.device.damping).unwrap(),
+        simulation: None,
+        hand: None,
+        encoder_step: None,
+        full_scale: None,
+        friction: None,
         supply: None,
-        shapes,
+        shapes: None,
     }
 }
 

@@ -1,13 +1,11 @@
 //! The table of a device: a rigid body, or a chain of masses, and the lags at its two ends.
 
-use haptic_servo::scene::{Device, TimeRange};
+use haptic_servo::scene::{Device, Latency};
 
-use super::faults::{Read, Reported, all};
+use super::faults::{Read, all};
 use super::key::{self, Key};
-use super::problem::Problem;
-use super::section::{Found, Section};
-use super::tree::Span;
-use crate::chain::{Chain, EncoderPlace, Link, MAX_MASSES, Mass, NoPassivity};
+use super::section::Section;
+use crate::chain::{Chain, EncoderPlace, Link, MAX_MASSES, Mass};
 
 /// The purpose of reading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,14 +24,8 @@ pub struct DeviceTable {
     pub device: Device,
     /// Dry friction of the motor's mass in N m.
     pub friction: Option<f64>,
-    /// Time constant of the amplifier.
-    pub actuator_lag: Option<Found<TimeRange>>,
-    /// Time constant of the filter behind the encoder.
-    pub sensor_lag: Option<Found<TimeRange>>,
-    /// Begin and end of the amplifier's step response.
-    pub actuator_response: Option<Found<TimeRange>>,
-    /// Updates of the amplifier in a period.
-    pub actuator_updates: Option<Found<f64>>,
+    /// The times of amplifier and encoder.
+    pub latency: Latency,
 }
 
 /// Reads `[device]`.
@@ -50,83 +42,74 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
             Err(reported)
         }
     };
-    let declared = section.found(&key::PASSIVITY);
+    let declared = section.optional(&key::PASSIVITY);
     let encoder = section.text(&key::ENCODER);
     let [actuator_lag, sensor_lag, actuator_response] =
         [&key::ACTUATOR_LAG, &key::SENSOR_LAG, &key::ACTUATOR_RESPONSE]
             .map(|key| section.time(key));
-    let actuator_updates = section.found(&key::ACTUATOR_UPDATES);
+    let updates = section.number(&key::ACTUATOR_UPDATES);
     section.finish();
-    let (friction, chain, declared) = (friction?, chain?, declared?);
-    let (encoder, actuator_lag, sensor_lag) = (encoder?, actuator_lag?, sensor_lag?);
-    let (actuator_response, actuator_updates) = (actuator_response?, actuator_updates?);
-    alone(&section, actuator_response.as_ref(), &[&actuator_lag, &sensor_lag])?;
-    let chain = placed(&section, chain, encoder.as_ref())?;
-    let place = match &encoder {
-        Some(found) if !chain.is_collocated() => (&key::ENCODER, found.span.clone()),
-        _ => (&key::DEVICE, section.span()),
+    let (friction, chain, declared, encoder) = (friction?, chain?, declared?, encoder?);
+    let latency = Latency {
+        actuator_lag: actuator_lag?,
+        sensor_lag: sensor_lag?,
+        actuator_response: actuator_response?,
+        actuator_updates: updates? as u16,
+        ..Latency::NONE
     };
-    let passivity = passivity(&section, &chain, purpose, place, declared, is_rigid)?;
+    alone(&section, &latency)?;
+    let chain = placed(&section, chain, encoder.as_deref())?;
+    let is_apart = encoder.is_some() && !chain.is_collocated();
+    let key = if is_apart { &key::ENCODER } else { &key::DEVICE };
+    let passivity = passivity(&section, &chain, purpose, key, declared, is_rigid)?;
     let device = Device { inertia: chain.inertia(), damping: chain.damping(), passivity };
-    Ok(DeviceTable {
-        chain,
-        device,
-        friction,
-        actuator_lag,
-        sensor_lag,
-        actuator_response,
-        actuator_updates,
-    })
+    Ok(DeviceTable { chain, device, friction, latency })
 }
 
 /// A step response of unknown shape cannot stand beside a lag: no bound is known for both.
-fn alone(
-    section: &Section<'_>,
-    response: Option<&Found<TimeRange>>,
-    lags: &[&Option<Found<TimeRange>>],
-) -> Read<()> {
-    let has_lag = lags.iter().any(|lag| lag.as_ref().is_some_and(|found| !found.value.is_zero()));
-    match response {
-        Some(found) if has_lag && !found.value.is_zero() => {
-            let lags = [key::ACTUATOR_LAG.path, key::SENSOR_LAG.path];
-            let reason = format!("stands beside `{}` or `{}`", lags[0], lags[1]);
-            Err(section.conflict(&key::ACTUATOR_RESPONSE, found.span.clone(), reason))
-        }
-        _ => Ok(()),
+fn alone(section: &Section<'_>, latency: &Latency) -> Read<()> {
+    let lags = [latency.actuator_lag, latency.sensor_lag];
+    if latency.actuator_response.is_zero() || lags.iter().all(|lag| lag.is_zero()) {
+        return Ok(());
     }
+    let [actuator, sensor] = [key::ACTUATOR_LAG.path, key::SENSOR_LAG.path];
+    let reason = format!("stands beside `{actuator}` or `{sensor}`");
+    Err(section.conflict(&key::ACTUATOR_RESPONSE, reason))
 }
 
 fn rigid(section: &mut Section<'_>) -> Read<Chain> {
     let inertia = section.number(&key::INERTIA);
     let damping = section.number(&key::DEVICE_DAMPING);
     let mass = Mass { inertia: inertia?, damping: damping? };
-    chain(section, &key::DEVICE, section.span(), vec![mass], Vec::new())
+    chain(section, &key::DEVICE, vec![mass], Vec::new())
 }
 
-fn masses_and_links(section: &mut Section<'_>, masses: Found<Vec<Section<'_>>>) -> Read<Chain> {
-    let alone = [&key::INERTIA, &key::DEVICE_DAMPING].map(|key| {
-        let Some(Found { span, .. }) = section.found(key)? else { return Ok(()) };
-        let reason = format!("stands beside [[{}]], which has its own", key::MASS.path);
-        Err(section.conflict(key, span, reason))
+fn masses_and_links(section: &mut Section<'_>, masses: Vec<Section<'_>>) -> Read<Chain> {
+    let alone = [&key::INERTIA, &key::DEVICE_DAMPING].map(|key| match section.optional(key)? {
+        None => Ok(()),
+        Some(_) => {
+            let reason = format!("stands beside [[{}]], which has its own", key::MASS.path);
+            Err(section.conflict(key, reason))
+        }
     });
     let links = section.tables(&key::LINK)?;
-    let (count, mass_span) = (masses.value.len(), masses.span);
+    let count = masses.len();
     if count == 0 || count > MAX_MASSES {
-        return Err(section.out_of_bounds(&key::MASS, key::MASS.path, &mass_span));
+        return Err(section.out_of_bounds(&key::MASS));
     }
-    let masses = all(masses.value.into_iter().map(mass));
-    let (links, link_span) =
-        links.map_or((Vec::new(), None), |links| (links.value, Some(links.span)));
+    let masses = all(masses.into_iter().map(mass));
+    let has_links = links.is_some();
+    let links = links.unwrap_or_default();
     if links.len() + 1 != count {
         let reason = format!("are {} for {count} masses; there must be {}", links.len(), count - 1);
-        return Err(match link_span {
-            Some(span) => section.conflict(&key::LINK, span, reason),
-            None => section.missing(&key::LINK),
+        return Err(match has_links {
+            true => section.conflict(&key::LINK, reason),
+            false => section.missing(&key::LINK),
         });
     }
     let links = all(links.into_iter().map(link));
     all(alone.into_iter())?;
-    chain(section, &key::MASS, mass_span, masses?, links?)
+    chain(section, &key::MASS, masses?, links?)
 }
 
 fn mass(mut section: Section<'_>) -> Read<Mass> {
@@ -137,84 +120,65 @@ fn mass(mut section: Section<'_>) -> Read<Mass> {
 }
 
 fn link(mut section: Section<'_>) -> Read<Link> {
-    let stiffness = section.found(&key::LINK_STIFFNESS);
-    let stiffness =
-        stiffness.and_then(|found| found.ok_or_else(|| section.missing(&key::LINK_STIFFNESS)));
+    let stiffness = section.number(&key::LINK_STIFFNESS);
     let damping = section.number(&key::LINK_DAMPING);
     section.finish();
-    let (stiffness, damping) = (stiffness?, damping?);
-    if stiffness.value == 0.0 && damping == 0.0 {
-        let reason = "and no damping connect nothing".to_owned();
-        return Err(section.conflict(&key::LINK_STIFFNESS, stiffness.span, reason));
+    let link = Link { stiffness: stiffness?, damping: damping? };
+    if link.stiffness == 0.0 && link.damping == 0.0 {
+        return Err(section.conflict(&key::LINK_STIFFNESS, "and no damping connect nothing"));
     }
-    Ok(Link { stiffness: stiffness.value, damping })
+    Ok(link)
 }
 
 /// The bounds of the keys are those of a chain, so this does not fail; an error would be reported, not a
 /// panic.
-fn chain(
-    section: &Section<'_>,
-    key: &Key,
-    span: Span,
-    masses: Vec<Mass>,
-    links: Vec<Link>,
-) -> Read<Chain> {
-    Chain::new(masses, links).map_err(|error| section.conflict(key, span, error.to_string()))
+fn chain(section: &Section<'_>, key: &Key, masses: Vec<Mass>, links: Vec<Link>) -> Read<Chain> {
+    Chain::new(masses, links).map_err(|error| section.conflict(key, error))
 }
 
-fn placed(section: &Section<'_>, chain: Chain, encoder: Option<&Found<String>>) -> Read<Chain> {
-    let Some(Found { value, span }) = encoder else { return Ok(chain) };
-    let place = [EncoderPlace::Motor, EncoderPlace::Hand].into_iter().find(|at| at.word() == value);
-    match place {
+fn placed(section: &Section<'_>, chain: Chain, encoder: Option<&str>) -> Read<Chain> {
+    let Some(encoder) = encoder else { return Ok(chain) };
+    let mut places = [EncoderPlace::Motor, EncoderPlace::Hand].into_iter();
+    match places.find(|at| at.word() == encoder) {
         Some(place) => Ok(chain.with_encoder(place)),
-        None => Err(section.out_of_bounds(&key::ENCODER, key::ENCODER.path, span)),
+        None => Err(section.out_of_bounds(&key::ENCODER)),
     }
 }
 
 /// The `passivity` of the rigid body that stands for the chain: the declared value, or the lower end of the
 /// chain's passivity; `None` for a rigid body without a declared value, whose passivity is its damping. It is
-/// at most the damping, whose sum over a chain is rounded.
+/// at most the damping, whose sum over a chain is rounded. `key` is what leaves a device without passivity.
 fn passivity(
     section: &Section<'_>,
     chain: &Chain,
     purpose: Purpose,
-    (key, span): (&'static Key, Span),
-    declared: Option<Found<f64>>,
+    key: &Key,
+    declared: Option<f64>,
     is_rigid: bool,
 ) -> Read<Option<f64>> {
-    if let Some(Found { value, span }) = &declared
-        && is_rigid
-        && *value > chain.damping()
-    {
+    if is_rigid && declared.is_some_and(|declared| declared > chain.damping()) {
         let (name, damping, unit) =
             (key::DEVICE_DAMPING.path, chain.damping(), key::DEVICE_DAMPING.unit);
         let reason = format!(
             "is more than `{name}` = {damping} {unit}, and no device has more passivity than damping"
         );
-        return Err(section.conflict(&key::PASSIVITY, span.clone(), reason));
+        return Err(section.conflict(&key::PASSIVITY, reason));
     }
     let found = match chain.excess_passivity() {
         Ok(found) => found.delta,
         Err(_) if purpose == Purpose::Simulate => return Ok(Some(f64::NAN)),
-        Err(reason) => return Err(no_passivity(section, key, span, reason)),
+        Err(reason) => {
+            let reason = format!("leaves the device without passivity: {reason}");
+            return Err(section.conflict(key, reason));
+        }
     };
     match declared {
         None if is_rigid => Ok(None),
         None => Ok(Some(found.lo().min(chain.damping()))),
-        Some(Found { value, span }) if !is_rigid && value > found.hi() => {
+        Some(declared) if !is_rigid && declared > found.hi() => {
             let reason = format!("is more than the {} N m s/rad that the chain has", found.hi());
-            Err(section.conflict(&key::PASSIVITY, span, reason))
+            Err(section.conflict(&key::PASSIVITY, reason))
         }
-        Some(Found { value, .. }) => Ok(Some(value.min(chain.damping()))),
+        Some(declared) => Ok(Some(declared.min(chain.damping()))),
     }
-}
-
-fn no_passivity(
-    section: &Section<'_>,
-    key: &'static Key,
-    span: Span,
-    reason: NoPassivity,
-) -> Reported {
-    let value = section.written(&span);
-    section.report(span, Problem::NoPassivity { key: key.path, value, reason })
 }

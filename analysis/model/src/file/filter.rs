@@ -21,23 +21,22 @@ const CONJUGATE: f64 = 1e-9;
 pub fn sections(section: &mut Section<'_>) -> Read<Rational> {
     let delay = section.whole(&key::DELAY_SAMPLES);
     let rows = section.rows(&key::SECTIONS, &[6], "six finite numbers, [b0, b1, b2, a0, a1, a2]");
-    let Some(Found { value: rows, span }) = rows? else {
-        return Err(section.missing(&key::SECTIONS));
-    };
+    let Some(rows) = rows? else { return Err(section.missing(&key::SECTIONS)) };
     let mut function = Function::default();
     for row in &rows {
-        if row.value[3] == 0.0 {
-            let reason = "has an a0 of 0: its output would precede its input".to_owned();
-            return Err(section.conflict(&key::SECTIONS, row.span.clone(), reason));
+        let values: Vec<f64> = row.value.iter().map(|number| number.value).collect();
+        if values[3] == 0.0 {
+            let reason = "has an a0 of 0: its output would precede its input";
+            return Err(section.conflict_at(&key::SECTIONS, &row.span, reason));
         }
         // Of a lower order, both end in 0, which is a common factor z.
-        let (b, a) = row.value.split_at(3);
+        let (b, a) = values.split_at(3);
         let len = (1..=3).rev().find(|&len| len == 1 || b[len - 1] != 0.0 || a[len - 1] != 0.0);
         let len = len.unwrap_or(1);
         function.multiply_numerator(&exactly(&b[..len]));
         function.multiply_denominator(&exactly(&a[..len]));
     }
-    function.rational(section, &key::SECTIONS, span, delay?)
+    function.rational(section, &key::SECTIONS, delay?)
 }
 
 /// The environment of `environment.zeros`, `poles` and `gain`.
@@ -45,12 +44,12 @@ pub fn zeros_poles_gain(section: &mut Section<'_>) -> Read<Rational> {
     let delay = section.whole(&key::DELAY_SAMPLES);
     let (zeros, poles) = (roots(section, &key::ZEROS), roots(section, &key::POLES));
     let gain = section.number(&key::GAIN);
-    let (Found { value: zeros, .. }, Found { value: poles, span }) = (zeros?, poles?);
+    let (zeros, poles) = (zeros?, poles?);
     let mut function = Function::default();
     function.multiply_numerator(&exactly(&[gain?]));
     zeros.iter().for_each(|factor| function.multiply_numerator(factor));
     poles.iter().for_each(|factor| function.multiply_denominator(factor));
-    function.rational(section, &key::POLES, span, delay?)
+    function.rational(section, &key::POLES, delay?)
 }
 
 /// A polynomial in descending powers of z.
@@ -62,14 +61,16 @@ fn exactly(values: &[f64]) -> Polynomial {
 }
 
 /// The factors of real coefficients of some roots.
-fn roots(section: &mut Section<'_>, key: &'static Key) -> Read<Found<Vec<Polynomial>>> {
+fn roots(section: &mut Section<'_>, key: &Key) -> Read<Vec<Polynomial>> {
     let bound = "a finite number, or two, [real part, imaginary part]";
-    let Some(Found { value: roots, span }) = section.rows(key, &[1, 2], bound)? else {
+    let Some(roots) = section.rows(key, &[1, 2], bound)? else {
         return Err(section.missing(key));
     };
     let mut left: Vec<(f64, f64, Span)> = roots
         .into_iter()
-        .map(|Found { value, span }| (value[0], value.get(1).copied().unwrap_or(0.0), span))
+        .map(|Found { value, span }| {
+            (value[0].value, value.get(1).map_or(0.0, |im| im.value), span)
+        })
         .collect();
     let mut factors = Vec::new();
     while let Some((real, imaginary, span)) = left.pop() {
@@ -82,15 +83,15 @@ fn roots(section: &mut Section<'_>, key: &'static Key) -> Read<Found<Vec<Polynom
             (other - real).abs() <= near && (of + imaginary).abs() <= near
         };
         let Some(place) = left.iter().position(is_conjugate) else {
-            let reason = "is complex, and its conjugate is not in the list".to_owned();
-            return Err(section.conflict(key, span, reason));
+            let reason = "is complex, and its conjugate is not in the list";
+            return Err(section.conflict_at(key, &span, reason));
         };
         left.swap_remove(place);
         let [re, im] = [real, imaginary].map(|part| exactly(&[part]).remove(0));
         let twice = BigRational::from_integer(BigInt::from(-2)) * &re;
         factors.push(vec![BigRational::one(), twice, &re * &re + &im * &im]);
     }
-    Ok(Found { value: factors, span })
+    Ok(factors)
 }
 
 /// A rational function as an exact product.
@@ -130,13 +131,7 @@ impl Function {
     }
 
     /// Rounded, in the form that the servo runs.
-    fn rational(
-        mut self,
-        section: &Section<'_>,
-        key: &'static Key,
-        span: Span,
-        delay: usize,
-    ) -> Read<Rational> {
+    fn rational(mut self, section: &Section<'_>, key: &Key, delay: usize) -> Read<Rational> {
         let leading = self.numerator.iter().position(|c| !c.is_zero());
         self.numerator.drain(..leading.unwrap_or(self.numerator.len() - 1));
         let unit_zeros = if leading.is_some() { self.unit_zeros } else { 0 };
@@ -147,7 +142,7 @@ impl Function {
                 "have a product with {above} zeros and {below} poles; there may be at most {MAX_DEGREE} of \
                  each"
             );
-            return Err(section.conflict(key, span, reason));
+            return Err(section.conflict(key, reason));
         }
         let first = self.denominator[0].clone();
         let rounded = |p: &Polynomial| -> Option<Coefficients> {
@@ -159,9 +154,8 @@ impl Function {
                 Ok(Rational { numerator, denominator, delay, unit_zeros })
             }
             _ => {
-                let reason =
-                    "have a product with a coefficient beyond the range of doubles".to_owned();
-                Err(section.conflict(key, span, reason))
+                let reason = "have a product with a coefficient beyond the range of doubles";
+                Err(section.conflict(key, reason))
             }
         }
     }

@@ -134,6 +134,11 @@ const fn of(parameter: Parameter) -> Key {
     }
 }
 
+/// A key of the wall beside a torque profile, with unit and bound of a wall's parameter.
+const fn of_wall(path: &'static str, parameter: Parameter) -> Key {
+    Key { path, parameter: None, ..of(parameter) }
+}
+
 /// A key that is not a parameter of the firmware.
 const fn other(path: &'static str, unit: &'static str, bound: Bound) -> Key {
     let presence = Presence::Needed;
@@ -168,6 +173,7 @@ const TIME: Bound = Bound::Other(
     "a finite number, 0 s or more, or a list of two, [least, most], where only the range is known",
 );
 const TABLE: Bound = Bound::Other(Form::Table, "a table");
+const BOOLEAN: Bound = Bound::Other(Form::Boolean, "true or false");
 const POLYNOMIAL: Bound = Bound::Other(
     Form::Numbers,
     "a list of 1 to 9 finite numbers, descending powers of z, not all of them 0",
@@ -194,18 +200,14 @@ const KNOTS_IN_ORDER: Bound = Bound::Other(
 
 keys! {
     /// Name of the scene, as reports and pictures show it.
-    NAME = other("name", "", Bound::Other(Form::Text, "a string")),
-        Needed, "\"a wall\"";
+    NAME = other("name", "", Bound::Other(Form::Text, "a string")), Needed, "\"a wall\"";
 
     /// The machine that the hand holds.
-    DEVICE = other("device", "", TABLE),
-        Needed, "";
+    DEVICE = other("device", "", TABLE), Needed, "";
     /// Inertia of a rigid device. The certificate does not use it; simulations do.
-    INERTIA = of(Parameter::Inertia),
-        Needed, "2.2e-5";
+    INERTIA = of(Parameter::Inertia), Needed, "2.2e-5";
     /// Viscous damping of a rigid device.
-    DEVICE_DAMPING = of(Parameter::DeviceDamping),
-        Needed, "0.022";
+    DEVICE_DAMPING = of(Parameter::DeviceDamping), Needed, "0.022";
     /// Passivity `delta` of the device from torque to velocity, if a smaller value is to be used.
     PASSIVITY = Key { bound: NOT_NEGATIVE, ..of(Parameter::Passivity) },
         Optional("the device's damping; of a chain, its computed passivity"), "0.0219";
@@ -216,20 +218,16 @@ keys! {
     MASS = other("device.mass", "", Bound::Other(Form::Tables, "a list of 1 to 10 tables")),
         Optional("one rigid body, of `device.inertia` and `device.damping`"), "";
     /// Inertia of this mass.
-    MASS_INERTIA = other("device.mass.inertia", "kg m^2", POSITIVE),
-        Needed, "2.0e-5";
+    MASS_INERTIA = other("device.mass.inertia", "kg m^2", POSITIVE), Needed, "2.0e-5";
     /// Viscous damping between this mass and the ground.
-    MASS_DAMPING = other("device.mass.damping", "N m s/rad", NOT_NEGATIVE),
-        Default(0.0), "0.02";
+    MASS_DAMPING = other("device.mass.damping", "N m s/rad", NOT_NEGATIVE), Default(0.0), "0.02";
     /// Shafts or cables of a chain: the first joins the first two masses.
     LINK = other("device.link", "", Bound::Other(Form::Tables, "a list of tables, one fewer than masses")),
         Optional("none, which one mass needs"), "";
     /// Stiffness of this link. With no stiffness it must have damping.
-    LINK_STIFFNESS = other("device.link.stiffness", "N m/rad", NOT_NEGATIVE),
-        Needed, "40.0";
+    LINK_STIFFNESS = other("device.link.stiffness", "N m/rad", NOT_NEGATIVE), Needed, "40.0";
     /// Viscous damping along this link.
-    LINK_DAMPING = other("device.link.damping", "N m s/rad", NOT_NEGATIVE),
-        Default(0.0), "0.015";
+    LINK_DAMPING = other("device.link.damping", "N m s/rad", NOT_NEGATIVE), Default(0.0), "0.015";
     /// Which end of the chain the encoder is on. At the hand's end of a flexible chain the device has
     /// no passivity, and nothing certifies.
     ENCODER = other("device.encoder", "", Bound::Other(Form::OneOf(&["motor", "hand"]), "\"motor\" or \"hand\"")),
@@ -239,8 +237,7 @@ keys! {
     ACTUATOR_LAG = Key { bound: TIME, ..of(Parameter::ActuatorLag) },
         Default(0.0), "[5.0e-5, 8.0e-5]";
     /// Time constant of a first-order filter between encoder and servo, in the same way.
-    SENSOR_LAG = Key { bound: TIME, ..of(Parameter::SensorLag) },
-        Default(0.0), "2.0e-5";
+    SENSOR_LAG = Key { bound: TIME, ..of(Parameter::SensorLag) }, Default(0.0), "2.0e-5";
 
     /// In place of `actuator_lag`, of an amplifier whose step response never falls: when it begins and when
     /// it has ended, at most a period; any shape between is covered.
@@ -254,11 +251,9 @@ keys! {
         Default(0.0), "4";
 
     /// When the servo runs.
-    SERVO = other("servo", "", TABLE),
-        Needed, "";
+    SERVO = other("servo", "", TABLE), Needed, "";
     /// Time from one update of the torque to the next.
-    PERIOD = of(Parameter::Period),
-        Needed, "0.001";
+    PERIOD = of(Parameter::Period), Needed, "0.001";
     /// Longest tolerated time between two updates, not less than the period.
     WORST_PERIOD = Key { bound: POSITIVE, ..of(Parameter::WorstPeriod) },
         Optional("the period: no update may be missed"), "0.001";
@@ -268,17 +263,14 @@ keys! {
     /// Largest deviation from that delay, to either side, which may differ from tick to tick. Not more
     /// than the delay, or than that and a period where the environment is late and the amplifier lags.
     /// Simulations leave it out.
-    OUTPUT_JITTER = of(Parameter::OutputJitter),
-        Default(0.0), "0.0";
+    OUTPUT_JITTER = of(Parameter::OutputJitter), Default(0.0), "0.0";
     /// Largest deviation of a count from its time, to either side, where torques deviate by
     /// `output_jitter` at the same time; the sum of both is less than half a period. With one of the two at 0
     /// the other is that of torques or of counts.
-    COUNT_JITTER = of(Parameter::CountJitter),
-        Default(0.0), "0.0";
+    COUNT_JITTER = of(Parameter::CountJitter), Default(0.0), "0.0";
 
     /// Coupling of device and environment.
-    COUPLING = other("coupling", "", TABLE),
-        Optional("the connection is rigid"), "";
+    COUPLING = other("coupling", "", TABLE), Optional("the connection is rigid"), "";
     /// A spring, or the coupling that absorbs delays and lags: its numbers follow from period,
     /// passivity, delay and lags, and behind it a passive environment stays passive.
     COUPLING_TYPE = other("coupling.type", "", Bound::Other(Form::OneOf(&["spring", "matched"]), "\"spring\" or \"matched\"")),
@@ -289,8 +281,7 @@ keys! {
         Optional("an error with a spring"), "44.0";
 
     /// The environment that the hand feels.
-    ENVIRONMENT = other("environment", "", TABLE),
-        Needed, "";
+    ENVIRONMENT = other("environment", "", TABLE), Needed, "";
     /// Which environment.
     TYPE = other("environment.type", "", Bound::Other(
         Form::OneOf(&[]),
@@ -299,37 +290,29 @@ keys! {
     )),
         Needed, "\"damper-wall\"";
     /// Stiffness of the spring or wall; of a torque profile, that beyond its end stops.
-    STIFFNESS = of(Parameter::Stiffness),
-        Needed, "20.0";
+    STIFFNESS = of(Parameter::Stiffness), Needed, "20.0";
     /// Damping of the wall, or of a damper beside the torque profile.
-    DAMPING = of(Parameter::Damping),
-        Needed, "0.005";
+    DAMPING = of(Parameter::Damping), Needed, "0.005";
     /// Delay from a sample to its torque: 1 where the torque is latched at the next tick, as on every
     /// board; 0 where it is written at once.
-    DELAY_SAMPLES = of(Parameter::Delay),
-        Default(0.0), "1";
+    DELAY_SAMPLES = of(Parameter::Delay), Default(0.0), "1";
     /// Pole of the low-pass filter on the wall's velocity; 0 filters nothing.
-    FILTER = of(Parameter::Filter),
-        Optional("no filter"), "0.1";
+    FILTER = of(Parameter::Filter), Optional("no filter"), "0.1";
     /// Angle at which the wall is at rest, or where it begins.
-    FACE = of(Parameter::Face),
-        Default(0.0), "0.05";
+    FACE = of(Parameter::Face), Default(0.0), "0.05";
     /// Whether the wall is felt only beyond its face.
-    ONE_SIDED = other("environment.one_sided", "", Bound::Other(Form::Boolean, "true or false")),
+    ONE_SIDED = other("environment.one_sided", "", BOOLEAN),
         Optional("false: the wall pulls as well as it pushes"), "true";
     /// Damping that free mode leaves in the hand; beside a torque profile, of an undelayed one, if it is
     /// there.
-    RESIDUAL = of(Parameter::Residual),
-        Needed, "0.018";
+    RESIDUAL = of(Parameter::Residual), Needed, "0.018";
     /// Numerator of the environment, from position to torque.
-    NUMERATOR = other("environment.numerator", "", POLYNOMIAL),
-        Needed, "[5.0, -2.0]";
+    NUMERATOR = other("environment.numerator", "", POLYNOMIAL), Needed, "[5.0, -2.0]";
     /// Denominator of the environment.
     DENOMINATOR = other("environment.denominator", "", DELAYED_POLYNOMIAL),
         Needed, "[1.0, -0.3, 0.1, 0.0]";
     /// Zeros at z = 1 that multiply the numerator. With them its degree is at most 8.
-    UNIT_ZEROS = of(Parameter::UnitZeros),
-        Default(0.0), "0";
+    UNIT_ZEROS = of(Parameter::UnitZeros), Default(0.0), "0";
     /// Second-order sections whose product is the environment, each `(b0 + b1/z + b2/z^2)/(a0 + a1/z +
     /// a2/z^2)`, as design tools of filters print them. A first-order section has `b2` and `a2` of 0. The
     /// servo runs the product: one numerator and one denominator, each coefficient rounded once.
@@ -337,14 +320,11 @@ keys! {
         Needed, "[[0.0025, 0.005, 0.0025, 1.0, -1.6, 0.65], [1.0, 0.0, 0.0, 1.0, -0.5, 0.0]]";
     /// Zeros of the environment: `gain` times the product of all `z - zero`, over that of all `z - pole`. The
     /// servo runs numerator and denominator, each coefficient rounded once.
-    ZEROS = other("environment.zeros", "", ROOTS),
-        Needed, "[-1.0, -1.0]";
+    ZEROS = other("environment.zeros", "", ROOTS), Needed, "[-1.0, -1.0]";
     /// Poles of the environment, at least as many as zeros.
-    POLES = other("environment.poles", "", ROOTS),
-        Needed, "[[0.8, 0.1], [0.8, -0.1]]";
+    POLES = other("environment.poles", "", ROOTS), Needed, "[[0.8, 0.1], [0.8, -0.1]]";
     /// Factor of the environment's zeros and poles.
-    GAIN = other("environment.gain", "", Bound::Number(Range::Finite)),
-        Needed, "0.005";
+    GAIN = other("environment.gain", "", Bound::Number(Range::Finite)), Needed, "0.005";
     /// Knots of a torque profile, joined by straight lines; a positive torque pushes back from a positive
     /// angle. They add to the shapes.
     KNOTS = other("environment.knots", "", KNOTS_IN_ORDER),
@@ -354,44 +334,34 @@ keys! {
     KNOTS_PERIOD = other("environment.period", "rad", POSITIVE),
         Optional("the knots do not repeat, and end stops hold the angle within their range"), "0.4";
     /// Largest torque of the profile: all torques in proportion, but not the end stops.
-    PROFILE_TORQUE = of(Parameter::ProfileTorque),
-        Optional("the sum of shapes and knots"), "0.05";
+    PROFILE_TORQUE = of(Parameter::ProfileTorque), Optional("the sum of shapes and knots"), "0.05";
     /// How often the profile repeats in a turn.
-    COUNT = of(Parameter::Count),
-        Optional("the common count of shapes and knots"), "24";
+    COUNT = of(Parameter::Count), Optional("the common count of shapes and knots"), "24";
     /// Angle at which the first repetition begins.
-    CENTRE = of(Parameter::Centre),
-        Optional("that of the first detents, or 0"), "0.0";
+    CENTRE = of(Parameter::Centre), Optional("that of the first detents, or 0"), "0.0";
     /// Lower end stop.
-    FROM = of(Parameter::From),
-        Optional("that of the shapes, or no end stops"), "-2.618";
+    FROM = of(Parameter::From), Optional("that of the shapes, or no end stops"), "-2.618";
     /// Upper end stop.
-    TO = of(Parameter::To),
-        Optional("that of the shapes, or no end stops"), "2.618";
+    TO = of(Parameter::To), Optional("that of the shapes, or no end stops"), "2.618";
     /// Number of equal cells, each a straight line, of the table that shapes and knots become: a power of
     /// two.
     CELLS = other("environment.cells", "", whole(16, 4096)),
         Optional("the fewest that show every straight piece"), "64";
     /// A wall beside the torque profile, at the same angle; the profile then has end stops.
-    WALL = other("environment.wall", "", TABLE),
-        Optional("no wall stands beside the profile"), "";
+    WALL = other("environment.wall", "", TABLE), Optional("no wall stands beside the profile"), "";
     /// Stiffness of this wall.
-    WALL_STIFFNESS = Key { path: "environment.wall.stiffness", parameter: None, ..of(Parameter::Stiffness) },
-        Needed, "10.0";
+    WALL_STIFFNESS = of_wall("environment.wall.stiffness", Parameter::Stiffness), Needed, "10.0";
     /// Damping of this wall.
-    WALL_DAMPING = Key { path: "environment.wall.damping", parameter: None, ..of(Parameter::Damping) },
-        Default(0.0), "0.002";
+    WALL_DAMPING = of_wall("environment.wall.damping", Parameter::Damping), Default(0.0), "0.002";
     /// Delay of this wall, as `environment.delay`; it need not be the profile's.
-    WALL_DELAY = Key { path: "environment.wall.delay", parameter: None, ..of(Parameter::Delay) },
-        Needed, "1";
+    WALL_DELAY = of_wall("environment.wall.delay", Parameter::Delay), Needed, "1";
     /// Pole of the low-pass filter on this wall's velocity; 0 filters nothing.
-    WALL_FILTER = Key { path: "environment.wall.filter", parameter: None, ..of(Parameter::Filter) },
+    WALL_FILTER = of_wall("environment.wall.filter", Parameter::Filter),
         Optional("no filter"), "0.1";
     /// Angle at which this wall is at rest, or where it begins.
-    WALL_FACE = Key { path: "environment.wall.face", parameter: None, ..of(Parameter::Face) },
-        Default(0.0), "1.5";
+    WALL_FACE = of_wall("environment.wall.face", Parameter::Face), Default(0.0), "1.5";
     /// Whether this wall is felt only beyond its face.
-    WALL_ONE_SIDED = other("environment.wall.one_sided", "", Bound::Other(Form::Boolean, "true or false")),
+    WALL_ONE_SIDED = other("environment.wall.one_sided", "", BOOLEAN),
         Optional("false: the wall pulls as well as it pushes"), "true";
     /// Named shapes of a torque profile, which add up.
     SHAPE = other("environment.shape", "", Bound::Other(Form::Tables, "a list of 1 to 16 tables")),
@@ -403,43 +373,32 @@ keys! {
     )),
         Needed, "\"detents\"";
     /// Number of detents in a turn.
-    SHAPE_COUNT = other("environment.shape.count", "", whole(1, 4096)),
-        Needed, "24";
+    SHAPE_COUNT = other("environment.shape.count", "", whole(1, 4096)), Needed, "24";
     /// Largest torque of the shape.
-    SHAPE_TORQUE = other("environment.shape.torque", "N m", POSITIVE),
-        Needed, "0.05";
+    SHAPE_TORQUE = other("environment.shape.torque", "N m", POSITIVE), Needed, "0.05";
     /// Angle of the first detent.
-    SHAPE_CENTRE = other("environment.shape.centre", "rad", FINITE),
-        Default(0.0), "0.0";
+    SHAPE_CENTRE = other("environment.shape.centre", "rad", FINITE), Default(0.0), "0.0";
     /// Where the next detent takes the knob, in pitches from the centre of the present one: a line from there
     /// to the torque, in place of the wave. Greater than 0.5 and at most 10; 1.1 is smooth, 0.55 is like a
     /// switch. One shape may have it; it needs a coupling, and a delay of 0 or 1.
     SHAPE_SNAP = other("environment.shape.snap", "pitches", POSITIVE),
         Optional("a wave of straight lines, which has no snap point"), "1.1";
     /// Lower end.
-    SHAPE_FROM = other("environment.shape.from", "rad", FINITE),
-        Needed, "-2.618";
+    SHAPE_FROM = other("environment.shape.from", "rad", FINITE), Needed, "-2.618";
     /// Upper end.
-    SHAPE_TO = other("environment.shape.to", "rad", FINITE),
-        Needed, "2.618";
+    SHAPE_TO = other("environment.shape.to", "rad", FINITE), Needed, "2.618";
     /// Stiffness of the spring.
-    SHAPE_STIFFNESS = other("environment.shape.stiffness", "N m/rad", POSITIVE),
-        Needed, "15.0";
+    SHAPE_STIFFNESS = other("environment.shape.stiffness", "N m/rad", POSITIVE), Needed, "15.0";
     /// How far the shape reaches to either side.
-    SHAPE_WIDTH = other("environment.shape.width", "rad", POSITIVE),
-        Needed, "0.3";
+    SHAPE_WIDTH = other("environment.shape.width", "rad", POSITIVE), Needed, "0.3";
     /// Angle of either place to rest at.
-    SHAPE_DISTANCE = other("environment.shape.distance", "rad", POSITIVE),
-        Needed, "0.3";
+    SHAPE_DISTANCE = other("environment.shape.distance", "rad", POSITIVE), Needed, "0.3";
     /// Distance of two ridges.
-    SHAPE_PITCH = other("environment.shape.pitch", "rad", POSITIVE),
-        Needed, "0.05";
+    SHAPE_PITCH = other("environment.shape.pitch", "rad", POSITIVE), Needed, "0.05";
     /// Largest torque of the ridges.
-    SHAPE_AMPLITUDE = other("environment.shape.amplitude", "N m", POSITIVE),
-        Needed, "0.005";
+    SHAPE_AMPLITUDE = other("environment.shape.amplitude", "N m", POSITIVE), Needed, "0.005";
     /// Angle of the place that pulls.
-    SHAPE_ANGLE = other("environment.shape.angle", "rad", FINITE),
-        Default(0.0), "0.5";
+    SHAPE_ANGLE = other("environment.shape.angle", "rad", FINITE), Default(0.0), "0.5";
     /// Knots, as `environment.knots`.
     SHAPE_KNOTS = other("environment.shape.knots", "", KNOTS_IN_ORDER),
         Needed, "[[0.0, 0.0], [0.1, 0.02], [0.3, -0.02], [0.4, 0.0]]";
@@ -451,14 +410,11 @@ keys! {
     SIMULATION = other("simulation", "", TABLE),
         Optional("nothing that `simulate` could start from"), "";
     /// Number of samples.
-    SAMPLES = other("simulation.samples", "samples", whole(1, 100_000_000)),
-        Needed, "2000";
+    SAMPLES = other("simulation.samples", "samples", whole(1, 100_000_000)), Needed, "2000";
     /// Position at sample 0.
-    POSITION = other("simulation.position", "rad", FINITE),
-        Default(0.0), "0.001";
+    POSITION = other("simulation.position", "rad", FINITE), Default(0.0), "0.001";
     /// Velocity at sample 0.
-    VELOCITY = other("simulation.velocity", "rad/s", FINITE),
-        Default(0.0), "0.1";
+    VELOCITY = other("simulation.velocity", "rad/s", FINITE), Default(0.0), "0.1";
     /// Torque of the hand, a value a sample, held over it; none after the last. The hand has one of
     /// `torque`, `torque_file`, `torque_sine` and `torque_pulses`.
     TORQUE = other("simulation.torque", "", Bound::Other(Form::Numbers, "a list of finite numbers in N m")),
@@ -470,23 +426,19 @@ keys! {
     TORQUE_SINE = other("simulation.torque_sine", "", TABLE),
         Optional("no torque of this kind"), "{ amplitude = 0.01, omega = 60.0 }";
     /// Amplitude of the sine.
-    SINE_AMPLITUDE = other("simulation.torque_sine.amplitude", "N m", FINITE),
-        Needed, "0.01";
+    SINE_AMPLITUDE = other("simulation.torque_sine.amplitude", "N m", FINITE), Needed, "0.01";
     /// Angular frequency of the sine.
-    SINE_OMEGA = other("simulation.torque_sine.omega", "rad/s", NOT_NEGATIVE),
-        Needed, "60.0";
+    SINE_OMEGA = other("simulation.torque_sine.omega", "rad/s", NOT_NEGATIVE), Needed, "60.0";
     /// Phase of the sine at sample 0.
-    SINE_PHASE = other("simulation.torque_sine.phase", "rad", FINITE),
-        Default(0.0), "0.5";
+    SINE_PHASE = other("simulation.torque_sine.phase", "rad", FINITE), Default(0.0), "0.5";
     /// Whether the sine is held over each sample.
-    SINE_HELD = other("simulation.torque_sine.held", "", Bound::Other(Form::Boolean, "true or false")),
+    SINE_HELD = other("simulation.torque_sine.held", "", BOOLEAN),
         Optional("false: continuous in time"), "true";
     /// Pulses of the hand's torque.
     TORQUE_PULSES = other("simulation.torque_pulses", "", TABLE),
         Optional("no torque of this kind"), "{ amplitude = 0.1, every = 500, length = 250 }";
     /// Height of the pulses.
-    PULSE_AMPLITUDE = other("simulation.torque_pulses.amplitude", "N m", FINITE),
-        Needed, "0.1";
+    PULSE_AMPLITUDE = other("simulation.torque_pulses.amplitude", "N m", FINITE), Needed, "0.1";
     /// From the start of one pulse to the start of the next.
     PULSE_EVERY = other("simulation.torque_pulses.every", "samples", whole(1, 100_000_000)),
         Needed, "500";
@@ -499,8 +451,7 @@ keys! {
         Optional("`device.friction`, or none"), "0.002";
     /// Time from a sample to its torque that is only simulated, less than the period, in addition to
     /// `servo.output_delay`.
-    LATENCY = other("simulation.latency", "s", NOT_NEGATIVE),
-        Default(0.0), "0.0002";
+    LATENCY = other("simulation.latency", "s", NOT_NEGATIVE), Default(0.0), "0.0002";
     /// Ticks in which the servo does not run: every so many, or by chance.
     MISSED = other("simulation.missed", "", TABLE),
         Optional("none is missed"), "{ fraction = 0.01, seed = 1 }";
@@ -511,25 +462,20 @@ keys! {
     MISSED_FRACTION = other("simulation.missed.fraction", "", FRACTION),
         Optional("`simulation.missed.every` decides"), "0.01";
     /// Seed of the chance: the same seed misses the same ticks.
-    MISSED_SEED = other("simulation.missed.seed", "", whole(0, u32::MAX)),
-        Default(0.0), "1";
+    MISSED_SEED = other("simulation.missed.seed", "", whole(0, u32::MAX)), Default(0.0), "1";
 
     /// A passive hand that holds the device, for `simulate`, `stability` and `run`.
     HUMAN = other("human", "", TABLE),
         Optional("nobody holds the device; in `run`, the hand of the demonstration"), "";
     /// Inertia of the hand.
-    HUMAN_INERTIA = other("human.inertia", "kg m^2", NOT_NEGATIVE),
-        Default(0.0), "1e-4";
+    HUMAN_INERTIA = other("human.inertia", "kg m^2", NOT_NEGATIVE), Default(0.0), "1e-4";
     /// Damping of the hand.
-    HUMAN_DAMPING = other("human.damping", "N m s/rad", NOT_NEGATIVE),
-        Default(0.0), "0.02";
+    HUMAN_DAMPING = other("human.damping", "N m s/rad", NOT_NEGATIVE), Default(0.0), "0.02";
     /// Stiffness of the hand.
-    HUMAN_STIFFNESS = other("human.stiffness", "N m/rad", NOT_NEGATIVE),
-        Default(0.0), "6.0";
+    HUMAN_STIFFNESS = other("human.stiffness", "N m/rad", NOT_NEGATIVE), Default(0.0), "6.0";
 
     /// Bounds of the hardware.
-    LIMITS = other("limits", "", TABLE),
-        Optional("no limits"), "";
+    LIMITS = other("limits", "", TABLE), Optional("no limits"), "";
     /// Largest torque that the servo gives; it becomes part of the certified scene.
     TORQUE_LIMIT = of(Parameter::TorqueLimit),
         Optional("no limit: the linear loop is certified; a board refuses scenes that pass only so"), "1.0";
@@ -542,12 +488,10 @@ keys! {
 
     /// The supply of a bridge that drives the motor. A hand that pushes into a wall and lets go returns energy
     /// to it.
-    SUPPLY = other("supply", "", TABLE),
-        Optional("nothing is said of the supply"), "";
+    SUPPLY = other("supply", "", TABLE), Optional("nothing is said of the supply"), "";
     /// Whether the supply takes energy back and keeps its voltage, as a battery or a brake resistor does. If
     /// not, the voltages, the capacitance and a torque limit must be there.
-    SINKS = other("supply.sinks", "", Bound::Other(Form::Boolean, "true or false")),
-        Optional("false"), "false";
+    SINKS = other("supply.sinks", "", BOOLEAN), Optional("false"), "false";
     /// Highest voltage that the supply itself delivers, with its tolerance.
     SUPPLY_VOLTAGE = other("supply.voltage", "V", POSITIVE),
         Optional("an error where the supply does not sink"), "15.0";
@@ -558,8 +502,7 @@ keys! {
     CAPACITANCE = other("supply.capacitance", "F", POSITIVE),
         Optional("an error where the supply does not sink"), "0.001";
     /// Largest speed of the device, above which the servo has a fault.
-    LARGEST_SPEED = other("supply.largest_speed", "rad/s", POSITIVE),
-        Default(100.0), "25.0";
+    LARGEST_SPEED = other("supply.largest_speed", "rad/s", POSITIVE), Default(100.0), "25.0";
 }
 
 #[cfg(test)]

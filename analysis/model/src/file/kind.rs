@@ -38,69 +38,75 @@ const CANCELLER: Canceller = Canceller::to(0.0);
 const BLANK: Environment =
     Environment::Rational(Rational { numerator: ZERO, denominator: ZERO, delay: 0, unit_zeros: 0 });
 
+const fn kind(
+    name: &'static str,
+    doc: &'static str,
+    needed: &'static [&'static Key],
+    optional: &'static [&'static Key],
+    blank: Environment,
+) -> Kind {
+    Kind { name, doc, needed, optional, blank, values: &[] }
+}
+
 /// All types, in the order of the documentation.
 pub const ALL: &[Kind] = &[
+    kind(
+        "delayed-spring",
+        "A spring without a damper.",
+        &[&key::STIFFNESS, &key::DELAY_SAMPLES],
+        &[],
+        Wall::spring(0.0, 0).alone(),
+    ),
+    kind(
+        "damper-wall",
+        "A wall: spring and damper, everywhere or behind a face.",
+        &[&key::STIFFNESS, &key::DAMPING, &key::DELAY_SAMPLES],
+        OF_A_WALL,
+        WALL.alone(),
+    ),
+    kind(
+        "free-mode",
+        "Free motion, with the device's own damping cancelled as far as the residual.",
+        &[&key::RESIDUAL],
+        &[&key::DELAY_SAMPLES],
+        CANCELLER.alone(),
+    ),
     Kind {
-        name: "delayed-spring",
-        doc: "A spring without a damper.",
-        needed: &[&key::STIFFNESS, &key::DELAY_SAMPLES],
-        optional: &[],
-        blank: Wall::spring(0.0, 0).alone(),
-        values: &[],
-    },
-    Kind {
-        name: "damper-wall",
-        doc: "A wall: spring and damper, everywhere or behind a face.",
-        needed: &[&key::STIFFNESS, &key::DAMPING, &key::DELAY_SAMPLES],
-        optional: OF_A_WALL,
-        blank: WALL.alone(),
-        values: &[],
-    },
-    Kind {
-        name: "free-mode",
-        doc: "Free motion, with the device's own damping cancelled as far as the residual.",
-        needed: &[&key::RESIDUAL],
-        optional: &[&key::DELAY_SAMPLES],
-        blank: CANCELLER.alone(),
-        values: &[],
-    },
-    Kind {
-        name: "free-mode-wall",
-        doc: "Free motion with a wall in it.",
-        needed: &[&key::RESIDUAL, &key::STIFFNESS, &key::DAMPING, &key::DELAY_SAMPLES],
-        optional: OF_A_WALL,
-        blank: Parts { canceller: Some(CANCELLER), wall: Some(WALL), profile: None }.sum(),
         values: &[(&key::STIFFNESS, "5.0"), (&key::DAMPING, "0.003")],
+        ..kind(
+            "free-mode-wall",
+            "Free motion with a wall in it.",
+            &[&key::RESIDUAL, &key::STIFFNESS, &key::DAMPING, &key::DELAY_SAMPLES],
+            OF_A_WALL,
+            Parts { canceller: Some(CANCELLER), wall: Some(WALL), profile: None }.sum(),
+        )
     },
-    Kind {
-        name: "rational",
-        doc: "Any rational transfer function from position to torque.",
-        needed: &[&key::NUMERATOR, &key::DENOMINATOR],
-        optional: &[&key::DELAY_SAMPLES, &key::UNIT_ZEROS],
-        blank: BLANK,
-        values: &[],
-    },
-    Kind {
-        name: SECTIONS,
-        doc: "A rational transfer function as a product of second-order sections.",
-        needed: &[&key::SECTIONS],
-        optional: &[&key::DELAY_SAMPLES],
-        blank: BLANK,
-        values: &[],
-    },
-    Kind {
-        name: ZEROS_POLES_GAIN,
-        doc: "A rational transfer function by its zeros, its poles and a gain.",
-        needed: &[&key::ZEROS, &key::POLES, &key::GAIN],
-        optional: &[&key::DELAY_SAMPLES],
-        blank: BLANK,
-        values: &[],
-    },
-    Kind {
-        name: PROFILE,
-        doc: "A torque profile: torque over angle in straight lines, for detents, end stops and textures.",
-        needed: &[&key::DELAY_SAMPLES],
-        optional: &[
+    kind(
+        "rational",
+        "Any rational transfer function from position to torque.",
+        &[&key::NUMERATOR, &key::DENOMINATOR],
+        &[&key::DELAY_SAMPLES, &key::UNIT_ZEROS],
+        BLANK,
+    ),
+    kind(
+        SECTIONS,
+        "A rational transfer function as a product of second-order sections.",
+        &[&key::SECTIONS],
+        &[&key::DELAY_SAMPLES],
+        BLANK,
+    ),
+    kind(
+        ZEROS_POLES_GAIN,
+        "A rational transfer function by its zeros, its poles and a gain.",
+        &[&key::ZEROS, &key::POLES, &key::GAIN],
+        &[&key::DELAY_SAMPLES],
+        BLANK,
+    ),
+    kind(
+        PROFILE,
+        "A torque profile: torque over angle in straight lines, for detents, end stops and textures.",
+        &[&key::DELAY_SAMPLES],
+        &[
             &key::DAMPING,
             &key::KNOTS,
             &key::KNOTS_PERIOD,
@@ -115,9 +121,8 @@ pub const ALL: &[Kind] = &[
             &key::WALL,
             &key::SHAPE,
         ],
-        blank: Profile::of(&DETENT, 1).alone(),
-        values: &[],
-    },
+        Profile::of(&DETENT, 1).alone(),
+    ),
 ];
 
 /// The type of second-order sections.

@@ -5,9 +5,7 @@ use std::fmt;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use thiserror::Error;
 
-use super::key::{Bound, Key};
 use super::tree::Span;
-use crate::chain::NoPassivity;
 use crate::text_width::wrapped;
 
 /// Longest piece of a file that is repeated in a message, in characters.
@@ -50,86 +48,21 @@ pub enum Problem {
         /// The parser's message.
         message: String,
     },
-    /// A key twice in one table.
-    #[error("the key `{key}` is set twice")]
-    Duplicate {
-        /// The key.
-        key: String,
-    },
-    /// A key that must be there is not.
-    #[error("`{key}` is missing; it must be {bound}")]
-    Missing {
+    /// A key, or its value.
+    #[error("{sentence}")]
+    OfKey {
         /// Full name of the key.
         key: String,
-        /// Its range.
-        bound: String,
-    },
-    /// An unknown key.
-    #[error("`{key}` is not a key of {table}; {advice}")]
-    Unknown {
-        /// Full name of the key.
-        key: String,
-        /// The table it stood in.
-        table: String,
-        /// The key that was probably meant, or all of them.
-        advice: String,
-    },
-    /// A value of another kind.
-    #[error("`{key}` = {value} is {found}; it must be {bound}")]
-    WrongKind {
-        /// Full name of the key.
-        key: String,
-        /// The value as written.
-        value: String,
-        /// Kind of the value.
-        found: &'static str,
-        /// Its range.
-        bound: String,
-    },
-    /// A number that the key does not admit.
-    #[error("`{key}` = {value} is out of bounds; it must be {bound}")]
-    OutOfBounds {
-        /// Full name of the key.
-        key: String,
-        /// The value as written.
-        value: String,
-        /// Its range.
-        bound: String,
-    },
-    /// A device without passivity, which has no certificate.
-    #[error("`{key}` = {value} leaves the device without passivity: {reason}")]
-    NoPassivity {
-        /// Full name of the key.
-        key: &'static str,
-        /// The value as written.
-        value: String,
-        /// Why it has no passivity.
-        reason: NoPassivity,
-    },
-    /// Keys that contradict one another.
-    #[error("`{key}` = {value} {reason}")]
-    Conflict {
-        /// Full name of the key.
-        key: String,
-        /// The value as written.
-        value: String,
-        /// Why it cannot stand beside another key, or alone.
-        reason: String,
-    },
-    /// Shapes that do not add up to a torque profile.
-    #[error("`{key}`: {reason}")]
-    Shapes {
-        /// Full name of the key.
-        key: String,
-        /// The reason.
-        reason: String,
+        /// The whole sentence.
+        sentence: String,
     },
 }
 
 impl Problem {
     /// A key that is there twice.
     pub fn duplicate(key: &str) -> Self {
-        Self::Duplicate { key: excerpt(key) }
+        let key = excerpt(key);
+        Self::OfKey { sentence: format!("the key `{key}` is set twice"), key }
     }
 
     /// A text that the format's grammar does not admit.
@@ -137,38 +70,23 @@ impl Problem {
         Self::Syntax { format, message: excerpt(message) }
     }
 
-    /// A value of the wrong kind for a key.
-    pub fn wrong_kind(key: &Key, name: &str, value: &str, found: &'static str) -> Self {
-        let bound = key.requirement();
-        let key = if name.is_empty() { "the file" } else { name }.to_owned();
-        Self::WrongKind { key, value: excerpt(value), found, bound }
+    /// A key, with the rest of the sentence behind its name.
+    pub fn key_and(key: String, rest: &str) -> Self {
+        Self::OfKey { sentence: format!("`{key}`{rest}"), key }
+    }
+
+    /// A value as it is written, with the end of a sentence about it.
+    pub fn value(key: &str, written: &str, wrong: impl fmt::Display) -> Self {
+        Self::key_and(key.to_owned(), &format!(" = {} {wrong}", excerpt(written)))
     }
 
     /// Full name of the key that it is about, with the indices of lists, such as
     /// `environment.shape[0].torque`; `None` if it is not about a key.
     pub fn key(&self) -> Option<&str> {
         match self {
-            Self::Duplicate { key }
-            | Self::Missing { key, .. }
-            | Self::Unknown { key, .. }
-            | Self::WrongKind { key, .. }
-            | Self::OutOfBounds { key, .. }
-            | Self::Conflict { key, .. }
-            | Self::Shapes { key, .. } => Some(key),
-            Self::NoPassivity { key, .. } => Some(key),
-            Self::NoName
-            | Self::Unreadable(_)
-            | Self::TooLong { .. }
-            | Self::NotText { .. }
-            | Self::Empty
-            | Self::Syntax { .. } => None,
+            Self::OfKey { key, .. } => Some(key),
+            _ => None,
         }
-    }
-
-    /// A number outside its key's bound.
-    pub fn out_of_bounds(path: &str, value: &str, bound: Bound, unit: &str) -> Self {
-        let bound = bound.requirement(unit);
-        Self::OutOfBounds { key: path.to_owned(), value: excerpt(value), bound }
     }
 }
 
@@ -215,12 +133,13 @@ impl FileError {
     }
 
     fn new(file: &str, text: &str, first_line: usize, fault: Fault) -> Self {
-        let start = floor(text, fault.span.start);
+        let start = text.floor_char_boundary(fault.span.start);
         let before = &text[..start];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
         let line = text[line_start..line_end].trim_end_matches('\r');
-        let end = floor(text, fault.span.end)
+        let end = text
+            .floor_char_boundary(fault.span.end)
             .clamp(start, line_start + line.len().max(start - line_start));
         let printable = line.len() <= SHOWN_LINE && !line.chars().any(is_unprintable);
         let shown = printable.then(|| (line.to_owned(), start - line_start..end - line_start));
@@ -303,11 +222,6 @@ impl fmt::Display for FileError {
 }
 
 impl std::error::Error for FileError {}
-
-/// The largest character boundary that is not behind `at`.
-fn floor(text: &str, at: usize) -> usize {
-    text.floor_char_boundary(at)
-}
 
 fn is_unprintable(character: char) -> bool {
     character.is_control() && character != '\t'

@@ -11,7 +11,7 @@ use super::faults::{Read, Reported, all};
 use super::key::{self, Key, Presence};
 use super::kind;
 use super::problem::Problem;
-use super::section::{Found, Pair, Section};
+use super::section::{Pair, Section};
 use super::shape::ShapeKind;
 use super::tree::Span;
 use crate::quantity::significant;
@@ -40,17 +40,19 @@ pub struct Shapes {
 }
 
 impl Shapes {
+    /// All of them, with the end stops as one more.
+    pub fn with_ends(&self) -> Vec<Shape> {
+        let ends = self.ends;
+        let ends = ends.map(|Ends { from, to, stiffness }| Shape::EndStops { from, to, stiffness });
+        self.shapes.iter().copied().chain(ends).collect()
+    }
+
     /// Their sum as a table, with enough cells to show every straight piece.
     ///
     /// # Errors
     /// If they are not a valid profile.
     pub fn sampled(&self, delay: usize) -> Result<Profile, ShapeError> {
-        let mut shapes = self.shapes.clone();
-        shapes.extend(self.ends.map(|Ends { from, to, stiffness }| Shape::EndStops {
-            from,
-            to,
-            stiffness,
-        }));
+        let shapes = self.with_ends();
         let sampled = |cells: usize| Profile::sampled(&shapes, vec![0; cells].leak(), delay);
         if let Some(cells) = self.cells {
             return sampled(cells);
@@ -113,8 +115,8 @@ type Placed = (Shape, Place);
 pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
     let delay = section.whole(&key::DELAY_SAMPLES);
     let numbers = [&key::DAMPING, &key::PROFILE_TORQUE, &key::COUNT, &key::CENTRE]
-        .map(|key| section.found(key));
-    let ends = [&key::FROM, &key::TO, &key::STIFFNESS].map(|key| section.found(key));
+        .map(|key| section.optional(key));
+    let ends = [&key::FROM, &key::TO, &key::STIFFNESS].map(|key| section.optional(key));
     let residual = section.optional(&key::RESIDUAL);
     let wall = section.table(&key::WALL).and_then(|wall| wall.map(wall_of).transpose());
     let cells = cells(section);
@@ -136,7 +138,7 @@ pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
     let is_given = from.is_some() || to.is_some() || stiffness.is_some();
     let mut shapes = Shapes { shapes, ends: None, cells };
     if is_given && !has_ends {
-        let ends = [(&key::FROM, &from), (&key::TO, &to), (&key::STIFFNESS, &stiffness)];
+        let ends = [(&key::FROM, from), (&key::TO, to), (&key::STIFFNESS, stiffness)];
         shapes.ends = Some(own_ends(section, ends, &mut places)?);
     }
     let mut profile =
@@ -145,25 +147,30 @@ pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
         fine_enough(section, &shapes, &places, &profile)?;
     }
     if !profile.outline().wraps {
-        for (key, found) in [(&key::COUNT, &count), (&key::CENTRE, &centre)] {
-            if let Some(Found { span, .. }) = found {
+        for (key, number) in [(&key::COUNT, count), (&key::CENTRE, centre)] {
+            if number.is_some() {
                 let reason = "stands beside shapes that do not repeat, which stay where they are";
-                return Err(section.conflict(key, span.clone(), reason.to_owned()));
+                return Err(section.conflict(key, reason));
             }
         }
     }
-    profile.damping = value(&damping);
-    profile.torque = value(&torque).unwrap_or(profile.torque);
-    profile.count = value(&count).unwrap_or(profile.count);
-    profile.centre = value(&centre).unwrap_or(profile.centre);
+    profile.damping = damping;
+    profile.torque = torque.unwrap_or(profile.torque);
+    profile.count = count.unwrap_or(profile.count);
+    profile.centre = centre.unwrap_or(profile.centre);
     if let (Some(ends), true) = (&mut profile.ends, has_ends) {
-        ends.from = value(&from).unwrap_or(ends.from);
-        ends.to = value(&to).unwrap_or(ends.to);
-        ends.stiffness = value(&stiffness).unwrap_or(ends.stiffness);
+        ends.from = from.unwrap_or(ends.from);
+        ends.to = to.unwrap_or(ends.to);
+        ends.stiffness = stiffness.unwrap_or(ends.stiffness);
     }
     let canceller = residual.map(Canceller::to);
     let environment = Parts { canceller, wall, profile: Some(profile) }.sum();
-    Ok(ProfileTable { environment, shapes, places, torque: torque.map(|found| found.span) })
+    Ok(ProfileTable {
+        environment,
+        shapes,
+        places,
+        torque: torque.map(|_| section.place_of(&key::PROFILE_TORQUE)),
+    })
 }
 
 /// The wall beside a torque profile.
@@ -180,31 +187,27 @@ fn wall_of(mut section: Section<'_>) -> Read<Wall> {
     Ok(Wall { stiffness, damper, side, delay })
 }
 
-fn value(found: &Option<Found<f64>>) -> Option<f64> {
-    found.as_ref().map(|found| found.value)
-}
-
 fn cells(section: &mut Section<'_>) -> Read<Option<usize>> {
-    let Some(Found { value, span }) = section.found(&key::CELLS)? else { return Ok(None) };
-    let cells = value as usize;
+    let Some(cells) = section.optional(&key::CELLS)? else { return Ok(None) };
+    let cells = cells as usize;
     if cells.is_power_of_two() {
         return Ok(Some(cells));
     }
     let below = cells.next_power_of_two() / 2;
     let reason = format!("is not a power of two; the nearest are {below} and {}", 2 * below);
-    Err(section.conflict(&key::CELLS, span, reason))
+    Err(section.conflict(&key::CELLS, reason))
 }
 
 /// The end stops from the environment's own keys, which needs all three of them.
 fn own_ends(
     section: &mut Section<'_>,
-    keys: [(&'static Key, &Option<Found<f64>>); 3],
+    keys: [(&'static Key, Option<f64>); 3],
     places: &mut Vec<Place>,
 ) -> Read<Ends> {
     let mut numbers = Vec::new();
-    for (key, found) in keys {
-        match found {
-            Some(Found { value, span }) => numbers.push((key.name(), *value, span.clone())),
+    for (key, value) in keys {
+        match value {
+            Some(value) => numbers.push((key.name(), value, section.place_of(key))),
             None => return Err(section.missing(key)),
         }
     }
@@ -215,12 +218,10 @@ fn own_ends(
 }
 
 fn shapes(section: &mut Section<'_>) -> Read<Vec<Placed>> {
-    let Some(Found { value: tables, span }) = section.tables(&key::SHAPE)? else {
-        return Ok(Vec::new());
-    };
+    let Some(tables) = section.tables(&key::SHAPE)? else { return Ok(Vec::new()) };
     if tables.is_empty() || tables.len() > MOST_SHAPES {
         let reason = format!("are {} shapes; there must be 1 to {MOST_SHAPES}", tables.len());
-        return Err(section.conflict(&key::SHAPE, span, reason));
+        return Err(section.conflict(&key::SHAPE, reason));
     }
     all(tables.into_iter().enumerate().map(|(index, table)| shape(index, table)))
 }
@@ -228,13 +229,12 @@ fn shapes(section: &mut Section<'_>) -> Read<Vec<Placed>> {
 fn shape(index: usize, mut section: Section<'_>) -> Read<Placed> {
     let name = format!("{}[{index}]", key::SHAPE.path);
     section.number_as(name.clone());
-    let kind = section.needed_text(&key::SHAPE_TYPE).and_then(|Found { value, span }| {
-        ShapeKind::find(&value).map(|kind| (kind, span.clone())).ok_or_else(|| {
-            section.out_of_bounds(&key::SHAPE_TYPE, &section.name_of(&key::SHAPE_TYPE), &span)
-        })
+    let kind = section.needed_text(&key::SHAPE_TYPE).and_then(|name| {
+        ShapeKind::find(&name).ok_or_else(|| section.out_of_bounds(&key::SHAPE_TYPE))
     });
     let shape = match kind {
-        Ok((kind, span)) => {
+        Ok(kind) => {
+            let span = section.place_of(&key::SHAPE_TYPE);
             section.specialize(format!("a {} [[{}]]", kind.name, key::SHAPE.path), kind.needed);
             of_kind(kind, name, span, &mut section)
         }
@@ -255,8 +255,8 @@ fn of_kind(kind: &ShapeKind, table: String, span: Span, section: &mut Section<'_
         return found.ok_or_else(|| section.missing(&key::SHAPE_KNOTS));
     }
     let numbers = all(kind.keys().map(|key| {
-        Ok(match (section.found(key)?, key.presence) {
-            (Some(Found { value, span }), _) => Some((key, value, span)),
+        Ok(match (section.optional(key)?, key.presence) {
+            (Some(value), _) => Some((key, value, section.place_of(key))),
             (None, Presence::Optional(_)) => None,
             // With its default, or missing.
             (None, _) => Some((key, section.number(key)?, span.clone())),
@@ -279,24 +279,25 @@ fn table(
     name: &str,
 ) -> Read<Option<Placed>> {
     let knots = section.pairs(key);
-    let period = section.found(period_key)?;
-    let Some(Found { value: knots, span }) = knots? else {
+    let period = section.optional(period_key)?;
+    let Some(knots) = knots? else {
         return match period {
             None => Ok(None),
-            Some(Found { span, .. }) => {
+            Some(_) => {
                 let reason = format!("stands without `{}`", section.name_of(key));
-                Err(section.conflict(period_key, span, reason))
+                Err(section.conflict(period_key, reason))
             }
         };
     };
     if knots.len() < 2 || knots.len() > MOST_KNOTS {
         let reason = format!("are {} knots; there must be 2 to {MOST_KNOTS}", knots.len());
-        return Err(section.conflict(key, span, reason));
+        return Err(section.conflict(key, reason));
     }
     let pairs: Vec<(f64, f64)> =
         knots.iter().map(|[angle, torque]| (angle.value, torque.value)).collect();
-    let place = Place { table: name.to_owned(), span, numbers: Vec::new(), knots };
-    if let Some(Found { value: period, .. }) = period {
+    let (table, span) = (name.to_owned(), section.place_of(key));
+    let place = Place { table, span, numbers: Vec::new(), knots };
+    if let Some(period) = period {
         closes(section, key, period, &place)?;
     }
     let pairs: &'static [(f64, f64)] = pairs.leak();
@@ -316,12 +317,12 @@ fn closes(section: &Section<'_>, key: &Key, period: f64, place: &Place) -> Read<
         "{end}, where the period of {period} rad ends: the last knot closes it, with the torque of \
          the first"
     );
-    Err(out_of_bounds(section, name, &last.span, bound))
+    Err(section.not_within(&name, &last.span, &bound))
 }
 
-fn out_of_bounds(section: &Section<'_>, key: String, span: &Span, bound: String) -> Reported {
-    let value = section.written(span);
-    section.report(span.clone(), Problem::OutOfBounds { key, value, bound })
+/// Reports shapes that do not add up to a torque profile.
+fn no_profile(section: &Section<'_>, key: String, span: Span, reason: &str) -> Reported {
+    section.report(span, Problem::key_and(key, &format!(": {reason}")))
 }
 
 /// Reports the library's error in the shapes, with its place in the file.
@@ -331,16 +332,14 @@ fn refused(
     places: &[Place],
     error: &ShapeError,
 ) -> Reported {
-    let whole = |key: &Key, span: Span| {
-        let (key, reason) = (section.name_of(key), error.to_string());
-        section.report(span, Problem::Shapes { key, reason })
-    };
+    let whole =
+        |key: &Key, span: Span| no_profile(section, section.name_of(key), span, &error.to_string());
     match *error {
         ShapeError::Number { shape, name, bound, .. } => {
             let place = &places[shape];
             let number = place.numbers.iter().find(|(other, ..)| *other == name);
             let span = number.map_or(&place.span, |(.., span)| span);
-            out_of_bounds(section, format!("{}.{name}", place.table), span, bound.to_owned())
+            section.not_within(&format!("{}.{name}", place.table), span, bound)
         }
         ShapeError::Knot { shape, knot, value, bound, limit } => {
             let place = &places[shape];
@@ -349,17 +348,15 @@ fn refused(
                 if angle.value == value { (0, &angle.span) } else { (1, &torque.span) };
             let limit = limit.map_or_else(String::new, |limit| format!(" {limit}"));
             let name = format!("{}.{}[{knot}][{part}]", place.table, key::KNOTS.name());
-            out_of_bounds(section, name, span, format!("{bound}{limit}"))
+            section.not_within(&name, span, &format!("{bound}{limit}"))
         }
         ShapeError::Endless { shape } => {
             let place = &places[shape];
-            let (key, reason) = (place.table.clone(), NEEDS_ENDS.to_owned());
-            section.report(place.span.clone(), Problem::Shapes { key, reason })
+            no_profile(section, place.table.clone(), place.span.clone(), NEEDS_ENDS)
         }
         ShapeError::SecondSnap { shape } => {
             let Place { table, span, .. } = &places[shape];
-            let (key, reason) = (table.clone(), SECOND_SNAP.to_owned());
-            section.report(span.clone(), Problem::Shapes { key, reason })
+            no_profile(section, table.clone(), span.clone(), SECOND_SNAP)
         }
         ShapeError::TooFewKnots { needed, .. } => {
             let [least, most] = CELLS;
@@ -369,7 +366,7 @@ fn refused(
                 "are {cells}, and the narrowest straight piece, {piece}, takes {needed} cells; a table has \
                  {least} to {most}"
             );
-            section.report(span, Problem::Shapes { key: section.name_of(&key::CELLS), reason })
+            no_profile(section, section.name_of(&key::CELLS), span, &reason)
         }
         ShapeError::Mean { .. } => {
             let tables = places.iter().find(|place| !place.knots.is_empty());
@@ -400,8 +397,7 @@ fn fine_enough(
         "would be {cells} for the narrowest straight piece, {piece}, or {in_a_turn} in a turn, and a turn has \
          at most {MOST_IN_A_TURN}: the piece must be at least about {wide} rad wide"
     );
-    let key = section.name_of(&key::CELLS);
-    Err(section.report(span, Problem::Shapes { key, reason }))
+    Err(no_profile(section, section.name_of(&key::CELLS), span, &reason))
 }
 
 /// The narrowest straight piece of all shapes, in words, and where it stands.
@@ -439,24 +435,22 @@ impl ProfileTable {
         }
         let bound = format!("a torque of at most `{}` = {full_scale} N m", key::FULL_SCALE.path);
         if let Some(span) = &self.torque {
-            let name = key::PROFILE_TORQUE.path.to_owned();
-            return Err(out_of_bounds(section, name, span, bound));
+            return Err(section.not_within(key::PROFILE_TORQUE.path, span, &bound));
         }
         for Place { table, numbers, knots, .. } in &self.places {
             let is_torque = |name: &str| name == "torque" || name == "amplitude";
             if let Some((name, _, span)) =
                 numbers.iter().find(|(name, value, _)| is_torque(name) && *value > full_scale)
             {
-                return Err(out_of_bounds(section, format!("{table}.{name}"), span, bound));
+                return Err(section.not_within(&format!("{table}.{name}"), span, &bound));
             }
             let beyond = knots.iter().position(|[_, torque]| torque.value.abs() > full_scale);
             if let Some(knot) = beyond {
                 let name = format!("{table}.{}[{knot}][1]", key::KNOTS.name());
-                return Err(out_of_bounds(section, name, &knots[knot][1].span, bound));
+                return Err(section.not_within(&name, &knots[knot][1].span, &bound));
             }
         }
-        let (key, span) = (key::SHAPE.path.to_owned(), self.places[0].span.clone());
         let reason = format!("the shapes add up to {torque} N m, and must give {bound}");
-        Err(section.report(span, Problem::Shapes { key, reason }))
+        Err(no_profile(section, key::SHAPE.path.to_owned(), self.places[0].span.clone(), &reason))
     }
 }

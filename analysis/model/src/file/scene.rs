@@ -11,11 +11,11 @@ use super::filter;
 use super::key::{self, Key};
 use super::kind::{self, Kind};
 use super::profile::{self, ProfileTable, Shapes};
-use super::section::{Found, Section};
+use super::section::Section;
 use super::simulation::{self, Simulation};
 use super::supply::{FileSupply, supply};
 use super::tree::{Node, Value};
-use super::updates::Places;
+use super::updates;
 use crate::chain::Chain;
 use crate::device::Hand;
 
@@ -77,7 +77,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     // If the limits could not be read, there may be a torque limit.
     let largest = limits.as_ref().map_or(Some(f64::INFINITY), |[torque, _, full]| torque.or(*full));
     let supply = supplied.and_then(|table| table.map(|it| supply(it, largest)).transpose());
-    let (name, table) = (name?.value, device?);
+    let (name, table) = (name?, device?);
     let [torque_limit, encoder_step, full_scale] = limits?;
     let (servo, coupling, environment) = (servo?, coupling?, environment?);
     let (environment, shapes) = match environment {
@@ -87,9 +87,15 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         }
         EnvironmentTable::Other(environment) => (*environment, None),
     };
-    let latency = latency_of(&top, &servo, &table, environment.is_late())?;
-    let DeviceTable { chain, device, friction, .. } = table;
+    let DeviceTable { chain, device, friction, latency } = table;
+    let latency = Latency {
+        output_delay: servo.latency.output_delay,
+        output_jitter: servo.latency.output_jitter,
+        count_jitter: servo.latency.count_jitter,
+        ..latency
+    };
     let timing = servo.timing;
+    check_latency(&top, &timing, &latency, environment.is_late())?;
     let scene = Scene { device, timing, coupling, environment, latency, torque_limit };
     let (simulation, hand, supply) = (simulation?, hand?, supply?);
     Ok(SceneFile {
@@ -112,90 +118,73 @@ const ROOT: Key = Key::root("a table of `name`, [device], [servo] and [environme
 /// The contents of `[servo]`.
 struct Servo {
     timing: Timing,
-    output_delay: Option<Found<TimeRange>>,
-    output_jitter: Option<Found<f64>>,
-    count_jitter: Option<Found<f64>>,
-    worst_period: Option<Found<f64>>,
+    /// The times from a count to its torque.
+    latency: Latency,
 }
 
 fn servo_of(mut section: Section<'_>) -> Read<Servo> {
     let period = section.number(&key::PERIOD);
-    let worst = section.found(&key::WORST_PERIOD);
+    let worst = section.optional(&key::WORST_PERIOD);
     let output_delay = section.time(&key::OUTPUT_DELAY);
-    let output_jitter = section.found(&key::OUTPUT_JITTER);
-    let count_jitter = section.found(&key::COUNT_JITTER);
+    let jitters = [&key::OUTPUT_JITTER, &key::COUNT_JITTER].map(|key| section.number(key));
     section.finish();
-    let (period, worst) = (period?, worst?);
-    let (output_delay, output_jitter, count_jitter) =
-        (output_delay?, output_jitter?, count_jitter?);
-    if let Some(Found { value, span }) = &worst
-        && *value < period
-    {
+    let [output_jitter, count_jitter] = jitters;
+    let (period, worst_period) = (period?, worst?);
+    let latency = Latency {
+        output_delay: output_delay?,
+        output_jitter: output_jitter?,
+        count_jitter: count_jitter?,
+        ..Latency::NONE
+    };
+    if worst_period.is_some_and(|worst| worst < period) {
         let reason = format!("is shorter than `{}` = {period} s", key::PERIOD.path);
-        return Err(section.conflict(&key::WORST_PERIOD, span.clone(), reason));
+        return Err(section.conflict(&key::WORST_PERIOD, reason));
     }
-    let timing = Timing { period, worst_period: worst.as_ref().map(|found| found.value) };
-    Ok(Servo { timing, output_delay, output_jitter, count_jitter, worst_period: worst })
+    Ok(Servo { timing: Timing { period, worst_period }, latency })
 }
 
-/// The times between count and torque, each with a bound that depends on other keys.
-fn latency_of(
-    top: &Section<'_>,
-    servo: &Servo,
-    device: &DeviceTable,
-    is_late: bool,
-) -> Read<Latency> {
-    let period = servo.timing.period;
-    let within = |key: &'static Key, found: &Option<Found<TimeRange>>, longest: f64| {
-        let Some(Found { value, span }) = found else { return Ok(TimeRange::ZERO) };
-        if value.most <= longest * period {
-            return Ok(*value);
+/// Checks the times between count and torque, each with a bound that depends on other keys.
+fn check_latency(top: &Section<'_>, timing: &Timing, latency: &Latency, is_late: bool) -> Read<()> {
+    let period = timing.period;
+    let within = |(key, time, longest): (&Key, TimeRange, f64)| {
+        if time.most <= longest * period {
+            return Ok(());
         }
         let name = key::PERIOD.path;
         let times = if longest == 1.0 { String::new() } else { format!("{longest} times ") };
         let reason = format!("is more than {times}`{name}` = {period} s, the most that it may be");
-        Err(top.conflict(key, span.clone(), reason))
+        Err(top.conflict(key, reason))
     };
-    let output_delay = within(&key::OUTPUT_DELAY, &servo.output_delay, LONGEST_DELAY);
-    let actuator_lag = within(&key::ACTUATOR_LAG, &device.actuator_lag, LONGEST_LAG);
-    let sensor_lag = within(&key::SENSOR_LAG, &device.sensor_lag, LONGEST_LAG);
-    let actuator_response = within(&key::ACTUATOR_RESPONSE, &device.actuator_response, 1.0);
-    let largest = match &output_delay {
-        &Ok(output_delay) => {
-            Latency { output_delay, ..Latency::NONE }.largest_jitter(is_late, period)
-        }
-        // If the time could not be read, any jitter is small enough.
+    let output_delay = within((&key::OUTPUT_DELAY, latency.output_delay, LONGEST_DELAY));
+    let others = [
+        (&key::ACTUATOR_LAG, latency.actuator_lag, LONGEST_LAG),
+        (&key::SENSOR_LAG, latency.sensor_lag, LONGEST_LAG),
+        (&key::ACTUATOR_RESPONSE, latency.actuator_response, 1.0),
+    ];
+    let others = all(others.into_iter().map(within));
+    let largest = match output_delay {
+        Ok(()) => latency.largest_jitter(is_late, period),
+        // If the time is too long, any jitter is small enough.
         Err(_) => f64::INFINITY,
     };
-    let output_jitter = jitter_of(top, servo, largest);
-    let updates = &device.actuator_updates;
-    let latency = Latency {
-        output_delay: output_delay?,
-        output_jitter: output_jitter?,
-        count_jitter: servo.count_jitter.as_ref().map_or(0.0, |found| found.value),
-        actuator_lag: actuator_lag?,
-        sensor_lag: sensor_lag?,
-        actuator_response: actuator_response?,
-        actuator_updates: updates.as_ref().map_or(0, |found| found.value as u16),
-    };
-    check_count_jitter(top, servo, &latency, largest)?;
-    if let Some(places) = Places::of(updates, &servo.output_delay, &servo.worst_period) {
-        places.check(top, &latency, &servo.timing)?;
-    }
-    Ok(latency)
+    let jitter = check_output_jitter(top, latency, largest);
+    output_delay?;
+    others?;
+    jitter?;
+    check_count_jitter(top, timing, latency, largest)?;
+    updates::check(top, latency, timing)
 }
 
-fn jitter_of(top: &Section<'_>, servo: &Servo, largest: f64) -> Read<f64> {
-    let Some(Found { value, span }) = &servo.output_jitter else { return Ok(0.0) };
-    if *value <= largest {
-        return Ok(*value);
+fn check_output_jitter(top: &Section<'_>, latency: &Latency, largest: f64) -> Read<()> {
+    if latency.output_jitter <= largest {
+        return Ok(());
     }
-    let reason = format!("is {}", more_than_time_to_torque(servo, largest));
-    Err(top.conflict(&key::OUTPUT_JITTER, span.clone(), reason))
+    let reason = format!("is {}", more_than_time_to_torque(latency, largest));
+    Err(top.conflict(&key::OUTPUT_JITTER, reason))
 }
 
-fn more_than_time_to_torque(servo: &Servo, largest: f64) -> String {
-    let least = servo.output_delay.as_ref().map_or(0.0, |delay| delay.value.least);
+fn more_than_time_to_torque(latency: &Latency, largest: f64) -> String {
+    let least = latency.output_delay.least;
     let late = if largest > least { format!(" and `{}`", key::PERIOD.path) } else { String::new() };
     format!(
         "more than the least `{}` = {least} s{late}: no torque comes before its count",
@@ -206,18 +195,17 @@ fn more_than_time_to_torque(servo: &Servo, largest: f64) -> String {
 /// The count jitter beside the output jitter.
 fn check_count_jitter(
     top: &Section<'_>,
-    servo: &Servo,
+    timing: &Timing,
     latency: &Latency,
     largest: f64,
 ) -> Read<()> {
-    let Some(Found { span, .. }) = &servo.count_jitter else { return Ok(()) };
     let sum = latency.total_jitter();
     let beside = match latency.output_jitter {
         0.0 => "is".to_owned(),
         jitter => format!("and `{}` = {jitter} s are together", key::OUTPUT_JITTER.path),
     };
-    let reason = match latency.bound_on_two_jitters(servo.timing.period) {
-        _ if sum > largest => format!("{beside} {}", more_than_time_to_torque(servo, largest)),
+    let reason = match latency.bound_on_two_jitters(timing.period) {
+        _ if sum > largest => format!("{beside} {}", more_than_time_to_torque(latency, largest)),
         _ if !latency.jitters_twice() => return Ok(()),
         None => format!(
             "stands beside `{}` and a lag of which only a range is known, for which there is no proof",
@@ -229,7 +217,7 @@ fn check_count_jitter(
         ),
         Some(_) => return Ok(()),
     };
-    Err(top.conflict(&key::COUNT_JITTER, span.clone(), reason))
+    Err(top.conflict(&key::COUNT_JITTER, reason))
 }
 
 /// The `coupling.type` that takes no stiffness.
@@ -237,22 +225,20 @@ pub const MATCHED: &str = "matched";
 
 fn coupling_of(mut section: Section<'_>) -> Read<Coupling> {
     let name = section.text(&key::COUPLING_TYPE);
-    let stiffness = section.found(&key::COUPLING_STIFFNESS);
+    let stiffness = section.optional(&key::COUPLING_STIFFNESS);
     let coupling = match (name, stiffness) {
         (Err(reported), _) | (_, Err(reported)) => Err(reported),
-        (Ok(Some(name)), Ok(stiffness)) if name.value == MATCHED => match stiffness {
+        (Ok(Some(name)), Ok(stiffness)) if name == MATCHED => match stiffness {
             None => Ok(Coupling::Matched),
-            Some(found) => {
+            Some(_) => {
                 let other = key::COUPLING_TYPE.path;
                 let reason =
                     format!("stands beside `{other}` = \"{MATCHED}\", which takes no stiffness");
-                Err(section.conflict(&key::COUPLING_STIFFNESS, found.span, reason))
+                Err(section.conflict(&key::COUPLING_STIFFNESS, reason))
             }
         },
-        (Ok(Some(name)), _) if name.value != "spring" => {
-            Err(section.out_of_bounds(&key::COUPLING_TYPE, key::COUPLING_TYPE.path, &name.span))
-        }
-        (_, Ok(Some(stiffness))) => Ok(Coupling::Spring { stiffness: stiffness.value }),
+        (Ok(Some(name)), _) if name != "spring" => Err(section.out_of_bounds(&key::COUPLING_TYPE)),
+        (_, Ok(Some(stiffness))) => Ok(Coupling::Spring { stiffness }),
         (_, Ok(None)) => Err(section.missing(&key::COUPLING_STIFFNESS)),
     };
     section.finish();
@@ -274,10 +260,8 @@ enum EnvironmentTable {
 
 fn environment_of(mut section: Section<'_>) -> Read<EnvironmentTable> {
     let name = section.needed_text(&key::TYPE);
-    let kind = name.and_then(|Found { value, span }| match Kind::find(&value) {
-        Some(kind) => Ok(kind),
-        None => Err(section.out_of_bounds(&key::TYPE, key::TYPE.path, &span)),
-    });
+    let kind =
+        name.and_then(|name| Kind::find(&name).ok_or_else(|| section.out_of_bounds(&key::TYPE)));
     let environment = match kind {
         Ok(kind) => {
             section.specialize(format!("a {} [environment]", kind.name), kind.needed);
@@ -330,25 +314,20 @@ fn rational(section: &mut Section<'_>) -> Read<Rational> {
     let delay = section.whole(&key::DELAY_SAMPLES);
     let room = MAX_DELAY - delay.as_ref().map_or(0, |delay| *delay);
     let denominator = polynomial(section, &key::DENOMINATOR, room);
-    let unit_zeros = section.found(&key::UNIT_ZEROS);
+    let unit_zeros = section.whole(&key::UNIT_ZEROS);
     let ((numerator, _), (denominator, more)) = (numerator?, denominator?);
     let (delay, unit_zeros) = (delay? + more, unit_zeros?);
-    let zeros = unit_zeros.as_ref().map_or(0, |found| found.value as usize);
-    if let Some(Found { span, .. }) = unit_zeros
-        && numerator.as_slice().len() - 1 + zeros > MAX_DEGREE
-    {
+    if unit_zeros > 0 && numerator.as_slice().len() - 1 + unit_zeros > MAX_DEGREE {
         let reason = format!("makes the numerator's degree more than {MAX_DEGREE}");
-        return Err(section.conflict(&key::UNIT_ZEROS, span, reason));
+        return Err(section.conflict(&key::UNIT_ZEROS, reason));
     }
-    Ok(Rational { numerator, denominator, delay, unit_zeros: zeros })
+    Ok(Rational { numerator, denominator, delay, unit_zeros })
 }
 
 /// Descending coefficients without leading zeros; a denominator needs a coefficient that is not zero. Also
 /// returns the number of zeros, up to `most`, that were removed from its end because the degree was too high.
 fn polynomial(section: &mut Section<'_>, key: &Key, most: usize) -> Read<(Coefficients, usize)> {
-    let Some(Found { mut value, span }) = section.list(key)? else {
-        return Err(section.missing(key));
-    };
+    let Some(mut value) = section.list(key)? else { return Err(section.missing(key)) };
     let mut taken = 0;
     while taken < most && value.len() > MAX_DEGREE + 1 && value.last() == Some(&0.0) {
         value.pop();
@@ -362,7 +341,7 @@ fn polynomial(section: &mut Section<'_>, key: &Key, most: usize) -> Read<(Coeffi
     };
     let coefficients =
         if value.len() > MAX_DEGREE + 1 { None } else { Coefficients::new(significant) };
-    let coefficients = coefficients.ok_or_else(|| section.out_of_bounds(key, key.path, &span))?;
+    let coefficients = coefficients.ok_or_else(|| section.out_of_bounds(key))?;
     Ok((coefficients, taken))
 }
 

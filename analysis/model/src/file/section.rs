@@ -1,6 +1,8 @@
 //! Reads a table key by key; a key that is never read is unknown. Reading continues after an error, so
 //! that a user who corrects a file sees all errors at once.
 
+use std::fmt::Display;
+
 use haptic_servo::parameter::Range;
 use haptic_servo::scene::TimeRange;
 
@@ -12,6 +14,9 @@ use super::tree::{Entry, Node, Span, Value};
 /// Similarity of two names (0 to 1) from which one counts as a misspelling of the other. Chosen so that one
 /// wrong, missing or swapped letter in a word of six still counts.
 const ALIKE: f64 = 0.9;
+
+/// What a number of a list must be.
+const FINITE: &str = "a finite number";
 
 /// A table of the file that is being read.
 pub struct Section<'t> {
@@ -35,8 +40,8 @@ pub struct Found<T> {
     pub span: Span,
 }
 
-/// Numbers with their place.
-pub type Row = Found<Vec<f64>>;
+/// Numbers with their places.
+pub type Row = Found<Vec<Found<f64>>>;
 
 /// Two numbers, each with its place.
 pub type Pair = [Found<f64>; 2];
@@ -49,15 +54,19 @@ impl<'t> Section<'t> {
         key: &Key,
         node: Node,
     ) -> Read<Self> {
-        let title = title.to_owned();
+        let (path, span, title) = (key.path, node.span, title.to_owned());
+        let (asked, numbered, needed) = (Vec::new(), None, [].as_slice());
+        let mut section =
+            Self { text, faults, path, numbered, title, span, entries: vec![], asked, needed };
         match node.value {
-            Value::Table(entries) => {
-                let (path, span, asked) = (key.path, node.span, Vec::new());
-                let (numbered, needed) = (None, [].as_slice());
-                Ok(Self { text, faults, path, numbered, title, span, entries, asked, needed })
+            Value::Table(entries) => section.entries = entries,
+            other => {
+                let name = if path.is_empty() { "the file" } else { path };
+                let (span, bound) = (&section.span, key.requirement());
+                return Err(section.wrong_kind(name, span, other.kind(), &bound));
             }
-            other => Err(faults.report(wrong_kind(text, key, key.path, &node.span, &other))),
         }
+        Ok(section)
     }
 
     /// From here on messages use this name of the table in the full names of its keys.
@@ -97,18 +106,14 @@ impl<'t> Section<'t> {
         self.table(key)?.ok_or_else(|| self.missing(key))
     }
 
-    /// The tables of that key in their order with the place of the whole list, if it is there.
-    pub fn tables(&mut self, key: &Key) -> Read<Option<Found<Vec<Self>>>> {
-        let Some(Node { span, value }) = self.take(key) else { return Ok(None) };
-        let Value::List(items) = value else {
-            return Err(self.wrong_kind(key, &span, &value));
-        };
+    /// The tables of that key in their order, if it is there.
+    pub fn tables(&mut self, key: &Key) -> Read<Option<Vec<Self>>> {
+        let Some(items) = self.items(key)? else { return Ok(None) };
         let numbered = |(index, node): (usize, Node)| {
             let title = format!("[[{}]] number {}", key.path, index + 1);
             Self::new((self.text, self.faults), &title, key, node)
         };
-        let value = all(items.into_iter().enumerate().map(numbered))?;
-        Ok(Some(Found { value, span }))
+        all(items.into_iter().enumerate().map(numbered)).map(Some)
     }
 
     /// Whether a key of that name is there, read or not.
@@ -116,26 +121,25 @@ impl<'t> Section<'t> {
         self.entries.iter().any(|entry| entry.name == key.name())
     }
 
-    /// The text at `span`, safe to print.
-    pub fn written(&self, span: &Span) -> String {
-        excerpt(&self.text[span.clone()])
-    }
-
     /// Bytes of the table in the text.
     pub fn span(&self) -> Span {
         self.span.clone()
     }
 
-    /// The number of that key with its place, if it is there.
-    pub fn found(&mut self, key: &Key) -> Read<Option<Found<f64>>> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let value = self.number_of(key, &self.name_of(key), &node)?;
-        Ok(Some(Found { value, span: node.span }))
+    /// Bytes of the value of a key in the text, in whatever table it was read; `None` if it is not there.
+    pub fn place(&self, key: &Key) -> Option<Span> {
+        self.faults.place(key.path)
+    }
+
+    /// The same; of a key that is not there, those of this table.
+    pub fn place_of(&self, key: &Key) -> Span {
+        self.place(key).unwrap_or_else(|| self.span())
     }
 
     /// The number of that key, if it is there.
     pub fn optional(&mut self, key: &Key) -> Read<Option<f64>> {
-        Ok(self.found(key)?.map(|found| found.value))
+        let Some(node) = self.take(key) else { return Ok(None) };
+        self.number_of(key, &self.name_of(key), &node, |value| key.bound.admits(value)).map(Some)
     }
 
     /// The number of that key. Where it is left out, it is the key's default, if that has one.
@@ -156,54 +160,46 @@ impl<'t> Section<'t> {
         }
     }
 
-    /// The time of that key in s, or the range that it lies in, with its place, if it is there.
-    pub fn time(&mut self, key: &Key) -> Read<Option<Found<TimeRange>>> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let span = node.span.clone();
-        let value = match &node.value {
+    /// The time of that key in s, or the range that it lies in; 0 if it is not there.
+    pub fn time(&mut self, key: &Key) -> Read<TimeRange> {
+        let Some(node) = self.take(key) else { return Ok(TimeRange::ZERO) };
+        let seconds = |place: &str, node: &Node| {
+            let path = format!("{}{place}", key.path);
+            self.number_of(key, &path, node, |value| Range::NotNegative.admits(value))
+        };
+        let time = match &node.value {
             Value::List(ends) => match &ends[..] {
                 [least, most] => {
-                    let ends = [("[0]", least), ("[1]", most)];
-                    let [least, most] = ends.map(|(place, end)| {
-                        self.seconds(key, &format!("{}{place}", key.path), end)
-                    });
+                    let (least, most) = (seconds("[0]", least), seconds("[1]", most));
                     TimeRange::between(least?, most?)
                 }
-                _ => return Err(self.out_of_bounds(key, key.path, &span)),
+                _ => return Err(self.out_of_bounds(key)),
             },
-            _ => TimeRange::exactly(self.seconds(key, key.path, &node)?),
+            _ => TimeRange::exactly(seconds("", &node)?),
         };
-        if value.least > value.most {
-            let reason = "is a range that ends before it begins: write [least, most]".to_owned();
-            return Err(self.conflict(key, span, reason));
+        if time.least > time.most {
+            let reason = "is a range that ends before it begins: write [least, most]";
+            return Err(self.conflict(key, reason));
         }
-        Ok(Some(Found { value, span }))
+        Ok(time)
     }
 
-    fn seconds(&self, key: &Key, path: &str, node: &Node) -> Read<f64> {
-        match node.value {
-            Value::Number(value) if Range::NotNegative.admits(value) => Ok(value),
-            Value::Number(_) => Err(self.out_of_bounds(key, path, &node.span)),
-            ref other => Err(self.wrong_kind(key, &node.span, other)),
-        }
-    }
-
-    /// The whole number of that key, in the same way.
+    /// The whole number of that key, as [`Section::number`].
     pub fn whole(&mut self, key: &Key) -> Read<usize> {
         Ok(self.number(key)? as usize)
     }
 
-    /// The string of that key with its place, which must be there.
-    pub fn needed_text(&mut self, key: &Key) -> Read<Found<String>> {
+    /// The string of that key, which must be there.
+    pub fn needed_text(&mut self, key: &Key) -> Read<String> {
         self.text(key)?.ok_or_else(|| self.missing(key))
     }
 
-    /// The string of that key with its place, if it is there.
-    pub fn text(&mut self, key: &Key) -> Read<Option<Found<String>>> {
+    /// The string of that key, if it is there.
+    pub fn text(&mut self, key: &Key) -> Read<Option<String>> {
         match self.take(key) {
             None => Ok(None),
-            Some(Node { span, value: Value::Text(value) }) => Ok(Some(Found { value, span })),
-            Some(node) => Err(self.wrong_kind(key, &node.span, &node.value)),
+            Some(Node { value: Value::Text(value), .. }) => Ok(Some(value)),
+            Some(node) => Err(self.wrong_kind_of(key, &node)),
         }
     }
 
@@ -212,132 +208,104 @@ impl<'t> Section<'t> {
         match self.take(key) {
             None => Ok(None),
             Some(Node { value: Value::Boolean(value), .. }) => Ok(Some(value)),
-            Some(node) => Err(self.wrong_kind(key, &node.span, &node.value)),
+            Some(node) => Err(self.wrong_kind_of(key, &node)),
         }
     }
 
-    /// The finite numbers of that key with their place, if it is there.
-    pub fn list(&mut self, key: &Key) -> Read<Option<Found<Vec<f64>>>> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let Value::List(items) = &node.value else {
-            return Err(self.wrong_kind(key, &node.span, &node.value));
-        };
+    /// The finite numbers of that key, if it is there.
+    pub fn list(&mut self, key: &Key) -> Read<Option<Vec<f64>>> {
+        let Some(items) = self.items(key)? else { return Ok(None) };
         let item = |(index, item): (usize, &Node)| {
-            let path = format!("{}[{index}]", key.path);
-            let (value, span) = (&item.value, &item.span);
-            match value {
-                Value::Number(number) if number.is_finite() => Ok(*number),
-                Value::Number(_) => Err(self.out_of_bounds(key, &path, span)),
-                _ => {
-                    let problem = Problem::WrongKind {
-                        key: path,
-                        value: excerpt(&self.text[span.clone()]),
-                        found: value.kind(),
-                        bound: "a finite number".to_owned(),
-                    };
-                    Err(self.report(span.clone(), problem))
-                }
-            }
+            self.finite(format!("{}[{index}]", key.path), item, &key.requirement())
         };
-        let value = all(items.iter().enumerate().map(item))?;
-        Ok(Some(Found { value, span: node.span }))
+        all(items.iter().enumerate().map(item)).map(Some)
     }
 
     /// The pairs of finite numbers of that key with their places, if it is there.
-    pub fn pairs(&mut self, key: &Key) -> Read<Option<Found<Vec<Pair>>>> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let Value::List(items) = &node.value else {
-            return Err(self.wrong_kind(key, &node.span, &node.value));
-        };
-        let pair = |(index, item): (usize, &Node)| {
-            let name = format!("{}[{index}]", self.name_of(key));
-            let Value::List(numbers) = &item.value else {
-                return Err(self.no_pair(name, item, item.value.kind()));
-            };
-            let [a, b] = &numbers[..] else {
-                return Err(self.no_pair(name, item, "a list of another length"));
-            };
-            let [a, b] = [(0, a), (1, b)].map(|(place, node)| match node.value {
-                Value::Number(value) if value.is_finite() => {
-                    Ok(Found { value, span: node.span.clone() })
-                }
-                ref other => {
-                    let name = format!("{name}[{place}]");
-                    Err(self.no_finite(name, &node.span, other))
-                }
-            });
-            Ok([a?, b?])
-        };
-        let value = all(items.iter().enumerate().map(pair))?;
-        Ok(Some(Found { value, span: node.span }))
+    pub fn pairs(&mut self, key: &Key) -> Read<Option<Vec<Pair>>> {
+        let bound = "a pair of finite numbers, [angle in rad, torque in N m]";
+        let Some(rows) = self.rows(key, &[2], bound)? else { return Ok(None) };
+        Ok(Some(rows.into_iter().filter_map(|row| row.value.try_into().ok()).collect()))
     }
 
     /// The lists of finite numbers of that key with their places, if it is there. Each has one of these
     /// lengths; a number is a list of one. `bound` is what one must be.
-    pub fn rows(
-        &mut self,
-        key: &Key,
-        lengths: &[usize],
-        bound: &str,
-    ) -> Read<Option<Found<Vec<Row>>>> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let Value::List(items) = &node.value else {
-            return Err(self.wrong_kind(key, &node.span, &node.value));
-        };
+    pub fn rows(&mut self, key: &Key, lengths: &[usize], bound: &str) -> Read<Option<Vec<Row>>> {
+        let Some(items) = self.items(key)? else { return Ok(None) };
         let row = |(index, item): (usize, &Node)| {
             let name = format!("{}[{index}]", self.name_of(key));
-            let (value, span) = (&item.value, item.span.clone());
-            let numbers = match value {
+            let numbers = match &item.value {
                 Value::Number(_) => std::slice::from_ref(item),
                 Value::List(numbers) => numbers,
                 _ => &[],
             };
             if !lengths.contains(&numbers.len()) {
-                let written = excerpt(&self.text[span.clone()]);
-                let found = match value {
+                let found = match &item.value {
                     Value::List(_) => "a list of another length",
                     other => other.kind(),
                 };
-                let bound = bound.to_owned();
-                let problem = Problem::WrongKind { key: name, value: written, found, bound };
-                return Err(self.report(span, problem));
+                return Err(self.wrong_kind(&name, &item.span, found, bound));
             }
-            let number = |(place, node): (usize, &Node)| match node.value {
-                Value::Number(value) if value.is_finite() => Ok(value),
-                ref other => Err(self.no_finite(format!("{name}[{place}]"), &node.span, other)),
+            let number = |(place, node): (usize, &Node)| {
+                let value = self.finite(format!("{name}[{place}]"), node, FINITE)?;
+                Ok(Found { value, span: node.span.clone() })
             };
             let value = all(numbers.iter().enumerate().map(number))?;
-            Ok(Found { value, span })
+            Ok(Found { value, span: item.span.clone() })
         };
-        let value = all(items.iter().enumerate().map(row))?;
-        Ok(Some(Found { value, span: node.span }))
+        all(items.iter().enumerate().map(row)).map(Some)
     }
 
-    fn no_pair(&self, key: String, node: &Node, found: &'static str) -> Reported {
-        let value = excerpt(&self.text[node.span.clone()]);
-        let bound = "a pair of finite numbers, [angle in rad, torque in N m]".to_owned();
-        self.report(node.span.clone(), Problem::WrongKind { key, value, found, bound })
+    /// The values of a list.
+    fn items(&mut self, key: &Key) -> Read<Option<Vec<Node>>> {
+        match self.take(key) {
+            None => Ok(None),
+            Some(Node { value: Value::List(items), .. }) => Ok(Some(items)),
+            Some(node) => Err(self.wrong_kind_of(key, &node)),
+        }
     }
 
-    fn no_finite(&self, key: String, span: &Span, value: &Value) -> Reported {
-        let (text, bound) = (excerpt(&self.text[span.clone()]), "a finite number".to_owned());
-        let problem = match value {
-            Value::Number(_) => Problem::OutOfBounds { key, value: text, bound },
-            _ => Problem::WrongKind { key, value: text, found: value.kind(), bound },
-        };
-        self.report(span.clone(), problem)
+    /// A number of a list; `bound` is what a number that is not finite must be.
+    fn finite(&self, name: String, node: &Node, bound: &str) -> Read<f64> {
+        match node.value {
+            Value::Number(value) if value.is_finite() => Ok(value),
+            Value::Number(_) => Err(self.not_within(&name, &node.span, bound)),
+            ref other => Err(self.wrong_kind(&name, &node.span, other.kind(), FINITE)),
+        }
     }
 
     /// Reports a key whose value is out of its bound.
-    pub fn out_of_bounds(&self, key: &Key, path: &str, span: &Span) -> Reported {
-        let value = &self.text[span.clone()];
-        self.report(span.clone(), Problem::out_of_bounds(path, value, key.bound, key.unit))
+    pub fn out_of_bounds(&self, key: &Key) -> Reported {
+        self.not_within(&self.name_of(key), &self.place_of(key), &key.requirement())
+    }
+
+    /// Reports a value that must be `bound`.
+    pub fn not_within(&self, name: &str, span: &Span, bound: &str) -> Reported {
+        self.wrong(name, span, format_args!("is out of bounds; it must be {bound}"))
     }
 
     /// Reports a key that contradicts another one, or a rule.
-    pub fn conflict(&self, key: &Key, span: Span, reason: String) -> Reported {
-        let value = excerpt(&self.text[span.clone()]);
-        self.report(span, Problem::Conflict { key: self.name_of(key), value, reason })
+    pub fn conflict(&self, key: &Key, reason: impl Display) -> Reported {
+        self.conflict_at(key, &self.place_of(key), reason)
+    }
+
+    /// The same at another place in the text.
+    pub fn conflict_at(&self, key: &Key, span: &Span, reason: impl Display) -> Reported {
+        self.wrong(&self.name_of(key), span, reason)
+    }
+
+    fn wrong_kind_of(&self, key: &Key, node: &Node) -> Reported {
+        let name = self.name_of(key);
+        self.wrong_kind(&name, &node.span, node.value.kind(), &key.requirement())
+    }
+
+    fn wrong_kind(&self, name: &str, span: &Span, found: &str, bound: &str) -> Reported {
+        self.wrong(name, span, format_args!("is {found}; it must be {bound}"))
+    }
+
+    /// Reports a value that is there, with its fault.
+    fn wrong(&self, name: &str, span: &Span, wrong: impl Display) -> Reported {
+        self.report(span.clone(), Problem::value(name, &self.text[span.clone()], wrong))
     }
 
     /// Reports a missing key, or the misspelt key in its place.
@@ -348,7 +316,8 @@ impl<'t> Section<'t> {
                 self.unknown(&entry)
             }
             None => {
-                let problem = Problem::Missing { key: self.name_of(key), bound: key.requirement() };
+                let missing = format!(" is missing; it must be {}", key.requirement());
+                let problem = Problem::key_and(self.name_of(key), &missing);
                 self.report(self.span.start..self.span.start, problem)
             }
         }
@@ -370,18 +339,22 @@ impl<'t> Section<'t> {
     fn take(&mut self, key: &Key) -> Option<Node> {
         self.asked.push(key.name());
         let index = self.entries.iter().position(|entry| entry.name == key.name())?;
-        Some(self.entries.swap_remove(index).node)
+        let node = self.entries.swap_remove(index).node;
+        self.faults.keep_place(key.path, node.span.clone());
+        Some(node)
     }
 
-    fn wrong_kind(&self, key: &Key, span: &Span, value: &Value) -> Reported {
-        self.faults.report(wrong_kind(self.text, key, &self.name_of(key), span, value))
-    }
-
-    fn number_of(&self, key: &Key, path: &str, node: &Node) -> Read<f64> {
+    fn number_of(
+        &self,
+        key: &Key,
+        path: &str,
+        node: &Node,
+        admits: impl Fn(f64) -> bool,
+    ) -> Read<f64> {
         match node.value {
-            Value::Number(value) if key.bound.admits(value) => Ok(value),
-            Value::Number(_) => Err(self.out_of_bounds(key, path, &node.span)),
-            ref other => Err(self.wrong_kind(key, &node.span, other)),
+            Value::Number(value) if admits(value) => Ok(value),
+            Value::Number(_) => Err(self.not_within(path, &node.span, &key.requirement())),
+            _ => Err(self.wrong_kind_of(key, node)),
         }
     }
 
@@ -394,17 +367,12 @@ impl<'t> Section<'t> {
         let table = self.numbered.as_deref().unwrap_or(self.path);
         let dot = if table.is_empty() { "" } else { "." };
         let key = format!("{table}{dot}{}", excerpt(&entry.name));
-        let problem = Problem::Unknown { key, table: self.title.clone(), advice };
-        self.report(entry.span.clone(), problem)
+        let unknown = format!(" is not a key of {}; {advice}", self.title);
+        self.report(entry.span.clone(), Problem::key_and(key, &unknown))
     }
 }
 
 fn alike(written: &str, name: &str) -> bool {
     // Comparing is quadratic in the length; no slip is longer than this.
     written.len() <= 2 * name.len() && strsim::jaro_winkler(written, name) >= ALIKE
-}
-
-fn wrong_kind(text: &str, key: &Key, name: &str, span: &Span, value: &Value) -> Fault {
-    let problem = Problem::wrong_kind(key, name, &text[span.clone()], value.kind());
-    Fault { span: span.clone(), problem }
 }

@@ -8,7 +8,7 @@ use crate::missed::Missed;
 
 use super::faults::Read;
 use super::key::{self, Key};
-use super::section::{Found, Section};
+use super::section::Section;
 
 /// The settings of a simulation, with the torque of the hand.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,22 +82,20 @@ pub fn simulation(mut section: Section<'_>, period: f64, friction: f64) -> Read<
 }
 
 fn latency(section: &mut Section<'_>, period: f64) -> Read<f64> {
-    match section.found(&key::LATENCY)? {
-        None => Ok(0.0),
-        Some(Found { value, .. }) if value < period => Ok(value),
-        Some(Found { span, .. }) => {
-            let reason = format!(
-                "is not shorter than `{}` = {period} s; whole ticks are `{}`",
-                key::PERIOD.path,
-                key::DELAY_SAMPLES.path
-            );
-            Err(section.conflict(&key::LATENCY, span, reason))
-        }
+    let latency = section.number(&key::LATENCY)?;
+    if latency < period {
+        return Ok(latency);
     }
+    let reason = format!(
+        "is not shorter than `{}` = {period} s; whole ticks are `{}`",
+        key::PERIOD.path,
+        key::DELAY_SAMPLES.path
+    );
+    Err(section.conflict(&key::LATENCY, reason))
 }
 
 fn missed_of(mut table: Section<'_>) -> Read<Missed> {
-    let every = table.found(&key::MISSED_EVERY);
+    let every = table.optional(&key::MISSED_EVERY);
     let fraction = table.optional(&key::MISSED_FRACTION);
     let seed = table.optional(&key::MISSED_SEED);
     let (every, fraction, seed) = match (every, fraction, seed) {
@@ -113,11 +111,10 @@ fn missed_of(mut table: Section<'_>) -> Read<Missed> {
         }
     };
     match (every, fraction) {
-        (Some(Found { value, .. }), None) if seed.is_none() => Ok(Missed::Every(value as u32)),
-        (Some(Found { span, .. }), _) => {
-            let reason =
-                "cannot stand beside `fraction` or `seed`: set one or the other".to_owned();
-            Err(table.conflict(&key::MISSED_EVERY, span, reason))
+        (Some(every), None) if seed.is_none() => Ok(Missed::Every(every as u32)),
+        (Some(_), _) => {
+            let reason = "cannot stand beside `fraction` or `seed`: set one or the other";
+            Err(table.conflict(&key::MISSED_EVERY, reason))
         }
         (None, fraction) => Ok(Missed::Random {
             fraction: fraction.unwrap_or(0.0),
@@ -142,24 +139,20 @@ fn torque(section: &mut Section<'_>) -> Read<HandTorque> {
     let pulses = section.table(&key::TORQUE_PULSES);
     let (held, file, sine, pulses) = (held?, file?, sine?, pulses?);
     let given = [
-        held.as_ref().map(|found| (key::TORQUE, found.span.clone())),
-        file.as_ref().map(|found| (key::TORQUE_FILE, found.span.clone())),
-        sine.as_ref().map(|table| (key::TORQUE_SINE, table.span())),
-        pulses.as_ref().map(|table| (key::TORQUE_PULSES, table.span())),
+        (&key::TORQUE, held.is_some()),
+        (&key::TORQUE_FILE, file.is_some()),
+        (&key::TORQUE_SINE, sine.is_some()),
+        (&key::TORQUE_PULSES, pulses.is_some()),
     ];
-    if let [_, (key, span), ..] = &given.into_iter().flatten().collect::<Vec<_>>()[..] {
-        return Err(section.conflict(key, span.clone(), twice()));
+    if let Some((key, _)) = given.into_iter().filter(|(_, is_given)| *is_given).nth(1) {
+        return Err(section.conflict(key, twice()));
     }
-    if let Some(Found { value, .. }) = held {
-        return Ok(HandTorque::Held(value));
-    }
-    if let Some(Found { value, .. }) = file {
-        return Ok(HandTorque::File(value.into()));
-    }
-    match (sine, pulses) {
-        (Some(table), _) => sine_torque(table),
-        (None, Some(table)) => pulses_of_torque(table),
-        (None, None) => Ok(HandTorque::Free),
+    match (held, file, sine, pulses) {
+        (Some(torques), ..) => Ok(HandTorque::Held(torques)),
+        (_, Some(file), ..) => Ok(HandTorque::File(file.into())),
+        (_, _, Some(table), _) => sine_torque(table),
+        (_, _, _, Some(table)) => pulses_of_torque(table),
+        _ => Ok(HandTorque::Free),
     }
 }
 

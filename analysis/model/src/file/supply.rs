@@ -24,7 +24,7 @@ pub enum FileSupply {
 pub fn supply(mut section: Section<'_>, torque: Option<f64>) -> Read<FileSupply> {
     let sinks = section.boolean(&key::SINKS);
     let numbers = [&key::SUPPLY_VOLTAGE, &key::FAULT_VOLTAGE, &key::CAPACITANCE];
-    let numbers = numbers.map(|key| (key, section.found(key)));
+    let numbers = numbers.map(|key| (key, section.optional(key)));
     let speed = section.number(&key::LARGEST_SPEED);
     section.finish();
     if sinks? == Some(true) {
@@ -34,21 +34,18 @@ pub fn supply(mut section: Section<'_>, torque: Option<f64>) -> Read<FileSupply>
         speed?;
         return Ok(FileSupply::Sinks);
     }
-    let [voltage, level, capacitance] = numbers.map(|(key, number)| match number? {
-        Some(found) => Ok(found),
-        None => Err(section.missing(key)),
-    });
-    let (voltage, level, capacitance) = (voltage?, level?, capacitance?);
-    if voltage.value >= level.value {
-        let reason = format!("is not below `{}` = {} V", key::FAULT_VOLTAGE.path, level.value);
-        return Err(section.conflict(&key::SUPPLY_VOLTAGE, voltage.span, reason));
+    let [voltage, fault_level, capacitance] =
+        numbers.map(|(key, number)| number?.ok_or_else(|| section.missing(key)));
+    let (voltage, fault_level, capacitance) = (voltage?, fault_level?, capacitance?);
+    if voltage >= fault_level {
+        let reason = format!("is not below `{}` = {fault_level} V", key::FAULT_VOLTAGE.path);
+        return Err(section.conflict(&key::SUPPLY_VOLTAGE, reason));
     }
     if torque.is_none() {
         let (limit, full) = (key::TORQUE_LIMIT.path, key::FULL_SCALE.path);
         let reason = format!("needs the largest torque beside it: set `{limit}` or `{full}`");
-        return Err(section.conflict(&key::CAPACITANCE, capacitance.span, reason));
+        return Err(section.conflict(&key::CAPACITANCE, reason));
     }
-    let bus =
-        Bus { voltage: voltage.value, capacitance: capacitance.value, fault_level: level.value };
+    let bus = Bus { voltage, capacitance, fault_level };
     Ok(FileSupply::Stores { bus, largest_speed: speed? })
 }

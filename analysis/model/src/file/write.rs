@@ -217,18 +217,18 @@ mod tests {
     }
 
     const RIGID: &str = "inertia = 2.2e-5\ndamping = 0.1\npassivity = 0.07\nfriction = 0.003\n";
+    const SERVO: &str = "period = 0.001\nworst_period = 0.003\n";
     const SPRING: &str = "[environment]\ntype = \"delayed-spring\"\nstiffness = 0.1\ndelay = 3\n";
+    const CHAIN: &str = "[[device.mass]]\ninertia = 1e-5\ndamping = 0.3\n[[device.mass]]\n\
+                         inertia = 2e-5\ndamping = 0.1\n[[device.link]]\nstiffness = 60\ndamping = 0.2\n";
 
-    fn text(device: &str, rest: &str) -> String {
-        format!(
-            "name = \"a \\\"b\\\"\"\n[servo]\nperiod = 0.001\nworst_period = 0.003\n[device]\n\
-             {device}{rest}"
-        )
+    fn text(device: &str, servo: &str, rest: &str) -> String {
+        format!("name = \"a \\\"b\\\"\"\n[servo]\n{servo}[device]\n{device}{rest}")
     }
 
     #[test]
-    fn what_is_written_reads_back_as_the_same_scene() {
-        for environment in [
+    fn what_is_written_reads_back_as_the_same_scene_to_the_last_bit() {
+        let environments = [
             "type = \"delayed-spring\"\nstiffness = 0.1\ndelay = 3\n[coupling]\nstiffness = 44\n\
              [limits]\ntorque = 0.7\n",
             "type = \"damper-wall\"\nstiffness = 1e-30\ndamping = -0.3\ndelay = 0\n\
@@ -237,43 +237,13 @@ mod tests {
             "type = \"free-mode-wall\"\nresidual = 0.001\nstiffness = 3\ndamping = 0.2\ndelay = 1\n",
             "type = \"rational\"\nnumerator = [1, -0.3]\ndenominator = [1, 0.1, 0.7]\ndelay = 2\n\
              unit_zeros = 1\n",
-        ] {
-            let [first, second] = again(&text(RIGID, &format!("[environment]\n{environment}")));
-            assert_eq!(first, second);
-        }
-        let wall =
-            "[environment]\ntype = \"damper-wall\"\nstiffness = 3\ndamping = 0.2\ndelay = 1\n";
-        let [absent, zero] =
-            ["", "face = 0.0\n"].map(|face| again(&text(RIGID, &format!("{wall}{face}"))));
-        assert_eq!(absent, zero);
-    }
-
-    #[test]
-    fn chains_stay_chains_with_what_was_declared_of_them_and_nothing_else() {
-        let chain = |more: &str| {
-            format!(
-                "{more}[[device.mass]]\ninertia = 1e-5\ndamping = 0.3\n[[device.mass]]\n\
-                 inertia = 2e-5\ndamping = 0.1\n[[device.link]]\nstiffness = 60\ndamping = 0.2\n"
-            )
-        };
-        for more in ["", "passivity = 0.3\n"] {
-            let [first, second] = again(&text(&chain(more), SPRING));
-            assert_eq!(first, second);
-            assert_eq!(toml(&first).contains("passivity"), !more.is_empty());
-        }
-        let [first, second] =
-            again(&text(&chain("encoder = \"hand\"\nactuator_lag = 1e-4\n"), SPRING));
-        assert_eq!(first.scene.latency.actuator_lag, TimeRange::exactly(1e-4));
-        // Its passivity is NaN, which equals nothing.
-        assert_eq!((&first.chain, toml(&first)), (&second.chain, toml(&second)));
-    }
-
-    #[test]
-    fn latency_and_a_matched_coupling_are_kept_to_the_last_bit() {
-        for (device, servo, coupling) in [
+        ];
+        let environments =
+            environments.map(|it| text(RIGID, SERVO, &format!("[environment]\n{it}")));
+        let latencies = [
             ("actuator_lag = [1e-5, 1.0000000000000002e-5]\n", "", ""),
             ("sensor_lag = 3e-5\n", "output_delay = [0, 5e-6]\n", "type = \"matched\"\n"),
-            ("actuator_response = [1e-5, 3e-4]\n", "output_delay = 5e-6\n", ""),
+            ("actuator_response = [1e-5, 3e-4]\n", "output_delay = 5e-6\n", "stiffness = 3\n"),
             ("actuator_lag = 3e-4\nactuator_updates = 5\n", "output_delay = 5e-4\n", ""),
             (
                 "",
@@ -282,23 +252,13 @@ mod tests {
             ),
             ("", "output_delay = 5e-6\noutput_jitter = 1e-6\ncount_jitter = 3e-6\n", ""),
             ("actuator_lag = -0.0\n", "output_delay = [1e-6, 1e-6]\noutput_jitter = 1e-6\n", ""),
-        ] {
-            let coupling =
-                if coupling.is_empty() { "" } else { &format!("[coupling]\n{coupling}") };
-            let period = "period = 0.00125\n";
-            let read = text(&format!("{RIGID}{device}"), &format!("{SPRING}{coupling}"))
-                .replace("period = 0.001\nworst_period = 0.003\n", &format!("{period}{servo}"));
-            let [first, second] = again(&read);
-            assert_eq!(first, second);
-            let bits = |file: &SceneFile| file.scene.latency.actuator_lag.least.to_bits();
-            assert_eq!(bits(&first), bits(&second));
-            assert!(!first.scene.latency.is_none() || device.contains("-0.0"), "{first:?}");
-        }
-    }
-
-    #[test]
-    fn what_only_a_simulation_uses_is_kept() {
-        for torque in [
+        ];
+        let latencies = latencies.map(|(device, servo, coupling)| {
+            let table = if coupling.is_empty() { "" } else { "[coupling]\n" };
+            let rest = format!("{SPRING}{table}{coupling}");
+            text(&format!("{RIGID}{device}"), &format!("period = 0.00125\n{servo}"), &rest)
+        });
+        let motions = [
             "torque = [0.1, -2e-9]",
             "torque_file = \"a \\\"push\\\".csv\"",
             "torque_sine = { amplitude = 0.1, omega = 60, phase = 0.2 }",
@@ -307,13 +267,44 @@ mod tests {
             "missed = { every = 7 }",
             "missed = { fraction = 0.1, seed = 3 }\nlatency = 0.0002\nfriction = 0.01",
             "position = 0.1\nvelocity = -2",
-        ] {
+        ];
+        let motions = motions.map(|motion| {
             let rest = format!(
-                "{SPRING}[simulation]\nsamples = 9\n{torque}\n[human]\ninertia = 0.1\n\
+                "{SPRING}[simulation]\nsamples = 9\n{motion}\n[human]\ninertia = 0.1\n\
                  stiffness = 3\n[limits]\nencoder_step = 1e-4\nfull_scale = 0.7\n"
             );
-            let [first, second] = again(&text(RIGID, &rest));
+            text(RIGID, SERVO, &rest)
+        });
+        let supplies = [
+            "sinks = true\n",
+            "voltage = 24.0\nfault_voltage = 25.2\ncapacitance = 1e-3\nlargest_speed = 25.0\n",
+        ];
+        let supplies = supplies.map(|supply| {
+            text(RIGID, SERVO, &format!("{SPRING}[limits]\ntorque = 1.0\n[supply]\n{supply}"))
+        });
+        let chains =
+            ["", "passivity = 0.3\n"].map(|more| text(&format!("{more}{CHAIN}"), SERVO, SPRING));
+        for text in [&environments[..], &latencies, &motions, &supplies, &chains].concat() {
+            let [first, second] = again(&text);
             assert_eq!(first, second);
+            let bits = |file: &SceneFile| file.scene.latency.actuator_lag.least.to_bits();
+            assert_eq!(bits(&first), bits(&second));
+            let is_declared = text.contains("passivity");
+            assert_eq!(toml(&first).contains("passivity"), is_declared, "{text}");
         }
+    }
+
+    #[test]
+    fn a_default_is_left_out_and_a_chain_without_passivity_stays_one() {
+        let wall =
+            "[environment]\ntype = \"damper-wall\"\nstiffness = 3\ndamping = 0.2\ndelay = 1\n";
+        let [absent, zero] =
+            ["", "face = 0.0\n"].map(|face| again(&text(RIGID, SERVO, &format!("{wall}{face}"))));
+        assert_eq!(absent, zero);
+        let lagging = format!("encoder = \"hand\"\nactuator_lag = 1e-4\n{CHAIN}");
+        let [first, second] = again(&text(&lagging, SERVO, SPRING));
+        assert_eq!(first.scene.latency.actuator_lag, TimeRange::exactly(1e-4));
+        // Its passivity is NaN, which equals nothing.
+        assert_eq!((&first.chain, toml(&first)), (&second.chain, toml(&second)));
     }
 }

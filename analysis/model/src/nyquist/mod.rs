@@ -25,6 +25,7 @@ use thiserror::Error;
 
 use crate::line_search::minimizing_angle;
 use crate::response::Response;
+use crate::simulation::unbuildable;
 use crate::unit_circle_poles::{UnitCirclePole, outside, poles};
 
 pub use window::{critical_lines, usual_window};
@@ -42,7 +43,7 @@ const AROUND_LEAST: i32 = 60;
 
 /// Why a scene has no curve.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{scene}: the environment has no transfer function to draw: {}", unbuildable(*.why))]
+#[error("{scene}: the environment has no transfer function to draw: {}", reason(*.why))]
 pub struct NoTransfer {
     /// Name of the scene.
     pub scene: String,
@@ -50,14 +51,10 @@ pub struct NoTransfer {
     pub why: Unbuildable,
 }
 
-fn unbuildable(why: Unbuildable) -> &'static str {
+fn reason(why: Unbuildable) -> &'static str {
     match why {
         Unbuildable::Improper => "it needs future samples",
-        Unbuildable::IllPosed => "coupling and environment have no unique solution",
-        Unbuildable::OutOfRange => "one of its numbers is out of range",
-        Unbuildable::Unstated => {
-            "its environment is a torque profile, or stated by a bound alone, and has no transfer function"
-        }
+        other => unbuildable(other),
     }
 }
 

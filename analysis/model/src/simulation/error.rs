@@ -4,7 +4,6 @@ use haptic_servo::passivity::transfer::Unbuildable;
 use haptic_servo::servo::BuildError;
 use thiserror::Error;
 
-use crate::file::FileError;
 use crate::quantity::significant;
 
 /// Why there is no answer.
@@ -22,27 +21,9 @@ pub enum SimulationError {
     /// The scene has no linear loop.
     #[error("the scene has no closed loop: {}", unbuildable(*.0))]
     LoopTransfers(Unbuildable),
-    /// The torque file cannot be read.
-    #[error("cannot read the torque file {file}: {error}")]
-    TorqueFile {
-        /// The file.
-        file: String,
-        /// The cause.
-        error: std::io::Error,
-    },
-    /// The torque file is not text.
-    #[error(transparent)]
-    TorqueText(Box<FileError>),
-    /// Something in the torque file is not a finite number.
-    #[error("{file}:{line}: `{value}` is out of bounds; it must be a finite number in N m")]
-    TorqueValue {
-        /// The file.
-        file: String,
-        /// The line, counted from 1.
-        line: usize,
-        /// The text there.
-        value: String,
-    },
+    /// The torque file cannot be read, is not text, or has something in it that is not a finite number.
+    #[error("{0}")]
+    TorqueFile(String),
     /// A torque begins between two updates of the amplifier.
     #[error(
         "a torque begins {delay} s after its count or a later one, between two updates of the amplifier, which \
@@ -91,7 +72,8 @@ impl From<Unbuildable> for SimulationError {
     }
 }
 
-fn unbuildable(error: Unbuildable) -> &'static str {
+/// The reason why a scene has no linear loop.
+pub fn unbuildable(error: Unbuildable) -> &'static str {
     match error {
         Unbuildable::Improper => "its environment needs future samples",
         Unbuildable::IllPosed => "coupling and environment have no unique solution",

@@ -61,18 +61,10 @@ impl DeviceState {
 }
 
 impl HeldDevice {
-    /// Solves the motion over one period of `period` s, for torques without delay and lag.
-    ///
-    /// # Errors
-    /// Where device and hand are too fast for their motion over a period to be computed.
-    pub fn new(device: Device, hand: Hand, period: f64) -> Result<Self, SimulationError> {
-        Self::lagging(device, &Latency::NONE, hand, period)
-    }
-
     /// A scene's device, with the delay of its output and its lags.
     ///
     /// # Errors
-    /// As [`HeldDevice::new`].
+    /// Where device and hand are too fast for their motion over a period to be computed.
     pub fn of(scene: &Scene, hand: Hand) -> Result<Self, SimulationError> {
         Self::lagging(scene.device, &scene.latency, hand, scene.timing.period)
     }
@@ -219,6 +211,11 @@ mod tests {
 
     const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
+    /// For torques without delay and lag.
+    fn prompt(device: Device, hand: Hand, period: f64) -> Result<HeldDevice, SimulationError> {
+        HeldDevice::lagging(device, &Latency::NONE, hand, period)
+    }
+
     /// The motion after a tick, and the hand's work in it.
     fn stepped(
         held: &HeldDevice,
@@ -232,27 +229,10 @@ mod tests {
     }
 
     #[test]
-    fn free_device_follows_its_closed_form() {
-        let held = HeldDevice::new(DEVICE, Hand::default(), 1e-3).unwrap();
-        let start = Motion { position: 0.1, velocity: 2.0 };
-        let torque = 0.05;
-        let (end, work) = stepped(&held, start, torque, HandSetpoint::default());
-        // x'' = (u - b x') / m
-        let (rate, last) = (DEVICE.damping / DEVICE.inertia, torque / DEVICE.damping);
-        let decay = (-rate * 1e-3_f64).exp();
-        let velocity = last + (start.velocity - last) * decay;
-        let position =
-            start.position + last * 1e-3 + (start.velocity - last) * (1.0 - decay) / rate;
-        assert!((end.velocity - velocity).abs() < 1e-14, "{} {velocity}", end.velocity);
-        assert!((end.position - position).abs() < 1e-16, "{} {position}", end.position);
-        assert!(work.abs() < 1e-17, "no hand does no work, and did {work} J");
-    }
-
-    #[test]
     fn undamped_hand_and_spring_keep_their_energy() {
         let device = Device { damping: 0.0, ..DEVICE };
         let hand = Hand { inertia: 1e-4, damping: 0.0, stiffness: 5.0 };
-        let held = HeldDevice::new(device, hand, 1e-3).unwrap();
+        let held = prompt(device, hand, 1e-3).unwrap();
         let mut state = held.at(Motion { position: 0.1, velocity: 0.0 });
         let energy = |m: Motion| {
             0.5 * (device.inertia + hand.inertia) * m.velocity.powi(2)
@@ -270,10 +250,8 @@ mod tests {
         let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 5.0 };
         for inertia in [1e-3, 2.2e-5, 1e-9, 1e-13] {
             let device = Device { inertia, ..DEVICE };
-            let (whole, half) = (
-                HeldDevice::new(device, hand, 1e-3).unwrap(),
-                HeldDevice::new(device, hand, 5e-4).unwrap(),
-            );
+            let (whole, half) =
+                (prompt(device, hand, 1e-3).unwrap(), prompt(device, hand, 5e-4).unwrap());
             let start = Motion { position: 0.02, velocity: -1.0 };
             let (end, work) = stepped(&whole, start, 0.3, HandSetpoint { from: 0.1, to: 0.2 });
             let (middle, first) = stepped(&half, start, 0.3, HandSetpoint { from: 0.1, to: 0.15 });
@@ -284,22 +262,13 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_light_device_over_a_long_period_stays_finite() {
-        let device = Device { inertia: 1e-12, ..DEVICE };
-        let held = HeldDevice::new(device, Hand::default(), 0.1).unwrap();
-        let (end, work) = stepped(&held, Motion::default(), 0.022, HandSetpoint::default());
-        assert!((end.velocity - 1.0).abs() < 1e-9 && (end.position - 0.1).abs() < 1e-9);
-        assert!(work.abs() < 1e-9);
-    }
-
     /// A delay of 2.25 periods against ticks of a quarter of a period without delay.
     #[test]
     fn a_torque_acts_from_its_delay_on() {
         let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 5.0 };
         let latency = Latency::delayed(2.25e-3);
         let late = HeldDevice::lagging(DEVICE, &latency, hand, 1e-3).unwrap();
-        let quarter = HeldDevice::new(DEVICE, hand, 2.5e-4).unwrap();
+        let quarter = prompt(DEVICE, hand, 2.5e-4).unwrap();
         let torques = [0.3, -0.1, 0.2, 0.05, -0.4, 0.1, 0.0, 0.15];
         let start = Motion { position: 0.02, velocity: -1.0 };
         let (mut state, mut fine) = (late.at(start), quarter.at(start));
@@ -332,7 +301,7 @@ mod tests {
         let output_delay = haptic_servo::latency::TimeRange::exactly(6e-4);
         let latency = Latency { output_delay, ..sampled };
         let late = HeldDevice::lagging(DEVICE, &latency, hand, period).unwrap();
-        let short = HeldDevice::new(DEVICE, hand, period / (5 * FINE) as f64).unwrap();
+        let short = prompt(DEVICE, hand, period / (5 * FINE) as f64).unwrap();
         let start = Motion { position: 0.02, velocity: -1.0 };
         let (mut state, mut fine) = (late.at(start), short.at(start));
         let left = (-period / 5.0 / lag).exp();
@@ -379,21 +348,5 @@ mod tests {
         let velocity = last - part * at(1.0 / lag) + (part - last) * at(rate);
         assert!((state.motion().velocity / velocity - 1.0).abs() < 1e-11, "{velocity}");
         assert!(work.abs() < 1e-16, "no hand does no work, and did {work} J");
-    }
-
-    #[test]
-    fn the_filter_of_a_sensor_shows_where_a_device_was() {
-        let lag = 2e-4;
-        let sensor_lag = haptic_servo::latency::TimeRange::exactly(lag);
-        let latency = Latency { sensor_lag, ..Latency::NONE };
-        let device = Device { damping: 1e-9, inertia: 1.0, passivity: None };
-        let held = HeldDevice::lagging(device, &latency, Hand::default(), 1e-3).unwrap();
-        let mut state = held.at(Motion { position: 0.0, velocity: 2.0 });
-        assert_eq!(state.measured(), 0.0);
-        for _ in 0..20 {
-            held.step(&mut state, 0.0, HandSetpoint::default());
-        }
-        let behind = state.motion().position - state.measured();
-        assert!((behind - 2.0 * lag).abs() < 1e-9, "{behind}");
     }
 }

@@ -41,6 +41,7 @@ pub mod unquantized_servo;
 mod nonlinear_loop;
 
 pub use error::SimulationError;
+pub(crate) use error::unbuildable;
 pub use experiment::{Experiment, Integration};
 pub use nonlinear_loop::Machine;
 pub use trajectory::{Columns, Trajectory};

@@ -15,7 +15,7 @@ use super::tick_status::TickStatus;
 use super::torque_signal::TorqueSignal;
 use super::trajectory::Columns;
 use super::unquantized_servo::UnquantizedServo;
-use crate::missed::Missed;
+use crate::missed::Ticks;
 
 /// A loop in motion.
 #[derive(Debug)]
@@ -23,14 +23,10 @@ pub struct NonlinearLoop {
     servo: UnquantizedServo,
     machine: Machine,
     encoder_step: Option<f64>,
-    missed: Box<dyn Ticks>,
+    missed: Ticks,
     torque: f64,
     k: usize,
 }
-
-/// Whether each tick is missed.
-trait Ticks: Iterator<Item = bool> + std::fmt::Debug {}
-impl<T: Iterator<Item = bool> + std::fmt::Debug> Ticks for T {}
 
 /// The plant with the torques that have not acted on it yet.
 #[derive(Debug)]
@@ -70,7 +66,7 @@ impl NonlinearLoop {
             servo: UnquantizedServo::new(&experiment.scene)?,
             machine: Machine::new(experiment, integration),
             encoder_step: experiment.encoder_step,
-            missed: ticks(experiment.missed),
+            missed: experiment.missed.ticks(),
             torque: 0.0,
             k: 0,
         })
@@ -118,10 +114,6 @@ fn read(position: f64, step: f64) -> (f64, LimitReason) {
     let nearest = count.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
     let reason = if nearest == count { LimitReason::None } else { LimitReason::Angle };
     (nearest * step, reason)
-}
-
-fn ticks(missed: Missed) -> Box<dyn Ticks> {
-    Box::new(missed.ticks())
 }
 
 impl Machine {

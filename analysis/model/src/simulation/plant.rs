@@ -149,53 +149,54 @@ impl Plant {
         self
     }
 
+    /// The same with one more state, whose number it returns.
+    fn with_state(mut self) -> (Self, usize) {
+        let n = self.order();
+        self.rates = self.rates.resize(n + 1, n + 1, 0.0);
+        self.inputs = self.inputs.resize(n + 1, INPUTS, 0.0);
+        (self, n)
+    }
+
     /// The same in a hand whose grip moves: its spring and damper go to a point of its own, whose
     /// angle is one more state and whose velocity in rad/s takes the place of the hand's torque.
     pub fn with_moving_hand(self, hand: Hand) -> Self {
-        let (n, input) = (self.order(), Input::Hand as usize);
-        let held = self.with_hand(hand);
+        let (mut held, grip) = self.with_hand(hand).with_state();
         let (velocity, inertia) = (2 * held.hand + 1, held.masses[held.hand].inertia);
-        let mut rates = held.rates.resize(n + 1, n + 1, 0.0);
-        let mut inputs = held.inputs.resize(n + 1, INPUTS, 0.0);
-        rates[(velocity, n)] = hand.stiffness / inertia;
-        inputs.column_mut(input).fill(0.0);
-        inputs[(velocity, input)] = hand.damping / inertia;
-        inputs[(n, input)] = 1.0;
-        Self { rates, inputs, ..held }
+        let input = Input::Hand as usize;
+        held.rates[(velocity, grip)] = hand.stiffness / inertia;
+        held.inputs.column_mut(input).fill(0.0);
+        held.inputs[(velocity, input)] = hand.damping / inertia;
+        held.inputs[(grip, input)] = 1.0;
+        held
     }
 
     /// The same with an amplifier whose torque follows the command with the time constant `lag`
     /// in s, greater than zero.
     pub fn with_actuator_lag(self, lag: f64) -> Self {
-        let n = self.order();
+        let (mut plant, torque) = self.with_state();
         let motor = Input::Motor as usize;
-        let mut rates = self.rates.resize(n + 1, n + 1, 0.0);
-        let mut inputs = self.inputs.resize(n + 1, INPUTS, 0.0);
-        rates.column_mut(n).copy_from(&inputs.column(motor));
-        rates[(n, n)] = -1.0 / lag;
-        inputs.column_mut(motor).fill(0.0);
-        inputs[(n, motor)] = 1.0 / lag;
-        Self { rates, inputs, ..self }
+        plant.rates.column_mut(torque).copy_from(&plant.inputs.column(motor));
+        plant.rates[(torque, torque)] = -1.0 / lag;
+        plant.inputs.column_mut(motor).fill(0.0);
+        plant.inputs[(torque, motor)] = 1.0 / lag;
+        plant
     }
 
     /// The same with an amplifier that is updated N times in a tick: the motor's input is then the
     /// [slope](Plant::motor_input) of its torque.
     pub fn with_sampled_actuator(self, actuator: SampledActuator) -> Self {
         let torque = self.order();
-        let lagging = self.with_actuator_lag(1.0);
-        let mut rates = lagging.rates;
-        rates[(torque, torque)] = 0.0;
-        Self { rates, sampled: Some((actuator, torque)), ..lagging }
+        let mut plant = self.with_actuator_lag(1.0);
+        plant.rates[(torque, torque)] = 0.0;
+        Self { sampled: Some((actuator, torque)), ..plant }
     }
 
     /// The same with a filter between encoder and servo, which lags by a time in s.
     pub fn with_sensor_lag(self, lag: f64) -> Self {
-        let n = self.order();
-        let mut rates = self.rates.resize(n + 1, n + 1, 0.0);
-        let inputs = self.inputs.resize(n + 1, INPUTS, 0.0);
-        rates[(n, self.measured)] = 1.0 / lag;
-        rates[(n, n)] = -1.0 / lag;
-        Self { rates, inputs, measured: n, ..self }
+        let (mut plant, angle) = self.with_state();
+        plant.rates[(angle, plant.measured)] = 1.0 / lag;
+        plant.rates[(angle, angle)] = -1.0 / lag;
+        Self { measured: angle, ..plant }
     }
 
     /// The same with the lags of a scene of this period in s at its two ends; a lag that lies in a range has

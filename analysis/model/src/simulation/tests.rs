@@ -1,28 +1,22 @@
 use haptic_servo::certificate::{Assumption, Assumptions, QuantizationBound, Resolution, assess};
 use haptic_servo::environment::{Canceller, Coefficients, Environment, Parts, Rational, Wall};
 use haptic_servo::number::Format;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange};
 use haptic_servo::torque::LimitReason;
 
 use super::method::Method;
 use super::*;
 use crate::device::{Hand, Motion};
+use crate::fixture::{STANDARD, on_paddle};
 use crate::missed::Missed;
 
-fn scene(device: Device, stiffness: Option<f64>, environment: Environment) -> Scene {
-    Scene {
-        device,
-        timing: Timing { period: 1e-3, worst_period: None },
-        coupling: stiffness.map_or(Coupling::Rigid, |stiffness| Coupling::Spring { stiffness }),
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
+/// On another device than the paddle, without a coupling.
+fn scene(device: Device, environment: Environment) -> Scene {
+    Scene { device, ..on_paddle(environment, Coupling::Rigid) }
 }
 
 fn paper(environment: Environment) -> Scene {
-    let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
-    scene(device, Some(44.0), environment)
+    on_paddle(environment, STANDARD)
 }
 
 fn moving(scene: &Scene, samples: usize, position: f64) -> Experiment {
@@ -116,7 +110,7 @@ fn decay(experiment: &Experiment) -> f64 {
 fn missed_ticks_need_the_longest_time_between_updates() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     let spring = |stiffness| {
-        let scene = scene(device, None, Wall::spring(stiffness, 0).alone());
+        let scene = scene(device, Wall::spring(stiffness, 0).alone());
         moving(&scene, 4000, 1e-3)
     };
     // The remaining damping, b - K T / 2, takes seconds.
@@ -131,7 +125,7 @@ fn missed_ticks_need_the_longest_time_between_updates() {
 #[test]
 fn latency_moves_the_limit() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
-    let scene = scene(device, None, Wall::spring(1.0, 0).alone());
+    let scene = scene(device, Wall::spring(1.0, 0).alone());
     for latency in [1e-4, 3.3e-4, 9e-4] {
         let experiment = Experiment { latency, ..Experiment::still(&scene) };
         let found = crate::stability::critical_stiffness(&experiment, Integration::default());
@@ -140,56 +134,45 @@ fn latency_moves_the_limit() {
     }
 }
 
-/// Theory, section 8: an encoder step of D under a spring limit-cycles without friction and rests
-/// with K D / 2.
-#[test]
-fn dry_friction_lets_a_spring_behind_an_encoder_rest() {
-    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
-    let scene = scene(device, None, Wall::spring(500.0, 0).alone());
-    let step = 1e-4;
-    let end = |friction: f64| {
-        let encoder_step = Some(step);
-        let experiment = Experiment { friction, encoder_step, ..moving(&scene, 20_000, 0.02) };
-        let motion = simulate(&experiment, Integration::default()).unwrap();
-        motion.velocity[19_000..].iter().fold(0.0_f64, |most, v| most.max(v.abs()))
+/// Theory, sections 6 and 8, behind a coupling: the certificate's number for an encoder's step bounds the torque
+/// error of that step, and as much friction lets the device rest. `linear` is the torque without steps at an
+/// angle.
+fn hums_and_rests(still: &Experiment, mut linear: impl FnMut(f64) -> f64) -> QuantizationBound {
+    let steps = Resolution { encoder: still.encoder_step, ..Resolution::default() };
+    let bound = QuantizationBound::of(&still.scene, Format::F64, &steps).unwrap();
+    let run = |friction: f64| {
+        simulate(&Experiment { friction, ..still.clone() }, Integration::default()).unwrap()
     };
-    assert!(end(0.0) > step);
-    assert_eq!(end(0.5 * 500.0 * step), 0.0);
+    let moves = |motion: &Trajectory| {
+        motion.velocity[motion.samples() - 500..].iter().any(|&velocity| velocity != 0.0)
+    };
+    let free = run(0.0);
+    assert!(moves(&free), "{still:?}");
+    // The encoder rounds down, which is to the nearest of half a step less.
+    let half = 0.5 * still.encoder_step.unwrap();
+    let errors = free.position.iter().zip(&free.torque).map(|(x, f)| (linear(x - half) - f).abs());
+    let (off, hum) = (errors.fold(0.0, f64::max), bound.hum());
+    assert!(off <= hum * (1.0 + 1e-6) && off > 0.05 * hum, "{off} {hum}");
+    assert!(!moves(&run(hum)), "{still:?}");
+    bound
 }
 
-/// Theory, sections 6 and 8, behind a coupling: the certificate's number for an encoder's step
-/// bounds the torque error of that step; as much friction lets the device rest, and half of the
-/// smallest torque that moves does not.
 #[test]
 fn a_device_behind_an_encoder_hums_and_rests_as_the_certificate_says() {
     let scene = paper(Wall::damped(22.0, 0.01, 1).alone());
     let step = 1e-4;
-    let run = |friction: f64| {
-        let experiment =
-            Experiment { friction, encoder_step: Some(step), ..moving(&scene, 3000, 0.02) };
-        simulate(&experiment, Integration::default()).unwrap()
-    };
-    let steps = Resolution { encoder: Some(step), ..Resolution::default() };
-    let hum = QuantizationBound::of(&scene, Format::F64, &steps).unwrap().hum();
-    // K x / (1 - r) adds up to 924 N m/rad (theory, section 6).
-    assert!((hum / (0.5 * step * 924.0) - 1.0).abs() < 1e-9, "{hum}");
-
-    let free = run(0.0);
-    let moves = |velocity: &[f64]| velocity[2500..].iter().any(|&v| v != 0.0);
-    assert!(moves(&free.velocity));
-    // The torque of the linear loop for the same motion, one sample late. The encoder rounds down,
-    // which is to the nearest of half a step less.
-    let (mut linear, mut torque, mut last) = (Vec::new(), 0.0, 0.0);
-    for x in &free.position {
-        linear.push(torque);
-        let x_e = x - 0.5 * step - torque / 44.0;
-        torque = 22.0 * x_e + 10.0 * (x_e - last);
+    let still = Experiment { encoder_step: Some(step), ..moving(&scene, 3000, 0.02) };
+    let (mut due, mut last) = (0.0, 0.0);
+    let bound = hums_and_rests(&still, |x| {
+        // One sample late.
+        let torque = due;
+        let x_e = x - torque / 44.0;
+        due = 22.0 * x_e + 10.0 * (x_e - last);
         last = x_e;
-    }
-    let off = linear.iter().zip(&free.torque).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(off <= hum * (1.0 + 1e-9) && off > 0.05 * hum, "{off} {hum}");
-
-    assert!(!moves(&run(hum).velocity));
+        torque
+    });
+    // K x / (1 - r) adds up to 924 N m/rad (theory, section 6).
+    assert!((bound.hum() / (0.5 * step * 924.0) - 1.0).abs() < 1e-9, "{bound:?}");
 }
 
 /// The same behind the coupling that remembers torques of a delay of 1.4 samples: its compliances count at
@@ -207,38 +190,24 @@ fn a_device_behind_the_matched_coupling_hums_and_rests_as_the_certificate_says()
         };
         // Pressed against the wall with half a count of its torque more than a whole number.
         let push = 40.5 * step * stiffness / (1.0 + 2.4 * compliance * stiffness);
-        let run = |friction: f64| {
-            let experiment = Experiment {
-                friction,
-                encoder_step: Some(step),
-                hand_torque: TorqueSignal::Held(vec![push; 4000]),
-                ..moving(&scene, 4000, 0.0)
-            };
-            simulate(&experiment, Integration::default()).unwrap()
+        let still = Experiment {
+            encoder_step: Some(step),
+            hand_torque: TorqueSignal::Held(vec![push; 4000]),
+            ..moving(&scene, 4000, 0.0)
         };
-        let steps = Resolution { encoder: Some(step), ..Resolution::default() };
-        let bound = QuantizationBound::of(&scene, Format::F64, &steps).unwrap();
-        let hum = bound.hum();
-        // Compliances of one sample, of a sample that has not acted yet, and of 0.4 of another.
-        let fed_back = 2.4 * compliance * stiffness;
-        if one_sided {
-            let most = 0.5 * step * stiffness / (1.0 - fed_back);
-            assert!(bound.in_any_motion && (hum / most - 1.0).abs() < 1e-6, "{hum} {most}");
-        }
-        let free = run(0.0);
-        let (mut linear, mut past) = (Vec::new(), [0.0; 2]);
-        for x in &free.position {
-            let x_e = x - 0.5 * step - compliance * (past[0] + 0.4 * past[1]);
+        let mut past = [0.0; 2];
+        let bound = hums_and_rests(&still, |x| {
+            let x_e = x - compliance * (past[0] + 0.4 * past[1]);
             let line = stiffness * x_e / (1.0 + compliance * stiffness);
             let torque = if one_sided { line.max(0.0) } else { line };
             past = [torque, past[0]];
-            linear.push(torque);
+            torque
+        });
+        if one_sided {
+            // Compliances of one sample, of a sample that has not acted yet, and of 0.4 of another.
+            let most = 0.5 * step * stiffness / (1.0 - 2.4 * compliance * stiffness);
+            assert!(bound.in_any_motion && (bound.hum() / most - 1.0).abs() < 1e-6, "{bound:?}");
         }
-        let off = linear.iter().zip(&free.torque).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(off <= hum * (1.0 + 1e-6) && off > 0.05 * hum, "{off} {hum}");
-        let moves = |velocity: &[f64]| velocity[3500..].iter().any(|&v| v != 0.0);
-        assert!(moves(&free.velocity), "{stiffness}");
-        assert!(!moves(&run(hum).velocity), "{stiffness}");
     }
 }
 
@@ -248,7 +217,7 @@ fn a_device_behind_the_matched_coupling_hums_and_rests_as_the_certificate_says()
 fn friction_dissipates_what_the_controller_generates_up_to_the_stated_speed() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     for (stiffness, friction) in [(1400.0, 0.05), (1200.0, 0.02)] {
-        let scene = scene(device, None, Wall::spring(stiffness, 0).alone());
+        let scene = scene(device, Wall::spring(stiffness, 0).alone());
         let steps = Resolution { friction: Some(friction), ..Resolution::default() };
         let assumptions = Assumptions::of(&scene, &assess(&scene), &steps);
         let speed = assumptions.iter().find_map(|one| match one {
@@ -458,55 +427,13 @@ fn delays_lags_and_a_matched_coupling_move_as_many_small_steps_have_it() {
     }
 }
 
-/// Laplace's transform of an amplifier whose step response goes in straight lines from update to update: each
-/// of its parts comes evenly over the time to the next update.
-fn in_updates(s: nalgebra::Complex<f64>, between: f64, lag: f64) -> nalgebra::Complex<f64> {
-    let left = (-between / lag).exp();
-    let even = (1.0 - (-s * between).exp()) / (s * between);
-    let part = |n: i32| (-s * between * f64::from(n)).exp() * left.powi(n) * (1.0 - left);
-    (0..100).map(part).sum::<nalgebra::Complex<f64>>() * even
-}
-
-/// `(1 / T) sum hold(j w_k) Ga Gs / (j w_k (m j w_k + b))`, over the aliases.
-#[test]
-fn the_sampled_plant_is_the_sum_over_the_aliases() {
-    use crate::stability_map::plant::SampledPlant;
-    use nalgebra::Complex;
-    let (m, b, period) = (2.2e-5, 0.022, 1e-3);
-    for case in late_loops() {
-        let Latency { output_delay, actuator_lag, sensor_lag, .. } = case.latency;
-        let mut late = paper(Wall::spring(30.0, 0).alone());
-        late.latency = case.latency;
-        let tick = Experiment::still(&late).tick(Integration::default()).unwrap();
-        let plant = SampledPlant::new(&tick);
-        for theta in [0.1, 1.0, 2.0, 3.1] {
-            let z = Complex::from_polar(1.0, theta);
-            let alias = |k: i32| {
-                let w = (theta + 2.0 * std::f64::consts::PI * f64::from(k)) / period;
-                let s = Complex::new(0.0, w);
-                let lag = |tau: f64| 1.0 / (1.0 + s * tau);
-                let held = (1.0 - 1.0 / z) / s * (-s * output_delay.middle()).exp();
-                let updates = case.latency.actuator_updates;
-                let amplifier = match updates {
-                    0 => lag(actuator_lag.middle()),
-                    _ => in_updates(s, period / f64::from(updates), actuator_lag.middle()),
-                };
-                held * amplifier * lag(sensor_lag.middle()) / (s * (s * m + b))
-            };
-            let sum: Complex<f64> = (-20_000..=20_000).map(alias).sum::<Complex<f64>>() / period;
-            let is = plant.at(z);
-            assert!((is - sum).norm() < 1e-6 * sum.norm(), "{theta} {is} {sum}");
-        }
-    }
-}
-
 /// The limit of a slow device is `b / (T/2 + all delays and lags)`, as without latency, and an
 /// eigenvalue is on the circle there, also behind a matched coupling.
 #[test]
 fn stability_ends_where_an_eigenvalue_reaches_the_circle() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     for case in late_loops() {
-        let mut late = scene(device, None, Wall::spring(1.0, 1).alone());
+        let mut late = scene(device, Wall::spring(1.0, 1).alone());
         late.latency = case.latency;
         if case.matched {
             late.coupling = Coupling::Matched;

@@ -93,10 +93,11 @@ const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 /// Numbers separated by commas, semicolons, spaces or lines; `#` begins a comment.
 fn read(path: &Path) -> Result<Vec<f64>, SimulationError> {
     let file = path.display().to_string();
-    let bytes = std::fs::read(path)
-        .map_err(|error| SimulationError::TorqueFile { file: file.clone(), error })?;
+    let unreadable = |error| format!("cannot read the torque file {file}: {error}");
+    let bytes =
+        std::fs::read(path).map_err(|error| SimulationError::TorqueFile(unreadable(error)))?;
     let text = crate::file::text_of(&file, 1, &bytes)
-        .map_err(|error| SimulationError::TorqueText(Box::new(error)))?;
+        .map_err(|error| SimulationError::TorqueFile(error.to_string()))?;
     // Spreadsheets begin their files with a byte order mark.
     let text = text.trim_start_matches('\u{feff}');
     let mut torque = Vec::new();
@@ -107,11 +108,10 @@ fn read(path: &Path) -> Result<Vec<f64>, SimulationError> {
             match word.parse::<f64>() {
                 Ok(value) if value.is_finite() => torque.push(value),
                 _ => {
-                    return Err(SimulationError::TorqueValue {
-                        file,
-                        line: index + 1,
-                        value: crate::file::excerpt(word),
-                    });
+                    let (line, value) = (index + 1, crate::file::excerpt(word));
+                    return Err(SimulationError::TorqueFile(format!(
+                        "{file}:{line}: `{value}` is out of bounds; it must be a finite number in N m"
+                    )));
                 }
             }
         }

@@ -1,35 +1,18 @@
 use haptic_servo::environment::Wall;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 
 use super::*;
-use crate::device::{Hand, Motion};
-use crate::missed::Missed;
+use crate::device::Hand;
+use crate::fixture::on_paddle;
 use crate::simulation::method::Method;
 use crate::simulation::plant::Plant;
-use crate::simulation::torque_signal::TorqueSignal;
 
 /// The mass and damper of theory, section 5.
 const DEVICE: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
 
-pub fn spring(stiffness: f64, delay: usize, coupling: Coupling) -> Experiment {
-    Experiment {
-        scene: Scene {
-            device: DEVICE,
-            timing: Timing { period: 1e-3, worst_period: None },
-            coupling,
-            environment: Wall::spring(stiffness, delay).alone(),
-            latency: Latency::NONE,
-            torque_limit: None,
-        },
-        plant: Plant::rigid(DEVICE),
-        start: Motion::default(),
-        samples: 0,
-        hand_torque: TorqueSignal::Free,
-        encoder_step: None,
-        friction: 0.0,
-        latency: 0.0,
-        missed: Missed::None,
-    }
+fn spring(stiffness: f64, delay: usize, coupling: Coupling) -> Experiment {
+    let spring = on_paddle(Wall::spring(stiffness, delay).alone(), coupling);
+    Experiment::still(&Scene { device: DEVICE, ..spring })
 }
 
 fn critical(experiment: &Experiment, method: Method, substeps: u32) -> f64 {

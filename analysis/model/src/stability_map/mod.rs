@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use haptic_servo::certificate::{KeptResponses, PassivityProblem, RuleAnswer, assess};
 use haptic_servo::environment::{Damper, Wall};
+use haptic_servo::parameter::Parameter;
 use haptic_servo::passivity::lagged::SampledResponse;
 use haptic_servo::scene::{Coupling, Latency, Scene};
 use rayon::prelude::*;
@@ -83,6 +84,24 @@ pub enum MapError {
     /// The device is beyond the range of numbers.
     #[error(transparent)]
     Device(#[from] SimulationError),
+    /// The scene has no such number.
+    #[error("{scene}: a map cannot go along `{}`; it can go along {choice}", parameter.key())]
+    NoSuchNumber {
+        /// Name of the scene.
+        scene: String,
+        /// The number.
+        parameter: Parameter,
+        /// The keys of the valid numbers.
+        choice: String,
+    },
+    /// Both axes are the same.
+    #[error("{scene}: both axes of a map are `{}`; they must differ", parameter.key())]
+    Twice {
+        /// Name of the scene.
+        scene: String,
+        /// The number.
+        parameter: Parameter,
+    },
     /// There is nothing to judge between the borders of the map.
     #[error(
         "stiffness from {} to {} N m/rad and damping from {} to {} N m s/rad are beyond the range \

@@ -7,14 +7,14 @@ use std::ops::Range;
 use haptic_servo::certificate::assess;
 use haptic_servo::parameter::Parameter;
 use haptic_servo::scene::Scene;
-use thiserror::Error;
 
 use super::plant::SampledPlant;
 use super::{Family, Kept, MapError, Region, judged, kept};
 use crate::design::{Choice, DesignLimit, Quantity, Terms, largest};
 use crate::file::SceneFile;
+use crate::simulation::closed_loop::transfers;
 use crate::simulation::plant::Plant;
-use crate::simulation::{Experiment, Integration, SimulationError};
+use crate::simulation::{Experiment, Integration};
 
 /// How far an axis goes beyond the scene's own number.
 const BEYOND: f64 = 2.5;
@@ -39,35 +39,6 @@ const CHOICE: [Parameter; 14] = [
     Parameter::SensorLag,
     Parameter::TorqueLimit,
 ];
-
-/// Why there is no such plane.
-#[derive(Debug, Error)]
-pub enum PlaneError {
-    /// The scene has no such number.
-    #[error("{scene}: a map cannot go along `{}`; it can go along {choice}", parameter.key())]
-    NoSuchNumber {
-        /// Name of the scene.
-        scene: String,
-        /// The number.
-        parameter: Parameter,
-        /// The keys of the valid numbers.
-        choice: String,
-    },
-    /// Both axes are the same.
-    #[error("{scene}: both axes of a map are `{}`; they must differ", parameter.key())]
-    Twice {
-        /// Name of the scene.
-        scene: String,
-        /// The number.
-        parameter: Parameter,
-    },
-    /// The walls cannot be judged.
-    #[error(transparent)]
-    Walls(#[from] MapError),
-    /// The device is beyond the range of numbers.
-    #[error(transparent)]
-    Device(#[from] SimulationError),
-}
 
 /// The scenes that differ from a file's in two numbers only.
 #[derive(Clone, Debug)]
@@ -130,15 +101,15 @@ impl Plane {
     ///
     /// # Errors
     /// Where the scene has no such numbers, or the device's motion is beyond the range of numbers.
-    pub fn of(file: &SceneFile, axes: [Parameter; 2]) -> Result<Self, PlaneError> {
+    pub fn of(file: &SceneFile, axes: [Parameter; 2]) -> Result<Self, MapError> {
         let choice = Self::choice(&file.scene);
         if let Some(&parameter) = axes.iter().find(|axis| !choice.contains(axis)) {
             let keys: Vec<_> = choice.iter().map(|parameter| parameter.key()).collect();
             let (scene, choice) = (file.name.clone(), keys.join(", "));
-            return Err(PlaneError::NoSuchNumber { scene, parameter, choice });
+            return Err(MapError::NoSuchNumber { scene, parameter, choice });
         }
         if axes[0] == axes[1] {
-            return Err(PlaneError::Twice { scene: file.name.clone(), parameter: axes[0] });
+            return Err(MapError::Twice { scene: file.name.clone(), parameter: axes[0] });
         }
         let alone = Experiment { plant: Plant::of(&file.chain), ..Experiment::at_rest(file) };
         let of_loop = |axis: &Parameter| {
@@ -152,7 +123,7 @@ impl Plane {
         };
         let judge = if axes == [Parameter::Stiffness, Parameter::Damping] {
             Judge::Walls(Box::new(Family::of(file)?))
-        } else if !has_transfer(&file.scene) {
+        } else if transfers(&file.scene).is_err() {
             Judge::Certificate
         } else if of_loop(&axes[0]) {
             Judge::PlantOfMember
@@ -277,10 +248,6 @@ pub fn nearest(axis: Parameter, value: f64) -> f64 {
 /// Whether the scene is a wall of the family that differs in stiffness and damping.
 fn is_family(scene: &Scene) -> bool {
     scene.environment.wall().is_some() && scene.environment.profile().is_none()
-}
-
-fn has_transfer(scene: &Scene) -> bool {
-    crate::simulation::closed_loop::transfers(scene).is_ok()
 }
 
 fn own_number(scene: &Scene, axis: Parameter) -> f64 {

@@ -26,6 +26,14 @@ pub struct HandImpedance {
     pub absorbers: Vec<Absorber>,
 }
 
+impl HandImpedance {
+    /// Its numbers except those of absorbers.
+    pub(super) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut f64> {
+        let link = self.link.iter_mut().flat_map(|link| [&mut link.stiffness, &mut link.damping]);
+        [&mut self.inertia, &mut self.damping, &mut self.stiffness].into_iter().chain(link)
+    }
+}
+
 /// A mass on a spring of its own: at their resonance they keep the held mass at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Absorber {
@@ -56,28 +64,19 @@ pub(super) fn impedance_grid(inertia: f64, period: f64, angle: f64) -> Vec<HandI
     // controller at one angle alone, a light one moves with the device between the samples.
     let masses: Vec<f64> =
         (-4..=6).map(|step| inertia * 10_f64.powf(f64::from(step) / 2.0)).collect();
+    let hand =
+        |inertia, stiffness| HandImpedance { inertia, stiffness, ..HandImpedance::default() };
+    let rate = |theta: f64| (theta / period).powi(2);
     let mut hands = vec![HandImpedance::default()];
     for &mass in &masses {
-        hands.push(HandImpedance { inertia: mass, ..HandImpedance::default() });
+        hands.push(hand(mass, 0.0));
         for &theta in &angles {
-            let rate = (theta / period).powi(2);
-            hands.push(HandImpedance {
-                inertia: mass,
-                stiffness: (inertia + mass) * rate,
-                ..HandImpedance::default()
-            });
-            let link = Compliance { stiffness: mass * rate, damping: 0.0 };
-            hands.push(HandImpedance {
-                inertia: mass,
-                link: Some(link),
-                ..HandImpedance::default()
-            });
+            hands.push(hand(mass, (inertia + mass) * rate(theta)));
+            let link = Compliance { stiffness: mass * rate(theta), damping: 0.0 };
+            hands.push(HandImpedance { link: Some(link), ..hand(mass, 0.0) });
         }
     }
-    for &theta in &angles {
-        let rate = (theta / period).powi(2);
-        hands.push(HandImpedance { stiffness: inertia * rate, ..HandImpedance::default() });
-    }
+    hands.extend(angles.iter().map(|&theta| hand(0.0, inertia * rate(theta))));
     hands
 }
 

@@ -28,6 +28,7 @@ use crate::simulation::{Experiment, Integration, SimulationError};
 use crate::stability::{Characteristic, closed_loop, eigenvalues};
 
 use constructed::LaggingLoop;
+use impedance::impedance_grid;
 
 pub use impedance::{Absorber, Compliance, HandImpedance, plant};
 
@@ -186,7 +187,8 @@ impl<'d> HandSearch<'d> {
 
     /// The worst of all hands that are tried.
     fn worst(&mut self) -> Result<HandCase, SimulationError> {
-        let hands = self.impedance_grid(self.angle());
+        let period = self.experiment.scene.timing.period;
+        let hands = impedance_grid(self.inertia(), period, self.angle());
         let found = hands.into_iter().map(|hand| self.of(hand));
         let mut found = found.collect::<Result<Vec<HandCase>, _>>()?;
         found.sort_by(|a, b| b.spectral_radius.total_cmp(&a.spectral_radius));
@@ -214,10 +216,6 @@ impl<'d> HandSearch<'d> {
     /// Inertia in kg m^2 of the device, all of it.
     fn inertia(&self) -> f64 {
         self.lighter * self.device.inertia()
-    }
-
-    fn impedance_grid(&self, angle: f64) -> Vec<HandImpedance> {
-        impedance::impedance_grid(self.inertia(), self.experiment.scene.timing.period, angle)
     }
 
     /// The angle in rad a tick at which the real part of the rule is smallest.
@@ -296,28 +294,14 @@ impl<'d> HandSearch<'d> {
             let less = if value < small { 0.0 } else { value / factor };
             [less, if value == 0.0 { small } else { value * factor }]
         };
+        let smallest = [inertia * SMALL, damping, stiffness, stiffness, damping];
         let mut all = Vec::new();
-        for inertia in changed(hand.inertia, inertia * SMALL) {
-            // A hand behind a link has to have a mass.
-            if inertia > 0.0 || hand.link.is_none() {
-                all.push(HandImpedance { inertia, ..hand.clone() });
+        for (place, number) in hand.clone().numbers_mut().enumerate() {
+            for value in changed(*number, smallest[place]) {
+                let mut other = hand.clone();
+                other.numbers_mut().nth(place).into_iter().for_each(|number| *number = value);
+                all.push(other);
             }
-        }
-        all.extend(
-            changed(hand.damping, damping).map(|damping| HandImpedance { damping, ..hand.clone() }),
-        );
-        all.extend(
-            changed(hand.stiffness, stiffness)
-                .map(|stiffness| HandImpedance { stiffness, ..hand.clone() }),
-        );
-        if let Some(link) = hand.link {
-            let links = changed(link.stiffness, stiffness)
-                .map(|stiffness| Compliance { stiffness, ..link })
-                .into_iter()
-                .chain(
-                    changed(link.damping, damping).map(|damping| Compliance { damping, ..link }),
-                );
-            all.extend(links.map(|link| HandImpedance { link: Some(link), ..hand.clone() }));
         }
         // A mass behind an empty link is not part of a hand. Its rest at any place is a double eigenvalue 1,
         // which rounding moves to either side.
@@ -326,7 +310,8 @@ impl<'d> HandSearch<'d> {
         let stiffest = |mass: f64| (inertia + mass) * (4.0 * PI / period).powi(2);
         all.retain(|hand| {
             let linked = hand.link.map_or(0.0, |link| link.stiffness);
-            hand.link.is_none_or(holds)
+            // A hand behind a link has to have a mass.
+            hand.link.is_none_or(|link| hand.inertia > 0.0 && holds(link))
                 && hand.inertia <= HEAVIEST * inertia
                 && hand.stiffness <= stiffest(hand.inertia)
                 && linked <= stiffest(hand.inertia)

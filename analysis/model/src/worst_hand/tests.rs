@@ -1,5 +1,6 @@
 use super::*;
 use crate::chain::{EncoderPlace, Link, Mass};
+use crate::fixture::on_paddle;
 use haptic_servo::certificate::certify;
 use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Device, Latency, TimeRange, Timing};
@@ -9,14 +10,17 @@ fn device() -> Chain {
 }
 
 fn scene(stiffness: f64, damping: f64, delay: usize, coupling: Coupling) -> Scene {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
-        coupling,
-        environment: Wall::damped(stiffness, damping, delay).alone(),
-        latency: Latency::NONE,
-        torque_limit: None,
+    on_paddle(Wall::damped(stiffness, damping, delay).alone(), coupling)
+}
+
+/// The largest number that a certificate passes, below `most`.
+fn largest(most: f64, scene: impl Fn(f64) -> Scene) -> f64 {
+    let (mut low, mut high) = (0.0, most);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if certify(&scene(middle)).is_ok() { low = middle } else { high = middle }
     }
+    low
 }
 
 #[test]
@@ -28,11 +32,9 @@ fn what_is_rejected_oscillates_in_some_hand_and_what_is_certified_in_none() {
         (40.0, 0.0, 2, Coupling::Spring { stiffness: 44.0 }),
         (4.0, 0.015, 2, Coupling::Spring { stiffness: 20.0 }),
     ] {
-        let limit = limit(stiffness, damping, delay, coupling);
-        let near = |share: f64| {
-            let factor = limit * share;
-            scene(stiffness * factor, damping * factor, delay, coupling)
-        };
+        let times = |factor: f64| scene(stiffness * factor, damping * factor, delay, coupling);
+        let limit = largest(1e3, times);
+        let near = |share: f64| times(limit * share);
         assert!(certify(&near(0.95)).is_ok() && certify(&near(1.05)).is_err());
         let certified = search(&near(0.95), &device()).unwrap();
         assert!(!certified.oscillates && certified.lighter.is_none(), "{certified:?}");
@@ -57,11 +59,7 @@ fn hands_find_the_limits_of_scenes_with_latency() {
         (Latency::sampled(3, 2e-4, 1e-3), Coupling::Rigid),
     ] {
         let with = |stiffness: f64| Scene { latency, ..scene(stiffness, 0.0, 1, coupling) };
-        let (mut low, mut high) = (0.0, 100.0);
-        for _ in 0..50 {
-            let middle = 0.5 * (low + high);
-            if certify(&with(middle)).is_ok() { low = middle } else { high = middle }
-        }
+        let low = largest(100.0, with);
         assert!(low > 1.0, "{low}");
         let certified = search(&with(0.97 * low), &device()).unwrap();
         assert!(!certified.oscillates && certified.lighter.is_none(), "{certified:?}");
@@ -90,10 +88,12 @@ fn a_mass_behind_nothing_is_no_hand() {
     let scene = Scene {
         device: Device { inertia, damping, passivity: None },
         timing: Timing { period: 0.003042550575872087, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 15.785823866956035 },
-        environment: Wall::damped(8.3155701205929, 0.009421656226762594, 1).alone(),
-        latency: Latency::NONE,
-        torque_limit: None,
+        ..scene(
+            8.3155701205929,
+            0.009421656226762594,
+            1,
+            Coupling::Spring { stiffness: 15.785823866956035 },
+        )
     };
     assert!(certify(&scene).is_ok());
     let found = search(&scene, &Chain::rigid(inertia, damping).unwrap()).unwrap();
@@ -112,19 +112,6 @@ fn the_hand_that_was_found_makes_a_simulation_grow() {
     let most = |part: &[f64]| part.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
     let grown = most(&motion.position[2000..]) / most(&motion.position[1000..2000]);
     assert!((grown.powf(1e-3) / found.spectral_radius - 1.0).abs() < 1e-3, "{grown}");
-}
-
-/// Factor of stiffness and damping at which the certificate ends.
-fn limit(stiffness: f64, damping: f64, delay: usize, coupling: Coupling) -> f64 {
-    let passes = |factor: f64| {
-        certify(&scene(stiffness * factor, damping * factor, delay, coupling)).is_ok()
-    };
-    let (mut low, mut high) = (0.0, 1e3);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if passes(middle) { low = middle } else { high = middle }
-    }
-    low
 }
 
 /// Theory, section 3.2: with the motor on one mass and the encoder on another no passivity is
