@@ -15,8 +15,8 @@ use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::clock::{Cause, Clock};
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::{Dac, Trigger};
-use crate::peripheral::inert_registers::InertRegisters;
 use crate::peripheral::pins::{Level, Pins};
+use crate::peripheral::registers::Registers;
 use crate::peripheral::serial::Serial;
 use crate::peripheral::watchdog::Watchdog;
 use crate::power_stage::{Gates, Outcome, PowerStage, Surroundings};
@@ -87,13 +87,13 @@ pub struct VirtualBoard {
     free_clock: Counter,
     /// The watchdog.
     pub watchdog: Watchdog,
-    power: InertRegisters,
+    power: Registers,
     /// The flash memory's interface.
-    pub flash: InertRegisters,
+    pub flash: Registers,
     /// System configuration.
-    pub configuration: InertRegisters,
+    pub configuration: Registers,
     /// The unit for debugging.
-    pub debug: InertRegisters,
+    pub debug: Registers,
     ports: Vec<Pins>,
     pub(crate) bus_error: Option<u32>,
     seen: (Option<u16>, Level),
@@ -165,7 +165,7 @@ impl VirtualBoard {
     }
 
     /// The flash memory's interface after reset, with unchanged option bytes.
-    fn flash_after_reset(&self) -> InertRegisters {
+    fn flash_after_reset(&self) -> Registers {
         let mut flash = (self.chip.flash_interface)();
         flash.set(self.chip.options, self.flash.get(self.chip.options));
         flash

@@ -2,11 +2,11 @@
 
 use crate::names;
 use crate::peripheral::clock::{self, Layout};
-use crate::peripheral::inert_registers::InertRegisters;
 use crate::peripheral::pins::Pins;
-use crate::peripheral::serial::UsartVariant;
-use crate::peripheral::{clock_f4, clock_g4, dac, flash, power};
-use crate::unit::Unit;
+use crate::peripheral::registers::Registers;
+
+use crate::peripheral::{clock_f4, clock_g4, dac, flash, power, serial};
+use crate::unit::{Stage, Unit};
 
 /// Entry of the memory map: address and name of a unit.
 #[derive(Clone, Copy, Debug)]
@@ -69,17 +69,17 @@ pub struct Chip {
     /// Its DAC's bits.
     pub dac: dac::Layout,
     /// Its serial port's registers.
-    pub usart: UsartVariant,
+    pub usart: &'static serial::Variant,
     /// Its power control.
-    pub power: fn() -> InertRegisters,
+    pub power: fn() -> Registers,
     /// Its flash interface.
-    pub flash_interface: fn() -> InertRegisters,
+    pub flash_interface: fn() -> Registers,
     /// The offset of the option bytes in it.
     pub options: u32,
     /// Its system configuration.
-    pub configuration: fn() -> InertRegisters,
+    pub configuration: fn() -> Registers,
     /// Its unit for debugging.
-    pub debug: fn() -> InertRegisters,
+    pub debug: fn() -> Registers,
     /// Names of its units' registers, by offset.
     pub names: fn(Unit, u32) -> Option<&'static str>,
     /// Its ports after reset.
@@ -168,13 +168,13 @@ const fn g4_map([first, second]: [MapEntry; 2]) -> [MapEntry; 19] {
 
 /// The units of a power stage on an STM32G4.
 const POWER_STAGE: [MapEntry; 7] = [
-    map_entry(0x4001_0200, "COMP", Unit::Comparators, 0x60, 0x40, 0),
-    map_entry(0x4001_0300, "OPAMP", Unit::OpAmps, 0x60, 0x40, 0),
-    map_entry(0x4001_2C00, "TIM1", Unit::PwmTimer, 0x60, 0x40, 11),
-    map_entry(0x5000_0000, "ADC1", Unit::Adc(0), 0x4C, 0x2C, 13),
-    map_entry(0x5000_0100, "ADC2", Unit::Adc(1), 0x4C, 0x2C, 13),
-    map_entry(0x5000_0300, "ADC12", Unit::AdcCommon, 0x4C, 0x2C, 13),
-    map_entry(0x5000_1000, "DAC3", Unit::ThresholdDac, 0x4C, 0x2C, 18),
+    map_entry(0x4001_0200, "COMP", Unit::Stage(Stage::Comparators), 0x60, 0x40, 0),
+    map_entry(0x4001_0300, "OPAMP", Unit::Stage(Stage::OpAmps), 0x60, 0x40, 0),
+    map_entry(0x4001_2C00, "TIM1", Unit::Stage(Stage::PwmTimer), 0x60, 0x40, 11),
+    map_entry(0x5000_0000, "ADC1", Unit::Stage(Stage::Adc(0)), 0x4C, 0x2C, 13),
+    map_entry(0x5000_0100, "ADC2", Unit::Stage(Stage::Adc(1)), 0x4C, 0x2C, 13),
+    map_entry(0x5000_0300, "ADC12", Unit::Stage(Stage::AdcCommon), 0x4C, 0x2C, 13),
+    map_entry(0x5000_1000, "DAC3", Unit::Stage(Stage::ThresholdDac), 0x4C, 0x2C, 18),
 ];
 
 /// A map with the units of a power stage.
@@ -211,14 +211,14 @@ pub static NUCLEO_G474RE: Chip = Chip {
     serial_interrupt: 38,
     clock: G4,
     dac: dac::G4,
-    usart: UsartVariant::G4,
+    usart: &serial::G4,
     names: names::g4,
     power: power::g4,
     flash_interface: flash::g4,
     options: 0x20,
     // CFGR2, with the flag of a wrong parity.
-    configuration: || InertRegisters::new(&[(BREAKS, 0, 0)]),
-    debug: || InertRegisters::new(DEBUG_G4),
+    configuration: || Registers::new(&[(BREAKS, 0, 0)]),
+    debug: || Registers::new(DEBUG_G4),
     ports: |port| match port {
         // The debug port's pins are not analog out of reset; A's and B's differ.
         0 => Pins::new(0xABFF_FFFF, 0x0C00_0000, 0x6400_0000),
@@ -250,7 +250,7 @@ pub static B_G431B_ESC1: Chip = Chip {
         ((1, 15), 4),
     ]),
     // CFGR2 as above, with the bit for a locked-up core.
-    configuration: || InertRegisters::new(&[(BREAKS, 0, LOCK_UP_BREAKS)]),
+    configuration: || Registers::new(&[(BREAKS, 0, LOCK_UP_BREAKS)]),
     // TIM4_CH1 and TIM4_CH2.
     encoder: ([(1, 6), (1, 7)], 2),
     // TIM4_CH3.
@@ -303,13 +303,13 @@ pub static STM32F405: Chip = Chip {
     serial_interrupt: 39,
     clock: F4,
     dac: dac::F405,
-    usart: UsartVariant::F405,
+    usart: &serial::F405,
     names: names::f405,
     power: power::f405,
     flash_interface: flash::f405,
     options: 0x14,
-    configuration: || InertRegisters::new(&[]),
-    debug: || InertRegisters::new(DEBUG_F405),
+    configuration: || Registers::new(&[]),
+    debug: || Registers::new(DEBUG_F405),
     ports: |port| match port {
         0 => Pins::new(0xA800_0000, 0x0C00_0000, 0x6400_0000),
         1 => Pins::new(0x0000_0280, 0x0000_00C0, 0x0000_0100),

@@ -13,7 +13,7 @@ use crate::peripheral::dac::Dac;
 use crate::peripheral::pins::{self, Level};
 use crate::peripheral::serial::Serial;
 use crate::power_stage::Surroundings;
-use crate::unit::Unit;
+use crate::unit::{Stage, Unit};
 
 /// The target of an address, with the offset of a register.
 enum Target {
@@ -173,15 +173,10 @@ impl VirtualBoard {
             Unit::Dac => self.dac.read(offset),
             Unit::Serial => self.serial.read(offset),
             Unit::Watchdog => self.watchdog.read(offset),
-            Unit::PwmTimer
-            | Unit::Adc(_)
-            | Unit::AdcCommon
-            | Unit::Comparators
-            | Unit::OpAmps
-            | Unit::ThresholdDac => {
+            Unit::Stage(unit) => {
                 self.advance_power_stage();
                 // The comparators' levels are updated first.
-                if unit == Unit::Comparators {
+                if unit == Stage::Comparators {
                     self.power_stage_changed();
                 }
                 self.power_stage.read(unit, offset)
@@ -201,7 +196,7 @@ impl VirtualBoard {
     }
 
     fn write_unit(&mut self, unit: Unit, offset: u32, value: u32) -> Access<()> {
-        let changes_power_stage = unit.is_of_power_stage()
+        let changes_power_stage = matches!(unit, Unit::Stage(_))
             || matches!(unit, Unit::Pins(_) | Unit::Clock) && self.chip.gates.is_some();
         if changes_power_stage {
             self.advance_power_stage();
@@ -236,12 +231,7 @@ impl VirtualBoard {
             }
             Unit::Serial => self.serial.write(offset, value),
             Unit::Watchdog => self.watchdog.write(offset, value, now, self.clock.core()),
-            Unit::PwmTimer
-            | Unit::Adc(_)
-            | Unit::AdcCommon
-            | Unit::Comparators
-            | Unit::OpAmps
-            | Unit::ThresholdDac => {
+            Unit::Stage(unit) => {
                 let Self { power_stage, ports, chip, clock, .. } = self;
                 let around = Surroundings { chip, ports, core: clock.core() };
                 if power_stage.write(unit, offset, value, &around)? {
@@ -278,12 +268,7 @@ impl VirtualBoard {
             Unit::Encoder => self.encoder = Counter::new(self.chip.counter),
             Unit::Dac => self.dac = Dac::new(self.chip.dac),
             Unit::Serial => self.serial = Serial::new(self.chip.usart),
-            Unit::PwmTimer
-            | Unit::Adc(_)
-            | Unit::AdcCommon
-            | Unit::Comparators
-            | Unit::OpAmps
-            | Unit::ThresholdDac => self.power_stage.reset_unit(unit),
+            Unit::Stage(unit) => self.power_stage.reset_unit(unit),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Reset and clock control: oscillators that are ready as soon as they are switched on, unless a
 //! test keeps one from starting; the clock that follows from it; and who is clocked and reset.
 
-use super::inert_registers::InertRegisters;
+use super::registers::Registers;
 use super::{Access, Unmodelled};
 
 /// What differs between the families.
@@ -89,7 +89,7 @@ pub(super) const LOW_POWER: u32 = PIN | 1 << 31;
 #[derive(Clone, Debug)]
 pub struct Clock {
     layout: &'static Layout,
-    registers: InertRegisters,
+    registers: Registers,
     crystal: u64,
     /// Whether the crystal runs when it is switched on.
     pub crystal_runs: bool,
@@ -98,7 +98,7 @@ pub struct Clock {
 impl Clock {
     /// Out of reset, with a crystal of so many Hz.
     pub fn new(layout: &'static Layout, crystal: u64, cause: Cause) -> Self {
-        let registers = InertRegisters::new(layout.registers);
+        let registers = Registers::new(layout.registers);
         let mut clock = Self { layout, registers, crystal, crystal_runs: true };
         clock.remember((layout.flags)(cause));
         clock
