@@ -124,10 +124,10 @@ impl VirtualBoard {
             chip,
             free_clock: Counter::new(32),
             watchdog: Watchdog::default(),
-            power: (chip.power)(),
-            flash: (chip.flash_interface)(),
-            configuration: (chip.configuration)(),
-            debug: (chip.debug)(),
+            power: Registers::new(chip.power),
+            flash: Registers::new(chip.flash_interface),
+            configuration: Registers::new(chip.configuration),
+            debug: Registers::new(chip.debug),
             ports: (0..9).map(chip.ports).collect(),
             bus_error: None,
             seen: (None, Level::Floating),
@@ -166,7 +166,7 @@ impl VirtualBoard {
 
     /// The flash memory's interface after reset, with unchanged option bytes.
     fn flash_after_reset(&self) -> Registers {
-        let mut flash = (self.chip.flash_interface)();
+        let mut flash = Registers::new(self.chip.flash_interface);
         flash.set(self.chip.options, self.flash.get(self.chip.options));
         flash
     }

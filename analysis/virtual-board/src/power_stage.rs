@@ -67,6 +67,7 @@ pub(crate) struct Outcome {
 }
 
 /// The power stage.
+#[derive(Default)]
 pub struct PowerStage {
     /// The circuit at the chip.
     pub circuit: Circuit,
@@ -91,27 +92,6 @@ pub struct PowerStage {
     shoot_through: Option<(u64, usize)>,
     /// A high side was switched on whose gate's supply was not charged: when, and of which leg.
     uncharged: Option<(u64, usize)>,
-}
-
-impl Default for PowerStage {
-    fn default() -> Self {
-        Self {
-            circuit: Circuit::default(),
-            timer: PwmTimer::default(),
-            adcs: Default::default(),
-            adc_common: AdcCommon::default(),
-            comparators: Comparators::default(),
-            op_amps: OpAmps::default(),
-            thresholds: ThresholdDac::default(),
-            gates: [Level::Floating; 6],
-            now: 0,
-            due: None,
-            broken: None,
-            stepped: 0,
-            shoot_through: None,
-            uncharged: None,
-        }
-    }
 }
 
 impl PowerStage {

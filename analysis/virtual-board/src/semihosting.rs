@@ -123,14 +123,6 @@ impl Guest {
         &mut self.machine
     }
 
-    /// Runs up to the next call.
-    ///
-    /// # Errors
-    /// As [`Self::exchange`], and where the program ends.
-    pub fn run_to_call(&mut self) -> Result<(), CallError> {
-        self.run()
-    }
-
     /// The board.
     pub fn machine(&self) -> &Machine {
         &self.machine
@@ -143,7 +135,7 @@ impl Guest {
     pub fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), CallError> {
         self.requests.extend(request);
         while self.replies.len() < answer.len() {
-            self.run()?;
+            self.run_to_call()?;
         }
         let answered: Vec<_> = self.replies.drain(..answer.len()).collect();
         answer.copy_from_slice(&answered);
@@ -158,7 +150,7 @@ impl Guest {
     pub fn finish(mut self) -> Result<Vec<u8>, CallError> {
         self.closed = true;
         loop {
-            match self.run() {
+            match self.run_to_call() {
                 Ok(()) => {}
                 Err(CallError::Ended(0)) => return Ok(self.console),
                 Err(error) => return Err(error),
@@ -166,8 +158,11 @@ impl Guest {
         }
     }
 
-    /// Up to the next call, and the answer to it.
-    fn run(&mut self) -> Result<(), CallError> {
+    /// Runs up to the next call, and answers it.
+    ///
+    /// # Errors
+    /// As [`Self::exchange`], and where the program ends.
+    pub fn run_to_call(&mut self) -> Result<(), CallError> {
         let Err(error) = self.machine.run_for(LONGEST) else {
             return Err(BoardError::Late { what: "a call", instructions: LONGEST }.into());
         };

@@ -11,6 +11,7 @@ use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::Dac;
 use crate::peripheral::pins::{self, Level};
+use crate::peripheral::registers::Registers;
 use crate::peripheral::serial::Serial;
 use crate::power_stage::Surroundings;
 use crate::unit::{Stage, Unit};
@@ -244,7 +245,7 @@ impl VirtualBoard {
 
     /// Resets the units whose bits are set in the register of resets at `offset`.
     fn reset_units(&mut self, offset: u32) {
-        for map_entry in self.chip.map {
+        for map_entry in self.chip.units() {
             if let Some((_, reset, bit)) = map_entry.clocked
                 && reset == offset
                 && self.clock.is_set(reset, bit)
@@ -257,10 +258,10 @@ impl VirtualBoard {
     fn reset_unit(&mut self, unit: Unit) {
         match unit {
             Unit::Clock | Unit::Watchdog => {}
-            Unit::Power => self.power = (self.chip.power)(),
+            Unit::Power => self.power = Registers::new(self.chip.power),
             Unit::Flash => self.flash = self.flash_after_reset(),
-            Unit::Configuration => self.configuration = (self.chip.configuration)(),
-            Unit::Debug => self.debug = (self.chip.debug)(),
+            Unit::Configuration => self.configuration = Registers::new(self.chip.configuration),
+            Unit::Debug => self.debug = Registers::new(self.chip.debug),
             Unit::Pins(port) => self.ports[port] = (self.chip.ports)(port),
             Unit::TickTimer => self.tick_timer = BasicTimer::new(),
             Unit::PhaseTimer => self.phase_timer = BasicTimer::new(),

@@ -1,14 +1,14 @@
 //! Reset and clock control: oscillators that are ready as soon as they are switched on, unless a
 //! test keeps one from starting; the clock that follows from it; and who is clocked and reset.
 
-use super::registers::Registers;
+use super::registers::{Registers, Table};
 use super::{Access, Unmodelled};
 
 /// What differs between the families.
 #[derive(Debug)]
 pub struct Layout {
     /// Registers: place, value out of reset, bits that may be written.
-    pub registers: &'static [(u32, u32, u32)],
+    pub registers: Table,
     /// Place of CFGR, which chooses the system's clock.
     pub choice: u32,
     /// The control and status register, with the causes of resets.

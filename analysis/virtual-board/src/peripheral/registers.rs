@@ -1,5 +1,5 @@
-//! A unit's registers as a table: they store writes, and refuse bits that are not modelled. Units add what the
-//! bits do.
+//! A unit's registers as a table: they store writes, and refuse bits that are not modelled. Units add what
+//! the bits do.
 
 use super::{Access, Unmodelled, only};
 
