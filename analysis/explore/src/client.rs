@@ -1,21 +1,18 @@
-//! The host's end of a board's wire, without a port and a clock: bytes and times in, bytes and news out. It
-//! sends, waits and repeats requests like `haptic scope`.
+//! What the page keeps of a conversation with a board: curves and values of the last seconds, and results of
+//! requests as text.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use haptic_model::board::OtherProtocol;
+use haptic_model::board::client::{self, Event};
 use haptic_model::board::history::History;
-use haptic_model::board::request::{Reply, Request, RequestResult, names, refusal_in_words};
+use haptic_model::board::request::{Request, names};
 use haptic_model::board::sample::{Sample, Scale};
-use haptic_model::board::timing::{QUERY, REQUEST, SILENCE, STATUS_INTERVAL, stream_every};
+use haptic_model::board::timing::stream_every;
 use haptic_servo::tuning::RenderError;
-use haptic_servo::wire::description::Description;
 use haptic_servo::wire::message::{
-    ActiveParameters, BoardUnits, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
-    PreviousFault, Refusal, Status, ToBoard, ToHost,
+    ActiveParameters, BoardUnits, Changes, Id, PreviousFault, Status,
 };
-use haptic_servo::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
 
 /// Duration of the kept curves in s.
 pub const WINDOW: f64 = 5.0;
@@ -33,26 +30,14 @@ pub struct Slow {
 
 /// A conversation with a board.
 pub struct Client {
-    address: String,
-    decoder: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
-    outgoing: Vec<u8>,
-    last_id: Id,
-    greeting: Greeting,
+    /// The conversation itself.
+    pub wire: client::Client,
     /// The board, after its greeting.
     pub connected: Option<Connected>,
-    pending: Option<Pending>,
     /// The results of requests as text, until they are taken.
     pub replies: Vec<String>,
     /// Whether a status or active parameters have arrived since the last call.
     pub has_news: bool,
-}
-
-/// A board before its greeting.
-struct Greeting {
-    program: Option<String>,
-    previous_fault: Option<PreviousFault>,
-    again: Duration,
-    end: Duration,
 }
 
 /// A board after its greeting.
@@ -67,126 +52,50 @@ pub struct Connected {
     pub status: Option<Status>,
     /// The active parameters.
     pub parameters: Option<ActiveParameters>,
-    /// The running scene.
-    pub description: Option<Description>,
     /// The last seconds.
     pub history: History,
     /// The same for the values of each status.
     pub slow: VecDeque<Slow>,
     scale: Scale,
-    heard: Duration,
-    beat: Duration,
-}
-
-/// An unanswered request.
-struct Pending {
-    id: Id,
-    request: Request,
-    again: Duration,
-    end: Duration,
 }
 
 impl Client {
     /// Greets the board at an address. `id` should not have been used by an earlier client.
     pub fn start(address: String, id: Id, now: Duration) -> Self {
-        let again = now + QUERY.again;
-        let greeting =
-            Greeting { program: None, previous_fault: None, again, end: now + QUERY.end };
-        let mut client = Self {
-            address,
-            decoder: Decoder::new(),
-            outgoing: Vec::new(),
-            last_id: id,
-            greeting,
-            connected: None,
-            pending: None,
-            replies: Vec::new(),
-            has_news: false,
-        };
-        client.send(&ToBoard::Hello);
-        client
+        let wire = client::Client::start(address, id, now);
+        Self { wire, connected: None, replies: Vec::new(), has_news: false }
     }
 
-    /// Address of the board.
-    pub fn address(&self) -> &str {
-        &self.address
-    }
-
-    /// Bytes to the board since the last call.
-    pub fn take_outgoing(&mut self) -> Vec<u8> {
-        std::mem::take(&mut self.outgoing)
-    }
-
-    /// Invalid frames from the board.
-    pub fn discarded(&self) -> Discarded {
-        self.decoder.discarded()
-    }
-
-    /// Takes bytes from the board, and passes its ticks to `each`.
+    /// Takes bytes from the board, passes its ticks to `each`, and sends the messages that are due.
     ///
     /// # Errors
-    /// The reason why this board cannot be used.
-    pub fn receive(
+    /// The reason why this board cannot be used, or any more.
+    pub fn turn(
         &mut self,
         bytes: &[u8],
         now: Duration,
         mut each: impl FnMut(&Sample),
     ) -> Result<(), String> {
-        for &byte in bytes {
-            if let Some(message) = self.decoder.push::<ToHost<String>>(byte) {
-                self.take(message, now, &mut each)?;
+        let received = self.wire.receive(bytes, now);
+        while let Some(event) = self.wire.next_event() {
+            if let Event::Lost(why) = event {
+                return Err(why);
             }
+            self.take(event, now, &mut each);
         }
-        Ok(())
+        let ended = received.and_then(|()| self.wire.tick(now));
+        self.take_replies();
+        ended.map_err(|error| error.to_string())
     }
 
-    /// Sends the requests that are due.
-    ///
-    /// # Errors
-    /// If the board has been silent for too long.
-    pub fn tick(&mut self, now: Duration) -> Result<(), String> {
-        let Some(connected) = &mut self.connected else { return self.greet(now) };
-        if now.saturating_sub(connected.heard) > SILENCE {
-            return Err(silent(&self.address, "the request for its status", SILENCE));
-        }
-        if connected.beat <= now {
-            connected.beat = now + STATUS_INTERVAL;
-            let is_described = connected.description.is_some();
-            let has_parameters = connected.parameters.is_some();
-            self.send(&ToBoard::Status);
-            // Bytes get lost: missing replies are requested again.
-            if !is_described {
-                self.send(&ToBoard::Describe);
-            }
-            if !has_parameters {
-                self.send(&ToBoard::Get);
-            }
-        }
-        self.ask_again(now);
-        Ok(())
-    }
-
-    /// Sends a request, one at a time, except that disarming never waits. A set is certified here first.
-    ///
-    /// # Errors
-    /// The reason if it is not sent.
+    /// Sends a request. A set is certified here first.
     pub fn request(&mut self, request: Request, now: Duration) -> Result<(), String> {
-        if self.connected.is_none() {
-            return Err(Reply::NoLink.line(&request));
-        }
-        if self.pending.is_some() && request != Request::Disarm {
-            return Err(Reply::Busy.line(&request));
-        }
+        self.wire.check_free(&request).map_err(|reply| reply.line(&request))?;
         if let Request::Set(changes) = &request {
             self.judge(changes)?;
         }
-        self.give_up();
-        self.last_id = self.last_id.wrapping_add(1);
-        let id = self.last_id;
-        self.send(&request.message(id));
-        self.replies.push(Reply::Asked.line(&request));
-        self.pending =
-            Some(Pending { id, request, again: now + REQUEST.again, end: now + REQUEST.end });
+        self.wire.request(request.clone(), now).map_err(|reply| reply.line(&request))?;
+        self.take_replies();
         Ok(())
     }
 
@@ -196,9 +105,7 @@ impl Client {
     /// # Errors
     /// The reason for which the board would refuse them.
     pub fn judge(&self, changes: &Changes) -> Result<(), String> {
-        let running = self.connected.as_ref().and_then(|connected| {
-            connected.description.as_ref().zip(connected.parameters.as_ref())
-        });
+        let running = self.wire.description.as_ref().zip(self.wire.parameters.as_ref());
         let (description, parameters) =
             running.ok_or("the board has not said yet which scene runs there")?;
         match description.explain(names(parameters), changes) {
@@ -209,196 +116,78 @@ impl Client {
 
     /// Gives up waiting for an answer, and reports it.
     pub fn give_up(&mut self) {
-        if let Some(Pending { request, .. }) = self.pending.take() {
-            self.replies.push(Reply::Unanswered.line(&request));
+        self.wire.give_up();
+        self.take_replies();
+    }
+
+    /// The events between two turns are replies.
+    fn take_replies(&mut self) {
+        while let Some(event) = self.wire.next_event() {
+            self.take_reply(event);
         }
     }
 
-    fn send(&mut self, message: &ToBoard) {
-        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-        // The buffer has the size of the longest message.
-        if let Ok(frame) = encode(message, &mut buffer) {
-            self.outgoing.extend_from_slice(frame);
+    fn take_reply(&mut self, event: Event) {
+        if let Event::Reply(request, reply) = event {
+            self.replies.push(reply.line(&request));
         }
     }
 
-    fn greet(&mut self, now: Duration) -> Result<(), String> {
-        if now >= self.greeting.end {
-            return Err(format!(
-                "no board answers on {} within {} s: is it powered, flashed with a scene's program, and is \
-                 this its port?",
-                self.address,
-                QUERY.end.as_secs_f64()
-            ));
+    fn take(&mut self, event: Event, now: Duration, each: &mut impl FnMut(&Sample)) {
+        if let Event::Connected { program, board, previous_fault } = event {
+            self.wire.watch(stream_every(board.period), now);
+            self.connected = Some(Connected::new(program, board, previous_fault));
+            return;
         }
-        if now >= self.greeting.again {
-            self.greeting.again = now + QUERY.again;
-            self.send(&ToBoard::Hello);
-        }
-        Ok(())
-    }
-
-    fn ask_again(&mut self, now: Duration) {
-        if self.pending.as_ref().is_some_and(|pending| now >= pending.end) {
-            self.give_up();
-        }
-        if let Some(pending) = &mut self.pending
-            && now >= pending.again
-        {
-            pending.again = now + REQUEST.again;
-            let message = pending.request.message(pending.id);
-            self.send(&message);
-        }
-    }
-
-    fn take(
-        &mut self,
-        message: ToHost<String>,
-        now: Duration,
-        each: &mut impl FnMut(&Sample),
-    ) -> Result<(), String> {
-        match &mut self.connected {
-            None => self.take_greeting(message, now),
-            Some(connected) => {
-                connected.heard = now;
-                self.take_news(message, each)
-            }
-        }
-    }
-
-    fn take_greeting(&mut self, message: ToHost<String>, now: Duration) -> Result<(), String> {
-        match message {
-            ToHost::Welcome { protocol: PROTOCOL, program } => {
-                self.greeting.program = Some(program);
-            }
-            ToHost::Welcome { protocol: theirs, program } => {
-                let address = self.address.clone();
-                return Err(OtherProtocol { address, program, theirs }.to_string());
-            }
-            ToHost::PreviousFault(fault) => self.greeting.previous_fault = Some(fault),
-            // The last part of the greeting.
-            ToHost::Board(board) => {
-                if let Some(program) = self.greeting.program.take() {
-                    let previous_fault = self.greeting.previous_fault;
-                    self.connected = Some(Connected::new(program, board, previous_fault, now));
-                    self.send(&ToBoard::Stream(Some(stream_every(board.period))));
-                    self.send(&ToBoard::Get);
-                    self.send(&ToBoard::Describe);
-                }
-            }
-            _ => {}
-        }
-        Ok(())
-    }
-
-    fn take_news(
-        &mut self,
-        message: ToHost<String>,
-        each: &mut impl FnMut(&Sample),
-    ) -> Result<(), String> {
-        let Some(connected) = &mut self.connected else { return Ok(()) };
-        match message {
-            ToHost::Telemetry(batch) => {
-                for frame in batch.ticks() {
-                    let sample = connected.scale.sample(&frame);
+        let Some(connected) = &mut self.connected else { return };
+        match event {
+            Event::Ticks(frames) => {
+                for frame in &frames {
+                    let sample = connected.scale.sample(frame);
                     each(&sample);
                     connected.history.push(sample);
                 }
             }
-            ToHost::Status(status) => {
+            Event::Status(status, _) => {
                 self.has_news = true;
-                if connected.is_changed_by(status)? {
-                    self.send(&ToBoard::Get);
-                    self.send(&ToBoard::Describe);
-                }
+                connected.take_status(status);
             }
-            ToHost::ActiveParameters(parameters) => {
+            Event::ActiveParameters(parameters) => {
                 self.has_news = true;
                 connected.parameters = Some(parameters);
             }
-            ToHost::Described(description) => connected.description = Some(description),
-            ToHost::Answer { id, outcome } => self.take_answer(id, outcome),
-            // Replies to a repeated hello.
-            ToHost::Welcome { .. } | ToHost::PreviousFault(_) | ToHost::Board(_) => {}
+            other => self.take_reply(other),
         }
-        Ok(())
-    }
-
-    fn take_answer(&mut self, id: Id, outcome: Outcome) {
-        let Some(Pending { request, .. }) = self.pending.take_if(|pending| pending.id == id) else {
-            return;
-        };
-        let result = self.in_words(outcome, &request.changes());
-        self.replies.push(Reply::Answered(result).line(&request));
-        self.send(&ToBoard::Get);
-        self.send(&ToBoard::Describe);
-    }
-
-    fn in_words(&self, outcome: Outcome, changes: &Changes) -> RequestResult {
-        if let Outcome::Refused(Refusal::Set(step)) = outcome
-            && let Some(Connected {
-                description: Some(description),
-                parameters: Some(parameters),
-                ..
-            }) = &self.connected
-        {
-            return refusal_in_words(step, changes, description, parameters);
-        }
-        outcome.into()
     }
 }
 
 impl Connected {
-    fn new(
-        program: String,
-        board: BoardUnits,
-        previous_fault: Option<PreviousFault>,
-        now: Duration,
-    ) -> Self {
+    fn new(program: String, board: BoardUnits, previous_fault: Option<PreviousFault>) -> Self {
         Self {
             program,
             board,
             previous_fault,
             status: None,
             parameters: None,
-            description: None,
             history: History::new(WINDOW),
             slow: VecDeque::new(),
             scale: Scale::new(board),
-            heard: now,
-            beat: now,
         }
     }
 
-    /// Stores a status; returns whether the active parameters have changed since the last.
-    fn is_changed_by(&mut self, status: Status) -> Result<bool, String> {
-        let last = self.status.replace(status);
-        if last.is_some_and(|last| status.tick.wrapping_sub(last.tick) > u32::MAX / 2) {
-            return Err("the board was started again".to_owned());
-        }
+    fn take_status(&mut self, status: Status) {
+        self.status = Some(status);
         let board = &self.board;
         let time = match self.history.last() {
             Some(sample) => sample.time,
             None => f64::from(status.tick) * board.period,
         };
         let margin = self.parameters.as_ref().and_then(|parameters| parameters.margin);
-        self.slow.push_back(Slow {
-            time,
-            margin,
-            energy: status.energy as f64 * board.energy_step,
-        });
-        while self
-            .slow
-            .front()
-            .is_some_and(|first| !(time - first.time <= WINDOW && first.time <= time))
-        {
+        let energy = status.energy as f64 * board.energy_step;
+        self.slow.push_back(Slow { time, margin, energy });
+        let is_old = |first: &Slow| !(time - first.time <= WINDOW && first.time <= time);
+        while self.slow.front().is_some_and(is_old) {
             self.slow.pop_front();
         }
-        Ok(last.is_some_and(|last| last.sets != status.sets))
     }
-}
-
-/// The message for a board that has not answered in time.
-fn silent(address: &str, what: &str, after: Duration) -> String {
-    format!("the board on {address} has not answered {what} within {} s", after.as_secs_f64())
 }

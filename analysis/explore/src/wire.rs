@@ -99,7 +99,7 @@ pub fn turn(question: &str, _: &mut Vec<f64>) -> PageResult {
                     *rows += &format!("{}\n", Row::from(sample));
                 }
             };
-            lost = client.receive(&bytes, now, each).and_then(|()| client.tick(now)).err();
+            lost = client.turn(&bytes, now, each).err();
         }
         let turn = wire.news(rows, lost);
         crate::judge::json(&turn)
@@ -198,7 +198,7 @@ impl Wire {
         if lost.is_some() {
             client.give_up();
         }
-        let send = client.take_outgoing().into_iter().map(char::from).collect();
+        let send = client.wire.take_outgoing().into_iter().map(char::from).collect();
         let replies = std::mem::take(&mut client.replies);
         let is_new = std::mem::take(&mut client.has_news);
         let board = is_new.then(|| view(client)).flatten();
@@ -218,7 +218,7 @@ fn view(client: &Client) -> Option<Value> {
     let numbers = parameters.values.iter().map(|(parameter, value)| number(*parameter, *value));
     Some(json!({
         "program": program,
-        "address": client.address(),
+        "address": client.wire.address(),
         "state": status.state.as_str(),
         "is_armed": status.state.is_armed(),
         "fault": status.fault.map(|fault| fault.to_string()),
@@ -235,7 +235,7 @@ fn view(client: &Client) -> Option<Value> {
             formatting::reserves(parameters, status, board, slack),
             formatting::energy(status, board),
             formatting::limits(&connected.history),
-            formatting::losses(status, client.discarded()),
+            formatting::losses(status, client.wire.discarded()),
         ],
     }))
 }

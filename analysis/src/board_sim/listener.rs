@@ -10,11 +10,6 @@ use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use haptic_servo::number::Number;
-use haptic_servo::servo::{OutputMode, SupportsTiming};
-use haptic_servo::tuning::Tunable;
-use haptic_servo::wire::Session;
-
 use crate::link::Address;
 
 /// Bytes of one read: as many as a serial port collects in a few milliseconds.
@@ -23,9 +18,6 @@ const BYTES: usize = 256;
 /// The error for an address that is not a socket's.
 const NO_SOCKET: &str = "a simulated board listens on a socket, tcp://HOST:PORT or unix:PATH, not \
                          on a serial port";
-
-/// Largest number of frames that are sent at a time.
-const FRAMES: usize = 16;
 
 /// A non-blocking stream of bytes.
 trait Stream: Read + Write + Send {}
@@ -69,33 +61,6 @@ impl Listener {
         Ok((Self { socket, client: None, next: None }, address))
     }
 
-    /// Carries bytes between the session and the client; returns whether there were any.
-    pub(super) fn exchange<E, N, M, const LENGTH: usize>(
-        &mut self,
-        session: &mut Session<'_, E, N, M, LENGTH>,
-    ) -> bool
-    where
-        E: Tunable<N> + SupportsTiming<M>,
-        N: Number,
-        M: OutputMode,
-    {
-        self.reject_other_clients();
-        let Some(client) = &mut self.client else {
-            session.poll();
-            // Without a client bytes are lost, as on a serial line.
-            session.sent(session.outgoing().len());
-            self.client = self.accept();
-            return false;
-        };
-        match carry(client.as_mut(), session) {
-            Ok(was_busy) => was_busy,
-            Err(_) => {
-                self.client = None;
-                false
-            }
-        }
-    }
-
     /// Sends as many bytes as the stream takes, and returns those received.
     pub(super) fn carry_bytes(&mut self, outgoing: &mut Vec<u8>) -> Vec<u8> {
         self.reject_other_clients();
@@ -114,6 +79,23 @@ impl Listener {
             self.client = None;
             Vec::new()
         })
+    }
+
+    /// The next client.
+    fn accept(&mut self) -> Option<Box<dyn Stream>> {
+        self.next.take().map(|(_, next)| next).or_else(|| self.socket.accept())
+    }
+
+    /// Closes the connection of a second client: a serial port cannot be opened twice either, and the
+    /// client should see that.
+    fn reject_other_clients(&mut self) {
+        if self.client.is_none() {
+            return;
+        }
+        self.next.take_if(|(since, _)| since.elapsed() > QUEUE_TIMEOUT);
+        if self.next.is_none() {
+            self.next = self.socket.accept().map(|next| (Instant::now(), next));
+        }
     }
 }
 
@@ -137,25 +119,6 @@ fn bind_unix(path: &Path) -> io::Result<UnixListener> {
     }
 }
 
-impl Listener {
-    /// The next client.
-    fn accept(&mut self) -> Option<Box<dyn Stream>> {
-        self.next.take().map(|(_, next)| next).or_else(|| self.socket.accept())
-    }
-
-    /// Closes the connection of a second client: a serial port cannot be opened twice either, and the
-    /// client should see that.
-    fn reject_other_clients(&mut self) {
-        if self.client.is_none() {
-            return;
-        }
-        self.next.take_if(|(since, _)| since.elapsed() > QUEUE_TIMEOUT);
-        if self.next.is_none() {
-            self.next = self.socket.accept().map(|next| (Instant::now(), next));
-        }
-    }
-}
-
 /// Received bytes; [`ErrorKind::UnexpectedEof`] once the other end is closed.
 fn received<'a>(client: &mut dyn Stream, bytes: &'a mut [u8]) -> io::Result<&'a [u8]> {
     match client.read(bytes) {
@@ -164,31 +127,6 @@ fn received<'a>(client: &mut dyn Stream, bytes: &'a mut [u8]) -> io::Result<&'a 
         Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(&[]),
         Err(error) => Err(error),
     }
-}
-
-fn carry<E, N, M, const LENGTH: usize>(
-    client: &mut dyn Stream,
-    session: &mut Session<'_, E, N, M, LENGTH>,
-) -> io::Result<bool>
-where
-    E: Tunable<N> + SupportsTiming<M>,
-    N: Number,
-    M: OutputMode,
-{
-    let mut bytes = [0; BYTES];
-    let bytes = received(client, &mut bytes)?;
-    session.receive(bytes);
-    let (read, mut all) = (bytes.len(), 0);
-    for _ in 0..FRAMES {
-        session.poll();
-        let written = send(client, session.outgoing())?;
-        session.sent(written);
-        all += written;
-        if written == 0 {
-            break;
-        }
-    }
-    Ok(read + all > 0)
 }
 
 /// Sends as many bytes as the stream takes. It does not send an empty slice: on a stream that the other end

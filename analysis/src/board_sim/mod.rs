@@ -33,6 +33,8 @@ use crate::virtual_board::VirtualBoardError;
 const TIMER_COUNTS: u32 = 170_000;
 /// Frames that wait for the wire.
 const FRAMES: usize = 64;
+/// Largest number of frames that are sent at a time.
+const FRAMES_AT_A_TIME: usize = 16;
 /// Longest time between two polls of the socket.
 const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
@@ -74,9 +76,6 @@ pub enum SimulatedBoardError {
 
 impl SimulatedBoard {
     /// Boots a program and listens there.
-    ///
-    /// # Errors
-    /// Where the address cannot be listened at.
     pub fn start<E, N, M>(
         name: &'static str,
         program: Program<E>,
@@ -89,32 +88,34 @@ impl SimulatedBoard {
         N: Number,
         M: OutputMode,
     {
-        let (listener, address) = Listener::bind(address)?;
-        let ended = Arc::new(AtomicBool::new(false));
-        let over = ended.clone();
-        let thread = thread::spawn(move || {
+        Self::listen(address, move |listener, over| {
             let board = SimHardware::new(PlantHardware::new(plant, M::TIMING), TIMER_COUNTS);
-            serve::<E, N, M>(name, program, board, listener, pacing, &over)
-        });
-        Ok(Self { address, ended, thread: Some(thread) })
+            serve::<E, N, M>(name, program, board, listener, pacing, over)
+        })
     }
 
     /// Serves a virtual board that has been switched on at the address; `period` of its servo in s.
-    ///
-    /// # Errors
-    /// Where the address cannot be listened at.
     pub fn from_virtual_board(
         board: DrivingBoard,
         address: &Address,
         pacing: Pacing,
         period: f64,
     ) -> io::Result<Self> {
+        let period = (pacing == Pacing::RealTime).then(|| Duration::from_secs_f64(period));
+        Self::listen(address, move |listener, over| {
+            Ok(virtual_board_server::serve(board, listener, period, over)?)
+        })
+    }
+
+    /// Listens at an address, and serves what connects there in a thread.
+    fn listen(
+        address: &Address,
+        serve: impl FnOnce(Listener, &AtomicBool) -> Result<(), SimulatedBoardError> + Send + 'static,
+    ) -> io::Result<Self> {
         let (listener, address) = Listener::bind(address)?;
         let ended = Arc::new(AtomicBool::new(false));
         let over = ended.clone();
-        let period = (pacing == Pacing::RealTime).then(|| Duration::from_secs_f64(period));
-        let thread =
-            thread::spawn(move || Ok(virtual_board_server::serve(board, listener, period, &over)?));
+        let thread = thread::spawn(move || serve(listener, &over));
         Ok(Self { address, ended, thread: Some(thread) })
     }
 
@@ -193,7 +194,7 @@ where
         BoardInfo { name, timer_counts, reset, low_brown_out, previous_fault, stack_left, power };
     let mut session = Session::new(program, margin, info, requests, ticks);
     let period = Duration::from_secs_f64(program.scene.timing.period);
-    let mut next = Instant::now();
+    let (mut next, mut outgoing) = (Instant::now(), Vec::new());
     while !over.load(Ordering::Relaxed) {
         // At most half as many ticks as the queue holds frames; then the socket is served.
         for _ in 0..FRAMES / 2 {
@@ -203,8 +204,17 @@ where
             next += period;
             servo_loop.run(&mut board, &mut inbox, &mut frames);
         }
-        let was_busy = listener.exchange(&mut session);
-        if pacing == Pacing::RealTime && !was_busy {
+        session.receive(&listener.carry_bytes(&mut outgoing));
+        // A client that does not read keeps the rest in the session, which drops ticks.
+        if outgoing.is_empty() {
+            for _ in 0..FRAMES_AT_A_TIME {
+                session.poll();
+                let length = session.outgoing().len();
+                outgoing.extend_from_slice(session.outgoing());
+                session.sent(length);
+            }
+        }
+        if pacing == Pacing::RealTime {
             thread::sleep(next.saturating_duration_since(Instant::now()).min(POLL_INTERVAL));
         }
     }

@@ -7,8 +7,10 @@ mod holder;
 mod transport;
 
 pub use address::{Address, AddressError};
+pub(crate) use connection::Wire;
 pub use connection::{Link, Message};
 pub use error::LinkError;
 pub use haptic_model::board::change;
+pub use haptic_model::board::client::frame;
 pub use haptic_model::board::request::RequestResult;
-pub(crate) use transport::{Transport, is_timeout, open};
+pub(crate) use transport::{Transport, is_timeout, open, read_within};

@@ -76,6 +76,23 @@ fn connect(address: &str) -> io::Result<TcpStream> {
     Err(last)
 }
 
+/// Reads the bytes that come within a time; 0 if none do.
+///
+/// # Errors
+/// Where the other end is gone.
+pub fn read_within(
+    transport: &mut dyn Transport,
+    bytes: &mut [u8],
+    limit: Duration,
+) -> io::Result<usize> {
+    transport.wait_at_most(limit)?;
+    match transport.read(bytes) {
+        Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
+        Err(error) if is_timeout(&error) => Ok(0),
+        read => read,
+    }
+}
+
 /// Whether a read has only timed out.
 pub fn is_timeout(error: &io::Error) -> bool {
     matches!(

@@ -11,7 +11,6 @@ mod connections;
 mod http;
 mod port;
 mod refusal;
-mod report;
 mod shared;
 
 use std::io;
@@ -26,9 +25,8 @@ use thiserror::Error;
 use self::access::{Access, Token};
 use self::connections::{CONNECTIONS, Connection, Connections};
 use self::http::{Head, HttpResponse};
-pub use self::port::Port;
+pub use self::port::{Port, Report};
 pub use self::refusal::PageRefusal;
-pub use self::report::Report;
 use self::shared::Shared;
 
 /// Time after the end of the server in which a page may confirm that its socket is closed.
@@ -72,9 +70,6 @@ pub struct Server {
 
 impl Server {
     /// Checks that an address is reachable only from this machine.
-    ///
-    /// # Errors
-    /// If it is not.
     pub fn check(listen: SocketAddr) -> Result<(), ServeError> {
         if listen.ip().is_loopback() {
             Ok(())

@@ -9,8 +9,7 @@ use std::time::{Duration, Instant};
 
 use haptic_model::board::timing::RETRY;
 
-use super::report::Report;
-use crate::link::{Address, LinkError, Transport, is_timeout, open};
+use crate::link::{Address, LinkError, Transport, open, read_within};
 
 /// Longest time that bytes to the board wait.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
@@ -23,6 +22,9 @@ const WRITTEN: usize = 256;
 const READS: usize = 256;
 /// Largest number of a page's messages waiting for the port.
 const MESSAGES: usize = 64;
+
+/// Reports events as text to the user who started the server.
+pub type Report = Box<dyn Fn(&str) + Send + Sync>;
 
 /// The port of a board.
 pub struct Port {
@@ -138,9 +140,6 @@ impl Drop for Seat {
 
 impl Port {
     /// Opens the port.
-    ///
-    /// # Errors
-    /// If it cannot be opened.
     pub fn open(address: &Address) -> Result<Self, LinkError> {
         let address = address.clone();
         match open(&address) {
@@ -204,7 +203,6 @@ fn carry(
     over: &AtomicBool,
 ) -> io::Result<()> {
     let mut bytes = [0; BYTES];
-    transport.wait_at_most(POLL_INTERVAL)?;
     while !over.load(Ordering::Relaxed) {
         let mut written = 0;
         while written < WRITTEN
@@ -214,11 +212,9 @@ fn carry(
             transport.flush()?;
             written += bytes.len().max(1);
         }
-        match transport.read(&mut bytes) {
-            Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
-            Ok(read) => seats.tell(News::Bytes(bytes[..read].to_vec())),
-            Err(error) if is_timeout(&error) => {}
-            Err(error) => return Err(error),
+        let read = read_within(transport, &mut bytes, POLL_INTERVAL)?;
+        if read > 0 {
+            seats.tell(News::Bytes(bytes[..read].to_vec()));
         }
     }
     Ok(())

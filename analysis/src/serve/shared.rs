@@ -5,8 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::access::Access;
 use super::connections::Connections;
-use super::port::Seats;
-use super::report::Report;
+use super::port::{Report, Seats};
 
 /// The data for every connection.
 pub(super) struct Shared {

@@ -1,11 +1,9 @@
 //! A user's own scene: the commands need one new file and nothing else.
 
 use std::fs;
-use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
-use std::process::Stdio;
 
-use crate::common::{answer, complaint, haptic, program, read, root};
+use crate::common::{BoardProcess, answer, complaint, haptic, read, root};
 
 /// Its name, used by no scene.
 const NAME: &str = "scene_of_a_test";
@@ -65,15 +63,7 @@ fn a_new_file_is_all_that_the_commands_need() {
         assert_eq!((&run["scene"], &run["codes_equal"]), (&NAME.into(), &1000.into()), "{run}");
     }
 
-    let folder = tempfile::tempdir().unwrap();
-    let port = format!("unix:{}", folder.path().join("board").display());
-    let mut board =
-        program(&["board-sim", NAME, "--port", &port]).stdout(Stdio::piped()).spawn().unwrap();
-    let mut said = BufReader::new(board.stdout.take().unwrap()).lines();
-    assert_eq!(said.next().unwrap().unwrap(), format!("{NAME} listens on {port}"));
-    let tuned = answer(&haptic(&["tune", "--json", "--port", &port]));
-    let _ = board.kill();
-    let _ = board.wait();
+    let (_, tuned) = BoardProcess::start(NAME, &[]).tune(&[]);
     assert_eq!(tuned["parameters"]["stiffness"], 12.0, "{tuned}");
 
     let format = haptic(&["advise", NAME, "--hum", "0.05", "--rate", "1000", "--json"]);

@@ -1,10 +1,10 @@
 //! The client in Python, which is written from `firmware/PROTOCOL.md`, against the messages of the
 //! firmware and against a board that is a process.
 
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::process::{Command, Output, Stdio};
 
-use crate::common::{answer, program, root, tool};
+use crate::common::{BoardProcess, answer, root, tool};
 use haptic_servo::certificate::Parameter;
 use haptic_servo::current::IndexOffset;
 use haptic_servo::dac::DacCode;
@@ -258,15 +258,8 @@ fn says_how_it_is_used() {
 #[test]
 #[cfg_attr(no_python, ignore = "this machine has no python3, and set-up may not install it")]
 fn talks_to_a_board() {
-    let folder = tempfile::tempdir().unwrap();
-    let port = format!("unix:{}", folder.path().join("board").display());
-    let mut board = program(&["twin", "damper_wall", "--port", &port, "--for", "60"])
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut said = BufReader::new(board.stdout.take().unwrap()).lines();
-    assert_eq!(said.next().unwrap().unwrap(), format!("damper_wall listens on {port}"));
-    let ask = |arguments: &[&str]| python(&[&["client.py", &port], arguments].concat());
+    let board = BoardProcess::start("damper_wall", &["--for", "60"]);
+    let ask = |arguments: &[&str]| python(&[&["client.py", &board.port], arguments].concat());
     let running = answer(&ask(&["set", "stiffness=12.5", "damping=0.002"]));
     assert_eq!((&running["program"], &running["sets"]), (&"damper_wall".into(), &1.into()));
     assert_eq!(running["values"]["stiffness"], 12.5);
@@ -300,6 +293,4 @@ fn talks_to_a_board() {
         assert_eq!(said.status.code(), Some(2), "{wrong:?}");
         assert!(String::from_utf8_lossy(&said.stderr).starts_with(words), "{said:?}");
     }
-    board.kill().unwrap();
-    board.wait().unwrap();
 }

@@ -1,13 +1,10 @@
 //! Flashed programs on a virtual board, as a user runs them.
 
-use std::io::{BufRead, BufReader};
-use std::process::{Child, Stdio};
-
 use analysis::toolchain::BoardModel;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::{answer, haptic, program};
+use crate::common::{BoardProcess, answer, haptic};
 
 #[test]
 #[ignore = "builds for minutes"]
@@ -127,38 +124,9 @@ fn only_a_program_runs_on_a_virtual_board_and_only_on_one_that_there_is() {
     }
 }
 
-/// A virtual board behind a socket; ends with this.
-struct SimulatedBoard {
-    process: Child,
-    port: String,
-    _folder: TempDir,
-}
-
-impl SimulatedBoard {
-    fn of(board: BoardModel, scene: &str) -> Self {
-        let folder = TempDir::new().unwrap();
-        let port = format!("unix:{}", folder.path().join("board").display());
-        let mut process = program(&["twin", scene, "--board", board.name(), "--port", &port])
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut said = BufReader::new(process.stdout.take().unwrap()).lines();
-        assert_eq!(said.next().unwrap().unwrap(), format!("{scene} listens on {port}"));
-        Self { process, port, _folder: folder }
-    }
-
-    fn tune(&self, arguments: &[&str]) -> (Option<i32>, Value) {
-        let output = haptic(&[&["tune", "--json", "--port", &self.port], arguments].concat());
-        (output.status.code(), answer(&output))
-    }
-}
-
-impl Drop for SimulatedBoard {
-    fn drop(&mut self) {
-        // It may have ended by itself.
-        let _ = self.process.kill();
-        let _ = self.process.wait();
-    }
+/// A virtual board behind a socket.
+fn flashed(board: BoardModel, scene: &str) -> BoardProcess {
+    BoardProcess::start(scene, &["--board", board.name()])
 }
 
 #[test]
@@ -175,7 +143,7 @@ fn so_are_those_of_other_boards() {
 /// Over the serial port that the drivers have set up, judged by the certificate in the flash.
 fn tune(boards: &[BoardModel]) {
     for &board in boards {
-        let board = SimulatedBoard::of(board, "damper_wall");
+        let board = flashed(board, "damper_wall");
         let (status, running) = board.tune(&[]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
         assert_eq!(running["parameters"]["stiffness"], 22.0);
@@ -200,7 +168,7 @@ fn tune(boards: &[BoardModel]) {
 #[test]
 #[ignore = "builds for minutes"]
 fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
-    let board = SimulatedBoard::of(BoardModel::BG431bEsc1, "bridge_wall");
+    let board = flashed(BoardModel::BG431bEsc1, "bridge_wall");
     let (status, running) = board.tune(&["--arm"]);
     assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
     let (_, running) = board.tune(&["stiffness=15"]);

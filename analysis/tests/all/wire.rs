@@ -4,12 +4,11 @@
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::num::NonZeroU32;
-use std::os::unix::net::UnixStream;
 use std::process::{Command, Output, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use crate::common::{answer, haptic, program};
+use crate::common::{BoardProcess, answer, haptic, program};
 use analysis::board_sim::{Pacing, SimulatedBoard};
 use analysis::link::{Address, Link, RequestResult};
 use analysis::lockstep::PlantIo;
@@ -21,7 +20,7 @@ use haptic_servo::certificate::Parameter;
 use haptic_servo::environment::Wall;
 use haptic_servo::number::Format;
 use haptic_servo::scene::Scene;
-use haptic_servo::wire::message::{Changes, Status};
+use haptic_servo::wire::message::Changes;
 use ratatui::crossterm::event::KeyCode;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -103,11 +102,6 @@ impl Rig {
 
     fn link(&self) -> Link {
         Link::open(self.board.address()).unwrap()
-    }
-
-    fn raw(&self) -> UnixStream {
-        let Address::Unix(path) = self.board.address() else { unreachable!() };
-        UnixStream::connect(path).unwrap()
     }
 
     fn haptic(&self, arguments: &[&str]) -> Output {
@@ -468,48 +462,11 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
     assert_eq!((status.sets, status.missed, status.dropped), (1000 - refused, 0, 0));
 }
 
-/// Random bytes, truncated frames, wrong checksums, a flood, and a stall in the middle of a frame.
-#[test]
-fn a_servo_keeps_time_whatever_comes_over_the_wire() {
-    let rig = Rig::new(Pacing::RealTime);
-    let wanted = rig.held.after(500);
-    rig.held.forget();
-    let mut random = fastrand::Rng::with_seed(11);
-    let hello = [0, 2, 0, 1, 1];
-    let pieces: [Vec<u8>; 4] = [
-        (0..20_000).map(|_| random.u8(..)).collect(),
-        (0..3000).flat_map(|_| [0, 9, 9, 9, 0]).collect(),
-        (0..3000).flat_map(|_| [0, 7, 1, 2, 3, 4, 5, 6, 0]).collect(),
-        vec![0x55; 100_000],
-    ];
-    for piece in &pieces {
-        rig.raw().write_all(piece).unwrap();
-    }
-    let mut stalled = rig.raw();
-    stalled.write_all(&hello[..3]).unwrap();
-    assert_eq!(rig.held.after(300), wanted);
-    drop(stalled);
-    let status: Status = rig.link().status().unwrap();
-    assert_eq!((status.sets, status.missed), (0, 0));
-    let discarded = status.discarded;
-    assert!(discarded.broken >= 3000 && discarded.checksum >= 3000, "{discarded:?}");
-    assert!(discarded.too_long >= 1, "{discarded:?}");
-    // No message has moved the motor.
-    let seen: Vec<u16> = rig.held.0.lock().unwrap().seen.keys().copied().collect();
-    assert_eq!(seen, [wanted]);
-}
-
 #[test]
 fn a_twin_is_a_board_to_try_things_on() {
-    let folder = TempDir::new().unwrap();
-    let port = format!("unix:{}", folder.path().join("board").display());
-    let mut board = program(&["twin", "free_mode", "--port", &port, "--for", "3"])
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut said = BufReader::new(board.stdout.take().unwrap()).lines();
-    assert_eq!(said.next().unwrap().unwrap(), format!("free_mode listens on {port}"));
-    let running = answer(&haptic(&["tune", "--port", &port, "--json", "residual=0.004"]));
+    let mut board = BoardProcess::start("free_mode", &["--for", "3"]);
+    let port = board.port.clone();
+    let (_, running) = board.tune(&["residual=0.004"]);
     assert_eq!((&running["refused"], &running["program"]), (&Value::Null, &"free_mode".into()));
     assert_eq!(running["parameters"]["residual"], 0.004);
     // The port is in use.
@@ -518,7 +475,7 @@ fn a_twin_is_a_board_to_try_things_on() {
     let said = text(&second.stderr);
     assert!(said.contains("cannot listen on unix:"), "{said}");
     assert!(said.ends_with("another program listens there\n"), "{said}");
-    assert_eq!(board.wait().unwrap().code(), Some(0));
+    assert_eq!(board.process.wait().unwrap().code(), Some(0));
     let unknown = haptic(&["twin", "freemode", "--port", &port]);
     assert!(
         text(&unknown.stderr)

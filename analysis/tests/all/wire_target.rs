@@ -4,24 +4,18 @@
 use std::collections::BTreeSet;
 use std::io::{BufReader, Read, Write};
 use std::os::unix::net::UnixStream;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::thread::JoinHandle;
 use std::time::Duration;
 
-use crate::common::{answer, haptic};
-use analysis::emulator::{Emulator, EmulatorReport};
-use analysis::link::{Address, Link};
-use analysis::program::damper_wall;
+use crate::common::haptic;
+use analysis::emulator::Emulator;
+use analysis::emulator::plant_thread::{PlantModel, PlantThread};
+use analysis::link::frame;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
-use haptic_servo::board::lockstep_protocol::TickInput;
-use haptic_servo::environment::Wall;
-use haptic_servo::number::Format;
-use haptic_servo::scene::Scene;
+use haptic_servo::board::lockstep_protocol::{TickInput, TickOutput};
 use haptic_servo::servo_loop::State;
-use haptic_servo::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, Status, ToBoard, ToHost};
-use haptic_servo::wire::{CHECKSUM, Decoder, encode, largest_frame};
+use haptic_servo::wire::message::{LONGEST_TO_HOST, Status, ToBoard, ToHost};
+use haptic_servo::wire::{CHECKSUM, Decoder};
 
 /// Counts inside the wall at which the device is held.
 const DEPTH: u32 = 300;
@@ -37,12 +31,29 @@ struct Seen {
     states: Vec<State>,
 }
 
-/// An emulated board, and the thread that is its world.
+/// A device that is held still.
+struct Held(Arc<Mutex<Seen>>);
+
+impl PlantModel for Held {
+    fn next_input(&mut self) -> TickInput {
+        TickInput { count: DEPTH, missed: 0 }
+    }
+
+    fn observe(&mut self, _: TickInput, output: TickOutput) {
+        let mut seen = self.0.lock().unwrap();
+        seen.ticks += 1;
+        seen.last = output.code;
+        seen.codes.insert(output.code);
+        if seen.states.last() != Some(&output.state) {
+            seen.states.push(output.state);
+        }
+    }
+}
+
+/// An emulated board in its world.
 struct Board {
     seen: Arc<Mutex<Seen>>,
-    over: Arc<AtomicBool>,
-    world: Option<JoinHandle<EmulatorReport>>,
-    socket: PathBuf,
+    world: PlantThread,
 }
 
 impl Board {
@@ -55,13 +66,8 @@ impl Board {
         for count in (0..=DEPTH).step_by(STEP) {
             emulator.tick(TickInput { count, missed: 0 }).unwrap();
         }
-        let socket = emulator.port();
-        let (seen, over) = (Arc::<Mutex<Seen>>::default(), Arc::<AtomicBool>::default());
-        let world = std::thread::spawn({
-            let (seen, over) = (seen.clone(), over.clone());
-            move || hold(emulator, &seen, &over)
-        });
-        let board = Self { seen, over, world: Some(world), socket };
+        let seen = Arc::<Mutex<Seen>>::default();
+        let board = Self { seen: seen.clone(), world: PlantThread::start(emulator, Held(seen)) };
         board.settle();
         board
     }
@@ -69,22 +75,26 @@ impl Board {
     /// The code after this many more ticks.
     fn after(&self, ticks: u64) -> u16 {
         let end = self.seen.lock().unwrap().ticks + ticks;
-        loop {
+        for _ in 0..300_000 {
             let seen = self.seen.lock().unwrap();
             if seen.ticks >= end {
                 return seen.last;
             }
             drop(seen);
             std::thread::sleep(Duration::from_micros(200));
-            assert!(!self.world.as_ref().unwrap().is_finished(), "the board has ended");
         }
+        panic!("the board has ended");
     }
 
-    /// The code, once it is the same for a while: the motion of a wall in its coupling after a swap takes
-    /// long to die away where its damping is near the certified limit.
+    /// The code, once it is the same for a while: the motion of a wall in its coupling takes long to die
+    /// away.
     fn settle(&self) -> u16 {
         for _ in 0..200 {
-            self.forget();
+            {
+                let mut seen = self.seen.lock().unwrap();
+                seen.codes.clear();
+                seen.states.clear();
+            }
             let last = self.after(30);
             if self.seen.lock().unwrap().codes.len() == 1 {
                 return last;
@@ -93,28 +103,12 @@ impl Board {
         panic!("the torque does not settle");
     }
 
-    fn forget(&self) {
-        let mut seen = self.seen.lock().unwrap();
-        seen.codes.clear();
-        seen.states.clear();
-    }
-
-    fn tune(&self, arguments: &[&str]) -> std::process::Output {
-        let port = format!("unix:{}", self.socket.display());
-        haptic(&[&["tune", "--json", "--port", &port], arguments].concat())
-    }
-
-    fn link(&self) -> Link {
-        Link::open(&Address::Unix(self.socket.clone())).unwrap()
-    }
-
     /// Writes bytes, waits for this many ticks, and requests the status on the same wire.
     fn disturb(&self, bytes: &[u8], ticks: u64) -> Status {
-        let mut stream = UnixStream::connect(&self.socket).unwrap();
+        let mut stream = UnixStream::connect(self.world.port()).unwrap();
         stream.write_all(bytes).unwrap();
         self.after(ticks);
-        let mut frame = [0; largest_frame(LONGEST_TO_BOARD)];
-        stream.write_all(encode(&ToBoard::Status, &mut frame).unwrap()).unwrap();
+        stream.write_all(&frame(&ToBoard::Status)).unwrap();
         let mut ear = Decoder::<{ LONGEST_TO_HOST + CHECKSUM }>::new();
         let bytes = BufReader::new(stream).bytes();
         let mut said = bytes.map(|byte| ear.push::<ToHost<String>>(byte.unwrap()));
@@ -125,79 +119,10 @@ impl Board {
         status.unwrap()
     }
 
-    /// Ends the board; returns its report.
-    fn end(mut self) -> EmulatorReport {
-        self.over.store(true, Ordering::Relaxed);
-        self.world.take().unwrap().join().unwrap()
+    /// Ends the board, which was late in no tick.
+    fn end(self) {
+        assert_eq!(self.world.end().unwrap().finish().unwrap().overruns, 0);
     }
-}
-
-/// A world in which the device is held still.
-fn hold(mut emulator: Emulator, seen: &Mutex<Seen>, over: &AtomicBool) -> EmulatorReport {
-    while !over.load(Ordering::Relaxed) {
-        let output = emulator.tick(TickInput { count: DEPTH, missed: 0 }).unwrap();
-        let mut seen = seen.lock().unwrap();
-        seen.ticks += 1;
-        seen.last = output.code;
-        seen.codes.insert(output.code);
-        if seen.states.last() != Some(&output.state) {
-            seen.states.push(output.state);
-        }
-    }
-    emulator.finish().unwrap()
-}
-
-/// The code of a wall of that stiffness behind the coupling at rest: two springs in series.
-fn code(stiffness: f64) -> f64 {
-    let transducers = damper_wall::TRANSDUCERS;
-    let angle = f64::from(DEPTH) * std::f64::consts::TAU / transducers.counts_per_turn;
-    let torque = (angle / (1.0 / stiffness + 1.0 / 44.0)).min(1.0);
-    2048.0 - torque * 1791.0 / transducers.full_scale_torque
-}
-
-fn with(stiffness: f64, damping: f64) -> Scene {
-    let environment = Wall::damped(stiffness, damping, 1).behind(0.0).alone();
-    Scene { environment, ..damper_wall::SCENE }
-}
-
-/// Half of them inadmissible; the verdict on each is made here, apart from the board.
-#[test]
-fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
-    let board = Board::start();
-    let mut random = fastrand::Rng::with_seed(3);
-    let (mut running, mut refused) = (22.0, 0);
-    for i in 0..1000 {
-        let is_soft = i % 2 == 0;
-        let stiffness = if is_soft { 0.5 + 19.0 * random.f64() } else { 44.0 * random.f64() };
-        let damping = if is_soft { 0.001 } else { 0.02 + 0.02 * random.f64() };
-        let output =
-            board.tune(&[&format!("stiffness={stiffness}"), &format!("damping={damping}")]);
-        let said = answer(&output);
-        match with(stiffness, damping).certify_in(Format::F32) {
-            Ok(_) => {
-                assert_eq!(output.status.code(), Some(0), "set {i}: {output:?}");
-                running = stiffness;
-            }
-            Err(rejection) => {
-                assert_eq!(output.status.code(), Some(1), "set {i}: {output:?}");
-                assert_eq!(said["refused"], rejection.to_string(), "set {i}");
-                refused += 1;
-                // Not for a single tick.
-                let last = board.after(20);
-                let codes = board.seen.lock().unwrap().codes.clone();
-                assert_eq!(codes, BTreeSet::from([last]), "set {i}");
-            }
-        }
-        assert_eq!(said["parameters"]["stiffness"], running, "set {i}");
-        let last = board.settle();
-        assert!((f64::from(last) - code(running)).abs() <= 1.0, "set {i}: {last}");
-    }
-    assert!((400..600).contains(&refused), "{refused}");
-    let status = board.link().status().unwrap();
-    assert_eq!((status.sets, status.missed), (1000 - refused, 0));
-    assert_eq!(status.discarded.total(), 0, "{status:?}");
-    let report = board.end();
-    assert_eq!(report.overruns, 0);
 }
 
 /// Random bytes, truncated frames, wrong checksums, a flood, and a stall in the middle of a frame.
@@ -236,7 +161,7 @@ fn the_servo_keeps_time_whatever_comes_over_the_wire() {
     assert_eq!(seen.codes, BTreeSet::from([wanted]));
     assert_eq!(seen.states, [State::Running]);
     drop(seen);
-    assert_eq!(board.end().overruns, 0);
+    board.end();
 }
 
 /// Tick, time, count, position, code, torque, state, limit and slack.
@@ -246,7 +171,7 @@ type Row = (u64, f64, i64, f64, u16, f64, String, String, f64);
 #[test]
 fn scope_records_the_emulated_board() {
     let board = Board::start();
-    let port = format!("unix:{}", board.socket.display());
+    let port = format!("unix:{}", board.world.port().display());
     let output = haptic(&["scope", "--port", &port, "--csv", "-", "--for", "2", "--every", "1"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let mut rows = csv::Reader::from_reader(output.stdout.as_slice());
@@ -257,5 +182,5 @@ fn scope_records_the_emulated_board() {
         assert_eq!((*count, *code, state.as_str(), limit.as_str()), (300, last, "running", "none"));
         assert!(*slack > 0.0 && *slack <= 0.001);
     }
-    assert_eq!(board.end().overruns, 0);
+    board.end();
 }

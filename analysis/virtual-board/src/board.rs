@@ -15,8 +15,8 @@ use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::clock::{Cause, Clock};
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::{Dac, Trigger};
-use crate::peripheral::inert_registers::InertRegisters;
 use crate::peripheral::pins::{Level, Pins};
+use crate::peripheral::registers::Registers;
 use crate::peripheral::serial::Serial;
 use crate::peripheral::watchdog::Watchdog;
 use crate::power_stage::{Gates, Outcome, PowerStage, Surroundings};
@@ -87,13 +87,13 @@ pub struct VirtualBoard {
     free_clock: Counter,
     /// The watchdog.
     pub watchdog: Watchdog,
-    power: InertRegisters,
+    power: Registers,
     /// The flash memory's interface.
-    pub flash: InertRegisters,
+    pub flash: Registers,
     /// System configuration.
-    pub configuration: InertRegisters,
+    pub configuration: Registers,
     /// The unit for debugging.
-    pub debug: InertRegisters,
+    pub debug: Registers,
     ports: Vec<Pins>,
     pub(crate) bus_error: Option<u32>,
     seen: (Option<u16>, Level),
@@ -124,10 +124,10 @@ impl VirtualBoard {
             chip,
             free_clock: Counter::new(32),
             watchdog: Watchdog::default(),
-            power: (chip.power)(),
-            flash: (chip.flash_interface)(),
-            configuration: (chip.configuration)(),
-            debug: (chip.debug)(),
+            power: Registers::new(chip.power),
+            flash: Registers::new(chip.flash_interface),
+            configuration: Registers::new(chip.configuration),
+            debug: Registers::new(chip.debug),
             ports: (0..9).map(chip.ports).collect(),
             bus_error: None,
             seen: (None, Level::Floating),
@@ -165,8 +165,8 @@ impl VirtualBoard {
     }
 
     /// The flash memory's interface after reset, with unchanged option bytes.
-    fn flash_after_reset(&self) -> InertRegisters {
-        let mut flash = (self.chip.flash_interface)();
+    fn flash_after_reset(&self) -> Registers {
+        let mut flash = Registers::new(self.chip.flash_interface);
         flash.set(self.chip.options, self.flash.get(self.chip.options));
         flash
     }

@@ -2,11 +2,11 @@
 
 use crate::names;
 use crate::peripheral::clock::{self, Layout};
-use crate::peripheral::inert_registers::InertRegisters;
 use crate::peripheral::pins::Pins;
-use crate::peripheral::serial::UsartVariant;
-use crate::peripheral::{clock_f4, clock_g4, dac, flash, power};
-use crate::unit::Unit;
+use crate::peripheral::registers::Table;
+
+use crate::peripheral::{clock_f4, clock_g4, dac, serial};
+use crate::unit::{Stage, Unit};
 
 /// Entry of the memory map: address and name of a unit.
 #[derive(Clone, Copy, Debug)]
@@ -47,8 +47,8 @@ pub struct Chip {
     pub crystal: u64,
     /// The core's clock in Hz after the program's set-up.
     pub core: u64,
-    /// The map of its peripherals.
-    pub map: &'static [MapEntry],
+    /// The map of its peripherals, in parts.
+    pub map: &'static [&'static [MapEntry]],
     /// Bits of the encoder's counter.
     pub counter: u32,
     /// The pin that switches the amplifier on, as port and number; high is on, on every board.
@@ -69,17 +69,17 @@ pub struct Chip {
     /// Its DAC's bits.
     pub dac: dac::Layout,
     /// Its serial port's registers.
-    pub usart: UsartVariant,
+    pub usart: &'static serial::Variant,
     /// Its power control.
-    pub power: fn() -> InertRegisters,
+    pub power: Table,
     /// Its flash interface.
-    pub flash_interface: fn() -> InertRegisters,
+    pub flash_interface: Table,
     /// The offset of the option bytes in it.
     pub options: u32,
     /// Its system configuration.
-    pub configuration: fn() -> InertRegisters,
+    pub configuration: Table,
     /// Its unit for debugging.
-    pub debug: fn() -> InertRegisters,
+    pub debug: Table,
     /// Names of its units' registers, by offset.
     pub names: fn(Unit, u32) -> Option<&'static str>,
     /// Its ports after reset.
@@ -128,65 +128,64 @@ pub const BREAKS: u32 = 0x1C;
 pub const LOCK_UP_BREAKS: u32 = 1;
 
 /// The debug unit: the chip's identity, and the clocks while the core sleeps.
-static DEBUG_G4: &[(u32, u32, u32)] = &[
+const DEBUG_G4: Table = &[
     (0x00, 0x2001_6469, 0),
     (0x04, 0, 0b111),
     (FREEZE, 0, WATCHDOG_FREEZES),
     (FREEZE_TIM1, 0, TIM1_FREEZES),
 ];
-static DEBUG_F405: &[(u32, u32, u32)] =
+const DEBUG_F405: Table =
     &[(0x00, 0x1007_6413, 0), (0x04, 0, 0b111), (FREEZE, 0, WATCHDOG_FREEZES)];
+
+/// Power control (RM0440, 6.4; RM0090, 5.4), whose voltage ranges are reached at once. The G4's CR1 with the
+/// voltage range and the access to the backup domain, CR5 with the boost.
+const POWER_G4: Table =
+    &[(0x00, 0x0000_0200, 1 << 8), (0x08, 0x0000_8000, 1 << 14), (0x80, 0x0000_0100, 1 << 8)];
+/// The F405's CR with the voltage scale and the access to the backup domain; CSR says that the regulator is
+/// ready. The driver sets two bits of scale, of which this chip has the lower one.
+const POWER_F405: Table = &[(0x00, 0x0000_4000, (0b11 << 14) | (1 << 8)), (0x04, 1 << 14, 0)];
+
+/// The flash memory's interface (RM0440, 3.7; RM0090, 3.9): its wait states and caches, which an instruction
+/// count does not see, the option bytes as delivered, and its errors: the G4's ACR, ECCR and OPTR.
+const FLASH_G4: Table = &[(0x00, 0x0004_0600, 0x0004_0F0F), (0x18, 0, 0), (0x20, 0xFFEF_F8AA, 0)];
+/// The F405's ACR and OPTCR.
+const FLASH_F405: Table = &[(0x00, 0, 0x0000_0707), (0x14, 0x0FFF_AAED, 0)];
 
 static G4: &Layout = &clock_g4::LAYOUT;
 static F4: &Layout = &clock_f4::LAYOUT;
 
-/// The map of an STM32G4. The timers of the encoder's counter and of the free-running clock depend on the
-/// board; all other units are in the same place.
-const fn g4_map([first, second]: [MapEntry; 2]) -> [MapEntry; 19] {
-    [
-        first,
-        second,
-        map_entry(0x4000_1000, "TIM6", Unit::TickTimer, 0x58, 0x38, 4),
-        map_entry(0x4000_1400, "TIM7", Unit::PhaseTimer, 0x58, 0x38, 5),
-        ungated(0x4000_3000, "IWDG", Unit::Watchdog),
-        map_entry(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
-        map_entry(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
-        map_entry(0x4001_0000, "SYSCFG", Unit::Configuration, 0x60, 0x40, 0),
-        ungated(0x4002_1000, "RCC", Unit::Clock),
-        map_entry(0x4002_2000, "FLASH", Unit::Flash, 0x48, 0x28, 8),
-        map_entry(0x4800_0000, "GPIOA", Unit::Pins(0), 0x4C, 0x2C, 0),
-        map_entry(0x4800_0400, "GPIOB", Unit::Pins(1), 0x4C, 0x2C, 1),
-        map_entry(0x4800_0800, "GPIOC", Unit::Pins(2), 0x4C, 0x2C, 2),
-        map_entry(0x4800_0C00, "GPIOD", Unit::Pins(3), 0x4C, 0x2C, 3),
-        map_entry(0x4800_1000, "GPIOE", Unit::Pins(4), 0x4C, 0x2C, 4),
-        map_entry(0x4800_1400, "GPIOF", Unit::Pins(5), 0x4C, 0x2C, 5),
-        map_entry(0x4800_1800, "GPIOG", Unit::Pins(6), 0x4C, 0x2C, 6),
-        map_entry(0x5000_0800, "DAC1", Unit::Dac, 0x4C, 0x2C, 16),
-        ungated(0xE004_2000, "DBGMCU", Unit::Debug),
-    ]
-}
-
-/// The units of a power stage on an STM32G4.
-const POWER_STAGE: [MapEntry; 7] = [
-    map_entry(0x4001_0200, "COMP", Unit::Comparators, 0x60, 0x40, 0),
-    map_entry(0x4001_0300, "OPAMP", Unit::OpAmps, 0x60, 0x40, 0),
-    map_entry(0x4001_2C00, "TIM1", Unit::PwmTimer, 0x60, 0x40, 11),
-    map_entry(0x5000_0000, "ADC1", Unit::Adc(0), 0x4C, 0x2C, 13),
-    map_entry(0x5000_0100, "ADC2", Unit::Adc(1), 0x4C, 0x2C, 13),
-    map_entry(0x5000_0300, "ADC12", Unit::AdcCommon, 0x4C, 0x2C, 13),
-    map_entry(0x5000_1000, "DAC3", Unit::ThresholdDac, 0x4C, 0x2C, 18),
+/// The units of an STM32G4, except the timers of the encoder's counter and of the free-running clock, which
+/// depend on the board.
+static G4_MAP: &[MapEntry] = &[
+    map_entry(0x4000_1000, "TIM6", Unit::TickTimer, 0x58, 0x38, 4),
+    map_entry(0x4000_1400, "TIM7", Unit::PhaseTimer, 0x58, 0x38, 5),
+    ungated(0x4000_3000, "IWDG", Unit::Watchdog),
+    map_entry(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
+    map_entry(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
+    map_entry(0x4001_0000, "SYSCFG", Unit::Configuration, 0x60, 0x40, 0),
+    ungated(0x4002_1000, "RCC", Unit::Clock),
+    map_entry(0x4002_2000, "FLASH", Unit::Flash, 0x48, 0x28, 8),
+    map_entry(0x4800_0000, "GPIOA", Unit::Pins(0), 0x4C, 0x2C, 0),
+    map_entry(0x4800_0400, "GPIOB", Unit::Pins(1), 0x4C, 0x2C, 1),
+    map_entry(0x4800_0800, "GPIOC", Unit::Pins(2), 0x4C, 0x2C, 2),
+    map_entry(0x4800_0C00, "GPIOD", Unit::Pins(3), 0x4C, 0x2C, 3),
+    map_entry(0x4800_1000, "GPIOE", Unit::Pins(4), 0x4C, 0x2C, 4),
+    map_entry(0x4800_1400, "GPIOF", Unit::Pins(5), 0x4C, 0x2C, 5),
+    map_entry(0x4800_1800, "GPIOG", Unit::Pins(6), 0x4C, 0x2C, 6),
+    map_entry(0x5000_0800, "DAC1", Unit::Dac, 0x4C, 0x2C, 16),
+    ungated(0xE004_2000, "DBGMCU", Unit::Debug),
 ];
 
-/// A map with the units of a power stage.
-const fn with_power_stage(map: [MapEntry; 19]) -> [MapEntry; 26] {
-    let mut all = [POWER_STAGE[0]; 26];
-    let mut i = 0;
-    while i < all.len() {
-        all[i] = if i < map.len() { map[i] } else { POWER_STAGE[i - map.len()] };
-        i += 1;
-    }
-    all
-}
+/// The units of a power stage on an STM32G4.
+static POWER_STAGE: &[MapEntry] = &[
+    map_entry(0x4001_0200, "COMP", Unit::Stage(Stage::Comparators), 0x60, 0x40, 0),
+    map_entry(0x4001_0300, "OPAMP", Unit::Stage(Stage::OpAmps), 0x60, 0x40, 0),
+    map_entry(0x4001_2C00, "TIM1", Unit::Stage(Stage::PwmTimer), 0x60, 0x40, 11),
+    map_entry(0x5000_0000, "ADC1", Unit::Stage(Stage::Adc(0)), 0x4C, 0x2C, 13),
+    map_entry(0x5000_0100, "ADC2", Unit::Stage(Stage::Adc(1)), 0x4C, 0x2C, 13),
+    map_entry(0x5000_0300, "ADC12", Unit::Stage(Stage::AdcCommon), 0x4C, 0x2C, 13),
+    map_entry(0x5000_1000, "DAC3", Unit::Stage(Stage::ThresholdDac), 0x4C, 0x2C, 18),
+];
 
 /// STM32G474RE on a NUCLEO-G474RE.
 pub static NUCLEO_G474RE: Chip = Chip {
@@ -196,10 +195,13 @@ pub static NUCLEO_G474RE: Chip = Chip {
     coupled: (32 << 10, true),
     crystal: 24_000_000,
     core: 170_000_000,
-    map: &g4_map([
-        map_entry(0x4000_0000, "TIM2", Unit::Encoder, 0x58, 0x38, 0),
-        map_entry(0x4000_0C00, "TIM5", Unit::FreeClock, 0x58, 0x38, 3),
-    ]),
+    map: &[
+        &[
+            map_entry(0x4000_0000, "TIM2", Unit::Encoder, 0x58, 0x38, 0),
+            map_entry(0x4000_0C00, "TIM5", Unit::FreeClock, 0x58, 0x38, 3),
+        ],
+        G4_MAP,
+    ],
     counter: 32,
     amplifier: (1, 10),
     gates: None,
@@ -211,14 +213,14 @@ pub static NUCLEO_G474RE: Chip = Chip {
     serial_interrupt: 38,
     clock: G4,
     dac: dac::G4,
-    usart: UsartVariant::G4,
+    usart: &serial::G4,
     names: names::g4,
-    power: power::g4,
-    flash_interface: flash::g4,
+    power: POWER_G4,
+    flash_interface: FLASH_G4,
     options: 0x20,
     // CFGR2, with the flag of a wrong parity.
-    configuration: || InertRegisters::new(&[(BREAKS, 0, 0)]),
-    debug: || InertRegisters::new(DEBUG_G4),
+    configuration: &[(BREAKS, 0, 0)],
+    debug: DEBUG_G4,
     ports: |port| match port {
         // The debug port's pins are not analog out of reset; A's and B's differ.
         0 => Pins::new(0xABFF_FFFF, 0x0C00_0000, 0x6400_0000),
@@ -234,10 +236,14 @@ pub static B_G431B_ESC1: Chip = Chip {
     ram: 22 << 10,
     coupled: (10 << 10, true),
     crystal: 8_000_000,
-    map: &with_power_stage(g4_map([
-        map_entry(0x4000_0000, "TIM2", Unit::FreeClock, 0x58, 0x38, 0),
-        map_entry(0x4000_0800, "TIM4", Unit::Encoder, 0x58, 0x38, 2),
-    ])),
+    map: &[
+        &[
+            map_entry(0x4000_0000, "TIM2", Unit::FreeClock, 0x58, 0x38, 0),
+            map_entry(0x4000_0800, "TIM4", Unit::Encoder, 0x58, 0x38, 2),
+        ],
+        G4_MAP,
+        POWER_STAGE,
+    ],
     counter: 16,
     amplifier: (0, 15),
     // TIM1_CH1 to CH3 and TIM1_CH1N to CH3N.
@@ -250,7 +256,7 @@ pub static B_G431B_ESC1: Chip = Chip {
         ((1, 15), 4),
     ]),
     // CFGR2 as above, with the bit for a locked-up core.
-    configuration: || InertRegisters::new(&[(BREAKS, 0, LOCK_UP_BREAKS)]),
+    configuration: &[(BREAKS, 0, LOCK_UP_BREAKS)],
     // TIM4_CH1 and TIM4_CH2.
     encoder: ([(1, 6), (1, 7)], 2),
     // TIM4_CH3.
@@ -260,6 +266,31 @@ pub static B_G431B_ESC1: Chip = Chip {
     ..NUCLEO_G474RE
 };
 
+/// The units of the F405.
+static F405_MAP: &[MapEntry] = &[
+    map_entry(0x4000_0400, "TIM3", Unit::Encoder, 0x40, 0x20, 1),
+    map_entry(0x4000_0C00, "TIM5", Unit::FreeClock, 0x40, 0x20, 3),
+    map_entry(0x4000_1000, "TIM6", Unit::TickTimer, 0x40, 0x20, 4),
+    map_entry(0x4000_1400, "TIM7", Unit::PhaseTimer, 0x40, 0x20, 5),
+    ungated(0x4000_3000, "IWDG", Unit::Watchdog),
+    map_entry(0x4000_4800, "USART3", Unit::Serial, 0x40, 0x20, 18),
+    map_entry(0x4000_7000, "PWR", Unit::Power, 0x40, 0x20, 28),
+    map_entry(0x4000_7400, "DAC", Unit::Dac, 0x40, 0x20, 29),
+    map_entry(0x4001_3800, "SYSCFG", Unit::Configuration, 0x44, 0x24, 14),
+    map_entry(0x4002_0000, "GPIOA", Unit::Pins(0), 0x30, 0x10, 0),
+    map_entry(0x4002_0400, "GPIOB", Unit::Pins(1), 0x30, 0x10, 1),
+    map_entry(0x4002_0800, "GPIOC", Unit::Pins(2), 0x30, 0x10, 2),
+    map_entry(0x4002_0C00, "GPIOD", Unit::Pins(3), 0x30, 0x10, 3),
+    map_entry(0x4002_1000, "GPIOE", Unit::Pins(4), 0x30, 0x10, 4),
+    map_entry(0x4002_1400, "GPIOF", Unit::Pins(5), 0x30, 0x10, 5),
+    map_entry(0x4002_1800, "GPIOG", Unit::Pins(6), 0x30, 0x10, 6),
+    map_entry(0x4002_1C00, "GPIOH", Unit::Pins(7), 0x30, 0x10, 7),
+    map_entry(0x4002_2000, "GPIOI", Unit::Pins(8), 0x30, 0x10, 8),
+    ungated(0x4002_3800, "RCC", Unit::Clock),
+    ungated(0x4002_3C00, "FLASH", Unit::Flash),
+    ungated(0xE004_2000, "DBGMCU", Unit::Debug),
+];
+
 /// STM32F405RG on an Adafruit Feather STM32F405 Express (its published schematic, commit f10cfb4).
 pub static STM32F405: Chip = Chip {
     name: "feather-stm32f405",
@@ -268,29 +299,7 @@ pub static STM32F405: Chip = Chip {
     coupled: (64 << 10, false),
     crystal: 12_000_000,
     core: 168_000_000,
-    map: &[
-        map_entry(0x4000_0400, "TIM3", Unit::Encoder, 0x40, 0x20, 1),
-        map_entry(0x4000_0C00, "TIM5", Unit::FreeClock, 0x40, 0x20, 3),
-        map_entry(0x4000_1000, "TIM6", Unit::TickTimer, 0x40, 0x20, 4),
-        map_entry(0x4000_1400, "TIM7", Unit::PhaseTimer, 0x40, 0x20, 5),
-        ungated(0x4000_3000, "IWDG", Unit::Watchdog),
-        map_entry(0x4000_4800, "USART3", Unit::Serial, 0x40, 0x20, 18),
-        map_entry(0x4000_7000, "PWR", Unit::Power, 0x40, 0x20, 28),
-        map_entry(0x4000_7400, "DAC", Unit::Dac, 0x40, 0x20, 29),
-        map_entry(0x4001_3800, "SYSCFG", Unit::Configuration, 0x44, 0x24, 14),
-        map_entry(0x4002_0000, "GPIOA", Unit::Pins(0), 0x30, 0x10, 0),
-        map_entry(0x4002_0400, "GPIOB", Unit::Pins(1), 0x30, 0x10, 1),
-        map_entry(0x4002_0800, "GPIOC", Unit::Pins(2), 0x30, 0x10, 2),
-        map_entry(0x4002_0C00, "GPIOD", Unit::Pins(3), 0x30, 0x10, 3),
-        map_entry(0x4002_1000, "GPIOE", Unit::Pins(4), 0x30, 0x10, 4),
-        map_entry(0x4002_1400, "GPIOF", Unit::Pins(5), 0x30, 0x10, 5),
-        map_entry(0x4002_1800, "GPIOG", Unit::Pins(6), 0x30, 0x10, 6),
-        map_entry(0x4002_1C00, "GPIOH", Unit::Pins(7), 0x30, 0x10, 7),
-        map_entry(0x4002_2000, "GPIOI", Unit::Pins(8), 0x30, 0x10, 8),
-        ungated(0x4002_3800, "RCC", Unit::Clock),
-        ungated(0x4002_3C00, "FLASH", Unit::Flash),
-        ungated(0xE004_2000, "DBGMCU", Unit::Debug),
-    ],
+    map: &[F405_MAP],
     counter: 16,
     // PC3, D11.
     amplifier: (2, 3),
@@ -303,13 +312,13 @@ pub static STM32F405: Chip = Chip {
     serial_interrupt: 39,
     clock: F4,
     dac: dac::F405,
-    usart: UsartVariant::F405,
+    usart: &serial::F405,
     names: names::f405,
-    power: power::f405,
-    flash_interface: flash::f405,
+    power: POWER_F405,
+    flash_interface: FLASH_F405,
     options: 0x14,
-    configuration: || InertRegisters::new(&[]),
-    debug: || InertRegisters::new(DEBUG_F405),
+    configuration: &[],
+    debug: DEBUG_F405,
     ports: |port| match port {
         0 => Pins::new(0xA800_0000, 0x0C00_0000, 0x6400_0000),
         1 => Pins::new(0x0000_0280, 0x0000_00C0, 0x0000_0100),
@@ -321,7 +330,7 @@ pub static STM32F405: Chip = Chip {
 /// it counts without being clocked.
 pub static NETDUINO_PLUS_2: Chip = Chip {
     name: "netduinoplus2",
-    map: &[ungated(0x4000_0000, "TIM2", Unit::FreeClock)],
+    map: &[&[ungated(0x4000_0000, "TIM2", Unit::FreeClock)]],
     ..STM32F405
 };
 
@@ -337,11 +346,16 @@ impl Chip {
         Self::BOARDS.into_iter().find(|chip| chip.name == name)
     }
 
+    /// Its peripherals.
+    pub fn units(&self) -> impl Iterator<Item = &'static MapEntry> {
+        let parts: &'static [&'static [MapEntry]] = self.map;
+        parts.iter().copied().flatten()
+    }
+
     /// The unit at an address: of those that share a span, the last that begins before it.
     pub fn at(&self, address: u32) -> Option<&'static MapEntry> {
         let span = address & !(SPAN - 1);
-        let map: &'static [MapEntry] = self.map;
-        map.iter()
+        self.units()
             .filter(|map_entry| map_entry.base & !(SPAN - 1) == span && map_entry.base <= address)
             .max_by_key(|map_entry| map_entry.base)
     }

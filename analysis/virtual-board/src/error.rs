@@ -105,17 +105,22 @@ pub struct NotModelled {
 }
 
 /// The reason why an access fails.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AccessError {
     /// There is no unit of the virtual board.
+    #[error("the virtual board has no peripheral there")]
     Nobody,
     /// The unit is modelled, but not this register or these bits.
+    #[error(transparent)]
     Unit(Unmodelled),
     /// The unit's clock is off, or the unit is held in reset.
+    #[error("its clock is off, or it is held in reset")]
     Stopped,
     /// Accesses of this width are not modelled.
+    #[error("an access of that width is not modelled")]
     Width,
     /// A converter has sampled a floating channel.
+    #[error("it has sampled a channel that nothing drives")]
     Floating,
 }
 
@@ -127,22 +132,10 @@ impl fmt::Display for NotModelled {
             None => f.write_str("the program read ")?,
         }
         match self.register {
-            Some(register) => write!(f, "{register} of {unit} at {:#010x}: ", self.address)?,
-            None => write!(f, "{:#010x}, in {unit}: ", self.address)?,
+            Some(register) => write!(f, "{register} of {unit} at {:#010x}", self.address)?,
+            None => write!(f, "{:#010x}, in {unit}", self.address)?,
         }
-        match self.why {
-            AccessError::Nobody => f.write_str("the virtual board has no peripheral there"),
-            AccessError::Unit(Unmodelled::Register) => f.write_str("that register is not modelled"),
-            AccessError::Unit(Unmodelled::ClockStep) => {
-                f.write_str("the core's clock rises too far at once")
-            }
-            AccessError::Unit(Unmodelled::Bits(bits)) => {
-                write!(f, "the bits {bits:#010x} are not modelled in that register")
-            }
-            AccessError::Stopped => f.write_str("its clock is off, or it is held in reset"),
-            AccessError::Floating => f.write_str("it has sampled a channel that nothing drives"),
-            AccessError::Width => f.write_str("an access of that width is not modelled"),
-        }
+        write!(f, ": {}", self.why)
     }
 }
 
@@ -181,7 +174,7 @@ mod tests {
     #[test]
     fn registers_of_both_chips_have_names() {
         for chip in Chip::ALL {
-            for place in chip.map {
+            for place in chip.units() {
                 assert!((chip.names)(place.unit, 0).is_some(), "{}: {}", chip.name, place.name);
             }
         }

@@ -15,14 +15,14 @@ pub use circuit::{Circuit, Supply};
 use crate::chip::Chip;
 use crate::device::Device;
 use crate::motor::Leg;
+use crate::peripheral::Access;
 use crate::peripheral::adc::{Adc, AdcClock, AdcCommon};
 use crate::peripheral::comparators::{Comparators, Inputs};
 use crate::peripheral::op_amps::OpAmps;
 use crate::peripheral::pins::{Level, Pins};
 use crate::peripheral::pwm_timer::{Breaker, PwmTimer};
 use crate::peripheral::threshold_dac::ThresholdDac;
-use crate::peripheral::{Access, Unmodelled};
-use crate::unit::Unit;
+use crate::unit::Stage;
 
 /// Levels of the gates: high sides, then low sides of the phases U, V and W.
 pub type Gates = [Level; 6];
@@ -67,6 +67,7 @@ pub(crate) struct Outcome {
 }
 
 /// The power stage.
+#[derive(Default)]
 pub struct PowerStage {
     /// The circuit at the chip.
     pub circuit: Circuit,
@@ -91,27 +92,6 @@ pub struct PowerStage {
     shoot_through: Option<(u64, usize)>,
     /// A high side was switched on whose gate's supply was not charged: when, and of which leg.
     uncharged: Option<(u64, usize)>,
-}
-
-impl Default for PowerStage {
-    fn default() -> Self {
-        Self {
-            circuit: Circuit::default(),
-            timer: PwmTimer::default(),
-            adcs: Default::default(),
-            adc_common: AdcCommon::default(),
-            comparators: Comparators::default(),
-            op_amps: OpAmps::default(),
-            thresholds: ThresholdDac::default(),
-            gates: [Level::Floating; 6],
-            now: 0,
-            due: None,
-            broken: None,
-            stepped: 0,
-            shoot_through: None,
-            uncharged: None,
-        }
-    }
 }
 
 impl PowerStage {
@@ -185,57 +165,54 @@ impl PowerStage {
     }
 
     /// What the program reads.
-    pub(crate) fn read(&mut self, unit: Unit, offset: u32) -> Access<u32> {
+    pub(crate) fn read(&mut self, unit: Stage, offset: u32) -> Access<u32> {
         match unit {
-            Unit::PwmTimer => self.timer.read(offset, self.now),
-            Unit::Adc(number) => self.adcs[number].read(offset),
-            Unit::AdcCommon => {
+            Stage::PwmTimer => self.timer.read(offset, self.now),
+            Stage::Adc(number) => self.adcs[number].read(offset),
+            Stage::AdcCommon => {
                 self.adc_common.read(offset, [self.adcs[0].flags(), self.adcs[1].flags()])
             }
-            Unit::Comparators => self.comparators.read(offset),
-            Unit::OpAmps => self.op_amps.read(offset),
-            Unit::ThresholdDac => self.thresholds.read(offset),
-            _ => Err(Unmodelled::Register),
+            Stage::Comparators => self.comparators.read(offset),
+            Stage::OpAmps => self.op_amps.read(offset),
+            Stage::ThresholdDac => self.thresholds.read(offset),
         }
     }
 
     /// What the program writes; [`Self::changed`] has to follow. Whether TIM1's trigger output rises.
     pub(crate) fn write(
         &mut self,
-        unit: Unit,
+        unit: Stage,
         offset: u32,
         value: u32,
         around: &Surroundings<'_>,
     ) -> Access<bool> {
         let (now, clock) = (self.now, self.clock(around));
         match unit {
-            Unit::PwmTimer => {
+            Stage::PwmTimer => {
                 let triggers = self.timer.write(offset, value, now)?;
                 if triggers {
                     self.trigger(around);
                 }
                 return Ok(triggers);
             }
-            Unit::Adc(number) => self.adcs[number].write(offset, value, now, clock),
-            Unit::AdcCommon => self.adc_common.write(offset, value),
-            Unit::Comparators => self.comparators.write(offset, value),
-            Unit::OpAmps => self.op_amps.write(offset, value),
-            Unit::ThresholdDac => self.thresholds.write(offset, value),
-            _ => Err(Unmodelled::Register),
+            Stage::Adc(number) => self.adcs[number].write(offset, value, now, clock),
+            Stage::AdcCommon => self.adc_common.write(offset, value),
+            Stage::Comparators => self.comparators.write(offset, value),
+            Stage::OpAmps => self.op_amps.write(offset, value),
+            Stage::ThresholdDac => self.thresholds.write(offset, value),
         }?;
         Ok(false)
     }
 
     /// One of its units as out of reset.
-    pub(crate) fn reset_unit(&mut self, unit: Unit) {
+    pub(crate) fn reset_unit(&mut self, unit: Stage) {
         match unit {
-            Unit::PwmTimer => self.timer = PwmTimer::default(),
-            Unit::Adc(number) => self.adcs[number] = Adc::default(),
-            Unit::AdcCommon => self.adc_common = AdcCommon::default(),
-            Unit::Comparators => self.comparators = Comparators::default(),
-            Unit::OpAmps => self.op_amps = OpAmps::default(),
-            Unit::ThresholdDac => self.thresholds = ThresholdDac::default(),
-            _ => {}
+            Stage::PwmTimer => self.timer = PwmTimer::default(),
+            Stage::Adc(number) => self.adcs[number] = Adc::default(),
+            Stage::AdcCommon => self.adc_common = AdcCommon::default(),
+            Stage::Comparators => self.comparators = Comparators::default(),
+            Stage::OpAmps => self.op_amps = OpAmps::default(),
+            Stage::ThresholdDac => self.thresholds = ThresholdDac::default(),
         }
     }
 

@@ -90,9 +90,6 @@ pub struct Guest {
 impl Guest {
     /// Switches a board on with a program that reads its questions from the first file and writes
     /// its answers to the second.
-    ///
-    /// # Errors
-    /// Where the file cannot be read, or is not a program for the chip.
     pub fn boot(
         elf: &Path,
         chip: &'static Chip,
@@ -106,9 +103,6 @@ impl Guest {
     }
 
     /// The same with a program that is called with a command line, and asks nothing.
-    ///
-    /// # Errors
-    /// As for [`Self::boot`].
     pub fn boot_command(
         elf: &Path,
         chip: &'static Chip,
@@ -123,27 +117,16 @@ impl Guest {
         &mut self.machine
     }
 
-    /// Runs up to the next call.
-    ///
-    /// # Errors
-    /// As [`Self::exchange`], and where the program ends.
-    pub fn run_to_call(&mut self) -> Result<(), CallError> {
-        self.run()
-    }
-
     /// The board.
     pub fn machine(&self) -> &Machine {
         &self.machine
     }
 
     /// Asks, and waits until the program has filled `answer`.
-    ///
-    /// # Errors
-    /// Where it does not.
     pub fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), CallError> {
         self.requests.extend(request);
         while self.replies.len() < answer.len() {
-            self.run()?;
+            self.run_to_call()?;
         }
         let answered: Vec<_> = self.replies.drain(..answer.len()).collect();
         answer.copy_from_slice(&answered);
@@ -158,7 +141,7 @@ impl Guest {
     pub fn finish(mut self) -> Result<Vec<u8>, CallError> {
         self.closed = true;
         loop {
-            match self.run() {
+            match self.run_to_call() {
                 Ok(()) => {}
                 Err(CallError::Ended(0)) => return Ok(self.console),
                 Err(error) => return Err(error),
@@ -166,8 +149,11 @@ impl Guest {
         }
     }
 
-    /// Up to the next call, and the answer to it.
-    fn run(&mut self) -> Result<(), CallError> {
+    /// Runs up to the next call, and answers it.
+    ///
+    /// # Errors
+    /// As [`Self::exchange`], and where the program ends.
+    pub fn run_to_call(&mut self) -> Result<(), CallError> {
         let Err(error) = self.machine.run_for(LONGEST) else {
             return Err(BoardError::Late { what: "a call", instructions: LONGEST }.into());
         };

@@ -29,7 +29,14 @@ pub enum Unit {
     Serial,
     /// The independent watchdog.
     Watchdog,
-    /// TIM1, the power stage's modulator.
+    /// A unit of the power stage.
+    Stage(Stage),
+}
+
+/// A unit of the power stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// TIM1, the modulator.
     PwmTimer,
     /// ADC1 or ADC2: 0 is the first.
     Adc(usize),
@@ -41,19 +48,4 @@ pub enum Unit {
     OpAmps,
     /// DAC3, the comparators' thresholds.
     ThresholdDac,
-}
-
-impl Unit {
-    /// Whether it is one of a power stage's.
-    pub(crate) fn is_of_power_stage(self) -> bool {
-        matches!(
-            self,
-            Self::PwmTimer
-                | Self::Adc(_)
-                | Self::AdcCommon
-                | Self::Comparators
-                | Self::OpAmps
-                | Self::ThresholdDac
-        )
-    }
 }

@@ -2,6 +2,7 @@
 //! is elsewhere.
 
 pub mod change;
+pub mod client;
 pub mod formatting;
 pub mod history;
 mod other_protocol;

@@ -1,10 +1,11 @@
 //! Shared by the tests of the program: a scene, and the program as a process.
 
-use std::io::Write;
+use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 
 use serde_json::Value;
+use tempfile::TempDir;
 
 /// The paper's delayed wall, which certifies.
 pub const WALL: &str = r#"name = "delayed wall"
@@ -62,6 +63,40 @@ pub fn haptic_reading(arguments: &[&str], input: &[u8]) -> Output {
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap();
     output
+}
+
+/// A simulated board as a process, behind a socket; ends with this.
+pub struct BoardProcess {
+    pub process: Child,
+    pub port: String,
+    _folder: TempDir,
+}
+
+impl BoardProcess {
+    /// With the program of a scene, and more arguments; once it listens.
+    pub fn start(scene: &str, more: &[&str]) -> Self {
+        let folder = TempDir::new().unwrap();
+        let port = format!("unix:{}", folder.path().join("board").display());
+        let arguments = [&["board-sim", scene, "--port", &port], more].concat();
+        let mut process = program(&arguments).stdout(Stdio::piped()).spawn().unwrap();
+        let mut said = BufReader::new(process.stdout.take().unwrap()).lines();
+        assert_eq!(said.next().unwrap().unwrap(), format!("{scene} listens on {port}"));
+        Self { process, port, _folder: folder }
+    }
+
+    /// The exit status and the answer of `haptic tune --json`.
+    pub fn tune(&self, arguments: &[&str]) -> (Option<i32>, Value) {
+        let output = haptic(&[&["tune", "--json", "--port", &self.port], arguments].concat());
+        (output.status.code(), answer(&output))
+    }
+}
+
+impl Drop for BoardProcess {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
 }
 
 /// The program itself, set up.

@@ -11,9 +11,10 @@ use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::Dac;
 use crate::peripheral::pins::{self, Level};
+use crate::peripheral::registers::Registers;
 use crate::peripheral::serial::Serial;
 use crate::power_stage::Surroundings;
-use crate::unit::Unit;
+use crate::unit::{Stage, Unit};
 
 /// The target of an address, with the offset of a register.
 enum Target {
@@ -173,15 +174,10 @@ impl VirtualBoard {
             Unit::Dac => self.dac.read(offset),
             Unit::Serial => self.serial.read(offset),
             Unit::Watchdog => self.watchdog.read(offset),
-            Unit::PwmTimer
-            | Unit::Adc(_)
-            | Unit::AdcCommon
-            | Unit::Comparators
-            | Unit::OpAmps
-            | Unit::ThresholdDac => {
+            Unit::Stage(unit) => {
                 self.advance_power_stage();
                 // The comparators' levels are updated first.
-                if unit == Unit::Comparators {
+                if unit == Stage::Comparators {
                     self.power_stage_changed();
                 }
                 self.power_stage.read(unit, offset)
@@ -201,7 +197,7 @@ impl VirtualBoard {
     }
 
     fn write_unit(&mut self, unit: Unit, offset: u32, value: u32) -> Access<()> {
-        let changes_power_stage = unit.is_of_power_stage()
+        let changes_power_stage = matches!(unit, Unit::Stage(_))
             || matches!(unit, Unit::Pins(_) | Unit::Clock) && self.chip.gates.is_some();
         if changes_power_stage {
             self.advance_power_stage();
@@ -236,12 +232,7 @@ impl VirtualBoard {
             }
             Unit::Serial => self.serial.write(offset, value),
             Unit::Watchdog => self.watchdog.write(offset, value, now, self.clock.core()),
-            Unit::PwmTimer
-            | Unit::Adc(_)
-            | Unit::AdcCommon
-            | Unit::Comparators
-            | Unit::OpAmps
-            | Unit::ThresholdDac => {
+            Unit::Stage(unit) => {
                 let Self { power_stage, ports, chip, clock, .. } = self;
                 let around = Surroundings { chip, ports, core: clock.core() };
                 if power_stage.write(unit, offset, value, &around)? {
@@ -254,7 +245,7 @@ impl VirtualBoard {
 
     /// Resets the units whose bits are set in the register of resets at `offset`.
     fn reset_units(&mut self, offset: u32) {
-        for map_entry in self.chip.map {
+        for map_entry in self.chip.units() {
             if let Some((_, reset, bit)) = map_entry.clocked
                 && reset == offset
                 && self.clock.is_set(reset, bit)
@@ -267,10 +258,10 @@ impl VirtualBoard {
     fn reset_unit(&mut self, unit: Unit) {
         match unit {
             Unit::Clock | Unit::Watchdog => {}
-            Unit::Power => self.power = (self.chip.power)(),
+            Unit::Power => self.power = Registers::new(self.chip.power),
             Unit::Flash => self.flash = self.flash_after_reset(),
-            Unit::Configuration => self.configuration = (self.chip.configuration)(),
-            Unit::Debug => self.debug = (self.chip.debug)(),
+            Unit::Configuration => self.configuration = Registers::new(self.chip.configuration),
+            Unit::Debug => self.debug = Registers::new(self.chip.debug),
             Unit::Pins(port) => self.ports[port] = (self.chip.ports)(port),
             Unit::TickTimer => self.tick_timer = BasicTimer::new(),
             Unit::PhaseTimer => self.phase_timer = BasicTimer::new(),
@@ -278,12 +269,7 @@ impl VirtualBoard {
             Unit::Encoder => self.encoder = Counter::new(self.chip.counter),
             Unit::Dac => self.dac = Dac::new(self.chip.dac),
             Unit::Serial => self.serial = Serial::new(self.chip.usart),
-            Unit::PwmTimer
-            | Unit::Adc(_)
-            | Unit::AdcCommon
-            | Unit::Comparators
-            | Unit::OpAmps
-            | Unit::ThresholdDac => self.power_stage.reset_unit(unit),
+            Unit::Stage(unit) => self.power_stage.reset_unit(unit),
         }
     }
 

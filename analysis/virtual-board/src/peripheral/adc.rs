@@ -1,7 +1,22 @@
 //! An analogue-to-digital converter (ADC, RM0440, 21.4): one injected channel, started by the power stage's
 //! timer, and one regular channel, started by the program. Times are in core clocks.
 
+use super::registers::{Registers, Table};
 use super::{Access, Unmodelled, only};
+
+const ISR: u32 = 0x00;
+const IER: u32 = 0x04;
+const CR: u32 = 0x08;
+const CFGR: u32 = 0x0C;
+const CFGR2: u32 = 0x10;
+const SMPR1: u32 = 0x14;
+const SMPR2: u32 = 0x18;
+const SQR1: u32 = 0x30;
+const DR: u32 = 0x40;
+const JSQR: u32 = 0x4C;
+const JDR1: u32 = 0x80;
+const DIFSEL: u32 = 0xB0;
+const CALFACT: u32 = 0xB4;
 
 /// ISR and IER.
 const READY: u32 = 1;
@@ -48,6 +63,30 @@ const CONVERSION: u64 = 25;
 /// The factor that a calibration finds.
 const FACTOR: u32 = 0x40;
 
+const REGISTERS: Table = &[
+    (IER, 0, FLAGS),
+    (CFGR, NO_QUEUE, OVERWRITES | NO_QUEUE),
+    (CFGR2, 0, OVERSAMPLING),
+    (SMPR1, 0, 0x3FFF_FFFF),
+    (SMPR2, 0, 0x3FFF_FFFF),
+    // One channel.
+    (SQR1, 0, CHANNEL << 6),
+    // One channel, and TIM1's trigger output.
+    (JSQR, 0, RISING | CHANNEL << 9),
+    // No channel is differential.
+    (DIFSEL, 0, 0),
+];
+
+/// The starts of conversions during which a register must not be changed.
+fn held_by(register: u32) -> u32 {
+    match register {
+        CFGR | CFGR2 | SMPR1 | SMPR2 => START_REGULAR | START_INJECTED,
+        SQR1 => START_REGULAR,
+        JSQR => START_INJECTED,
+        _ => 0,
+    }
+}
+
 /// The clock of a converter.
 #[derive(Clone, Copy, Debug)]
 pub struct AdcClock {
@@ -79,14 +118,9 @@ struct Conversion {
 /// A converter.
 #[derive(Clone, Debug)]
 pub struct Adc {
+    registers: Registers,
     flags: u32,
-    interrupts: u32,
     control: u32,
-    config: u32,
-    oversampling: u32,
-    sampling: [u32; 2],
-    regular: u32,
-    injected: u32,
     data: u32,
     injected_data: u32,
     is_calibrated: bool,
@@ -104,14 +138,9 @@ pub struct Adc {
 impl Default for Adc {
     fn default() -> Self {
         Self {
+            registers: Registers::new(REGISTERS),
             flags: 0,
-            interrupts: 0,
             control: DEEP_POWER_DOWN,
-            config: NO_QUEUE,
-            oversampling: 0,
-            sampling: [0; 2],
-            regular: 0,
-            injected: 0,
             data: 0,
             injected_data: 0,
             is_calibrated: false,
@@ -166,7 +195,7 @@ impl Adc {
 
     /// The trigger output of TIM1 rises.
     pub fn trigger(&mut self, now: u64, clock: AdcClock) {
-        if self.control & START_INJECTED == 0 || self.injected & EDGES != RISING {
+        if self.control & START_INJECTED == 0 || !self.is_triggered() {
             return;
         }
         match self.conversion {
@@ -179,9 +208,13 @@ impl Adc {
         self.begin(Group::Injected, now, clock);
     }
 
+    fn is_triggered(&self) -> bool {
+        self.registers.get(JSQR) & EDGES == RISING
+    }
+
     /// The level of its interrupt line.
     pub fn line(&self) -> bool {
-        self.flags & self.interrupts != 0
+        self.registers.has(IER, self.flags)
     }
 
     /// Its flags.
@@ -197,23 +230,15 @@ impl Adc {
     /// Reads.
     pub fn read(&mut self, offset: u32) -> Access<u32> {
         match offset {
-            0x00 => Ok(self.flags),
-            0x04 => Ok(self.interrupts),
-            0x08 => Ok(self.control),
-            0x0C => Ok(self.config),
-            0x10 => Ok(self.oversampling),
-            0x14 | 0x18 => Ok(self.sampling[(offset as usize - 0x14) / 4]),
-            0x30 => Ok(self.regular),
-            0x40 => {
+            ISR => Ok(self.flags),
+            CR => Ok(self.control),
+            DR => {
                 self.flags &= !REGULAR_CONVERTED;
                 Ok(self.data)
             }
-            0x4C => Ok(self.injected),
-            0x80 => Ok(self.injected_data),
-            // No channel is differential.
-            0xB0 => Ok(0),
-            0xB4 if self.is_calibrated => Ok(FACTOR),
-            _ => Err(Unmodelled::Register),
+            JDR1 => Ok(self.injected_data),
+            CALFACT if self.is_calibrated => Ok(FACTOR),
+            _ => self.registers.read(offset),
         }
     }
 
@@ -221,51 +246,21 @@ impl Adc {
     pub fn write(&mut self, offset: u32, value: u32, now: u64, clock: AdcClock) -> Access<()> {
         match offset {
             // Bits are cleared by writing one.
-            0x00 => {
+            ISR => {
                 only(value, FLAGS | NEVER)?;
                 self.flags &= !value;
+                Ok(())
             }
-            0x04 => {
-                only(value, FLAGS)?;
-                self.interrupts = value;
+            CR => self.set_control(value, now, clock),
+            _ => {
+                self.registers.check(offset, value, 0)?;
+                if self.control & held_by(offset) != 0 {
+                    return Err(Unmodelled::Bits(value));
+                }
+                self.registers.set(offset, value);
+                Ok(())
             }
-            0x08 => self.set_control(value, now, clock)?,
-            0x0C => {
-                only(value, OVERWRITES | NO_QUEUE)?;
-                self.set_while(START_REGULAR | START_INJECTED, value)?;
-                self.config = value;
-            }
-            0x10 => {
-                only(value, OVERSAMPLING)?;
-                self.set_while(START_REGULAR | START_INJECTED, value)?;
-                self.oversampling = value;
-            }
-            0x14 | 0x18 => {
-                only(value, 0x3FFF_FFFF)?;
-                self.set_while(START_REGULAR | START_INJECTED, value)?;
-                self.sampling[(offset as usize - 0x14) / 4] = value;
-            }
-            0x30 => {
-                // One channel.
-                only(value, CHANNEL << 6)?;
-                self.set_while(START_REGULAR, value)?;
-                self.regular = value;
-            }
-            0x4C => {
-                // One channel, and TIM1's trigger output.
-                only(value, RISING | CHANNEL << 9)?;
-                self.set_while(START_INJECTED, value)?;
-                self.injected = value;
-            }
-            0xB0 => only(value, 0)?,
-            _ => return Err(Unmodelled::Register),
         }
-        Ok(())
-    }
-
-    /// A running conversion must not be changed.
-    fn set_while(&self, busy: u32, value: u32) -> Access<()> {
-        if self.control & busy == 0 { Ok(()) } else { Err(Unmodelled::Bits(value)) }
     }
 
     /// CR: bits are set by the program, and most of them cleared by the converter.
@@ -299,7 +294,7 @@ impl Adc {
         }
         if new & START_INJECTED != 0 {
             // Only contexts that do not queue, and that a trigger starts.
-            if self.config & NO_QUEUE == 0 || self.injected & EDGES != RISING {
+            if !self.registers.has(CFGR, NO_QUEUE) || !self.is_triggered() {
                 return Err(Unmodelled::Bits(START_INJECTED));
             }
             self.control |= START_INJECTED;
@@ -368,8 +363,8 @@ impl Adc {
 
     fn channel(&self, group: Group) -> u32 {
         match group {
-            Group::Regular => self.regular >> 6 & CHANNEL,
-            Group::Injected => self.injected >> 9 & CHANNEL,
+            Group::Regular => self.registers.get(SQR1) >> 6 & CHANNEL,
+            Group::Injected => self.registers.get(JSQR) >> 9 & CHANNEL,
         }
     }
 
@@ -378,17 +373,19 @@ impl Adc {
             Group::Regular => OVERSAMPLES_REGULAR,
             Group::Injected => OVERSAMPLES_INJECTED,
         };
-        self.oversampling & bit != 0
+        self.registers.has(CFGR2, bit)
     }
 
     fn begin(&mut self, group: Group, now: u64, clock: AdcClock) {
-        let ratio = if self.oversamples(group) { 2 << (self.oversampling >> 2 & 0b111) } else { 1 };
+        let ratio =
+            if self.oversamples(group) { 2 << (self.registers.get(CFGR2) >> 2 & 0b111) } else { 1 };
         self.begin_next(group, ratio, 0, now, clock);
     }
 
     fn begin_next(&mut self, group: Group, left: u32, sum: u32, now: u64, clock: AdcClock) {
         let channel = self.channel(group);
-        let code = self.sampling[channel as usize / 10] >> (3 * (channel % 10)) & 0b111;
+        let times = self.registers.get(if channel < 10 { SMPR1 } else { SMPR2 });
+        let code = times >> (3 * (channel % 10)) & 0b111;
         let (sampling, divider) = (SAMPLING[code as usize], clock.divider.unwrap_or(1));
         let samples = now + (sampling * divider).div_ceil(2);
         let ends = now + ((sampling + CONVERSION) * divider).div_ceil(2);
@@ -403,7 +400,7 @@ impl Adc {
             self.begin_next(group, left, sum, ends, clock);
             return;
         }
-        let shift = if self.oversamples(group) { self.oversampling >> 5 & 0xF } else { 0 };
+        let shift = if self.oversamples(group) { self.registers.get(CFGR2) >> 5 & 0xF } else { 0 };
         let result = sum >> shift & 0xFFFF;
         match group {
             Group::Injected => {
@@ -422,7 +419,7 @@ impl Adc {
         if is_unread {
             self.flags |= OVERRUN;
         }
-        if !is_unread || self.config & OVERWRITES != 0 {
+        if !is_unread || self.registers.has(CFGR, OVERWRITES) {
             self.data = result;
         }
         self.flags |= REGULAR_CONVERTED | REGULAR_ENDED;
@@ -470,16 +467,6 @@ impl AdcCommon {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const ISR: u32 = 0x00;
-    const IER: u32 = 0x04;
-    const CR: u32 = 0x08;
-    const CFGR2: u32 = 0x10;
-    const SMPR1: u32 = 0x14;
-    const SQR1: u32 = 0x30;
-    const DR: u32 = 0x40;
-    const JSQR: u32 = 0x4C;
-    const JDR1: u32 = 0x80;
 
     const CLOCK: AdcClock = AdcClock { core: 170_000_000, divider: Some(4) };
     /// The time at which it is ready.

@@ -1,7 +1,17 @@
 //! A basic timer, TIM6 or TIM7 (RM0440, 32.4; RM0090, 20.4): counts up to its reload value, and its update
 //! is an interrupt and a trigger.
 
+use super::registers::{Registers, Table};
 use super::{Access, Unmodelled, only};
+
+const CR1: u32 = 0x00;
+const CR2: u32 = 0x04;
+const DIER: u32 = 0x0C;
+const SR: u32 = 0x10;
+const EGR: u32 = 0x14;
+const CNT: u32 = 0x24;
+const PSC: u32 = 0x28;
+const ARR: u32 = 0x2C;
 
 /// CR1: counting.
 const ENABLE: u32 = 1;
@@ -12,15 +22,19 @@ const TRIGGER_UPDATE: u32 = 0b010 << 4;
 /// The one bit of DIER, SR and EGR.
 const UPDATE: u32 = 1;
 
+const REGISTERS: Table = &[
+    (CR1, 0, ENABLE | ONLY_OVERFLOW),
+    (CR2, 0, TRIGGER_UPDATE),
+    (DIER, 0, UPDATE),
+    (SR, 0, 0),
+    (PSC, 0, 0),
+    (ARR, 0xFFFF, 0),
+];
+
 /// The timer.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct BasicTimer {
-    control: u32,
-    trigger: u32,
-    interrupt: u32,
-    flag: u32,
-    prescaler: u32,
-    reload: u32,
+    registers: Registers,
     /// The active prescaler, which takes effect at an update.
     counting: u32,
     /// The starting count; unused while it counts.
@@ -32,7 +46,7 @@ pub struct BasicTimer {
 impl BasicTimer {
     /// The timer after reset.
     pub fn new() -> Self {
-        Self { reload: 0xFFFF, ..Self::default() }
+        Self { registers: Registers::new(REGISTERS), counting: 0, count: 0, overflow: None }
     }
 
     /// The time of its next overflow.
@@ -45,20 +59,20 @@ impl BasicTimer {
         let Some(overflow) = self.overflow.filter(|&overflow| overflow <= now) else {
             return false;
         };
-        self.counting = self.prescaler;
-        self.flag = UPDATE;
+        self.counting = self.registers.get(PSC);
+        self.registers.set(SR, UPDATE);
         self.overflow = Some(overflow + self.period(divider));
         true
     }
 
     /// The level of its interrupt line.
     pub fn line(&self) -> bool {
-        self.flag & self.interrupt != 0
+        self.registers.has(SR, self.registers.get(DIER))
     }
 
     /// Whether its updates are triggers.
     pub fn triggers(&self) -> bool {
-        self.trigger == TRIGGER_UPDATE
+        self.registers.get(CR2) == TRIGGER_UPDATE
     }
 
     /// Whether it counts.
@@ -68,62 +82,42 @@ impl BasicTimer {
 
     /// Core clocks in its period.
     pub fn period(&self, divider: u64) -> u64 {
-        (u64::from(self.counting) + 1) * (u64::from(self.reload) + 1) * divider
+        (u64::from(self.counting) + 1) * (u64::from(self.registers.get(ARR)) + 1) * divider
     }
 
     /// Reads.
     pub fn read(&self, offset: u32) -> Access<u32> {
-        match offset {
-            0x00 => Ok(self.control),
-            0x04 => Ok(self.trigger),
-            0x0C => Ok(self.interrupt),
-            0x10 => Ok(self.flag),
-            0x28 => Ok(self.prescaler),
-            0x2C => Ok(self.reload),
-            _ => Err(Unmodelled::Register),
-        }
+        self.registers.read(offset)
     }
 
     /// Writes.
     pub fn write(&mut self, offset: u32, value: u32, now: u64, divider: u64) -> Access<()> {
         match offset {
-            0x00 => {
-                only(value, ENABLE | ONLY_OVERFLOW)?;
-                self.control = value;
-                let on = value & ENABLE != 0;
-                if on != self.runs() {
-                    let passed = u64::from(self.count) * (u64::from(self.counting) + 1) * divider;
-                    self.overflow = on.then(|| (now + self.period(divider)).saturating_sub(passed));
-                }
-            }
-            0x04 => {
-                only(value, TRIGGER_UPDATE)?;
-                self.trigger = value;
-            }
-            0x0C => {
-                only(value, UPDATE)?;
-                self.interrupt = value;
-            }
             // Bits are cleared by writing zero.
-            0x10 => self.flag &= value,
-            0x14 => {
+            SR => self.registers.change(SR, !value, 0),
+            EGR => {
                 only(value, UPDATE)?;
                 self.generate(now, divider);
             }
-            0x24 if !self.runs() && value <= self.reload => self.count = value,
-            0x28 => self.prescaler = value & 0xFFFF,
-            0x2C => self.reload = value & 0xFFFF,
-            _ => return Err(Unmodelled::Register),
+            CNT if !self.runs() && value <= self.registers.get(ARR) => self.count = value,
+            CNT => return Err(Unmodelled::Register),
+            PSC | ARR => self.registers.set(offset, value & 0xFFFF),
+            _ => self.registers.write(offset, value)?,
+        }
+        let on = self.registers.has(CR1, ENABLE);
+        if on != self.runs() {
+            let passed = u64::from(self.count) * (u64::from(self.counting) + 1) * divider;
+            self.overflow = on.then(|| (now + self.period(divider)).saturating_sub(passed));
         }
         Ok(())
     }
 
     /// An update by the program: activates the prescaler and restarts from zero.
     fn generate(&mut self, now: u64, divider: u64) {
-        self.counting = self.prescaler;
+        self.counting = self.registers.get(PSC);
         self.count = 0;
-        if self.control & ONLY_OVERFLOW == 0 {
-            self.flag = UPDATE;
+        if !self.registers.has(CR1, ONLY_OVERFLOW) {
+            self.registers.set(SR, UPDATE);
         }
         if self.runs() {
             self.overflow = Some(now + self.period(divider));
@@ -134,15 +128,6 @@ impl BasicTimer {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Registers, as the program writes them.
-    const CR1: u32 = 0x00;
-    const DIER: u32 = 0x0C;
-    const SR: u32 = 0x10;
-    const EGR: u32 = 0x14;
-    const CNT: u32 = 0x24;
-    const PSC: u32 = 0x28;
-    const ARR: u32 = 0x2C;
 
     /// Prepared for a prescaler of 3 and a period of 1000, and started at 5000.
     fn started(divider: u64) -> BasicTimer {

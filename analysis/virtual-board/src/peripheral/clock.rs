@@ -1,14 +1,14 @@
 //! Reset and clock control: oscillators that are ready as soon as they are switched on, unless a
 //! test keeps one from starting; the clock that follows from it; and who is clocked and reset.
 
-use super::inert_registers::InertRegisters;
+use super::registers::{Registers, Table};
 use super::{Access, Unmodelled};
 
 /// What differs between the families.
 #[derive(Debug)]
 pub struct Layout {
     /// Registers: place, value out of reset, bits that may be written.
-    pub registers: &'static [(u32, u32, u32)],
+    pub registers: Table,
     /// Place of CFGR, which chooses the system's clock.
     pub choice: u32,
     /// The control and status register, with the causes of resets.
@@ -89,7 +89,7 @@ pub(super) const LOW_POWER: u32 = PIN | 1 << 31;
 #[derive(Clone, Debug)]
 pub struct Clock {
     layout: &'static Layout,
-    registers: InertRegisters,
+    registers: Registers,
     crystal: u64,
     /// Whether the crystal runs when it is switched on.
     pub crystal_runs: bool,
@@ -98,7 +98,7 @@ pub struct Clock {
 impl Clock {
     /// Out of reset, with a crystal of so many Hz.
     pub fn new(layout: &'static Layout, crystal: u64, cause: Cause) -> Self {
-        let registers = InertRegisters::new(layout.registers);
+        let registers = Registers::new(layout.registers);
         let mut clock = Self { layout, registers, crystal, crystal_runs: true };
         clock.remember((layout.flags)(cause));
         clock

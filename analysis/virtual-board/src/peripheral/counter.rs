@@ -1,7 +1,21 @@
 //! A general-purpose timer (RM0440, 31.5; RM0090, 18.4) in the two ways that the programs use one:
 //! as a clock that counts up, and as the counter of a quadrature encoder.
 
+use super::registers::{Registers, Table};
 use super::{Access, Unmodelled, only};
+
+const CR1: u32 = 0x00;
+const SMCR: u32 = 0x08;
+const SR: u32 = 0x10;
+const EGR: u32 = 0x14;
+const CCMR1: u32 = 0x18;
+const CCMR2: u32 = 0x1C;
+const CCER: u32 = 0x20;
+const CNT: u32 = 0x24;
+const PSC: u32 = 0x28;
+const ARR: u32 = 0x2C;
+const CCR3: u32 = 0x3C;
+const CCR4: u32 = 0x40;
 
 /// CR1: counting.
 const ENABLE: u32 = 1;
@@ -22,23 +36,27 @@ const CAPTURES_INDEX: u32 = 1 << 8;
 /// SR: channel 3 has captured, and its capture has not been read.
 const INDEX_CAPTURED: u32 = 1 << 3;
 
+const REGISTERS: Table = &[
+    (CR1, 0, ENABLE),
+    (SMCR, 0, BOTH_CHANNELS),
+    (SR, 0, 0),
+    (CCMR1, 0, OWN_INPUTS | FILTERS),
+    (CCMR2, 0, TRIGGERED_CAPTURE | INDEX_CAPTURE | INDEX_FILTER),
+    (CCER, 0, CHANNELS | CAPTURES | CAPTURES_INDEX),
+    (PSC, 0, 0),
+    (ARR, 0, 0),
+];
+
 /// The timer.
 #[derive(Clone, Debug)]
 pub struct Counter {
     /// Its largest value: all bits that it has.
     mask: u32,
-    control: u32,
-    slave: u32,
-    inputs: u32,
-    channels: u32,
-    capture_mode: u32,
+    registers: Registers,
     /// What channel 4 has captured.
     captured: u32,
-    /// What channel 3 has, and SR.
+    /// What channel 3 has.
     index: u32,
-    status: u32,
-    prescaler: u32,
-    reload: u32,
     /// What it holds, at the time when it held it.
     value: u32,
     at: u64,
@@ -47,41 +65,35 @@ pub struct Counter {
 impl Counter {
     /// A counter of so many bits, out of reset.
     pub fn new(bits: u32) -> Self {
-        let mask = u32::MAX >> (32 - bits);
-        Self {
-            mask,
-            control: 0,
-            slave: 0,
-            inputs: 0,
-            channels: 0,
-            capture_mode: 0,
-            captured: 0,
-            index: 0,
-            status: 0,
-            prescaler: 0,
-            reload: mask,
-            value: 0,
-            at: 0,
-        }
+        let (mask, mut registers) = (u32::MAX >> (32 - bits), Registers::new(REGISTERS));
+        registers.set(ARR, mask);
+        Self { mask, registers, captured: 0, index: 0, value: 0, at: 0 }
     }
 
     /// Whether it counts an encoder, as the program has set it up.
     pub fn counts_encoder(&self) -> bool {
-        self.control & ENABLE != 0
-            && self.slave == BOTH_CHANNELS
-            && self.inputs & OWN_INPUTS == OWN_INPUTS
-            && self.channels & CHANNELS == CHANNELS
+        let has_all = |register, bits| self.registers.get(register) & bits == bits;
+        let is_set_up = has_all(CCMR1, OWN_INPUTS) && has_all(CCER, CHANNELS);
+        self.runs() && self.follows_encoder() && is_set_up
+    }
+
+    fn runs(&self) -> bool {
+        self.registers.has(CR1, ENABLE)
+    }
+
+    fn follows_encoder(&self) -> bool {
+        self.registers.get(SMCR) == BOTH_CHANNELS
     }
 
     /// The filters of both inputs, ICxF of CCMR1.
     pub fn filters(&self) -> [u32; 2] {
-        [self.inputs >> 4 & 0xF, self.inputs >> 12 & 0xF]
+        [4, 12].map(|shift| self.registers.get(CCMR1) >> shift & 0xF)
     }
 
     /// Edges from an encoder: so many counts up.
     pub fn turn(&mut self, counts: i32) {
         if self.counts_encoder() {
-            let modulus = i64::from(self.reload) + 1;
+            let modulus = i64::from(self.registers.get(ARR)) + 1;
             let sum = i64::from(self.value) + i64::from(counts);
             self.value = sum.rem_euclid(modulus) as u32;
         }
@@ -89,60 +101,54 @@ impl Counter {
 
     /// TIM1's trigger output rises.
     pub fn capture(&mut self) {
-        if self.captures() && self.control & ENABLE != 0 {
+        if self.captures() && self.runs() {
             self.captured = self.value;
         }
     }
 
     fn captures(&self) -> bool {
-        self.capture_mode & TRIGGERED_CAPTURE == TRIGGERED_CAPTURE && self.channels & CAPTURES != 0
+        let mode = self.registers.get(CCMR2) & TRIGGERED_CAPTURE;
+        mode == TRIGGERED_CAPTURE && self.registers.has(CCER, CAPTURES)
     }
 
     /// The encoder's index rises.
     pub fn index(&mut self) {
-        if self.captures_index() && self.control & ENABLE != 0 {
+        if self.captures_index() && self.runs() {
             self.index = self.value;
-            self.status |= INDEX_CAPTURED;
+            self.registers.set(SR, INDEX_CAPTURED);
         }
     }
 
     fn captures_index(&self) -> bool {
-        self.capture_mode & INDEX_CAPTURE != 0 && self.channels & CAPTURES_INDEX != 0
+        self.registers.has(CCMR2, INDEX_CAPTURE) && self.registers.has(CCER, CAPTURES_INDEX)
     }
 
     /// The filter of the index, IC3F of CCMR2.
     pub fn index_filter(&self) -> u32 {
-        self.capture_mode >> 4 & 0xF
+        self.registers.get(CCMR2) >> 4 & 0xF
     }
 
     /// What it holds.
     pub fn value(&self, now: u64, divider: u64) -> u32 {
-        if self.control & ENABLE == 0 || self.slave == BOTH_CHANNELS {
+        if !self.runs() || self.follows_encoder() {
             return self.value;
         }
-        let counts = (now - self.at) / ((u64::from(self.prescaler) + 1) * divider);
-        ((u64::from(self.value) + counts) % (u64::from(self.reload) + 1)) as u32
+        let [prescaler, reload] = [PSC, ARR].map(|offset| u64::from(self.registers.get(offset)));
+        let counts = (now - self.at) / ((prescaler + 1) * divider);
+        ((u64::from(self.value) + counts) % (reload + 1)) as u32
     }
 
     /// Reads.
     pub fn read(&mut self, offset: u32, now: u64, divider: u64) -> Access<u32> {
         match offset {
-            0x00 => Ok(self.control),
-            0x08 => Ok(self.slave),
-            0x10 => Ok(self.status),
-            0x18 => Ok(self.inputs),
-            0x1C => Ok(self.capture_mode),
-            0x20 => Ok(self.channels),
-            0x24 => Ok(self.value(now, divider)),
-            0x28 => Ok(self.prescaler),
-            0x2C => Ok(self.reload),
+            CNT => Ok(self.value(now, divider)),
             // The read acknowledges.
-            0x3C if self.captures_index() => {
-                self.status &= !INDEX_CAPTURED;
+            CCR3 if self.captures_index() => {
+                self.registers.set(SR, 0);
                 Ok(self.index)
             }
-            0x40 if self.captures() => Ok(self.captured),
-            _ => Err(Unmodelled::Register),
+            CCR4 if self.captures() => Ok(self.captured),
+            _ => self.registers.read(offset),
         }
     }
 
@@ -151,41 +157,25 @@ impl Counter {
         // What it has counted so far was counted as it was set up so far.
         (self.value, self.at) = (self.value(now, divider), now);
         match offset {
-            0x00 => {
-                only(value, ENABLE)?;
-                self.control = value;
-            }
-            0x08 => {
-                only(value, BOTH_CHANNELS)?;
-                self.slave = value;
-            }
             // Ones leave flags as they are.
-            0x10 => self.status &= value,
+            SR => self.registers.change(SR, !value, 0),
             // An update by the program: from zero, with the prescaler that was written.
-            0x14 => {
+            EGR => {
                 only(value, 1)?;
                 self.value = 0;
             }
-            0x18 => {
-                only(value, OWN_INPUTS | FILTERS)?;
-                self.inputs = value;
-            }
-            0x1C => {
-                only(value, TRIGGERED_CAPTURE | INDEX_CAPTURE | INDEX_FILTER)?;
+            CNT => self.value = value & self.mask,
+            PSC => self.registers.set(PSC, value & 0xFFFF),
+            ARR => self.registers.set(ARR, value & self.mask),
+            _ => {
+                self.registers.check(offset, value, 0)?;
                 // Channel 4 captures from no input.
-                if !matches!(value & TRIGGERED_CAPTURE, 0 | TRIGGERED_CAPTURE) {
+                let is_own_input = !matches!(value & TRIGGERED_CAPTURE, 0 | TRIGGERED_CAPTURE);
+                if offset == CCMR2 && is_own_input {
                     return Err(Unmodelled::Bits(value));
                 }
-                self.capture_mode = value;
+                self.registers.set(offset, value);
             }
-            0x20 => {
-                only(value, CHANNELS | CAPTURES | CAPTURES_INDEX)?;
-                self.channels = value;
-            }
-            0x24 => self.value = value & self.mask,
-            0x28 => self.prescaler = value & 0xFFFF,
-            0x2C => self.reload = value & self.mask,
-            _ => return Err(Unmodelled::Register),
         }
         Ok(())
     }
@@ -195,56 +185,54 @@ impl Counter {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_trigger_captures_the_count() {
+    /// The counter of an encoder, with this mode and enable of its captures.
+    fn capturing(mode: u32, enable: u32) -> Counter {
         let mut counter = Counter::new(16);
         for (register, value) in [
-            (0x08, BOTH_CHANNELS),
-            (0x18, OWN_INPUTS),
-            (0x1C, TRIGGERED_CAPTURE),
-            (0x20, CHANNELS | CAPTURES),
-            (0x00, ENABLE),
+            (SMCR, BOTH_CHANNELS),
+            (CCMR1, OWN_INPUTS),
+            (CCMR2, mode),
+            (CCER, CHANNELS | enable),
+            (CR1, ENABLE),
         ] {
             counter.write(register, value, 0, 1).unwrap();
         }
+        counter
+    }
+
+    #[test]
+    fn a_trigger_captures_the_count() {
+        let mut counter = capturing(TRIGGERED_CAPTURE, CAPTURES);
         counter.turn(-3);
-        assert_eq!(counter.read(0x40, 0, 1), Ok(0));
+        assert_eq!(counter.read(CCR4, 0, 1), Ok(0));
         counter.capture();
         counter.turn(1);
-        assert_eq!(counter.read(0x40, 0, 1), Ok(0xFFFD));
-        assert_eq!(counter.read(0x24, 0, 1), Ok(0xFFFE));
+        assert_eq!(counter.read(CCR4, 0, 1), Ok(0xFFFD));
+        assert_eq!(counter.read(CNT, 0, 1), Ok(0xFFFE));
     }
 
     #[test]
     fn an_index_captures_the_count_until_it_is_read() {
-        let mut counter = Counter::new(16);
-        for (register, value) in [
-            (0x08, BOTH_CHANNELS),
-            (0x18, OWN_INPUTS),
-            (0x1C, TRIGGERED_CAPTURE | INDEX_CAPTURE | 0x30),
-            (0x20, CHANNELS | CAPTURES | CAPTURES_INDEX),
-            (0x00, ENABLE),
-        ] {
-            counter.write(register, value, 0, 1).unwrap();
-        }
-        assert_eq!((counter.index_filter(), counter.read(0x10, 0, 1)), (3, Ok(0)));
+        let mode = TRIGGERED_CAPTURE | INDEX_CAPTURE | 0x30;
+        let mut counter = capturing(mode, CAPTURES | CAPTURES_INDEX);
+        assert_eq!((counter.index_filter(), counter.read(SR, 0, 1)), (3, Ok(0)));
         counter.turn(7);
         counter.index();
         counter.turn(1);
-        assert_eq!(counter.read(0x10, 0, 1), Ok(INDEX_CAPTURED));
-        assert_eq!(counter.read(0x40, 0, 1), Ok(0), "the other channel");
-        assert_eq!(counter.read(0x3C, 0, 1), Ok(7));
-        assert_eq!(counter.read(0x10, 0, 1), Ok(0));
+        assert_eq!(counter.read(SR, 0, 1), Ok(INDEX_CAPTURED));
+        assert_eq!(counter.read(CCR4, 0, 1), Ok(0), "the other channel");
+        assert_eq!(counter.read(CCR3, 0, 1), Ok(7));
+        assert_eq!(counter.read(SR, 0, 1), Ok(0));
         counter.index();
-        counter.write(0x10, !INDEX_CAPTURED, 0, 1).unwrap();
-        assert_eq!(counter.read(0x10, 0, 1), Ok(0));
+        counter.write(SR, !INDEX_CAPTURED, 0, 1).unwrap();
+        assert_eq!(counter.read(SR, 0, 1), Ok(0));
     }
 
     #[test]
     fn a_channel_that_captures_nothing_is_not_read() {
         let mut counter = Counter::new(16);
-        assert!(counter.read(0x3C, 0, 1).is_err());
-        assert!(counter.read(0x40, 0, 1).is_err());
-        assert!(counter.write(0x1C, 0b01 << 8, 0, 1).is_err(), "its own input");
+        assert!(counter.read(CCR3, 0, 1).is_err());
+        assert!(counter.read(CCR4, 0, 1).is_err());
+        assert!(counter.write(CCMR2, 0b01 << 8, 0, 1).is_err(), "its own input");
     }
 }

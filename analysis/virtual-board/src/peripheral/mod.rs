@@ -9,24 +9,25 @@ pub mod clock_g4;
 pub mod comparators;
 pub mod counter;
 pub mod dac;
-pub mod flash;
-pub mod inert_registers;
 pub mod op_amps;
 pub mod pins;
-pub mod power;
 pub mod pwm_timer;
+pub mod registers;
 pub mod serial;
 pub mod threshold_dac;
 pub mod watchdog;
 
 /// Why an access is not modelled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unmodelled {
     /// The register is not.
+    #[error("that register is not modelled")]
     Register,
     /// These bits of what was written are not.
+    #[error("the bits {0:#010x} are not modelled in that register")]
     Bits(u32),
     /// The supply of a core whose clock rises so far at once is not.
+    #[error("the core's clock rises too far at once")]
     ClockStep,
 }
 

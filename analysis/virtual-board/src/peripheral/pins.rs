@@ -18,9 +18,10 @@ pub struct Pins {
 }
 
 /// What a pin is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Level {
     /// Nothing drives it.
+    #[default]
     Floating,
     /// 0 V.
     Low,

@@ -2,8 +2,27 @@
 //! at the core's clock, three channels compare, each drives the two switches of a leg with a dead time
 //! between, and a break takes all six away within the period.
 
+use super::pins::Level;
+use super::registers::{Registers, Table};
 use super::{Access, Unmodelled, only};
-use crate::peripheral::pins::Level;
+
+const CR1: u32 = 0x00;
+const CR2: u32 = 0x04;
+const DIER: u32 = 0x0C;
+const SR: u32 = 0x10;
+const EGR: u32 = 0x14;
+const CCMR1: u32 = 0x18;
+const CCMR2: u32 = 0x1C;
+const CCER: u32 = 0x20;
+const CNT: u32 = 0x24;
+const PSC: u32 = 0x28;
+const ARR: u32 = 0x2C;
+const RCR: u32 = 0x30;
+const CCR1: u32 = 0x34;
+const CCR2: u32 = 0x38;
+const CCR3: u32 = 0x3C;
+const BDTR: u32 = 0x44;
+const AF1: u32 = 0x60;
 
 /// CR1: counting, updates by an overflow only set the flag, the direction, centre-aligned mode 1, and a
 /// reload value that waits for an update.
@@ -32,8 +51,10 @@ const DEAD_TIME: u32 = 0xFF;
 const LOCK: u32 = 0b11 << 8;
 const OFF_WHILE_IDLE: u32 = 1 << 10;
 const OFF_WHILE_RUNNING: u32 = 1 << 11;
+const OFF_MODES: u32 = OFF_WHILE_IDLE | OFF_WHILE_RUNNING;
 const BREAK_ENABLE: u32 = 1 << 12;
 const BREAK_HIGH: u32 = 1 << 13;
+const BREAKS: u32 = BREAK_ENABLE | BREAK_HIGH;
 /// BDTR: how long a break's input has to stay, of which only numbers of the core's clocks are modelled.
 const FILTER: u32 = 0b11 << 16;
 const MAIN_OUTPUT: u32 = 1 << 15;
@@ -43,6 +64,28 @@ const BREAK_PIN: u32 = 1;
 const COMPARATORS: [(usize, u32); 3] = [(0, 1), (1, 2), (3, 4)];
 const COMPARATOR_BITS: u32 = (1 << 1) | (1 << 2) | (1 << 4);
 const POLARITY_BITS: u32 = COMPARATOR_BITS << 9;
+
+const CHANNEL: u32 = CHANNEL_PRELOADED | MODE;
+const REGISTERS: Table = &[
+    (CR1, 0, ENABLE | ONLY_OVERFLOW | CENTRE_ALIGNED | PRELOADED),
+    (CR2, 0, TRIGGER_UPDATE),
+    (DIER, 0, UPDATE | BREAK),
+    (SR, 0, 0),
+    (CCMR1, 0, CHANNEL | CHANNEL << 8),
+    // Channel 3 alone.
+    (CCMR2, 0, CHANNEL),
+    (CCER, 0, BOTH_OUTPUTS | BOTH_OUTPUTS << 4 | BOTH_OUTPUTS << 8),
+    // Not divided.
+    (PSC, 0, 0),
+    (ARR, 0xFFFF, 0xFFFF),
+    (RCR, 0, 0xFFFF),
+    (CCR1, 0, 0xFFFF),
+    (CCR2, 0, 0xFFFF),
+    (CCR3, 0, 0xFFFF),
+    (BDTR, 0, DEAD_TIME | LOCK | OFF_MODES | BREAKS | FILTER | MAIN_OUTPUT),
+    (AF1, BREAK_PIN, BREAK_PIN | COMPARATOR_BITS | POLARITY_BITS),
+];
+const COMPARE: [u32; 3] = [CCR1, CCR2, CCR3];
 
 /// The two inputs of the gate driver of a leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,23 +133,13 @@ struct Reference {
 /// The timer.
 #[derive(Clone, Debug)]
 pub struct PwmTimer {
-    control: u32,
-    trigger: u32,
-    interrupts: u32,
-    flags: u32,
-    modes: [u32; 2],
-    channels: u32,
-    reload: u32,
+    registers: Registers,
     /// The reload value that it counts with.
     top: u32,
-    repetition: u32,
     /// Turns of the counter that are still to come before an update.
     left: u32,
-    compare: [u32; 3],
     /// The compare values that are compared.
     compared: [u32; 3],
-    break_control: u32,
-    break_inputs: u32,
     count: Count,
     references: [Reference; 3],
 }
@@ -114,20 +147,10 @@ pub struct PwmTimer {
 impl Default for PwmTimer {
     fn default() -> Self {
         Self {
-            control: 0,
-            trigger: 0,
-            interrupts: 0,
-            flags: 0,
-            modes: [0; 2],
-            channels: 0,
-            reload: 0xFFFF,
+            registers: Registers::new(REGISTERS),
             top: 0xFFFF,
-            repetition: 0,
             left: 0,
-            compare: [0; 3],
             compared: [0; 3],
-            break_control: 0,
-            break_inputs: BREAK_PIN,
             count: Count::Stopped(0),
             references: [Reference::default(); 3],
         }
@@ -198,25 +221,25 @@ impl PwmTimer {
 
     /// Whether the outputs are enabled as a whole.
     pub fn is_on(&self) -> bool {
-        self.break_control & MAIN_OUTPUT != 0
+        self.registers.has(BDTR, MAIN_OUTPUT)
     }
 
     /// Whether comparators' outputs of these levels are a break, once they have lasted for
     /// [`Self::filter`].
     pub fn is_broken_by(&self, levels: [bool; 4]) -> bool {
-        let is_high = self.break_control & BREAK_HIGH != 0;
-        let pin_breaks = self.break_inputs & BREAK_PIN != 0 && !is_high;
+        let (registers, is_high) = (&self.registers, self.registers.has(BDTR, BREAK_HIGH));
+        let pin_breaks = registers.has(AF1, BREAK_PIN) && !is_high;
         let breaks = |(comparator, bit): (usize, u32)| {
-            let is_inverted = self.break_inputs & (1 << (bit + 9)) != 0;
-            self.break_inputs & (1 << bit) != 0 && (levels[comparator] ^ is_inverted) == is_high
+            let is_inverted = registers.has(AF1, 1 << (bit + 9));
+            registers.has(AF1, 1 << bit) && (levels[comparator] ^ is_inverted) == is_high
         };
         let is_asked = pin_breaks || COMPARATORS.into_iter().any(breaks);
-        self.break_control & BREAK_ENABLE != 0 && is_asked
+        registers.has(BDTR, BREAK_ENABLE) && is_asked
     }
 
     /// Core clocks for which a break's input has to stay.
     pub fn filter(&self) -> u64 {
-        match (self.break_control & FILTER) >> 16 {
+        match (self.registers.get(BDTR) & FILTER) >> 16 {
             0 => 0,
             code => 1 << code,
         }
@@ -224,30 +247,32 @@ impl PwmTimer {
 
     /// A break: the outputs are off from here on.
     pub fn break_off(&mut self, breaker: Breaker) {
-        if self.break_control & BREAK_ENABLE == 0 {
+        if !self.registers.has(BDTR, BREAK_ENABLE) {
             return;
         }
-        self.break_control &= !MAIN_OUTPUT;
-        self.flags |= match breaker {
+        self.registers.change(BDTR, MAIN_OUTPUT, 0);
+        let flag = match breaker {
             Breaker::Input => BREAK,
             Breaker::System => SYSTEM_BREAK,
         };
+        self.registers.change(SR, 0, flag);
     }
 
     /// Levels of its interrupt lines: of breaks, of updates.
     pub fn lines(&self) -> [bool; 2] {
-        let is_break = self.flags & (BREAK | SYSTEM_BREAK) != 0 && self.interrupts & BREAK != 0;
-        [is_break, self.flags & self.interrupts & UPDATE != 0]
+        let is_asked =
+            |enable, flags| self.registers.has(DIER, enable) && self.registers.has(SR, flags);
+        [is_asked(BREAK, BREAK | SYSTEM_BREAK), is_asked(UPDATE, UPDATE)]
     }
 
     /// What it drives the gates of a leg with.
     pub fn outputs(&self, leg: usize, now: u64) -> Outputs {
         let both = |level| Outputs { high: level, low: level };
-        if self.channels >> (4 * leg) & BOTH_OUTPUTS == 0 {
+        if !self.registers.has(CCER, BOTH_OUTPUTS << (4 * leg)) {
             return both(Level::Floating);
         }
         if !self.is_on() {
-            let is_driven = self.break_control & OFF_WHILE_IDLE != 0;
+            let is_driven = self.registers.has(BDTR, OFF_WHILE_IDLE);
             return both(if is_driven { Level::Low } else { Level::Floating });
         }
         let Reference { active, since } = self.references[leg];
@@ -258,7 +283,7 @@ impl PwmTimer {
 
     /// Core clocks between one switch of a leg and the other.
     pub fn dead_time(&self) -> u64 {
-        let code = u64::from(self.break_control & DEAD_TIME);
+        let code = u64::from(self.registers.get(BDTR) & DEAD_TIME);
         match code >> 5 {
             0..=3 => code,
             4 | 5 => (64 + (code & 0x3F)) * 2,
@@ -270,20 +295,9 @@ impl PwmTimer {
     /// Reads.
     pub fn read(&self, offset: u32, now: u64) -> Access<u32> {
         match offset {
-            0x00 => Ok(self.control | self.direction(now)),
-            0x04 => Ok(self.trigger),
-            0x0C => Ok(self.interrupts),
-            0x10 => Ok(self.flags),
-            0x18 | 0x1C => Ok(self.modes[(offset as usize - 0x18) / 4]),
-            0x20 => Ok(self.channels),
-            0x24 => Ok(self.value(now)),
-            0x28 => Ok(0),
-            0x2C => Ok(self.reload),
-            0x30 => Ok(self.repetition),
-            0x34..=0x3C => Ok(self.compare[(offset as usize - 0x34) / 4]),
-            0x44 => Ok(self.break_control),
-            0x60 => Ok(self.break_inputs),
-            _ => Err(Unmodelled::Register),
+            CR1 => Ok(self.registers.get(CR1) | self.direction(now)),
+            CNT => Ok(self.value(now)),
+            _ => self.registers.read(offset),
         }
     }
 
@@ -291,44 +305,54 @@ impl PwmTimer {
     pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Access<bool> {
         let mut triggers = false;
         match offset {
-            0x00 => self.set_control(value, now)?,
-            0x04 => {
-                only(value, TRIGGER_UPDATE)?;
-                self.trigger = value;
-            }
-            0x0C => {
-                only(value, UPDATE | BREAK)?;
-                self.interrupts = value;
-            }
+            CR1 => self.set_control(value, now)?,
             // Bits are cleared by writing zero.
-            0x10 => self.flags &= value,
-            0x14 => triggers = self.generate(value, now)?,
-            0x18 | 0x1C => self.set_modes((offset as usize - 0x18) / 4, value)?,
-            0x20 => self.set_channels(value)?,
-            0x24 => match self.count {
+            SR => self.registers.change(SR, !value, 0),
+            EGR => triggers = self.generate(value, now)?,
+            CNT => match self.count {
                 Count::Stopped(_) if value <= self.top => self.count = Count::Stopped(value),
                 _ => return Err(Unmodelled::Register),
             },
-            // Not divided.
-            0x28 => only(value, 0)?,
-            0x2C => self.set_reload(value)?,
-            0x30 => {
-                only(value, 0xFFFF)?;
-                self.repetition = value;
+            _ => {
+                self.registers.check(offset, value, 0)?;
+                self.set(offset, value, now)?;
             }
-            0x34..=0x3C => self.set_compare((offset as usize - 0x34) / 4, value)?,
-            0x44 => self.set_break_control(value, now)?,
-            0x60 => self.set_break_inputs(value)?,
-            _ => return Err(Unmodelled::Register),
         }
         self.compare_at(now);
         Ok(triggers)
     }
 
+    /// Sets a register whose bits are modelled. What the lock protects stays as it is.
+    fn set(&mut self, offset: u32, value: u32, now: u64) -> Access<()> {
+        let mut locked = 0;
+        match offset {
+            CCMR1 | CCMR2 => self.check_modes(offset, value)?,
+            CCER => check_channels(value)?,
+            ARR => self.take_reload(value)?,
+            BDTR => {
+                let breaks = if self.is_locked(1) { DEAD_TIME | LOCK | BREAKS | FILTER } else { 0 };
+                locked = breaks | if self.is_locked(2) { OFF_MODES } else { 0 };
+                if value & MAIN_OUTPUT != 0 && !self.is_on() {
+                    // A dead time comes before the first switch, too.
+                    self.references.iter_mut().for_each(|reference| reference.since = now);
+                }
+            }
+            AF1 if self.is_locked(1) => locked = u32::MAX,
+            _ => {}
+        }
+        self.registers.change(offset, !locked, value & !locked);
+        if let Some(channel) = COMPARE.iter().position(|&compare| compare == offset)
+            && !self.is_preloaded(channel)
+        {
+            self.compared[channel] = value;
+        }
+        Ok(())
+    }
+
     fn set_control(&mut self, value: u32, now: u64) -> Access<()> {
         // The direction is the timer's own.
         let value = value & !DOWN;
-        only(value, ENABLE | ONLY_OVERFLOW | CENTRE_ALIGNED | PRELOADED)?;
+        self.registers.check(CR1, value, 0)?;
         let is_on = value & ENABLE != 0;
         if is_on && value & MODES != CENTRE_ALIGNED {
             return Err(Unmodelled::Bits(ENABLE));
@@ -342,7 +366,7 @@ impl PwmTimer {
                 Count::Running { .. } => Count::Stopped(self.value(now)),
             };
         }
-        self.control = value;
+        self.registers.set(CR1, value);
         Ok(())
     }
 
@@ -350,8 +374,8 @@ impl PwmTimer {
     fn generate(&mut self, value: u32, now: u64) -> Access<bool> {
         only(value, UPDATE | BREAK)?;
         if value & BREAK != 0 {
-            self.break_control &= !MAIN_OUTPUT;
-            self.flags |= BREAK;
+            self.registers.change(BDTR, MAIN_OUTPUT, 0);
+            self.registers.change(SR, 0, BREAK);
         }
         if value & UPDATE == 0 {
             return Ok(false);
@@ -360,98 +384,37 @@ impl PwmTimer {
             Count::Stopped(_) => Count::Stopped(0),
             Count::Running { .. } => Count::Running { valley: now, was_at_top: false },
         };
-        let had_flag = self.flags & UPDATE;
+        let had_flag = self.registers.get(SR) & UPDATE;
         let triggers = self.update();
-        if self.control & ONLY_OVERFLOW != 0 {
-            self.flags = self.flags & !UPDATE | had_flag;
+        if self.registers.has(CR1, ONLY_OVERFLOW) {
+            self.registers.change(SR, UPDATE, had_flag);
         }
         Ok(triggers)
     }
 
-    fn set_modes(&mut self, register: usize, value: u32) -> Access<()> {
-        let channel = CHANNEL_PRELOADED | MODE;
-        // The second register has channel 3 alone.
-        only(value, if register == 0 { channel | channel << 8 } else { channel })?;
+    fn check_modes(&self, register: u32, value: u32) -> Access<()> {
         for mode in [value & MODE, value >> 8 & MODE] {
             if mode != 0 && mode != PWM_2 {
                 return Err(Unmodelled::Bits(mode));
             }
         }
-        if self.is_locked(3) && value != self.modes[register] {
-            return Err(Unmodelled::Bits(value ^ self.modes[register]));
-        }
-        self.modes[register] = value;
-        Ok(())
+        let changes = value ^ self.registers.get(register);
+        if self.is_locked(3) && changes != 0 { Err(Unmodelled::Bits(changes)) } else { Ok(()) }
     }
 
-    /// CCER: both outputs of a channel or none.
-    fn set_channels(&mut self, value: u32) -> Access<()> {
-        only(value, BOTH_OUTPUTS | BOTH_OUTPUTS << 4 | BOTH_OUTPUTS << 8)?;
-        for leg in 0..3 {
-            let outputs = value >> (4 * leg) & BOTH_OUTPUTS;
-            if outputs != 0 && outputs != BOTH_OUTPUTS {
-                return Err(Unmodelled::Bits(outputs << (4 * leg)));
-            }
-        }
-        self.channels = value;
-        Ok(())
-    }
-
-    fn set_reload(&mut self, value: u32) -> Access<()> {
-        only(value, 0xFFFF)?;
-        if self.control & PRELOADED == 0 {
+    /// A reload value that does not wait for an update is not modelled while the counter runs.
+    fn take_reload(&mut self, value: u32) -> Access<()> {
+        if !self.registers.has(CR1, PRELOADED) {
             if self.runs() {
                 return Err(Unmodelled::Bits(value));
             }
             self.top = value;
         }
-        self.reload = value;
-        Ok(())
-    }
-
-    fn set_compare(&mut self, channel: usize, value: u32) -> Access<()> {
-        only(value, 0xFFFF)?;
-        self.compare[channel] = value;
-        if !self.is_preloaded(channel) {
-            self.compared[channel] = value;
-        }
-        Ok(())
-    }
-
-    /// BDTR. What the lock protects stays as it is.
-    fn set_break_control(&mut self, value: u32, now: u64) -> Access<()> {
-        let modes = OFF_WHILE_IDLE | OFF_WHILE_RUNNING;
-        let breaks = BREAK_ENABLE | BREAK_HIGH;
-        only(value, DEAD_TIME | LOCK | modes | breaks | FILTER | MAIN_OUTPUT)?;
-        let mut locked = 0;
-        if self.is_locked(1) {
-            locked |= DEAD_TIME | LOCK | breaks | FILTER;
-        }
-        if self.is_locked(2) {
-            locked |= modes;
-        }
-        let value = self.break_control & locked | value & !locked;
-        if value & MAIN_OUTPUT != 0 && !self.is_on() {
-            // A dead time comes before the first switch, too.
-            for reference in &mut self.references {
-                reference.since = now;
-            }
-        }
-        self.break_control = value;
-        Ok(())
-    }
-
-    fn set_break_inputs(&mut self, value: u32) -> Access<()> {
-        only(value, BREAK_PIN | COMPARATOR_BITS | POLARITY_BITS)?;
-        if self.is_locked(1) {
-            return Ok(());
-        }
-        self.break_inputs = value;
         Ok(())
     }
 
     fn is_locked(&self, level: u32) -> bool {
-        self.break_control & LOCK >= level << 8
+        self.registers.get(BDTR) & LOCK >= level << 8
     }
 
     /// The counter is at the top or at zero: an update, unless further turns come first (RM0440, 28.3.3).
@@ -465,14 +428,14 @@ impl PwmTimer {
     }
 
     fn update(&mut self) -> bool {
-        self.left = self.repetition;
-        self.flags |= UPDATE;
-        self.compared = self.compare;
+        self.left = self.registers.get(RCR);
+        self.registers.change(SR, 0, UPDATE);
+        self.compared = COMPARE.map(|register| self.registers.get(register));
         // At the top, the way down is that of the way up: a new one begins at zero.
         if !matches!(self.count, Count::Running { was_at_top: true, .. }) {
-            self.top = self.reload;
+            self.top = self.registers.get(ARR);
         }
-        self.trigger == TRIGGER_UPDATE
+        self.registers.get(CR2) == TRIGGER_UPDATE
     }
 
     fn is_preloaded(&self, channel: usize) -> bool {
@@ -480,8 +443,7 @@ impl PwmTimer {
     }
 
     fn mode(&self, channel: usize) -> u32 {
-        let bits = self.modes[channel / 2] >> (8 * (channel % 2));
-        bits & (CHANNEL_PRELOADED | MODE)
+        self.registers.get([CCMR1, CCMR1, CCMR2][channel]) >> (8 * (channel % 2)) & CHANNEL
     }
 
     /// Takes the references' edges down.
@@ -527,27 +489,20 @@ impl PwmTimer {
     }
 }
 
+/// CCER: both outputs of a channel or none.
+fn check_channels(value: u32) -> Access<()> {
+    for leg in 0..3 {
+        let outputs = value >> (4 * leg) & BOTH_OUTPUTS;
+        if outputs != 0 && outputs != BOTH_OUTPUTS {
+            return Err(Unmodelled::Bits(outputs << (4 * leg)));
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Registers, as the program writes them.
-    const CR1: u32 = 0x00;
-    const CR2: u32 = 0x04;
-    const DIER: u32 = 0x0C;
-    const SR: u32 = 0x10;
-    const EGR: u32 = 0x14;
-    const CCMR1: u32 = 0x18;
-    const CCMR2: u32 = 0x1C;
-    const CCER: u32 = 0x20;
-    const CNT: u32 = 0x24;
-    const ARR: u32 = 0x2C;
-    const RCR: u32 = 0x30;
-    const CCR1: u32 = 0x34;
-    const CCR2: u32 = 0x38;
-    const CCR3: u32 = 0x3C;
-    const BDTR: u32 = 0x44;
-    const AF1: u32 = 0x60;
 
     const TOP: u32 = 2125;
     const DEAD: u32 = 100;

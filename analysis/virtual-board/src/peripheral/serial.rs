@@ -5,16 +5,8 @@
 
 use std::collections::VecDeque;
 
-use super::{Access, Unmodelled, only};
-
-/// Variant of the USART, by its registers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UsartVariant {
-    /// The G4's.
-    G4,
-    /// The F405's.
-    F405,
-}
+use super::Access;
+use super::registers::{Registers, Table};
 
 /// Flags, at the same places in both status registers.
 const OVERRUN: u32 = 1 << 3;
@@ -28,26 +20,93 @@ const ENABLED: u32 = 0b11 << 21;
 const INTERRUPTS: u32 = IDLE | RECEIVED | SENT | ROOM;
 /// CR1: receiver and transmitter.
 const BOTH_WAYS: u32 = 0b11 << 2;
-/// CR1 of the G4: the port is on; its queues are.
-const ON_G4: u32 = 1;
+/// CR1 of the G4: the port's queues are on.
 const QUEUES: u32 = 1 << 29;
-/// CR1 of the F405: the port is on.
-const ON_F405: u32 = 1 << 13;
 /// CR3: errors of the line, of which only the overrun can occur.
 const ERRORS: u32 = 1;
 /// Bits of a byte on the line, with its start and its stop.
 const FRAME: u64 = 10;
 
+/// The registers of a family's USART.
+#[derive(Debug)]
+pub struct Variant {
+    table: Table,
+    /// Offset of CR1, and its bit that switches the port on.
+    control: u32,
+    on: u32,
+    /// Offset of CR3.
+    errors: u32,
+    /// Offset of BRR.
+    rate: u32,
+    /// Offset of the status, and its bits that are always set.
+    status: u32,
+    always: u32,
+    /// Offset of the received byte, and whether its read clears the status, which was read before.
+    received: u32,
+    read_clears: bool,
+    /// Offset of the byte to send.
+    to_send: u32,
+    /// Offset of the register that clears flags, and whether by ones.
+    clear: u32,
+    by_ones: bool,
+}
+
+const G4_ON: u32 = 1;
+const F405_ON: u32 = 1 << 13;
+
+/// The G4's.
+pub static G4: Variant = Variant {
+    table: &[
+        (0x00, 0, G4_ON | BOTH_WAYS | INTERRUPTS | QUEUES),
+        // One stop bit, nothing inverted.
+        (0x04, 0, 0),
+        (0x08, 0, ERRORS),
+        (0x0C, 0, 0xFFFF),
+        (0x2C, 0, 0),
+    ],
+    control: 0x00,
+    on: G4_ON,
+    errors: 0x08,
+    rate: 0x0C,
+    status: 0x1C,
+    always: ENABLED,
+    received: 0x24,
+    read_clears: false,
+    to_send: 0x28,
+    clear: 0x20,
+    by_ones: true,
+};
+
+/// The F405's.
+pub static F405: Variant = Variant {
+    table: &[
+        (0x08, 0, 0xFFFF),
+        (0x0C, 0, F405_ON | BOTH_WAYS | INTERRUPTS),
+        // One stop bit, nothing inverted.
+        (0x10, 0, 0),
+        (0x14, 0, ERRORS),
+    ],
+    control: 0x0C,
+    on: F405_ON,
+    errors: 0x14,
+    rate: 0x08,
+    status: 0x00,
+    always: 0,
+    received: 0x04,
+    read_clears: true,
+    to_send: 0x04,
+    clear: 0x00,
+    by_ones: false,
+};
+
 /// The port.
 #[derive(Clone, Debug)]
 pub struct Serial {
-    variant: UsartVariant,
-    control: [u32; 3],
-    rate: u32,
-    prescaler: u32,
+    variant: &'static Variant,
+    registers: Registers,
     /// Overrun and idle.
     latched: u32,
-    /// G4: a transmission has ended since that was last cleared; F405: the same.
+    /// A transmission has ended since that was last cleared.
     sent: bool,
     incoming: VecDeque<u8>,
     outgoing: VecDeque<u8>,
@@ -65,12 +124,10 @@ pub struct Serial {
 
 impl Serial {
     /// Out of reset.
-    pub fn new(variant: UsartVariant) -> Self {
+    pub fn new(variant: &'static Variant) -> Self {
         Self {
             variant,
-            control: [0; 3],
-            rate: 0,
-            prescaler: 0,
+            registers: Registers::new(variant.table),
             latched: 0,
             sent: true,
             incoming: VecDeque::new(),
@@ -106,12 +163,13 @@ impl Serial {
 
     /// Runs due events, and begins the next transfers; `divider` is the core's clock by the port's.
     pub fn advance(&mut self, now: u64, divider: u64) {
-        let on = self.control[0] & self.on() != 0 && self.rate > 0;
+        let rate = u64::from(self.registers.get(self.variant.rate));
+        let on = self.control() & self.variant.on != 0 && rate > 0;
         if !on {
             (self.arrives, self.leaves) = (None, None);
             return;
         }
-        let byte = FRAME * u64::from(self.rate) * divider;
+        let byte = FRAME * rate * divider;
         while let Some(at) = self.arrives.filter(|&at| at <= now) {
             self.arrive();
             self.arrives = (self.was_busy || !self.line_in.is_empty()).then_some(at + byte);
@@ -151,74 +209,45 @@ impl Serial {
     /// The level of its interrupt line.
     pub fn line(&self) -> bool {
         let status = self.status();
-        let enabled = self.control[0] & INTERRUPTS;
+        let enabled = self.control() & INTERRUPTS;
         // An overrun asks by the interrupt of what was received, and by that of errors.
-        let overrun = self.control[0] & RECEIVED != 0 || self.control[2] & ERRORS != 0;
+        let overrun = enabled & RECEIVED != 0 || self.registers.has(self.variant.errors, ERRORS);
         status & enabled != 0 || (status & OVERRUN != 0 && overrun)
+    }
+
+    fn control(&self) -> u32 {
+        self.registers.get(self.variant.control)
     }
 
     /// Reads.
     pub fn read(&mut self, offset: u32) -> Access<u32> {
-        use UsartVariant::{F405, G4};
-        Ok(match (self.variant, offset) {
-            (G4, 0x00 | 0x04 | 0x08) => self.control[offset as usize / 4],
-            (G4, 0x0C) => self.rate,
-            (G4, 0x1C) => self.status() | ENABLED,
-            (G4, 0x24) => self.receive(),
-            (G4, 0x2C) => self.prescaler,
-            (F405, 0x00) => self.status(),
-            (F405, 0x04) => {
-                // The status was read before, and this clears its flags.
-                self.latched = 0;
-                self.receive()
-            }
-            (F405, 0x08) => self.rate,
-            (F405, 0x0C | 0x10 | 0x14) => self.control[(offset as usize - 0x0C) / 4],
-            _ => return Err(Unmodelled::Register),
-        })
+        let Variant { status, always, received, read_clears, .. } = *self.variant;
+        if offset == status {
+            return Ok(self.status() | always);
+        }
+        if offset != received {
+            return self.registers.read(offset);
+        }
+        if read_clears {
+            self.latched = 0;
+        }
+        Ok(self.incoming.pop_front().unwrap_or(0).into())
     }
 
     /// Writes.
     pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
-        use UsartVariant::{F405, G4};
-        match (self.variant, offset) {
-            (G4, 0x00) => {
-                only(value, ON_G4 | BOTH_WAYS | INTERRUPTS | QUEUES)?;
-                self.control[0] = value;
-            }
-            (F405, 0x0C) => {
-                only(value, ON_F405 | BOTH_WAYS | INTERRUPTS)?;
-                self.control[0] = value;
-            }
-            // One stop bit, nothing inverted.
-            (G4, 0x04) | (F405, 0x10) => only(value, 0)?,
-            (G4, 0x08) | (F405, 0x14) => {
-                only(value, ERRORS)?;
-                self.control[2] = value;
-            }
-            (G4, 0x0C) | (F405, 0x08) => {
-                only(value, 0xFFFF)?;
-                self.rate = value;
-            }
-            // Cleared by writing ones.
-            (G4, 0x20) => {
-                self.latched &= !value;
-                self.sent &= value & SENT == 0;
-            }
-            (G4, 0x28) | (F405, 0x04) => {
-                self.sent = false;
-                self.outgoing.push_back(value as u8);
-            }
-            (G4, 0x2C) => only(value, 0)?,
-            // Cleared by writing zeros.
-            (F405, 0x00) => self.sent &= value & SENT != 0,
-            _ => return Err(Unmodelled::Register),
+        let Variant { to_send, clear, by_ones, .. } = *self.variant;
+        if offset == to_send {
+            self.sent = false;
+            self.outgoing.push_back(value as u8);
+        } else if offset == clear {
+            // By zeros only what was sent is cleared.
+            self.latched &= if by_ones { !value } else { u32::MAX };
+            self.sent &= (value & SENT == 0) == by_ones;
+        } else {
+            self.registers.write(offset, value)?;
         }
         Ok(())
-    }
-
-    fn receive(&mut self) -> u32 {
-        self.incoming.pop_front().unwrap_or(0).into()
     }
 
     fn status(&self) -> u32 {
@@ -231,14 +260,7 @@ impl Serial {
 
     /// Bytes that each of its queues holds.
     fn depth(&self) -> usize {
-        if self.control[0] & QUEUES != 0 && self.variant == UsartVariant::G4 { 8 } else { 1 }
-    }
-
-    fn on(&self) -> u32 {
-        match self.variant {
-            UsartVariant::G4 => ON_G4,
-            UsartVariant::F405 => ON_F405,
-        }
+        if self.control() & QUEUES != 0 { 8 } else { 1 }
     }
 }
 
@@ -252,35 +274,35 @@ mod tests {
     const BYTE: u64 = 10 * 91 * 4;
 
     /// Receives and sends, with the interrupt of what was received.
-    fn open(variant: UsartVariant) -> Serial {
+    fn open(variant: &'static Variant) -> Serial {
         let mut port = Serial::new(variant);
-        let setup: &[(u32, u32)] = match variant {
-            UsartVariant::G4 => &[(0x0C, RATE), (0x00, ON_G4 | BOTH_WAYS | RECEIVED | QUEUES)],
-            UsartVariant::F405 => &[(0x08, RATE), (0x0C, ON_F405 | BOTH_WAYS | RECEIVED)],
-        };
-        for &(register, value) in setup {
-            port.write(register, value).unwrap();
-        }
+        let queues = if variant.by_ones { QUEUES } else { 0 };
+        port.write(variant.rate, RATE).unwrap();
+        port.write(variant.control, variant.on | BOTH_WAYS | RECEIVED | queues).unwrap();
         port
     }
 
     fn received(port: &mut Serial) -> u32 {
-        port.read(if port.variant == UsartVariant::G4 { 0x24 } else { 0x04 }).unwrap()
+        port.read(port.variant.received).unwrap()
+    }
+
+    fn status(port: &mut Serial) -> u32 {
+        port.read(port.variant.status).unwrap()
     }
 
     #[test]
     fn a_byte_takes_its_time_on_the_line() {
-        for variant in [UsartVariant::G4, UsartVariant::F405] {
+        for variant in [&G4, &F405] {
             let mut port = open(variant);
             port.send(b"ab");
             port.advance(100, DIVIDER);
             assert_eq!(port.due(), Some(100 + BYTE));
             port.advance(100 + BYTE - 1, DIVIDER);
-            assert!(!port.line(), "{variant:?}");
+            assert!(!port.line(), "{}", variant.on);
             port.advance(100 + BYTE, DIVIDER);
-            assert!(port.line(), "{variant:?}");
+            assert!(port.line(), "{}", variant.on);
             assert_eq!(received(&mut port), b'a'.into());
-            assert!(!port.line(), "{variant:?}");
+            assert!(!port.line(), "{}", variant.on);
             port.advance(100 + 2 * BYTE, DIVIDER);
             assert_eq!(received(&mut port), b'b'.into());
         }
@@ -288,62 +310,58 @@ mod tests {
 
     #[test]
     fn what_is_not_read_in_time_is_lost_and_told() {
-        for (variant, room) in [(UsartVariant::G4, 8), (UsartVariant::F405, 1)] {
+        for (variant, room) in [(&G4, 8), (&F405, 1)] {
             let mut port = open(variant);
             let bytes: Vec<u8> = (1..=room + 3).collect();
             port.send(&bytes);
             port.advance(0, DIVIDER);
             let end = BYTE * u64::from(room + 3);
             port.advance(end, DIVIDER);
-            assert_eq!(port.lost(), 3, "{variant:?}");
+            assert_eq!(port.lost(), 3, "{}", variant.on);
             // What was there stays, and what came in vain is gone.
-            let status = port.read(if variant == UsartVariant::G4 { 0x1C } else { 0x00 }).unwrap();
-            assert_eq!(status & OVERRUN, OVERRUN, "{variant:?}");
+            assert_eq!(status(&mut port) & OVERRUN, OVERRUN, "{}", variant.on);
             for byte in 1..=room {
-                assert_eq!(received(&mut port), byte.into(), "{variant:?}");
+                assert_eq!(received(&mut port), byte.into(), "{}", variant.on);
             }
             // By its flag on one chip, and by having read status and data on the other.
-            if variant == UsartVariant::G4 {
+            if variant.by_ones {
                 assert!(port.line());
-                port.write(0x20, OVERRUN).unwrap();
+                port.write(variant.clear, OVERRUN).unwrap();
             }
-            assert!(!port.line(), "{variant:?}");
+            assert!(!port.line(), "{}", variant.on);
             port.send(b"z");
             port.advance(end, DIVIDER);
             port.advance(end + 2 * BYTE, DIVIDER);
-            assert_eq!(received(&mut port), b'z'.into(), "{variant:?}");
+            assert_eq!(received(&mut port), b'z'.into(), "{}", variant.on);
         }
     }
 
     #[test]
     fn silence_behind_a_byte_is_told_once() {
-        for variant in [UsartVariant::G4, UsartVariant::F405] {
+        for variant in [&G4, &F405] {
             let mut port = open(variant);
-            let status = if variant == UsartVariant::G4 { 0x1C } else { 0x00 };
             port.send(b"a");
             port.advance(0, DIVIDER);
             port.advance(BYTE, DIVIDER);
-            assert_eq!(port.read(status).unwrap() & IDLE, 0, "{variant:?}");
+            assert_eq!(status(&mut port) & IDLE, 0, "{}", variant.on);
             port.advance(2 * BYTE, DIVIDER);
-            assert_eq!(port.read(status).unwrap() & IDLE, IDLE, "{variant:?}");
-            assert_eq!(port.due(), None, "{variant:?}");
+            assert_eq!(status(&mut port) & IDLE, IDLE, "{}", variant.on);
+            assert_eq!(port.due(), None, "{}", variant.on);
         }
     }
 
     #[test]
     fn what_is_sent_leaves_byte_by_byte() {
-        for variant in [UsartVariant::G4, UsartVariant::F405] {
+        for variant in [&G4, &F405] {
             let mut port = open(variant);
-            let (data, status) =
-                if variant == UsartVariant::G4 { (0x28, 0x1C) } else { (0x04, 0x00) };
-            port.write(data, b'x'.into()).unwrap();
+            port.write(variant.to_send, b'x'.into()).unwrap();
             port.advance(0, DIVIDER);
-            assert_eq!(port.read(status).unwrap() & SENT, 0, "{variant:?}");
+            assert_eq!(status(&mut port) & SENT, 0, "{}", variant.on);
             port.advance(BYTE - 1, DIVIDER);
-            assert_eq!(port.take_sent(), b"", "{variant:?}");
+            assert_eq!(port.take_sent(), b"", "{}", variant.on);
             port.advance(BYTE, DIVIDER);
-            assert_eq!(port.take_sent(), b"x", "{variant:?}");
-            assert_eq!(port.read(status).unwrap() & SENT, SENT, "{variant:?}");
+            assert_eq!(port.take_sent(), b"x", "{}", variant.on);
+            assert_eq!(status(&mut port) & SENT, SENT, "{}", variant.on);
         }
     }
 }

@@ -1,6 +1,14 @@
 //! DAC3 (RM0440, 22.7), whose two channels have no pin: they are the comparators' thresholds.
 
-use super::{Access, Unmodelled, only};
+use super::registers::{Registers, Table};
+use super::{Access, Unmodelled};
+
+const CR: u32 = 0x00;
+const DHR12R: [u32; 2] = [0x08, 0x14];
+const DOR1: u32 = 0x2C;
+const DOR2: u32 = 0x30;
+const SR: u32 = 0x34;
+const MCR: u32 = 0x3C;
 
 /// CR: each channel; MCR: each channel is on the chip alone, without a buffer.
 const ENABLES: u32 = 1 | 1 << 16;
@@ -11,20 +19,29 @@ const CLOCK_RANGE: u32 = 0b11 << 14;
 /// SR: each channel is ready, which it is at once.
 const READY: u32 = 11;
 
+const REGISTERS: Table = &[
+    (CR, 0, ENABLES),
+    (DHR12R[0], 0, 0xFFF),
+    (DHR12R[1], 0, 0xFFF),
+    (MCR, 0, ON_CHIP | CLOCK_RANGE),
+];
+
 /// The DAC.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ThresholdDac {
-    control: u32,
-    mode: u32,
-    codes: [u32; 2],
+#[derive(Clone, Debug)]
+pub struct ThresholdDac(Registers);
+
+impl Default for ThresholdDac {
+    fn default() -> Self {
+        Self(Registers::new(REGISTERS))
+    }
 }
 
 impl ThresholdDac {
     /// The channels' voltages, as parts of the reference; zero if off.
     pub fn outputs(&self) -> [f64; 2] {
         [0, 1].map(|channel| {
-            let is_on = self.control >> (16 * channel) & 1 != 0;
-            let code = if is_on { self.codes[channel] } else { 0 };
+            let is_on = self.0.has(CR, 1 << (16 * channel));
+            let code = if is_on { self.0.get(DHR12R[channel]) } else { 0 };
             f64::from(code) / 4096.0
         })
     }
@@ -32,36 +49,20 @@ impl ThresholdDac {
     /// Reads.
     pub fn read(&self, offset: u32) -> Access<u32> {
         match offset {
-            0x00 => Ok(self.control),
-            0x08 => Ok(self.codes[0]),
-            0x14 => Ok(self.codes[1]),
-            0x2C | 0x30 => Ok(self.codes[(offset as usize - 0x2C) / 4]),
-            0x34 => Ok(self.control << READY),
-            0x3C => Ok(self.mode),
-            _ => Err(Unmodelled::Register),
+            DOR1 => Ok(self.0.get(DHR12R[0])),
+            DOR2 => Ok(self.0.get(DHR12R[1])),
+            SR => Ok(self.0.get(CR) << READY),
+            _ => self.0.read(offset),
         }
     }
 
     /// Writes.
     pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
-        match offset {
-            0x00 => {
-                only(value, ENABLES)?;
-                if value != 0 && self.mode & MODES != ON_CHIP {
-                    return Err(Unmodelled::Bits(value));
-                }
-                self.control = value;
-            }
-            0x08 | 0x14 => {
-                only(value, 0xFFF)?;
-                self.codes[usize::from(offset == 0x14)] = value;
-            }
-            0x3C => {
-                only(value, ON_CHIP | CLOCK_RANGE)?;
-                self.mode = value;
-            }
-            _ => return Err(Unmodelled::Register),
+        self.0.check(offset, value, 0)?;
+        if offset == CR && value != 0 && self.0.get(MCR) & MODES != ON_CHIP {
+            return Err(Unmodelled::Bits(value));
         }
+        self.0.set(offset, value);
         Ok(())
     }
 }
@@ -73,21 +74,22 @@ mod tests {
     #[test]
     fn a_channel_puts_its_code_out_at_once() {
         let mut dac = ThresholdDac::default();
-        for (register, value) in [(0x3C, ON_CHIP | 0b10 << 14), (0x08, 1024), (0x14, 512)] {
+        for (register, value) in [(MCR, ON_CHIP | 0b10 << 14), (DHR12R[0], 1024), (DHR12R[1], 512)]
+        {
             dac.write(register, value).unwrap();
         }
         assert_eq!(dac.outputs(), [0.0, 0.0]);
-        dac.write(0x00, ENABLES).unwrap();
+        dac.write(CR, ENABLES).unwrap();
         assert_eq!(dac.outputs(), [0.25, 0.125]);
-        assert_eq!(dac.read(0x34), Ok(1 << 11 | 1 << 27));
+        assert_eq!(dac.read(SR), Ok(1 << 11 | 1 << 27));
     }
 
     #[test]
     fn a_channel_with_a_pin_or_a_trigger_is_not_modelled() {
         let mut dac = ThresholdDac::default();
-        assert!(dac.write(0x00, 1).is_err(), "with its buffer, as out of reset");
-        dac.write(0x3C, ON_CHIP).unwrap();
-        assert!(dac.write(0x00, 0b11).is_err(), "triggered");
+        assert!(dac.write(CR, 1).is_err(), "with its buffer, as out of reset");
+        dac.write(MCR, ON_CHIP).unwrap();
+        assert!(dac.write(CR, 0b11).is_err(), "triggered");
         assert!(dac.write(0x20, 0).is_err());
     }
 }

@@ -38,13 +38,12 @@ fn the_stiffest_spring_comes_to_rest_where_its_stiffness_has_it() {
             );
             // A code is put out in the sample that its count begins.
             for (tick, &code) in codes.iter().enumerate() {
-                assert_eq!(samples[tick + 1].code, Some(code), "{}, tick {tick}", chip.name);
+                assert_eq!(samples[tick + 1].code, Some(code), "tick {tick}");
             }
             let ticks: Vec<_> = samples.iter().map(|sample| sample.count).zip(codes).collect();
             let [leaning, free] = [LEANING, FREE].map(|range| AtRest::of(&STIFFEST, &ticks[range]));
             println!(
-                "{}, friction of {friction:.5} N m: {:.2} N m/rad at rest, {} and {} counts of motion",
-                chip.name,
+                "friction of {friction:.5} N m: {:.2} N m/rad at rest, {} and {} counts of motion",
                 leaning.stiffness(),
                 leaning.counts,
                 free.counts

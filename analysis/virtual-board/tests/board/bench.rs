@@ -6,14 +6,15 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use std::thread;
 
 use analysis::emulator::log::LogDecoder;
-use analysis::link::Message;
+use analysis::link::{Message, frame};
 use analysis::program::Program;
 use analysis::toolchain::{BoardModel, NumberFormat, Tools, TorqueOutput, prepare};
 use haptic_servo::dac::DacCode;
+use haptic_servo::fault::Fault;
 use haptic_servo::wire::message::{
-    LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, PreviousFault, Status, ToBoard,
+    FaultCode, Id, LONGEST_TO_HOST, Outcome, PreviousFault, Status, ToBoard,
 };
-use haptic_servo::wire::{CHECKSUM, Decoder, encode, largest_frame};
+use haptic_servo::wire::{CHECKSUM, Decoder};
 use virtual_board::board::{Event, VirtualBoard};
 use virtual_board::chip::Chip;
 use virtual_board::device::{Device, FixedDevice};
@@ -71,6 +72,7 @@ pub struct Bench {
     pub machine: Machine,
     pins: Arc<Mutex<Pins>>,
     decoder: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
+    last_id: Id,
 }
 
 impl Bench {
@@ -92,7 +94,7 @@ impl Bench {
         let pins = Arc::new(Mutex::new(Pins::of(device)));
         let mut machine = Machine::boot(file, chip, Box::new(pins.clone())).unwrap();
         machine.board_mut().events = Some(Vec::new());
-        Self { machine, pins, decoder: Decoder::new() }
+        Self { machine, pins, decoder: Decoder::new(), last_id: 0 }
     }
 
     /// The same with a device that stands still, armed and run until the scene is felt: the clamp is
@@ -106,6 +108,36 @@ impl Bench {
         bench
     }
 
+    /// The board.
+    pub fn board(&self) -> &VirtualBoard {
+        self.machine.board()
+    }
+
+    /// The board, to do something to it from outside.
+    pub fn board_mut(&mut self) -> &mut VirtualBoard {
+        self.machine.board_mut()
+    }
+
+    /// Instructions since power-on.
+    pub fn now(&self) -> u64 {
+        self.board().now
+    }
+
+    /// Whether the outputs of the power stage are on.
+    pub fn is_on(&self) -> bool {
+        self.board().power_stage.timer.is_on()
+    }
+
+    /// Turns the encoder in one sample, after those that are still to come.
+    pub fn turn(&mut self, counts: i32) {
+        self.pins().turns.push_back(counts);
+    }
+
+    /// What the DAC put out in the last sample.
+    pub fn last_code(&self) -> Option<u16> {
+        self.pins().samples.last().and_then(|sample| sample.code)
+    }
+
     /// The device at the pins.
     pub fn pins(&self) -> MutexGuard<'_, Pins> {
         self.pins.lock().unwrap()
@@ -114,13 +146,24 @@ impl Bench {
     /// Instructions in a period of the servo: a thousandth of a second in all programs, as nearly as
     /// the timer can pace it.
     pub fn period(&self) -> u64 {
-        let board = self.machine.board();
+        let board = self.board();
         board.tick_timer.period(board.clock.timer_divider())
     }
 
     /// Runs so many samples.
     pub fn run(&mut self, samples: u64) {
         self.machine.run_samples(samples).unwrap_or_else(|error| panic!("{error}"));
+    }
+
+    /// Runs some samples at a time until something is so, at most so many; whether it is.
+    pub fn run_until(&mut self, step: u64, most: u64, is_so: impl Fn(&mut Self) -> bool) -> bool {
+        (0..most / step).any(|_| {
+            let is_so = is_so(self);
+            if !is_so {
+                self.run(step);
+            }
+            is_so
+        })
     }
 
     /// Runs so many instructions.
@@ -130,7 +173,7 @@ impl Bench {
 
     /// Runs to the next update of the pacing timer, which comes before the next instruction.
     pub fn run_to_update(&mut self) {
-        let board = self.machine.board();
+        let board = self.board();
         let due = board.tick_timer.due().unwrap();
         self.run_for(due - board.now);
     }
@@ -138,7 +181,7 @@ impl Bench {
     /// Turns the encoder by some counts, and runs to where the code for that is written and waits for its
     /// trigger, in the servo's interrupt.
     pub fn run_to_waiting_code(&mut self, turn: i32) {
-        self.pins().turns.push_back(turn);
+        self.turn(turn);
         self.run_to_update();
         let waits =
             |board: &VirtualBoard| board.dac.output().is_some_and(|code| code != board.dac.held());
@@ -195,14 +238,12 @@ impl Bench {
 
     /// Says something to the board.
     pub fn say(&mut self, message: &ToBoard) {
-        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-        let frame = encode(message, &mut buffer).unwrap();
-        self.machine.board_mut().send(frame);
+        self.board_mut().send(&frame(message));
     }
 
     /// What the board has said since the last time.
     pub fn hear(&mut self) -> Vec<Message> {
-        let bytes = self.machine.board_mut().serial.take_sent();
+        let bytes = self.board_mut().serial.take_sent();
         bytes.into_iter().filter_map(|byte| self.decoder.push(byte)).collect()
     }
 
@@ -229,13 +270,24 @@ impl Bench {
         })
     }
 
-    /// Asks for the amplifier to be switched on.
-    pub fn arm(&mut self) -> Outcome {
-        const ID: u16 = 7;
-        self.ask(&ToBoard::Arm { id: ID }, |message| match message {
-            Message::Answer { id: ID, outcome } => Some(outcome),
+    /// The fault that the board says it has.
+    pub fn fault(&mut self) -> Option<Fault> {
+        self.status().fault.and_then(FaultCode::fault)
+    }
+
+    /// Asks for something; gives the outcome.
+    pub fn request(&mut self, message: impl FnOnce(Id) -> ToBoard) -> Outcome {
+        self.last_id = self.last_id.wrapping_add(1);
+        let id = self.last_id;
+        self.ask(&message(id), |message| match message {
+            Message::Answer { id: answered, outcome } if answered == id => Some(outcome),
             _ => None,
         })
+    }
+
+    /// Asks for the amplifier to be switched on.
+    pub fn arm(&mut self) -> Outcome {
+        self.request(|id| ToBoard::Arm { id })
     }
 
     /// Has it switched on; gives the tick in which it was.

@@ -59,7 +59,6 @@ impl Device for Spun {
 /// What the host has found out so far.
 struct Use {
     bench: Bench,
-    id: u16,
     /// Sets that were answered as done.
     sets: u32,
     /// Ticks missing from the streams.
@@ -73,21 +72,16 @@ impl Use {
         let program = Program::find("damper_wall").unwrap();
         let mut bench = Bench::boot(chip, program.name, Spun::of(program, minutes));
         // Hours of them would be gigabytes.
-        bench.machine.board_mut().events = None;
+        bench.board_mut().events = None;
         bench.armed();
-        Self { bench, id: 0, sets: 0, gaps: 0, last: None }
+        Self { bench, sets: 0, gaps: 0, last: None }
     }
 
     /// Asks for another set, and holds the board to its answer.
     fn set(&mut self, changes: &[(Parameter, f64)], passes: bool) {
-        self.id = self.id.wrapping_add(1);
-        let id = self.id;
         let changes = changes.iter().copied().collect();
-        let outcome = self.bench.ask(&ToBoard::Set { id, changes }, |message| match message {
-            Message::Answer { id: answered, outcome } if answered == id => Some(outcome),
-            _ => None,
-        });
-        assert_eq!(matches!(outcome, Outcome::Done), passes, "{outcome:?}");
+        let outcome = self.bench.request(|id| ToBoard::Set { id, changes });
+        assert_eq!(outcome == Outcome::Done, passes, "{outcome:?}");
         self.sets += u32::from(passes);
     }
 
@@ -118,7 +112,7 @@ impl Use {
 
     /// A minute in which all of it happens.
     fn minute(&mut self) {
-        let end = self.bench.machine.board().samples + MINUTE;
+        let end = self.bench.board().samples + MINUTE;
         self.bench.run(2 * WAY + 100);
         self.set(&[(Parameter::Stiffness, 18.0)], true);
         self.bench.run(5000);
@@ -128,7 +122,7 @@ impl Use {
         self.set(&[(Parameter::Stiffness, 22.0)], false);
         self.stream(1000);
         self.set(&[(Parameter::Damping, 0.01), (Parameter::Stiffness, 22.0)], true);
-        let left = end - self.bench.machine.board().samples;
+        let left = end - self.bench.board().samples;
         self.bench.run(left);
     }
 
@@ -140,7 +134,7 @@ impl Use {
         assert_eq!((missed, sets), (0, self.sets), "{what}");
         assert_eq!(self.gaps, dropped + thinned, "{what}: ticks that were not told");
         assert_eq!(status.discarded.total(), 0, "{what}: {:?}", status.discarded);
-        let board = self.bench.machine.board();
+        let board = self.bench.board();
         assert_eq!(board.serial.lost(), 0, "{what}");
         // The answer is a few samples old.
         let late = board.samples - u64::from(status.tick);
@@ -171,7 +165,7 @@ fn used(chip: &'static Chip, minutes: u64) {
     let mut used = Use::boot(chip, minutes);
     for minute in 0..minutes {
         used.minute();
-        used.check(&format!("{}, minute {minute}", chip.name));
+        used.check(&format!("minute {minute}"));
     }
 }
 

@@ -3,7 +3,6 @@
 use analysis::program::Program;
 use haptic_servo::fault::{Fault, FaultRecord};
 use haptic_servo::servo_loop::State;
-use haptic_servo::wire::message::FaultCode;
 use unicorn_engine::RegisterARM;
 use virtual_board::chip::Chip;
 use virtual_board::device::FixedDevice;
@@ -22,16 +21,15 @@ const LIMIT: u16 = 896;
 /// A servo that pushes, and goes on to do so.
 fn pushing(chip: &'static Chip) -> Bench {
     let mut bench = Bench::running(chip, "damper_wall");
-    bench.pins().turns.push_back(INTO);
+    bench.turn(INTO);
     bench.run(20);
     bench
 }
 
 /// Nothing was missed, and nothing has stopped the servo.
-fn assert_running(bench: &mut Bench, what: &str) {
+fn assert_running(bench: &mut Bench) {
     let status = bench.status();
-    assert_eq!((status.state, status.fault), (State::Running, None), "{what}");
-    assert_eq!(status.missed, 0, "{what}");
+    assert_eq!((status.state, status.fault, status.missed), (State::Running, None, 0));
 }
 
 #[test]
@@ -40,18 +38,16 @@ fn a_slow_interrupt_below_the_servo_s_makes_no_tick_late() {
         let mut bench = pushing(chip);
         let slack = bench.status().worst_slack;
         let period = bench.period();
-        let (began, before) = (bench.machine.board().now, bench.machine.board().samples);
+        let (began, before) = (bench.now(), bench.board().samples);
         hold_up(&mut bench, 5 * period, Masks::None);
         bench.run_for(5 * period);
-        let ticks = bench.machine.board().meter.interrupt().count;
-        assert_eq!(ticks, bench.machine.board().samples, "{}", chip.name);
-        assert!(
-            bench.machine.board().samples - before >= (bench.machine.board().now - began) / period
-        );
-        assert_running(&mut bench, chip.name);
+        let ticks = bench.board().meter.interrupt().count;
+        assert_eq!(ticks, bench.board().samples);
+        assert!(bench.board().samples - before >= (bench.now() - began) / period);
+        assert_running(&mut bench);
         // Each began with the first instruction of its period, as before.
         let slower = slack - bench.status().worst_slack;
-        assert!(slower < 100, "{}: {slower} counts less of a period are left", chip.name);
+        assert!(slower < 100, "{slower} counts less of a period are left");
     });
 }
 
@@ -62,7 +58,7 @@ fn what_masks_all_but_the_servo_makes_no_tick_late() {
         bench.machine.core_mut().set_register(RegisterARM::BASEPRI, 0x10);
         bench.run(5);
         bench.machine.core_mut().set_register(RegisterARM::BASEPRI, 0);
-        assert_running(&mut bench, chip.name);
+        assert_running(&mut bench);
     });
 }
 
@@ -76,9 +72,9 @@ fn what_masks_the_servo_between_two_ticks_makes_no_tick_late() {
         bench.run_for(period / 10);
         hold_up(&mut bench, period * 8 / 10, Masks::All);
         bench.run(5);
-        assert_running(&mut bench, chip.name);
+        assert_running(&mut bench);
         let slower = slack - bench.status().worst_slack;
-        assert!(slower < 100, "{}: {slower} counts less of a period are left", chip.name);
+        assert!(slower < 100, "{slower} counts less of a period are left");
     });
 }
 
@@ -100,9 +96,9 @@ fn an_encoder_that_is_unplugged_leaves_a_constant_torque_within_the_limit() {
         let samples = bench.pins().samples.clone();
         let last = samples.last().unwrap().code.unwrap();
         let is_constant = samples[2200..].iter().all(|sample| sample.code == Some(last));
-        assert!(is_constant && last.abs_diff(MID_SCALE) <= LIMIT, "{}: {last}", chip.name);
-        assert_ne!(last, MID_SCALE, "{}: it was in the wall", chip.name);
-        assert_running(&mut bench, chip.name);
+        assert!(is_constant && last.abs_diff(MID_SCALE) <= LIMIT, "{last}");
+        assert_ne!(last, MID_SCALE, "it was in the wall");
+        assert_running(&mut bench);
     });
 }
 
@@ -110,11 +106,11 @@ fn an_encoder_that_is_unplugged_leaves_a_constant_torque_within_the_limit() {
 fn a_crystal_that_does_not_start_leaves_every_pin_alone() {
     on_both(|chip| {
         let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
-        bench.machine.board_mut().clock.crystal_runs = false;
+        bench.board_mut().clock.crystal_runs = false;
         // Ten times what it takes to be ready otherwise.
         bench.run_for(3_000_000);
-        assert!(bench.events().is_empty(), "{}: {:?}", chip.name, bench.events());
-        assert!(!bench.machine.board().tick_timer.runs(), "{}", chip.name);
+        assert!(bench.events().is_empty(), "{:?}", bench.events());
+        assert!(!bench.board().tick_timer.runs());
     });
 }
 
@@ -123,13 +119,13 @@ fn a_peripheral_that_is_broken_at_power_on_leaves_the_amplifier_off() {
     on_both(|chip| {
         for register in [Register::Encoder, Register::Dac] {
             let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
-            bench.machine.board_mut().broken = Some(register.address(chip));
+            bench.board_mut().broken = Some(register.address(chip));
             let end = bench.machine.run_for(3_000_000);
-            let what = format!("{}, {register:?}: {end:?}", chip.name);
+            let what = format!("{register:?}: {end:?}");
             // The handler of faults wants the DAC, too.
             let locked_up = matches!(end, Err(BoardError::LockedUp { .. }));
             assert_eq!(locked_up, register == Register::Dac, "{what}");
-            assert_eq!(bench.machine.board().amplifier(), Level::Low, "{what}");
+            assert_eq!(bench.board().amplifier(), Level::Low, "{what}");
             assert_eq!(bench.amplifier_on(), None, "{what}");
         }
     });
@@ -140,21 +136,21 @@ fn a_record_outlives_a_reset_and_a_flipped_bit_makes_it_none() {
     on_both(|chip| {
         for word in 0..=FaultRecord::WORDS {
             let mut bench = Bench::running(chip, "damper_wall");
-            bench.pins().turns.push_back(10_000);
+            bench.turn(10_000);
             bench.run(2);
             let record = bench.record();
             let is_flipped = word < FaultRecord::WORDS;
             if is_flipped {
                 bench.flip(record + 4 * word as u32, 1 << (4 * word));
             }
-            bench.machine.board_mut().system.reset_requested = true;
+            bench.board_mut().system.reset_requested = true;
             bench.run(150);
             let told = bench.previous_fault().and_then(|record| record.fault.fault());
             let was_jump = matches!(told, Some(Fault::EncoderJump { counts: 10_000, .. }));
             let state = bench.status().state;
             let expected = (!is_flipped, State::Disarmed);
-            assert_eq!((was_jump, state), expected, "{}, word {word}: {told:?}", chip.name);
-            assert_eq!(told.is_some(), was_jump, "{}", chip.name);
+            assert_eq!((was_jump, state), expected, "word {word}: {told:?}");
+            assert_eq!(told.is_some(), was_jump);
         }
     });
 }
@@ -171,13 +167,11 @@ fn a_coefficient_with_a_flipped_bit_pushes_no_harder_than_the_limit() {
             }
             let from = bench.pins().samples.len();
             bench.run(100);
-            let what = format!("{}, bit {bit}", chip.name);
             for sample in &bench.pins().samples[from..] {
-                assert!(sample.code.unwrap().abs_diff(MID_SCALE) <= LIMIT, "{what}: {sample:?}");
+                assert!(sample.code.unwrap().abs_diff(MID_SCALE) <= LIMIT, "bit {bit}: {sample:?}");
             }
-            let status = bench.status();
-            let fault = status.fault.and_then(FaultCode::fault);
-            assert!(matches!(fault, None | Some(Fault::NotANumber)), "{what}: {fault:?}");
+            let fault = bench.fault();
+            assert!(matches!(fault, None | Some(Fault::NotANumber)), "bit {bit}: {fault:?}");
         }
     });
 }
@@ -192,7 +186,7 @@ fn a_position_that_is_no_number_with_a_negative_sign_gives_no_torque() {
             assert!(bench.machine.core_mut().set_memory(place, &negative));
         }
         bench.run(3);
-        assert_eq!(bench.machine.board().torque(), Some(MID_SCALE), "{}", chip.name);
-        assert_running(&mut bench, chip.name);
+        assert_eq!(bench.board().torque(), Some(MID_SCALE));
+        assert_running(&mut bench);
     });
 }

@@ -206,7 +206,7 @@ fn a_program_goes_on_after_an_interrupt_anywhere() {
         for after in before_each(BODY) {
             program.check(&[(after, PEND_SV)]);
         }
-        assert_eq!(program.words(COUNTS), [ADDED * BODY.len() as u32, 0], "{}", chip.name);
+        assert_eq!(program.words(COUNTS), [ADDED * BODY.len() as u32, 0]);
     });
 }
 
@@ -220,7 +220,7 @@ fn an_interrupt_goes_on_after_another_one_anywhere() {
             }
         }
         let times = (BODY.len() * LOWER.len()) as u32;
-        assert_eq!(program.words(COUNTS), [ADDED * times, times], "{}", chip.name);
+        assert_eq!(program.words(COUNTS), [ADDED * times, times]);
     });
 }
 
@@ -263,7 +263,7 @@ fn a_conditional_block_is_finished_before_an_interrupt_is_served() {
             interrupted.push(program.machine.core_mut().register(RegisterARM::PC) & !1);
         }
         for (at, in_block) in places(program.body).into_iter().rev().skip(1) {
-            let what = format!("{}, {at:#x}", chip.name);
+            let what = format!("{at:#x}");
             assert_eq!(interrupted.contains(&at), !in_block, "{what}: {interrupted:x?}");
         }
     });

@@ -13,6 +13,7 @@ mod harmless;
 mod interrupts;
 mod own_board;
 mod phase;
+mod provoked;
 mod reset;
 mod scenes;
 mod start;

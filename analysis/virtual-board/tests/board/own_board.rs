@@ -6,16 +6,15 @@ use std::sync::OnceLock;
 
 use analysis::toolchain::{Tools, prepare};
 use haptic_servo::fault::Fault;
-use haptic_servo::servo_loop::State;
-use haptic_servo::wire::message::{FaultCode, Outcome};
+use haptic_servo::wire::message::Outcome;
 use virtual_board::board::Event;
 use virtual_board::chip::{STM32F405, TICK_INTERRUPT};
-use virtual_board::core::exceptions::FIRST_INTERRUPT;
 use virtual_board::device::FixedDevice;
 use virtual_board::peripheral::pins::Level;
 
 use crate::bench::{Bench, MID_SCALE, build};
-use crate::faults::{Register, panics};
+use crate::faults::{Register, disable, panics};
+use crate::provoked::{Case, run_on};
 use crate::stub::{Masks, hold_up};
 
 /// Counts from the face into the wall at which its torque is limited, and codes of that limit: 1 N m of 2.
@@ -37,7 +36,7 @@ fn in_the_wall() -> Bench {
     let mut bench = boot();
     bench.armed();
     bench.run(110);
-    bench.pins().turns.push_back(DEEP);
+    bench.turn(DEEP);
     bench.run(5);
     bench
 }
@@ -45,15 +44,15 @@ fn in_the_wall() -> Bench {
 #[test]
 fn it_is_off_until_the_host_arms_it_and_then_renders_the_wall() {
     let mut bench = boot();
-    bench.pins().turns.push_back(DEEP);
+    bench.turn(DEEP);
     bench.run(200);
     let events: Vec<_> = bench.events().iter().map(|&(_, event)| event).collect();
     assert_eq!(events, [Event::Amplifier(Level::Low), Event::Torque(Some(MID_SCALE))]);
-    assert!(bench.machine.board().watchdog.due().is_some());
+    assert!(bench.board().watchdog.due().is_some());
     bench.armed();
     bench.run(110);
-    assert_eq!(bench.pins().samples.last().unwrap().code, Some(MID_SCALE - LIMIT));
-    assert_eq!(bench.machine.board().serial.lost(), 0);
+    assert_eq!(bench.last_code(), Some(MID_SCALE - LIMIT));
+    assert_eq!(bench.board().serial.lost(), 0);
 }
 
 /// To the bit what a board of the firmware renders of the same scene, at the same instants.
@@ -82,7 +81,7 @@ fn its_codes_come_out_at_the_next_update() {
     bench.pins().turns.extend([3; 300]);
     bench.run(300);
     let period = bench.period();
-    let due = bench.machine.board().tick_timer.due().unwrap();
+    let due = bench.board().tick_timer.due().unwrap();
     let changes = |(at, event): &(u64, Event)| matches!(event, Event::Torque(_)).then_some(*at);
     let times: Vec<_> = bench.events().iter().filter_map(changes).skip(1).collect();
     assert!(times.len() > 20);
@@ -91,81 +90,56 @@ fn its_codes_come_out_at_the_next_update() {
     assert!(late.iter().all(|after| *after <= 1), "{late:?}");
 }
 
-/// A cause, the periods within which the amplifier is off, whether the board is then reset, and what it says.
-type Case = (fn(&mut Bench), f64, bool, fn(Fault) -> bool);
+const fn case(
+    fault: &'static str,
+    cause: &'static str,
+    bound: f64,
+    provoke: fn(&mut Bench),
+) -> Case<()> {
+    Case::new(|_| in_the_wall(), fault, cause, bound, provoke)
+}
 
-const FAULTS: [Case; 6] = [
-    (
-        |bench| bench.pins().turns.push_back(2000),
-        2.0,
-        false,
-        |fault| matches!(fault, Fault::EncoderJump { .. }),
-    ),
-    (
-        |bench| {
-            let instructions = 3 * bench.period();
-            hold_up(bench, instructions, Masks::All);
-        },
-        4.0,
-        false,
-        |fault| matches!(fault, Fault::MissedTick { missed: 2, tolerated: 0 }),
-    ),
-    (
-        |bench| {
-            let exceptions = &mut bench.machine.board_mut().system.exceptions;
-            exceptions.enable(FIRST_INTERRUPT + TICK_INTERRUPT, false);
-        },
-        // Eight periods, and two counts of the watchdog's clock of 8 kHz.
-        8.25,
-        true,
-        |fault| fault == Fault::Watchdog,
-    ),
-    (
-        |bench| bench.machine.board_mut().clock.crystal_runs = false,
-        0.01,
-        true,
-        |fault| fault == Fault::ClockLost,
-    ),
-    (
-        |bench| {
-            let board = bench.machine.board_mut();
-            board.broken = Some(Register::Encoder.address(board.chip()));
-        },
-        1.1,
-        true,
-        |fault| matches!(fault, Fault::HardFault { .. }),
-    ),
-    (|bench| _ = panics(bench), 0.01, true, |fault| fault == Fault::Panic { line: 12, column: 34 }),
+const FAULTS: &[Case<()>] = &[
+    case("encoder-jump", "the encoder jumps", 2.0, |bench| bench.turn(2000)),
+    case("missed-tick", "all interrupts are masked for three periods", 4.0, |bench| {
+        let instructions = 3 * bench.period();
+        hold_up(bench, instructions, Masks::All);
+    })
+    .told_as(Fault::MissedTick { missed: 2, tolerated: 0 }),
+    // Eight periods, and two counts of the watchdog's clock of 8 kHz.
+    case("watchdog", "the servo's interrupt is disabled", 8.25, |bench| {
+        disable(bench, TICK_INTERRUPT)
+    })
+    .resetting(),
+    case("clock-lost", "the crystal stops", 0.01, |bench| {
+        bench.board_mut().clock.crystal_runs = false
+    })
+    .resetting(),
+    case("hard-fault", "the bus has an error at the encoder's counter", 1.1, |bench| {
+        let board = bench.board_mut();
+        board.broken = Some(Register::Encoder.address(board.chip()));
+    })
+    .resetting(),
+    case("panic", "the core is sent into a panic", 0.01, |bench| _ = panics(bench))
+        .resetting()
+        .told_as(Fault::Panic { line: 12, column: 34 }),
 ];
 
 #[test]
 fn every_fault_takes_the_torque_away_in_time_and_is_told() {
-    for (number, (provoke, bound, resets, is_told)) in FAULTS.into_iter().enumerate() {
-        let mut bench = in_the_wall();
-        assert_ne!(bench.pins().samples.last().unwrap().code, Some(MID_SCALE));
-        let (from, period) = (bench.machine.board().now, bench.period());
-        provoke(&mut bench);
-        while bench.machine.board().now < from + 12 * period {
-            bench.run_for(1000);
-            if !bench.machine.resets().is_empty() {
-                // What was broken is repaired before it is used again.
-                let board = bench.machine.board_mut();
-                (board.broken, board.clock.crystal_runs) = (None, true);
-            }
-        }
-        let off = bench.amplifier_off(from).unwrap_or_else(|| panic!("{number}: it stays on"));
-        let periods = (off - from) as f64 / period as f64;
-        assert!(periods <= bound, "{number}: {periods} periods");
-        bench.run(50);
-        assert_eq!(bench.machine.board().torque(), Some(MID_SCALE), "{number}");
-        assert_eq!(!bench.machine.resets().is_empty(), resets, "{number}");
-        let status = bench.status();
-        let fault = status.fault.and_then(FaultCode::fault).expect("a fault");
-        assert!(is_told(fault), "{number}: {fault:?}");
-        let state = if resets { State::Disarmed } else { State::Faulted };
-        assert_eq!(status.state, state, "{number}");
+    for case in FAULTS {
+        let mut bench = (case.begin)(&STM32F405);
+        assert_ne!(bench.last_code(), Some(MID_SCALE));
+        let (from, period) = (bench.now(), bench.period());
+        (case.provoke)(&mut bench);
+        run_on(&mut bench, from + 12 * period);
+        let what = case.what();
+        let off = bench.amplifier_off(from).unwrap_or_else(|| panic!("{what}: it stays on"));
+        case.check_bound(off - from, period);
+        case.check_told(&mut bench);
         // Nothing but arming brings the torque back.
-        assert_eq!(bench.machine.board().amplifier(), Level::Low, "{number}");
-        assert_eq!(bench.arm(), Outcome::Done, "{number}");
+        assert_eq!(bench.board().torque(), Some(MID_SCALE), "{what}");
+        assert_eq!(bench.board().amplifier(), Level::Low, "{what}");
+        assert_eq!(bench.arm(), Outcome::Done, "{what}");
     }
 }

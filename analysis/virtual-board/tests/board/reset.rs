@@ -3,7 +3,6 @@
 use haptic_servo::fault::Fault;
 use haptic_servo::reset::ResetCause;
 use haptic_servo::servo_loop::State;
-use haptic_servo::wire::message::FaultCode;
 use virtual_board::chip::{Chip, FREEZE, STM32F405, WATCHDOG_FREEZES};
 use virtual_board::core::exceptions::NON_MASKABLE;
 use virtual_board::device::FixedDevice;
@@ -35,11 +34,11 @@ fn told(chip: &Chip, cause: Cause) -> ResetCause {
 fn check_off(bench: &mut Bench, reset: ResetCause, what: &str) {
     let samples = bench.pins().samples.len();
     bench.run(200);
-    assert_eq!(bench.machine.board().clock.causes(), 0, "{what}: the flags are cleared");
+    assert_eq!(bench.board().clock.causes(), 0, "{what}: the flags are cleared");
     let status = bench.status();
     assert_eq!((status.reset, status.state), (reset, State::Disarmed), "{what}");
     let watchdog = (reset == ResetCause::IndependentWatchdog).then_some(Fault::Watchdog);
-    assert_eq!(status.fault.and_then(FaultCode::fault), watchdog, "{what}");
+    assert_eq!(bench.fault(), watchdog, "{what}");
     let line = format!("last reset: {}", reset.as_str());
     let log = bench.log();
     let last = log.iter().rfind(|line| line.contains("last reset"));
@@ -55,14 +54,14 @@ fn check_off(bench: &mut Bench, reset: ResetCause, what: &str) {
 fn every_cause_of_a_reset_is_told_and_none_arms_the_servo() {
     on_both(|chip| {
         for cause in Cause::ALL {
-            let what = format!("{}, {cause:?}", chip.name);
+            let what = format!("{cause:?}");
             let mut bench = Bench::running(chip, "damper_wall");
-            bench.pins().turns.push_back(INTO);
+            bench.turn(INTO);
             bench.run(20);
-            assert_eq!(bench.machine.board().amplifier(), Level::High, "{what}");
-            assert_ne!(bench.machine.board().torque(), Some(MID_SCALE), "{what}");
+            assert_eq!(bench.board().amplifier(), Level::High, "{what}");
+            assert_ne!(bench.board().torque(), Some(MID_SCALE), "{what}");
             bench.machine.reset(cause);
-            assert_ne!(bench.machine.board().amplifier(), Level::High, "{what}");
+            assert_ne!(bench.board().amplifier(), Level::High, "{what}");
             check_off(&mut bench, told(chip, cause), &what);
         }
     });
@@ -72,12 +71,12 @@ fn every_cause_of_a_reset_is_told_and_none_arms_the_servo() {
 fn a_supply_that_was_off_is_told_from_one_that_was_low_and_arms_nothing() {
     on_both(|chip| {
         let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
-        check_off(&mut bench, ResetCause::PowerOn, chip.name);
+        check_off(&mut bench, ResetCause::PowerOn, "");
         bench.armed();
         bench.machine.power_cycle();
-        check_off(&mut bench, ResetCause::PowerOn, chip.name);
+        check_off(&mut bench, ResetCause::PowerOn, "");
         bench.machine.reset(Cause::Pin);
-        check_off(&mut bench, ResetCause::Pin, chip.name);
+        check_off(&mut bench, ResetCause::Pin, "");
     });
 }
 
@@ -89,7 +88,7 @@ fn of_two_causes_the_watchdog_is_named() {
         bench.run_for(10);
         bench.machine.reset(Cause::Software);
         bench.machine.reset(Cause::Watchdog);
-        check_off(&mut bench, ResetCause::IndependentWatchdog, chip.name);
+        check_off(&mut bench, ResetCause::IndependentWatchdog, "");
     });
 }
 
@@ -104,20 +103,20 @@ fn a_word_that_flash_or_ram_cannot_give_is_named() {
     for bit in [31, 29] {
         let status = 1 << bit | PLACE;
         let mut bench = Bench::running(chip, "damper_wall");
-        bench.machine.board_mut().flash.set(0x18, status);
+        bench.board_mut().flash.set(0x18, status);
         check_named(&mut bench, ecc(status));
     }
     let mut bench = Bench::running(chip, "damper_wall");
-    bench.machine.board_mut().configuration.set(0x1C, 1 << 8);
+    bench.board_mut().configuration.set(0x1C, 1 << 8);
     check_named(&mut bench, Fault::RamParity);
 }
 
 /// A non-maskable interrupt takes the torque away at once, and after the watchdog's reset the board
 /// says what it was.
 fn check_named(bench: &mut Bench, fault: Fault) {
-    bench.pins().turns.push_back(INTO);
+    bench.turn(INTO);
     bench.run(20);
-    let board = bench.machine.board_mut();
+    let board = bench.board_mut();
     board.system.exceptions.pend(NON_MASKABLE);
     let began = board.now;
     bench.run(300);
@@ -126,7 +125,7 @@ fn check_named(bench: &mut Bench, fault: Fault) {
     assert_eq!(bench.machine.resets().len(), 1, "{fault:?}");
     let status = bench.status();
     assert_eq!(status.state, State::Disarmed, "{fault:?}");
-    assert_eq!(status.fault.and_then(FaultCode::fault), Some(fault));
+    assert_eq!(bench.fault(), Some(fault));
     let log = bench.log();
     assert!(log.iter().any(|line| line.contains(fault.as_str())), "{log:?}");
 }
@@ -144,14 +143,14 @@ fn flash_is_read_through_its_caches() {
     on_both(|chip| {
         let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         bench.run(3);
-        let access = bench.machine.board().flash.get(ACR);
+        let access = bench.board().flash.get(ACR);
         let (caches, wait_states) = match chip.name {
             // Its prefetching is no gain where the servo runs from core-coupled memory.
             "nucleo-g474re" => (DATA | INSTRUCTIONS, 4),
             _ => (DATA | INSTRUCTIONS | PREFETCH, 5),
         };
         let all = DATA | INSTRUCTIONS | PREFETCH;
-        assert_eq!((access & all, access & 0xF), (caches, wait_states), "{}", chip.name);
+        assert_eq!((access & all, access & 0xF), (caches, wait_states));
     });
 }
 
@@ -161,9 +160,9 @@ fn flash_is_read_through_its_caches() {
 fn the_first_revision_does_not_prefetch() {
     for identity in [0x1000_6413, 0x2000_6411] {
         let mut bench = Bench::boot(&STM32F405, "damper_wall", FixedDevice);
-        bench.machine.board_mut().debug.set(0x00, identity);
+        bench.board_mut().debug.set(0x00, identity);
         bench.run(3);
-        let access = bench.machine.board().flash.get(ACR);
+        let access = bench.board().flash.get(ACR);
         assert_eq!(access & (DATA | INSTRUCTIONS | PREFETCH), DATA | INSTRUCTIONS);
     }
 }
@@ -179,14 +178,14 @@ fn a_brown_out_level_that_is_too_low_is_said_with_the_way_to_set_it() {
         for is_enough in [false, true] {
             let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
             if is_enough {
-                let options = bench.machine.board().flash.get(chip.options) & !field | enough;
-                bench.machine.board_mut().flash.set(chip.options, options);
+                let options = bench.board().flash.get(chip.options) & !field | enough;
+                bench.board_mut().flash.set(chip.options, options);
             }
             bench.run(3);
             let log = bench.log();
             let warns = |line: &String| line.contains("brown-out") && line.contains("-ob BOR_LEV=");
-            assert_eq!(log.iter().any(warns), !is_enough, "{}: {log:?}", chip.name);
-            assert_eq!(bench.status().low_brown_out, !is_enough, "{}", chip.name);
+            assert_eq!(log.iter().any(warns), !is_enough, "{log:?}");
+            assert_eq!(bench.status().low_brown_out, !is_enough);
         }
     });
 }
@@ -196,8 +195,8 @@ fn a_brown_out_level_that_is_too_low_is_said_with_the_way_to_set_it() {
 fn the_watchdog_runs_on_at_a_breakpoint() {
     on_both(|chip| {
         let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
-        bench.machine.board_mut().debug.set(FREEZE, WATCHDOG_FREEZES);
+        bench.board_mut().debug.set(FREEZE, WATCHDOG_FREEZES);
         bench.run(3);
-        assert_eq!(bench.machine.board().debug.get(FREEZE), 0, "{}", chip.name);
+        assert_eq!(bench.board().debug.get(FREEZE), 0);
     });
 }

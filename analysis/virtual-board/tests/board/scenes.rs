@@ -23,34 +23,26 @@ const SAMPLES: u64 = 5000;
 /// Samples within which the clamp is open.
 const OPEN: usize = 110;
 
-#[test]
-fn the_wall_gives_the_host_s_codes() {
-    on_both(|chip| {
-        compare::<_, Latched>(chip, "damper_wall", damper_wall::SCENE, &damper_wall::TRANSDUCERS);
-    });
+/// A program's whole script on a board, against the servo on the host with the same counts.
+macro_rules! compare {
+    ($($test:ident: $program:ident, $output:ty;)*) => {$(
+        #[test]
+        fn $test() {
+            on_both(|chip| {
+                let program = Program::find(stringify!($program)).unwrap();
+                let (scene, transducers) = ($program::SCENE, &$program::TRANSDUCERS);
+                let device = HandHeldDevice::of(program);
+                compare_held::<_, $output>(chip, program, scene, transducers, device);
+            });
+        }
+    )*};
 }
 
-#[test]
-fn the_spring_gives_the_host_s_codes() {
-    on_both(|chip| {
-        let (scene, transducers) = (delayed_spring::SCENE, &delayed_spring::TRANSDUCERS);
-        compare::<_, Latched>(chip, "delayed_spring", scene, transducers);
-    });
-}
-
-#[test]
-fn free_mode_gives_the_host_s_codes() {
-    on_both(|chip| {
-        compare::<_, Latched>(chip, "free_mode", free_mode::SCENE, &free_mode::TRANSDUCERS);
-    });
-}
-
-#[test]
-fn the_wall_without_delay_gives_the_host_s_codes() {
-    on_both(|chip| {
-        let (scene, transducers) = (undelayed_wall::SCENE, &undelayed_wall::TRANSDUCERS);
-        compare::<_, undelayed_wall::Output>(chip, "undelayed_wall", scene, transducers);
-    });
+compare! {
+    the_wall_gives_the_host_s_codes: damper_wall, Latched;
+    the_spring_gives_the_host_s_codes: delayed_spring, Latched;
+    free_mode_gives_the_host_s_codes: free_mode, Latched;
+    the_wall_without_delay_gives_the_host_s_codes: undelayed_wall, undelayed_wall::Output;
 }
 
 /// From one end stop through all detents to the other one, beyond both.
@@ -72,25 +64,12 @@ fn the_knob_gives_the_host_s_codes_through_its_detents_and_into_its_stops() {
             .map(angle)
             .fold((0.0, 0.0), |(least, most): (f64, f64), at| (least.min(at), most.max(at)));
         let ends = scene.environment.profile().unwrap().ends.unwrap();
-        assert!(furthest.0 < ends.from && furthest.1 > ends.to, "{}: {furthest:?}", chip.name);
+        assert!(furthest.0 < ends.from && furthest.1 > ends.to, "{furthest:?}");
     });
 }
 
-/// A program's whole script on a board, against the servo on the host with the same counts.
-fn compare<E, M>(
-    chip: &'static Chip,
-    name: &'static str,
-    scene: Scene<E>,
-    transducers: &Transducers,
-) where
-    E: Tunable<f32> + SupportsTiming<M>,
-    M: OutputMode,
-{
-    let program = Program::find(name).unwrap();
-    compare_held::<E, M>(chip, program, scene, transducers, HandHeldDevice::of(program));
-}
-
-/// The same around a device; gives what was at the pins from the tick on in which it was armed.
+/// A program around a device on a board, against the servo on the host with the same counts; gives what was
+/// at the pins from the tick on in which it was armed.
 fn compare_held<E, M>(
     chip: &'static Chip,
     program: &'static Program,
@@ -114,16 +93,16 @@ where
     let codes = with_the_same_cycle::<E, M>(scene, transducers, ticks);
     let at = |tick: usize| (samples[tick].count, samples[tick + late].code.unwrap());
     for (tick, &code) in codes.iter().enumerate() {
-        assert_eq!(at(tick).1, code, "{}, {name}, tick {tick}: {:?}", chip.name, at(tick));
+        assert_eq!(at(tick).1, code, "{name}, tick {tick}: {:?}", at(tick));
     }
     let moved = samples.iter().filter(|sample| sample.code != samples[late].code).count();
-    assert!(moved > 1000, "{}, {name}: no torque but in {moved} samples", chip.name);
+    assert!(moved > 1000, "{name}: no torque but in {moved} samples");
     // And the DAC's latch is the sample by which the scene is late; at a phase, it is not.
     let mut controller = program.controller(NumberFormat::F32, transducers).unwrap();
     for (tick, sample) in samples[..SAMPLES as usize].iter().enumerate() {
         let code = controller.tick(sample.count).code;
         let opened = tick > OPEN;
-        assert!(!opened || samples[tick + 1].code == Some(code), "{}, {name}: {tick}", chip.name);
+        assert!(!opened || samples[tick + 1].code == Some(code), "{name}: {tick}");
     }
     samples.to_vec()
 }
@@ -138,12 +117,22 @@ where
     E: Tunable<f32> + SupportsTiming<M>,
     M: OutputMode,
 {
-    let mut host = Replica::<E, M>::boot(boot::Program {
-        scene,
-        transducers: *transducers,
-        rendering: RenderingOptions::DEFAULT,
-        options: Options::DEFAULT,
-    });
+    on_the_host::<E, M>(program(scene, transducers), samples)
+}
+
+/// A program of a scene with no other options.
+pub fn program<E>(scene: Scene<E>, transducers: &Transducers) -> boot::Program<E> {
+    let (transducers, rendering) = (*transducers, RenderingOptions::DEFAULT);
+    boot::Program { scene, transducers, rendering, options: Options::DEFAULT }
+}
+
+/// The codes of a program's cycle on the host with the same counts, from the tick on in which it is armed.
+pub fn on_the_host<E, M>(program: boot::Program<E>, samples: &[Sample]) -> Vec<u16>
+where
+    E: Tunable<f32> + SupportsTiming<M>,
+    M: OutputMode,
+{
+    let mut host = Replica::<E, M>::boot(program);
     host.arm();
     samples.iter().map(|sample| host.tick(sample.count).0).collect()
 }

@@ -18,21 +18,21 @@ const OPENING: f64 = LIMIT / 100.0;
 fn nothing_is_driven_before_the_amplifier_is_off_and_that_is_on_only_once_it_is_armed() {
     on_both(|chip| {
         let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
-        bench.pins().turns.push_back(DEEP);
+        bench.turn(DEEP);
         bench.run(300);
         let events: Vec<_> = bench.events().iter().map(|&(_, event)| event).collect();
         // The DAC is at mid-scale from the first moment on in which it drives its pin.
         let order = [Event::Amplifier(Level::Low), Event::Torque(Some(MID_SCALE))];
-        assert_eq!(events, order, "{}", chip.name);
-        assert!(bench.machine.board().watchdog.due().is_some(), "{}", chip.name);
+        assert_eq!(events, order);
+        assert!(bench.board().watchdog.due().is_some());
         bench.armed();
         let (on, event) = bench.events()[2];
-        assert_eq!(event, Event::Amplifier(Level::High), "{}", chip.name);
+        assert_eq!(event, Event::Amplifier(Level::High));
         // In a tick, and in none of the program's other moments.
-        let most = bench.machine.board().meter.interrupt().most;
-        let since = bench.period()
-            - (bench.machine.board().tick_timer.due().unwrap() - on) % bench.period();
-        assert!(since <= most, "{}: {since} of {most}", chip.name);
+        let most = bench.board().meter.interrupt().most;
+        let since =
+            bench.period() - (bench.board().tick_timer.due().unwrap() - on) % bench.period();
+        assert!(since <= most, "{since} of {most}");
     });
 }
 
@@ -41,14 +41,14 @@ fn where_the_encoder_stands_at_power_on_is_zero() {
     on_both(|chip| {
         let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         // Turned while the driver has set the counter up and the servo does not run yet.
-        while !bench.machine.board().encoder.counts_encoder() {
+        while !bench.board().encoder.counts_encoder() {
             bench.run_for(100);
         }
-        assert_eq!(bench.machine.board().samples, 0, "{}", chip.name);
-        bench.machine.board_mut().turn_encoder(12_345);
+        assert_eq!(bench.board().samples, 0);
+        bench.board_mut().turn_encoder(12_345);
         bench.armed();
         bench.run(200);
-        assert_eq!(bench.status().count, 0, "{}", chip.name);
+        assert_eq!(bench.status().count, 0);
         assert!(bench.pins().samples.iter().all(|sample| sample.code == Some(MID_SCALE)));
     });
 }
@@ -58,7 +58,7 @@ fn the_clamp_opens_step_by_step() {
     on_both(|chip| {
         let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         // The device is pushed into the wall in the first sample and held there.
-        bench.pins().turns.push_back(DEEP);
+        bench.turn(DEEP);
         bench.run(2);
         let armed = bench.armed();
         bench.run(130);
@@ -69,12 +69,11 @@ fn the_clamp_opens_step_by_step() {
             let expected = OPENING * f64::from(step);
             assert!(
                 (torque(sample) - expected).abs() <= 1.0,
-                "{}, sample {sample}: {} codes, not {expected}",
-                chip.name,
+                "sample {sample}: {} codes, not {expected}",
                 torque(sample)
             );
         }
-        assert_eq!(torque(125), LIMIT.round(), "{}", chip.name);
+        assert_eq!(torque(125), LIMIT.round());
     });
 }
 
@@ -87,10 +86,10 @@ const C: usize = 2;
 fn the_power_stage_of_an_esc_is_off_before_its_torque_pin_is_driven() {
     let file = build(&B_G431B_ESC1, &["damper_wall"]).remove(0);
     let mut bench = Bench::boot_file(&B_G431B_ESC1, &file, FixedDevice);
-    while bench.machine.board().torque().is_none() {
+    while bench.board().torque().is_none() {
         bench.run_for(10);
     }
-    let board = bench.machine.board();
+    let board = bench.board();
     // High sides and low sides of U, V and W (UM2516, table 4).
     for (port, pin) in [(A, 8), (A, 9), (A, 10), (C, 13), (A, 12), (B, 15)] {
         assert_eq!(board.level(port, pin), Level::Low, "port {port}, pin {pin}");
@@ -111,12 +110,12 @@ fn the_encoders_inputs_are_filtered_as_its_edges_allow_and_pulled_where_they_bea
     on_both(|chip| {
         let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         bench.run(3);
-        let board = bench.machine.board();
+        let board = bench.board();
         let clock = (chip.core / board.clock.timer_divider()) as f64;
         let fits = |&clocks: &u32| f64::from(clocks) / clock <= count / 4.0;
         let longest = CLOCKS.iter().rposition(fits).unwrap() as u32;
-        assert_eq!(board.encoder.filters(), [longest; 2], "{}", chip.name);
+        assert_eq!(board.encoder.filters(), [longest; 2]);
         // The F405's pins bear the 5 V of their connector only where the chip does not pull.
-        assert_eq!(board.pulls_encoder(), chip.name == "nucleo-g474re", "{}", chip.name);
+        assert_eq!(board.pulls_encoder(), chip.name == "nucleo-g474re");
     });
 }

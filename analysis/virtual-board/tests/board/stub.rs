@@ -20,19 +20,19 @@ const SIZE: u32 = 32;
 /// Holds the serial port's interrupt up for so many instructions before its handler, from the next
 /// byte on, which is sent. Gives when it begins.
 pub fn hold_up(bench: &mut Bench, instructions: u64, masks: Masks) -> u64 {
-    let chip = bench.machine.board().chip();
+    let chip = bench.board().chip();
     let number: Number = FIRST_INTERRUPT + chip.serial_interrupt;
     let at = 0x2000_0000 + chip.ram - SIZE;
     let handler = bench.machine.divert(number, Some(at));
     let code = stub(instructions, masks, handler);
     assert!(bench.machine.core_mut().set_memory(at, &code));
-    let is_active = |bench: &Bench| bench.machine.board().system.exceptions.is_active(number);
-    bench.machine.board_mut().send(&[0]);
+    let is_active = |bench: &Bench| bench.board().system.exceptions.is_active(number);
+    bench.board_mut().send(&[0]);
     while !is_active(bench) {
         bench.run_for(1);
     }
     bench.machine.divert(number, None);
-    bench.machine.board().now
+    bench.now()
 }
 
 /// The code: two instructions a round, then on to the handler.

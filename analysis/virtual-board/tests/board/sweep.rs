@@ -23,7 +23,7 @@ fn playing(samples: u64) -> Bench {
     let (chip, file) = file();
     let mut bench = Bench::boot_file(chip, file, FixedDevice);
     bench.run(5);
-    bench.machine.board_mut().send(&SweepRequest::BEGIN.frame());
+    bench.board_mut().send(&SweepRequest::BEGIN.frame());
     bench.run(samples);
     bench
 }
@@ -32,7 +32,7 @@ fn playing(samples: u64) -> Bench {
 fn lines(bench: &mut Bench) -> Vec<String> {
     // Samples under way come with the next ones.
     bench.run(20);
-    let sent = bench.machine.board_mut().serial.take_sent();
+    let sent = bench.board_mut().serial.take_sent();
     String::from_utf8(sent).unwrap().lines().map(str::to_owned).collect()
 }
 
@@ -44,8 +44,8 @@ fn assert_ended(bench: &mut Bench, end: SweepEnd, what: &str) {
     assert!(last.starts_with(&format!("end,{},", end.as_str())), "{what}: {last}");
     let rows = &lines[1..lines.len() - 1];
     assert!(rows.iter().all(|row| row.split(',').count() == 3), "{what}");
-    assert_eq!(bench.machine.board().amplifier(), Level::Low, "{what}");
-    assert_eq!(bench.machine.board().torque(), Some(MID_SCALE), "{what}");
+    assert_eq!(bench.board().amplifier(), Level::Low, "{what}");
+    assert_eq!(bench.board().torque(), Some(MID_SCALE), "{what}");
     let after = bench.pins().samples.len();
     bench.run(20);
     let pins = bench.pins();
@@ -58,7 +58,7 @@ fn nothing_moves_before_the_host_begins_and_the_board_says_what_it_would_play() 
     let mut bench = Bench::boot_file(chip, file, FixedDevice);
     bench.run(50);
     for request in [SweepRequest::Describe, SweepRequest::Listening, SweepRequest::Stop] {
-        bench.machine.board_mut().send(&request.frame());
+        bench.board_mut().send(&request.frame());
     }
     assert_eq!(lines(&mut bench), ["identify,3,0.001,61440,58000,0.7,85"]);
     assert_still(&bench);
@@ -88,16 +88,16 @@ fn no_noise_begins_a_sweep() {
     let noise = noise.chain(std::iter::repeat_with(&mut random_byte).take(4000));
     let noise: Vec<u8> = noise.collect();
     for piece in noise.chunks(20) {
-        bench.machine.board_mut().send(piece);
+        bench.board_mut().send(piece);
         bench.run(1);
     }
     bench.run(20);
     assert_still(&bench);
-    bench.machine.board_mut().send(&SweepRequest::BEGIN.frame());
+    bench.board_mut().send(&SweepRequest::BEGIN.frame());
     bench.run(20);
-    assert_eq!(bench.machine.board().amplifier(), Level::High);
+    assert_eq!(bench.board().amplifier(), Level::High);
     // A second request to begin ends it, and begins nothing afterwards.
-    bench.machine.board_mut().send(&SweepRequest::BEGIN.frame());
+    bench.board_mut().send(&SweepRequest::BEGIN.frame());
     bench.run(3);
     assert_ended(&mut bench, SweepEnd::Stopped, "begun twice");
 }
@@ -105,17 +105,17 @@ fn no_noise_begins_a_sweep() {
 #[test]
 fn a_sweep_ends_where_the_host_says_so_or_says_nothing() {
     let mut bench = playing(200);
-    assert_eq!(bench.machine.board().amplifier(), Level::High);
-    bench.machine.board_mut().send(&SweepRequest::Stop.frame());
+    assert_eq!(bench.board().amplifier(), Level::High);
+    bench.board_mut().send(&SweepRequest::Stop.frame());
     bench.run(3);
     assert_ended(&mut bench, SweepEnd::Stopped, "stopped");
     // Half a second after the last byte, which is half a second of samples.
     let patience = (SILENCE * 1000.0) as u64;
     let mut bench = playing(patience - 10);
-    assert_eq!(bench.machine.board().amplifier(), Level::High);
-    bench.machine.board_mut().send(&SweepRequest::Listening.frame());
+    assert_eq!(bench.board().amplifier(), Level::High);
+    bench.board_mut().send(&SweepRequest::Listening.frame());
     bench.run(patience - 10);
-    assert_eq!(bench.machine.board().amplifier(), Level::High);
+    assert_eq!(bench.board().amplifier(), Level::High);
     bench.run(15);
     assert_ended(&mut bench, SweepEnd::Silent, "silent");
 }
@@ -141,6 +141,6 @@ fn a_sweep_ends_where_the_device_leaves_its_limits() {
         bench.pins().turns.extend([speed, -speed].map(|turn| sign * turn));
         bench.pins().turns.extend([sign * travel / 10; 10]);
         bench.run(15);
-        assert_eq!(bench.machine.board().amplifier(), Level::High, "{sign}");
+        assert_eq!(bench.board().amplifier(), Level::High, "{sign}");
     }
 }

@@ -19,8 +19,8 @@ const SETTLING: u64 = 300;
 fn the_pacing_timer_s_period_is_the_scene_s() {
     on_both(|chip| {
         let bench = Bench::running(chip, "damper_wall");
-        assert_eq!(bench.machine.board().clock.core(), chip.core, "{}", chip.name);
-        assert_eq!(bench.period(), chip.core / 1000, "{}", chip.name);
+        assert_eq!(bench.board().clock.core(), chip.core);
+        assert_eq!(bench.period(), chip.core / 1000);
     });
 }
 
@@ -28,37 +28,37 @@ fn the_pacing_timer_s_period_is_the_scene_s() {
 fn a_count_reaches_the_dac_within_its_sample_and_the_motor_exactly_at_the_next() {
     on_both(|chip| {
         let mut bench = Bench::running(chip, "damper_wall");
-        bench.pins().turns.push_back(INTO);
+        bench.turn(INTO);
         bench.run(SETTLING);
         let codes = |bench: &Bench| {
-            let dac = &bench.machine.board().dac;
+            let dac = &bench.board().dac;
             (dac.held(), dac.output().unwrap())
         };
         let (held, output) = codes(&bench);
-        assert_eq!(held, output, "{}: at rest", chip.name);
-        bench.pins().turns.push_back(STEP);
+        assert_eq!(held, output, "at rest");
+        bench.turn(STEP);
         bench.run_to_update();
-        let update = bench.machine.board().now + bench.period();
+        let update = bench.now() + bench.period();
         // Instruction by instruction, as long as the servo's interrupt takes and some more.
         let mut written = None;
         for _ in 0..1000 {
             bench.run_for(1);
             let (now_held, now_output) = codes(&bench);
-            assert_eq!(now_output, output, "{}: put out early", chip.name);
+            assert_eq!(now_output, output, "put out early");
             if now_held != held {
-                written.get_or_insert(bench.machine.board().now);
+                written.get_or_insert(bench.now());
             }
         }
-        let computed = bench.machine.board().meter.interrupt().most;
+        let computed = bench.board().meter.interrupt().most;
         let written = written.expect("a code is written") - (update - bench.period());
-        assert!(written <= computed, "{}: {written} of {computed}", chip.name);
+        assert!(written <= computed, "{written} of {computed}");
         // To the last instruction before the update, and then one more.
         bench.run_to_update();
-        assert_eq!(bench.machine.board().now, update);
-        assert_eq!(codes(&bench).1, output, "{}: put out early", chip.name);
+        assert_eq!(bench.now(), update);
+        assert_eq!(codes(&bench).1, output, "put out early");
         bench.run_for(1);
         let (held, new) = codes(&bench);
-        assert!(new != output && new == held, "{}", chip.name);
+        assert!(new != output && new == held);
         assert_eq!(bench.events().last(), Some(&(update, Event::Torque(Some(new)))));
     });
 }
@@ -67,32 +67,32 @@ fn a_count_reaches_the_dac_within_its_sample_and_the_motor_exactly_at_the_next()
 fn a_count_that_comes_after_it_was_read_waits_for_the_next_sample() {
     on_both(|chip| {
         let mut bench = Bench::running(chip, "damper_wall");
-        bench.pins().turns.push_back(INTO);
+        bench.turn(INTO);
         bench.run(SETTLING);
         // The instruction after an update up to which a step still counts in that tick.
-        let (mut early, mut late) = (0, bench.machine.board().meter.interrupt().most);
-        assert!(counts_in_this_tick(&mut bench, early), "{}", chip.name);
-        assert!(!counts_in_this_tick(&mut bench, late), "{}", chip.name);
+        let (mut early, mut late) = (0, bench.board().meter.interrupt().most);
+        assert!(counts_in_this_tick(&mut bench, early));
+        assert!(!counts_in_this_tick(&mut bench, late));
         while late - early > 1 {
             let middle = (early + late) / 2;
             if counts_in_this_tick(&mut bench, middle) { early = middle } else { late = middle }
         }
         // One instruction earlier and later say the same as far from it.
         for after in 0..early + 20 {
-            assert_eq!(counts_in_this_tick(&mut bench, after), after <= early, "{}", chip.name);
+            assert_eq!(counts_in_this_tick(&mut bench, after), after <= early);
         }
     });
 }
 
 /// Whether a step that comes so many instructions after an update is in the code of that tick.
 fn counts_in_this_tick(bench: &mut Bench, after: u64) -> bool {
-    let held = |bench: &Bench| bench.machine.board().dac.held();
+    let held = |bench: &Bench| bench.board().dac.held();
     bench.run(SETTLING);
     bench.run_to_update();
     let before = held(bench);
     bench.run_for(after);
     let into = if before < DEEP { -STEP } else { STEP };
-    bench.machine.board_mut().turn_encoder(into);
+    bench.board_mut().turn_encoder(into);
     bench.run_for(1000);
     let counted = held(bench) != before;
     bench.run(1);

@@ -292,83 +292,11 @@ fn sample(load: &mut Load) -> Result<Sample, Failure> {
     Ok(sample)
 }
 
-/// The input of each gate driver is high in turn, and no other.
-fn each_gate() -> Result<(), Failure> {
-    let mut load = without_bus()?;
-    for (gate, side, phase) in (0..6).map(|gate| (gate, gate / 3, gate % 3)) {
-        defmt::info!("{} of 6: the {} side of {}", gate + 1, SIDES[side], PHASES[phase]);
-        for _ in 0..PULSES {
-            let (high, last) = load.pulse(phase, side).ok_or(MISSED)?;
-            let mut expected = [[false; 2]; 3];
-            expected[phase][side] = true;
-            if high != expected {
-                return Err("another gate than the named one is high, or that one is low");
-            }
-            check_no_bus(&last)?;
-            for _ in 1..PAUSE {
-                check_no_bus(&sample(&mut load)?)?;
-            }
-        }
-    }
-    check_low(&load)
-}
-
-/// The comparators' ramp.
-fn comparators() -> Result<(), Failure> {
-    let mut load = without_bus()?;
-    trips(&mut load)?;
-    check_low(&load)
-}
-
 fn check_low(load: &Load) -> Result<(), Failure> {
     match !load.is_on() && load.are_gates_low() {
         true => Ok(()),
         false => Err("the gates are not off: switch the supply off"),
     }
-}
-
-/// Both outputs are switched at half, so that no current flows.
-fn no_duty() -> Result<(), Failure> {
-    let mut bench = Bench::new(&TWO)?;
-    bench.on()?;
-    if bench.current_at(0.0)?.abs() > NONE {
-        return Err("a current flows without a voltage: is something connected to output 3?");
-    }
-    bench.load.off();
-    bench.check_off()
-}
-
-/// That part of the supply in both directions, and off again.
-fn part_of_the_supply() -> Result<(), Failure> {
-    let mut bench = Bench::new(&TWO)?;
-    bench.on()?;
-    bench.checked_at(DUTY)?;
-    bench.load.off();
-    bench.check_off()
-}
-
-/// Duties in steps: each step adds the same current, by the supply that is measured.
-fn sweep() -> Result<(), Failure> {
-    let mut bench = Bench::new(&TWO)?;
-    bench.on()?;
-    let part = f64::from(SWEEP_STEP) / 100.0;
-    let mut last: Option<[f32; 2]> = None;
-    for percent in SWEEP.step_by(SWEEP_STEP.into()) {
-        let currents = bench.checked_at(f64::from(percent) / 100.0)?;
-        let volts = f64::from(sample(&mut bench.load)?.bus) * B_G431B_ESC1.volts_per_count;
-        let step = (volts * part / LOAD.motor.resistance) as f32;
-        let is_off = |(now, before): (f32, f32)| {
-            (now - before - step).abs() > TOLERANCE as f32 * step + COUNT
-        };
-        if last.is_some_and(|last| currents.into_iter().zip(last).any(is_off)) {
-            return Err(
-                "a step of the duty adds another current: resistance or gain is not as stated",
-            );
-        }
-        last = Some(currents);
-    }
-    bench.load.off();
-    bench.check_off()
 }
 
 /// A growing current out of one output into another, until the comparator of that one takes the gates away. U and V
@@ -405,84 +333,132 @@ fn comparator_trips(from: usize, into: usize) -> Result<(), Failure> {
     Err("no comparator has taken the gates away: is the load between these outputs?")
 }
 
-/// A break turns the gates off during a current in the load, and only switching them on again ends it.
-fn software_break() -> Result<(), Failure> {
-    let mut bench = Bench::new(&TWO)?;
-    bench.on()?;
-    if bench.current_at(DUTY)? < EXPECTED.least as f32 - NONE {
-        return Err("no current flows before the break");
-    }
-    bench.load.break_now();
-    if bench.load.is_on() || !bench.load.are_gates_low() {
-        return Err("a break does not take the gates away: switch the supply off");
-    }
-    if !bench.load.broke() {
-        return Err("a break does not say that it was");
-    }
-    bench.load.set(TWO.duties_at(DUTY));
-    bench.load.next().ok_or(MISSED)?;
-    if bench.load.is_on() {
-        return Err("the gates come back by themselves: switch the supply off");
-    }
-    bench.load.off();
-    Ok(())
-}
-
 #[embedded_test::tests]
 mod tests {
-    use super::Failure;
+    use super::*;
 
+    /// The input of each gate driver is high in turn, and no other.
     #[test]
     #[timeout(5)]
     fn step_4_each_gate_in_turn_without_a_bus() -> Result<(), Failure> {
-        super::each_gate()
+        let mut load = without_bus()?;
+        for (gate, side, phase) in (0..6).map(|gate| (gate, gate / 3, gate % 3)) {
+            defmt::info!("{} of 6: the {} side of {}", gate + 1, SIDES[side], PHASES[phase]);
+            for _ in 0..PULSES {
+                let (high, last) = load.pulse(phase, side).ok_or(MISSED)?;
+                let mut expected = [[false; 2]; 3];
+                expected[phase][side] = true;
+                if high != expected {
+                    return Err("another gate than the named one is high, or that one is low");
+                }
+                check_no_bus(&last)?;
+                for _ in 1..PAUSE {
+                    check_no_bus(&sample(&mut load)?)?;
+                }
+            }
+        }
+        check_low(&load)
     }
 
+    /// The comparators' ramp.
     #[test]
     #[timeout(5)]
     fn step_5_the_comparators_trip_without_a_current() -> Result<(), Failure> {
-        super::comparators()
+        let mut load = without_bus()?;
+        trips(&mut load)?;
+        check_low(&load)
     }
 
+    /// Both outputs are switched at half, so that no current flows.
     #[test]
     #[timeout(5)]
     fn step_7_outputs_at_half_give_no_current() -> Result<(), Failure> {
-        super::no_duty()
+        let mut bench = Bench::new(&TWO)?;
+        bench.on()?;
+        if bench.current_at(0.0)?.abs() > NONE {
+            return Err("a current flows without a voltage: is something connected to output 3?");
+        }
+        bench.load.off();
+        bench.check_off()
     }
 
+    /// That part of the supply in both directions, and off again.
     #[test]
     #[timeout(5)]
     fn step_8_a_part_of_the_supply_gives_the_current_of_the_load() -> Result<(), Failure> {
-        super::part_of_the_supply()
+        let mut bench = Bench::new(&TWO)?;
+        bench.on()?;
+        bench.checked_at(DUTY)?;
+        bench.load.off();
+        bench.check_off()
     }
 
+    /// A break turns the gates off during a current in the load, and only switching them on again ends it.
     #[test]
     #[timeout(5)]
     fn step_8_a_break_takes_the_gates_away() -> Result<(), Failure> {
-        super::software_break()
+        let mut bench = Bench::new(&TWO)?;
+        bench.on()?;
+        if bench.current_at(DUTY)? < EXPECTED.least as f32 - NONE {
+            return Err("no current flows before the break");
+        }
+        bench.load.break_now();
+        if bench.load.is_on() || !bench.load.are_gates_low() {
+            return Err("a break does not take the gates away: switch the supply off");
+        }
+        if !bench.load.broke() {
+            return Err("a break does not say that it was");
+        }
+        bench.load.set(TWO.duties_at(DUTY));
+        bench.load.next().ok_or(MISSED)?;
+        if bench.load.is_on() {
+            return Err("the gates come back by themselves: switch the supply off");
+        }
+        bench.load.off();
+        Ok(())
     }
 
+    /// Duties in steps: each step adds the same current, by the supply that is measured.
     #[test]
     #[timeout(5)]
     fn step_9_a_sweep_of_the_duty_gives_equal_steps() -> Result<(), Failure> {
-        super::sweep()
+        let mut bench = Bench::new(&TWO)?;
+        bench.on()?;
+        let part = f64::from(SWEEP_STEP) / 100.0;
+        let mut last: Option<[f32; 2]> = None;
+        for percent in SWEEP.step_by(SWEEP_STEP.into()) {
+            let currents = bench.checked_at(f64::from(percent) / 100.0)?;
+            let volts = f64::from(sample(&mut bench.load)?.bus) * B_G431B_ESC1.volts_per_count;
+            let step = (volts * part / LOAD.motor.resistance) as f32;
+            let is_off = |(now, before): (f32, f32)| {
+                (now - before - step).abs() > TOLERANCE as f32 * step + COUNT
+            };
+            if last.is_some_and(|last| currents.into_iter().zip(last).any(is_off)) {
+                return Err(
+                    "a step of the duty adds another current: resistance or gain is not as stated",
+                );
+            }
+            last = Some(currents);
+        }
+        bench.load.off();
+        bench.check_off()
     }
 
     #[test]
     #[timeout(5)]
     fn step_10_a_current_from_v_into_u_trips() -> Result<(), Failure> {
-        super::comparator_trips(1, 0)
+        comparator_trips(1, 0)
     }
 
     #[test]
     #[timeout(5)]
     fn step_10_a_current_from_u_into_v_trips() -> Result<(), Failure> {
-        super::comparator_trips(0, 1)
+        comparator_trips(0, 1)
     }
 
     #[test]
     #[timeout(5)]
     fn step_10_a_current_from_v_into_w_trips() -> Result<(), Failure> {
-        super::comparator_trips(1, 2)
+        comparator_trips(1, 2)
     }
 }

@@ -91,123 +91,109 @@ impl Follower {
     }
 }
 
-/// The user turns the handle by hand, once around in the positive direction.
-fn turn() -> Result<(), Failure> {
-    let (mut hardware, mut encoder) = (paced(), Follower::new());
-    let wanted = TRANSDUCERS.counts_per_turn as i64;
-    defmt::info!("turn the handle once around, the positive way, within 20 s");
-    for _ in 0..20_000 {
-        next(&mut hardware);
-        encoder.count();
-    }
-    let count = encoder.count();
-    defmt::info!("{} counts, and {} were expected", count, wanted);
-    match count {
-        0 => Err("the encoder has not moved: is it supplied and connected?"),
-        _ if count < 0 => Err("the encoder counts down: swap its channels A and B"),
-        // The precision with which a hand returns to the starting point.
-        _ if (count - wanted).abs() * 50 > wanted => Err("these are not the counts of a turn"),
-        _ => Ok(()),
-    }
-}
-
 /// Codes from mid-scale to full torque.
 const MOST: u16 = DacCode::CODES_TO_FULL_SCALE;
 
-/// A code written after an update appears at the next update, and not before.
-fn latch() -> Result<(), Failure> {
-    let mut hardware = paced();
-    for code in [2048 - MOST, 1024, 2047, 2048, 3072, 2048 + MOST, 2048] {
-        next(&mut hardware);
-        let before = present_code();
-        hardware.write(DacCode::new(code).map_err(|_| "no code")?);
-        cortex_m::asm::delay(1000);
-        if present_code() != before {
-            return Err("a code has appeared within its tick: the DAC is not latched");
-        }
-        next(&mut hardware);
-        cortex_m::asm::delay(1000);
-        if present_code() != code {
-            return Err("a code has not appeared at the next update: is the trigger the timer's?");
-        }
-    }
-    Ok(())
-}
-
-/// Levels to be measured at the torque pin.
-fn levels() -> Result<(), Failure> {
-    let mut hardware = paced();
-    for code in [2048, 2048 - MOST, 1024, 3072, 2048 + MOST] {
-        let millivolts = u32::from(code) * 3300 / 4096;
-        defmt::info!("for 4 s: code {}, about {} mV with a supply of 3.3 V", code, millivolts);
-        hardware.write(DacCode::new(code).map_err(|_| "no code")?);
-        wait(&mut hardware, 4000);
-    }
-    Ok(())
-}
-
-/// A small torque for at most a tenth of a second must turn the handle in its direction, first one way and
-/// then the other. Otherwise a spring would not push back.
-fn polarity() -> Result<(), Failure> {
-    /// A fiftieth of full scale.
-    const LITTLE: u16 = MOST / 50;
-    let (mut hardware, mut encoder) = (paced(), Follower::new());
-    let enough = TRANSDUCERS.counts_per_turn as i64 / 500;
-    for (sign, code) in [(1, 2048 + LITTLE), (-1, 2048 - LITTLE)] {
-        let code = DacCode::new(code).map_err(|_| "no code")?;
-        let start = encoder.count();
-        hardware.write(code);
-        hardware.amplifier(true);
-        let mut moved = 0;
-        for _ in 0..100 {
-            next(&mut hardware);
-            moved = (encoder.count() - start) * sign;
-            if moved.abs() > enough {
-                break;
-            }
-        }
-        hardware.write(DacCode::MID_SCALE);
-        hardware.amplifier(false);
-        defmt::info!("moved by {} counts the way of the torque", moved);
-        if moved < -enough {
-            return Err("the motor turns against its torque: swap its leads");
-        }
-        if moved <= enough {
-            return Err("the motor has hardly moved: is the amplifier supplied and enabled?");
-        }
-        wait(&mut hardware, 500);
-    }
-    Ok(())
-}
-
 #[embedded_test::tests]
 mod tests {
-    use super::Failure;
+    use super::*;
 
+    /// The user turns the handle by hand, once around in the positive direction.
     #[test]
     #[timeout(30)]
     fn a_turn_counts_up_by_the_counts_of_a_turn() -> Result<(), Failure> {
-        super::turn()
+        let (mut hardware, mut encoder) = (paced(), Follower::new());
+        let wanted = TRANSDUCERS.counts_per_turn as i64;
+        defmt::info!("turn the handle once around, the positive way, within 20 s");
+        for _ in 0..20_000 {
+            next(&mut hardware);
+            encoder.count();
+        }
+        let count = encoder.count();
+        defmt::info!("{} counts, and {} were expected", count, wanted);
+        match count {
+            0 => Err("the encoder has not moved: is it supplied and connected?"),
+            _ if count < 0 => Err("the encoder counts down: swap its channels A and B"),
+            // The precision with which a hand returns to the starting point.
+            _ if (count - wanted).abs() * 50 > wanted => Err("these are not the counts of a turn"),
+            _ => Ok(()),
+        }
     }
 
+    /// A code written after an update appears at the next update, and not before.
     #[test]
     fn a_code_appears_at_the_next_update_and_not_before() -> Result<(), Failure> {
-        super::latch()
+        let mut hardware = paced();
+        for code in [2048 - MOST, 1024, 2047, 2048, 3072, 2048 + MOST, 2048] {
+            next(&mut hardware);
+            let before = present_code();
+            hardware.write(DacCode::new(code).map_err(|_| "no code")?);
+            cortex_m::asm::delay(1000);
+            if present_code() != before {
+                return Err("a code has appeared within its tick: the DAC is not latched");
+            }
+            next(&mut hardware);
+            cortex_m::asm::delay(1000);
+            if present_code() != code {
+                return Err(
+                    "a code has not appeared at the next update: is the trigger the timer's?",
+                );
+            }
+        }
+        Ok(())
     }
 
+    /// Levels to be measured at the torque pin.
     #[test]
     fn levels_to_be_measured_at_the_torque_pin() -> Result<(), Failure> {
-        super::levels()
+        let mut hardware = paced();
+        for code in [2048, 2048 - MOST, 1024, 3072, 2048 + MOST] {
+            let millivolts = u32::from(code) * 3300 / 4096;
+            defmt::info!("for 4 s: code {}, about {} mV with a supply of 3.3 V", code, millivolts);
+            hardware.write(DacCode::new(code).map_err(|_| "no code")?);
+            wait(&mut hardware, 4000);
+        }
+        Ok(())
     }
 
+    /// A small torque for at most a tenth of a second must turn the handle in its direction, first one way
+    /// and then the other. Otherwise a spring would not push back.
     #[test]
     fn torque_turns_the_handle_its_own_way() -> Result<(), Failure> {
-        super::polarity()
+        /// A fiftieth of full scale.
+        const LITTLE: u16 = MOST / 50;
+        let (mut hardware, mut encoder) = (paced(), Follower::new());
+        let enough = TRANSDUCERS.counts_per_turn as i64 / 500;
+        for (sign, code) in [(1, 2048 + LITTLE), (-1, 2048 - LITTLE)] {
+            let code = DacCode::new(code).map_err(|_| "no code")?;
+            let start = encoder.count();
+            hardware.write(code);
+            hardware.amplifier(true);
+            let mut moved = 0;
+            for _ in 0..100 {
+                next(&mut hardware);
+                moved = (encoder.count() - start) * sign;
+                if moved.abs() > enough {
+                    break;
+                }
+            }
+            hardware.write(DacCode::MID_SCALE);
+            hardware.amplifier(false);
+            defmt::info!("moved by {} counts the way of the torque", moved);
+            if moved < -enough {
+                return Err("the motor turns against its torque: swap its leads");
+            }
+            if moved <= enough {
+                return Err("the motor has hardly moved: is the amplifier supplied and enabled?");
+            }
+            wait(&mut hardware, 500);
+        }
+        Ok(())
     }
 
     #[test]
     #[timeout(90)]
     fn cycles_of_the_servo_over_a_minute() -> Result<(), Failure> {
-        super::cycles::measure()
+        cycles::measure()
     }
 }

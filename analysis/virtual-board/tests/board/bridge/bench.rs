@@ -5,6 +5,8 @@ use std::sync::OnceLock;
 
 use analysis::toolchain::TorqueOutput;
 use haptic_servo::current::{Drive, Regeneration, Winding};
+use haptic_servo::dac::DacCode;
+use haptic_servo::servo::Transducers;
 use virtual_board::board::{BusAccess, VirtualBoard};
 use virtual_board::bridge_memory::BridgeMemory;
 use virtual_board::chip::B_G431B_ESC1;
@@ -14,7 +16,7 @@ use virtual_board::peripheral::pins::Level;
 use virtual_board::power_stage::{Circuit, Gates, Supply};
 
 use super::bridge_wall::{CURRENT_LOOP, DRIVE};
-use crate::bench::{Bench, build_for};
+use crate::bench::{Bench, MID_SCALE, build_for};
 
 /// Core clocks in a period of the modulation.
 pub const INSTANT: u64 = 2 * CURRENT_LOOP.timer_counts() as u64;
@@ -55,7 +57,7 @@ pub fn supply(drive: &Drive) -> Supply {
 /// A bench with the motor of `bridge_wall`, whose gates are recorded.
 pub fn boot(device: impl Device + Send + 'static) -> Bench {
     let mut bench = boot_program("bridge_wall", motor(&DRIVE), device);
-    bench.machine.board_mut().gates = Some(Vec::new());
+    bench.board_mut().gates = Some(Vec::new());
     bench
 }
 
@@ -88,12 +90,12 @@ pub fn armed(bench: &mut Bench) -> usize {
 
 /// The circuit at the power stage.
 pub fn circuit(bench: &mut Bench) -> &mut Circuit {
-    &mut bench.machine.board_mut().power_stage.circuit
+    &mut bench.board_mut().power_stage.circuit
 }
 
 /// The changes of the gates so far.
 pub fn gates(bench: &Bench) -> &[(u64, Gates)] {
-    bench.machine.board().gates.as_deref().unwrap()
+    bench.board().gates.as_deref().unwrap()
 }
 
 /// Whether any gate is high now.
@@ -103,7 +105,7 @@ pub fn has_high_gate(board: &VirtualBoard) -> bool {
 
 /// The accesses to peripherals since the last time.
 pub fn take_accesses(bench: &mut Bench) -> Vec<BusAccess> {
-    bench.machine.board_mut().accesses.replace(Vec::new()).unwrap_or_default()
+    bench.board_mut().accesses.replace(Vec::new()).unwrap_or_default()
 }
 
 /// The code that the servo gave last.
@@ -113,9 +115,15 @@ pub fn code(bench: &mut Bench) -> u16 {
     memory.code(machine.core()).expect("that is in memory")
 }
 
+/// The torque in N m of the code that the servo gave last.
+pub fn asked_torque(bench: &mut Bench, transducers: &Transducers) -> f64 {
+    let step = transducers.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
+    (f64::from(code(bench)) - f64::from(MID_SCALE)) * step
+}
+
 /// Runs to the next valley of the modulation.
 pub fn run_to_valley(bench: &mut Bench) {
-    let board = bench.machine.board();
+    let board = bench.board();
     let valley = board.power_stage.timer.valley().expect("the counter runs");
     bench.run_for(valley + INSTANT - board.now);
 }

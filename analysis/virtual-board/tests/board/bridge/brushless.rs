@@ -3,20 +3,18 @@
 
 use std::sync::{Arc, Mutex};
 
-use haptic_servo::dac::DacCode;
 use haptic_servo::fault::Fault;
 use haptic_servo::servo_loop::State;
-use haptic_servo::wire::message::{FaultCode, Outcome, ToBoard};
+use haptic_servo::wire::message::{Outcome, ToBoard};
 use virtual_board::motor::{Motor, Winding};
 use virtual_board::power_stage::Circuit;
 use virtual_board::power_stage::gate_log::any_high;
 
-use super::bench::{INSTANT, boot_program, circuit, code, motor, run_to_valley};
+use super::bench::{INSTANT, asked_torque, boot_program, circuit, motor, run_to_valley};
 use super::brushless_wall::{DRIVE, TRANSDUCERS};
-use super::paddle::Paddle;
-use crate::bench::{Bench, MID_SCALE};
+use super::paddle::shaft;
+use crate::bench::Bench;
 use crate::stub::{Masks, hold_up};
-use analysis::link::Message;
 
 /// Samples within which an alignment ends: ten seconds.
 const LONGEST: u64 = 100_000;
@@ -33,7 +31,7 @@ impl Held {
     /// With a program of this shaft.
     pub fn new(program: &str, motor: Motor) -> Self {
         let hand = Arc::<Mutex<f64>>::default();
-        let bench = boot_program(program, motor, Paddle::shaft(hand.clone()));
+        let bench = boot_program(program, motor, shaft(hand.clone()));
         Self { bench, hand }
     }
 
@@ -55,25 +53,16 @@ pub fn wired(wires: [usize; 3], offset: f64) -> Motor {
 
 /// Has the motor aligned in a circuit; gives the bench and what the board says of it.
 pub fn aligned(motor: Motor, change: impl Fn(&mut Circuit)) -> (Held, Option<Fault>) {
-    const ID: u16 = 9;
     let mut held = Held::new("brushless_wall", motor);
     let bench = &mut held.bench;
     change(circuit(bench));
     bench.run(200);
-    let outcome = bench.ask(&ToBoard::Align { id: ID }, |message| match message {
-        Message::Answer { id: ID, outcome } => Some(outcome),
-        _ => None,
-    });
-    assert_eq!(outcome, Outcome::Done);
-    let mut samples = 0;
-    while bench.status().state == State::Aligning {
-        bench.run(2000);
-        samples += 2000;
-        assert!(samples < LONGEST, "it does not end");
-    }
-    let fault = bench.status().fault.and_then(FaultCode::fault);
-    assert!(!bench.machine.board().power_stage.timer.is_on());
-    println!("{samples} samples, {fault:?}");
+    assert_eq!(bench.request(|id| ToBoard::Align { id }), Outcome::Done);
+    let has_ended = |bench: &mut Bench| bench.status().state != State::Aligning;
+    assert!(bench.run_until(2000, LONGEST, has_ended), "it does not end");
+    let fault = bench.fault();
+    assert!(!bench.is_on());
+    println!("{fault:?}");
     (held, fault)
 }
 
@@ -87,10 +76,9 @@ pub fn check_torque(held: &mut Held, what: &str) {
     held.push(direction * LEANS);
     let bench = &mut held.bench;
     bench.run(8000);
-    let step = TRANSDUCERS.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
-    let wanted = (f64::from(code(bench)) - f64::from(MID_SCALE)) * step;
+    let wanted = asked_torque(bench, &TRANSDUCERS);
     let made = direction * circuit(bench).mean_torque();
-    println!("{what}: {made:.5} N m of {wanted:.5}, {:?}", bench.status().fault);
+    println!("{what}: {made:.5} N m of {wanted:.5}, {:?}", bench.fault());
     assert!((made / wanted - 1.0).abs() < 0.03, "{what}: {made} N m of {wanted}");
     assert!((made + LEANS).abs() < 0.004, "{what}: {made} N m against {LEANS}");
 }
@@ -145,11 +133,11 @@ fn what_cannot_be_aligned_is_refused() {
 
 /// It is asked to be armed, and no gate is high for it.
 pub fn check_stays_off(bench: &mut Bench) {
-    bench.machine.board_mut().gates = Some(Vec::new());
+    bench.board_mut().gates = Some(Vec::new());
     bench.arm();
     bench.run(50);
     assert!(bench.status().fault.is_some());
-    assert!(!any_high(bench.machine.board().gates.as_deref().unwrap(), 0, u64::MAX));
+    assert!(!any_high(bench.board().gates.as_deref().unwrap(), 0, u64::MAX));
 }
 
 /// As an instant of the servo's torque is: for five sixths of a period, over an update.
@@ -164,9 +152,9 @@ fn an_alignment_whose_instant_is_late_ends() {
     run_to_valley(bench);
     hold_up(bench, INSTANT * 5 / 6, Masks::All);
     bench.run(20);
-    let told = bench.status().fault.and_then(FaultCode::fault).map(Fault::as_str);
+    let told = bench.fault().map(Fault::as_str);
     assert_eq!(told, Some("current-interrupt-late"));
-    assert!(!bench.machine.board().power_stage.timer.is_on());
+    assert!(!bench.is_on());
 }
 
 #[test]

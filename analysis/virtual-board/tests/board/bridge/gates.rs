@@ -6,7 +6,7 @@ use virtual_board::power_stage::gate_log::{any_high, first_high, off_since, shor
 
 use super::bench::{INSTANT, armed, boot, circuit, gates, has_high_gate, running};
 use super::bridge_wall::CURRENT_LOOP;
-use super::paddle::Paddle;
+use super::paddle::still;
 use crate::bench::Bench;
 
 /// Counts into the wall.
@@ -14,9 +14,9 @@ pub const INTO: i32 = 200;
 
 /// A servo that pushes against a paddle that is held.
 pub fn pushing() -> Bench {
-    let mut bench = running(Paddle::still());
+    let mut bench = running(still());
     circuit(&mut bench).is_blocked = true;
-    bench.pins().turns.push_back(INTO);
+    bench.turn(INTO);
     bench.run(20);
     let torque = circuit(&mut bench).mean_torque();
     assert!(torque < -0.2, "{torque} N m");
@@ -25,13 +25,13 @@ pub fn pushing() -> Bench {
 
 #[test]
 fn no_gate_is_high_before_the_servo_is_armed() {
-    let mut bench = boot(Paddle::still());
+    let mut bench = boot(still());
     bench.run(300);
-    let now = bench.machine.board().now;
+    let now = bench.now();
     assert!(!any_high(gates(&bench), 0, now));
     armed(&mut bench);
     bench.run(1);
-    assert!(has_high_gate(bench.machine.board()));
+    assert!(has_high_gate(bench.board()));
     assert!(first_high(gates(&bench), 0).unwrap() > now);
 }
 
@@ -40,7 +40,7 @@ fn no_two_switches_of_a_leg_are_on_within_the_dead_time() {
     let bench = pushing();
     // 0.74 us, just below the 0.75 us of ST's configuration, in core clocks of 170 MHz.
     assert_eq!(shortest_dead_time(gates(&bench)), Some(126));
-    assert_eq!(bench.machine.board().power_stage.timer.dead_time(), 126);
+    assert_eq!(bench.board().power_stage.timer.dead_time(), 126);
     assert_eq!(INSTANT, u64::from(CURRENT_LOOP.clock_counts()) / u64::from(CURRENT_LOOP.updates()));
 }
 
@@ -48,7 +48,7 @@ fn no_two_switches_of_a_leg_are_on_within_the_dead_time() {
 #[test]
 fn a_debugger_that_halts_the_core_stops_the_modulation() {
     let bench = pushing();
-    assert_eq!(bench.machine.board().debug.get(FREEZE_TIM1), TIM1_FREEZES);
+    assert_eq!(bench.board().debug.get(FREEZE_TIM1), TIM1_FREEZES);
 }
 
 /// Of every cause: off at that clock, and until it is armed again.
@@ -57,15 +57,15 @@ fn a_reset_takes_the_gates_away_at_once() {
     for cause in Cause::ALL {
         let mut bench = pushing();
         bench.machine.reset(cause);
-        let reset = bench.machine.board().now;
-        assert!(!has_high_gate(bench.machine.board()), "{cause:?}");
+        let reset = bench.now();
+        assert!(!has_high_gate(bench.board()), "{cause:?}");
         bench.run(200);
         let off = off_since(gates(&bench)).unwrap_or_else(|| panic!("{cause:?}"));
         assert!(off <= reset, "{cause:?}: {off} after {reset}");
         assert_eq!(circuit(&mut bench).currents(), [0.0; 3], "{cause:?}");
         armed(&mut bench);
         bench.run(1);
-        assert!(has_high_gate(bench.machine.board()), "{cause:?}");
+        assert!(has_high_gate(bench.board()), "{cause:?}");
     }
 }
 
@@ -73,7 +73,7 @@ fn a_reset_takes_the_gates_away_at_once() {
 fn a_power_cycle_takes_the_gates_away_at_once() {
     let mut bench = pushing();
     bench.machine.power_cycle();
-    let reset = bench.machine.board().now;
+    let reset = bench.now();
     bench.run(100);
     assert!(off_since(gates(&bench)).is_some_and(|off| off <= reset));
 }

@@ -9,13 +9,13 @@ use haptic_servo::excitation::SWEEP_PROTOCOL;
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::{Device as Mechanics, Latency};
 use haptic_servo::wire::sweep::SweepRequest;
-use virtual_board::device::{Device, Motion};
 use virtual_board::motor::Motor;
 
 use super::bench::{boot_program, motor};
 
 use super::bridge_identify::{CURRENT_LOOP, LIMITS, PERIOD, SWEEP, TRANSDUCERS};
 use super::bridge_wall::{DRIVE, SCENE};
+use super::paddle::{Driven, Shaft};
 
 /// That of `bridge_wall`, which the program is for.
 const DEVICE: Mechanics = SCENE.device;
@@ -24,41 +24,26 @@ const DEVICE: Mechanics = SCENE.device;
 const LISTENING: u64 = 100;
 
 /// The device without a hand, whose motion is exact for a torque that stands still.
-struct Free {
-    angle: f64,
-    speed: f64,
-    count: i32,
-}
-
-impl Device for Free {
-    fn sample(&mut self, _: Option<u16>, _: bool) -> i32 {
-        0
-    }
-
-    fn turn(&mut self, torque: f64, seconds: f64) -> Motion {
-        let (settled, lag) = (torque / DEVICE.damping, DEVICE.inertia / DEVICE.damping);
-        let gone = -(-seconds / lag).exp_m1();
-        let off = self.speed - settled;
-        self.angle += settled * seconds + off * lag * gone;
-        self.speed -= off * gone;
-        let count = (self.angle * TRANSDUCERS.counts_per_turn / TAU).floor() as i32;
-        let counts = count - std::mem::replace(&mut self.count, count);
-        Motion { counts, angle: self.angle, speed: self.speed }
-    }
+fn moves_freely(shaft: &mut Shaft, torque: f64, seconds: f64) {
+    let (settled, lag) = (torque / DEVICE.damping, DEVICE.inertia / DEVICE.damping);
+    let gone = -(-seconds / lag).exp_m1();
+    let off = shaft.speed - settled;
+    shaft.angle += settled * seconds + off * lag * gone;
+    shaft.speed -= off * gone;
 }
 
 /// What a board with this motor sends of a sweep, from its description to its end.
 fn recorded(motor: Motor) -> String {
-    let angle = 0.5 * TAU / TRANSDUCERS.counts_per_turn;
-    let mut bench = boot_program("bridge_identify", motor, Free { angle, speed: 0.0, count: 0 });
+    let device = Driven::new(TRANSDUCERS.counts_per_turn, moves_freely);
+    let mut bench = boot_program("bridge_identify", motor, device);
     bench.run(20);
-    bench.machine.board_mut().send(&SweepRequest::Describe.frame());
+    bench.board_mut().send(&SweepRequest::Describe.frame());
     bench.run(LISTENING);
-    bench.machine.board_mut().send(&SweepRequest::BEGIN.frame());
+    bench.board_mut().send(&SweepRequest::BEGIN.frame());
     let mut sent = Vec::new();
     for _ in 0..SWEEP.ticks() / LISTENING + 2 {
         bench.run(LISTENING);
-        let board = bench.machine.board_mut();
+        let board = bench.board_mut();
         sent.extend(board.serial.take_sent());
         board.send(&SweepRequest::Listening.frame());
     }

@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 use haptic_servo::current::{IndexOffset, Winding};
 use haptic_servo::fault::Fault;
 use haptic_servo::servo_loop::State;
-use haptic_servo::wire::message::FaultCode;
 use virtual_board::encoder_index::EncoderIndex;
 use virtual_board::power_stage::gate_log::any_high;
 
@@ -37,7 +36,7 @@ fn magnets(offset: f64) -> f64 {
 fn unaligned() -> Held {
     let motor = wired([0, 1, 2], magnets(f64::from(OFFSET.counts)));
     let mut held = Held::new("brushless_index", motor);
-    let board = held.bench.machine.board_mut();
+    let board = held.bench.board_mut();
     (board.index, board.gates) = (Some(index()), Some(Vec::new()));
     held.bench.run(200);
     held
@@ -55,11 +54,7 @@ fn told(bench: &mut Bench) -> Option<IndexOffset> {
 /// Turns the shaft past the index, and lets it come to rest.
 fn turn_past(held: &mut Held) -> Option<IndexOffset> {
     held.push(-TURNS);
-    let mut samples = 0;
-    while told(&mut held.bench).is_none() && samples < 3000 {
-        held.bench.run(50);
-        samples += 50;
-    }
+    held.bench.run_until(50, 3000, |bench| told(bench).is_some());
     held.push(0.0);
     held.bench.run(500);
     told(&mut held.bench)
@@ -80,14 +75,14 @@ fn an_offset_of_another_motor_does_not_spin_the_shaft_away() {
     for degrees in [90.0, 180.0, -120.0_f64] {
         let motor = wired([0, 1, 2], magnets(f64::from(OFFSET.counts)) + degrees.to_radians());
         let mut held = Held::new("brushless_index", motor);
-        held.bench.machine.board_mut().index = Some(index());
+        held.bench.board_mut().index = Some(index());
         held.bench.run(200);
         assert_eq!(turn_past(&mut held), Some(OFFSET));
         let before = held.bench.status().count;
         held.bench.arm();
         held.bench.run(3000);
         let status = held.bench.status();
-        let told = status.fault.and_then(FaultCode::fault);
+        let told = held.bench.fault();
         assert_eq!(told.map(Fault::as_str), Some("index-offset"), "{degrees}: {told:?}");
         let turned = (status.count - before).unsigned_abs() as f64 / COUNTS;
         println!("{degrees} degrees: {turned:.3} turns");
@@ -97,7 +92,7 @@ fn an_offset_of_another_motor_does_not_spin_the_shaft_away() {
 
 /// The encoder's counter has lost counts, and the index comes.
 pub fn comes_elsewhere(bench: &mut Bench) {
-    let board = bench.machine.board_mut();
+    let board = bench.board_mut();
     let index = board.index.as_mut().expect("it has an index");
     index.position = index.at - 1;
     board.turn_encoder(1);
@@ -107,14 +102,13 @@ pub fn comes_elsewhere(bench: &mut Bench) {
 fn the_first_index_after_a_reset_aligns_the_motor_and_no_gate_is_high_before() {
     let mut held = unaligned();
     check_stays_off(&mut held.bench);
-    let status = held.bench.status();
-    let fault = status.fault.and_then(FaultCode::fault).unwrap().to_string();
+    let fault = held.bench.fault().unwrap().to_string();
     assert!(fault.contains("turn the handle past the encoder's index, or align it"), "{fault}");
     assert_eq!(turn_past(&mut held), Some(OFFSET));
     let bench = &held.bench;
-    assert!(!any_high(gates(bench), 0, bench.machine.board().now));
+    assert!(!any_high(gates(bench), 0, bench.now()));
     // As late as the other two inputs, and pulled by the board alone.
-    let encoder = &bench.machine.board().encoder;
+    let encoder = &bench.board().encoder;
     assert_eq!(encoder.filters(), [encoder.index_filter(); 2]);
     check_torque(&mut held, "by the index");
 }
@@ -125,7 +119,7 @@ fn an_alignment_and_an_index_give_the_offset() {
     let wanted = 1900.0;
     let (mut held, fault) = aligned(wired([0, 1, 2], magnets(wanted)), |_| {});
     assert_eq!((fault, told(&mut held.bench)), (None, None));
-    let board = held.bench.machine.board_mut();
+    let board = held.bench.board_mut();
     // It was at zero when the board was switched on.
     let position = i64::from(board.encoder.value(0, 1) as u16 as i16);
     board.index = Some(EncoderIndex { position, ..index() });
@@ -138,22 +132,17 @@ fn an_alignment_and_an_index_give_the_offset() {
 #[test]
 fn lost_counts_are_found_at_the_index_and_the_next_index_aligns_again() {
     let mut held = leaning();
-    held.bench.machine.board_mut().lose_counts(60);
+    held.bench.board_mut().lose_counts(60);
     held.push(-TURNS);
-    let faulted = |bench: &mut Bench| bench.status().state == State::Faulted;
-    let mut samples = 0;
-    while !faulted(&mut held.bench) {
-        held.bench.run(50);
-        samples += 50;
-        assert!(samples < 8000, "it is not found");
-    }
-    let fault = held.bench.status().fault.and_then(FaultCode::fault);
+    let is_found = |bench: &mut Bench| bench.status().state == State::Faulted;
+    assert!(held.bench.run_until(50, 8000, is_found), "it is not found");
+    let fault = held.bench.fault();
     let Some(Fault::Power(fault)) = fault else { panic!("{fault:?}") };
     let (code, [count, aligned]) = fault.encode();
     // Met from the upper side, both times.
     let wanted = (COUNTS as i64 + AT + WIDTH - 1) as u32;
     assert_eq!((code, count, aligned), (21, wanted - 60, wanted));
-    assert!(!held.bench.machine.board().power_stage.timer.is_on());
+    assert!(!held.bench.is_on());
     assert_eq!(told(&mut held.bench), None);
     held.push(0.0);
     held.bench.run(500);

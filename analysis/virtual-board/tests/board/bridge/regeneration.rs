@@ -1,14 +1,13 @@
 //! A hand that pushes fast into the wall and gives way, with a supply that takes no energy back.
 
-use std::f64::consts::TAU;
-
 use haptic_servo::current::{Bus, ReturnedEnergy};
-use haptic_servo::wire::message::FaultCode;
-use virtual_board::device::{Device, Motion};
+use haptic_servo::fault::Fault;
+use virtual_board::device::Device;
 use virtual_board::power_stage::Supply;
 
 use super::bench::{armed, boot, circuit};
 use super::bridge_wall::{CURRENT_LOOP, SCENE, TRANSDUCERS};
+use super::paddle::{Driven, Shaft};
 use crate::bench::Bench;
 
 /// When the hand takes the device back from the wall, and when it pushes, in s since the motor was switched on:
@@ -24,52 +23,24 @@ const ENDS: f64 = 2.5e4;
 /// Milliseconds from switching on to the end: the push, and some time behind it.
 const TICKS: u64 = 170;
 
-/// The device of the program, led into the wall to a depth in rad, and slowly out of it.
-struct Pushed {
-    depth: f64,
-    angle: f64,
-    speed: f64,
-    count: i32,
-    /// Seconds since the motor was first switched on.
-    time: Option<f64>,
-    is_in: bool,
-}
-
-impl Pushed {
-    fn to(depth: f64) -> Self {
-        let angle = 0.5 * TAU / TRANSDUCERS.counts_per_turn;
-        Self { depth, angle, speed: 0.0, count: 0, time: None, is_in: false }
-    }
-
-    /// The hand's speed: the push has its full speed in front of the wall, and none at the depth.
-    fn led(&mut self, time: f64) -> f64 {
-        let left = (self.depth - self.angle).max(0.0);
-        self.is_in |= left < 1e-4;
-        match time {
-            _ if self.is_in => SLOW,
-            ..BACK => 0.0,
-            ..BEGIN => SLOW,
-            _ => SPEED.min((time - BEGIN) * BEGINS).min((2.0 * ENDS * left).sqrt()),
-        }
-    }
-}
-
-impl Device for Pushed {
-    fn sample(&mut self, _: Option<u16>, is_on: bool) -> i32 {
-        if is_on {
-            self.time.get_or_insert(0.0);
-        }
-        0
-    }
-
-    fn turn(&mut self, _: f64, seconds: f64) -> Motion {
-        self.time = self.time.map(|time| time + seconds);
-        self.speed = self.time.map_or(0.0, |time| self.led(time));
-        self.angle += self.speed * seconds;
-        let count = (self.angle * TRANSDUCERS.counts_per_turn / TAU).floor() as i32;
-        let counts = count - std::mem::replace(&mut self.count, count);
-        Motion { counts, angle: self.angle, speed: self.speed }
-    }
+/// The device of the program, led into the wall to a depth in rad, and slowly out of it: the push has its
+/// full speed in front of the wall, and none at the depth.
+fn pushed_to(depth: f64) -> impl Device + Send + 'static {
+    let mut is_in = false;
+    Driven::new(TRANSDUCERS.counts_per_turn, move |shaft: &mut Shaft, _, seconds| {
+        let left = (depth - shaft.angle).max(0.0);
+        let mut led = |time: f64| {
+            is_in |= left < 1e-4;
+            match time {
+                _ if is_in => SLOW,
+                ..BACK => 0.0,
+                ..BEGIN => SLOW,
+                _ => SPEED.min((time - BEGIN) * BEGINS).min((2.0 * ENDS * left).sqrt()),
+            }
+        };
+        shaft.speed = shaft.time.map_or(0.0, |time| led(time + seconds));
+        shaft.angle += shaft.speed * seconds;
+    })
 }
 
 /// Depth of the push over that at which the wall at rest has its torque limit: what copper takes, and equation
@@ -80,7 +51,7 @@ const DEEPER: f64 = 1.3;
 fn pushed(supply: Supply) -> (f64, Option<&'static str>) {
     // Of equation 62, the pushed energy is the torque limit over the depth.
     let limit = SCENE.torque_limit.expect("the scene has a limit");
-    let mut bench: Bench = boot(Pushed::to(DEEPER * energy().pushed / limit));
+    let mut bench: Bench = boot(pushed_to(DEEPER * energy().pushed / limit));
     circuit(&mut bench).supply = supply;
     armed(&mut bench);
     let mut highest: f64 = 0.0;
@@ -88,7 +59,7 @@ fn pushed(supply: Supply) -> (f64, Option<&'static str>) {
         bench.run(1);
         highest = highest.max(circuit(&mut bench).supply.volts);
     }
-    let fault = bench.status().fault.and_then(FaultCode::fault).map(|fault| fault.as_str());
+    let fault = bench.fault().map(Fault::as_str);
     println!("{supply:?}: {highest:.3} V, {fault:?}");
     (highest, fault)
 }

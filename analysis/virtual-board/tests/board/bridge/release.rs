@@ -5,15 +5,14 @@ use std::sync::{Arc, Mutex};
 
 use haptic_servo::scene::Device as Mechanics;
 use haptic_servo::servo_loop::State;
-use haptic_servo::wire::message::FaultCode;
-use virtual_board::device::{Device, Motion};
+use virtual_board::device::Device;
 use virtual_board::power_stage::Supply;
 
 use super::bench::{armed, boot, circuit};
 use super::bridge_wall::{CURRENT_LOOP, SCENE, TRANSDUCERS};
 use super::brushless::{aligned, wired};
 use super::brushless_wall;
-use super::paddle::Paddle;
+use super::paddle::{Driven, Shaft, paddle};
 use crate::bench::Bench;
 
 /// A supply in V that takes energy back.
@@ -34,80 +33,44 @@ const BACK: f64 = 0.03;
 const BEGIN: f64 = 0.13;
 
 /// The device of the program: a hand leads it into the wall at full speed, snatches it back, and lets go.
-struct Pushed {
-    angle: f64,
-    speed: f64,
-    count: i32,
-    time: Option<f64>,
-    /// When the hand has turned round.
-    turned: Option<f64>,
-    is_free: bool,
-    /// Largest speed of the free device in rad/s.
-    thrown: Arc<Mutex<f64>>,
-}
-
-impl Pushed {
-    /// The speed in rad/s at which the hand leads it.
-    fn led(&mut self, time: f64) -> f64 {
-        if self.angle > DEPTH {
-            self.turned.get_or_insert(time);
+/// Keeps the largest speed of the free device in rad/s.
+fn snatched(thrown: Arc<Mutex<f64>>) -> impl Device + Send + 'static {
+    let (mut turned, mut is_free) = (None, false);
+    let mut led = move |angle: f64, time: f64| {
+        if angle > DEPTH {
+            turned.get_or_insert(time);
         }
         let speed = match time {
             ..BACK => 0.0,
             ..BEGIN => -0.7,
-            _ => {
-                SPEED.min((time - BEGIN) * 5e3) - self.turned.map_or(0.0, |at| (time - at) * TURNS)
-            }
+            _ => SPEED.min((time - BEGIN) * 5e3) - turned.map_or(0.0, |at| (time - at) * TURNS),
         };
-        self.is_free = self.turned.is_some() && speed < LETS_GO;
-        speed
-    }
-}
-
-impl Device for Pushed {
-    fn sample(&mut self, _: Option<u16>, is_on: bool) -> i32 {
-        if is_on {
-            self.time.get_or_insert(0.0);
-        }
-        0
-    }
-
-    fn turn(&mut self, torque: f64, seconds: f64) -> Motion {
-        self.time = self.time.map(|time| time + seconds);
-        if self.is_free {
+        (speed, turned.is_some() && speed < LETS_GO)
+    };
+    Driven::new(TRANSDUCERS.counts_per_turn, move |shaft: &mut Shaft, torque, seconds| {
+        if is_free {
             let Mechanics { inertia, damping, .. } = SCENE.device;
-            self.speed = (inertia * self.speed + torque * seconds) / (inertia + damping * seconds);
-            let mut thrown = self.thrown.lock().unwrap();
-            *thrown = thrown.max(self.speed.abs());
-        } else {
-            self.speed = self.time.map_or(0.0, |time| self.led(time));
+            shaft.speed =
+                (inertia * shaft.speed + torque * seconds) / (inertia + damping * seconds);
+            let mut thrown = thrown.lock().unwrap();
+            *thrown = thrown.max(shaft.speed.abs());
+        } else if let Some(time) = shaft.time {
+            (shaft.speed, is_free) = led(shaft.angle, time + seconds);
         }
-        self.angle += self.speed * seconds;
-        let count = (self.angle * TRANSDUCERS.counts_per_turn / TAU).floor() as i32;
-        let counts = count - std::mem::replace(&mut self.count, count);
-        Motion { counts, angle: self.angle, speed: self.speed }
-    }
+        shaft.angle += shaft.speed * seconds;
+    })
 }
 
 fn check_runs(bench: &mut Bench) {
-    let status = bench.status();
-    let told = status.fault.and_then(FaultCode::fault);
-    assert!(told.is_none() && status.state == State::Running, "{told:?}, {:?}", status.state);
+    let (told, state) = (bench.fault(), bench.status().state);
+    assert!(told.is_none() && state == State::Running, "{told:?}, {state:?}");
 }
 
 /// The back-EMF changes by most of twice the largest speed within 2 ms.
 #[test]
 fn a_handle_that_is_snatched_out_of_the_wall_is_no_fault() {
     let thrown = Arc::<Mutex<f64>>::default();
-    let mut bench = boot(Pushed {
-        angle: 0.5 * TAU / TRANSDUCERS.counts_per_turn,
-        speed: 0.0,
-        count: 0,
-        time: None,
-        turned: None,
-        is_free: false,
-        thrown: thrown.clone(),
-    });
+    let mut bench = boot(snatched(thrown.clone()));
     circuit(&mut bench).supply = Supply::stiff(VOLTS);
     armed(&mut bench);
     bench.run(140 + AFTER);
@@ -126,7 +89,7 @@ fn a_hand_that_lets_go_at_the_torque_limit_is_no_fault() {
             let grown = ((time - 0.15) / 0.1).clamp(0.0, 1.0);
             if time < end { part * limit * grown } else { 0.0 }
         };
-        let mut bench = boot(Paddle::new(hand, 0.0));
+        let mut bench = boot(paddle(hand, 0.0));
         circuit(&mut bench).supply = Supply::stiff(VOLTS);
         let armed = armed(&mut bench);
         bench.run((end * 1e3) as u64 - 1);

@@ -1,20 +1,18 @@
 //! What runs on the board against the same on the host, bit for bit: the current controller with the samples
 //! that the board's interrupt has read, and the servo with its counts.
 
-use haptic_servo::boot;
 use haptic_servo::current::{CurrentController, Sample};
 use haptic_servo::encoder::RawCount;
 use haptic_servo::output_timing::Latched;
-use haptic_servo::servo::RenderingOptions;
-use haptic_servo::servo_loop::Options;
 use tests::replica::Replica;
 use virtual_board::board::BusAccess;
 use virtual_board::chip::TICK_INTERRUPT;
 
 use super::bench::{armed, boot, code, take_accesses};
 use super::bridge_wall::{CURRENT_LOOP, SCENE, TRANSDUCERS};
-use super::paddle::Paddle;
+use super::paddle::paddle;
 use crate::bench::MID_SCALE;
+use crate::scenes::program;
 
 /// Registers of the current interrupt.
 const COUNT: u32 = 0x4000_0840;
@@ -88,8 +86,8 @@ fn swings(time: f64) -> f64 {
 #[test]
 fn the_current_interrupt_computes_what_the_host_computes() {
     const PERIODS: usize = 600;
-    let mut bench = boot(Paddle::new(swings, 0.0));
-    bench.machine.board_mut().accesses = Some(Vec::new());
+    let mut bench = boot(paddle(swings, 0.0));
+    bench.board_mut().accesses = Some(Vec::new());
     let armed = armed(&mut bench);
     // Behind a servo's request, the code at the instant of that is that of the tick before.
     let mut codes = Vec::new();
@@ -141,7 +139,7 @@ fn the_current_interrupt_computes_what_the_host_computes() {
 #[test]
 fn the_servo_gives_the_host_s_codes() {
     const PERIODS: usize = 1500;
-    let mut bench = boot(Paddle::new(swings, 0.0));
+    let mut bench = boot(paddle(swings, 0.0));
     let armed = armed(&mut bench);
     let first = bench.pins().samples.len();
     let mut codes = Vec::new();
@@ -149,13 +147,8 @@ fn the_servo_gives_the_host_s_codes() {
         bench.run(1);
         codes.push(code(&mut bench));
     }
-    let mut host = Replica::<_, Latched>::boot(boot::Program {
-        scene: SCENE,
-        transducers: TRANSDUCERS,
-        rendering: RenderingOptions::DEFAULT,
-        options: Options::DEFAULT,
-    })
-    .starting_up(CURRENT_LOOP.start_up_ticks());
+    let mut host = Replica::<_, Latched>::boot(program(SCENE, &TRANSDUCERS))
+        .starting_up(CURRENT_LOOP.start_up_ticks());
     host.arm();
     // The gates go on after the search for the comparators' thresholds.
     let armed =

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::bench::{armed, boot, circuit};
 use super::bridge_wall::{SCENE, TRANSDUCERS};
-use super::paddle::Paddle;
+use super::paddle::paddle;
 
 /// Torque of the hand and Coulomb friction in N m.
 const TORQUE: f64 = 0.45;
@@ -20,7 +20,7 @@ fn leans(time: f64) -> f64 {
 /// With some friction it stands still where the wall's stiffness has it, and the motor's torque is the hand's.
 #[test]
 fn a_hand_that_leans_against_the_wall_comes_to_rest() {
-    let mut bench = boot(Paddle::new(leans, FRICTION));
+    let mut bench = boot(paddle(leans, FRICTION));
     let armed = armed(&mut bench);
     bench.run(1000);
     let torque = circuit(&mut bench).mean_torque();
@@ -39,5 +39,5 @@ fn a_hand_that_leans_against_the_wall_comes_to_rest() {
     // Let go, the friction holds it where the wall pushes no harder.
     let held = FRICTION / stiffness;
     assert!(free.iter().all(|&count| count == free[0]) && angle(free[0]) < held, "{:?}", free[0]);
-    assert!(bench.machine.board().power_stage.timer.is_on());
+    assert!(bench.is_on());
 }
