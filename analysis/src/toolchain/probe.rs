@@ -14,26 +14,23 @@ const CHIP: &str = ".probe-rs.chip";
 
 /// The reason why a program could not be flashed.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum ProbeError {
-    /// probe-rs is not installed.
     #[error(
         "{PROBE_RS} is not installed: cargo install --locked probe-rs-tools, or see \
          https://probe.rs/docs/getting-started/installation"
     )]
     NotInstalled,
-    /// probe-rs could not be started.
     #[error("{PROBE_RS} could not be started: {0}")]
     Start(#[source] io::Error),
-    /// There is no debug probe.
     #[error(
         "no debug probe was found: connect the USB port of the board (on Linux, access needs the \
          udev rules of https://probe.rs/docs/getting-started/probe-setup)"
     )]
     NoProbe,
-    /// The program does not contain the name of its chip.
     #[error("the program does not say which chip it is for: {0}")]
     NoChip(String),
-    /// probe-rs failed and has printed the reason.
+    /// probe-rs has printed the reason.
     #[error("{PROBE_RS} ended with {0}")]
     Failed(ExitStatus),
 }
