@@ -28,9 +28,6 @@ pub struct Site {
 
 impl Site {
     /// Serves a page, to any client.
-    ///
-    /// # Errors
-    /// Where no address of this machine can be listened on.
     pub fn of(page: String) -> Result<Self, BrowserError> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).map_err(BrowserError::Site)?;
         let address = listener.local_addr().map_err(BrowserError::Site)?;
