@@ -16,9 +16,6 @@ pub struct BenchClient {
 impl BenchClient {
     /// Starts `bench_programs` or `bench_all`, built by
     /// [`build_harness`](crate::toolchain::Toolchain::build_harness).
-    ///
-    /// # Errors
-    /// If the emulator cannot be started.
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
         Ok(Self::with_transport(Guest::boot(elf, &[])?))
     }
@@ -30,9 +27,6 @@ impl BenchClient {
 
     /// Lets the board compute the results of all inputs: counts of an encoder, or the bits of parts of a
     /// turn.
-    ///
-    /// # Errors
-    /// If the board has ended, does not answer, or has no program for this.
     pub fn compute(
         &mut self,
         request: &BenchRequest,
@@ -64,9 +58,6 @@ impl BenchClient {
     }
 
     /// Ends the board.
-    ///
-    /// # Errors
-    /// If it does not end, or ends with a failure.
     pub fn finish(self) -> Result<(), EmulatorError> {
         self.guest.finish()
     }

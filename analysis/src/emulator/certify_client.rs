@@ -14,9 +14,6 @@ pub struct CertifyClient {
 
 impl CertifyClient {
     /// Starts `certify_server`, built by [`build_harness`](crate::toolchain::Toolchain::build_harness).
-    ///
-    /// # Errors
-    /// If the emulator cannot be started.
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
         Ok(Self::with_transport(Guest::boot(elf, &[])?))
     }
@@ -27,9 +24,6 @@ impl CertifyClient {
     }
 
     /// Lets the board certify a scene.
-    ///
-    /// # Errors
-    /// If the board has ended or does not answer.
     pub fn certify(&mut self, scene: &Scene) -> Result<CertifyReply, EmulatorError> {
         let mut words = [[0; 8]; size_of::<ReplyWords>() / 8];
         self.guest.ask(&encode(scene), words.as_flattened_mut())?;
@@ -37,9 +31,6 @@ impl CertifyClient {
     }
 
     /// Ends the board.
-    ///
-    /// # Errors
-    /// If it does not end, or ends with a failure.
     pub fn finish(self) -> Result<(), EmulatorError> {
         self.guest.finish()
     }

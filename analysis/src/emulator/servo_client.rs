@@ -16,9 +16,6 @@ pub struct ServoClient {
 
 impl ServoClient {
     /// Starts `servo_server`, built by [`build_harness`](crate::toolchain::Toolchain::build_harness).
-    ///
-    /// # Errors
-    /// If the emulator cannot be started.
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
         Ok(Self::with_transport(Guest::boot(elf, &[])?))
     }
@@ -30,9 +27,6 @@ impl ServoClient {
 
     /// Lets the board certify a scene and, if it passes, run its servo from rest. The remaining ticks of the
     /// previous request run first, with the device at zero.
-    ///
-    /// # Errors
-    /// If the board has ended or does not answer.
     pub fn start(&mut self, request: &LoopRequest) -> Result<StartReply, EmulatorError> {
         while self.ticks_left > 0 {
             self.exchange(0)?;
@@ -47,9 +41,6 @@ impl ServoClient {
     }
 
     /// Ends the board.
-    ///
-    /// # Errors
-    /// If it does not end, or ends with a failure.
     pub fn finish(mut self) -> Result<(), EmulatorError> {
         while self.ticks_left > 0 {
             self.exchange(0)?;

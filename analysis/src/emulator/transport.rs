@@ -5,24 +5,15 @@ use super::{EmulatorError, Guest};
 /// A board with a program that answers requests in bytes.
 pub trait Transport {
     /// Sends bytes to the board and waits until it has filled `answer`.
-    ///
-    /// # Errors
-    /// If it does not answer.
     fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError>;
 
     /// The same with a request in words.
-    ///
-    /// # Errors
-    /// As of [`exchange`](Self::exchange).
     fn ask(&mut self, request: &[u64], answer: &mut [u8]) -> Result<(), EmulatorError> {
         let bytes: Vec<u8> = request.iter().flat_map(|word| word.to_le_bytes()).collect();
         self.exchange(&bytes, answer)
     }
 
     /// Ends the requests, and waits for the program's end.
-    ///
-    /// # Errors
-    /// If it does not end, or ends with a failure.
     fn finish(self: Box<Self>) -> Result<(), EmulatorError>;
 }
 
