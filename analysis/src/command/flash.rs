@@ -34,9 +34,6 @@ pub struct Arguments {
 }
 
 /// Runs the command.
-///
-/// # Errors
-/// If the program cannot be built, or probe-rs or the probe is missing or fails.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let toolchain = set_up(Tools::Compiler)?;
     let (board, name) = (arguments.board, arguments.program.as_str());

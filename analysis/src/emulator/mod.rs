@@ -6,12 +6,12 @@
 
 mod bench_client;
 mod certify_client;
+mod client;
 pub mod log;
 mod pipes;
 pub mod plant_thread;
 mod report;
 mod servo_client;
-mod transport;
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -28,9 +28,9 @@ use tempfile::TempDir;
 
 pub use bench_client::BenchClient;
 pub use certify_client::CertifyClient;
+pub use client::{Client, Transport};
 pub use report::{Calibration, CertificateBits, EmulatorReport, InstructionStats};
 pub use servo_client::ServoClient;
-pub use transport::Transport;
 
 use crate::toolchain::{QEMU, emulator};
 use log::{LogDecoder, LogReader};

@@ -76,9 +76,6 @@ pub fn load(path: &Path, count_angle: f64) -> Result<Record, TableError> {
 }
 
 /// The same from anything that can be read; messages call it `file`.
-///
-/// # Errors
-/// As [`load`].
 pub fn parse(file: &str, text: impl Read, count_angle: f64) -> Result<Record, TableError> {
     read(Table::new(file, text)?, count_angle)
 }

@@ -93,9 +93,6 @@ pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, Setup
 }
 
 /// Makes sure that a program is installed beside the project; its package has the same name.
-///
-/// # Errors
-/// As for [`set_up_package`].
 pub fn set_up_tool(name: &str) -> Result<(), String> {
     set_up_package(name, &[name, "--version"])
 }

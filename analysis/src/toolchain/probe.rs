@@ -36,9 +36,6 @@ pub enum ProbeError {
 }
 
 /// The name of a program's chip.
-///
-/// # Errors
-/// If the program does not contain it.
 pub fn chip(elf: &[u8]) -> Result<String, ProbeError> {
     let file = object::File::parse(elf).map_err(|error| ProbeError::NoChip(error.to_string()))?;
     let section = file.section_by_name(CHIP);
@@ -52,9 +49,6 @@ pub fn chip(elf: &[u8]) -> Result<String, ProbeError> {
 /// Flashes a program and shows its log until the program or the user ends it.
 ///
 /// `probe` selects one of several probes, in the format of probe-rs.
-///
-/// # Errors
-/// If probe-rs or the probe is missing, or probe-rs fails.
 pub fn run(elf: &Path, chip: &str, probe: Option<&str>) -> Result<(), ProbeError> {
     if !any_probe()? {
         return Err(ProbeError::NoProbe);
