@@ -10,7 +10,6 @@ use haptic_servo::wire::message::ToBoard;
 
 use crate::hand::HandTrajectory;
 use crate::shaft::{HandHeldShaft, LedShaft, Shaft};
-use crate::simulation::SimulationError;
 use crate::toolchain::BoardModel;
 use crate::virtual_board::{
     LONGEST_ARMING, Sample, VirtualBoard, VirtualBoardError, VirtualBoardReport, fading_samples,
@@ -24,17 +23,6 @@ const LONGEST_ALIGNMENT: f64 = 20.0;
 /// Time in s in which a hand turns the aligned motor back to zero.
 const RETURN: f64 = 0.5;
 
-/// Why a bridge could not be made ready.
-#[derive(Debug, thiserror::Error)]
-pub enum BridgeError {
-    /// The board failed.
-    #[error(transparent)]
-    Board(#[from] VirtualBoardError),
-    /// The device that the motor turns cannot be simulated.
-    #[error(transparent)]
-    Device(#[from] SimulationError),
-}
-
 /// A running board, which waits at the beginning of a period of the servo.
 pub struct BridgeBoard {
     board: VirtualBoard,
@@ -45,9 +33,6 @@ pub struct BridgeBoard {
 
 impl BridgeBoard {
     /// Boots a board as [`VirtualBoard::boot`] does, with the motor of a current loop.
-    ///
-    /// # Errors
-    /// Where it cannot be started.
     pub fn boot(
         program: &Path,
         board: BoardModel,
@@ -60,9 +45,6 @@ impl BridgeBoard {
     }
 
     /// Runs to the beginning of the next period of the servo, with bytes to the serial port.
-    ///
-    /// # Errors
-    /// Where the board has stopped.
     pub fn period(
         &mut self,
         shaft: &mut dyn Shaft,
@@ -87,10 +69,7 @@ impl BridgeBoard {
 
     /// Aligns the motor if it is brushless, with the scene's device on it that nobody holds, and turns it
     /// back to zero as a hand would; then arms the servo there, and runs until the bridge has started up and the clamp has opened.
-    ///
-    /// # Errors
-    /// Where the board stops, or the motor is not aligned or not armed.
-    pub fn align_and_arm(&mut self, scene: &Scene) -> Result<(), BridgeError> {
+    pub fn align_and_arm(&mut self, scene: &Scene) -> Result<(), VirtualBoardError> {
         let period = scene.timing.period;
         let mut still = LedShaft::new(0.0, &self.transducers, self.current_loop);
         for _ in 0..OFFSETS / usize::from(self.current_loop.updates()) + 1 {
@@ -107,7 +86,7 @@ impl BridgeBoard {
         Ok(())
     }
 
-    fn align(&mut self, scene: &Scene) -> Result<(), BridgeError> {
+    fn align(&mut self, scene: &Scene) -> Result<(), VirtualBoardError> {
         let hand = HandTrajectory::push_and_let_go();
         let mut shaft = HandHeldShaft::new(scene, hand, &self.transducers, self.current_loop)?;
         shaft.let_go(true);
@@ -117,11 +96,11 @@ impl BridgeBoard {
         for _ in 0..samples {
             let is_aligning = self.period(&mut shaft, &std::mem::take(&mut bytes))?.is_aligning;
             if has_begun && !is_aligning {
-                return Ok(self.turn_to_zero(shaft.motion().angle, scene.timing.period)?);
+                return self.turn_to_zero(shaft.motion().angle, scene.timing.period);
             }
             has_begun |= is_aligning;
         }
-        Err(VirtualBoardError::NotAligned { samples, log: self.board.last_log()? }.into())
+        Err(VirtualBoardError::NotAligned { samples, log: self.board.last_log()? })
     }
 
     /// Turns the shaft smoothly from an angle in rad to zero.
@@ -150,9 +129,6 @@ impl BridgeBoard {
     }
 
     /// Switches it off.
-    ///
-    /// # Errors
-    /// Where it has stopped before.
     pub fn finish(self) -> Result<VirtualBoardReport, VirtualBoardError> {
         self.board.finish()
     }

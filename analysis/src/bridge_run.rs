@@ -2,7 +2,7 @@
 
 use haptic_servo::scene::Scene;
 
-use crate::bridge_board::{BridgeBoard, BridgeError};
+use crate::bridge_board::BridgeBoard;
 use crate::compare_run::{BoardMeasurement, RunOutcome};
 use crate::controller::Controller;
 use crate::lockstep::Run;
@@ -19,9 +19,6 @@ pub enum ShaftInput<'a> {
 
 /// Aligns the board's motor if necessary, and arms it; then runs at most `ticks` ticks. `progress` is called
 /// after each.
-///
-/// # Errors
-/// Where the board is not made ready, fails, or does not end.
 pub fn run_on_bridge(
     input: ShaftInput<'_>,
     controller: &mut dyn Controller,
@@ -29,7 +26,7 @@ pub fn run_on_bridge(
     scene: &Scene,
     ticks: usize,
     progress: impl FnMut(),
-) -> Result<RunOutcome, BridgeError> {
+) -> Result<RunOutcome, VirtualBoardError> {
     board.align_and_arm(scene)?;
     let (mut energy, mut final_speed) = (None, None);
     let run = match input {

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::bridge_board::BridgeError;
 use crate::controller::Controller;
 use crate::device::Energy;
 use crate::emulator::{Emulator, EmulatorError, EmulatorReport, InstructionStats};
@@ -93,31 +92,18 @@ impl RunOutcome {
 
 /// Why a run ended before its time.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum RunError {
-    /// The emulated board failed.
     #[error("at tick {tick}: {source}")]
-    EmulatedBoard {
-        /// The tick, counted from 0.
-        tick: usize,
-        /// The error.
-        source: EmulatorError,
-    },
-    /// The emulated board could not be started or did not end.
+    EmulatedBoard { tick: usize, source: EmulatorError },
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
-    /// The virtual board failed.
     #[error(transparent)]
     VirtualBoard(#[from] VirtualBoardError),
-    /// The virtual board whose own bridge drives the motor failed.
-    #[error(transparent)]
-    Bridge(#[from] BridgeError),
 }
 
 /// Runs a servo for at most `ticks` ticks and, with a backend, its program on that board as well.
 /// `progress` is called after each tick.
-///
-/// # Errors
-/// Where the board cannot be started, fails, or does not end.
 pub fn run_with_backend(
     input: Input<'_>,
     controller: &mut dyn Controller,
@@ -152,10 +138,10 @@ fn run_lockstep(
         }
         // On either board the hand waits until the servo runs.
         Some(Backend::Emulator(elf)) => {
-            let mut board = EmulatedBoard::boot(elf)?;
-            board.emulator.arm_and_wait()?;
+            let mut board = Emulator::boot(elf)?;
+            board.arm_and_wait()?;
             let run = run(plant, controller, Some(&mut board), ticks, progress)?;
-            (run, Some(BoardMeasurement::Emulated(Box::new(board.emulator.finish()?))))
+            (run, Some(BoardMeasurement::Emulated(Box::new(board.finish()?))))
         }
         Some(Backend::VirtualBoard { program, board, elf, period }) => {
             let mut board = VirtualBoard::boot(program, board, elf, None)?;
@@ -167,37 +153,13 @@ fn run_lockstep(
     Ok(RunOutcome { run, energy: None, final_speed: None, board })
 }
 
-/// The emulated board and the number of its tick.
-pub struct EmulatedBoard {
-    emulator: Emulator,
-    tick: usize,
-}
-
-impl EmulatedBoard {
-    /// Starts a program.
-    ///
-    /// # Errors
-    /// Where the emulator cannot be started.
-    pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self { emulator: Emulator::boot(elf)?, tick: 0 })
-    }
-
-    /// Ends a program without a scene, and returns its log.
-    ///
-    /// # Errors
-    /// Where the board does not end, or ends with a failure.
-    pub fn end(self) -> Result<Vec<String>, EmulatorError> {
-        self.emulator.end()
-    }
-}
-
-impl RemoteServo for EmulatedBoard {
+impl RemoteServo for Emulator {
     type Error = RunError;
 
     fn exchange(&mut self, raw: i32) -> Result<u16, RunError> {
-        let tick = self.tick;
-        self.tick += 1;
-        self.emulator.exchange(raw).map_err(|source| RunError::EmulatedBoard { tick, source })
+        let tick = self.exchanges;
+        self.exchanges += 1;
+        Self::exchange(self, raw).map_err(|source| RunError::EmulatedBoard { tick, source })
     }
 }
 

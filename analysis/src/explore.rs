@@ -53,9 +53,6 @@ const WORKER: &[&str] = &[source!("engine.js"), source!("map_worker.js")];
 
 /// The page that starts with a scene, which is a scene file as JSON, around the program of the package
 /// `haptic-explore`.
-///
-/// # Errors
-/// Where memory cannot be written to, which never occurs.
 pub fn page(module: &[u8], scene: &Value) -> io::Result<String> {
     let start = json!({ "scene": scene, "version": env!("CARGO_PKG_VERSION") });
     let parts = [

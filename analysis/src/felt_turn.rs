@@ -10,26 +10,23 @@ use haptic_servo::scene::Scene;
 use haptic_servo::servo::{BuildError, Transducers};
 use thiserror::Error;
 
-use crate::controller::controller;
+use crate::controller::{Tick, controller};
 use crate::device::Hand;
 use crate::hand::HandTrajectory;
-use crate::lockstep::{PlantIo, SimulatedDevice};
+use crate::lockstep::{NoRemote, SimulatedDevice, run};
 use crate::profile_curve::ProfileCurve;
 use crate::simulation::SimulationError;
 
 /// Why there is no turn.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum FeltTurnError {
-    /// The environment is not a torque profile.
     #[error("the scene has no torque profile")]
     NoProfile,
-    /// The scene is not certified.
     #[error("{0}")]
     Rejected(Box<Rejection>),
-    /// The servo cannot be built.
     #[error(transparent)]
     Servo(#[from] BuildError),
-    /// The device cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
 }
@@ -61,9 +58,6 @@ pub struct FeltTurn {
 impl FeltTurn {
     /// Turns a scene's device slowly from 0 rad on, through three repetitions, or to the upper end of a
     /// profile that does not repeat. The servo computes in `f32`.
-    ///
-    /// # Errors
-    /// Where the scene is not certified or cannot be simulated.
     pub fn of(scene: &Scene, transducers: &Transducers, hand: Hand) -> Result<Self, FeltTurnError> {
         let profile = scene.environment.profile().ok_or(FeltTurnError::NoProfile)?;
         let way = way(profile);
@@ -78,25 +72,19 @@ impl FeltTurn {
             transducers.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
         let around = 0.5 * way / REPETITIONS;
         let curve = ProfileCurve::over(scene, &(-around..way + around));
-        let mut turn = Self {
-            time: Vec::with_capacity(ticks),
-            angle: Vec::with_capacity(ticks),
-            setpoint: Vec::with_capacity(ticks),
-            torque: Vec::with_capacity(ticks),
-            curve: curve.ok_or(FeltTurnError::NoProfile)?,
-        };
-        for tick in 0..ticks {
-            let time = tick as f64 * scene.timing.period;
-            let output = servo.tick(device.count().unwrap_or_default());
-            let code = f64::from(output.code) - f64::from(DacCode::MID_SCALE.get());
-            turn.time.push(time);
-            turn.angle.push(output.count as f64 * TAU / transducers.counts_per_turn);
-            turn.setpoint.push(trajectory.position(time));
-            // The motor applies the code, and a torque that pushes back is minus that.
-            turn.torque.push(-code * torque_per_code);
-            device.hold(output.code);
-        }
-        Ok(turn)
+        let curve = curve.ok_or(FeltTurnError::NoProfile)?;
+        let Ok(run) = run::<NoRemote>(&mut device, servo.as_mut(), None, ticks, || {});
+        let time: Vec<f64> = (0..ticks).map(|tick| tick as f64 * scene.timing.period).collect();
+        let angle = |tick: &Tick| tick.count as f64 * TAU / transducers.counts_per_turn;
+        // The motor applies the code, and a torque that pushes back is minus that.
+        let code = |tick: &Tick| f64::from(tick.code) - f64::from(DacCode::MID_SCALE.get());
+        Ok(Self {
+            angle: run.ticks.iter().map(angle).collect(),
+            setpoint: time.iter().map(|time| trajectory.position(*time)).collect(),
+            torque: run.ticks.iter().map(|tick| -code(tick) * torque_per_code).collect(),
+            time,
+            curve,
+        })
     }
 }
 

@@ -1,9 +1,8 @@
 //! Host side of the haptic servo, with the program `haptic` in front ([`command`]).
 //!
-//! A [`mod@file`] holds a scene, [`verdict`] the certificate's answer, [`batch`] both for many scenes;
-//! [`simulation`] computes a scene's motion, certified or not. The modules below are in layers: each uses
-//! those of its own layer and of the layers under it, and none above it. "Theory" and "equation" are those
-//! of `firmware/THEORY.md`.
+//! A [`mod@file`] holds a scene, [`verdict`] the certificate's answer; [`simulation`] computes a scene's
+//! motion, certified or not. The modules below are in layers: each uses those of its own layer and of the
+//! layers under it, and none above it. "Theory" and "equation" are those of `firmware/THEORY.md`.
 
 // The program `haptic`.
 pub mod command;
@@ -51,7 +50,6 @@ pub use haptic_model::{
 };
 
 // The same with threads, files and studies.
-pub mod batch;
 pub mod mu_analysis;
 pub mod run_csv;
 pub mod table;

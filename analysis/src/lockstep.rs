@@ -58,9 +58,6 @@ pub struct SimulatedDevice {
 
 impl SimulatedDevice {
     /// A scene's device at rest at zero, with the encoder and the motor of the servo.
-    ///
-    /// # Errors
-    /// Where device and hand are too fast for their motion over a period to be computed.
     pub fn new(
         scene: &Scene,
         trajectory: HandTrajectory,
@@ -83,9 +80,6 @@ impl SimulatedDevice {
     }
 
     /// The same on the shaft of a motor whose torque comes from elsewhere, in steps of this length in s.
-    ///
-    /// # Errors
-    /// Where device and hand are too fast for their motion over a step to be computed.
     pub fn on_shaft(
         scene: &Scene,
         trajectory: HandTrajectory,

@@ -8,8 +8,8 @@
 //!
 //! **This is a check, not a way to find `delta`.** For a rigid device `mu` is 1 for *every* `delta <= b`: a
 //! search for the largest `delta` with `mu <= 1` walks on its own boundary, where the square root in `mu`
-//! turns an error of the last bit into 1e-8. [`GeneralizedPlant::excess`] is the same question without the
-//! root; [`crate::chain::Chain::excess_passivity`] is the answer.
+//! turns an error of the last bit into 1e-8. [`crate::chain::Chain::excess_passivity`] is the
+//! answer.
 
 use nalgebra::{Complex, Matrix2};
 use serde::Serialize;
@@ -33,24 +33,6 @@ impl GeneralizedPlant {
         Self { matrix: star(&hand(), &scaled(&device(chain, omega), delta)) }
     }
 
-    /// The matrix.
-    pub fn matrix(&self) -> &Matrix {
-        &self.matrix
-    }
-
-    /// `d^` of equation 15: the scaling that balances both off-diagonal entries.
-    pub fn scaling(&self) -> f64 {
-        (self.matrix[(1, 0)].norm() / self.matrix[(0, 1)].norm()).sqrt()
-    }
-
-    /// `mu` of equation 16: the largest singular value of the scaled matrix, which for two scalar
-    /// blocks is `mu` itself.
-    pub fn largest_singular_value(&self) -> f64 {
-        let d = Complex::from(self.scaling());
-        let g = &self.matrix;
-        Matrix2::new(g[(0, 0)], d * g[(0, 1)], g[(1, 0)] / d, g[(1, 1)]).singular_values().max()
-    }
-
     /// `mu` in closed form: `mu^2 = (f + sqrt(f^2 - 4 D0^2))/2`, `f = |G11|^2 + |G22|^2 +
     /// 2 |G12 G21|`, `D0 = |det G_p|`.
     pub fn mu(&self) -> f64 {
@@ -60,13 +42,7 @@ impl GeneralizedPlant {
         (0.5 * (f + root)).sqrt()
     }
 
-    /// The condition `mu <= 1` without a square root: `f <= 1 + D0^2` and `D0 <= 1`. Both
-    /// differences, left less right; neither is positive exactly if `mu <= 1`.
-    pub fn excess(&self) -> [f64; 2] {
-        let (f, determinant) = self.invariants();
-        [f - 1.0 - determinant * determinant, determinant - 1.0]
-    }
-
+    /// `f` and `D0`.
     fn invariants(&self) -> (f64, f64) {
         let g = &self.matrix;
         let across = g[(0, 1)] * g[(1, 0)];
@@ -172,6 +148,21 @@ mod tests {
         (-20..=50).map(|step| 10f64.powf(0.1 * f64::from(step)))
     }
 
+    /// `mu` of equation 16: the largest singular value of the matrix with the scaling `d^` of equation 15, which
+    /// balances both off-diagonal entries. For two scalar blocks it is `mu` itself.
+    fn largest_singular_value(plant: &GeneralizedPlant) -> f64 {
+        let g = &plant.matrix;
+        let d = Complex::from((g[(1, 0)].norm() / g[(0, 1)].norm()).sqrt());
+        Matrix2::new(g[(0, 0)], d * g[(0, 1)], g[(1, 0)] / d, g[(1, 1)]).singular_values().max()
+    }
+
+    /// The condition `mu <= 1` without a square root: `f <= 1 + D0^2` and `D0 <= 1`. Both
+    /// differences, left less right; neither is positive exactly if `mu <= 1`.
+    fn excess(plant: &GeneralizedPlant) -> [f64; 2] {
+        let (f, determinant) = plant.invariants();
+        [f - 1.0 - determinant * determinant, determinant - 1.0]
+    }
+
     #[test]
     fn the_plant_of_a_rigid_device_is_the_papers() {
         let (m, b, delta) = (0.05, 0.5, 0.3);
@@ -186,7 +177,7 @@ mod tests {
                 Complex::from(2.0 * delta) - a - one,
             ) / (a + one);
             let found = GeneralizedPlant::at(&chain, delta, omega);
-            assert!((found.matrix() - wanted).norm() < 1e-14 * wanted.norm());
+            assert!((found.matrix - wanted).norm() < 1e-14 * wanted.norm());
         }
     }
 
@@ -194,7 +185,7 @@ mod tests {
     fn closing_the_plant_with_a_hand_gives_the_wish() {
         let chain = Chain::rigid(0.05, 0.5).unwrap();
         let (delta, omega) = (0.3, 7.0);
-        let g = *GeneralizedPlant::at(&chain, delta, omega).matrix();
+        let g = GeneralizedPlant::at(&chain, delta, omega).matrix;
         for hand in [Complex::new(0.0, 3.0), Complex::new(2.0, -1.0)] {
             let d = (1.0 - hand) / (1.0 + hand);
             let closed = g[(1, 1)] + g[(1, 0)] * d * g[(0, 1)] / (1.0 - g[(0, 0)] * d);
@@ -211,12 +202,12 @@ mod tests {
                 for part in [0.01, 0.5, 0.9, 0.999, 1.0] {
                     let plant = GeneralizedPlant::at(&chain, part * b, omega);
                     assert!((plant.mu() - 1.0).abs() < NOISE, "{m} {b} {omega} {part}");
-                    assert!(plant.excess().iter().all(|&excess| excess < 1e-14));
+                    assert!(excess(&plant).iter().all(|&excess| excess < 1e-14));
                 }
                 // Where inertia hides the damping, mu is beyond 1 by less than its own rounding.
                 let beyond = GeneralizedPlant::at(&chain, 1.01 * b, omega);
                 let hidden = 4.0 * 0.01 * b * (1.0 + b) / ((b + 1.0).powi(2) + (m * omega).powi(2));
-                assert!(hidden < 1e-12 || beyond.excess()[1] > 0.4 * hidden);
+                assert!(hidden < 1e-12 || excess(&beyond)[1] > 0.4 * hidden);
                 assert!(hidden < 1e-4 || beyond.mu() > 1.0 + 0.1 * hidden, "{m} {b} {omega}");
             }
         }
@@ -232,7 +223,7 @@ mod tests {
         let peak = |delta: f64| {
             frequencies().fold(0.0, |peak: f64, omega| {
                 let plant = GeneralizedPlant::at(&chain, delta, omega);
-                assert!((plant.mu() - plant.largest_singular_value()).abs() < NOISE);
+                assert!((plant.mu() - largest_singular_value(&plant)).abs() < NOISE);
                 peak.max(plant.mu())
             })
         };

@@ -89,9 +89,6 @@ pub type Listen = fn(Box<dyn PlantIo + Send>, &Address, Pacing) -> io::Result<Si
 
 impl Program {
     /// Its servo on the host, with other transducers where a recording comes from another encoder.
-    ///
-    /// # Errors
-    /// Where the scene cannot be built with these transducers in this format.
     pub fn controller(
         &self,
         format: NumberFormat,
@@ -107,9 +104,6 @@ impl Program {
     }
 
     /// Starts it on a board that is a thread, around this device.
-    ///
-    /// # Errors
-    /// Where the address cannot be listened at.
     pub fn listen(
         &self,
         plant: Box<dyn PlantIo + Send>,

@@ -11,16 +11,12 @@ use crate::trace::{TimeUnit, Trace};
 
 /// Why a recorded run cannot be read.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum RunCsvError {
-    /// It is not a valid table.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A period was given for samples that have times of their own.
     #[error("{file} has times in seconds; --period is only for a file with tick numbers")]
-    PeriodKnown {
-        /// The file.
-        file: String,
-    },
+    PeriodKnown { file: String },
 }
 
 const FINITE: &str = "a finite number";

@@ -137,9 +137,6 @@ pub struct HandHeldShaft {
 
 impl HandHeldShaft {
     /// At rest at zero.
-    ///
-    /// # Errors
-    /// Where device and hand are too fast for their motion over a period of the modulation to be computed.
     pub fn new(
         scene: &Scene,
         trajectory: HandTrajectory,

@@ -18,6 +18,7 @@ use crate::emulator::InstructionStats;
 use crate::emulator::log::LogDecoder;
 use crate::lockstep::RemoteServo;
 use crate::shaft::{Shaft, ShaftMotion};
+use crate::simulation::SimulationError;
 use crate::toolchain::BoardModel;
 
 /// First byte of a board's message at the end of a sample, and at its end on request.
@@ -37,34 +38,22 @@ pub const LONGEST_ARMING: usize = 10_000;
 
 /// Errors of a virtual board.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum VirtualBoardError {
-    /// It could not be started.
     #[error("the virtual board could not be started: {0}")]
     Start(#[source] io::Error),
-    /// It has ended without a request.
     #[error("the virtual board has stopped: {said}")]
-    Stopped {
-        /// Its message.
-        said: String,
-    },
-    /// Its motor was to be aligned, and the alignment has not begun or not ended.
+    Stopped { said: String },
     #[error(
         "the motor at the virtual board's bridge is not aligned after {samples} samples; its log: {log}"
     )]
-    NotAligned {
-        /// Samples since the request.
-        samples: usize,
-        /// Its log.
-        log: String,
-    },
-    /// Its servo was to arm, and did not switch the amplifier on.
+    NotAligned { samples: usize, log: String },
     #[error(
         "the virtual board's amplifier has stayed off for {LONGEST_ARMING} samples; its log: {log}"
     )]
-    NotArmed {
-        /// Its log.
-        log: String,
-    },
+    NotArmed { log: String },
+    #[error(transparent)]
+    Device(#[from] SimulationError),
 }
 
 /// A sample that has ended; where a bridge drives the motor, a sample that begins.
@@ -144,9 +133,6 @@ pub struct VirtualBoard {
 impl VirtualBoard {
     /// Switches a board on: runs the `program` of the virtual board as this `board`, with the ELF in its
     /// flash, and the drive of its bridge if it has one. It stands still until the first [`Self::sample`].
-    ///
-    /// # Errors
-    /// Where it cannot be started.
     pub fn boot(
         program: &Path,
         board: BoardModel,
@@ -172,26 +158,17 @@ impl VirtualBoard {
     }
 
     /// Waits for the end of the sample that runs.
-    ///
-    /// # Errors
-    /// Where the board has stopped.
     pub fn sample(&mut self) -> Result<Sample, VirtualBoardError> {
-        self.read_sample().map_err(|error| self.stopped(&error))
+        self.read_sample(None).map_err(|error| self.stopped(&error))
     }
 
     /// The same where a bridge drives a motor, which turns this shaft meanwhile.
-    ///
-    /// # Errors
-    /// Where the board has stopped.
     pub fn sample_turning(&mut self, shaft: &mut dyn Shaft) -> Result<Sample, VirtualBoardError> {
-        self.read_sample_turning(shaft).map_err(|error| self.stopped(&error))
+        self.read_sample(Some(shaft)).map_err(|error| self.stopped(&error))
     }
 
     /// Answers a sample: with the position to which the encoder has turned in it, and bytes to the serial
     /// port. The next sample begins.
-    ///
-    /// # Errors
-    /// Where the board has stopped.
     pub fn answer(&mut self, count: i32, bytes: &[u8]) -> Result<(), VirtualBoardError> {
         let turned = count.wrapping_sub(self.count);
         self.count = count;
@@ -200,9 +177,6 @@ impl VirtualBoard {
 
     /// Arms the servo over the serial port, and runs until the clamp of a servo with this period in s has
     /// opened. The device stands still meanwhile.
-    ///
-    /// # Errors
-    /// Where the board stops, or its servo is not armed.
     pub fn arm_and_wait(&mut self, period: f64) -> Result<(), VirtualBoardError> {
         let mut arm = request(&ToBoard::Arm { id: 0 });
         for _ in 0..LONGEST_ARMING {
@@ -230,33 +204,20 @@ impl VirtualBoard {
     }
 
     /// Switches it off, and gives its log in a line.
-    ///
-    /// # Errors
-    /// Where it has stopped before.
     pub fn last_log(&mut self) -> Result<String, VirtualBoardError> {
         Ok(self.end().map_err(|error| self.stopped(&error))?.log.join("; "))
     }
 
     /// Switches it off.
-    ///
-    /// # Errors
-    /// Where it has stopped before.
     pub fn finish(mut self) -> Result<VirtualBoardReport, VirtualBoardError> {
         self.end().map_err(|error| self.stopped(&error))
     }
 
-    fn read_sample(&mut self) -> io::Result<Sample> {
-        if self.bytes::<1>()? != [SAMPLE] {
-            return Err(io::ErrorKind::InvalidData.into());
-        }
-        self.rest_of_sample()
-    }
-
-    fn read_sample_turning(&mut self, shaft: &mut dyn Shaft) -> io::Result<Sample> {
+    fn read_sample(&mut self, mut shaft: Option<&mut dyn Shaft>) -> io::Result<Sample> {
         loop {
-            match self.bytes()? {
-                [SAMPLE] => return self.rest_of_sample(),
-                [PWM_PERIOD] => self.turn(shaft)?,
+            match (self.bytes()?, &mut shaft) {
+                ([SAMPLE], _) => return self.rest_of_sample(),
+                ([PWM_PERIOD], Some(shaft)) => self.turn(*shaft)?,
                 _ => return Err(io::ErrorKind::InvalidData.into()),
             }
         }

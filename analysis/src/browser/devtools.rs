@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use tungstenite::{HandshakeError, Message, WebSocket};
 
-use super::{BrowserError, TIMEOUT, command};
+use super::{BrowserError, NAME, TIMEOUT, command};
 
 /// Height of the window in pixels.
 const HEIGHT: u32 = 1000;
@@ -57,9 +57,6 @@ impl Drop for Browser {
 
 impl Page {
     /// Starts a browser with an empty page, in a window of this width in pixels.
-    ///
-    /// # Errors
-    /// If there is no browser, or it does not start.
     pub fn start(width: u32) -> Result<Self, BrowserError> {
         let browser = Browser::start(width)?;
         let (port, path) = address(browser.profile.path())?;
@@ -81,8 +78,7 @@ impl Page {
         let attach = json!({ "targetId": target["targetId"], "flatten": true });
         let attached = self.call("Target.attachToTarget", attach)?;
         let Some(session) = attached["sessionId"].as_str() else {
-            let method = "Target.attachToTarget".to_owned();
-            return Err(BrowserError::Refused { method, answer: attached });
+            return Err(BrowserError::Page(format!("Target.attachToTarget: {attached}")));
         };
         self.session = session.to_owned();
         for domain in ["Page.enable", "Runtime.enable", "Log.enable"] {
@@ -97,83 +93,61 @@ impl Page {
     }
 
     /// Runs a script in each page that is opened from now on, before the page's own scripts.
-    ///
-    /// # Errors
-    /// If the browser refuses it.
     pub fn run_first(&mut self, script: &str) -> Result<(), BrowserError> {
         let method = "Page.addScriptToEvaluateOnNewDocument";
         self.call(method, json!({ "source": script })).map(|_| ())
     }
 
     /// Opens an address, and waits until the page reports that it is ready.
-    ///
-    /// # Errors
-    /// If there is no such page.
     pub fn open(&mut self, address: &str) -> Result<(), BrowserError> {
         self.go_to(address)?;
         self.wait_for("document.documentElement?.dataset.verdict !== undefined")
     }
 
     /// Opens an address without waiting.
-    ///
-    /// # Errors
-    /// If there is no such page.
     pub fn go_to(&mut self, address: &str) -> Result<(), BrowserError> {
-        let mut opened = self.call("Page.navigate", json!({ "url": address }))?;
-        match opened.get_mut("errorText") {
+        let opened = self.call("Page.navigate", json!({ "url": address }))?;
+        match opened.get("errorText") {
             None => Ok(()),
-            Some(why) => {
-                Err(BrowserError::Unopened { address: address.to_owned(), why: why.take() })
-            }
+            Some(why) => Err(BrowserError::Page(format!("{address} could not be opened: {why}"))),
         }
     }
 
     /// The value of an expression, awaited if it is a promise.
-    ///
-    /// # Errors
-    /// The exception of the expression.
     pub fn value(&mut self, expression: &str) -> Result<Value, BrowserError> {
         let asked =
             json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
         let mut answer = self.call("Runtime.evaluate", asked)?;
         match answer.get_mut("exceptionDetails") {
             None => Ok(answer["result"]["value"].take()),
-            Some(error) => {
-                Err(BrowserError::Thrown { expression: expression.to_owned(), error: error.take() })
-            }
+            Some(error) => Err(BrowserError::Page(format!("`{expression}` has thrown: {error}"))),
         }
     }
 
     /// The value of an expression that is a number, or the text of a number.
-    ///
-    /// # Errors
-    /// If the value has another type.
     pub fn number(&mut self, expression: &str) -> Result<f64, BrowserError> {
         let value = self.value(expression)?;
         let number = value.as_f64().or_else(|| value.as_str()?.parse().ok());
-        number.ok_or_else(|| other_kind(expression, value, "a number"))
+        number.ok_or_else(|| other_kind(expression, &value, "a number"))
     }
 
     /// The value of an expression that is a list of numbers.
-    ///
-    /// # Errors
-    /// If the value has another type.
     pub fn numbers(&mut self, expression: &str) -> Result<Vec<f64>, BrowserError> {
         let value = self.value(expression)?;
         let numbers = value.as_array().and_then(|list| list.iter().map(Value::as_f64).collect());
-        numbers.ok_or_else(|| other_kind(expression, value, "a list of numbers"))
+        numbers.ok_or_else(|| other_kind(expression, &value, "a list of numbers"))
     }
 
     /// Waits until an expression is true.
-    ///
-    /// # Errors
-    /// If it throws, or does not become true in time.
     pub fn wait_for(&mut self, expression: &str) -> Result<(), BrowserError> {
         let start = Instant::now();
         while self.value(&format!("Boolean({expression})"))? != true {
             if start.elapsed() > TIMEOUT {
-                let (expression, complaints) = (expression.to_owned(), self.complaints.clone());
-                return Err(BrowserError::NeverTrue { expression, complaints });
+                return Err(BrowserError::Page(format!(
+                    "`{expression}` was not true within {} s; the page complains of {:?}",
+                    TIMEOUT.as_secs(),
+                    self.complaints
+                )));
             }
             sleep(LOOK);
         }
@@ -182,18 +156,12 @@ impl Page {
 
     /// Sends a mouse event at a place of the page, in pixels of the window: `mousePressed`, `mouseMoved` or
     /// `mouseReleased`.
-    ///
-    /// # Errors
-    /// If the browser does not answer.
     pub fn mouse(&mut self, what: &str, [x, y]: [f64; 2]) -> Result<(), BrowserError> {
         let event = json!({ "type": what, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
         self.call("Input.dispatchMouseEvent", event).map(|_| ())
     }
 
     /// Presses and releases a key, by its name.
-    ///
-    /// # Errors
-    /// If the browser does not answer.
     pub fn key(&mut self, key: &str) -> Result<(), BrowserError> {
         for what in ["keyDown", "keyUp"] {
             self.call("Input.dispatchKeyEvent", json!({ "type": what, "key": key, "code": key }))?;
@@ -203,9 +171,6 @@ impl Page {
 
     /// Scrolls an element into the window; returns its left, top, width and height in pixels of the window,
     /// once the page has stopped moving it.
-    ///
-    /// # Errors
-    /// If there is no such element.
     pub fn place(&mut self, selector: &str) -> Result<[f64; 4], BrowserError> {
         let expression = format!(
             "(async () => {{ const e = document.querySelector({selector:?}); \
@@ -217,22 +182,16 @@ impl Page {
         );
         let numbers = self.numbers(&expression)?;
         <[f64; 4]>::try_from(numbers)
-            .map_err(|numbers| other_kind(&expression, json!(numbers), "four numbers"))
+            .map_err(|numbers| other_kind(&expression, &json!(numbers), "four numbers"))
     }
 
     /// The middle of an element, in pixels of the window.
-    ///
-    /// # Errors
-    /// If there is no such element.
     pub fn middle(&mut self, selector: &str) -> Result<[f64; 2], BrowserError> {
         let [left, top, width, height] = self.place(selector)?;
         Ok([left + width / 2.0, top + height / 2.0])
     }
 
     /// Clicks on an element, and again if it has moved away from under the mouse.
-    ///
-    /// # Errors
-    /// If there is no such element, or it receives no click.
     pub fn click(&mut self, selector: &str) -> Result<(), BrowserError> {
         self.value(&format!(
             "document.querySelector({selector:?}).addEventListener('click', \
@@ -252,13 +211,13 @@ impl Page {
                 return Ok(());
             }
         }
-        Err(BrowserError::NotClicked { selector: selector.to_owned() })
+        let seconds = TIMEOUT.as_secs();
+        Err(BrowserError::Page(format!(
+            "`{selector}` was not clicked within {seconds} s: another element is before it"
+        )))
     }
 
     /// Calls a method of the protocol, and returns its result.
-    ///
-    /// # Errors
-    /// If the browser refuses it, or does not answer.
     pub fn call(&mut self, method: &str, parameters: Value) -> Result<Value, BrowserError> {
         self.last += 1;
         let id = self.last;
@@ -270,9 +229,8 @@ impl Page {
         loop {
             let mut message = self.message()?;
             if message["id"] == id {
-                if let Some(error) = message.get_mut("error") {
-                    let (method, answer) = (method.to_owned(), error.take());
-                    return Err(BrowserError::Refused { method, answer });
+                if let Some(error) = message.get("error") {
+                    return Err(BrowserError::Page(format!("{method}: {error}")));
                 }
                 return Ok(message["result"].take());
             }
@@ -283,8 +241,11 @@ impl Page {
     fn message(&mut self) -> Result<Value, BrowserError> {
         loop {
             if let Message::Text(text) = self.socket.read()? {
-                return serde_json::from_str(&text)
-                    .map_err(|source| BrowserError::NoMessage { said: text.to_string(), source });
+                return serde_json::from_str(&text).map_err(|error| {
+                    BrowserError::Page(format!(
+                        "the developer tools of {NAME} have sent `{text}`, which is not a message: {error}"
+                    ))
+                });
             }
         }
     }
@@ -324,6 +285,6 @@ fn address(profile: &Path) -> Result<(u16, String), BrowserError> {
     Err(BrowserError::NotStarted)
 }
 
-fn other_kind(expression: &str, value: Value, kind: &'static str) -> BrowserError {
-    BrowserError::OtherKind { expression: expression.to_owned(), value, kind }
+fn other_kind(expression: &str, value: &Value, kind: &str) -> BrowserError {
+    BrowserError::Page(format!("`{expression}` is {value}; it must be {kind}"))
 }

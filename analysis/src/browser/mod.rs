@@ -11,7 +11,6 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use serde_json::Value;
 use thiserror::Error;
 
 /// Name of the browser and of its package.
@@ -35,78 +34,19 @@ const ARGUMENTS: [&str; 9] = [
 
 /// The reason why a page could not be examined.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum BrowserError {
-    /// There is no browser.
     #[error("there is no {NAME}; install it (Debian: apt install {NAME})")]
     Missing,
-    /// It could not be started, or the folder of its profile could not be created.
     #[error("{NAME} could not be started: {0}")]
     Unstartable(#[source] io::Error),
-    /// It does not report where its tools listen.
     #[error("{NAME} did not start within {} s", TIMEOUT.as_secs())]
     NotStarted,
-    /// The connection to its tools has failed.
     #[error("the developer tools of {NAME} have broken off: {0}")]
     Socket(#[source] Box<tungstenite::Error>),
-    /// They sent a message that is not of their protocol.
-    #[error("the developer tools of {NAME} have sent `{said}`, which is not a message: {source}")]
-    NoMessage {
-        /// The message.
-        said: String,
-        /// The reason.
-        source: serde_json::Error,
-    },
-    /// They refuse a call, or answer without the requested value.
-    #[error("{method}: {answer}")]
-    Refused {
-        /// The method of their protocol.
-        method: String,
-        /// The answer.
-        answer: Value,
-    },
-    /// A page cannot be opened.
-    #[error("{address} could not be opened: {why}")]
-    Unopened {
-        /// Its address.
-        address: String,
-        /// The cause.
-        why: Value,
-    },
-    /// An expression has thrown.
-    #[error("`{expression}` has thrown: {error}")]
-    Thrown {
-        /// The expression.
-        expression: String,
-        /// The exception.
-        error: Value,
-    },
-    /// An expression that was waited for has not become true.
-    #[error(
-        "`{expression}` was not true within {} s; the page complains of {complaints:?}", TIMEOUT.as_secs()
-    )]
-    NeverTrue {
-        /// The expression.
-        expression: String,
-        /// Errors and warnings of the page's console.
-        complaints: Vec<String>,
-    },
-    /// Clicks on an element have hit others.
-    #[error("`{selector}` was not clicked within {} s: another element is before it", TIMEOUT.as_secs())]
-    NotClicked {
-        /// The selector of the element.
-        selector: String,
-    },
-    /// An expression has a value of the wrong type.
-    #[error("`{expression}` is {value}; it must be {kind}")]
-    OtherKind {
-        /// The expression.
-        expression: String,
-        /// Its value.
-        value: Value,
-        /// The requirement.
-        kind: &'static str,
-    },
-    /// A page cannot be served.
+    /// The browser, or the page in it, does not do what it should: a sentence.
+    #[error("{0}")]
+    Page(String),
     #[error("a page could not be given out on this machine: {0}")]
     Site(#[source] io::Error),
 }

@@ -1,6 +1,6 @@
 //! Serves one page on an address of this machine, so that the page's clocks have a fine resolution.
 
-use std::io::{self, Read, Write};
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,7 +12,7 @@ use super::BrowserError;
 /// Timeout of a browser's request for the page.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Longest head of a request, in bytes.
-const LONGEST_HEAD: usize = 1 << 14;
+const LONGEST_HEAD: u64 = 1 << 14;
 
 /// Without these headers a page's clock has steps of 100 us, with them steps of 5 us: no other site is then
 /// in the page's process, whose data the page could learn from measured times.
@@ -28,9 +28,6 @@ pub struct Site {
 
 impl Site {
     /// Serves a page, to any client.
-    ///
-    /// # Errors
-    /// Where no address of this machine can be listened on.
     pub fn of(page: String) -> Result<Self, BrowserError> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).map_err(BrowserError::Site)?;
         let address = listener.local_addr().map_err(BrowserError::Site)?;
@@ -73,12 +70,10 @@ impl Drop for Site {
 /// Sends the page as the answer to any request.
 fn answer(mut connection: TcpStream, page: &str) -> io::Result<()> {
     connection.set_read_timeout(Some(PATIENCE))?;
-    let mut head = Vec::new();
-    let mut part = [0; 1024];
-    while !head.windows(4).any(|end| end == b"\r\n\r\n") && head.len() < LONGEST_HEAD {
-        match connection.read(&mut part)? {
-            0 => return Ok(()),
-            read => head.extend_from_slice(&part[..read]),
+    // A head ends with an empty line.
+    for line in BufReader::new((&connection).take(LONGEST_HEAD)).lines() {
+        if line?.is_empty() {
+            break;
         }
     }
     let length = page.len();

@@ -5,9 +5,9 @@ use std::io;
 
 use clap::Args;
 
+use super::batch;
 use super::shared_arguments::{CoefficientFormat, JsonOption, SceneArgument};
 use super::status::{CommandError, CommandStatus};
-use crate::batch;
 use crate::terminal;
 use crate::text_width;
 use crate::verdict_text::text;
@@ -16,13 +16,10 @@ use crate::verdict_text::text;
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub scene: SceneArgument,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub arithmetic: CoefficientFormat,
     /// Read one scene as JSON on each line of FILE, and print one result on each line, in the same
     /// order. The exit status is 0 if every line has a result, whatever the verdicts and errors are
@@ -41,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let report = arguments.arithmetic.judge(&arguments.scene.load()?)?;
     let width = terminal::output_width();
     arguments.answer.print(&report, |report| text_width::wrapped(&text(report), width, VALUES))?;
-    Ok(if report.passes() { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
+    Ok(CommandStatus::of(report.passes()))
 }
 
 /// Column at which values begin.

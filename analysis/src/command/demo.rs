@@ -9,6 +9,7 @@ use haptic_servo::certificate::certify;
 use haptic_servo::environment::{Canceller, Environment, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
+use super::building::{building, set_up};
 use super::outcome::section;
 use super::shared_arguments::{DEFAULT_TICKS, MAX_TICKS};
 use super::status::{CommandError, CommandStatus};
@@ -23,7 +24,7 @@ use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
 use crate::simulation::{Experiment, Integration, simulate};
-use crate::toolchain::{self, NumberFormat, Tools};
+use crate::toolchain::{NumberFormat, Tools};
 use crate::verdict::{self, Verdict};
 use crate::worst_hand::{self, HandCase};
 
@@ -70,15 +71,13 @@ const PAST_THE_LINE: Scene =
 /// of the emulated board differs from the host's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let mut out = io::stdout().lock();
-    let toolchain =
-        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
+    let toolchain = set_up(Tools::CompilerAndEmulator)?;
     let folder = &arguments.out;
     std::fs::create_dir_all(folder)
         .map_err(|source| CommandError::Unwritable { path: folder.clone(), source })?;
     let mut all_well = true;
-    let spinner = progress::spinner(&format!("building {}", program::NAMES.join(", ")));
-    let built = toolchain.build_scenes(program::NAMES, arguments.format)?;
-    spinner.finish_and_clear();
+    let build = || toolchain.build_scenes(program::NAMES, arguments.format);
+    let built = building(&program::NAMES.join(", "), build)?;
     for (program, elf) in program::ALL.iter().zip(&built) {
         let report = verdict::judge(program.name, &program.scene);
         let outcome = emulate(program, elf, arguments)?;
@@ -105,7 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     }
     writeln!(out, "pictures: {}", folder.display())?;
     out.flush()?;
-    Ok(if all_well { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
+    Ok(CommandStatus::of(all_well))
 }
 
 fn emulate(

@@ -33,7 +33,6 @@ pub struct Arguments {
     #[arg(long, short, global = true, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
 }
 
@@ -216,7 +215,7 @@ fn border(
         }
     }
     out.flush()?;
-    Ok(if points.is_empty() { CommandStatus::NegativeVerdict } else { CommandStatus::Success })
+    Ok(CommandStatus::of(!points.is_empty()))
 }
 
 impl SoughtQuantity {
@@ -322,7 +321,7 @@ fn answer(
         }
     }
     out.flush()?;
-    Ok(if possible { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
+    Ok(CommandStatus::of(possible))
 }
 
 /// Writes each scene as `design-1.toml` and so on.

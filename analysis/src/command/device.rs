@@ -17,7 +17,6 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     pub file: String,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
 }
 
@@ -57,7 +56,7 @@ pub struct Report {
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let report = report(&file::load_device(&arguments.file)?);
     arguments.answer.print(&report, text)?;
-    Ok(if report.delta.is_some() { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
+    Ok(CommandStatus::of(report.delta.is_some()))
 }
 
 /// The data of the device of a file.

@@ -6,11 +6,12 @@ use std::process::Command;
 
 use clap::Args;
 
+use super::building::{building, set_up};
+use super::shared_arguments::write;
 use super::status::{CommandError, CommandStatus};
 use crate::explore;
 use crate::file::{self, Format};
-use crate::progress;
-use crate::toolchain::{self, Tools};
+use crate::toolchain::Tools;
 
 /// Arguments of `haptic explore`.
 #[derive(Debug, Args)]
@@ -36,9 +37,8 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if !matches!(extension.as_deref(), Some("html" | "htm")) {
         return Err(CommandError::NoPage { path: arguments.output.clone() });
     }
-    let unwritable = |source| CommandError::Unwritable { path: arguments.output.clone(), source };
     let page = page(arguments.scene.as_deref())?;
-    std::fs::write(&arguments.output, &page).map_err(unwritable)?;
+    write(&arguments.output, &page)?;
     let kilobytes = page.len().div_ceil(1000);
     writeln!(io::stdout().lock(), "{}: {kilobytes} kB", arguments.output.display())?;
     if arguments.open {
@@ -58,23 +58,19 @@ pub(super) fn page(scene: Option<&str>) -> Result<String, CommandError> {
 
 /// The program of every page.
 pub(super) fn module() -> Result<Vec<u8>, CommandError> {
-    let toolchain =
-        toolchain::prepare(Tools::CompilerForBrowser, |step| eprintln!("set-up: {step}"))?;
-    let spinner = progress::spinner("building the certificate and the servo for a browser");
-    let path = toolchain.build_browser_module()?;
-    let module =
-        std::fs::read(&path).map_err(|source| CommandError::Unwritable { path, source })?;
-    spinner.finish_and_clear();
-    Ok(module)
+    let toolchain = set_up(Tools::CompilerForBrowser)?;
+    let what = "the certificate and the servo for a browser";
+    let path = building(what, || toolchain.build_browser_module())?;
+    std::fs::read(&path).map_err(|source| CommandError::Unwritable { path, source })
 }
 
 /// Opens the page with the system's default program.
 fn open(page: &PathBuf) -> Result<(), CommandError> {
     let opener = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
-    let status = Command::new(opener).arg(page).status();
-    match status {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(CommandError::NoBrowser { why: format!("{opener} ended with {status}") }),
-        Err(error) => Err(CommandError::NoBrowser { why: format!("{opener}: {error}") }),
-    }
+    let why = match Command::new(opener).arg(page).status() {
+        Ok(status) if status.success() => return Ok(()),
+        Ok(status) => format!("{opener} ended with {status}"),
+        Err(error) => format!("{opener}: {error}"),
+    };
+    Err(CommandError::NoBrowser { why })
 }

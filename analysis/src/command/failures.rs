@@ -31,7 +31,6 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
 }
 
@@ -77,8 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         false => arguments.answer.print(&found, text)?,
     }
     let holds = found.cases.iter().all(CaseReport::holds);
-    let stand = found.walls.iter().all(WallReport::holds);
-    Ok(if holds && stand { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
+    Ok(CommandStatus::of(holds && found.walls.iter().all(WallReport::holds)))
 }
 
 fn text(found: &Found) -> String {
@@ -138,8 +136,7 @@ fn wall(wall: &WallReport) -> String {
 /// One row per verdict, including the certificate's and the truth.
 fn csv(cases: &[CaseReport]) -> Result<(), CommandError> {
     let mut table = csv::Writer::from_writer(io::stdout().lock());
-    let failed = |error: csv::Error| CommandError::Output(error.into());
-    table.write_record(["case", "by", "says", "failure", "figure", "because"]).map_err(failed)?;
+    table.write_record(["case", "by", "says", "failure", "figure", "because"])?;
     for case in cases {
         let judged = case.methods.iter().map(|judged| (&judged.result, judged.failure));
         for (result, failure) in judged.chain([(&case.certificate, None), (&case.truth, None)]) {
@@ -157,7 +154,7 @@ fn csv(cases: &[CaseReport]) -> Result<(), CommandError> {
                 &figure,
                 &result.reason,
             ];
-            table.write_record(row).map_err(failed)?;
+            table.write_record(row)?;
         }
     }
     Ok(table.flush()?)

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::building::{building, set_up};
 use super::status::{CommandError, CommandStatus};
-use crate::progress;
-use crate::toolchain::{self, BoardModel, Memory, NumberFormat, Tools, TorqueOutput, probe};
+use crate::toolchain::{BoardModel, Memory, NumberFormat, Tools, TorqueOutput, probe};
 
 /// Arguments of `haptic flash`.
 #[derive(Debug, Args)]
@@ -34,16 +34,12 @@ pub struct Arguments {
 }
 
 /// Runs the command.
-///
-/// # Errors
-/// If the program cannot be built, or probe-rs or the probe is missing or fails.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let toolchain = toolchain::prepare(Tools::Compiler, |step| eprintln!("set-up: {step}"))?;
+    let toolchain = set_up(Tools::Compiler)?;
     let (board, name) = (arguments.board, arguments.program.as_str());
     let output = arguments.output.map_or_else(|| toolchain.output_of(name), Ok)?;
-    let spinner = progress::spinner(&format!("building {name} for {board}"));
-    let program = toolchain.build_for(board, output, &[name], arguments.format)?.swap_remove(0);
-    spinner.finish_and_clear();
+    let build = || toolchain.build_for(board, output, &[name], arguments.format);
+    let program = building(&format!("{name} for {board}"), build)?.swap_remove(0);
     let chip = probe::chip(&read(&program.path)?)?;
     let (sizes, memory) = (program.sizes, toolchain.memory()?);
     let mut out = io::stdout();
@@ -71,7 +67,5 @@ fn spared(board: BoardModel, memory: Memory) -> String {
 }
 
 fn read(path: &PathBuf) -> Result<Vec<u8>, CommandError> {
-    std::fs::read(path).map_err(|source| {
-        CommandError::Build(toolchain::BuildError::File { path: path.clone(), source })
-    })
+    std::fs::read(path).map_err(|source| CommandError::Unwritable { path: path.clone(), source })
 }

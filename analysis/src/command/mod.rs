@@ -1,33 +1,35 @@
 //! The program's commands, one module each.
 
-pub mod advise;
-pub mod bench;
-pub mod board_sim;
-pub mod certify;
-pub mod chart;
-pub mod demo;
-pub mod design;
-pub mod device;
-pub mod explore;
-pub mod failures;
+mod advise;
+mod batch;
+mod bench;
+mod board_sim;
+mod building;
+mod certify;
+mod chart;
+mod demo;
+mod design;
+mod device;
+mod explore;
+mod failures;
 mod file_scene;
-pub mod flash;
-pub mod identify;
-pub mod new;
+mod flash;
+mod identify;
+mod new;
 mod outcome;
 mod rebuild_with_scene;
-pub mod run;
-pub mod schema;
-pub mod scope;
-pub mod serve;
-pub mod shared_arguments;
-pub mod simulate;
-pub mod stability;
-pub mod status;
-pub mod tune;
+mod run;
+mod schema;
+mod scope;
+mod serve;
+mod shared_arguments;
+mod simulate;
+mod stability;
+mod status;
+mod tune;
 mod value_parsers;
 mod virtual_board_build;
-pub mod worst_hand;
+mod worst_hand;
 
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
@@ -93,59 +95,76 @@ fn with_exit_status(command: clap::Command) -> clap::Command {
     command.after_help(after).mut_subcommands(with_exit_status)
 }
 
-/// What to do.
-#[derive(Debug, Subcommand)]
-pub enum Command {
+/// Declares the commands, each with its module.
+macro_rules! commands {
+    ($($(#[$attribute:meta])* $name:ident($module:ident),)*) => {
+        /// What to do.
+        #[derive(Debug, Subcommand)]
+        pub enum Command {
+            $($(#[$attribute])* $name($module::Arguments),)*
+        }
+
+        impl Command {
+            fn run(&self) -> Result<CommandStatus, CommandError> {
+                match self {
+                    $(Self::$name(arguments) => $module::run(arguments),)*
+                }
+            }
+        }
+    };
+}
+
+commands! {
     /// Certify a scene: verdict, margin, assumptions and remedies.
-    Certify(certify::Arguments),
+    Certify(certify),
     /// Compute the passivity of a device, rigid or a chain of masses.
-    Device(device::Arguments),
+    Device(device),
     /// Identify a device from a measurement: inertia, damping, passivity, lag and delay.
-    Identify(identify::Arguments),
+    Identify(identify),
     /// Copy a scene's program, to begin a scene of your own.
-    New(new::Arguments),
+    New(new),
     /// Build a scene's program for a board and flash it.
-    Flash(flash::Arguments),
+    Flash(flash),
     /// Run a scene's servo tick by tick: on this machine, the emulated board or a virtual board.
-    Run(run::Arguments),
+    Run(run),
     /// Install the tools, certify all scenes, run them on the emulated board, and draw them.
-    Demo(demo::Arguments),
+    Demo(demo),
     /// Draw charts: Nyquist curves, Bode charts, maps, limits, traces.
-    Chart(chart::Arguments),
+    Chart(chart),
     /// Write a scene into one HTML page: to change it, see what changes, hold it, and send it on.
-    Explore(explore::Arguments),
+    Explore(explore),
     /// Measure the cost of a certificate, a simulated step and a tick.
-    Bench(bench::Arguments),
+    Bench(bench),
     /// Show or change the parameters of a running board, arm it or disarm it.
-    Tune(tune::Arguments),
+    Tune(tune),
     /// Show, tune or record a running board.
     ///
     /// Keys: t opens a line for new parameters (stiffness = 20), A arms, d disarms, q quits. The
     /// torque is the coupling torque, as in every trace; the motor applies its negative.
-    Scope(scope::Arguments),
+    Scope(scope),
     /// Serve a running board to a page in a browser: to tune, arm, watch and record it there.
     ///
     /// Prints the address of the page, on this machine alone, with a token that is new each time. The page is
     /// that of `haptic explore`; one page at a time has the board.
-    Serve(serve::Arguments),
+    Serve(serve),
     /// Simulate a board with device and hand, to try `tune` and `scope` without hardware.
     #[command(name = "board-sim", alias = "twin")]
-    BoardSim(board_sim::Arguments),
+    BoardSim(board_sim),
     /// Simulate a scene sample by sample, certified or not.
-    Simulate(simulate::Arguments),
+    Simulate(simulate),
     /// Compute the spectral radius of the loop and its critical stiffness.
-    Stability(stability::Arguments),
+    Stability(stability),
     /// Find the largest stiffness, the smallest device damping, the longest period or the lowest rate
     /// that certifies.
-    Design(design::Arguments),
+    Design(design),
     /// Find the cheapest number format, or the simplest device model, that is accurate enough.
-    Advise(advise::Arguments),
+    Advise(advise),
     /// Search for a passive hand in which a scene oscillates.
-    WorstHand(worst_hand::Arguments),
+    WorstHand(worst_hand),
     /// Print the JSON schema of scene files, a commented example, or the reference of all keys.
-    Schema(schema::Arguments),
+    Schema(schema),
     /// Show loops that other methods judge wrongly, with the verdict of the certificate.
-    Failures(failures::Arguments),
+    Failures(failures),
 }
 
 impl Command {
@@ -162,36 +181,9 @@ impl Command {
 
 /// Runs one command and turns its result into the exit status.
 pub fn execute(arguments: Arguments) -> ExitCode {
-    let answer = match arguments.command {
-        ref command
-            if let Some(scene) =
-                command.program().filter(|scene| rebuild_with_scene::needs_rebuild(scene)) =>
-        {
-            rebuild_with_scene::rebuild_and_exec(scene)
-        }
-        Command::Certify(arguments) => certify::run(&arguments),
-        Command::Device(arguments) => device::run(&arguments),
-        Command::Identify(arguments) => identify::run(&arguments),
-        Command::New(arguments) => new::run(&arguments),
-        Command::Flash(arguments) => flash::run(&arguments),
-        Command::Run(arguments) => run::run(&arguments),
-        Command::Demo(arguments) => demo::run(&arguments),
-        Command::Chart(arguments) => chart::run(&arguments),
-        Command::Explore(arguments) => explore::run(&arguments),
-        Command::Bench(arguments) => bench::run(&arguments),
-        Command::Tune(arguments) => tune::run(&arguments),
-        Command::Scope(arguments) => scope::run(&arguments),
-        Command::Serve(arguments) => serve::run(&arguments),
-        Command::BoardSim(arguments) => board_sim::run(&arguments),
-        Command::Simulate(arguments) => simulate::run(&arguments),
-        Command::Stability(arguments) => stability::run(&arguments),
-        Command::Design(arguments) => design::run(&arguments),
-        Command::Advise(arguments) => advise::run(&arguments),
-        Command::WorstHand(arguments) => worst_hand::run(&arguments),
-        Command::Schema(arguments) => schema::run(&arguments),
-        Command::Failures(arguments) => failures::run(&arguments),
-    };
-    status(answer).into()
+    let command = arguments.command;
+    let missing = command.program().filter(|scene| rebuild_with_scene::needs_rebuild(scene));
+    status(missing.map_or_else(|| command.run(), rebuild_with_scene::rebuild_and_exec)).into()
 }
 
 /// The exit status of a result whose output is completely written.

@@ -19,9 +19,6 @@ pub struct Arguments {
 }
 
 /// Writes the scene's file, and prints its path and the next steps.
-///
-/// # Errors
-/// If the name is invalid for a scene, or the scene exists.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let Arguments { name, from } = arguments;
     let path = Sources::find()?.begin(name, from)?;

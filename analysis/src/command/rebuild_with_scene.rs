@@ -4,9 +4,9 @@
 use std::os::unix::process::CommandExt;
 use std::process;
 
+use super::building::building;
 use super::status::{CommandError, CommandStatus};
 use crate::program::Program;
-use crate::progress;
 use crate::toolchain::{Sources, build_haptic_with};
 
 /// Whether this program was built without the scene of this name.
@@ -18,9 +18,7 @@ pub fn needs_rebuild(name: &str) -> bool {
 
 /// Builds a program that has the scene, and replaces this process by it, with the same arguments.
 pub fn rebuild_and_exec(scene: &str) -> Result<CommandStatus, CommandError> {
-    let spinner = progress::spinner(&format!("building {scene} for this machine"));
-    let program = build_haptic_with(scene)?;
-    spinner.finish_and_clear();
+    let program = building(&format!("{scene} for this machine"), || build_haptic_with(scene))?;
     let error = process::Command::new(program).args(std::env::args_os().skip(1)).exec();
     Err(CommandError::Output(error))
 }

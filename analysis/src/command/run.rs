@@ -11,6 +11,7 @@ use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 use serde::Serialize;
 
+use super::building::emulated;
 use super::file_scene::{hand_trajectory, scene_file};
 use super::outcome::{section, text};
 use super::shared_arguments::{DEFAULT_TICKS, JsonOption, MAX_TICKS, json};
@@ -23,13 +24,13 @@ use crate::controller::{Controller, controller};
 use crate::device::Energy;
 use crate::file::SceneFile;
 use crate::hand::HandTrajectory;
-use crate::lockstep::{Difference, SimulatedDevice};
+use crate::lockstep::{Difference, Run, SimulatedDevice};
 use crate::program::Program;
 use crate::progress;
 use crate::shaft::{HandHeldShaft, RecordedShaft};
 use crate::tick_gaps::TickGaps;
-use crate::toolchain::{self, BoardModel, NumberFormat, Tools, UnknownBoard};
-use crate::{counts_csv, lockstep, verdict};
+use crate::toolchain::{BoardModel, NumberFormat};
+use crate::{counts_csv, verdict};
 
 /// The target of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,27 +46,19 @@ pub enum Target {
 /// The prefix of a virtual board's name.
 const BOARD: &str = "board:";
 
-/// The error for an unknown target.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum UnknownTarget {
-    /// Not a known word.
-    #[error("there is no target {0}; there are host, qemu and board:NAME, as board:nucleo-g474re")]
-    Word(String),
-    /// An unknown board.
-    #[error(transparent)]
-    Board(#[from] UnknownBoard),
-}
-
 impl FromStr for Target {
-    type Err = UnknownTarget;
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, UnknownTarget> {
+    fn from_str(text: &str) -> Result<Self, String> {
         match text {
             "host" => Ok(Self::Host),
             "qemu" => Ok(Self::Qemu),
-            _ => match text.strip_prefix(BOARD) {
-                Some(name) => Ok(Self::Board(BoardModel::find(name)?)),
-                None => Err(UnknownTarget::Word(text.into())),
+            _ => match text.strip_prefix(BOARD).map(BoardModel::find) {
+                Some(board) => board.map(Self::Board).map_err(|unknown| unknown.to_string()),
+                None => Err(format!(
+                    "there is no target {text}; there are host, qemu and board:NAME, as \
+                     board:nucleo-g474re"
+                )),
             },
         }
     }
@@ -118,7 +111,6 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
 }
 
@@ -181,11 +173,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let outcome = ran(&mut setup, &built, counts.as_deref(), ticks, progress::stepper(&bar))?;
     bar.finish_and_clear();
     print(arguments, &setup, &outcome, gaps)?;
-    Ok(if outcome.run.difference.is_none() {
-        CommandStatus::Success
-    } else {
-        CommandStatus::NegativeVerdict
-    })
+    Ok(CommandStatus::of(outcome.run.difference.is_none()))
 }
 
 /// Runs it: with a hand, or with recorded counts.
@@ -326,12 +314,7 @@ fn build(setup: &RunSetup, arguments: &Arguments) -> Result<Built, CommandError>
     if let Target::Board(board) = arguments.target {
         return Ok(Built::Virtual(VirtualBoardBuild::build(board, program, format)?));
     }
-    let toolchain =
-        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
-    let spinner = progress::spinner(&format!("building {}", program.name));
-    let elf = toolchain.build_scene(program.name, format)?;
-    spinner.finish_and_clear();
-    Ok(Built::Emulated(elf))
+    Ok(Built::Emulated(emulated(program.name, format)?))
 }
 
 fn print(
@@ -342,7 +325,7 @@ fn print(
 ) -> Result<(), CommandError> {
     let mut out = io::BufWriter::new(io::stdout().lock());
     if arguments.csv {
-        csv(&mut out, &outcome.run)?;
+        rows(&mut out, &outcome.run)?;
     } else if arguments.answer.json {
         json(&mut out, &summary(arguments, &setup.name, outcome, gaps))?;
     } else if let (Target::Board(_), Some(program)) = (arguments.target, setup.program) {
@@ -385,14 +368,7 @@ fn summary<'a>(
 }
 
 /// The rows of a run as CSV.
-pub fn csv(out: &mut impl Write, run: &lockstep::Run) -> Result<(), io::Error> {
-    rows(out, run).map_err(|error| match error.into_kind() {
-        csv::ErrorKind::Io(error) => error,
-        other => io::Error::other(format!("{other:?}")),
-    })
-}
-
-fn rows(out: &mut impl Write, run: &lockstep::Run) -> csv::Result<()> {
+fn rows(out: &mut impl Write, run: &Run) -> Result<(), CommandError> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(["tick", "count", "angle", "torque", "code", "limit"])?;
     for (number, tick) in run.ticks.iter().enumerate() {

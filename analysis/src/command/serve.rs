@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     }
     Server::check(arguments.listen)?;
     // First, because a missing port is reported at once, and building a page takes a while.
-    let port = Port::open(&arguments.port).map_err(CommandError::Link)?;
+    let port = Port::open(&arguments.port)?;
     let page = explore::page(arguments.scene.as_deref())?;
     let report = |sentence: &str| {
         // If the terminal is gone, the message is lost.

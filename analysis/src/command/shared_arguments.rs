@@ -81,6 +81,12 @@ impl CoefficientFormat {
     }
 }
 
+/// Writes a file.
+pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CommandError> {
+    let written = std::fs::write(path, content);
+    written.map_err(|source| CommandError::Unwritable { path: path.to_owned(), source })
+}
+
 /// Default number of ticks of a run: the trajectory of the hand and some time to come to rest.
 pub const DEFAULT_TICKS: usize = 5000;
 

@@ -20,17 +20,14 @@ const CHUNK: usize = 4096;
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub scene: SceneArgument,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub steps: IntegrationArguments,
     /// Print one row for each sample: time (s), position (rad), velocity (rad/s), torque (N m),
     /// limit reason
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
 }
 
@@ -110,7 +107,7 @@ fn rows(
             // Without the last digits, which come from the product's rounding.
             let time = rounded((done + i) as f64 * experiment.scene.timing.period, 15);
             let (velocity, torque, limit) = (chunk.velocity[i], chunk.torque[i], chunk.limit[i]);
-            writer.serialize(Row { time, position, velocity, torque, limit }).map_err(written)?;
+            writer.serialize(Row { time, position, velocity, torque, limit })?;
         }
         ran_away = ran_away.or(far(&chunk).map(|sample| done + sample));
         done += chunk.samples();
@@ -120,14 +117,6 @@ fn rows(
     }
     writer.flush()?;
     Ok((done, ran_away))
-}
-
-/// Numbers always fit a line of CSV: only writing can fail.
-fn written(error: csv::Error) -> io::Error {
-    match error.into_kind() {
-        csv::ErrorKind::Io(error) => error,
-        other => io::Error::other(format!("{other:?}")),
-    }
 }
 
 /// The motion in a few lines of text.

@@ -14,13 +14,10 @@ use crate::stability::{Stability, StabilityVerdict, judge};
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub scene: SceneArgument,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub steps: IntegrationArguments,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
 }
 

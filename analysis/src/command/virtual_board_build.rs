@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use haptic_servo::current::CurrentLoop;
 
+use super::building::{building, set_up};
 use super::status::CommandError;
 use crate::bridge_board::BridgeBoard;
 use crate::compare_run::Backend;
 use crate::program::Program;
-use crate::progress;
-use crate::toolchain::{self, BoardModel, NumberFormat, Tools, TorqueOutput};
+use crate::toolchain::{BoardModel, NumberFormat, Tools, TorqueOutput};
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
 /// A virtual board, and the program for its flash.
@@ -28,14 +28,13 @@ impl VirtualBoardBuild {
         format: NumberFormat,
     ) -> Result<Self, CommandError> {
         let name = program.name;
-        let tools = Tools::CompilerAndVirtualBoard;
-        let toolchain = toolchain::prepare(tools, |step| eprintln!("set-up: {step}"))?;
-        let spinner = progress::spinner(&format!("building {name} and the virtual board"));
+        let toolchain = set_up(Tools::CompilerAndVirtualBoard)?;
         let output =
             if program.bridge.is_some() { TorqueOutput::Bridge } else { TorqueOutput::Dac };
-        let elf = toolchain.build_for(board, output, &[name], format)?.swap_remove(0).path;
-        let executable = toolchain.build_virtual_board()?;
-        spinner.finish_and_clear();
+        let (elf, executable) = building(&format!("{name} and the virtual board"), || {
+            let elf = toolchain.build_for(board, output, &[name], format)?.swap_remove(0).path;
+            Ok((elf, toolchain.build_virtual_board()?))
+        })?;
         Ok(Self { executable, board, elf, program })
     }
 

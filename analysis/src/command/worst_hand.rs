@@ -11,10 +11,8 @@ use crate::worst_hand::{SearchResult, search};
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub scene: SceneArgument,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
 }
 
@@ -24,7 +22,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let search = search(&file.scene, &file.chain)?;
     let period = file.scene.timing.period;
     arguments.answer.print(&search, |search| text(&file.name, period, search))?;
-    Ok(if search.oscillates { CommandStatus::NegativeVerdict } else { CommandStatus::Success })
+    Ok(CommandStatus::of(!search.oscillates))
 }
 
 /// The growth of a motion, over a time that gives a readable number.

@@ -1,43 +1,25 @@
 //! Torques and sines computed by the emulated board, with the instructions of each.
 
-use std::path::Path;
-
 use firmware_harness::bench_request::{BLOCK, BenchRequest, Output, Outputs};
 
-use super::transport::ask;
-use super::{EmulatorError, Guest, Transport};
+use super::EmulatorError;
+use super::client::Client;
 
-/// An emulated board that measures computations for the host.
-pub struct BenchClient {
-    guest: Box<dyn Transport>,
-}
+/// The programs `bench_programs` and `bench_all`.
+pub enum BenchPrograms {}
+
+/// The client of a board that measures computations for the host.
+pub type BenchClient = Client<BenchPrograms>;
 
 impl BenchClient {
-    /// Starts `bench_programs` or `bench_all`, built by
-    /// [`build_harness`](crate::toolchain::Toolchain::build_harness).
-    ///
-    /// # Errors
-    /// If the emulator cannot be started.
-    pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self::with_transport(Guest::boot(elf, &[])?))
-    }
-
-    /// A client of a running program.
-    pub fn with_transport(guest: impl Transport + 'static) -> Self {
-        Self { guest: Box::new(guest) }
-    }
-
     /// Lets the board compute the results of all inputs: counts of an encoder, or the bits of parts of a
     /// turn.
-    ///
-    /// # Errors
-    /// If the board has ended, does not answer, or has no program for this.
     pub fn compute(
         &mut self,
         request: &BenchRequest,
         inputs: &[u32],
     ) -> Result<Vec<Output>, EmulatorError> {
-        if !ask(&mut *self.guest, request)? {
+        if !self.ask(request)? {
             return Err(EmulatorError::NoBenchProgram);
         }
         let mut outputs = Vec::with_capacity(inputs.len() + BLOCK);
@@ -46,7 +28,7 @@ impl BenchClient {
         }
         // The padding of the last block.
         outputs.truncate(inputs.len());
-        self.guest.exchange(&[0], &mut [])?;
+        self.board.exchange(&[0], &mut [])?;
         Ok(outputs)
     }
 
@@ -56,15 +38,7 @@ impl BenchClient {
             std::array::from_fn(|i| block.get(i).copied().unwrap_or(last).to_le_bytes());
         let request = [&[1], inputs.as_flattened()].concat();
         let mut answer = [[0; Output::BYTES]; BLOCK];
-        self.guest.exchange(&request, answer.as_flattened_mut())?;
+        self.board.exchange(&request, answer.as_flattened_mut())?;
         Ok(answer.map(Output::from_bytes))
-    }
-
-    /// Ends the board.
-    ///
-    /// # Errors
-    /// If it does not end, or ends with a failure.
-    pub fn finish(self) -> Result<(), EmulatorError> {
-        self.guest.finish()
     }
 }

@@ -38,9 +38,6 @@ impl PlantThread {
     }
 
     /// Ends the thread and returns the board.
-    ///
-    /// # Errors
-    /// The error that ended it before.
     pub fn end(mut self) -> Result<Emulator, EmulatorError> {
         self.over.store(true, Ordering::Relaxed);
         let thread = self.thread.take().expect("the thread ends once");

@@ -1,59 +1,27 @@
 //! Servos on the emulated board, for scenes from the host.
 
-use std::path::Path;
-
 use firmware_harness::loop_request::{LoopRequest, StartReply};
 
-use super::transport::ask;
-use super::{EmulatorError, Guest, Transport};
+use super::EmulatorError;
+use super::client::Client;
 use crate::lockstep::RemoteServo;
 
-/// An emulated board that runs the servos of several scenes, one after the other.
-pub struct ServoClient {
-    guest: Box<dyn Transport>,
-    /// Ticks of the request that have not been run.
-    ticks_left: u32,
-}
+/// The program `servo_server`.
+pub enum ServoServer {}
+
+/// The client of a board that runs the servos of several scenes, one after the other.
+pub type ServoClient = Client<ServoServer>;
 
 impl ServoClient {
-    /// Starts `servo_server`, built by [`build_harness`](crate::toolchain::Toolchain::build_harness).
-    ///
-    /// # Errors
-    /// If the emulator cannot be started.
-    pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self::with_transport(Guest::boot(elf, &[])?))
-    }
-
-    /// A client of a running program.
-    pub fn with_transport(guest: impl Transport + 'static) -> Self {
-        Self { guest: Box::new(guest), ticks_left: 0 }
-    }
-
     /// Lets the board certify a scene and, if it passes, run its servo from rest. The remaining ticks of the
     /// previous request run first, with the device at zero.
-    ///
-    /// # Errors
-    /// If the board has ended or does not answer.
     pub fn start(&mut self, request: &LoopRequest) -> Result<StartReply, EmulatorError> {
-        while self.ticks_left > 0 {
-            self.exchange(0)?;
-        }
-        let reply = ask(&mut *self.guest, request)?;
+        self.run_ticks_left()?;
+        let reply = self.ask(request)?;
         if reply == StartReply::Ready {
             self.ticks_left = request.ticks;
         }
         Ok(reply)
-    }
-
-    /// Ends the board.
-    ///
-    /// # Errors
-    /// If it does not end, or ends with a failure.
-    pub fn finish(mut self) -> Result<(), EmulatorError> {
-        while self.ticks_left > 0 {
-            self.exchange(0)?;
-        }
-        self.guest.finish()
     }
 }
 
@@ -62,9 +30,6 @@ impl RemoteServo for ServoClient {
 
     /// One tick of the current request.
     fn exchange(&mut self, raw: i32) -> Result<u16, EmulatorError> {
-        let mut code = [0; 2];
-        self.guest.exchange(&raw.to_le_bytes(), &mut code)?;
-        self.ticks_left = self.ticks_left.saturating_sub(1);
-        Ok(u16::from_le_bytes(code))
+        self.tick(raw)
     }
 }

@@ -1,12 +1,14 @@
 //! Whether the motor gave the commanded torques: an amplifier that clips makes harmonics that the
 //! command does not have.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::Complex;
 
 use super::error::IdentifyError;
 use super::fit::Identification;
 use super::record::Record;
-use super::response::Correction;
+use super::response::{Correction, fitted_sines};
 use super::step::Step;
 use super::torque_source;
 
@@ -61,14 +63,13 @@ fn distortion(
     correction: &Correction,
     found: &Identification,
 ) -> Option<Distortion> {
-    let skipped = (correction.settle * step.rows.len() as f64) as usize;
-    let rows = step.rows.start + skipped..step.rows.end;
+    let rows = step.settled(correction.settle);
     let angle = step.omega * record.period;
     let (torque, _) = harmonics(&record.torque[rows.clone()], angle)?;
     let (counts, deviation) = harmonics(&record.counts[rows], angle)?;
     let amplitude = torque[0].norm();
     // The harmonics of Coulomb friction, of which the third is the largest.
-    let friction = friction(found) * 4.0 / (3.0 * std::f64::consts::PI);
+    let friction = friction(found) * 4.0 / (3.0 * PI);
     // Torque that moves the device by so many counts at a multiple of the frequency.
     let felt = |order: usize, counts: f64| {
         let omega = order as f64 * step.omega;
@@ -78,14 +79,14 @@ fn distortion(
         correction.source.map_or(0.0, |source| torque_source::crossing(&source, step.omega, order))
     };
     let harmonic = (2..=ORDERS)
-        .filter(|order| *order as f64 * angle < 0.95 * std::f64::consts::PI)
+        .filter(|order| *order as f64 * angle < 0.95 * PI)
         .filter(|order| counts[order - 1].norm() > OUT_OF_NOISE * deviation)
         .map(|order| {
             let third = if order == 3 { friction } else { 0.0 };
             felt(order, counts[order - 1].norm()) - torque[order - 1].norm() - known(order) - third
         })
         .fold(0.0, f64::max);
-    let frequency = step.omega / std::f64::consts::TAU;
+    let frequency = step.omega / TAU;
     Some(Distortion { frequency, amplitude, harmonic })
 }
 
@@ -97,35 +98,14 @@ fn friction(found: &Identification) -> f64 {
 /// Number of harmonics that are examined, the fundamental included.
 const ORDERS: usize = 3;
 
-/// The phasors of a sine and its harmonics, fitted together with a parabola, and the standard
-/// deviation of one of them.
-fn harmonics(samples: &[f64], angle: f64) -> Option<([Complex<f64>; ORDERS], f64)> {
-    const DRIFT: usize = 3;
+/// The phasors of a sine and its harmonics, and the standard deviation of one of them.
+fn harmonics(samples: &[f64], angle: f64) -> Option<(Vec<Complex<f64>>, f64)> {
     // Harmonics above half the sampling rate would alias.
-    let orders = (1..=ORDERS).filter(|order| *order as f64 * angle < std::f64::consts::PI).count();
-    let (n, unknowns) = (samples.len(), DRIFT + 2 * orders);
-    if n <= unknowns {
-        return None;
-    }
-    let regressors = DMatrix::from_fn(n, unknowns, |row, column| {
-        let time = 2.0 * row as f64 / (n - 1) as f64 - 1.0;
-        if column < DRIFT {
-            return time.powi(column as i32);
-        }
-        let order = (column - DRIFT) / 2 + 1;
-        let phase = order as f64 * angle * row as f64;
-        if (column - DRIFT).is_multiple_of(2) { phase.cos() } else { -phase.sin() }
-    });
-    let values = DVector::from_column_slice(samples);
-    let normal = (regressors.transpose() * &regressors).cholesky()?;
-    let solution = normal.solve(&(regressors.transpose() * &values));
-    let residual = values - regressors * &solution;
-    let mut phasors = [Complex::default(); ORDERS];
-    for (order, phasor) in phasors.iter_mut().take(orders).enumerate() {
-        *phasor = Complex::new(solution[DRIFT + 2 * order], solution[DRIFT + 2 * order + 1]);
-    }
+    let orders = (1..=ORDERS).filter(|order| *order as f64 * angle < PI).count();
+    let (phasors, residual) = fitted_sines(samples, angle, orders)?;
     // At least the error of whole counts, which is repeated from period to period.
-    let distinct = (n as f64).min(std::f64::consts::TAU / angle);
+    let n = samples.len();
+    let distinct = (n as f64).min(TAU / angle);
     let noise = (2.0 * residual.norm_squared() / (n * n) as f64).sqrt();
     Some((phasors, noise.max((1.0 / (6.0 * distinct)).sqrt())))
 }
@@ -136,7 +116,7 @@ mod tests {
     use haptic_servo::scene::Device;
 
     use super::super::identify;
-    use super::super::rig::{Excitation, MeasuredDevice, Sensing};
+    use super::super::rig::{Excitation, MeasuredDevice, Sensing, play};
     use super::*;
     use crate::simulation::plant::Plant;
 
@@ -165,22 +145,11 @@ mod tests {
     fn distorted(part: impl Fn(f64) -> f64) -> Record {
         let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
         let mut device = MeasuredDevice::new(&Plant::rigid(device), &SENSING).unwrap();
-        let mut record =
-            Record { period: SENSING.period, torque: vec![], counts: vec![], frequency: None };
         let sine = |frequency, amplitude| Excitation { frequency, amplitude, duration: 2.0 };
-        for Excitation { frequency, amplitude, duration } in
-            [sine(8.0, 0.15), sine(32.0, 0.4), sine(64.0, 0.45)]
-        {
-            for tick in 0..(duration / SENSING.period) as usize {
-                let phase = std::f64::consts::TAU * frequency * tick as f64 * SENSING.period;
-                let torque = amplitude * phase.sin();
-                record.torque.push(torque);
-                record.counts.push(f64::from(device.count()));
-                record.frequency.get_or_insert_default().push(frequency);
-                device.hold(torque + amplitude * part(frequency) * (3.0 * phase).sin());
-            }
-        }
-        record
+        let sines = [sine(8.0, 0.15), sine(32.0, 0.4), sine(64.0, 0.45)];
+        play(&mut device, SENSING.period, &sines, |sine, phase| {
+            sine.amplitude * (phase.sin() + part(sine.frequency) * (3.0 * phase).sin())
+        })
     }
 
     #[test]

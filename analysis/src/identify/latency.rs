@@ -22,14 +22,13 @@ pub struct Latency {
 
 /// Why lag and delay have no intervals.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum NoLatency {
-    /// The model does not explain the responses.
     #[error(
         "inertia, damping, lag and delay do not explain the responses, so an interval of lag or \
          delay would not be true"
     )]
     NotRigid,
-    /// The device may explain as much of the response as the amplifier.
     #[error(
         "the amplifier's lag cannot be told from the time constant inertia/damping of the device: \
          where the one is {} s, the other may be it. Declare a shorter --longest-lag, if the amplifier's \
@@ -37,7 +36,6 @@ pub enum NoLatency {
         significant(*.0, 3)
     )]
     LikeInertia(f64),
-    /// The responses allow more lag than the amplifier may have.
     #[error(
         "the responses allow a lag of more than {} s, the longest that is taken for the amplifier's: a \
          slower one looks like the device's inertia. Add faster tones, declare --longest-lag if the \
@@ -45,20 +43,13 @@ pub enum NoLatency {
         significant(*.0, 3)
     )]
     TooSlow(f64),
-    /// The phase does not determine them well enough.
     #[error(
         "lag and delay are known to {} s only: the tones end at {} Hz, and few of them stand out of \
          the noise. Add faster tones, or use a larger torque",
         significant(*.reach, 2),
         significant(*.frequency, 3)
     )]
-    Coarse {
-        /// Half the interval of their sum in s.
-        reach: f64,
-        /// Frequency of the fastest response in Hz.
-        frequency: f64,
-    },
-    /// The torque would come before its command.
+    Coarse { reach: f64, frequency: f64 },
     #[error(
         "the motion comes {} s too early for any delay: the counts are younger than their time, or a \
          declared delay is too long. Correct the time stamps, --torque-delay or --count-delay",

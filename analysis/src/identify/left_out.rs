@@ -1,7 +1,6 @@
 //! Parts of a record that are not used, and why.
 
 use std::f64::consts::TAU;
-use std::fmt;
 
 use crate::quantity::significant;
 
@@ -71,64 +70,54 @@ pub fn grouped(left_out: &[LeftOut]) -> Vec<String> {
             None => groups.push(vec![*one]),
         }
     }
-    groups.iter().map(|group| Group(group).to_string()).collect()
+    groups.iter().map(|group| sentence(group)).collect()
 }
 
-/// Tones with the same kind of reason.
-struct Group<'a>(&'a [LeftOut]);
-
-impl fmt::Display for Group<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let all = self.0;
-        let mut hertz: Vec<f64> = all.iter().map(|one| one.frequency).collect();
-        hertz.sort_by(f64::total_cmp);
-        hertz.dedup_by(|a, b| significant(*a, 4) == significant(*b, 4));
-        let named: Vec<String> = hertz.iter().map(|hertz| significant(*hertz, 4)).collect();
-        let row = all[0].row;
-        match (all.len(), named.as_slice()) {
-            (1, _) => write!(f, "the tone of {} Hz (row {row}) is left out: ", named[0])?,
-            (count, few @ [_, ..]) if few.len() <= MOST => {
-                let names = few.join(", ");
-                write!(f, "{count} tones of {names} Hz (the first in row {row}) are left out: ")?;
-            }
-            (count, many) => {
-                let (least, most) = (&many[0], &many[many.len() - 1]);
-                write!(
-                    f,
-                    "{count} tones from {least} to {most} Hz (the first in row {row}) are left out: "
-                )?;
-            }
+/// The sentence on tones with the same kind of reason.
+fn sentence(all: &[LeftOut]) -> String {
+    let mut hertz: Vec<f64> = all.iter().map(|one| one.frequency).collect();
+    hertz.sort_by(f64::total_cmp);
+    hertz.dedup_by(|a, b| significant(*a, 4) == significant(*b, 4));
+    let named: Vec<String> = hertz.iter().map(|hertz| significant(*hertz, 4)).collect();
+    let (count, row) = (all.len(), all[0].row);
+    let tones = match named.as_slice() {
+        [only] if count == 1 => format!("the tone of {only} Hz (row {row}) is left out"),
+        few if few.len() <= MOST => {
+            let names = few.join(", ");
+            format!("{count} tones of {names} Hz (the first in row {row}) are left out")
         }
-        let numbers = || all.iter().map(LeftOut::number);
-        let least = significant(numbers().fold(f64::INFINITY, f64::min), 2);
-        let most = significant(numbers().fold(f64::NEG_INFINITY, f64::max), 2);
-        let number = if least == most { most } else { format!("{least} to {most}") };
-        match all[0].reason {
-            Reason::Aliased { half_rate } => {
-                write!(f, "half the sampling rate is {} Hz", significant(half_rate, 4))
-            }
-            Reason::FewPeriods(_) => {
-                write!(f, "{number} of its periods are fewer than {LEAST_PERIODS}")
-            }
-            Reason::Sweep(_) => write!(
-                f,
-                "its frequency changes by a factor of {number} from its first half to its second; a sweep \
-                 (chirp) is not a steady sine. Record one frequency after the other"
-            ),
-            Reason::Still => f.write_str("it has no torque, or nothing moves"),
-            Reason::NotOneSine(_) => write!(
-                f,
-                "{number} % of its torque is not this sine; friction acts on the whole motion, so record one \
-                 sine after the other, not several at once"
-            ),
-            Reason::Noise(_) => write!(
-                f,
-                "its motion of {number} counts is below quantisation and noise: use a larger torque, or a \
-                 longer tone"
-            ),
-            Reason::Friction(_) => {
-                write!(f, "friction takes {number} % of its torque: use a larger torque")
-            }
+        many => {
+            let (least, most) = (&many[0], &many[many.len() - 1]);
+            format!("{count} tones from {least} to {most} Hz (the first in row {row}) are left out")
         }
-    }
+    };
+    let numbers = || all.iter().map(LeftOut::number);
+    let least = significant(numbers().fold(f64::INFINITY, f64::min), 2);
+    let most = significant(numbers().fold(f64::NEG_INFINITY, f64::max), 2);
+    let number = if least == most { most } else { format!("{least} to {most}") };
+    let reason = match all[0].reason {
+        Reason::Aliased { half_rate } => {
+            format!("half the sampling rate is {} Hz", significant(half_rate, 4))
+        }
+        Reason::FewPeriods(_) => {
+            format!("{number} of its periods are fewer than {LEAST_PERIODS}")
+        }
+        Reason::Sweep(_) => format!(
+            "its frequency changes by a factor of {number} from its first half to its second; a sweep \
+             (chirp) is not a steady sine. Record one frequency after the other"
+        ),
+        Reason::Still => "it has no torque, or nothing moves".to_owned(),
+        Reason::NotOneSine(_) => format!(
+            "{number} % of its torque is not this sine; friction acts on the whole motion, so record one \
+             sine after the other, not several at once"
+        ),
+        Reason::Noise(_) => format!(
+            "its motion of {number} counts is below quantisation and noise: use a larger torque, or a \
+             longer tone"
+        ),
+        Reason::Friction(_) => {
+            format!("friction takes {number} % of its torque: use a larger torque")
+        }
+    };
+    format!("{tones}: {reason}")
 }

@@ -8,7 +8,8 @@ use haptic_servo::excitation::{Exciter, Sweep};
 
 use super::record::Record;
 use super::rig::MeasuredDevice;
-use crate::compare_run::{EmulatedBoard, RunError};
+use crate::compare_run::RunError;
+use crate::emulator::Emulator;
 use crate::lockstep::{Difference, RemoteServo};
 use crate::quantity::significant;
 
@@ -25,16 +26,13 @@ pub struct Measurement {
 
 /// Plays a sweep to a device at rest and records it. With a program `elf` the emulated board's codes drive
 /// the device, and each is compared. Calls `progress` on each tick.
-///
-/// # Errors
-/// Where the emulated board cannot be started, fails, or does not end.
 pub fn measure<const N: usize>(
     sweep: &Sweep<N>,
     device: &mut MeasuredDevice,
     elf: Option<&Path>,
     mut progress: impl FnMut(),
 ) -> Result<Measurement, RunError> {
-    let mut board = elf.map(EmulatedBoard::boot).transpose()?;
+    let mut board = elf.map(Emulator::boot).transpose()?;
     let mut exciter = Exciter::new(sweep);
     let torque_per_code = sweep.full_scale_torque() / f64::from(DacCode::CODES_TO_FULL_SCALE);
     let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
@@ -43,7 +41,7 @@ pub fn measure<const N: usize>(
         let (count, excitation) = (device.count(), exciter.next());
         let host = excitation.code.get();
         let code = match &mut board {
-            Some(board) => board.exchange(count)?,
+            Some(board) => RemoteServo::exchange(board, count)?,
             None => host,
         };
         if code == host {
@@ -68,9 +66,6 @@ pub fn measure<const N: usize>(
 }
 
 /// Writes a record as a CSV file that can be [read](super::record::load) again.
-///
-/// # Errors
-/// Where it cannot be written.
 pub fn write(record: &Record, out: impl io::Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     let labelled = record.frequency.is_some();

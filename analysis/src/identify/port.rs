@@ -23,7 +23,7 @@ const LONGEST_LINE: usize = 512;
 const HEADING: &str = "time,torque,counts";
 
 /// Description of a sweep.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Description {
     /// Sampling period in s.
     pub period: f64,
@@ -54,76 +54,36 @@ pub struct Recording {
 
 /// Why there is no record.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum PortError {
-    /// The port cannot be opened, or is gone.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// No board with a sweep answers.
     #[error(
         "no board with the program `identify` answers on {address} within {} s: flash it (cargo \
          haptic flash --board BOARD identify), and check the port and its speed",
         TIMEOUT.as_secs()
     )]
-    Silent {
-        /// The address.
-        address: Address,
-    },
-    /// A description of another version, or an invalid description.
+    Silent { address: Address },
     #[error(
         "the board on {address} describes its sweep as `{line}`, which is not version \
          {SWEEP_PROTOCOL} of the sweep protocol: flash `identify` again"
     )]
-    Protocol {
-        /// The address.
-        address: Address,
-        /// Its line.
-        line: String,
-    },
-    /// The record stopped coming.
+    Protocol { address: Address, line: String },
     #[error(
         "the board on {address} has sent nothing for {} s after {rows} of {ticks} rows: check its \
          cable and its power; its watchdog or its own limit of {SILENCE} s has stopped the motor",
         TIMEOUT.as_secs()
     )]
-    Lost {
-        /// The address.
-        address: Address,
-        /// Rows so far.
-        rows: u64,
-        /// Rows of the whole record.
-        ticks: u64,
-    },
-    /// More rows than the sweep has samples.
+    Lost { address: Address, rows: u64, ticks: u64 },
     #[error(
         "the board on {address} has sent more than the {ticks} rows of its sweep: check that no \
          other program has the port open, and flash `identify` again"
     )]
-    TooLong {
-        /// The address.
-        address: Address,
-        /// Rows of the whole record.
-        ticks: u64,
-    },
-    /// The sweep ended before its last sample.
+    TooLong { address: Address, ticks: u64 },
     #[error("the sweep ended with `{}` after {rows} of {ticks} rows: {}", .end.as_str(), remedy(*.end, .travel, .speed))]
-    Ended {
-        /// The way in which it ended.
-        end: SweepEnd,
-        /// Rows until then.
-        rows: u64,
-        /// Rows of the whole record.
-        ticks: u64,
-        /// The limit of travel in rad.
-        travel: f64,
-        /// The limit of speed in rad/s.
-        speed: f64,
-    },
-    /// A word that this program does not know.
+    Ended { end: SweepEnd, rows: u64, ticks: u64, travel: f64, speed: f64 },
     #[error("the board ended the sweep with the unknown word `{word}`: flash `identify` again")]
-    Word {
-        /// The word.
-        word: String,
-    },
+    Word { word: String },
 }
 
 /// The cause of a sweep's end, and its remedy.
@@ -168,19 +128,14 @@ fn remedy(end: SweepEnd, travel: &f64, speed: &f64) -> String {
 
 impl Recording {
     /// The record, if it is whole.
-    ///
-    /// # Errors
-    /// The cause, if the sweep ended early.
     pub fn check_complete(&self) -> Result<(), PortError> {
         let Description { ticks, travel, speed, .. } = self.description;
-        let (end, rows) = (self.end, self.rows);
-        match end {
-            SweepEnd::Done if rows == ticks => Ok(()),
-            SweepEnd::Done => {
-                Err(PortError::Ended { end: SweepEnd::LostRow, rows, ticks, travel, speed })
-            }
-            _ => Err(PortError::Ended { end, rows, ticks, travel, speed }),
-        }
+        let end = match self.end {
+            SweepEnd::Done if self.rows == ticks => return Ok(()),
+            SweepEnd::Done => SweepEnd::LostRow,
+            end => end,
+        };
+        Err(PortError::Ended { end, rows: self.rows, ticks, travel, speed })
     }
 }
 
@@ -197,21 +152,10 @@ pub struct SweepPort {
 
 impl SweepPort {
     /// Connects, ends a sweep that may still run, and requests the description.
-    ///
-    /// # Errors
-    /// Where the port cannot be opened, or no board with a sweep answers.
     pub fn open(address: &Address) -> Result<Self, PortError> {
         let transport =
             open(address).map_err(|source| LinkError::Open { address: address.clone(), source })?;
-        let description = Description {
-            period: 0.0,
-            counts_per_turn: 0.0,
-            ticks: 0,
-            travel: 0.0,
-            speed: 0.0,
-            source: None,
-        };
-        let (address, rest) = (address.clone(), Vec::new());
+        let (address, rest, description) = (address.clone(), Vec::new(), Description::default());
         let mut player = Self { address, transport, rest, told: Instant::now(), description };
         player.send(&SweepRequest::Stop)?;
         let settled = Instant::now() + SETTLE;
@@ -247,9 +191,6 @@ impl SweepPort {
     /// Begins the sweep and takes its record. Calls `progress` on each row.
     ///
     /// The board ends the sweep by itself once this process is gone.
-    ///
-    /// # Errors
-    /// Where the link is lost, or the board ends with an unknown word.
     pub fn record(mut self, mut progress: impl FnMut()) -> Result<Recording, PortError> {
         self.send(&SweepRequest::BEGIN)?;
         let (mut text, mut rows) = (String::new(), 0);

@@ -100,7 +100,7 @@ impl Profile {
         let below = tried.iter().rev().find(|fit| fit.model.lag < lag && !is_allowed(fit));
         let above = tried.iter().find(|fit| fit.model.lag > lag && !is_allowed(fit));
         let end = |outside: Option<&Fit>, otherwise: f64| match outside {
-            Some(fit) => squares.end(lag, fit.model.lag, best.squares + threshold),
+            Some(fit) => squares.last(lag, fit.model.lag, is_allowed),
             None => otherwise,
         };
         let longest = tried.last().map_or(lag, |fit| fit.model.lag);
@@ -244,7 +244,7 @@ impl Squares<'_> {
             let Some(fit) = self.at(lag) else { continue };
             if !Self::is_told(&fit) {
                 let told = tried.last().map_or(0.0, |fit| fit.model.lag);
-                let last = self.last_told(told, lag);
+                let last = self.at(self.last(told, lag, Self::is_told));
                 tried.extend(last);
                 return (tried, last.map(|fit| Open::Exchange(fit.model.lag)));
             }
@@ -258,17 +258,6 @@ impl Squares<'_> {
             }
         }
         (tried, Some(Open::Longest(longest)))
-    }
-
-    /// The longest lag that can be distinguished from the inertia, between a lag that can and a lag that
-    /// cannot.
-    fn last_told(&self, mut told: f64, mut not: f64) -> Option<Fit> {
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (told + not);
-            let is_told = self.at(middle).is_some_and(|fit| Self::is_told(&fit));
-            if is_told { told = middle } else { not = middle }
-        }
-        self.at(told)
     }
 
     /// The best fit in a range that holds one minimum, by thirds.
@@ -291,12 +280,12 @@ impl Squares<'_> {
         Some(best)
     }
 
-    /// The lag between an allowed lag and one not allowed at which the squares reach `most`.
-    fn end(&self, mut inside: f64, mut outside: f64, most: f64) -> f64 {
+    /// The last lag of those that hold, between a lag that does and a lag that does not.
+    fn last(&self, mut inside: f64, mut outside: f64, holds: impl Fn(&Fit) -> bool) -> f64 {
         for _ in 0..HALVINGS {
             let middle = 0.5 * (inside + outside);
             match self.at(middle) {
-                Some(fit) if fit.squares <= most => inside = middle,
+                Some(fit) if holds(&fit) => inside = middle,
                 _ => outside = middle,
             }
         }

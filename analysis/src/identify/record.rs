@@ -76,9 +76,6 @@ pub fn load(path: &Path, count_angle: f64) -> Result<Record, TableError> {
 }
 
 /// The same from anything that can be read; messages call it `file`.
-///
-/// # Errors
-/// As [`load`].
 pub fn parse(file: &str, text: impl Read, count_angle: f64) -> Result<Record, TableError> {
     read(Table::new(file, text)?, count_angle)
 }
@@ -96,13 +93,12 @@ impl Motion {
         }
         match table.find_in(ANGLE, RADIANS)? {
             Some(angle) if angle.has_unit => Ok(Self::Angle(angle)),
-            Some(angle) => Err(TableError::BadHeader {
-                file: table.file().to_owned(),
-                message: format!(
-                    "the column `{0}` has no unit: name it `{0} (rad)` or `{0} (deg)`",
-                    angle.name
-                ),
-            }),
+            Some(FoundColumn { name, .. }) => {
+                let message = format!(
+                    "the column `{name}` has no unit: name it `{name} (rad)` or `{name} (deg)`"
+                );
+                Err(TableError::at(table.file(), 1, message))
+            }
             None => Err(table.missing(COUNTS)),
         }
     }
@@ -213,6 +209,6 @@ impl Times {
             "the time goes from {before} s to {behind} s, by more than one period of {period} s: rows are missing \
              ({missing} rows in {count} gaps in the file). Record again without gaps, or cut the file there"
         );
-        Err(TableError::BadRow { file: file.to_owned(), line, message })
+        Err(TableError::at(file, line, message))
     }
 }

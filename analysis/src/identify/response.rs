@@ -84,8 +84,7 @@ pub fn single_bin(
     step: &Step,
     correction: &Correction,
 ) -> Result<FrequencyPoint, Reason> {
-    let skipped = (correction.settle * step.rows.len() as f64) as usize;
-    let rows = step.rows.start + skipped..step.rows.end;
+    let rows = step.settled(correction.settle);
     let angle = step.omega * record.period;
     let of_torque = phasor(&record.torque[rows.clone()], angle).ok_or(Reason::Still)?;
     let of_counts = phasor(&record.counts[rows], angle).ok_or(Reason::Still)?;
@@ -117,28 +116,42 @@ pub fn single_bin(
     if usable { Ok(point) } else { Err(Reason::Still) }
 }
 
-/// `Re(p e^(j angle k))` fitted to the samples together with a parabola, which a free device drifts
-/// along.
+/// `Re(p e^(j angle k))` fitted to the samples.
 fn phasor(samples: &[f64], angle: f64) -> Option<FittedSine> {
-    const UNKNOWNS: usize = 5;
-    let n = samples.len();
-    if n <= UNKNOWNS {
+    let (phasors, residual) = fitted_sines(samples, angle, 1)?;
+    let rest = (2.0 * residual.norm_squared() / samples.len() as f64).sqrt();
+    let deviation = deviation(residual.as_slice(), angle, phasors[0].norm());
+    Some(FittedSine { phasor: phasors[0], deviation, rest })
+}
+
+/// The phasors of a sine and its harmonics, as many as `orders`, fitted to samples together with a parabola,
+/// which a free device drifts along; and the residual.
+pub(super) fn fitted_sines(
+    samples: &[f64],
+    angle: f64,
+    orders: usize,
+) -> Option<(Vec<Complex<f64>>, DVector<f64>)> {
+    const DRIFT: usize = 3;
+    let (n, unknowns) = (samples.len(), DRIFT + 2 * orders);
+    if n <= unknowns {
         return None;
     }
-    let regressors = DMatrix::from_fn(n, UNKNOWNS, |row, column| {
-        // Between -1 and 1, so that the columns are of one size.
-        let time = 2.0 * row as f64 / (n - 1) as f64 - 1.0;
-        let phase = angle * row as f64;
-        [1.0, time, time * time, phase.cos(), -phase.sin()][column]
+    let regressors = DMatrix::from_fn(n, unknowns, |row, column| {
+        if column < DRIFT {
+            // Between -1 and 1, so that the columns are of one size.
+            let time = 2.0 * row as f64 / (n - 1) as f64 - 1.0;
+            return time.powi(column as i32);
+        }
+        let order = (column - DRIFT) / 2 + 1;
+        let phase = order as f64 * angle * row as f64;
+        if (column - DRIFT).is_multiple_of(2) { phase.cos() } else { -phase.sin() }
     });
     let values = DVector::from_column_slice(samples);
     let normal = (regressors.transpose() * &regressors).cholesky()?;
     let solution = normal.solve(&(regressors.transpose() * &values));
     let residual = values - regressors * &solution;
-    let phasor = Complex::new(solution[3], solution[4]);
-    let rest = (2.0 * residual.norm_squared() / n as f64).sqrt();
-    let deviation = deviation(residual.as_slice(), angle, phasor.norm());
-    Some(FittedSine { phasor, deviation, rest })
+    let parts = solution.as_slice()[DRIFT..].chunks_exact(2);
+    Some((parts.map(|part| Complex::new(part[0], part[1])).collect(), residual))
 }
 
 /// A sine fitted to samples.

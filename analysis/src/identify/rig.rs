@@ -12,17 +12,6 @@ use crate::simulation::SimulationError;
 use crate::simulation::discrete_plant::{DiscretePlant, Discretization};
 use crate::simulation::plant::{POSITION, Plant};
 
-/// One sine.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Excitation {
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// Amplitude in N m.
-    pub amplitude: f64,
-    /// Duration in s.
-    pub duration: f64,
-}
-
 /// How a device is driven and measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensing {
@@ -85,9 +74,6 @@ fn pieces(plant: &Plant, sensing: &Sensing) -> Result<Vec<Piece>, SimulationErro
 
 impl MeasuredDevice {
     /// A device that is driven and measured in this way.
-    ///
-    /// # Errors
-    /// Where the device is too fast for its motion over a period to be computed.
     pub fn new(plant: &Plant, sensing: &Sensing) -> Result<Self, SimulationError> {
         let pieces = pieces(plant, sensing)?;
         let oldest = pieces.iter().map(|piece| piece.age).max().unwrap_or(0);
@@ -120,6 +106,38 @@ impl MeasuredDevice {
     }
 }
 
+/// One sine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Excitation {
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Amplitude in N m.
+    pub amplitude: f64,
+    /// Duration in s.
+    pub duration: f64,
+}
+
+/// Applies one sine after the other, and records; `felt` is the torque in N m that the device gets at a phase
+/// in rad of a sine.
+pub fn play(
+    device: &mut MeasuredDevice,
+    period: f64,
+    sines: &[Excitation],
+    felt: impl Fn(&Excitation, f64) -> f64,
+) -> Record {
+    let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
+    for sine in sines {
+        for tick in 0..(sine.duration / period).round() as usize {
+            let phase = std::f64::consts::TAU * sine.frequency * (tick as f64 * period);
+            torque.push(sine.amplitude * phase.sin());
+            counts.push(f64::from(device.count()));
+            frequency.push(sine.frequency);
+            device.hold(felt(sine, phase));
+        }
+    }
+    Record { period, torque, counts, frequency: Some(frequency) }
+}
+
 /// A rig with a rigid device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rig {
@@ -133,29 +151,12 @@ pub struct Rig {
 
 impl Rig {
     /// Applies one sine after the other, from rest, and records.
-    ///
-    /// # Errors
-    /// Where the device is too fast for its motion over a period to be computed.
     pub fn measure(&self, sines: &[Excitation]) -> Result<Record, SimulationError> {
-        let period = self.sensing.period;
-        let rigid = Plant::rigid(self.device);
-        let lag = self.actuator_lag;
+        let (rigid, lag) = (Plant::rigid(self.device), self.actuator_lag);
         let plant = if lag > 0.0 { rigid.with_actuator_lag(lag) } else { rigid };
         let mut device = MeasuredDevice::new(&plant, &self.sensing)?;
-        let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
-        for sine in sines {
-            let ticks = (sine.duration / period).round() as usize;
-            for tick in 0..ticks {
-                let time = tick as f64 * period;
-                let command =
-                    sine.amplitude * (std::f64::consts::TAU * sine.frequency * time).sin();
-                torque.push(command);
-                counts.push(f64::from(device.count()));
-                frequency.push(sine.frequency);
-                device.hold(command);
-            }
-        }
-        Ok(Record { period, torque, counts, frequency: Some(frequency) })
+        let felt = |sine: &Excitation, phase: f64| sine.amplitude * phase.sin();
+        Ok(play(&mut device, self.sensing.period, sines, felt))
     }
 }
 

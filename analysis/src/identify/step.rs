@@ -21,6 +21,13 @@ pub struct Step {
     pub omega: f64,
 }
 
+impl Step {
+    /// Its rows without this part of them at the beginning, in which the transient dies out.
+    pub(super) fn settled(&self, part: f64) -> Range<usize> {
+        self.rows.start + (part * self.rows.len() as f64) as usize..self.rows.end
+    }
+}
+
 /// The stretches of a record, as its column `frequency` states, or else where the torque crosses zero at
 /// steady intervals; and the stretches that cannot be used, with the reason.
 pub fn steps(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {

@@ -12,17 +12,6 @@ use super::output::finished;
 use super::package::Package;
 use super::unpacked::Unpacked;
 
-/// The reason why packages were neither installed nor unpacked.
-#[derive(Debug, thiserror::Error)]
-pub enum AptError {
-    /// A program or a file failed.
-    #[error(transparent)]
-    Failed(#[from] io::Error),
-    /// Nothing was done, for this reason.
-    #[error("{0}")]
-    NotDone(String),
-}
-
 /// The programs of Debian that fetch, install and unpack packages.
 pub struct Apt<'a> {
     apt_get: PathBuf,
@@ -46,6 +35,11 @@ fn command(packages: &[&str]) -> String {
     format!("apt-get install --no-install-recommends {}", packages.join(" "))
 }
 
+/// The error of packages that are not installed for a reason that new lists do not change.
+fn not_done(why: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::Unsupported, why)
+}
+
 impl<'a> Apt<'a> {
     /// What cannot be installed is unpacked beside `unpacked`.
     pub fn new(unpacked: &'a Unpacked, progress: &'a dyn Fn(&str)) -> Self {
@@ -58,47 +52,46 @@ impl<'a> Apt<'a> {
     ///
     /// # Errors
     /// If one does not exist, is too old or has to be installed, or if a step fails.
-    pub fn provide(&self, packages: &[Package]) -> Result<(), AptError> {
-        let names: Vec<_> = packages.iter().map(|package| package.name()).collect();
-        if packages.iter().any(|package| Package::NATIVE.contains(package)) {
-            return self.install(&names);
-        }
-        self.with_fresh_lists(|| {
-            let changes = self.changes(&names)?;
-            changes.serve(packages)?;
-            if self.is_root && changes.removed.is_empty() {
-                return self.install_with(&names, &changes);
-            }
-            if self.is_root {
-                (self.progress)(&format!("{} {changes}: not done", command(&names)));
-            }
-            self.unpack(&names, &changes)
-        })
+    pub fn provide(&self, packages: &[Package]) -> io::Result<()> {
+        let names: Vec<_> = packages.iter().map(|package| package.name).collect();
+        let may_unpack = !packages.iter().any(|package| Package::NATIVE.contains(package));
+        self.get(&names, packages, may_unpack)
     }
 
-    /// Installs packages as root, if that removes no other package.
+    /// Installs a package as root, if that removes no other package.
     ///
     /// # Errors
     /// If it would remove a package, which changes nothing, or if it fails.
-    pub fn install(&self, names: &[&str]) -> Result<(), AptError> {
-        if !self.is_root {
-            return Err(AptError::NotDone("only root may install packages".into()));
+    pub fn install(&self, name: &str) -> io::Result<()> {
+        self.get(&[name], &[], false)
+    }
+
+    fn get(&self, names: &[&str], checked: &[Package], may_unpack: bool) -> io::Result<()> {
+        if !self.is_root && !may_unpack {
+            return Err(not_done("only root may install packages"));
         }
         self.with_fresh_lists(|| {
             let changes = self.changes(names)?;
-            if changes.removed.is_empty() {
+            changes.serve(checked)?;
+            if self.is_root && changes.removed.is_empty() {
                 return self.install_with(names, &changes);
             }
-            let why = format!("this would remove packages; check these changes: {changes}");
-            Err(AptError::NotDone(why))
+            if !may_unpack {
+                let why = format!("this would remove packages; check these changes: {changes}");
+                return Err(not_done(&why));
+            }
+            if self.is_root {
+                (self.progress)(&format!("{} {changes}: not done", command(names)));
+            }
+            self.unpack(names, &changes)
         })
     }
 
     /// Gets packages, with new lists if that fails: a new machine has none, and a mirror may have dropped the
     /// versions that old lists name.
-    fn with_fresh_lists(&self, get: impl Fn() -> Result<(), AptError>) -> Result<(), AptError> {
+    fn with_fresh_lists(&self, get: impl Fn() -> io::Result<()>) -> io::Result<()> {
         match get() {
-            Err(AptError::Failed(error)) if error.kind() == io::ErrorKind::Other => {}
+            Err(error) if error.kind() == io::ErrorKind::Other => {}
             result => return result,
         }
         (self.progress)("apt-get update");
@@ -115,14 +108,14 @@ impl<'a> Apt<'a> {
         (!self.is_root).then(|| self.unpacked.folder().join("apt"))
     }
 
-    fn changes(&self, names: &[&str]) -> Result<Changes, AptError> {
+    fn changes(&self, names: &[&str]) -> io::Result<Changes> {
         let simulate = ["install", "--simulate", "--no-install-recommends"];
         let simulation = self.apt_get(&simulate, names, Path::new("."))?;
         Ok(Changes::of_simulation(&String::from_utf8_lossy(&simulation.stdout)))
     }
 
     /// Prints the changes, and installs the packages.
-    fn install_with(&self, names: &[&str], changes: &Changes) -> Result<(), AptError> {
+    fn install_with(&self, names: &[&str], changes: &Changes) -> io::Result<()> {
         (self.progress)(&format!("{}: {changes}", command(names)));
         // `--no-remove`, because the machine may have changed since the simulation.
         let arguments = ["install", "--yes", "--no-install-recommends", "--no-remove"];
@@ -132,7 +125,7 @@ impl<'a> Apt<'a> {
 
     /// Prints which packages it fetches, and unpacks them. This changes nothing outside their folder, and
     /// needs no rights.
-    fn unpack(&self, names: &[&str], changes: &Changes) -> Result<(), AptError> {
+    fn unpack(&self, names: &[&str], changes: &Changes) -> io::Result<()> {
         let root = self.unpacked.folder();
         // Not the C library, whose loader starts every program and is the machine's.
         let packages = changes.installed.iter().filter(|(name, _)| !name.starts_with("libc6"));
@@ -199,13 +192,13 @@ impl Changes {
     }
 
     /// Refuses packages that are too old.
-    fn serve(&self, packages: &[Package]) -> Result<(), AptError> {
+    fn serve(&self, packages: &[Package]) -> io::Result<()> {
         for package in packages {
-            let new = self.installed.iter().find(|(name, _)| name == package.name());
+            let new = self.installed.iter().find(|(name, _)| name == package.name);
             let version = new.and_then(|(_, version)| Version::find(version));
             if let Some(old) = version.filter(|version| !package.is_served_by(*version)) {
-                let why = format!("the package {} is too old: {old}", package.name());
-                return Err(AptError::NotDone(why));
+                let why = format!("the package {} is too old: {old}", package.name);
+                return Err(not_done(&why));
             }
         }
         Ok(())
@@ -292,11 +285,7 @@ Conf lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])
         }
 
         /// Has packages provided; returns the result, the messages, and the arguments of the programs.
-        fn provide(
-            &self,
-            is_root: bool,
-            package: Package,
-        ) -> (Result<(), AptError>, String, String) {
+        fn provide(&self, is_root: bool, package: Package) -> (io::Result<()>, String, String) {
             let said = RefCell::new(String::new());
             let progress = |step: &str| said.borrow_mut().push_str(step);
             let (apt_get, dpkg_deb) =
@@ -311,7 +300,7 @@ Conf lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])
 
     #[test]
     fn root_installs_what_removes_nothing() {
-        let (result, said, done) = Machine::new(INSTALLS).provide(true, Package::Lld);
+        let (result, said, done) = Machine::new(INSTALLS).provide(true, Package::LLD);
         result.unwrap();
         assert!(said.ends_with("lld: installs 1: lld"), "{said}");
         assert!(
@@ -328,7 +317,7 @@ Conf lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])
             // What an interrupted one has left is not unpacked with it.
             fs::create_dir_all(root.join("archives")).unwrap();
             fs::write(root.join("archives/lld=1:14.0-55.6.deb"), "half of it").unwrap();
-            let (result, said, done) = machine.provide(is_root, Package::Lld);
+            let (result, said, done) = machine.provide(is_root, Package::LLD);
             result.unwrap();
             assert_eq!(said.contains("REMOVES 1: gcc-old: not done"), is_root, "{said}");
             // The loader of programs stays the machine's.
@@ -340,7 +329,7 @@ Conf lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])
             let unpacked = [unpacks("lld-14=1:14.0.6-12"), unpacks("lld=1:14.0-55.7")];
             assert_eq!(lines[1..], unpacked);
             assert!(!root.join("archives").exists());
-            assert!(machine.unpacked.version(Package::Lld).is_some());
+            assert!(machine.unpacked.version("lld").is_some());
         }
     }
 
@@ -348,7 +337,7 @@ Conf lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])
     #[test]
     fn the_tools_of_the_virtual_board_are_not_unpacked() {
         for is_root in [true, false] {
-            let (result, _, done) = Machine::new(REMOVES).provide(is_root, Package::Cmake);
+            let (result, _, done) = Machine::new(REMOVES).provide(is_root, Package::NATIVE[0]);
             let error = result.unwrap_err().to_string();
             assert_eq!(error.contains("REMOVES 1: gcc-old"), is_root, "{error}");
             assert_eq!(done, "");
@@ -363,7 +352,7 @@ Conf lld (1:14.0-55.7 Debian:12.11/oldstable [amd64])
                 "apt-get",
                 "echo \"$*\" >> $here/done; case \"$*\" in *update) ;; *) exit 1; esac",
             );
-            let (result, said, done) = machine.provide(is_root, Package::Lld);
+            let (result, said, done) = machine.provide(is_root, Package::LLD);
             assert!(result.unwrap_err().to_string().contains("install --simulate"));
             assert_eq!(said, "apt-get update");
             let lists = format!("={}", machine.unpacked.folder().join("apt/lists").display());

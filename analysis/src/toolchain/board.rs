@@ -22,33 +22,6 @@ pub enum TorqueOutput {
     Bridge,
 }
 
-impl TorqueOutput {
-    /// The features of the firmware's package in addition to the board's.
-    pub(super) const fn features(self) -> &'static str {
-        match self {
-            Self::Dac => "",
-            Self::Bridge => ",bridge",
-        }
-    }
-
-    /// The addition to the name of a program's file.
-    pub(super) const fn suffix(self) -> &'static str {
-        match self {
-            Self::Dac => "",
-            Self::Bridge => "-bridge",
-        }
-    }
-}
-
-impl fmt::Display for TorqueOutput {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Dac => "dac",
-            Self::Bridge => "bridge",
-        })
-    }
-}
-
 /// The error for an unknown board.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no board {name}; there are {}", BoardModel::ALL.map(BoardModel::name).join(", "))]
@@ -61,13 +34,23 @@ impl BoardModel {
     /// All boards.
     pub const ALL: [Self; 3] = [Self::NucleoG474re, Self::BG431bEsc1, Self::FeatherStm32f405];
 
+    /// Its name, which is also the feature's, and the size of its chip's flash in KiB, from the data sheet.
+    const fn facts(self) -> (&'static str, u64) {
+        match self {
+            Self::NucleoG474re => ("nucleo-g474re", 512),
+            Self::BG431bEsc1 => ("b-g431b-esc1", 128),
+            Self::FeatherStm32f405 => ("feather-stm32f405", 1024),
+        }
+    }
+
     /// Its name, which is also the feature's.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::NucleoG474re => "nucleo-g474re",
-            Self::BG431bEsc1 => "b-g431b-esc1",
-            Self::FeatherStm32f405 => "feather-stm32f405",
-        }
+        self.facts().0
+    }
+
+    /// Size of its chip's flash in bytes.
+    pub const fn flash(self) -> u64 {
+        self.facts().1 << 10
     }
 
     /// Whether it has a bridge that this firmware drives.
@@ -75,20 +58,7 @@ impl BoardModel {
         matches!(self, Self::BG431bEsc1)
     }
 
-    /// Size of its chip's flash in bytes, from the chip's data sheet.
-    pub const fn flash(self) -> u64 {
-        let kibibytes = match self {
-            Self::NucleoG474re => 512,
-            Self::BG431bEsc1 => 128,
-            Self::FeatherStm32f405 => 1024,
-        };
-        kibibytes << 10
-    }
-
     /// The board of that name.
-    ///
-    /// # Errors
-    /// If there is none; the error lists the boards.
     pub fn find(name: &str) -> Result<Self, UnknownBoard> {
         let found = Self::ALL.into_iter().find(|board| board.name() == name);
         found.ok_or_else(|| UnknownBoard { name: name.into() })

@@ -12,7 +12,9 @@ use super::output::last_lines;
 use super::size::Sizes;
 use super::sources::{Sources, SourcesError, workspace_root};
 use super::unpacked::{QEMU, Unpacked};
-use super::{BoardModel, TARGET, Target, TorqueOutput};
+use super::{BoardModel, Target, TorqueOutput};
+
+const TARGET: &str = Target::BOARD.name;
 
 /// The number format of a scene's program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
@@ -44,46 +46,22 @@ impl fmt::Display for NumberFormat {
 
 /// The reason why a program could not be built.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum BuildError {
-    /// The sources are invalid.
     #[error(transparent)]
     Sources(#[from] SourcesError),
-    /// A file could not be read or written.
+    /// A file could not be read or written, or has no valid content.
     #[error("{path}: {source}")]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The cause.
-        source: io::Error,
-    },
-    /// The board does not have this torque output.
+    File { path: PathBuf, source: io::Error },
     #[error(
         "the board {board} has no bridge that this firmware drives; {} has",
         BoardModel::BG431bEsc1
     )]
-    NoBridge {
-        /// The board.
-        board: BoardModel,
-    },
-    /// Cargo could not be started.
+    NoBridge { board: BoardModel },
     #[error("cargo could not be started: {0}")]
     NoCargo(#[source] io::Error),
-    /// The program does not compile.
     #[error("{program} does not compile:\n{output}")]
-    Compile {
-        /// The program.
-        program: String,
-        /// The output of the compiler.
-        output: String,
-    },
-    /// The size of a program, or the linker's map, could not be read.
-    #[error("{path}: {why}")]
-    Content {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        why: String,
-    },
+    Compile { program: String, output: String },
 }
 
 /// The compiler that builds for the board.
@@ -120,23 +98,36 @@ pub(super) struct Workspace {
     output: PathBuf,
 }
 
-/// The package of the scenes' programs.
-const SCENES: &str = "haptic-servo";
-
-/// A build variant of a program: its features, and the suffix of its file's name.
-struct Variant {
+/// The programs of a package in one variant.
+struct Variant<'a> {
+    package: &'a str,
     features: String,
+    /// The addition to the names of the programs' files.
     suffix: String,
 }
 
-impl Variant {
-    /// A scene's program in a number format.
+impl Variant<'static> {
+    /// Scenes' programs in a number format.
     fn scene(features: &str, format: NumberFormat, suffix: &str) -> Self {
-        let features = match format {
-            NumberFormat::F32 => features.to_owned(),
-            NumberFormat::Fixed => format!("{features},fixed-point"),
-        };
-        Self { features, suffix: format!("-{format}{suffix}") }
+        let fixed = if format == NumberFormat::Fixed { ",fixed-point" } else { "" };
+        let (features, suffix) = (format!("{features}{fixed}"), format!("-{format}{suffix}"));
+        Self { package: "haptic-servo", features, suffix }
+    }
+
+    /// The only program of a package.
+    fn of(package: &'static str, features: &str) -> Self {
+        Self { package, features: features.into(), suffix: String::new() }
+    }
+}
+
+/// The features of a board's programs, and the addition to the names of their files.
+fn board_variant(board: BoardModel, output: TorqueOutput) -> Result<[String; 2], BuildError> {
+    match output {
+        TorqueOutput::Dac => Ok([board.to_string(), format!("-{board}")]),
+        TorqueOutput::Bridge if board.has_bridge() => {
+            Ok([format!("{board},bridge"), format!("-{board}-bridge")])
+        }
+        TorqueOutput::Bridge => Err(BuildError::NoBridge { board }),
     }
 }
 
@@ -146,36 +137,24 @@ impl Toolchain {
     }
 
     /// Names of the programs in alphabetical order.
-    ///
-    /// # Errors
-    /// If the source cannot be read.
     pub fn scenes(&self) -> Result<Vec<String>, BuildError> {
         Ok(Sources::of(&self.workspace.root).programs()?)
     }
 
     /// The default torque output of a program: the board's bridge, if its scene is certified with the
     /// bridge's latency.
-    ///
-    /// # Errors
-    /// If its source cannot be read.
     pub fn output_of(&self, name: &str) -> Result<TorqueOutput, BuildError> {
         let bridge = Sources::of(&self.workspace.root).is_for_bridge(name)?;
         Ok(if bridge { TorqueOutput::Bridge } else { TorqueOutput::Dac })
     }
 
     /// Builds a scene's program for the emulated board, with its log, and returns its file.
-    ///
-    /// # Errors
-    /// If there is no such scene, or it does not compile.
     pub fn build_scene(&self, name: &str, format: NumberFormat) -> Result<PathBuf, BuildError> {
         Ok(self.build_scenes(&[name], format)?.swap_remove(0))
     }
 
     /// Builds several scenes' programs at the same time like [`build_scene`](Self::build_scene), and returns
     /// their files in the same order.
-    ///
-    /// # Errors
-    /// If one of them does not exist or does not compile.
     pub fn build_scenes(
         &self,
         names: &[&str],
@@ -185,9 +164,6 @@ impl Toolchain {
     }
 
     /// Builds scenes' programs for the emulated board in `f32`, without log and measurements.
-    ///
-    /// # Errors
-    /// If one of them does not exist or does not compile.
     pub fn build_bare(&self, names: &[&str]) -> Result<Vec<Program>, BuildError> {
         let bare = Variant::scene("board-qemu", NumberFormat::F32, "-bare");
         self.scenes_programs(names, &bare)?.into_iter().map(Program::at).collect()
@@ -196,7 +172,7 @@ impl Toolchain {
     /// Builds programs to be flashed, for a board and its torque output.
     ///
     /// # Errors
-    /// If one of them does not exist, does not compile or does not fit, or if the board has no such output.
+    /// Also if one does not fit, or if the board has no such output.
     pub fn build_for(
         &self,
         board: BoardModel,
@@ -204,110 +180,78 @@ impl Toolchain {
         names: &[&str],
         format: NumberFormat,
     ) -> Result<Vec<Program>, BuildError> {
-        if output == TorqueOutput::Bridge && !board.has_bridge() {
-            return Err(BuildError::NoBridge { board });
-        }
-        let features = format!("{board}{}", output.features());
-        let variant = Variant::scene(&features, format, &format!("-{board}{}", output.suffix()));
+        let [features, suffix] = board_variant(board, output)?;
+        let variant = Variant::scene(&features, format, &suffix);
         self.scenes_programs(names, &variant)?.into_iter().map(Program::at).collect()
     }
 
     /// Builds the tests that run on a board, like a user, and returns their file: a board's own bridge has
     /// other tests than its DAC.
-    ///
-    /// # Errors
-    /// If they do not compile or do not fit, or if the board has no such output.
     pub fn build_tests(
         &self,
         board: BoardModel,
         output: TorqueOutput,
     ) -> Result<PathBuf, BuildError> {
-        if output == TorqueOutput::Bridge && !board.has_bridge() {
-            return Err(BuildError::NoBridge { board });
-        }
+        let [features, suffix] = board_variant(board, output)?;
         let name = match output {
             TorqueOutput::Dac => "on_target",
             TorqueOutput::Bridge => "bridge_load",
         };
-        let features = format!("{board}{}", output.features());
         let build = ["--release", "--package", "board-tests", "--target", TARGET];
         let tests = ["--features", &features, "--test", name];
         let _lock = self.workspace.lock("build")?;
-        let mut cargo = self.cargo();
+        let mut cargo = self.cargo(Target::BOARD);
         // Cargo chooses the name of a test's file, and prints it.
-        let printed = output_of(
-            name,
-            cargo.args(build).args(tests).arg("--message-format=json-render-diagnostics"),
-        )?;
+        cargo.args(build).args(tests).arg("--message-format=json-render-diagnostics");
+        let printed = output_of(name, &mut cargo)?;
         let built = printed.lines().find_map(|line| executable(line, name));
         let built = built.ok_or_else(|| BuildError::Compile {
             program: name.into(),
             output: "cargo has built no such test".into(),
         })?;
-        self.workspace.keep(&built, &format!("{name}-{board}{}", output.suffix()))
+        self.workspace.keep(&built, &format!("{name}{suffix}"))
     }
 
     /// Builds a foreign package, in a folder outside the workspace, for the boards, like programs to be
     /// flashed, and returns the program of this name.
-    ///
-    /// # Errors
-    /// If it does not compile.
     pub fn build_foreign(&self, folder: &Path, name: &str) -> Result<Program, BuildError> {
         let _lock = self.workspace.lock("build")?;
-        let mut cargo = self.cargo();
+        let mut cargo = self.cargo(Target::BOARD);
         cargo.current_dir(folder).args(["--release", "--bin", name, "--target", TARGET]);
-        ran(name, &mut cargo)?;
+        output_of(name, &mut cargo)?;
         let built = self.target_folder().join(TARGET).join("release").join(name);
         Program::at(self.workspace.keep(&built, &format!("foreign-{name}"))?)
     }
 
-    /// The memory that a board's program may use.
-    ///
-    /// # Errors
-    /// If the linker's map cannot be read.
+    /// The memory that a board's program may use, from the linker's map.
     pub fn memory(&self) -> Result<Memory, BuildError> {
         let path = self.workspace.root.join("memory.x");
-        match fs::read_to_string(&path) {
-            Ok(map) => Memory::of_map(&map).map_err(|why| BuildError::Content { path, why }),
-            Err(source) => Err(BuildError::File { path, source }),
-        }
+        let map = fs::read_to_string(&path);
+        let memory = map.and_then(|map| Memory::of_map(&map).map_err(io::Error::other));
+        memory.map_err(|source| BuildError::File { path, source })
     }
 
     /// Builds a program without a scene for the emulated board: the server of a client in
     /// [`emulator`](crate::emulator).
-    ///
-    /// # Errors
-    /// If it does not compile.
     pub fn build_harness(&self, name: &str) -> Result<PathBuf, BuildError> {
-        let variant = Variant { features: "emulated".into(), suffix: String::new() };
-        Ok(self.build("firmware-harness", &[name], &variant)?.swap_remove(0))
+        let variant = Variant::of("firmware-harness", "emulated");
+        Ok(self.build(&[name], &variant)?.swap_remove(0))
     }
 
     /// Builds the program of the foreign environment for the emulated board, with its log.
-    ///
-    /// # Errors
-    /// If it does not compile.
     pub fn build_own_environment(&self, format: NumberFormat) -> Result<PathBuf, BuildError> {
         let variant = Variant::scene("board-qemu,log", format, "");
-        Ok(self.build("own-environment", &["pedal"], &variant)?.swap_remove(0))
+        let variant = Variant { package: "own-environment", ..variant };
+        Ok(self.build(&["pedal"], &variant)?.swap_remove(0))
     }
 
     /// Builds the program of the foreign board, for that board.
-    ///
-    /// # Errors
-    /// If it does not compile.
     pub fn build_own_board(&self) -> Result<Program, BuildError> {
-        const NAME: &str = "own-board";
-        let _lock = self.workspace.lock("build")?;
-        ran(NAME, self.cargo().args(["--release", "--package", NAME, "--target", TARGET]))?;
-        let built = self.target_folder().join(TARGET).join("release").join(NAME);
-        Program::at(self.workspace.keep(&built, NAME)?)
+        let variant = Variant::of("own-board", "");
+        Program::at(self.build(&["own-board"], &variant)?.swap_remove(0))
     }
 
     /// Builds the virtual board: a separate program for this machine.
-    ///
-    /// # Errors
-    /// If it does not compile.
     pub fn build_virtual_board(&self) -> Result<PathBuf, BuildError> {
         const NAME: &str = "virtual-board";
         let target = &self.workspace.target;
@@ -316,21 +260,18 @@ impl Toolchain {
             cargo.env_remove(name);
         }
         cargo.env("CARGO_TARGET_DIR", target).args(["build", "--package", NAME]);
-        ran(NAME, &mut cargo)?;
+        output_of(NAME, &mut cargo)?;
         Ok(target.join("debug").join(NAME))
     }
 
     /// Builds the WebAssembly module of the page of `haptic explore`.
-    ///
-    /// # Errors
-    /// If it does not compile.
     pub fn build_browser_module(&self) -> Result<PathBuf, BuildError> {
         const PACKAGE: &str = "haptic-explore";
         let _lock = self.workspace.lock("build")?;
-        let mut cargo = self.cargo_for(Target::Browser);
-        let target = Target::Browser.name();
+        let mut cargo = self.cargo(Target::BROWSER);
+        let target = Target::BROWSER.name;
         cargo.args(["--profile", "browser", "--package", PACKAGE, "--lib", "--target", target]);
-        ran(PACKAGE, &mut cargo)?;
+        output_of(PACKAGE, &mut cargo)?;
         let name = "haptic_explore.wasm";
         let built = self.target_folder().join(target).join("browser").join(name);
         self.workspace.keep(&built, name)
@@ -339,36 +280,30 @@ impl Toolchain {
     fn scenes_programs(
         &self,
         names: &[&str],
-        variant: &Variant,
+        variant: &Variant<'_>,
     ) -> Result<Vec<PathBuf>, BuildError> {
         let scenes = self.scenes()?;
         match names.iter().find(|name| !scenes.iter().any(|scene| scene == *name)) {
             Some(name) => Err(SourcesError::NoScene { name: (*name).into(), scenes }.into()),
-            None => self.build(SCENES, names, variant),
+            None => self.build(names, variant),
         }
     }
 
     /// One call of cargo for all programs of a package: it links on all cores. Without the package's name,
     /// the dependencies would have the features of other packages of the workspace, and be built again for
     /// them.
-    fn build(
-        &self,
-        package: &str,
-        names: &[&str],
-        variant: &Variant,
-    ) -> Result<Vec<PathBuf>, BuildError> {
+    fn build(&self, names: &[&str], variant: &Variant<'_>) -> Result<Vec<PathBuf>, BuildError> {
         // Cargo puts every variant of a program in the same place; the lock keeps it there until it is
         // copied.
         let _lock = self.workspace.lock("build")?;
-        let release = ["--release", "--package", package, "--target", TARGET];
-        let programs = names.iter().flat_map(|name| ["--bin", name]);
-        let features = ["--features", &*variant.features];
-        let mut cargo = self.cargo();
-        ran(&names.join(", "), cargo.args(release).args(programs).args(features))?;
+        let Variant { package, features, suffix } = variant;
+        let mut cargo = self.cargo(Target::BOARD);
+        cargo.args(["--release", "--package", package, "--target", TARGET]);
+        cargo.args(names.iter().flat_map(|name| ["--bin", name])).args(["--features", features]);
+        output_of(&names.join(", "), &mut cargo)?;
         let folder = self.target_folder().join(TARGET).join("release");
-        let keep = |name: &&str| {
-            self.workspace.keep(&folder.join(name), &format!("{name}{}", variant.suffix))
-        };
+        let keep =
+            |name: &&str| self.workspace.keep(&folder.join(name), &format!("{name}{suffix}"));
         names.iter().map(keep).collect()
     }
 
@@ -381,11 +316,7 @@ impl Toolchain {
     }
 
     /// Cargo, without the environment of a command that may have started this program.
-    fn cargo(&self) -> Command {
-        self.cargo_for(Target::Board)
-    }
-
-    fn cargo_for(&self, target: Target) -> Command {
+    fn cargo(&self, target: Target) -> Command {
         let unpacked = self.workspace.unpacked();
         let root = &self.workspace.root;
         let mut command = match self.compiler {
@@ -404,9 +335,9 @@ impl Toolchain {
             command.env("RUSTC", unpacked.program("rustc", "/usr/bin/rustc"));
             command.env("RUSTC_BOOTSTRAP", "1");
             unpacked.add_libraries(&mut command);
-            let (variable, linker) = target.linker();
-            command.env(variable, unpacked.program(linker, linker)).args(target.libraries());
-            command.envs(target.flags());
+            let (variable, linker) = target.linker;
+            command.env(variable, unpacked.program(linker, linker)).args(target.libraries);
+            command.envs(target.flags);
         }
         command
     }
@@ -414,9 +345,6 @@ impl Toolchain {
 
 /// Builds the program `haptic` with one more scene, and returns its file. It is built like this program, for
 /// this machine, so that their common parts are reused.
-///
-/// # Errors
-/// If the scene does not compile.
 pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
     const NAME: &str = "haptic-scene";
     let workspace = Workspace::find()?;
@@ -427,7 +355,7 @@ pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
         if cfg!(debug_assertions) { ("dev", "debug") } else { ("host", "host") };
     cargo.args(["build", "--package", NAME, "--profile", profile]);
     cargo.env("CARGO_TARGET_DIR", &workspace.target).env("HAPTIC_SCENE", scene);
-    ran(scene, &mut cargo)?;
+    output_of(scene, &mut cargo)?;
     workspace.keep(&workspace.target.join(folder).join(NAME), &format!("haptic-{scene}"))
 }
 
@@ -438,12 +366,7 @@ fn executable(message: &str, name: &str) -> Option<PathBuf> {
     is_it.then(|| message["executable"].as_str().map(PathBuf::from)).flatten()
 }
 
-/// Builds a program with cargo.
-fn ran(program: &str, cargo: &mut Command) -> Result<(), BuildError> {
-    output_of(program, cargo).map(drop)
-}
-
-/// The same; returns the output of cargo.
+/// Builds a program with cargo; returns cargo's output.
 fn output_of(program: &str, cargo: &mut Command) -> Result<String, BuildError> {
     let output = cargo.output().map_err(BuildError::NoCargo)?;
     if output.status.success() {
@@ -469,10 +392,10 @@ const INHERITED: [&str; 9] = [
 impl Program {
     /// The program in a file.
     fn at(path: PathBuf) -> Result<Self, BuildError> {
-        let elf = fs::read(&path).map_err(|source| BuildError::File { path: path.clone(), source });
-        match Sizes::of_elf(&elf?) {
+        let sizes = fs::read(&path).and_then(|elf| Sizes::of_elf(&elf).map_err(io::Error::other));
+        match sizes {
             Ok(sizes) => Ok(Self { path, sizes }),
-            Err(error) => Err(BuildError::Content { path, why: error.to_string() }),
+            Err(source) => Err(BuildError::File { path, source }),
         }
     }
 }
@@ -526,9 +449,6 @@ impl Workspace {
 }
 
 /// Cargo's folder for this machine's programs.
-///
-/// # Errors
-/// If the workspace cannot be found.
 pub fn target_folder() -> Result<PathBuf, BuildError> {
     Ok(Workspace::find()?.target)
 }

@@ -15,9 +15,6 @@ pub struct Memory {
 
 impl Memory {
     /// Reads a linker's map.
-    ///
-    /// # Errors
-    /// If a region or its length is missing.
     pub fn of_map(map: &str) -> Result<Self, String> {
         let length = |region| {
             let mut lengths = map.lines().filter_map(|line| length(line, region));

@@ -14,34 +14,28 @@ const CHIP: &str = ".probe-rs.chip";
 
 /// The reason why a program could not be flashed.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum ProbeError {
-    /// probe-rs is not installed.
     #[error(
         "{PROBE_RS} is not installed: cargo install --locked probe-rs-tools, or see \
          https://probe.rs/docs/getting-started/installation"
     )]
     NotInstalled,
-    /// probe-rs could not be started.
     #[error("{PROBE_RS} could not be started: {0}")]
     Start(#[source] io::Error),
-    /// There is no debug probe.
     #[error(
         "no debug probe was found: connect the USB port of the board (on Linux, access needs the \
          udev rules of https://probe.rs/docs/getting-started/probe-setup)"
     )]
     NoProbe,
-    /// The program does not contain the name of its chip.
     #[error("the program does not say which chip it is for: {0}")]
     NoChip(String),
-    /// probe-rs failed and has printed the reason.
+    /// probe-rs has printed the reason.
     #[error("{PROBE_RS} ended with {0}")]
     Failed(ExitStatus),
 }
 
 /// The name of a program's chip.
-///
-/// # Errors
-/// If the program does not contain it.
 pub fn chip(elf: &[u8]) -> Result<String, ProbeError> {
     let file = object::File::parse(elf).map_err(|error| ProbeError::NoChip(error.to_string()))?;
     let section = file.section_by_name(CHIP);
@@ -55,9 +49,6 @@ pub fn chip(elf: &[u8]) -> Result<String, ProbeError> {
 /// Flashes a program and shows its log until the program or the user ends it.
 ///
 /// `probe` selects one of several probes, in the format of probe-rs.
-///
-/// # Errors
-/// If probe-rs or the probe is missing, or probe-rs fails.
 pub fn run(elf: &Path, chip: &str, probe: Option<&str>) -> Result<(), ProbeError> {
     if !any_probe()? {
         return Err(ProbeError::NoProbe);

@@ -14,9 +14,6 @@ pub struct PythonEnvironment(PathBuf);
 
 impl PythonEnvironment {
     /// The one beside the builds of this workspace. It is kept, so that nothing is fetched a second time.
-    ///
-    /// # Errors
-    /// If the workspace cannot be found.
     pub fn kept() -> Result<Self, BuildError> {
         Ok(Self(target_folder()?.join("tmp/python")))
     }

@@ -17,54 +17,19 @@ pub struct Sources {
 
 /// Errors of the programs' sources.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum SourcesError {
     /// The sources are not where they were when this program was built.
     #[error("the workspace is no longer at {0}: run `cargo haptic` in the workspace")]
     NoWorkspace(PathBuf),
-    /// A file could not be read or written.
     #[error("{path}: {source}")]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The cause.
-        source: io::Error,
-    },
-    /// There is no such scene.
+    File { path: PathBuf, source: io::Error },
     #[error("there is no scene {name}; there are {}", .scenes.join(", "))]
-    NoScene {
-        /// The requested name.
-        name: String,
-        /// The available scenes.
-        scenes: Vec<String>,
-    },
-    /// A new scene cannot have this name.
+    NoScene { name: String, scenes: Vec<String> },
     #[error("`{name}` is not a valid name of a scene: {why}")]
-    Name {
-        /// The name.
-        name: String,
-        /// The reason.
-        why: BadName,
-    },
-    /// The file of the new scene exists.
+    Name { name: String, why: String },
     #[error("{} exists already; nothing was changed", .0.display())]
     Exists(PathBuf),
-}
-
-/// The reason why a name is invalid for a new scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum BadName {
-    /// It is not a name of a module.
-    #[error(
-        "expected lower-case letters, digits and underscores, with a letter first, for example \
-         soft_wall"
-    )]
-    Letters,
-    /// It is too long for a board's messages.
-    #[error("it has {0} bytes, and at most {LONGEST} are allowed")]
-    Long(usize),
-    /// It has another meaning for Rust or cargo.
-    #[error("the name is reserved by the compiler or the firmware")]
-    Taken,
 }
 
 /// Longest name of a scene in bytes: a board sends its scene's name in one message.
@@ -88,9 +53,6 @@ pub(super) fn workspace_root() -> Result<PathBuf, SourcesError> {
 
 impl Sources {
     /// The sources of the workspace that this program was built from.
-    ///
-    /// # Errors
-    /// If it no longer exists.
     pub fn find() -> Result<Self, SourcesError> {
         Ok(Self::of(&workspace_root()?))
     }
@@ -107,9 +69,6 @@ impl Sources {
 
     /// Whether the program of this name is for a board's bridge: its call then has a current loop. False if
     /// there is no such program.
-    ///
-    /// # Errors
-    /// If its file cannot be read.
     pub fn is_for_bridge(&self, name: &str) -> Result<bool, SourcesError> {
         let path = self.file(name);
         match fs::read_to_string(&path) {
@@ -122,9 +81,6 @@ impl Sources {
     }
 
     /// Names of all programs in alphabetical order.
-    ///
-    /// # Errors
-    /// If the folder cannot be read.
     pub fn programs(&self) -> Result<Vec<String>, SourcesError> {
         let failed = |source| SourcesError::File { path: self.folder.clone(), source };
         let mut programs = Vec::new();
@@ -141,9 +97,6 @@ impl Sources {
     }
 
     /// Names of the programs that render a scene, in the same order.
-    ///
-    /// # Errors
-    /// If the folder cannot be read.
     pub fn scenes(&self) -> Result<Vec<String>, SourcesError> {
         let mut programs = self.programs()?;
         programs.retain(|name| {
@@ -192,16 +145,18 @@ fn on_own_device(text: &str) -> String {
     text.replace(PADDLE, "mod device;").replace("paddle::", "device::")
 }
 
-/// Checks the name of a new scene.
-fn check(name: &str) -> Result<(), BadName> {
+/// Checks the name of a new scene; the error is the reason why it is invalid.
+fn check(name: &str) -> Result<(), String> {
     let begins_well = name.starts_with(|c: char| c.is_ascii_lowercase());
     let is_of = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     if !begins_well || !name.chars().all(is_of) {
-        Err(BadName::Letters)
+        Err("expected lower-case letters, digits and underscores, with a letter first, for example \
+             soft_wall"
+            .into())
     } else if name.len() > LONGEST {
-        Err(BadName::Long(name.len()))
+        Err(format!("it has {} bytes, and at most {LONGEST} are allowed", name.len()))
     } else if TAKEN.split(' ').any(|taken| taken == name) {
-        Err(BadName::Taken)
+        Err("the name is reserved by the compiler or the firmware".into())
     } else {
         Ok(())
     }
@@ -226,11 +181,11 @@ mod tests {
         }
         for name in ["", "2walls", "_wall", "soft-wall", "Wall", "wall.rs", "../wall", "wällchen"]
         {
-            assert_eq!(check(name), Err(BadName::Letters), "{name}");
+            assert!(check(name).unwrap_err().contains("letters, digits"), "{name}");
         }
-        assert_eq!(check(&"w".repeat(LONGEST + 1)), Err(BadName::Long(LONGEST + 1)));
+        assert!(check(&"w".repeat(LONGEST + 1)).unwrap_err().contains("it has 33 bytes"));
         for name in TAKEN.split(' ') {
-            assert_eq!(check(name), Err(BadName::Taken), "{name}");
+            assert!(check(name).unwrap_err().contains("reserved"), "{name}");
         }
     }
 

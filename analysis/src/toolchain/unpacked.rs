@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::Version;
-use super::package::Package;
 
 /// The emulator's program.
 pub const QEMU: &str = "qemu-system-arm";
@@ -29,8 +28,8 @@ impl Unpacked {
     }
 
     /// The version of a package, if it is unpacked.
-    pub(super) fn version(&self, package: Package) -> Option<Version> {
-        Version::find(&fs::read_to_string(self.stamp(package.name())).ok()?)
+    pub(super) fn version(&self, name: &str) -> Option<Version> {
+        Version::find(&fs::read_to_string(self.stamp(name)).ok()?)
     }
 
     /// The file with the version of an unpacked package.

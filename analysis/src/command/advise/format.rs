@@ -109,7 +109,7 @@ pub fn run(
         formats: advice.candidates,
     };
     answer.print(&answered, text)?;
-    Ok(if is_yes { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
+    Ok(CommandStatus::of(is_yes))
 }
 
 /// The scene at the rate, with its sensor, its motor and a hand's trajectory.

@@ -21,13 +21,10 @@ pub struct Arguments {
     #[arg(value_name = "SCENE")]
     pub scene: String,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub model: model::ModelArguments,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub format: Option<format::FormatArguments>,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
 }
 

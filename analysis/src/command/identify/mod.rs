@@ -11,7 +11,7 @@ use clap::Args;
 use haptic_servo::current::TorqueSource;
 use serde::Serialize;
 
-use super::shared_arguments::JsonOption;
+use super::shared_arguments::{JsonOption, write};
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::{bounded, not_negative, positive};
 use crate::identify::{
@@ -42,17 +42,14 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE.csv", requires = "measured")]
     pub record: Option<PathBuf>,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub reading: Reading,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
     /// Write the table `device` of a scene file to this file, and the delay for its table `servo` as a
     /// comment
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub target: target::Simulated,
 }
 
@@ -187,8 +184,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let found = identify::identify(&record, &correction)?;
     let notes = notes(&found);
     if let Some(path) = &arguments.output {
-        let unwritable = |source| CommandError::Unwritable { path: path.clone(), source };
-        std::fs::write(path, device_table(&found)).map_err(unwritable)?;
+        write(path, device_table(&found))?;
     }
     let taken_out = TakenOut::of(&record, &correction);
     let report = report(&found, taken_out, &notes, origin.as_ref());
@@ -197,11 +193,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if let Some(difference) = differs {
         eprintln!("{difference}");
     }
-    Ok(if found.passivity().is_some() && differs.is_none() {
-        CommandStatus::Success
-    } else {
-        CommandStatus::NegativeVerdict
-    })
+    Ok(CommandStatus::of(found.passivity().is_some() && differs.is_none()))
 }
 
 /// A record and its known properties.

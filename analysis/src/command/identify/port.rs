@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::command::shared_arguments::write;
 use crate::command::status::CommandError;
 use crate::identify::port::{Description, SweepPort};
 use crate::identify::{IdentifyError, Record, record};
@@ -19,8 +20,7 @@ pub fn measure(
     let recording = port.record(progress::stepper(&bar))?;
     bar.finish_and_clear();
     if let Some(path) = keep {
-        let unwritable = |source| CommandError::Unwritable { path: path.to_owned(), source };
-        std::fs::write(path, &recording.text).map_err(unwritable)?;
+        write(path, &recording.text)?;
     }
     recording.check_complete()?;
     let count_angle = std::f64::consts::TAU / recording.description.counts_per_turn;

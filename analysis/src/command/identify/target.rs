@@ -2,11 +2,12 @@
 
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use crate::command::building::emulated;
 use crate::command::status::CommandError;
 use crate::command::value_parsers::not_negative;
 use crate::file;
@@ -17,7 +18,7 @@ use crate::program::damper_wall;
 use crate::program::identify::{SWEEP, TRANSDUCERS};
 use crate::progress;
 use crate::simulation::plant::Plant;
-use crate::toolchain::{self, NumberFormat, Tools};
+use crate::toolchain::NumberFormat;
 
 /// The target that drives the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
@@ -98,7 +99,8 @@ pub fn measure(
     let sensing = Sensing { period, counts_per_turn, torque_noise, skew, output_delay, seed };
     let elf = match target {
         Target::Host => None,
-        Target::Qemu => Some(build()?),
+        // The program computes its codes in `f32` for every format of the scenes.
+        Target::Qemu => Some(emulated("identify", NumberFormat::F32)?),
     };
     let mut device = MeasuredDevice::new(&plant, &sensing)?;
     let bar = progress::bar(SWEEP.ticks(), "identify");
@@ -117,16 +119,6 @@ pub fn measure(
         difference: measured.difference,
     };
     Ok((measured, origin))
-}
-
-fn build() -> Result<PathBuf, CommandError> {
-    let toolchain =
-        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
-    let spinner = progress::spinner("building identify");
-    // The program computes its codes in `f32` for every format of the scenes.
-    let elf = toolchain.build_scene("identify", NumberFormat::F32)?;
-    spinner.finish_and_clear();
-    Ok(elf)
 }
 
 fn output_delay(text: &str) -> Result<f64, String> {

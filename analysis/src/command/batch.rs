@@ -1,14 +1,16 @@
 //! Many scenes, one a line: judged in parallel, answered in order, in bounded memory.
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::error::Error;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Write};
 
 use haptic_servo::number::Format;
 use rayon::prelude::*;
-use serde::Serialize;
-use thiserror::Error;
+use serde_json::json;
 
+use super::status::CommandError;
 use crate::file::{self, FileError, Problem};
-use crate::number::{self, DoesNotFit};
+use crate::number;
 use crate::verdict;
 
 /// Lines that are judged together. Enough to keep every core busy for a few milliseconds, few
@@ -29,55 +31,16 @@ enum Line {
     TooLong,
 }
 
-/// Why lines could not be read or answered.
-#[derive(Debug, Error)]
-pub enum BatchError {
-    /// The file cannot be read.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// An answer could not be written.
-    #[error("cannot write the answer: {0}")]
-    Output(#[from] std::io::Error),
-}
-
-/// Why a line could not be judged.
-#[derive(Debug, Error)]
-enum BadScene {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error("{0}")]
-    Number(#[from] DoesNotFit),
-}
-
-/// Answer to a line that could not be judged.
-#[derive(Serialize)]
-struct BadLine {
-    error: String,
-}
-
 /// Reads scenes from a JSON-lines file (`-` is standard input) and writes a result for each: as many
 /// lines as came in, in their order.
-pub fn certify(file: &str, format: Format, out: &mut impl Write) -> Result<(), BatchError> {
-    if file == "-" {
-        return certify_lines("<stdin>", format, std::io::stdin().lock(), out);
-    }
-    if file.is_empty() {
-        return Err(FileError::whole(file, 1, 1, Problem::NoName).into());
-    }
-    let unreadable = |error: std::io::Error| {
-        FileError::whole(file, 1, 1, Problem::Unreadable(error.to_string()))
+pub fn certify(file: &str, format: Format, out: &mut impl Write) -> Result<(), CommandError> {
+    let unreadable =
+        |error: io::Error| FileError::whole(file, 1, 1, Problem::Unreadable(error.to_string()));
+    let (file, source): (_, Box<dyn Read>) = match file {
+        "-" => ("<stdin>", Box::new(io::stdin().lock())),
+        "" => return Err(FileError::whole(file, 1, 1, Problem::NoName).into()),
+        _ => (file, Box::new(File::open(file).map_err(unreadable)?)),
     };
-    let source = std::fs::File::open(file).map_err(unreadable)?;
-    certify_lines(file, format, source, out)
-}
-
-/// The same from any source of lines.
-pub fn certify_lines(
-    file: &str,
-    format: Format,
-    source: impl Read,
-    out: &mut impl Write,
-) -> Result<(), BatchError> {
     let mut source = BufReader::with_capacity(BUFFER, source);
     let mut first_line = 1;
     loop {
@@ -102,12 +65,12 @@ fn read_chunk(
     file: &str,
     first_line: usize,
     source: &mut BufReader<impl Read>,
-) -> Result<Vec<Line>, BatchError> {
+) -> Result<Vec<Line>, FileError> {
     let mut lines = Vec::new();
     // Takes only buffered lines besides the first, so that a client that sends one scene and
     // waits gets its answer.
     while lines.is_empty() || (lines.len() < CHUNK && source.buffer().contains(&b'\n')) {
-        let unreadable = |error: std::io::Error| {
+        let unreadable = |error: io::Error| {
             let line = first_line + lines.len();
             FileError::whole(file, line, 1, Problem::Unreadable(error.to_string()))
         };
@@ -119,7 +82,7 @@ fn read_chunk(
     Ok(lines)
 }
 
-fn read_line(source: &mut impl BufRead) -> std::io::Result<Option<Line>> {
+fn read_line(source: &mut impl BufRead) -> io::Result<Option<Line>> {
     let mut bytes = Vec::new();
     if source.by_ref().take(MAX_LINE).read_until(b'\n', &mut bytes)? == 0 {
         return Ok(None);
@@ -127,15 +90,11 @@ fn read_line(source: &mut impl BufRead) -> std::io::Result<Option<Line>> {
     if bytes.last() == Some(&b'\n') {
         bytes.pop();
     } else if bytes.len() as u64 == MAX_LINE {
-        pass_over(source)?;
+        // The rest of the line is not kept.
+        source.skip_until(b'\n')?;
         return Ok(Some(Line::TooLong));
     }
     Ok(Some(Line::Bytes(bytes)))
-}
-
-/// Skips to the end of the line without keeping it.
-fn pass_over(source: &mut impl BufRead) -> std::io::Result<()> {
-    source.skip_until(b'\n').map(|_| ())
 }
 
 /// One line's answer with its newline.
@@ -148,7 +107,7 @@ fn answer(file: &str, format: Format, number: usize, line: &Line) -> Vec<u8> {
     };
     let text = match judged {
         Ok(report) => serde_json::to_vec(&report),
-        Err(error) => serde_json::to_vec(&BadLine { error: error.to_string() }),
+        Err(error) => serde_json::to_vec(&json!({ "error": error.to_string() })),
     };
     // Strings and numbers always have a JSON form; were it otherwise, the line still gets an answer.
     let mut text =
@@ -162,7 +121,7 @@ fn judge(
     format: Format,
     number: usize,
     bytes: &[u8],
-) -> Result<verdict::VerdictReport, BadScene> {
+) -> Result<verdict::VerdictReport, Box<dyn Error>> {
     let text = file::text_of(file, number, bytes)?;
     let scene = file::parse_at(file, number, file::Format::Json, text)?;
     number::fits(&scene.scene, format)?;
