@@ -19,17 +19,26 @@ pub trait CouplingMemory<N: Number>: Clone + core::fmt::Debug + Sized {
     /// If a coefficient does not fit the number format or does not exist, or the coupling needs another memory.
     fn of(context: &LawContext) -> Result<Self, BuildError>;
     /// Compliance in rad/(N m) of the coupling for the torque of the same tick; `None` without a memory.
-    fn compliance(&self) -> Option<f64>;
+    fn compliance(&self) -> Option<f64> {
+        None
+    }
     /// Deflection in rad of the coupling in this tick by the torques of earlier ticks; the argument is the last
     /// of them in N m. Call it once per tick, before anything else.
-    fn deflection_after(&mut self, torque: N) -> N;
+    #[inline(always)]
+    fn deflection_after(&mut self, _torque: N) -> N {
+        N::ZERO
+    }
     /// The same for ticks that begin with a known torque: by the torques passed to
     /// [`remember`](CouplingMemory::remember).
-    fn lasting_deflection(&self) -> N;
+    #[inline(always)]
+    fn lasting_deflection(&self) -> N {
+        N::ZERO
+    }
     /// Ends such a tick, and stores this torque in N m.
-    fn remember(&mut self, torque: N);
+    #[inline(always)]
+    fn remember(&mut self, _torque: N) {}
     /// Forgets all torques.
-    fn rest(&mut self);
+    fn rest(&mut self) {}
 }
 
 /// No memory: a rigid coupling or a spring.
@@ -45,25 +54,6 @@ impl<N: Number> CouplingMemory<N> for NoMemory {
             Coupling::Rigid | Coupling::Spring { .. } => Ok(Self),
         }
     }
-
-    fn compliance(&self) -> Option<f64> {
-        None
-    }
-
-    #[inline(always)]
-    fn deflection_after(&mut self, _: N) -> N {
-        N::ZERO
-    }
-
-    #[inline(always)]
-    fn lasting_deflection(&self) -> N {
-        N::ZERO
-    }
-
-    #[inline(always)]
-    fn remember(&mut self, _: N) {}
-
-    fn rest(&mut self) {}
 }
 
 /// The memory of [`Coupling::Matched`]: `D` stores the torques of the [whole samples](Latency::whole_samples)
@@ -203,14 +193,10 @@ impl<N: Number> CouplingMemory<N> for AnyMemory<N> {
 
     #[inline]
     fn remember(&mut self, torque: N) {
-        if let Some(memory) = self {
-            memory.remember(torque);
-        }
+        self.iter_mut().for_each(|memory| memory.remember(torque));
     }
 
     fn rest(&mut self) {
-        if let Some(memory) = self {
-            memory.rest();
-        }
+        self.iter_mut().for_each(CouplingMemory::rest);
     }
 }

@@ -36,32 +36,22 @@ impl RawCount {
     }
 }
 
-impl From<u16> for RawCount {
-    #[inline(always)]
-    fn from(count: u16) -> Self {
-        Self(count.into())
-    }
+macro_rules! counts {
+    ($($integer:ty: |$count:ident| $bits:expr;)*) => {$(
+        impl From<$integer> for RawCount {
+            #[inline(always)]
+            fn from($count: $integer) -> Self {
+                Self($bits)
+            }
+        }
+    )*};
 }
 
-impl From<i16> for RawCount {
-    #[inline(always)]
-    fn from(count: i16) -> Self {
-        Self(count.cast_unsigned().into())
-    }
-}
-
-impl From<u32> for RawCount {
-    #[inline(always)]
-    fn from(count: u32) -> Self {
-        Self(count)
-    }
-}
-
-impl From<i32> for RawCount {
-    #[inline(always)]
-    fn from(count: i32) -> Self {
-        Self(count.cast_unsigned())
-    }
+counts! {
+    u16: |count| count.into();
+    i16: |count| count.cast_unsigned().into();
+    u32: |count| count;
+    i32: |count| count.cast_unsigned();
 }
 
 /// Extends a wrapping counter without loss, as long as it moves by less than half its range from

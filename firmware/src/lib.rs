@@ -83,6 +83,41 @@ macro_rules! ok {
     };
 }
 
+/// The value of an option, or a return with `None`: `?` in a `const fn`.
+macro_rules! some {
+    ($option:expr) => {
+        match $option {
+            Some(value) => value,
+            None => return None,
+        }
+    };
+}
+
+/// The value of an option, or another value: `unwrap_or` in a `const fn`.
+macro_rules! or {
+    ($option:expr, $otherwise:expr) => {
+        match $option {
+            Some(value) => value,
+            None => $otherwise,
+        }
+    };
+}
+
+/// A loop over a range of numbers: `for` in a `const fn`.
+macro_rules! each {
+    ($number:ident in $from:tt..=$to:expr => $body:block) => {
+        each!($number in $from..$to + 1 => $body)
+    };
+    ($number:ident in $from:tt..$to:expr => $body:block) => {{
+        let (mut next, end) = ($from, $to);
+        while next < end {
+            let $number = next;
+            next += 1;
+            $body
+        }
+    }};
+}
+
 pub mod encoder;
 
 pub mod coupling;
@@ -138,6 +173,9 @@ pub mod text;
 pub mod wire;
 
 pub mod board;
+
+#[cfg(test)]
+mod test_scene;
 
 /// The package's page, so that its example is tested.
 #[cfg(doctest)]

@@ -93,11 +93,9 @@ impl MatchedCoupling {
             trails: [Trail { gain: 0.0, decay: 0.0 }; TRAILS],
             limit: Interval::ENTIRE,
         };
-        let mut i = 0;
-        while i < TRAILS {
+        each!(i in 0..TRAILS => {
             run.trails[i] = rounded(standard, window.trails[i], format);
-            i += 1;
-        }
+        });
         let error = run.rounding(standard, &window);
         let first = standard.mul(window.tap(0));
         // Above the formula even without an error, by a last bit. With twice the error the loss is least.
@@ -125,26 +123,20 @@ impl MatchedCoupling {
             return None;
         }
         taps[last] = Interval::exact(self.compliance);
-        let mut i = 1;
-        while i < last {
+        each!(i in 1..last => {
             taps[i] = Interval::exact(self.held);
-            i += 1;
-        }
+        });
         taps[0] = Interval::exact(self.arriving);
         let mut trails = [(Interval::ZERO, Interval::ZERO); TRAILS];
-        i = 0;
-        while i < TRAILS {
+        each!(i in 0..TRAILS => {
             let Trail { gain, decay } = self.trails[i];
             trails[i] = (Interval::exact(gain), Interval::exact(decay));
-            i += 1;
-        }
+        });
         let Some((numerator, lag)) = with_trails(&Polynomial::ascending(&taps), &trails) else {
             return None;
         };
-        match lag.shifted_up(last) {
-            Some(denominator) => Some((numerator, denominator)),
-            None => None,
-        }
+        let denominator = some!(lag.shifted_up(last));
+        Some((numerator, denominator))
     }
 
     /// Sum of the magnitudes of all compliances in rad/(N m): the largest deflection for torques of up to 1 N m
@@ -153,13 +145,11 @@ impl MatchedCoupling {
         let held = Interval::exact(self.held).mul(Interval::exact(self.whole as f64));
         let mut sum = Interval::exact(self.compliance).add(held);
         sum = sum.add(Interval::exact(self.arriving).abs());
-        let mut i = 0;
-        while i < TRAILS {
+        each!(i in 0..TRAILS => {
             let Trail { gain, decay } = self.trails[i];
             let lasts = Interval::ONE.sub(Interval::exact(decay));
             sum = sum.add(Interval::exact(gain).abs().div(lasts));
-            i += 1;
-        }
+        });
         sum
     }
 
@@ -168,16 +158,13 @@ impl MatchedCoupling {
     /// counts as such an error.
     const fn rounding(&self, standard: Interval, window: &ResponseWindow) -> Interval {
         let mut sum = Interval::ZERO;
-        let mut m = 1;
-        while m <= self.whole + 1 {
+        each!(m in 1..=self.whole + 1 => {
             let run = if m > self.whole { self.arriving } else { self.held };
             let error = Interval::exact(run).sub(standard.mul(window.tap(m))).abs();
             sum = sum.add(error.mul(Interval::exact(2.0 * m as f64 + 1.0)));
-            m += 1;
-        }
+        });
         let n = self.whole as f64;
-        let mut i = 0;
-        while i < TRAILS {
+        each!(i in 0..TRAILS => {
             let (gain, decay) = window.trails[i];
             let run = self.trails[i];
             let gain = standard.mul(gain);
@@ -187,8 +174,7 @@ impl MatchedCoupling {
                 let slowest = Interval::exact(run.decay).max(decay);
                 sum = sum.add(moments(n, slowest, first, gain.abs().mul(later)));
             }
-            i += 1;
-        }
+        });
         sum
     }
 }
@@ -256,22 +242,18 @@ pub const fn limit_behind_spring<const UPDATES: bool>(
     let t = Interval::decimal(period);
     let standard = t.div(delta.double());
     let (mut moment, mut sum) = (Interval::ZERO, Interval::ZERO);
-    let mut m = 1;
-    while m <= window.whole + 1 {
+    each!(m in 1..=window.whole + 1 => {
         let tap = window.tap(m);
         sum = sum.add(tap);
         moment = moment.add(tap.mul(Interval::exact(2.0 * m as f64 + 1.0)));
-        m += 1;
-    }
-    let mut i = 0;
-    while i < TRAILS {
+    });
+    each!(i in 0..TRAILS => {
         let (gain, decay) = window.trails[i];
         if !gain.is_zero() {
             sum = sum.add(gain.div(Interval::ONE.sub(decay)));
             moment = moment.add(moments(window.whole as f64, decay, gain, Interval::ZERO));
         }
-        i += 1;
-    }
+    });
     let excess = compliance.sub(standard.mul(window.tap(0)));
     let others = Deviation { moment: standard.mul(moment), sum: standard.mul(sum) };
     limit(t, delta, window.width, excess, &others)

@@ -5,7 +5,7 @@
 
 use crate::latency::{Latency, TRAILS, TimeRange};
 use crate::passivity::interval::Interval;
-use crate::passivity::lagged::{SampledLag, SampledResponse};
+use crate::passivity::lagged::{SampledLag, SampledResponse, weights};
 use crate::passivity::polynomial::Polynomial;
 
 /// A decaying series of taps: the first, and the fraction of it that remains a tick later.
@@ -44,6 +44,15 @@ struct End {
     /// `U(0)`, the mean delay of the lags.
     held_back: Interval,
     updates: u16,
+}
+
+/// A quantity of a response.
+#[derive(Clone, Copy)]
+enum Quantity {
+    /// `u`, the rest of a step.
+    Rest,
+    /// `U`, its integral from then on.
+    Integral,
 }
 
 impl ResponseWindow {
@@ -121,12 +130,12 @@ impl ResponseWindow {
         if m.hi() <= self.early.delay.lo() {
             return self.width;
         }
-        let late = self.late.left_after(m.sub(Interval::ONE).sub(self.late.delay));
-        let held = late.sub(self.early.left_after(m.sub(self.early.delay)));
+        let late = self.late.after(Quantity::Integral, m.sub(Interval::ONE).sub(self.late.delay));
+        let held = late.sub(self.early.after(Quantity::Integral, m.sub(self.early.delay)));
         if self.both.is_zero() {
             return held;
         }
-        held.add(self.both.mul(self.late.rest_after(m.sub(self.late.delay))))
+        held.add(self.both.mul(self.late.after(Quantity::Rest, m.sub(self.late.delay))))
     }
 
     /// The trails of both ends: those of the same time constant are one.
@@ -134,13 +143,12 @@ impl ResponseWindow {
         let whole = Interval::exact(self.whole as f64);
         let arrived = whole.add(Interval::ONE).sub(self.late.delay);
         let earliest = whole.add(Interval::exact(2.0)).sub(self.early.delay);
-        let mut i = 0;
-        while i < ranges.len() {
-            let late = self.late.left_by(i, arrived);
-            let early = self.early.left_by(i, earliest);
+        each!(i in 0..ranges.len() => {
+            let late = self.late.by(i, Quantity::Integral, arrived);
+            let early = self.early.by(i, Quantity::Integral, earliest);
             if !self.both.is_zero() {
                 let later = arrived.add(Interval::ONE);
-                let rest = self.both.mul(self.late.rest_by(i, later));
+                let rest = self.both.mul(self.late.by(i, Quantity::Rest, later));
                 self.trails[i] = (late.sub(early).add(rest), self.late.decay(i));
             } else if ranges[i].is_exact() {
                 self.trails[i] = (late.sub(early), self.late.decay(i));
@@ -148,8 +156,7 @@ impl ResponseWindow {
                 self.trails[i] = (late, self.late.decay(i));
                 self.trails[ranges.len() + i] = (early.neg(), self.early.decay(i));
             }
-            i += 1;
-        }
+        });
     }
 
     /// The sampled response `g` and ripple `D` of a device that has the passivity `delta / width` and no
@@ -167,17 +174,13 @@ impl ResponseWindow {
         if last - first >= taps.len() {
             return None;
         }
-        let mut m = first;
-        while m <= last {
+        each!(m in first..=last => {
             taps[last - m] = self.tap(m).div(self.width);
-            m += 1;
-        }
+        });
         let mut trails = self.trails;
-        let mut i = 0;
-        while i < TRAILS {
+        each!(i in 0..TRAILS => {
             trails[i].0 = trails[i].0.div(self.width);
-            i += 1;
-        }
+        });
         match with_trails(&Polynomial::ascending(&taps), &trails) {
             Some((absorbed, lag)) => {
                 SampledResponse::absorbed(self.whole, last - first, &absorbed, lag)
@@ -211,7 +214,7 @@ impl End {
     ) -> Option<Self> {
         let updates = if UPDATES { latency.actuator_updates } else { 0 };
         let lags = [Interval::decimal(lags[0]).div(t), Interval::decimal(lags[1]).div(t)];
-        let Some(weights) = weights(lags) else { return None };
+        let weights = some!(weights(lags));
         let (delay, held_back) = match updates {
             0 => (Interval::decimal(delay).div(t), lags[0].add(lags[1])),
             _ => match latency.delay_in_updates(t.midpoint()) {
@@ -222,47 +225,32 @@ impl End {
         Some(Self { delay, lags, weights, held_back, updates })
     }
 
-    /// `U` at a time after the beginning of the response; before it, the rest is all of a step.
+    /// The quantity at a time after the beginning of the response; before it, the rest is all of a step.
     ///
-    /// An enclosure of 0 counts as before: `U` falls by at most 1 for each period.
-    const fn left_after(&self, time: Interval) -> Interval {
+    /// An enclosure of 0 counts as before: `U` falls by at most 1 for each period, and in the proof all of a
+    /// step may be left a little longer.
+    const fn after(&self, quantity: Quantity, time: Interval) -> Interval {
         if time.lo() <= 0.0 {
-            return self.held_back.sub(time);
+            return match quantity {
+                Quantity::Integral => self.held_back.sub(time),
+                Quantity::Rest => Interval::ONE,
+            };
         }
-        self.left_by(0, time).add(self.left_by(1, time))
+        self.by(0, quantity, time).add(self.by(1, quantity, time))
     }
 
     /// The part of one lag in it.
-    const fn left_by(&self, lag: usize, time: Interval) -> Interval {
+    const fn by(&self, lag: usize, quantity: Quantity, time: Interval) -> Interval {
         let tau = self.lags[lag];
         if tau.is_zero() {
             return Interval::ZERO;
         }
-        match self.updates {
-            0 => self.weights[lag].mul(time.div(tau).exp_of_negative()),
-            updates => SampledLag::of(updates, tau).held_after(time),
-        }
-    }
-
-    /// `u`, the rest of a step, at a time after the beginning of the response.
-    ///
-    /// An enclosure of 0 counts as before: in the proof all of a step may be left a little longer.
-    const fn rest_after(&self, time: Interval) -> Interval {
-        if time.lo() <= 0.0 {
-            return Interval::ONE;
-        }
-        self.rest_by(0, time).add(self.rest_by(1, time))
-    }
-
-    /// The part of one lag in it.
-    const fn rest_by(&self, lag: usize, time: Interval) -> Interval {
-        let tau = self.lags[lag];
-        if tau.is_zero() {
-            return Interval::ZERO;
-        }
-        match self.updates {
-            0 => self.weights[lag].div(tau).mul(time.div(tau).exp_of_negative()),
-            updates => SampledLag::of(updates, tau).rest_after(time),
+        let weight = self.weights[lag];
+        match (self.updates, quantity) {
+            (0, Quantity::Integral) => weight.mul(time.div(tau).exp_of_negative()),
+            (0, Quantity::Rest) => weight.div(tau).mul(time.div(tau).exp_of_negative()),
+            (updates, Quantity::Integral) => SampledLag::of(updates, tau).held_after(time),
+            (updates, Quantity::Rest) => SampledLag::of(updates, tau).rest_after(time),
         }
     }
 
@@ -273,19 +261,6 @@ impl End {
     }
 }
 
-/// The weight of each lag in the response of both, `tau_1^2 / (tau_1 - tau_2)` and the like.
-const fn weights(lags: [Interval; 2]) -> Option<[Interval; 2]> {
-    let [a, b] = lags;
-    if a.is_zero() || b.is_zero() {
-        return Some([a, b]);
-    }
-    let apart = a.sub(b);
-    if apart.contains(0.0) {
-        return None;
-    }
-    Some([a.mul(a).div(apart), b.mul(b).div(apart.neg())])
-}
-
 /// Taps, the last of them at `z^0`, and the trails that follow them: the numerator over `lag`, which is the
 /// product of `z - decay`, and `lag`.
 pub(crate) const fn with_trails(
@@ -294,8 +269,7 @@ pub(crate) const fn with_trails(
 ) -> Option<(Polynomial, Polynomial)> {
     let mut lag = Polynomial::ascending(&[Interval::ONE]);
     let mut after = Polynomial::ZERO;
-    let mut i = 0;
-    while i < TRAILS {
+    each!(i in 0..TRAILS => {
         let (gain, decay) = trails[i];
         if !gain.is_zero() {
             let pole = Polynomial::ascending(&[decay.neg(), Interval::ONE]);
@@ -304,10 +278,7 @@ pub(crate) const fn with_trails(
             };
             (after, lag) = (before.plus(&lag.scaled(gain)), product);
         }
-        i += 1;
-    }
-    match taps.times(&lag) {
-        Some(taps) => Some((taps.plus(&after), lag)),
-        None => None,
-    }
+    });
+    let taps = some!(taps.times(&lag));
+    Some((taps.plus(&after), lag))
 }

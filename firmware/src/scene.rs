@@ -70,10 +70,7 @@ impl Timing {
 impl Device {
     /// Output strict passivity `delta` in N m s/rad: the damping unless another value is declared.
     pub const fn passivity(&self) -> f64 {
-        match self.passivity {
-            Some(passivity) => passivity,
-            None => self.damping,
-        }
+        or!(self.passivity, self.damping)
     }
 }
 

@@ -244,25 +244,23 @@ type Places = [u8; Parameter::ALL.len()];
 
 const fn places(mut environment: Environment) -> Places {
     let mut places = [u8::MAX; _];
-    let (mut index, mut next) = (0, 0);
-    while index < places.len() {
-        if environment.tunable_mut(Parameter::ALL[index]).is_some() {
-            places[index] = next;
+    let mut next = 0;
+    each!(i in 0..places.len() => {
+        if environment.tunable_mut(Parameter::ALL[i]).is_some() {
+            places[i] = next;
             next += 1;
         }
-        index += 1;
-    }
+    });
     places
 }
 
 /// As many numbers as an environment has.
 #[doc(hidden)]
 pub const fn count(mut environment: Environment) -> usize {
-    let (mut index, mut count) = (0, 0);
-    while index < Parameter::ALL.len() {
-        count += environment.tunable_mut(Parameter::ALL[index]).is_some() as usize;
-        index += 1;
-    }
+    let mut count = 0;
+    each!(i in 0..Parameter::ALL.len() => {
+        count += environment.tunable_mut(Parameter::ALL[i]).is_some() as usize;
+    });
     count
 }
 
@@ -270,14 +268,13 @@ pub const fn count(mut environment: Environment) -> usize {
 #[doc(hidden)]
 pub const fn numbers<const COUNT: usize>(mut environment: Environment) -> [f64; COUNT] {
     let mut numbers = [0.0; COUNT];
-    let (mut index, mut next) = (0, 0);
-    while index < Parameter::ALL.len() {
-        if let Some(number) = environment.tunable_mut(Parameter::ALL[index]) {
+    let mut next = 0;
+    each!(i in 0..Parameter::ALL.len() => {
+        if let Some(number) = environment.tunable_mut(Parameter::ALL[i]) {
             numbers[next] = *number;
             next += 1;
         }
-        index += 1;
-    }
+    });
     numbers
 }
 

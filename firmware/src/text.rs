@@ -134,10 +134,16 @@ impl<const N: usize> Text<N> {
     #[inline(never)]
     pub const fn push(&mut self, text: &str) {
         let bytes = text.as_bytes();
-        let mut i = 0;
-        while i < bytes.len() {
+        each!(i in 0..bytes.len() => {
             self.byte(if bytes[i].is_ascii() { bytes[i] } else { b'?' });
-            i += 1;
+        });
+    }
+
+    /// Appends the unit of a number; a pure number has none.
+    pub(crate) const fn push_unit(&mut self, unit: &str) {
+        if !unit.is_empty() {
+            self.push(" ");
+            self.push(unit);
         }
     }
 

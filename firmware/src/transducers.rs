@@ -38,10 +38,7 @@ impl Transducers {
         ok!(self.codes_per_torque());
         ok!(self.bound(limit));
         // The counter must not wrap undetected before missed ticks become a fault.
-        let worst = match timing.worst_period {
-            Some(worst) => worst,
-            None => timing.period,
-        };
+        let worst = or!(timing.worst_period, timing.period);
         ok!(self.largest_step(worst));
         Ok(())
     }
@@ -84,10 +81,7 @@ impl Transducers {
     /// The largest torque in N m of a scene with this limit: the limit, or otherwise full scale.
     const fn bound(&self, limit: Option<f64>) -> Result<f64, BuildError> {
         let full_scale = self.full_scale_torque;
-        let bound = match limit {
-            Some(limit) => limit,
-            None => full_scale,
-        };
+        let bound = or!(limit, full_scale);
         ok!(BuildError::unless_positive("torque limit", bound));
         if bound > full_scale {
             return Err(BuildError::TorqueLimit { limit: bound, full_scale });

@@ -121,15 +121,7 @@ impl<N: Number> Discretize<N> for Hasty {
 
 #[test]
 fn a_law_that_is_not_late_is_not_latched() {
-    let Scene { device, timing, coupling, torque_limit, .. } = PEDAL;
-    let scene = Scene {
-        device,
-        timing,
-        coupling,
-        latency: Latency::NONE,
-        torque_limit,
-        environment: Hasty,
-    };
+    let scene = PEDAL.in_environment(Hasty);
     let options = RenderingOptions::DEFAULT;
     let timed = timing_checked::<_, Latched>(scene, Format::F32).unwrap();
     let error = PreparedServo::<_, f32, Latched>::new(&timed, &TRANSDUCERS, &options).unwrap_err();
@@ -186,14 +178,7 @@ fn torques<const DELAY: usize>(
     positions: &[f64],
     level: f64,
 ) -> Vec<f64> {
-    let context = LawContext {
-        period: 0.001,
-        worst_period: None,
-        damping: 0.022,
-        passivity: 0.022,
-        coupling: Coupling::Rigid,
-        latency: Latency::NONE,
-    };
+    let context = Scene { coupling: Coupling::Rigid, ..PEDAL }.context();
     let mut law = <ProgressiveSpring<DELAY> as Discretize<f64>>::law(&spring, &context).unwrap();
     let tick = |x: &f64| {
         let Response::Held(torque) = law.evaluate(*x) else { panic!("it is late") };

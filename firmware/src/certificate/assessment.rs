@@ -6,7 +6,7 @@ use super::problem::PassivityProblem;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Rule, RuleAnswer, exact_limit, paper_limit};
-use super::validity::first_invalid;
+use super::validity::check;
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::RealPart;
@@ -93,7 +93,7 @@ pub(super) const fn assessed(scene: &Scene, format: Format, extent: Extent) -> A
         format,
         outcome: Ok(()),
     };
-    if let Some(invalid) = first_invalid(scene) {
+    if let Err(invalid) = check(scene) {
         out.outcome = Err(Rejection::Invalid(invalid));
         return out;
     }
@@ -120,26 +120,23 @@ const fn judge(
     }
     out.bound = posed.bound;
     out.paper = posed.paper(&alone);
-    let is_refused = matches!(out.rule, Rule::Nonlinear) && !matches!(out.paper, RuleAnswer::Pass);
+    let is_limited = matches!(out.rule, Rule::Nonlinear);
+    let is_refused = is_limited && !matches!(out.paper, RuleAnswer::Pass);
     if is_refused
         && n.is_at_port
         && matches!(out.paper, RuleAnswer::Undecided)
         && let Some(in_contact) = posed.fails_in_contact()
     {
         out.paper = RuleAnswer::Fail;
-        return Err(Rejection::Shortage {
-            alpha: in_contact.minimum,
-            delta: n.delta,
-            cos_theta: in_contact.cos_theta,
-            remedies: Remedies::NONE,
-        });
+        let RealPart { minimum, cos_theta } = in_contact;
+        return Err(Rejection::shortage(minimum, n.delta, cos_theta));
     }
     if is_refused && matches!(extent, Extent::OwnRule) {
         return nonlinear_outcome(n, &alone, out);
     }
     // A scene that lags and is limited is decided at this point, and the other rule would need more stack
     // than a small board has.
-    if is_lagging_and_limited(out, n) && matches!(extent, Extent::OwnRule) {
+    if is_limited && n.latency.is_some() && matches!(extent, Extent::OwnRule) {
         out.exact = RuleAnswer::Undecided;
         return nonlinear_outcome(n, &alone, out);
     }
@@ -172,10 +169,6 @@ const fn judge(
     }
 }
 
-const fn is_lagging_and_limited(out: &Assessment, n: &LoopIntervals) -> bool {
-    matches!(out.rule, Rule::Nonlinear) && n.latency.is_some()
-}
-
 const fn exact_outcome(
     posed: &PassivityProblem,
     alone: &Result<RealPart, IndexError>,
@@ -192,30 +185,26 @@ const fn exact_outcome(
     match (coupled, alone) {
         (Ok(found), _) => match out.exact {
             RuleAnswer::Pass => Ok(()),
-            RuleAnswer::Undecided => Err(Rejection::Undecided {
-                doubt: UndecidedReason::TooClose,
-                index: Some(found.minimum),
-                limit: Some(limit),
-                remedies: Remedies::NONE,
-            }),
+            RuleAnswer::Undecided => {
+                let index = Some(found.minimum);
+                Err(Rejection::undecided(UndecidedReason::TooClose, index, Some(limit)))
+            }
             RuleAnswer::Fail if blames_coupling && n.missed.is_some() => {
                 Err(missed_rejection(found.minimum, limit))
             }
             RuleAnswer::Fail if blames_coupling => Err(coupling_rejection(n, out)),
-            RuleAnswer::Fail => Err(Rejection::Shortage {
+            RuleAnswer::Fail => {
                 // With lagging torques, the passivity that the device lacks, not the obstacle of this device.
-                alpha: match out.alpha_port {
+                let alpha = match out.alpha_port {
                     Some(needed) => needed,
                     None if n.latency.is_some() => match posed.port_needed() {
                         Ok(needed) => needed,
                         Err(_) => found.minimum,
                     },
                     None => found.minimum,
-                },
-                delta: limit,
-                cos_theta: found.cos_theta,
-                remedies: Remedies::NONE,
-            }),
+                };
+                Err(Rejection::shortage(alpha, limit, found.cos_theta))
+            }
         },
         (Err(IndexError::Undecided(doubt)), _) => Err(from_obstacle(IndexError::Undecided(*doubt))),
         (Err(_), Ok(_)) if blames_coupling => Err(coupling_rejection(n, out)),
@@ -253,37 +242,26 @@ const fn nonlinear_outcome(
         Err(obstacle) => return Err(from_obstacle(*obstacle)),
     };
     let Some(bound) = out.bound else {
-        return Err(Rejection::Undecided {
-            doubt: match n.is_at_port {
-                true => UndecidedReason::NoBoundAtPort,
-                false => UndecidedReason::NoNonlinearBound,
-            },
-            index: Some(found.minimum),
-            limit: Some(n.delta),
-            remedies: Remedies::NONE,
-        });
+        let doubt = match n.is_at_port {
+            true => UndecidedReason::NoBoundAtPort,
+            false => UndecidedReason::NoNonlinearBound,
+        };
+        return Err(Rejection::undecided(doubt, Some(found.minimum), Some(n.delta)));
     };
     match out.paper {
         RuleAnswer::Pass => Ok(()),
-        RuleAnswer::Undecided => Err(Rejection::Undecided {
-            doubt: match bound.lo() >= n.delta.hi() {
+        RuleAnswer::Undecided => {
+            let doubt = match bound.lo() >= n.delta.hi() {
                 true => UndecidedReason::NotBelowBound,
                 false => UndecidedReason::TooClose,
-            },
-            index: Some(bound),
-            limit: Some(n.delta),
-            remedies: Remedies::NONE,
-        }),
+            };
+            Err(Rejection::undecided(doubt, Some(bound), Some(n.delta)))
+        }
         RuleAnswer::Fail if bound.is_below(n.delta) => match (paper_limit(n), &n.missed) {
             (Some(limit), Some(_)) => Err(missed_rejection(bound, limit)),
             _ => Err(coupling_rejection(n, out)),
         },
-        RuleAnswer::Fail => Err(Rejection::Shortage {
-            alpha: bound,
-            delta: n.delta,
-            cos_theta: found.cos_theta,
-            remedies: Remedies::NONE,
-        }),
+        RuleAnswer::Fail => Err(Rejection::shortage(bound, n.delta, found.cos_theta)),
     }
 }
 
@@ -307,8 +285,6 @@ const fn from_obstacle(obstacle: IndexError) -> Rejection {
         IndexError::RepeatedUnitPole { cos_theta } => Rejection::RepeatedUnitPole { cos_theta },
         IndexError::ResidueAngle { cos_theta } => Rejection::ResidueAngle { cos_theta },
         IndexError::NegativeResidue { residue } => Rejection::NegativeResidue { residue },
-        IndexError::Undecided(doubt) => {
-            Rejection::Undecided { doubt, index: None, limit: None, remedies: Remedies::NONE }
-        }
+        IndexError::Undecided(doubt) => Rejection::undecided(doubt, None, None),
     }
 }

@@ -378,16 +378,12 @@ impl Assumptions {
 }
 
 fn stated(environment: &Environment) -> Option<Assumption> {
-    match environment {
-        Environment::Stated(stated) => {
-            let index = match stated {
-                StatedModel::Bounded { bound, .. } => Some(bound.index),
-                StatedModel::Linear(_) => None,
-            };
-            Some(Assumption::StatedModel { index })
-        }
-        _ => None,
-    }
+    let Environment::Stated(stated) = environment else { return None };
+    let index = match stated {
+        StatedModel::Bounded { bound, .. } => Some(bound.index),
+        StatedModel::Linear(_) => None,
+    };
+    Some(Assumption::StatedModel { index })
 }
 
 fn delay(environment: &Environment) -> Option<Assumption> {
@@ -419,7 +415,7 @@ fn passes_limited(scene: &Scene, assessment: &Assessment) -> Option<(Interval, f
         Coupling::Rigid => Limited::at_port::<Environment>(scene, &numbers, 0.0)
             .filter(|_| !is_uneven::<Environment>(&scene.environment))?,
         _ => {
-            let bound = limited_bound(scene, assessment.rule, assessment.bound, &numbers)?;
+            let bound = limited_bound(scene, &numbers)?;
             Limited::of(scene, &numbers, bound)?
         }
     };

@@ -41,7 +41,7 @@
 
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
-use crate::environment::{Canceller, Parts, Profile};
+use crate::environment::{Canceller, Parts, Profile, Wall};
 use crate::number::Format;
 use crate::parameter::Parameter;
 use crate::scene::Scene;
@@ -106,10 +106,7 @@ const fn between_profiles(profile: &Profile, n: &LoopIntervals, parameter: Param
 /// Each part of a sum has its own bound, independent of the other parts. The bound of a late wall is affine
 /// in its stiffness and in the magnitude of its damping.
 const fn between_sums(parts: &Parts, parameter: Parameter) -> Between {
-    let is_late = match &parts.wall {
-        Some(wall) => wall.delay > 0,
-        None => true,
-    };
+    let is_late = !matches!(parts.wall, Some(Wall { delay: 0, .. }));
     match parameter {
         Parameter::ProfileTorque => Between::PassesDownToZero,
         Parameter::Stiffness | Parameter::Damping if is_late => Between::PassesDownToZero,

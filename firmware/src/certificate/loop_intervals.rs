@@ -105,11 +105,11 @@ impl Missed {
 
 impl LoopIntervals {
     pub const fn of(scene: &Scene, format: Format) -> Self {
-        let is_late = scene.environment.is_late();
-        let (mut out, written) = Self::with_compliance::<Environment>(scene, is_late, format);
+        let mut out = Self::of_late::<Environment>(scene, scene.environment.is_late(), format);
         out.is_at_port = matches!(scene.coupling, Coupling::Rigid) && is_nonlinear(scene);
-        if let (Some(_), None) = (out.coupling, &out.latency) {
-            out.is_standard = written.sub(standard(out.period, out.delta)).contains(0.0);
+        if let (Some(stiffness), None) = (out.coupling, &out.latency) {
+            let unrounded = Interval::ONE.div(stiffness);
+            out.is_standard = unrounded.sub(standard(out.period, out.delta)).contains(0.0);
         }
         out
     }
@@ -118,28 +118,15 @@ impl LoopIntervals {
     /// which does not depend on whether the coupling is the standard one.
     ///
     /// Only a type that [stores](EnvironmentModel::MEMORY) torques for its coupling has latency on a board:
-    /// the program of any other type omits the code.
+    /// the program of any other type omits the code. Inlined, because a result of this size would be copied.
+    #[inline(always)]
     pub const fn of_late<E: EnvironmentModel>(
         scene: &Scene,
         is_late: bool,
         format: Format,
     ) -> Self {
-        Self::with_compliance::<E>(scene, is_late, format).0
-    }
-
-    /// The same, with the coupling's unrounded compliance. Inlined into both callers, because a result of
-    /// this size would be copied.
-    #[inline(always)]
-    const fn with_compliance<E: EnvironmentModel>(
-        scene: &Scene,
-        is_late: bool,
-        format: Format,
-    ) -> (Self, Interval) {
         let period = Interval::decimal(scene.timing.period);
-        let delta = Interval::decimal(match scene.device.passivity {
-            Some(passivity) => passivity,
-            None => scene.device.damping,
-        });
+        let delta = Interval::decimal(scene.device.passivity());
         let (delta, missed) = match scene.timing.longer_period() {
             Some(worst) => {
                 let worst = Interval::decimal(worst);
@@ -192,7 +179,7 @@ impl LoopIntervals {
                 out.add_latency::<false>(scene);
             }
         }
-        (out, written)
+        out
     }
 
     // Not inlined: scenes without latency do not need its frame.
@@ -269,10 +256,8 @@ impl LoopIntervals {
 
     /// The same for the declared passivity, which applies if torques are latched and updates are missed.
     pub const fn excess_where_latched(&self) -> Option<Interval> {
-        match &self.missed {
-            Some(missed) => Some(self.compliance.sub(standard(self.period, missed.declared))),
-            None => None,
-        }
+        let missed = some!(&self.missed);
+        Some(self.compliance.sub(standard(self.period, missed.declared)))
     }
 
     /// The factor by which the servo's rounded gains scale an environment with this feedthrough.

@@ -9,7 +9,7 @@ use super::model::{largest_gain, largest_solved};
 use super::problem::PassivityProblem;
 use super::rules::{Rule, RuleAnswer, paper_limit};
 use super::static_law::{End, needed_at_port, share_of_damper};
-use crate::environment::{Environment, EnvironmentModel};
+use crate::environment::{Environment, EnvironmentModel, Profile};
 use crate::passivity::bernstein::Precision;
 use crate::passivity::interval::Interval;
 use crate::scene::{Device, Scene};
@@ -24,20 +24,17 @@ impl Assessment {
     /// `scene` is the assessed scene.
     pub const fn margin(&self, scene: &Scene) -> Option<f64> {
         match (self.rule, &self.outcome, self.exact) {
-            (Rule::Nonlinear, Ok(()), _) => match self.bound {
-                Some(bound) => {
-                    let n = &LoopIntervals::of(scene, self.format);
-                    let limited = match n.is_at_port {
-                        true => Limited::at_port::<Environment>(scene, n, 0.0),
-                        false => Limited::of(scene, n, bound),
-                    };
-                    match limited {
-                        Some(limited) => Some(limited.margin(0.0)),
-                        None => Some(0.0),
-                    }
-                }
-                None => None,
-            },
+            (Rule::Nonlinear, Ok(()), _) => {
+                let (bound, n) = (some!(self.bound), &LoopIntervals::of(scene, self.format));
+                let limited = match n.is_at_port {
+                    true => Limited::at_port::<Environment>(scene, n, 0.0),
+                    false => Limited::of(scene, n, bound),
+                };
+                Some(match limited {
+                    Some(limited) => limited.margin(0.0),
+                    None => 0.0,
+                })
+            }
             (Rule::Exact, Ok(()), _) => Some(match self.linear(scene) {
                 Some(margin) => margin.max(0.0).min(self.delta.lo()),
                 None => 0.0,
@@ -58,10 +55,8 @@ impl Assessment {
             return searched(scene, self);
         }
         let Ok(posed) = PassivityProblem::in_format(scene, self.format) else { return None };
-        match posed.at_port(&Precision::TIGHT) {
-            Ok(found) => Some(n.delta.sub(found.minimum).lo()),
-            Err(_) => None,
-        }
+        let Ok(found) = posed.at_port(&Precision::TIGHT) else { return None };
+        Some(n.delta.sub(found.minimum).lo())
     }
 }
 
@@ -71,27 +66,17 @@ const HALVINGS: u32 = 24;
 /// The margin of a linear scene whose updates may be missed: the largest loss found with which the scene
 /// certifies.
 const fn searched(scene: &Scene, assessment: &Assessment) -> Option<f64> {
-    let declared = match scene.device.passivity {
-        Some(passivity) => passivity,
-        None => scene.device.damping,
-    };
+    let declared = scene.device.passivity();
     let (mut passes, mut fails) = (0.0, declared);
-    let mut i = 0;
-    while i < HALVINGS {
+    each!(_halving in 0..HALVINGS => {
         let loss = 0.5 * (passes + fails);
         let device = Device { passivity: Some(declared - loss), ..scene.device };
-        let certified =
-            match PassivityProblem::in_format(&Scene { device, ..*scene }, assessment.format) {
-                Ok(posed) => posed.is_certified(),
-                Err(_) => false,
-            };
-        if certified {
-            passes = loss;
-        } else {
-            fails = loss;
+        let scene = Scene { device, ..*scene };
+        match PassivityProblem::in_format(&scene, assessment.format) {
+            Ok(posed) if posed.is_certified() => passes = loss,
+            _ => fails = loss,
         }
-        i += 1;
-    }
+    });
     if assessment.outcome.is_ok() { Some(passes) } else { None }
 }
 
@@ -122,10 +107,7 @@ pub(super) struct Limited {
 
 /// Whether it is a torque profile without delay, whose solution does not include added torques.
 const fn is_solved_in_front(environment: &Environment) -> bool {
-    match environment.profile() {
-        Some(profile) => profile.delay == 0,
-        None => false,
-    }
+    matches!(environment.profile(), Some(Profile { delay: 0, .. }))
 }
 
 impl Limited {
@@ -137,8 +119,7 @@ impl Limited {
         n: &LoopIntervals,
         reading: f64,
     ) -> Option<Self> {
-        let Some(needed) = needed_at_port::<E>(scene, n, reading, End::Upper) else { return None };
-        let bound = Interval::exact(needed);
+        let bound = Interval::exact(some!(needed_at_port::<E>(scene, n, reading, End::Upper)));
         if !bound.is_below(n.delta) {
             return None;
         }
@@ -159,10 +140,8 @@ impl Limited {
     /// The limits of a scene with this bound on its index. `None` if the bound is not below the limit, or no
     /// limit is known.
     pub const fn of(scene: &Scene, n: &LoopIntervals, bound: Interval) -> Option<Self> {
-        match largest_solved::<Environment>(&scene.environment, n) {
-            Some(solved) => Self::of_solved::<Environment>(scene, n, bound, solved),
-            None => None,
-        }
+        let solved = some!(largest_solved::<Environment>(&scene.environment, n));
+        Self::of_solved::<Environment>(scene, n, bound, solved)
     }
 
     /// The same if [`largest_solved`] is known.
@@ -172,12 +151,8 @@ impl Limited {
         bound: Interval,
         solved: Interval,
     ) -> Option<Self> {
-        let gain = largest_gain::<E>(&scene.environment, solved, n);
-        let (Some(coupling), Some(limit), Some(gain)) =
-            (n.coupling_damping(), paper_limit(n), gain)
-        else {
-            return None;
-        };
+        let gain = some!(largest_gain::<E>(&scene.environment, solved, n));
+        let (coupling, limit) = (some!(n.coupling_damping()), some!(paper_limit(n)));
         if !bound.is_below(limit) {
             return None;
         }

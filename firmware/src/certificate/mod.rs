@@ -127,18 +127,12 @@ pub const fn certify_in(scene: &Scene, format: Format) -> Result<Assessment, Rej
     }
 }
 
-/// Panics with the text; in a constant this is a compile error at the line of the refused scene.
-#[track_caller]
-const fn refuse(sentence: &Sentence) -> ! {
-    panic!("{}", sentence.as_str())
-}
-
 /// Panics with the rejection's text, which names the mode if another mode is selected.
 #[track_caller]
 const fn refuse_scene(data: &Scene, rejection: &Rejection, format: Format) -> ! {
     match first_refused_mode(data, format) {
-        Some(refused) => refuse(&refused.sentence_in(format)),
-        None => refuse(&rejection.sentence_in(format)),
+        Some(refused) => refused.sentence_in(format).refuse(),
+        None => rejection.sentence_in(format).refuse(),
     }
 }
 
@@ -147,10 +141,8 @@ impl<E: Copy> Scene<E> {
         if let Some(RefusedMode { reason, .. }) = first_refused_mode(&data, format) {
             return Err(reason);
         }
-        match certify_in(&data, format) {
-            Ok(assessment) => Ok(Certified { scene: self, data, assessment }),
-            Err(rejection) => Err(rejection),
-        }
+        let assessment = ok!(certify_in(&data, format));
+        Ok(Certified { scene: self, data, assessment })
     }
 }
 
@@ -173,7 +165,7 @@ impl<E: StatedEnvironment> Scene<E> {
     pub const fn certified_as(self, stated: StatedModel) -> Certified<Self> {
         match self.certify_as(stated) {
             Ok(certified) => certified,
-            Err(rejection) => refuse(&rejection.sentence()),
+            Err(rejection) => rejection.refuse(),
         }
     }
 }
@@ -250,16 +242,9 @@ impl<E: Copy> Certified<Scene<E>> {
             Ok(of_modes) => of_modes,
             Err(RefusedMode { reason, .. }) => return Err(reason),
         };
-        match timed::agree(M::TIMING, &self.data, &self.assessment) {
-            Ok(own) => {
-                let limited = match of_modes {
-                    Some(tightest) => tightest,
-                    None => own,
-                };
-                Ok(TimingChecked::new(self.scene, format, limited))
-            }
-            Err(error) => Err(error),
-        }
+        let own = ok!(timed::agree(M::TIMING, &self.data, format));
+        let limited = or!(of_modes, own);
+        Ok(TimingChecked::new(self.scene, format, limited))
     }
 
     /// For constants: the timed scene, or a compile error with the reason, which is clearest with an explicit
@@ -275,8 +260,8 @@ impl<E: Copy> Certified<Scene<E>> {
         match self.time() {
             Ok(timed) => timed,
             Err(error) => match tightest_mode(&self.data, self.assessment.format, M::TIMING) {
-                Err(refused) => refuse(&refused.sentence()),
-                Ok(_) => refuse(&error.sentence()),
+                Err(refused) => refused.sentence().refuse(),
+                Ok(_) => error.refuse(),
             },
         }
     }

@@ -7,7 +7,7 @@
 
 use super::loop_intervals::LoopIntervals;
 use super::profile::{profile_bound, profile_gain};
-use super::validity::first_invalid;
+use super::validity::check;
 use crate::environment::{
     Canceller, Environment, EnvironmentModel, MAX_DEGREE, Parts, Rational, StatedModel, Wall,
 };
@@ -184,11 +184,8 @@ pub(super) const fn nonlinear_bound<E: EnvironmentModel>(
     solved: Interval,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    match exactly_solved_bound::<E>(environment, n) {
-        Some(bound) if matches!(n.format, Format::F64) => Some(bound),
-        Some(bound) => Some(bound.mul(solved)),
-        None => None,
-    }
+    let bound = some!(sum_of::<E>(Quantity::Index, environment, n));
+    Some(if matches!(n.format, Format::F64) { bound } else { bound.mul(solved) })
 }
 
 /// The factor of the servo's rounded gains on the torque if the loop is solved in the tick: the larger of
@@ -241,62 +238,69 @@ const fn scale<E: EnvironmentModel>(
     if scale.is_finite() { Some(scale) } else { None }
 }
 
-const fn exactly_solved_bound<E: EnvironmentModel>(
+/// A quantity of an environment, the sum of those of its parts.
+#[derive(Clone, Copy)]
+enum Quantity {
+    /// [`nonlinear_bound`].
+    Index,
+    /// [`largest_gain`].
+    Gain,
+}
+
+/// The quantity if a tick is solved exactly; `None` if it is unknown of a part, or if the program of the type
+/// `E` has no such sum.
+const fn sum_of<E: EnvironmentModel>(
+    quantity: Quantity,
     environment: &Environment,
     n: &LoopIntervals,
 ) -> Option<Interval> {
     let parts = match environment {
         Environment::Parts(parts) => parts,
         Environment::Stated(StatedModel::Bounded { bound, .. }) => {
-            return Some(Interval::decimal(bound.index));
+            return Some(Interval::decimal(match quantity {
+                Quantity::Index => bound.index,
+                Quantity::Gain => bound.gain,
+            }));
         }
         Environment::Stated(StatedModel::Linear(_)) | Environment::Rational(_) => return None,
     };
-    let wall = match &parts.wall {
+    let is_alone = parts.count() == 1;
+    let mut sum = match (quantity, &parts.wall) {
+        (_, None) => Interval::ZERO,
+        (Quantity::Gain, Some(w)) => wall_gain(w, n),
         // A negative spring is not a monotone law.
-        Some(w) if w.stiffness < 0.0 => return None,
-        Some(w) if parts.count() == 1 => wall_alone_bound(w, n),
-        Some(w) => wall_bound(w, n),
-        None => Interval::ZERO,
+        (Quantity::Index, Some(w)) if w.stiffness < 0.0 => return None,
+        (Quantity::Index, Some(w)) if is_alone => wall_alone_bound(w, n),
+        (Quantity::Index, Some(w)) => wall_bound(w, n),
     };
-    let profile = match &parts.profile {
-        Some(profile) if E::PROFILE.exists && !(parts.count() > 1 && profile.snap.is_some()) => {
-            profile_bound::<E>(profile, n)
+    if let Some(profile) = &parts.profile {
+        if !E::PROFILE.exists || !is_alone && !E::PROFILE.is_composed {
+            return None;
         }
-        _ => None,
-    };
-    sum_of::<E>(parts, wall, profile, canceller_of::<E>(parts, n))
-}
-
-/// [`canceller_bound`], if there is a canceller.
-const fn canceller_of<E: EnvironmentModel>(parts: &Parts, n: &LoopIntervals) -> Option<Interval> {
-    if E::CANCELS_DAMPING && parts.canceller.is_some() { canceller_bound(n) } else { None }
-}
-
-/// The sum of a quantity of the parts of an environment, each `None` where no bound is known; `None` also if the
-/// program of the type `E` has no such sum.
-const fn sum_of<E: EnvironmentModel>(
-    parts: &Parts,
-    wall: Interval,
-    profile: Option<Interval>,
-    canceller: Option<Interval>,
-) -> Option<Interval> {
-    let mut sum = wall;
-    if parts.profile.is_some() {
-        match profile {
-            Some(profile) if parts.count() == 1 || E::PROFILE.is_composed => {
-                sum = profile.add(sum);
-            }
-            _ => return None,
-        }
+        let of_profile = match quantity {
+            Quantity::Gain => some!(profile_gain::<E>(profile, n)),
+            Quantity::Index if !is_alone && profile.snap.is_some() => return None,
+            Quantity::Index => some!(profile_bound::<E>(profile, n)),
+        };
+        sum = of_profile.add(sum);
     }
     if parts.canceller.is_some() {
-        match canceller {
-            Some(canceller) if E::CANCELS_DAMPING => sum = sum.add(canceller),
-            _ => return None,
+        if !E::CANCELS_DAMPING {
+            return None;
         }
+        let bound = some!(canceller_bound(n));
+        sum = sum.add(match quantity {
+            Quantity::Index => bound,
+            Quantity::Gain => bound.double(),
+        });
     }
     Some(sum)
+}
+
+/// [`nonlinear_bound`], with [`largest_solved`].
+pub(super) const fn solved_bound(environment: &Environment, n: &LoopIntervals) -> Option<Interval> {
+    let solved = some!(largest_solved::<Environment>(environment, n));
+    nonlinear_bound::<Environment>(environment, solved, n)
 }
 
 /// The gain of an environment from changes of position to changes of torque, in the l2 norm and times the
@@ -311,29 +315,7 @@ pub(super) const fn largest_gain<E: EnvironmentModel>(
     solved: Interval,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    let parts = match environment {
-        Environment::Parts(parts) => parts,
-        Environment::Stated(StatedModel::Bounded { bound, .. }) => {
-            return Some(Interval::decimal(bound.gain).mul(solved));
-        }
-        Environment::Stated(StatedModel::Linear(_)) | Environment::Rational(_) => return None,
-    };
-    let wall = match &parts.wall {
-        Some(w) => wall_gain(w, n),
-        None => Interval::ZERO,
-    };
-    let profile = match &parts.profile {
-        Some(profile) if E::PROFILE.exists => profile_gain::<E>(profile, n),
-        _ => None,
-    };
-    let canceller = match canceller_of::<E>(parts, n) {
-        Some(canceller) => Some(canceller.double()),
-        None => None,
-    };
-    match sum_of::<E>(parts, wall, profile, canceller) {
-        Some(gain) => Some(gain.mul(solved)),
-        None => None,
-    }
+    Some(some!(sum_of::<E>(Quantity::Gain, environment, n)).mul(solved))
 }
 
 const fn wall_gain(w: &Wall, n: &LoopIntervals) -> Interval {
@@ -413,17 +395,15 @@ const fn valid_environment(
     scene: &Scene,
     format: Format,
 ) -> Result<(LoopIntervals, Transfer), Unbuildable> {
-    if first_invalid(scene).is_some() {
+    if check(scene).is_err() {
         return Err(Unbuildable::OutOfRange);
     }
     if !scene.environment.has_transfer() {
         return Err(Unbuildable::Unstated);
     }
     let n = LoopIntervals::of(scene, format);
-    match transfer(&scene.environment, &n) {
-        Ok(environment) => Ok((n, environment)),
-        Err(error) => Err(error),
-    }
+    let environment = ok!(transfer(&scene.environment, &n));
+    Ok((n, environment))
 }
 
 /// A scene's linear transfer functions from position (rad) to torque (N m), as in the
@@ -453,21 +433,12 @@ impl LoopTransfers {
     /// # Errors
     /// As [`LoopTransfers::of`].
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Unbuildable> {
-        let (n, environment) = match valid_environment(scene, format) {
-            Ok(found) => found,
-            Err(error) => return Err(error),
-        };
-        let controller = match n.behind_coupling(&environment) {
-            Ok(controller) => controller,
-            Err(error) => return Err(error),
-        };
+        let (n, environment) = ok!(valid_environment(scene, format));
+        let controller = ok!(n.behind_coupling(&environment));
         let equivalent = if n.is_standard || n.is_matched {
             environment
         } else {
-            match environment.behind(n.excess_compliance()) {
-                Ok(equivalent) => equivalent,
-                Err(error) => return Err(error),
-            }
+            ok!(environment.behind(n.excess_compliance()))
         };
         Ok(Self { environment, controller, equivalent })
     }
@@ -478,14 +449,9 @@ impl LoopTransfers {
     /// # Errors
     /// As [`LoopTransfers::of`].
     pub const fn equivalent_where_latched(scene: &Scene) -> Result<Option<Transfer>, Unbuildable> {
-        let (n, environment) = match valid_environment(scene, Format::F64) {
-            Ok(found) => found,
-            Err(error) => return Err(error),
-        };
+        let (n, environment) = ok!(valid_environment(scene, Format::F64));
         let Some(excess) = n.excess_where_latched() else { return Ok(None) };
-        match environment.behind(excess) {
-            Ok(equivalent) => Ok(Some(equivalent)),
-            Err(error) => Err(error),
-        }
+        let equivalent = ok!(environment.behind(excess));
+        Ok(Some(equivalent))
     }
 }

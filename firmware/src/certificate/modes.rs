@@ -9,7 +9,7 @@ use crate::number::Format;
 use crate::output_timing::OutputTiming;
 use crate::parameter::Parameter;
 use crate::scene::Scene;
-use crate::text::Sentence;
+use crate::text::{Sentence, push};
 
 /// A refused mode of a scene, which is not the selected one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,12 +26,7 @@ impl<R: Copy> RefusedMode<R> {
     /// The name of the mode, and the reason.
     const fn sentence_of(&self, reason: &Sentence) -> Sentence {
         let mut t = Sentence::new();
-        t.push("mode ");
-        t.push_number(self.mode as f64);
-        t.push(", `");
-        t.push(self.name);
-        t.push("`: ");
-        t.push(reason.as_str());
+        push!(t, "mode " {self.mode} ", `" {self.name} "`: " {reason.as_str()});
         t
     }
 }
@@ -76,8 +71,8 @@ pub(super) const fn tightest_mode(
     let mut tightest: Option<Limited> = None;
     let mut mode = 0;
     while let Some((name, selecting)) = nth(scene, mode) {
-        if let Ok(assessment) = certify_in(&selecting, format) {
-            let limited = match agree(timing, &selecting, &assessment) {
+        if certify_in(&selecting, format).is_ok() {
+            let limited = match agree(timing, &selecting, format) {
                 Ok(limited) => limited,
                 Err(reason) => return Err(RefusedMode { mode, name, reason }),
             };
@@ -97,15 +92,11 @@ const fn nth(scene: &Scene, mode: usize) -> Option<(&'static str, Scene)> {
     if mode >= modes.modes().len() {
         return None;
     }
-    match scene.with(Parameter::Mode, mode as f64) {
-        Some(selecting) => Some((modes.modes()[mode].name, selecting)),
-        None => None,
-    }
+    let selecting = some!(scene.with(Parameter::Mode, mode as f64));
+    Some((modes.modes()[mode].name, selecting))
 }
 
 const fn modes(scene: &Scene) -> Option<&ModeSelection> {
-    match scene.environment.profile() {
-        Some(profile) => profile.modes.as_ref(),
-        None => None,
-    }
+    let profile = some!(scene.environment.profile());
+    profile.modes.as_ref()
 }

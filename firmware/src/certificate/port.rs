@@ -31,19 +31,15 @@ impl Cells {
     /// `None` if a current loop is updated and its delay is not a whole number of updates.
     const fn of(lagging: &Lagging, period: Interval) -> Option<Self> {
         let latency = &lagging.latency;
-        let mut delay_in_updates = Interval::ZERO;
-        if latency.actuator_updates != 0 {
-            match latency.delay_in_updates(period.midpoint()) {
-                Some(delay) => delay_in_updates = delay,
-                None => return None,
-            }
-        }
         Some(Self {
             delay: latency.output_delay,
             actuator: latency.actuator_lag,
             sensor: latency.sensor_lag,
             updates: latency.actuator_updates,
-            delay_in_updates,
+            delay_in_updates: match latency.actuator_updates {
+                0 => Interval::ZERO,
+                _ => some!(latency.delay_in_updates(period.midpoint())),
+            },
         })
     }
 
@@ -115,6 +111,47 @@ impl Corners {
     }
 }
 
+/// All times of a scene.
+#[derive(Clone, Copy)]
+enum Times {
+    Cells(Cells),
+    Corners(Corners),
+}
+
+impl Times {
+    const fn of(lagging: &Lagging, period: Interval) -> Option<Self> {
+        let cells = some!(Cells::of(lagging, period));
+        Some(match Corners::of(lagging, period) {
+            Some(corners) => Self::Corners(corners),
+            None => Self::Cells(cells),
+        })
+    }
+
+    const fn count(&self) -> usize {
+        match self {
+            Self::Cells(cells) => cells.count(),
+            Self::Corners(corners) => corners.count(),
+        }
+    }
+
+    /// A part of them, in periods.
+    const fn part(&self, index: usize, period: Interval) -> LagIntervals {
+        match self {
+            Self::Cells(cells) => cells.cell(index, period),
+            Self::Corners(corners) => corners.corner(index),
+        }
+    }
+
+    /// The response of a piece of a part.
+    const fn response(&self, part: &LagIntervals, piece: usize) -> Option<SampledResponse> {
+        let response = some!(part.response(piece));
+        Some(match self {
+            Self::Cells(_) => response,
+            Self::Corners(corners) => response.with_ripple(corners.ripple),
+        })
+    }
+}
+
 /// One time after another.
 const fn after(first: f64, then: f64) -> Interval {
     Interval::decimal(first).add(Interval::decimal(then))
@@ -140,10 +177,12 @@ const fn part(range: TimeRange, index: usize) -> Interval {
     Interval::new(from.lo().max(0.0), to.hi())
 }
 
-const fn larger(a: (RealPart, Interval), b: (RealPart, Interval)) -> (RealPart, Interval) {
-    let place = if a.0.minimum.hi() > b.0.minimum.hi() { a.0.cos_theta } else { b.0.cos_theta };
-    let index = RealPart { minimum: a.0.minimum.max(b.0.minimum), cos_theta: place };
-    (index, a.1.max(b.1))
+/// The larger of both, if there are two.
+const fn larger(one: (RealPart, Interval), before: Found) -> Found {
+    Ok(match before {
+        Ok(before) => (one.0.or_larger(before.0), one.1.max(before.1)),
+        Err(_) => one,
+    })
 }
 
 /// The sampled responses of a scene's delays and lags over all their ranges, stored in a `V` such as a
@@ -182,44 +221,52 @@ impl PassivityProblem {
     /// result is divided by that part.
     #[inline(never)]
     pub(super) const fn port_index(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
-        match self.over_cells(closeness, false) {
-            Ok((found, _)) => Ok(found),
-            Err(error) => Err(error),
-        }
+        let (found, _) = ok!(self.over_cells(closeness, false));
+        Ok(found)
     }
 
     /// Index at the port with delay, lag and sensor, in N m s/rad: the least sufficient passivity of a
     /// device. A delay that deviates from tick to tick counts with its ripple.
     #[inline(never)]
     pub(super) const fn port_needed(&self) -> Result<Interval, IndexError> {
-        match self.over_cells(&Precision::TIGHT, true) {
-            Ok((_, needed)) => Ok(needed),
-            Err(error) => Err(error),
-        }
+        let (_, needed) = ok!(self.over_cells(&Precision::TIGHT, true));
+        Ok(needed)
     }
 
     /// The smallest of both over the proofs for this scene; the second only on request, and the proofs up to
     /// the first that is enough otherwise.
     pub(super) const fn over_cells(&self, closeness: &Precision, and_needed: bool) -> Found {
-        let (h, lagging) = match self.at_the_port() {
-            Ok(found) => found,
-            Err(error) => return Err(error),
-        };
+        self.over_proofs(None, closeness, and_needed)
+    }
+
+    /// The same with the responses of all times, if they are stored.
+    const fn over_proofs(
+        &self,
+        kept: Option<&[SampledResponse]>,
+        closeness: &Precision,
+        and_needed: bool,
+    ) -> Found {
+        let (h, lagging) = ok!(self.at_the_port());
         let mut best = Err(UNKNOWN);
-        let mut proof = 0;
-        while proof < Deviation::COUNT {
+        each!(proof in 0..Deviation::COUNT => {
             if let Some(deviation) = Deviation::of(proof, &lagging, &self.numbers) {
-                let found = match &deviation.response {
-                    Some(response) => self.piece(&h, response, &deviation, closeness, and_needed),
-                    None => self.over_ranges(&h, &lagging, &deviation, closeness, and_needed),
+                let found = match (&deviation.response, kept) {
+                    (Some(response), _) => {
+                        self.piece(&h, response, &deviation, closeness, and_needed)
+                    }
+                    (None, Some(kept)) => {
+                        self.over_kept(kept, &h, &deviation, closeness, and_needed)
+                    }
+                    (None, None) => {
+                        self.over_ranges(&h, &lagging, &deviation, closeness, and_needed)
+                    }
                 };
                 best = better(best, found);
                 if !and_needed && self.is_enough(&best) {
                     return best;
                 }
             }
-            proof += 1;
-        }
+        });
         best
     }
 
@@ -236,58 +283,45 @@ impl PassivityProblem {
         closeness: &Precision,
         and_needed: bool,
     ) -> Found {
-        let Some(cells) = Cells::of(lagging, self.numbers.period) else { return Err(UNKNOWN) };
-        let corners = Corners::of(lagging, self.numbers.period);
-        let count = match corners {
-            Some(corners) => corners.count(),
-            None => cells.count(),
-        };
-        let mut all: Option<(RealPart, Interval)> = None;
-        let mut index = 0;
-        while index < count {
-            let cell = match corners {
-                Some(corners) => corners.corner(index),
-                None => cells.cell(index, self.numbers.period),
-            };
-            let mut piece = 0;
-            while piece < cell.pieces() {
-                let Some(mut response) = cell.response(piece) else { return Err(UNKNOWN) };
-                if let Some(corners) = corners {
-                    response = response.with_ripple(corners.ripple);
-                }
-                all = match (self.piece(h, &response, deviation, closeness, and_needed), all) {
-                    (Err(error), _) => return Err(error),
-                    (Ok(one), None) => Some(one),
-                    (Ok(one), Some(before)) => Some(larger(one, before)),
-                };
-                piece += 1;
-            }
-            index += 1;
-        }
-        match all {
-            Some(all) => Ok(all),
-            None => Err(UNKNOWN),
-        }
+        let period = self.numbers.period;
+        let Some(times) = Times::of(lagging, period) else { return Err(UNKNOWN) };
+        let mut all = Err(UNKNOWN);
+        each!(index in 0..times.count() => {
+            let part = times.part(index, period);
+            each!(piece in 0..part.pieces() => {
+                let Some(response) = times.response(&part, piece) else { return Err(UNKNOWN) };
+                let one = ok!(self.piece(h, &response, deviation, closeness, and_needed));
+                all = larger(one, all);
+            });
+        });
+        all
+    }
+
+    /// The same over stored responses.
+    const fn over_kept(
+        &self,
+        responses: &[SampledResponse],
+        h: &Transfer,
+        deviation: &Deviation,
+        closeness: &Precision,
+        and_needed: bool,
+    ) -> Found {
+        let mut all = Err(UNKNOWN);
+        each!(i in 0..responses.len() => {
+            let one = ok!(self.piece(h, &responses[i], deviation, closeness, and_needed));
+            all = larger(one, all);
+        });
+        all
     }
 
     /// The sampled responses of this scene's times, for storage; `None` if it has no latency, or if a
     /// response is unknown.
     pub fn kept_responses<V: FromIterator<SampledResponse>>(&self) -> Option<KeptResponses<V>> {
         let (lagging, period) = (self.numbers.latency?, self.numbers.period);
-        let cells = Cells::of(&lagging, period)?;
-        let corners = Corners::of(&lagging, period);
-        let count = corners.map_or(cells.count(), |corners| corners.count());
-        let cell = |index| match corners {
-            Some(corners) => corners.corner(index),
-            None => cells.cell(index, period),
-        };
-        let response = |cell: LagIntervals, piece| {
-            let response = cell.response(piece)?;
-            Some(corners.map_or(response, |corners| response.with_ripple(corners.ripple)))
-        };
-        let all = (0..count).map(cell).flat_map(|cell| {
-            let pieces = 0..cell.pieces();
-            pieces.map(move |piece| response(cell, piece))
+        let times = Times::of(&lagging, period)?;
+        let all = (0..times.count()).flat_map(|index| {
+            let part = times.part(index, period);
+            (0..part.pieces()).map(move |piece| times.response(&part, piece))
         });
         let responses = all.collect::<Option<V>>()?;
         Some(KeptResponses { latency: lagging.latency, period, responses })
@@ -301,34 +335,10 @@ impl PassivityProblem {
         if !self.numbers.latency.as_ref().is_some_and(is_same) {
             return self.answer();
         }
-        self.answer_by(|closeness| self.over_kept(kept.responses.as_ref(), closeness))
-    }
-
-    /// [`Self::port_index`] over these responses.
-    fn over_kept(
-        &self,
-        responses: &[SampledResponse],
-        closeness: &Precision,
-    ) -> Result<RealPart, IndexError> {
-        let (h, lagging) = self.at_the_port()?;
-        let mut best = Err(UNKNOWN);
-        for proof in 0..Deviation::COUNT {
-            let Some(deviation) = Deviation::of(proof, &lagging, &self.numbers) else { continue };
-            let piece = |response| self.piece(&h, response, &deviation, closeness, false);
-            let found = match &deviation.response {
-                Some(response) => piece(response),
-                None => responses
-                    .iter()
-                    .map(piece)
-                    .reduce(|all, one| Ok(larger(one?, all?)))
-                    .unwrap_or(Err(UNKNOWN)),
-            };
-            best = better(best, found);
-            if self.is_enough(&best) {
-                break;
-            }
-        }
-        best.map(|(found, _)| found)
+        self.answer_by(|closeness| {
+            let (found, _) = self.over_proofs(Some(kept.responses.as_ref()), closeness, false)?;
+            Ok(found)
+        })
     }
 
     // Not inlined, so that the caller's frame is smaller.
@@ -341,25 +351,17 @@ impl PassivityProblem {
         closeness: &Precision,
         and_needed: bool,
     ) -> Found {
-        let port = match Port::new(h, response, self.numbers.period, deviation.ripple) {
-            Ok(port) => port,
-            Err(error) => return Err(error),
-        };
+        let port = ok!(Port::new(h, response, self.numbers.period, deviation.ripple));
         let left = deviation.left;
         let delta = scaled(self.numbers.delta, left);
-        let found = match port.index_for(delta, &closeness.scaled(left)) {
-            Ok(found) => found,
-            Err(error) => return Err(error),
-        };
+        let found = ok!(port.index_for(delta, &closeness.scaled(left)));
         let over_left = Interval::ONE.div(left);
         let index = RealPart { minimum: scaled(found.minimum, over_left), ..found };
         if !and_needed {
             return Ok((index, Interval::ENTIRE));
         }
-        match port.needed(delta.midpoint(), found) {
-            Ok(needed) => Ok((index, scaled(needed, over_left))),
-            Err(error) => Err(error),
-        }
+        let needed = ok!(port.needed(delta.midpoint(), found));
+        Ok((index, scaled(needed, over_left)))
     }
 
     /// The index of `E'` without latency, if the coupling has no memory.
@@ -368,10 +370,10 @@ impl PassivityProblem {
         if self.numbers.is_matched {
             return None;
         }
-        match self.behind(self.numbers.excess_compliance(), &Precision::TIGHT) {
-            Ok(found) => Some(found.minimum),
-            Err(_) => None,
-        }
+        let Ok(found) = self.behind(self.numbers.excess_compliance(), &Precision::TIGHT) else {
+            return None;
+        };
+        Some(found.minimum)
     }
 
     /// The whole controller.

@@ -2,13 +2,13 @@
 
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
-use super::model::{largest_solved, nonlinear_bound, transfer};
+use super::model::{solved_bound, transfer};
 use super::profile::{ExtremeSlopes, is_motor, is_motor_where_limited};
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Rule, RuleAnswer, compare, exact_limit, paper_limit};
 use super::static_law::{IndexAtPort, index_at_port};
-use super::validity::first_invalid;
+use super::validity::check;
 use crate::environment::{Environment, FULL_SCALE, Parts, Profile, Wall};
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
@@ -73,9 +73,9 @@ impl PassivityProblem {
     /// # Errors
     /// As [`PassivityProblem::of`].
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Rejection> {
-        match first_invalid(scene) {
-            Some(invalid) => Err(Rejection::Invalid(invalid)),
-            None => Self::with(scene, LoopIntervals::of(scene, format)),
+        match check(scene) {
+            Err(invalid) => Err(Rejection::Invalid(invalid)),
+            Ok(()) => Self::with(scene, LoopIntervals::of(scene, format)),
         }
     }
 
@@ -109,19 +109,13 @@ impl PassivityProblem {
         let loop_gain = Interval::ONE.add(environment.feedthrough().mul(numbers.compliance));
         let at_port = if numbers.is_at_port { index_at_port(scene, &numbers, 0.0) } else { None };
         let (rule, bound, solvable) = if is_nonlinear(scene) {
+            let bound = match at_port {
+                Some(IndexAtPort { sufficient, .. }) => Some(sufficient),
+                None if numbers.is_at_port => None,
+                None => solved_bound(&scene.environment, &numbers),
+            };
             // A clipped or one-sided law has one solution with the coupling only if both slopes
             // agree.
-            let solved = match numbers.is_at_port {
-                true => None,
-                false => largest_solved::<Environment>(&scene.environment, &numbers),
-            };
-            let bound = match (at_port, solved) {
-                (Some(IndexAtPort { sufficient, .. }), _) => Some(sufficient),
-                (None, Some(solved)) => {
-                    nonlinear_bound::<Environment>(&scene.environment, solved, &numbers)
-                }
-                (None, None) => None,
-            };
             (Rule::Nonlinear, bound, loop_gain.is_positive())
         } else {
             (Rule::Exact, None, !loop_gain.contains(0.0))
@@ -280,38 +274,28 @@ impl PassivityProblem {
             Rule::Exact => self.exact_shortage(),
             Rule::Nonlinear => self.nonlinear_shortage(),
         };
-        match shortage {
-            Some(shortage) => Some(shortage.midpoint() / self.numbers.delta.midpoint()),
-            None => None,
-        }
+        Some(some!(shortage).midpoint() / self.numbers.delta.midpoint())
     }
 
     const fn exact_shortage(&self) -> Option<Interval> {
-        match self.coupled(None, &Precision::within(ROUGHLY)) {
-            Ok(found) => Some(found.minimum.sub(exact_limit(&self.numbers))),
-            Err(_) => None,
-        }
+        let Ok(found) = self.coupled(None, &Precision::within(ROUGHLY)) else { return None };
+        Some(found.minimum.sub(exact_limit(&self.numbers)))
     }
 
     const fn nonlinear_shortage(&self) -> Option<Interval> {
-        if let (Some(bound), true) = (self.bound, self.numbers.is_at_port) {
-            return Some(bound.sub(self.numbers.delta));
+        let (bound, delta) = (some!(self.bound), self.numbers.delta);
+        if self.numbers.is_at_port {
+            return Some(bound.sub(delta));
         }
-        let (Some(bound), Some(coupling)) = (self.bound, self.numbers.coupling_damping()) else {
-            return None;
+        let coupling = some!(self.numbers.coupling_damping());
+        let over_the_limit = match paper_limit(&self.numbers) {
+            Some(limit) => bound.sub(limit),
+            None if self.numbers.latency.is_some() => delta.max(bound),
+            None => bound.sub(delta.min(coupling)),
         };
-        let delta = self.numbers.delta;
         if self.numbers.latency.is_some() {
-            let limit = paper_limit(&self.numbers);
-            return Some(match limit {
-                Some(limit) => bound.sub(limit),
-                None => delta.max(bound),
-            });
+            return Some(over_the_limit);
         }
-        let over_the_limit = bound.sub(match paper_limit(&self.numbers) {
-            Some(limit) => limit,
-            None => delta.min(coupling),
-        });
         // With a coupling stiffer than the standard one, its excess over `delta` is missing.
         Some(if delta.is_below(coupling) {
             over_the_limit.max(coupling.sub(delta))
@@ -331,10 +315,7 @@ impl PassivityProblem {
                 Ok(found) => Some(found.minimum.midpoint()),
                 Err(_) => None,
             },
-            Rule::Nonlinear if self.numbers.is_at_port => match self.bound {
-                Some(bound) => Some(bound.hi()),
-                None => None,
-            },
+            Rule::Nonlinear if self.numbers.is_at_port => Some(some!(self.bound).hi()),
             Rule::Nonlinear => match (self.bound, self.numbers.coupling_damping()) {
                 (Some(bound), Some(coupling)) if bound.is_below(coupling) => Some(coupling.hi()),
                 _ => None,
@@ -346,15 +327,9 @@ impl PassivityProblem {
     /// loop is passive while `delta + Re(T C / (z - 1)) > 0` (equation 30).
     pub(super) const fn at_port(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
         if self.numbers.latency.is_some() {
-            return match self.port_needed() {
-                Ok(minimum) => Ok(RealPart { minimum, cos_theta: Interval::new(-1.0, 1.0) }),
-                Err(error) => Err(error),
-            };
+            return Ok(RealPart::everywhere(ok!(self.port_needed())));
         }
-        match self.behind_reduced(self.numbers.compliance, true) {
-            Ok(late) => reduced_index(&late, closeness),
-            Err(obstacle) => Err(obstacle),
-        }
+        reduced_index(&ok!(self.behind_reduced(self.numbers.compliance, true)), closeness)
     }
 
     /// Whether the coupling is the standard one within the precision of its digits, so that `E'` is the
@@ -367,7 +342,7 @@ impl PassivityProblem {
     /// Index of the environment alone.
     pub(super) const fn alone(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
         if let Some(minimum) = self.stated {
-            return Ok(RealPart { minimum, cos_theta: Interval::new(-1.0, 1.0) });
+            return Ok(RealPart::everywhere(minimum));
         }
         if let Some(doubt) = self.no_transfer {
             return Err(IndexError::Undecided(doubt));
@@ -398,13 +373,8 @@ impl PassivityProblem {
             _ => self.behind(self.numbers.excess_compliance(), closeness),
         };
         let Some(excess) = self.numbers.excess_where_latched() else { return at_once };
-        match (at_once, self.behind(excess, closeness)) {
-            (Ok(a), Ok(b)) => Ok(RealPart {
-                minimum: a.minimum.max(b.minimum),
-                cos_theta: if b.minimum.hi() > a.minimum.hi() { b.cos_theta } else { a.cos_theta },
-            }),
-            (Err(obstacle), _) | (_, Err(obstacle)) => Err(obstacle),
-        }
+        let at_once = ok!(at_once);
+        Ok(ok!(self.behind(excess, closeness)).or_larger(at_once))
     }
 
     /// Index of `E'`: only tight enough to prove it below its limit; if it is not, tight for the rejection.
@@ -428,10 +398,7 @@ impl PassivityProblem {
         excess: Interval,
         closeness: &Precision,
     ) -> Result<RealPart, IndexError> {
-        match self.behind_reduced(excess, false) {
-            Ok(equivalent) => reduced_index(&equivalent, closeness),
-            Err(obstacle) => Err(obstacle),
-        }
+        reduced_index(&ok!(self.behind_reduced(excess, false)), closeness)
     }
 
     /// The velocity-to-torque function of the environment behind a coupling of this compliance, with or
@@ -491,11 +458,8 @@ const fn unbuildable(error: Unbuildable) -> Rejection {
     match error {
         Unbuildable::Improper => Rejection::Improper,
         Unbuildable::IllPosed => Rejection::IllPosed { loop_gain: Interval::ZERO },
-        Unbuildable::OutOfRange | Unbuildable::Unstated => Rejection::Undecided {
-            doubt: UndecidedReason::OutOfRange,
-            index: None,
-            limit: None,
-            remedies: Remedies::NONE,
-        },
+        Unbuildable::OutOfRange | Unbuildable::Unstated => {
+            Rejection::undecided(UndecidedReason::OutOfRange, None, None)
+        }
     }
 }

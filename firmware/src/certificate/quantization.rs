@@ -392,25 +392,18 @@ fn l1_norm(g: &Transfer) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::environment::{Profile, Shape};
-    use crate::number::Number;
-    use crate::scene::{Coupling, Device, Latency, Timing};
-    use crate::servo::Servo;
+    use crate::test_scene::{self, largest_error};
     use fixed::types::I8F24;
 
     const COUNTS_PER_TURN: f64 = 4096.0;
     const FULL_SCALE: f64 = 1.0;
+    /// Through many detents and back.
+    const MOTION: [f64; 2] = [3.0, 0.05];
 
     fn scene(torque: f64, delay: usize) -> Scene {
         let units = vec![0; 16].leak();
         let profile = Profile::sampled(&[Shape::detents(24, torque)], units, delay).unwrap();
-        Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 0.001, worst_period: None },
-            coupling: Coupling::Spring { stiffness: 44.0 },
-            environment: profile.alone(),
-            latency: Latency::NONE,
-            torque_limit: Some(FULL_SCALE),
-        }
+        Scene { torque_limit: Some(FULL_SCALE), ..test_scene::scene(profile.alone()) }
     }
 
     fn bound(scene: &Scene, format: Format) -> Option<QuantizationBound> {
@@ -436,31 +429,6 @@ mod tests {
         assert_eq!(bound(&scene(2.3 * torque, 1), Format::F64), None);
     }
 
-    /// A servo with a coarse encoder and a DAC against a servo with exact positions, in `f64`.
-    fn largest_error<N: Number>(scene: &Scene) -> f64 {
-        let transducers = |counts_per_turn: f64| Transducers {
-            counts_per_turn,
-            counter: crate::encoder::CounterWidth::Bits32,
-            full_scale_torque: FULL_SCALE,
-            largest_speed: 1e4,
-        };
-        let certified = scene.certify().unwrap();
-        let mut coarse = Servo::<_, N>::new(&certified, &transducers(COUNTS_PER_TURN)).unwrap();
-        let fine = 4096.0 * 1024.0;
-        let mut exact = Servo::<_, f64>::new(&certified, &transducers(fine)).unwrap();
-        let mut largest = 0.0_f64;
-        for tick in 0..20_000 {
-            // Slow and fast, through many detents and back.
-            let angle =
-                3.0 * (f64::from(tick) * 7e-4).sin() + 0.05 * (f64::from(tick) * 0.13).sin();
-            let count = |counts: f64| (angle * counts / TAU).round() as i32;
-            coarse.tick(crate::encoder::RawCount::from(count(COUNTS_PER_TURN).cast_unsigned()));
-            exact.tick(crate::encoder::RawCount::from(count(fine).cast_unsigned()));
-            largest = largest.max((coarse.torque_nm() - exact.torque_nm()).abs());
-        }
-        largest
-    }
-
     #[test]
     fn no_motion_has_a_torque_farther_off_than_the_bound() {
         for delay in [0, 1] {
@@ -472,8 +440,11 @@ mod tests {
                 (bound.encoder.unwrap() + bound.numbers + fine, bound.encoder.unwrap())
             };
             for (found, format) in [
-                (largest_error::<f32>(&scene), Format::F32),
-                (largest_error::<I8F24>(&scene), Format::Fixed { fraction_bits: 24 }),
+                (largest_error::<f32>(&scene, COUNTS_PER_TURN, MOTION), Format::F32),
+                (
+                    largest_error::<I8F24>(&scene, COUNTS_PER_TURN, MOTION),
+                    Format::Fixed { fraction_bits: 24 },
+                ),
             ] {
                 let (most, encoder) = allowed(format);
                 assert!(found <= most, "{delay} {format}: {found} {most}");

@@ -1,13 +1,11 @@
 //! The reason why a scene is not certified, as numbers and as text.
 
-use core::fmt;
-
 use super::remedy::{Remedies, Remedy};
 use super::validity::InvalidParameter;
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::UndecidedReason;
-use crate::text::Sentence;
+use crate::text::{Piece, Sentence, error_with_sentence, push};
 
 /// The reason why a scene is not certified. Indices in N m s/rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,6 +120,18 @@ pub enum Rejection {
 }
 
 impl Rejection {
+    pub(super) const fn shortage(alpha: Interval, delta: Interval, cos_theta: Interval) -> Self {
+        Self::Shortage { alpha, delta, cos_theta, remedies: Remedies::NONE }
+    }
+
+    pub(super) const fn undecided(
+        doubt: UndecidedReason,
+        index: Option<Interval>,
+        limit: Option<Interval>,
+    ) -> Self {
+        Self::Undecided { doubt, index, limit, remedies: Remedies::NONE }
+    }
+
     /// The reason as a word for programs.
     pub const fn reason(&self) -> &'static str {
         match self {
@@ -164,154 +174,115 @@ impl Rejection {
     pub const fn sentence_in(&self, format: Format) -> Sentence {
         let mut t = Sentence::new();
         if !matches!(format, Format::F64) {
-            t.push("with its coefficients rounded to ");
-            t.push(format.name().as_str());
-            t.push(": ");
+            push!(t, "with its coefficients rounded to " {format.name().as_str()} ": ");
         }
         t.push(if self.is_undecided() { "undecided: " } else { "rejected: " });
         match self {
             Self::Invalid(invalid) => invalid.write(&mut t),
-            Self::Improper => t.push("the environment has more zeros than poles, so it is not causal; add delay or poles"),
-            Self::IllPosed { loop_gain } => {
-                t.push("coupling and environment have no unique solution within a tick (1 + E(inf)/K_vc = ");
-                t.push_number(if loop_gain.contains(0.0) { 0.0 } else { loop_gain.midpoint() });
-                t.push("); delay the environment or change the coupling stiffness");
-            }
-            Self::NoPassivity { delta } => {
-                t.push("the device's passivity delta = ");
-                t.push_number(delta.midpoint());
-                t.push(" N m s/rad must be greater than 0");
-            }
-            Self::Motor { mean } if *mean == 0.0 => t.push(
-                "nothing pushes back beyond the ends of the torque profile: the stiffness of its end stops must be greater than 0",
+            Self::Improper => push!(
+                t,
+                "the environment has more zeros than poles, so it is not causal; add delay or poles"
             ),
-            Self::Motor { mean } => {
-                t.push("the torque profile repeats for ever, and its mean is ");
-                t.push_number(*mean);
-                t.push(" N m instead of 0: it would turn the device as a motor does");
-            }
-            Self::Uneven => t.push(
-                "a torque limit would clip this torque profile on one side more than on the other, and the rest turns the device as a motor does: make it odd about its centre, or give it end stops",
+            Self::IllPosed { loop_gain } => push!(t,
+                "coupling and environment have no unique solution within a tick (1 + E(inf)/K_vc = "
+                {if loop_gain.contains(0.0) { 0.0 } else { loop_gain.midpoint() }}
+                "); delay the environment or change the coupling stiffness"),
+            Self::NoPassivity { delta } => push!(t,
+                "the device's passivity delta = " {delta.midpoint()} " N m s/rad must be greater than 0"),
+            Self::Motor { mean } if *mean == 0.0 => push!(
+                t,
+                "nothing pushes back beyond the ends of the torque profile: the stiffness of its end stops must be \
+                 greater than 0"
             ),
-            Self::Steep { coupling, .. } => {
-                t.push("without delay a torque profile must rise by less than the coupling's ");
-                t.push_number(coupling.lo());
-                t.push(" N m/rad everywhere");
-            }
-            Self::UnstablePole { reflection, of_coupling, .. } => {
-                t.push(if *of_coupling { "behind this coupling " } else { "" });
-                t.push("the environment has a pole outside the unit circle (reflection coefficient ");
-                t.push_number(reflection.lo());
-                t.push(", must be below 1)");
-            }
-            Self::RepeatedUnitPole { cos_theta } => {
-                t.push("from velocity to torque there is a repeated pole on the unit circle");
-                write_angle(&mut t, *cos_theta);
-            }
-            Self::ResidueAngle { cos_theta } => {
-                t.push("a pole on the unit circle has a residue of the wrong angle");
-                write_angle(&mut t, *cos_theta);
-            }
-            Self::HiddenMode { cos_theta } => {
-                t.push("numerator and denominator have a factor in common whose roots are on the unit circle");
-                write_angle(&mut t, *cos_theta);
-                t.push(": its mode does not show and does not decay; divide both by that factor");
-            }
-            Self::NegativeResidue { residue } => {
-                t.push("the environment pulls away at rest like a negative spring (residue at z = 1 is ");
-                t.push_number(residue.midpoint());
-                t.push(" N m s/rad, must be positive)");
-            }
+            Self::Motor { mean } => push!(t,
+                "the torque profile repeats for ever, and its mean is " {*mean}
+                " N m instead of 0: it would turn the device as a motor does"),
+            Self::Uneven => push!(
+                t,
+                "a torque limit would clip this torque profile on one side more than on the other, and the rest \
+                 turns the device as a motor does: make it odd about its centre, or give it end stops"
+            ),
+            Self::Steep { coupling, .. } => push!(t,
+                "without delay a torque profile must rise by less than the coupling's " {coupling.lo()}
+                " N m/rad everywhere"),
+            Self::UnstablePole { reflection, of_coupling, .. } => push!(t,
+                {if *of_coupling { "behind this coupling " } else { "" }}
+                "the environment has a pole outside the unit circle (reflection coefficient " {reflection.lo()}
+                ", must be below 1)"),
+            Self::RepeatedUnitPole { cos_theta } => push!(t,
+                "from velocity to torque there is a repeated pole on the unit circle" {Angle(*cos_theta)}),
+            Self::ResidueAngle { cos_theta } => push!(t,
+                "a pole on the unit circle has a residue of the wrong angle" {Angle(*cos_theta)}),
+            Self::HiddenMode { cos_theta } => push!(t,
+                "numerator and denominator have a factor in common whose roots are on the unit circle"
+                {Angle(*cos_theta)} ": its mode does not show and does not decay; divide both by that factor"),
+            Self::NegativeResidue { residue } => push!(t,
+                "the environment pulls away at rest like a negative spring (residue at z = 1 is "
+                {residue.midpoint()} " N m s/rad, must be positive)"),
             Self::Shortage { alpha, delta, cos_theta, .. } => {
-                write_shortage(&mut t, *alpha, *delta, *cos_theta);
+                push!(t,
+                    "the environment needs alpha = " {alpha.hi()} " N m s/rad of damping, not below the delta = "
+                    {delta.lo()} " N m s/rad that the device has");
+                if cos_theta.hi() - cos_theta.lo() < 0.5 {
+                    push!(t, { Angle(*cos_theta) });
+                }
             }
-            Self::Missed { alpha, limit, .. } => {
-                t.push("with updates missed up to the worst period and torques latched the environment needs alpha = ");
-                t.push_number(alpha.hi());
-                t.push(" N m s/rad of damping, not below the ");
-                t.push_number(limit.lo());
-                t.push(" N m s/rad that device and coupling leave it");
-            }
+            Self::Missed { alpha, limit, .. } => push!(t,
+                "with updates missed up to the worst period and torques latched the environment needs alpha = "
+                {alpha.hi()} " N m s/rad of damping, not below the " {limit.lo()}
+                " N m s/rad that device and coupling leave it"),
             Self::Coupling { alpha, alpha_coupled, delta, stiffness, standard, .. } => {
-                write_coupling(&mut t, *alpha, *alpha_coupled, *delta, *stiffness, *standard);
+                match stiffness {
+                    Some(k) => push!(t, "the coupling stiffness " {k.midpoint()} " N m/rad"),
+                    None => t.push("the rigid coupling"),
+                }
+                t.push(" does not suit this environment");
+                if let Some(alpha) = alpha {
+                    push!(t, ": alone it needs alpha = " {alpha.hi()});
+                }
+                if let Some(coupled) = alpha_coupled {
+                    push!(t, ", with the coupling alpha = " {coupled.hi()});
+                }
+                push!(t,
+                    " N m s/rad of the delta = " {delta.lo()}
+                    " N m s/rad that the device has; the standard coupling is 2 delta/T = " {standard.midpoint()}
+                    " N m/rad");
             }
             Self::Undecided { doubt, index, limit, .. } => {
-                write_doubt(&mut t, *doubt, *index, *limit);
+                t.push(sentence_of(*doubt));
+                if let (Some(index), Some(limit)) = (index, limit) {
+                    push!(t, " (alpha = " {index.hi()} ", delta = " {limit.lo()} " N m s/rad)");
+                }
             }
         }
         let written = self.remedies().write(&mut t);
         if let Self::UnstablePole { behind_standard: Some((coupling, remedy)), .. } = self {
             t.push(if written == 0 { "; it would pass" } else { ", or" });
-            t.push(" behind a coupling of ");
-            t.push_number(*coupling);
-            t.push(" N m/rad with ");
+            push!(t, " behind a coupling of " {*coupling} " N m/rad with ");
             remedy.write(&mut t);
         }
         t
     }
 }
 
-const fn write_angle(t: &mut Sentence, cos_theta: Interval) {
-    t.push(" (at cos(theta) = ");
-    t.push_number(cos_theta.midpoint());
-    t.push(")");
-}
+/// The cosine of an angle, as a piece of a sentence.
+struct Angle(Interval);
 
-const fn write_shortage(t: &mut Sentence, alpha: Interval, delta: Interval, cos_theta: Interval) {
-    t.push("the environment needs alpha = ");
-    t.push_number(alpha.hi());
-    t.push(" N m s/rad of damping, not below the delta = ");
-    t.push_number(delta.lo());
-    t.push(" N m s/rad that the device has");
-    if cos_theta.hi() - cos_theta.lo() < 0.5 {
-        write_angle(t, cos_theta);
+impl Piece<Angle> {
+    const fn push_to(self, text: &mut Sentence) {
+        push!(*text, " (at cos(theta) = " {self.0.0.midpoint()} ")");
     }
 }
 
-const fn write_coupling(
-    t: &mut Sentence,
-    alpha: Option<Interval>,
-    coupled: Option<Interval>,
-    delta: Interval,
-    stiffness: Option<Interval>,
-    standard: Interval,
-) {
-    match stiffness {
-        Some(stiffness) => {
-            t.push("the coupling stiffness ");
-            t.push_number(stiffness.midpoint());
-            t.push(" N m/rad");
-        }
-        None => t.push("the rigid coupling"),
-    }
-    t.push(" does not suit this environment");
-    if let Some(alpha) = alpha {
-        t.push(": alone it needs alpha = ");
-        t.push_number(alpha.hi());
-    }
-    if let Some(coupled) = coupled {
-        t.push(", with the coupling alpha = ");
-        t.push_number(coupled.hi());
-    }
-    t.push(" N m s/rad of the delta = ");
-    t.push_number(delta.lo());
-    t.push(" N m s/rad that the device has; the standard coupling is 2 delta/T = ");
-    t.push_number(standard.midpoint());
-    t.push(" N m/rad");
-}
-
-const fn write_doubt(
-    t: &mut Sentence,
-    doubt: UndecidedReason,
-    index: Option<Interval>,
-    limit: Option<Interval>,
-) {
-    t.push(match doubt {
+const fn sentence_of(doubt: UndecidedReason) -> &'static str {
+    match doubt {
         UndecidedReason::PoleNearCircle => {
             "rounding hides whether all poles are inside the unit circle: one is near it, or several are close \
              together"
         }
-        UndecidedReason::SeveralPolePairs => "the environment has several pole pairs on the unit circle",
+        UndecidedReason::SeveralPolePairs => {
+            "the environment has several pole pairs on the unit circle"
+        }
         UndecidedReason::ResidueSign => {
             "rounding hides the sign of a residue on the unit circle; declare exact zeros at z = 1 as unit_zeros"
         }
@@ -340,23 +311,10 @@ const fn write_doubt(
         UndecidedReason::NoTransferFunction => {
             "the environment is stated by a bound, without a transfer function"
         }
-    });
-    if let (Some(index), Some(limit)) = (index, limit) {
-        t.push(" (alpha = ");
-        t.push_number(index.hi());
-        t.push(", delta = ");
-        t.push_number(limit.lo());
-        t.push(" N m s/rad)");
     }
 }
 
-impl fmt::Display for Rejection {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.sentence().as_str())
-    }
-}
-
-impl core::error::Error for Rejection {}
+error_with_sentence!(Rejection);
 
 #[cfg(test)]
 mod tests {
@@ -370,67 +328,62 @@ mod tests {
         /// Remedies have numbers of nine digits at most, and of three if there are two of them.
         const RANGE: (Option<f64>, Option<f64>) = (Some(1.23e-22), Some(1.24e-22));
         let exactly = (Some(1.234_567_89e-15), Some(1.234_567_89e-15));
-        let least = (Some(1.23e-22), None);
+        let remedy = |parameter, (lowest, highest)| Remedy { parameter, lowest, highest };
         let all = [
-            (Parameter::Stiffness, RANGE),
-            (Parameter::Damping, RANGE),
-            (Parameter::ProfileTorque, (None, Some(1.23e-22))),
-            (Parameter::Count, (None, Some(4096.0))),
-            (Parameter::CouplingStiffness, exactly),
-            (Parameter::Period, RANGE),
-            (Parameter::Passivity, least),
-            (Parameter::OutputDelay, RANGE),
-            (Parameter::ActuatorLag, RANGE),
-            (Parameter::SensorLag, RANGE),
+            remedy(Parameter::Stiffness, RANGE),
+            remedy(Parameter::Damping, RANGE),
+            remedy(Parameter::ProfileTorque, (None, Some(1.23e-22))),
+            remedy(Parameter::Count, (None, Some(4096.0))),
+            remedy(Parameter::CouplingStiffness, exactly),
+            remedy(Parameter::Period, RANGE),
+            remedy(Parameter::Passivity, (Some(1.23e-22), None)),
+            remedy(Parameter::OutputDelay, RANGE),
+            remedy(Parameter::ActuatorLag, RANGE),
+            remedy(Parameter::SensorLag, RANGE),
         ];
-        let all = all.map(|(parameter, (lowest, highest))| Remedy { parameter, lowest, highest });
         let of_profile = Remedies::of(all);
         let mut of_sum = all;
         of_sum[1].parameter = Parameter::Residual;
         let of_sum = Remedies::of(of_sum);
         // Only a profile has a number of repetitions; the others may have a residual.
         let mut others = all;
-        let (lowest, highest) = RANGE;
-        others[2] = Remedy { parameter: Parameter::Residual, lowest, highest };
+        others[2] = remedy(Parameter::Residual, RANGE);
         let mut remedies = Remedies::NONE;
         (0..others.len()).filter(|&i| i != 3).for_each(|i| remedies.put(i, Some(others[i])));
-        let steep = Rejection::Steep { coupling: Interval::exact(LONG), remedies: of_profile };
-        let long = Interval::exact(LONG);
-        let coupling = Rejection::Coupling {
-            alpha: Some(long),
-            alpha_coupled: Some(long),
-            delta: long,
-            stiffness: Some(long),
-            standard: long,
-            remedies,
-        };
-        let shortage = Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies };
+        let (coupling, long) = (Interval::exact(LONG), Interval::exact(LONG));
+        let (alpha, index) = (Some(long), Some(long));
+        let shortage =
+            |remedies| Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies };
         let doubt = UndecidedReason::ResidueSign;
-        let (index, limit) = (Some(long), Some(long));
-        let undecided = Rejection::Undecided { doubt, index, limit, remedies };
         let last = "1.23e-22 <= sensor lag <= 1.24e-22 s";
-        let behind_standard = Some((LONG, all[0]));
-        let pole = Rejection::UnstablePole {
-            reflection: long,
-            of_coupling: true,
-            remedies,
-            behind_standard,
-        };
         let range = "1.23e-22 <= stiffness <= 1.24e-22 N m/rad";
-        let shortage_of_profile =
-            Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies: of_profile };
-        let shortage_of_sum =
-            Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies: of_sum };
-        let all = [
-            (coupling, last),
-            (shortage, last),
-            (undecided, last),
-            (pole, range),
-            (steep, last),
-            (shortage_of_profile, last),
-            (shortage_of_sum, last),
-        ];
-        for (rejection, end) in all {
+        for (rejection, end) in [
+            (
+                Rejection::Coupling {
+                    alpha,
+                    alpha_coupled: alpha,
+                    delta: long,
+                    stiffness: alpha,
+                    standard: long,
+                    remedies,
+                },
+                last,
+            ),
+            (shortage(remedies), last),
+            (Rejection::Undecided { doubt, index, limit: index, remedies }, last),
+            (
+                Rejection::UnstablePole {
+                    reflection: long,
+                    of_coupling: true,
+                    remedies,
+                    behind_standard: Some((LONG, all[0])),
+                },
+                range,
+            ),
+            (Rejection::Steep { coupling, remedies: of_profile }, last),
+            (shortage(of_profile), last),
+            (shortage(of_sum), last),
+        ] {
             let sentence = rejection.sentence_in(Format::Fixed { fraction_bits: 16 });
             let sentence = sentence.as_str();
             assert!(sentence.len() < Sentence::CAPACITY, "{}: {sentence}", sentence.len());

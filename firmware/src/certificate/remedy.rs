@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::parameter::Parameter;
-use crate::text::Text;
+use crate::text::{Text, push};
 
 /// One number that, changed to any value from `lowest` to `highest`, makes the scene pass.
 ///
@@ -33,29 +33,14 @@ impl Remedy {
     pub(super) const fn write<const N: usize>(&self, t: &mut Text<N>) {
         let (name, unit) = self.parameter.name_and_unit();
         let is_one_value = matches!((self.lowest, self.highest), (Some(a), Some(b)) if a == b);
-        match self.lowest {
-            Some(lowest) if self.highest.is_some() && !is_one_value => {
-                t.push_number(lowest);
-                t.push(" <= ");
-            }
-            _ => {}
-        }
-        t.push(name);
         match (self.lowest, self.highest) {
-            (_, Some(highest)) => {
-                t.push(if is_one_value { " = " } else { " <= " });
-                t.push_number(highest);
-            }
-            (Some(lowest), None) => {
-                t.push(" >= ");
-                t.push_number(lowest);
-            }
-            (None, None) => {}
+            (_, Some(highest)) if is_one_value => push!(*t, {name} " = " {highest}),
+            (Some(lowest), Some(highest)) => push!(*t, {lowest} " <= " {name} " <= " {highest}),
+            (None, Some(highest)) => push!(*t, {name} " <= " {highest}),
+            (Some(lowest), None) => push!(*t, {name} " >= " {lowest}),
+            (None, None) => t.push(name),
         }
-        if !unit.is_empty() {
-            t.push(" ");
-            t.push(unit);
-        }
+        t.push_unit(unit);
     }
 }
 
@@ -100,10 +85,8 @@ impl Range {
 /// returned through the deepest stack of a small board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remedies {
+    parameters: [Parameter; CANDIDATES],
     ranges: [Range; CANDIDATES],
-    is_damping: bool,
-    is_of_profile: bool,
-    is_beside_canceller: bool,
     is_matched: bool,
 }
 
@@ -112,13 +95,8 @@ const MATCHED: &str = "behind the matched coupling";
 
 impl Remedies {
     /// No remedy.
-    pub const NONE: Self = Self {
-        ranges: [Range::EMPTY; CANDIDATES],
-        is_damping: false,
-        is_of_profile: false,
-        is_beside_canceller: false,
-        is_matched: false,
-    };
+    pub const NONE: Self =
+        Self { parameters: ORDER, ranges: [Range::EMPTY; CANDIDATES], is_matched: false };
 
     #[cfg(test)]
     pub(super) fn of(found: [Remedy; CANDIDATES]) -> Self {
@@ -148,12 +126,7 @@ impl Remedies {
             return None;
         }
         Some(Remedy {
-            parameter: match ORDER[i] {
-                Parameter::Passivity if self.is_damping => Parameter::DeviceDamping,
-                Parameter::Residual if self.is_of_profile => Parameter::ProfileTorque,
-                Parameter::Damping if self.is_beside_canceller => Parameter::Residual,
-                parameter => parameter,
-            },
+            parameter: self.parameters[i],
             lowest: if lowest.is_finite() { Some(lowest) } else { None },
             highest: if highest.is_finite() { Some(highest) } else { None },
         })
@@ -161,24 +134,9 @@ impl Remedies {
 
     pub(super) const fn put(&mut self, i: usize, found: Option<Remedy>) {
         let Some(Remedy { parameter, lowest, highest }) = found else { return };
-        self.ranges[i] = Range {
-            lowest: match lowest {
-                Some(lowest) => lowest,
-                None => f64::NEG_INFINITY,
-            },
-            highest: match highest {
-                Some(highest) => highest,
-                None => f64::INFINITY,
-            },
-        };
-        match parameter {
-            Parameter::DeviceDamping => self.is_damping = true,
-            Parameter::ProfileTorque => self.is_of_profile = true,
-            Parameter::Residual if matches!(ORDER[i], Parameter::Damping) => {
-                self.is_beside_canceller = true;
-            }
-            _ => {}
-        }
+        self.parameters[i] = parameter;
+        self.ranges[i] =
+            Range { lowest: or!(lowest, f64::NEG_INFINITY), highest: or!(highest, f64::INFINITY) };
     }
 
     /// Appends the remedies; returns their number.
@@ -189,8 +147,7 @@ impl Remedies {
             t.push(matched);
             written += 1;
         }
-        let mut i = 0;
-        while i < CANDIDATES {
+        each!(i in 0..CANDIDATES => {
             if let Some(remedy) = self.get(i) {
                 t.push(match (written, self.is_matched) {
                     (0, _) => "; it would pass with ",
@@ -200,8 +157,7 @@ impl Remedies {
                 remedy.write(t);
                 written += 1;
             }
-            i += 1;
-        }
+        });
         written
     }
 }

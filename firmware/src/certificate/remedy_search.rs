@@ -44,8 +44,7 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
     if passes_behind_matched(scene, format) {
         found.put_matched();
     }
-    let mut i = 0;
-    while i < CANDIDATES {
+    each!(i in 0..CANDIDATES => {
         let parameter = match ORDER[i] {
             Parameter::Residual if scene.environment.profile().is_some() => {
                 Parameter::ProfileTorque
@@ -70,8 +69,7 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
             _ => varied.remedy(own),
         };
         found.put(i, remedy);
-        i += 1;
-    }
+    });
     found
 }
 
@@ -101,19 +99,15 @@ const fn softer_behind_standard(scene: &Scene, format: Format) -> Option<(f64, R
         return None;
     }
     let varied = Varied { scene: &standard, format, parameter: Parameter::Stiffness };
-    match varied.remedy(own) {
-        Some(remedy) => Some((stiffness, remedy)),
-        None => None,
-    }
+    let remedy = some!(varied.remedy(own));
+    Some((stiffness, remedy))
 }
 
 /// The scene's own shortage.
 #[inline(never)]
 const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
-    match PassivityProblem::in_format(scene, format) {
-        Ok(posed) => posed.shortage(),
-        Err(_) => None,
-    }
+    let Ok(posed) = PassivityProblem::in_format(scene, format) else { return None };
+    posed.shortage()
 }
 
 /// The standard coupling, `2 delta / T`, if the scene passes with it and has another: with as few digits as
@@ -173,10 +167,8 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
 /// Not inlined, like the function that it calls.
 #[inline(never)]
 const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
-    match PassivityProblem::in_format(scene, format) {
-        Ok(posed) => posed.needed_passivity(),
-        Err(_) => None,
-    }
+    let Ok(posed) = PassivityProblem::in_format(scene, format) else { return None };
+    posed.needed_passivity()
 }
 
 #[cfg(test)]
@@ -184,17 +176,11 @@ mod tests {
     use super::*;
     use crate::certificate::certify;
     use crate::environment::{Profile, Shape, Wall};
-    use crate::scene::{Device, Latency, Timing};
+    use crate::scene::Latency;
+    use crate::test_scene;
 
     fn scene(stiffness: f64, coupling: Coupling) -> Scene {
-        Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 0.001, worst_period: None },
-            coupling,
-            environment: Wall::damped(stiffness, 0.01, 1).alone(),
-            latency: Latency::NONE,
-            torque_limit: None,
-        }
+        Scene { coupling, ..test_scene::scene(Wall::damped(stiffness, 0.01, 1).alone()) }
     }
 
     /// An undelayed wall beyond a face, whose torque lags: a bound asks for a softer one behind a spring.

@@ -10,7 +10,7 @@ use super::profile::{ExtremeSlopes, damper, is_motor};
 use crate::environment::{Environment, EnvironmentModel, Parts, Profile, Wall};
 use crate::latency::Latency;
 use crate::passivity::interval::Interval;
-use crate::passivity::lagged::{SampledLag, left};
+use crate::passivity::lagged::{Decay, left};
 use crate::scene::Scene;
 
 /// The index of a scene without a coupling at the device's port.
@@ -26,22 +26,19 @@ pub(super) struct IndexAtPort {
 /// none is known.
 ///
 /// `reading` is the time in s by which a count may be read late.
+#[inline(never)]
 pub(super) const fn index_at_port(
     scene: &Scene,
     n: &LoopIntervals,
     reading: f64,
 ) -> Option<IndexAtPort> {
-    let (Some(highest), Some(lowest)) = (
-        needed_at_port::<Environment>(scene, n, reading, End::Upper),
-        needed_at_port::<Environment>(scene, n, reading, End::Lower),
-    ) else {
-        return None;
-    };
-    let is_necessary = match Law::of::<Environment>(&scene.environment, n) {
-        Some(law) => law.is_spring_somewhere && is_exact(&scene.latency, n),
-        None => false,
-    };
-    Some(IndexAtPort { sufficient: Interval::new(lowest, highest), is_necessary })
+    let law = some!(Law::of::<Environment>(&scene.environment, n));
+    let lowest = some!(law.needed(scene, n, reading, End::Lower));
+    let highest = some!(law.needed(scene, n, reading, End::Upper));
+    Some(IndexAtPort {
+        sufficient: Interval::new(lowest, highest),
+        is_necessary: law.is_spring_somewhere && is_exact(&scene.latency, n),
+    })
 }
 
 /// Which end of the enclosure of an index.
@@ -78,10 +75,8 @@ pub(super) const fn needed_at_port<E: EnvironmentModel>(
     reading: f64,
     end: End,
 ) -> Option<f64> {
-    match Law::of::<E>(&scene.environment, n) {
-        Some(law) => law.needed(scene, n, reading, end),
-        None => None,
-    }
+    let law = some!(Law::of::<E>(&scene.environment, n));
+    law.needed(scene, n, reading, end)
 }
 
 /// The passivity that a switched damper takes at most beside a static law, over the damper: the geometric mean
@@ -132,28 +127,28 @@ impl Law {
         let Environment::Parts(Parts { canceller, wall, profile }) = environment else {
             return None;
         };
-        let mut sum = match wall {
-            Some(wall) if wall.stiffness < 0.0 => return None,
-            Some(wall) => Some(Self::of_wall(wall, n)),
-            None => None,
-        };
+        let mut sum = None;
+        if let Some(wall) = wall {
+            if wall.stiffness < 0.0 {
+                return None;
+            }
+            sum = Some(Self::of_wall(wall, n));
+        }
         if let Some(profile) = profile {
             if !E::PROFILE.exists || environment.parts().count() > 1 && !E::PROFILE.is_composed {
                 return None;
             }
-            sum = match (Self::of_profile::<E>(profile, n), sum) {
-                (Some(law), Some(wall)) => Some(law.plus(wall)),
-                (Some(law), None) => Some(law),
-                (None, _) => return None,
-            };
+            let law = some!(Self::of_profile::<E>(profile, n));
+            sum = Some(match sum {
+                Some(wall) => law.plus(wall),
+                None => law,
+            });
         }
         if canceller.is_none() {
             return sum;
         }
-        match sum {
-            Some(sum) => sum.with_canceller::<E>(n),
-            None => Self::NONE.with_canceller::<E>(n),
-        }
+        let beside = or!(sum, Self::NONE);
+        beside.with_canceller::<E>(n)
     }
 
     /// [`needed_at_port`] of the law in a scene.
@@ -164,7 +159,7 @@ impl Law {
         reading: f64,
         end: End,
     ) -> Option<f64> {
-        let Some(age) = Age::of(&scene.latency, n, end) else { return None };
+        let age = some!(Age::of(&scene.latency, n, end));
         let steepest = self.steepest;
         let moved = self.rise.half().add(self.late).add(steepest.mul(age.mean));
         let spread = steepest.mul(steepest).mul(age.variance);
@@ -222,13 +217,8 @@ impl Law {
         if !E::CANCELS_DAMPING {
             return None;
         }
-        match canceller_bound(n) {
-            Some(bound) => {
-                let damping = bound.div(n.period);
-                Some(self.plus(Self { damping, ..Self::NONE }))
-            }
-            None => None,
-        }
+        let damping = some!(canceller_bound(n)).div(n.period);
+        Some(self.plus(Self { damping, ..Self::NONE }))
     }
 }
 
@@ -266,7 +256,7 @@ impl Age {
         let part = Interval::exact(oldest - whole);
         let lag = Tail::of(latency.actuator_lag.most, latency, n, part, end);
         let filter = Tail::of(latency.sensor_lag.most, &Latency::NONE, n, part, end);
-        let mean = part.add(lag.mean).add(filter.mean);
+        let mean = part.add(lag.lag.held).add(filter.lag.held);
         let square = part.add(lag.square(part)).add(filter.square(part));
         let square = match has_lag && has_filter {
             true => square.add(lag.beside(&filter, part).double()),
@@ -323,10 +313,7 @@ const fn variance(square: Interval, mean: Interval) -> Interval {
 const fn oldest(latency: &Latency, n: &LoopIntervals, end: End) -> Option<f64> {
     let delay = match latency.actuator_updates {
         0 => end.time(latency.output_delay.most, n),
-        _ => match latency.delay_in_updates(n.period.midpoint()) {
-            Some(delay) => end.of(delay),
-            None => return None,
-        },
+        _ => end.of(some!(latency.delay_in_updates(n.period.midpoint()))),
     };
     let response = end.time(latency.actuator_response.most, n);
     let jitter = end.time(latency.total_jitter(), n);
@@ -334,76 +321,62 @@ const fn oldest(latency: &Latency, n: &LoopIntervals, end: End) -> Option<f64> {
     Some(end.of(sum))
 }
 
-/// What a lag leaves of an age after the delay: `u(t)` with `u(0) = 1`, which each period multiplies by
-/// `tick`.
+/// What a lag leaves of an age after the delay: `u(t)` with `u(0) = 1`.
 #[derive(Clone, Copy)]
 struct Tail {
-    /// The integral of `u`.
-    mean: Interval,
+    /// The lag after the delay's tick; the integral of `u` is what it holds.
+    lag: Decay,
     /// The integral of `u^2`.
     squared: Interval,
-    tick: Interval,
     /// The integral of `u` from the end of the delay's tick on.
     beyond: Interval,
     /// The folded envelope after a period.
     later: Interval,
-    /// For a lag that is not updated in the period: its time constant, and `u` at the end of the delay's tick.
-    tau: Interval,
-    rest: Interval,
 }
 
 impl Tail {
     const NONE: Self = Self {
-        mean: Interval::ZERO,
+        lag: Decay::NONE,
         squared: Interval::ZERO,
-        tick: Interval::ZERO,
         beyond: Interval::ZERO,
         later: Interval::ZERO,
-        tau: Interval::ZERO,
-        rest: Interval::ZERO,
     };
 
-    /// The tail of a time constant in s after `part` of a period.
+    /// The tail of a time constant in s after `part` of a period. Beside jitter the tick may end between two
+    /// updates of a current loop, and `u` is at most that at the update before.
+    #[inline(never)]
     const fn of(tau: f64, latency: &Latency, n: &LoopIntervals, part: Interval, end: End) -> Self {
         if tau == 0.0 {
             return Self::NONE;
         }
         let tau = Interval::exact(end.time(tau, n));
-        let over = Interval::ONE.sub(part);
-        if latency.actuator_updates != 0 {
-            return Self::sampled(tau, latency, over);
-        }
-        let (tick, rest) = (left(Interval::ONE, tau), left(over, tau));
-        let later = rest.div(Interval::ONE.sub(tick));
-        Self { mean: tau, squared: tau.half(), tick, beyond: tau.mul(rest), later, tau, rest }
-    }
-
-    /// The tail of a current loop that is updated in the period. Beside jitter the tick may end between two
-    /// updates, and `u` is at most that at the update before.
-    #[inline(never)]
-    const fn sampled(tau: Interval, latency: &Latency, over: Interval) -> Self {
-        let updates = latency.actuator_updates;
-        let lag = SampledLag::of(updates, tau);
-        let over = if latency.total_jitter() > 0.0 {
-            let whole = (over.lo() * updates as f64 * (1.0 - 1e-9)) as u32 as f64;
-            Interval::exact(whole).div(Interval::exact(updates as f64))
-        } else {
-            over
+        let mut over = Interval::ONE.sub(part);
+        let (lag, squared) = match latency.actuator_updates {
+            0 => {
+                let lag = Decay::of(tau, over);
+                (lag, lag.unspread)
+            }
+            updates => {
+                if latency.total_jitter() > 0.0 {
+                    let whole = (over.lo() * updates as f64 * (1.0 - 1e-9)) as u32 as f64;
+                    over = Interval::exact(whole).div(Interval::exact(updates as f64));
+                }
+                let lag = Decay::sampled(tau, over, updates);
+                (lag, lag.held.sub(lag.unspread))
+            }
         };
-        let (mean, tick, rest) = (lag.held(), lag.after(Interval::ONE), lag.after(over));
-        let squared = mean.sub(lag.unspread());
-        let later = rest.div(Interval::ONE.sub(tick));
-        Self { mean, squared, tick, beyond: mean.mul(rest), later, tau, rest }
+        let later = lag.rest.div(Interval::ONE.sub(lag.tick));
+        Self { lag, squared, beyond: lag.held.mul(lag.rest), later }
     }
 
     /// What it adds to the mean square of the folded envelope, with the `part` before it.
     const fn square(&self, part: Interval) -> Interval {
-        if self.mean.is_zero() {
+        if self.lag.held.is_zero() {
             return Interval::ZERO;
         }
-        let kept = Interval::ONE.sub(self.tick);
-        let own = self.squared.mul(Interval::ONE.add(self.tick));
-        let in_part = self.beyond.sub(self.tick.mul(self.mean)).max(Interval::ZERO);
+        let kept = Interval::ONE.sub(self.lag.tick);
+        let own = self.squared.mul(Interval::ONE.add(self.lag.tick));
+        let in_part = self.beyond.sub(self.lag.tick.mul(self.lag.held)).max(Interval::ZERO);
         let in_part = if part.is_zero() { Interval::ZERO } else { in_part.double() };
         own.add(in_part).div(kept)
     }
@@ -412,22 +385,22 @@ impl Tail {
     /// the delay.
     const fn beside(&self, sensor: &Self, part: Interval) -> Interval {
         let over = Interval::ONE.sub(part);
-        let rests = self.rest.mul(sensor.rest);
+        let rests = self.lag.rest.mul(sensor.lag.rest);
         let product = self.over(sensor, over).add(rests.mul(self.over(sensor, part)));
-        let kept = Interval::ONE.sub(self.tick).mul(Interval::ONE.sub(sensor.tick));
+        let kept = Interval::ONE.sub(self.lag.tick).mul(Interval::ONE.sub(sensor.lag.tick));
         product.div(kept)
     }
 
     /// The integral over a `time` of one exponential forwards and the other backwards: in partial fractions,
     /// and for time constants that are too nearly equal at most that of the chord, because it is convex.
     const fn over(&self, other: &Self, time: Interval) -> Interval {
-        let (a, b) = (left(time, self.tau), left(time, other.tau));
+        let (a, b) = (left(time, self.lag.tau), left(time, other.lag.tau));
         let chord = Interval::new(0.0, time.mul(a.add(b)).half().hi().max(0.0));
-        let apart = self.tau.sub(other.tau);
+        let apart = self.lag.tau.sub(other.lag.tau);
         if apart.contains(0.0) {
             return chord;
         }
-        let fractions = self.tau.mul(other.tau).mul(a.sub(b)).div(apart);
+        let fractions = self.lag.tau.mul(other.lag.tau).mul(a.sub(b)).div(apart);
         if fractions.is_finite() { fractions.and(chord) } else { chord }
     }
 }

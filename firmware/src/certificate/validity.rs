@@ -6,7 +6,7 @@ use crate::environment::{
 use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
 use crate::parameter::{Parameter, Range};
 use crate::scene::Scene;
-use crate::text::Text;
+use crate::text::{Text, push};
 
 /// A number that is invalid in any scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,34 +26,33 @@ impl InvalidParameter {
     /// "the period is 0 s, and must be finite and greater than 0"
     pub(super) const fn write<const N: usize>(&self, text: &mut Text<N>) {
         let (name, unit) = self.parameter.name_and_unit();
-        text.push("the ");
-        text.push(name);
-        text.push(" is ");
-        text.push_number(self.value);
-        if !unit.is_empty() {
-            text.push(" ");
-            text.push(unit);
-        }
-        text.push(", and must be ");
-        text.push(self.bound);
+        push!(*text, "the " {name} " is " {self.value});
+        text.push_unit(unit);
+        push!(*text, ", and must be " {self.bound});
         if let Some(limit) = self.limit {
-            text.push(" ");
-            text.push_number(limit);
-            if !unit.is_empty() {
-                text.push(" ");
-                text.push(unit);
-            }
+            push!(*text, " " {limit});
+            text.push_unit(unit);
         }
     }
+}
+
+/// The result of a check: the first number that is not as it must be.
+type Checked = Result<(), InvalidParameter>;
+
+/// The number is not as it must be.
+const fn must_be(
+    parameter: Parameter,
+    value: f64,
+    bound: &'static str,
+    limit: Option<f64>,
+) -> Checked {
+    Err(InvalidParameter { parameter, value, bound, limit })
 }
 
 /// Without a hand, `Re(1/J)` approaches the device's damping at low speed.
 const NO_MORE_THAN_DAMPING: &str =
     "finite and at most the device damping, which no device's passivity exceeds:";
 
-const NO_LONGER_DELAY: &str = "at most eight periods:";
-const NO_LONGER_LAG: &str = "at most a hundred periods:";
-const NO_LONGER_RESPONSE: &str = "at most the period:";
 const NO_LAG_BESIDE: &str = "0 beside a lag of amplifier or sensor";
 /// No torque comes before its count.
 const NO_TORQUE_BEFORE: &str = "at most the time from a count to its torque:";
@@ -75,34 +74,22 @@ const fn requirement(range: Range) -> &'static str {
     }
 }
 
-/// The first number of the scene that is out of its range.
-pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
-    if let Some(invalid) = first_invalid_number(scene, ProfileUse::ANY) {
-        return Some(invalid);
+/// Checks every number of a scene.
+pub(super) const fn check(scene: &Scene) -> Checked {
+    ok!(check_numbers(scene, ProfileUse::ANY));
+    if scene.latency.actuator_updates != 0 {
+        ok!(check_updates(scene));
     }
-    if scene.latency.actuator_updates != 0
-        && let Some(conflict) = updates_conflict(scene)
-    {
-        return Some(conflict);
-    }
-    let Some(rational) = scene.environment.rational() else { return None };
-    match first_not_finite(rational.numerator.as_slice()) {
-        Some(value) => Some(not_finite(Parameter::Numerator, value)),
-        None => match first_not_finite(rational.denominator.as_slice()) {
-            Some(value) => Some(not_finite(Parameter::Denominator, value)),
-            None => None,
-        },
-    }
+    let Some(rational) = scene.environment.rational() else { return Ok(()) };
+    ok!(check_coefficients(Parameter::Numerator, rational.numerator.as_slice()));
+    check_coefficients(Parameter::Denominator, rational.denominator.as_slice())
 }
 
 /// The same without polynomials, on which no bound for a board depends. A program omits the code for the
 /// parts of torque profiles that its environment does not have, and the text if it only needs to know whether
 /// a problem exists.
 #[inline(always)]
-pub(super) const fn first_invalid_number(
-    scene: &Scene,
-    profile: ProfileUse,
-) -> Option<InvalidParameter> {
+pub(super) const fn check_numbers(scene: &Scene, profile: ProfileUse) -> Checked {
     let environment = &scene.environment;
     let (own, numbers) = (scene.own_numbers(), environment.numbers());
     let whole = [
@@ -110,59 +97,53 @@ pub(super) const fn first_invalid_number(
         (Parameter::UnitZeros, environment.get(Parameter::UnitZeros)),
     ];
     let lists: [&[(Parameter, Option<f64>)]; 3] = [&own, &numbers, &whole];
-    let mut list = 0;
-    while list < lists.len() {
-        let mut i = 0;
-        while i < lists[list].len() {
-            if let (parameter, Some(value)) = lists[list][i]
-                && let Some(invalid) = invalid(scene, parameter, value, profile, list > 0)
-            {
-                return Some(invalid);
+    each!(list in 0..lists.len() => {
+        each!(i in 0..lists[list].len() => {
+            if let (parameter, Some(value)) = lists[list][i] {
+                ok!(check_number(scene, parameter, value, profile, list > 0));
             }
-            i += 1;
-        }
-        list += 1;
-    }
-    sum_conflict(environment.parts(), profile)
+        });
+    });
+    check_sum(environment.parts(), profile)
 }
 
-/// A number that is out of the range of all numbers of its kind.
-#[inline(always)]
-const fn out_of_range(parameter: Parameter, value: f64) -> Option<InvalidParameter> {
-    if parameter.range().admits(value) {
-        return None;
-    }
-    let bound = requirement(parameter.range());
-    Some(InvalidParameter { parameter, value, bound, limit: None })
+const fn check_coefficients(parameter: Parameter, coefficients: &[f64]) -> Checked {
+    each!(i in 0..coefficients.len() => {
+        ok!(check_range(parameter, coefficients[i]));
+    });
+    Ok(())
 }
 
-/// The fault of a number of the scene: it is out of its range or conflicts with another.
+/// Whether a number is in the range of all numbers of its kind.
 #[inline(always)]
-const fn invalid(
+const fn check_range(parameter: Parameter, value: f64) -> Checked {
+    let range = parameter.range();
+    if range.admits(value) { Ok(()) } else { must_be(parameter, value, requirement(range), None) }
+}
+
+/// Whether a number of the scene is in its range, and agrees with the others.
+#[inline(always)]
+const fn check_number(
     scene: &Scene,
     parameter: Parameter,
     value: f64,
     profile: ProfileUse,
     is_environments: bool,
-) -> Option<InvalidParameter> {
-    if let Some(out) = out_of_range(parameter, value) {
-        return Some(out);
-    }
-    if let Some(conflict) = conflict(scene, parameter, value) {
-        return Some(conflict);
-    }
+) -> Checked {
+    ok!(check_range(parameter, value));
+    ok!(check_beside_others(scene, parameter, value));
     if profile.exists
         && is_environments
         && let Some(of) = profile_of(&scene.environment, parameter)
     {
-        return profile_conflict(of, parameter, value, profile);
+        return check_profile(of, parameter, value, profile);
     }
-    None
+    Ok(())
 }
 
-/// A number in its range that conflicts with another number of the scene.
+/// Whether a number in its range agrees with the other numbers of the scene.
 #[inline(always)]
-const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<InvalidParameter> {
+const fn check_beside_others(scene: &Scene, parameter: Parameter, value: f64) -> Checked {
     let (bound, limit) = match parameter {
         Parameter::Passivity if value > scene.device.damping => {
             (NO_MORE_THAN_DAMPING, Some(scene.device.damping))
@@ -179,10 +160,10 @@ const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<Inv
         {
             ("at least 1 where no transfer function is stated", None)
         }
-        _ if scene.latency.is_none() => return None,
-        _ => return latency_conflict(scene, parameter, value),
+        _ if scene.latency.is_none() => return Ok(()),
+        _ => return check_latency(scene, parameter, value),
     };
-    Some(InvalidParameter { parameter, value, bound, limit })
+    must_be(parameter, value, bound, limit)
 }
 
 /// The torque profile that has the number: in a sum with a wall, stiffness and damping are the wall's.
@@ -193,54 +174,38 @@ const fn profile_of(environment: &Environment, parameter: Parameter) -> Option<&
     }
 }
 
-/// A number of a sum that conflicts with another part, or has no name there.
-const fn sum_conflict(parts: &Parts, has: ProfileUse) -> Option<InvalidParameter> {
+/// Whether the numbers of a sum agree, also those that have no name there.
+const fn check_sum(parts: &Parts, has: ProfileUse) -> Checked {
     let Parts { canceller, wall, profile } = parts;
     if parts.count() < 2 {
-        return None;
+        return Ok(());
     }
     if let Some(Canceller { delay, .. }) = canceller
         && *delay > 0
     {
-        let value = *delay as f64;
         let bound = "0 for a canceller beside another part";
-        return Some(InvalidParameter { parameter: Parameter::Delay, value, bound, limit: None });
+        return must_be(Parameter::Delay, *delay as f64, bound, None);
     }
-    let Some(profile) = profile else { return None };
-    if !has.is_composed {
-        return None;
-    }
+    let (Some(profile), true) = (profile, has.is_composed) else { return Ok(()) };
     if profile.delay == 0 {
         let bound = "at least 1 where a wall or a canceller is beside the torque profile";
-        return Some(InvalidParameter {
-            parameter: Parameter::Delay,
-            value: 0.0,
-            bound,
-            limit: None,
-        });
+        return must_be(Parameter::Delay, 0.0, bound, None);
     }
-    let Some(wall) = wall else { return None };
+    let Some(wall) = wall else { return Ok(()) };
     let Some(ends) = profile.ends else {
-        let (parameter, value) = (Parameter::Face, wall.face());
-        return Some(InvalidParameter { parameter, value, bound: BESIDE_ENDS, limit: None });
+        return must_be(Parameter::Face, wall.face(), BESIDE_ENDS, None);
     };
     let hidden = [
         (Parameter::Delay, wall.delay as f64),
         (Parameter::Stiffness, ends.stiffness),
         (Parameter::Damping, profile.damping()),
     ];
-    let mut i = 0;
-    while i < hidden.len() {
+    each!(i in 0..hidden.len() => {
         let (parameter, value) = hidden[i];
-        if let Some(out) = out_of_range(parameter, value) {
-            return Some(out);
-        }
-        if let Some(invalid) = profile_conflict(profile, parameter, value, ProfileUse::ANY) {
-            return Some(invalid);
-        }
-        i += 1;
-    }
-    None
+        ok!(check_range(parameter, value));
+        ok!(check_profile(profile, parameter, value, ProfileUse::ANY));
+    });
+    Ok(())
 }
 
 /// Without ends, a profile's angles are within a turn.
@@ -249,12 +214,12 @@ const BESIDE_ENDS: &str = "beside a torque profile with end stops: one without t
 
 /// The same of a number of a torque profile.
 #[inline(always)]
-const fn profile_conflict(
+const fn check_profile(
     profile: &Profile,
     parameter: Parameter,
     value: f64,
     has: ProfileUse,
-) -> Option<InvalidParameter> {
+) -> Checked {
     let outline = profile.outline();
     let cell = 1.0 / profile.knots_per_rad();
     let most = MOST_KNOTS as f64 / outline.knots as f64;
@@ -283,7 +248,7 @@ const fn profile_conflict(
         (Parameter::To, Some(_)) if !outline.wraps => {
             let last = profile.centre + (outline.knots as f64 - 1.5) * cell;
             if value <= last {
-                return None;
+                return Ok(());
             }
             ("within the table of the profile: at most", Some(last))
         }
@@ -294,14 +259,14 @@ const fn profile_conflict(
             Some(modes) if modes.index().is_none() => {
                 ("a whole number from 0 to", Some(modes.last() as f64))
             }
-            _ => return None,
+            _ => return Ok(()),
         },
         (Parameter::Damping, _) if has.is_damped && value != 0.0 && profile.delay == 0 => {
             ("0 beside a torque profile that is not late", None)
         }
-        _ => return None,
+        _ => return Ok(()),
     };
-    Some(InvalidParameter { parameter, value, bound, limit })
+    must_be(parameter, value, bound, limit)
 }
 
 /// Whether a profile has detents with a snap point, none of them between its ends.
@@ -320,83 +285,65 @@ const LARGEST_ANGLE: f64 = 100.0;
 
 /// The same for a time between count and torque.
 #[inline(always)]
-const fn latency_conflict(
-    scene: &Scene,
-    parameter: Parameter,
-    value: f64,
-) -> Option<InvalidParameter> {
+const fn check_latency(scene: &Scene, parameter: Parameter, value: f64) -> Checked {
     let (period, latency) = (scene.timing.period, &scene.latency);
-    let (range, longest) = match parameter {
-        Parameter::OutputDelay => (latency.output_delay, LONGEST_DELAY * period),
+    let most_lag = (LONGEST_LAG * period, "at most a hundred periods:");
+    let (TimeRange { least, .. }, (longest, bound)) = match parameter {
+        Parameter::OutputDelay => {
+            (latency.output_delay, (LONGEST_DELAY * period, "at most eight periods:"))
+        }
         Parameter::OutputJitter if value > scene.largest_jitter() => {
-            let limit = Some(scene.largest_jitter());
-            return Some(InvalidParameter { parameter, value, bound: NO_TORQUE_BEFORE, limit });
+            return must_be(parameter, value, NO_TORQUE_BEFORE, Some(scene.largest_jitter()));
         }
-        Parameter::CountJitter => {
-            return match count_jitter_conflict(scene) {
-                Some((bound, limit)) => Some(InvalidParameter { parameter, value, bound, limit }),
-                None => None,
-            };
-        }
-        Parameter::ActuatorLag => (latency.actuator_lag, LONGEST_LAG * period),
-        Parameter::SensorLag => (latency.sensor_lag, LONGEST_LAG * period),
+        Parameter::CountJitter => return check_count_jitter(scene, value),
+        Parameter::ActuatorLag => (latency.actuator_lag, most_lag),
+        Parameter::SensorLag => (latency.sensor_lag, most_lag),
         Parameter::ActuatorResponse => {
             let has_lag = !latency.actuator_lag.is_zero() || !latency.sensor_lag.is_zero();
             if has_lag && !latency.actuator_response.is_zero() {
-                let bound = NO_LAG_BESIDE;
-                return Some(InvalidParameter { parameter, value, bound, limit: None });
+                return must_be(parameter, value, NO_LAG_BESIDE, None);
             }
-            (latency.actuator_response, period)
+            (latency.actuator_response, (period, "at most the period:"))
         }
-        _ => return None,
+        _ => return Ok(()),
     };
-    if value == 0.0 && range.least == 0.0 {
-        return None;
-    }
-    let TimeRange { least, .. } = range;
-    if !Range::NotNegative.admits(least) {
-        return Some(InvalidParameter {
-            parameter,
-            value: least,
-            bound: requirement(Range::NotNegative),
-            limit: None,
-        });
-    }
-    let (value, bound, limit) = if value > longest {
-        let bound = match parameter {
-            Parameter::OutputDelay => NO_LONGER_DELAY,
-            Parameter::ActuatorResponse => NO_LONGER_RESPONSE,
-            _ => NO_LONGER_LAG,
-        };
-        (value, bound, longest)
+    if value == 0.0 && least == 0.0 {
+        Ok(())
+    } else if !Range::NotNegative.admits(least) {
+        must_be(parameter, least, requirement(Range::NotNegative), None)
+    } else if value > longest {
+        must_be(parameter, value, bound, Some(longest))
     } else if least > value {
-        (least, "at most the other end of its range:", value)
+        must_be(parameter, least, "at most the other end of its range:", Some(value))
     } else {
-        return None;
-    };
-    Some(InvalidParameter { parameter, value, bound, limit: Some(limit) })
+        Ok(())
+    }
 }
 
-/// What the count jitter must be, if it is not: alone, or beside an output jitter.
-const fn count_jitter_conflict(scene: &Scene) -> Option<(&'static str, Option<f64>)> {
+/// Whether the count jitter may be so large: alone, or beside an output jitter.
+const fn check_count_jitter(scene: &Scene, value: f64) -> Checked {
     let (latency, largest) = (&scene.latency, scene.largest_jitter());
     let (beside, sum) = (latency.output_jitter, latency.total_jitter());
-    if !latency.jitters_twice() {
-        return if sum > largest { Some((NO_TORQUE_BEFORE, Some(largest))) } else { None };
-    }
-    if sum > largest {
-        return Some((BESIDE_OUTPUT_JITTER[0], Some(largest - beside)));
-    }
-    match latency.bound_on_two_jitters(scene.timing.period) {
-        None => Some((BESIDE_OUTPUT_JITTER[1], None)),
-        Some(bound) if sum >= bound => Some((BESIDE_OUTPUT_JITTER[2], Some(bound - beside))),
-        Some(_) => None,
-    }
+    let (bound, limit) = if !latency.jitters_twice() {
+        if sum <= largest {
+            return Ok(());
+        }
+        (NO_TORQUE_BEFORE, Some(largest))
+    } else if sum > largest {
+        (BESIDE_OUTPUT_JITTER[0], Some(largest - beside))
+    } else {
+        match latency.bound_on_two_jitters(scene.timing.period) {
+            None => (BESIDE_OUTPUT_JITTER[1], None),
+            Some(bound) if sum >= bound => (BESIDE_OUTPUT_JITTER[2], Some(bound - beside)),
+            Some(_) => return Ok(()),
+        }
+    };
+    must_be(Parameter::CountJitter, value, bound, limit)
 }
 
-/// A number of the scene that conflicts with an updated current loop. A board does not check this: with an
+/// Whether the numbers of the scene agree with an updated current loop. A board does not check this: with an
 /// invalid number its coupling has no coefficients.
-const fn updates_conflict(scene: &Scene) -> Option<InvalidParameter> {
+const fn check_updates(scene: &Scene) -> Checked {
     let (period, latency) = (scene.timing.period, &scene.latency);
     let worst = scene.timing.worst_period;
     let (parameter, value, bound, limit) = match worst {
@@ -419,9 +366,9 @@ const fn updates_conflict(scene: &Scene) -> Option<InvalidParameter> {
             let nearest = latency.delay_at_update(latency.nearest_update(period), period);
             (Parameter::OutputDelay, latency.output_delay.most, NO_WHOLE_UPDATES, Some(nearest))
         }
-        _ => return None,
+        _ => return Ok(()),
     };
-    Some(InvalidParameter { parameter, value, bound, limit })
+    must_be(parameter, value, bound, limit)
 }
 
 const BESIDE_UPDATES: [&str; 4] = [
@@ -433,38 +380,15 @@ const BESIDE_UPDATES: [&str; 4] = [
 const NO_WHOLE_UPDATES: &str =
     "a whole number of the amplifier's updates, of which the nearest is at";
 
-const fn not_finite(parameter: Parameter, value: f64) -> InvalidParameter {
-    InvalidParameter { parameter, value, bound: requirement(parameter.range()), limit: None }
-}
-
-const fn first_not_finite(coefficients: &[f64]) -> Option<f64> {
-    let mut i = 0;
-    while i < coefficients.len() {
-        if !coefficients[i].is_finite() {
-            return Some(coefficients[i]);
-        }
-        i += 1;
-    }
-    None
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::certificate::{Rejection, certify};
     use crate::environment::Wall;
-    use crate::scene::{Coupling, Device, Latency, Timing};
+    use crate::test_scene::scene;
 
     fn with_passivity(passivity: f64) -> Result<(), Rejection> {
-        let wall = Wall::spring(21.0, 1);
-        let scene = Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(passivity) },
-            timing: Timing { period: 0.001, worst_period: None },
-            coupling: Coupling::Spring { stiffness: 44.0 },
-            environment: wall.alone(),
-            latency: Latency::NONE,
-            torque_limit: None,
-        };
+        let mut scene = scene(Wall::spring(21.0, 1).alone());
+        scene.device.passivity = Some(passivity);
         certify(&scene).map(|_| ())
     }
 

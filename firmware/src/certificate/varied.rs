@@ -195,10 +195,8 @@ impl Varied<'_> {
     #[inline(never)]
     const fn posed(&self, value: f64) -> Option<PassivityProblem> {
         let Some(scene) = self.scene.with(self.parameter, value) else { return None };
-        match PassivityProblem::in_format(&scene, self.format) {
-            Ok(posed) => Some(posed),
-            Err(_) => None,
-        }
+        let Ok(posed) = PassivityProblem::in_format(&scene, self.format) else { return None };
+        Some(posed)
     }
 }
 

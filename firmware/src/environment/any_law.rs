@@ -18,53 +18,42 @@ pub enum AnyLaw<N: Number> {
     Rational(RationalLaw<N>),
 }
 
+macro_rules! of_any {
+    ($any:expr, $law:ident => $value:expr) => {
+        match $any {
+            Self::Parts($law) => $value,
+            Self::Rational($law) => $value,
+        }
+    };
+}
+
 impl<N: Number> Law<N> for AnyLaw<N> {
     fn evaluate(&self, x: N) -> Response<N> {
-        match self {
-            Self::Parts(law) => law.evaluate(x),
-            Self::Rational(law) => law.evaluate(x),
-        }
+        of_any!(self, law => law.evaluate(x))
     }
 
     fn update(&mut self, x_e: N) {
-        match self {
-            Self::Parts(law) => law.update(x_e),
-            Self::Rational(law) => law.update(x_e),
-        }
+        of_any!(self, law => law.update(x_e))
     }
 
     fn rest_at(&mut self, x_e: N) {
-        match self {
-            Self::Parts(law) => law.rest_at(x_e),
-            Self::Rational(law) => law.rest_at(x_e),
-        }
+        of_any!(self, law => law.rest_at(x_e))
     }
 
     fn turn(&mut self) -> Option<&mut Turn<N>> {
-        match self {
-            Self::Parts(law) => law.turn(),
-            Self::Rational(_) => None,
-        }
+        of_any!(self, law => law.turn())
     }
 
     fn shift(&mut self, by: N) {
-        if let Self::Parts(law) = self {
-            law.shift(by);
-        }
+        of_any!(self, law => law.shift(by))
     }
 
     fn hysteresis(&self) -> f64 {
-        match self {
-            Self::Parts(law) => law.hysteresis(),
-            Self::Rational(_) => f64::INFINITY,
-        }
+        of_any!(self, law => law.hysteresis())
     }
 
     fn slopes(&self) -> Slopes {
-        match self {
-            Self::Parts(law) => law.slopes(),
-            Self::Rational(law) => law.slopes(),
-        }
+        of_any!(self, law => law.slopes())
     }
 }
 

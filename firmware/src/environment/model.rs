@@ -96,23 +96,13 @@ pub struct ProfileUse {
 
 impl ProfileUse {
     /// No profile.
-    pub const NONE: Self = Self {
-        exists: false,
-        is_prompt: false,
-        is_damped: false,
-        snaps: false,
-        has_modes: false,
-        is_composed: false,
-    };
+    pub const NONE: Self = Self::all(false);
     /// Any profile.
-    pub const ANY: Self = Self {
-        exists: true,
-        is_prompt: true,
-        is_damped: true,
-        snaps: true,
-        has_modes: true,
-        is_composed: true,
-    };
+    pub const ANY: Self = Self::all(true);
+
+    const fn all(is: bool) -> Self {
+        Self { exists: is, is_prompt: is, is_damped: is, snaps: is, has_modes: is, is_composed: is }
+    }
 
     /// That of a program's environment.
     pub(crate) const fn of(parts: &Parts) -> Self {

@@ -39,20 +39,10 @@ impl Parts {
 
     /// Whether a part is late by at least one sample, and no part is not.
     pub const fn is_late(&self) -> bool {
-        let late = match &self.canceller {
-            Some(canceller) => canceller.delay > 0,
-            None => true,
-        };
-        let late = late
-            && match &self.wall {
-                Some(wall) => wall.delay > 0,
-                None => true,
-            };
-        late && self.count() > 0
-            && match &self.profile {
-                Some(profile) => profile.delay > 0,
-                None => true,
-            }
+        self.count() > 0
+            && !matches!(self.canceller, Some(Canceller { delay: 0, .. }))
+            && !matches!(self.wall, Some(Wall { delay: 0, .. }))
+            && !matches!(self.profile, Some(Profile { delay: 0, .. }))
     }
 
     /// The delay in whole samples: the profile's, else the wall's, else the canceller's.

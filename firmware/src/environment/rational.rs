@@ -41,11 +41,9 @@ impl Coefficients {
             return None;
         }
         let mut values = [0.0; MAX_DEGREE + 1];
-        let mut i = 0;
-        while i < descending.len() {
+        each!(i in 0..descending.len() => {
             values[i] = descending[i];
-            i += 1;
-        }
+        });
         Some(Self { values, len: descending.len() })
     }
 
@@ -59,27 +57,23 @@ impl Coefficients {
     const fn over_unit_root(&self, root: f64) -> Option<Self> {
         let mut quotient = Self { values: [0.0; MAX_DEGREE + 1], len: self.len - 1 };
         let mut carry = 0.0;
-        let mut i = 0;
-        while i < self.len {
+        each!(i in 0..self.len => {
             let Some(sum) = exact_sum(self.values[i], root * carry) else { return None };
             if i < quotient.len {
                 quotient.values[i] = sum;
             }
             carry = sum;
-            i += 1;
-        }
+        });
         if carry == 0.0 && quotient.len > 0 { Some(quotient) } else { None }
     }
 
     /// Whether all of them are zero.
     const fn is_zero(&self) -> bool {
-        let mut i = 0;
-        while i < self.len {
+        each!(i in 0..self.len => {
             if self.values[i] != 0.0 {
                 return false;
             }
-            i += 1;
-        }
+        });
         true
     }
 
@@ -298,7 +292,8 @@ mod tests {
     use super::*;
     use crate::certificate::{Rejection, certify};
     use crate::environment::Environment;
-    use crate::scene::{Coupling, Device, Latency, Scene, Timing};
+    use crate::scene::{Coupling, Scene};
+    use crate::test_scene;
 
     fn rational(numerator: &[f64], denominator: &[f64], unit_zeros: usize) -> Rational {
         let coefficients = |c| Coefficients::new(c).unwrap();
@@ -307,14 +302,7 @@ mod tests {
     }
 
     fn scene(rational: Rational) -> Scene {
-        Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 1e-3, worst_period: None },
-            coupling: Coupling::Spring { stiffness: 44.0 },
-            environment: Environment::Rational(rational),
-            latency: Latency::NONE,
-            torque_limit: None,
-        }
+        test_scene::scene(Environment::Rational(rational))
     }
 
     #[test]
@@ -391,14 +379,7 @@ mod tests {
     }
 
     fn setting() -> LawContext {
-        LawContext {
-            period: 1e-3,
-            worst_period: None,
-            damping: 0.022,
-            passivity: 0.022,
-            coupling: Coupling::Rigid,
-            latency: Latency::NONE,
-        }
+        test_scene::scene(()).context()
     }
 
     /// A high-pass filter holds nothing at rest: coefficients that sum to 0 are a zero at 1, declared or not,

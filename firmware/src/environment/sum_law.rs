@@ -119,45 +119,32 @@ where
     }
 }
 
+/// An expression for the law of each of these parts, in this order.
+macro_rules! each_law {
+    ($sum:ident.{$($part:ident),+}.$laws:ident(), $law:ident => $value:expr) => {
+        $(for $law in $sum.$part.$laws() {
+            $value;
+        })+
+    };
+}
+
 impl<N: Number, C: Part<N>, W: Part<N>, P: Part<N>> Law<N> for SumLaw<C, W, P> {
     #[inline(always)]
     fn evaluate(&self, x: N) -> Response<N> {
         let mut sum = None;
-        for law in self.profile.laws() {
+        each_law!(self.{profile, wall, canceller}.laws(), law => {
             sum = Some(added(sum, law.evaluate(x)));
-        }
-        for law in self.wall.laws() {
-            sum = Some(added(sum, law.evaluate(x)));
-        }
-        for law in self.canceller.laws() {
-            sum = Some(added(sum, law.evaluate(x)));
-        }
+        });
         sum.unwrap_or(Response::Held(N::ZERO))
     }
 
     #[inline(always)]
     fn update(&mut self, x_e: N) {
-        for law in self.canceller.laws_mut() {
-            law.update(x_e);
-        }
-        for law in self.wall.laws_mut() {
-            law.update(x_e);
-        }
-        for law in self.profile.laws_mut() {
-            law.update(x_e);
-        }
+        each_law!(self.{canceller, wall, profile}.laws_mut(), law => law.update(x_e));
     }
 
     fn rest_at(&mut self, x_e: N) {
-        for law in self.canceller.laws_mut() {
-            law.rest_at(x_e);
-        }
-        for law in self.wall.laws_mut() {
-            law.rest_at(x_e);
-        }
-        for law in self.profile.laws_mut() {
-            law.rest_at(x_e);
-        }
+        each_law!(self.{canceller, wall, profile}.laws_mut(), law => law.rest_at(x_e));
     }
 
     // Only a profile repeats in every turn.
@@ -167,15 +154,7 @@ impl<N: Number, C: Part<N>, W: Part<N>, P: Part<N>> Law<N> for SumLaw<C, W, P> {
     }
 
     fn shift(&mut self, by: N) {
-        for law in self.canceller.laws_mut() {
-            law.shift(by);
-        }
-        for law in self.wall.laws_mut() {
-            law.shift(by);
-        }
-        for law in self.profile.laws_mut() {
-            law.shift(by);
-        }
+        each_law!(self.{canceller, wall, profile}.laws_mut(), law => law.shift(by));
     }
 
     // Only a profile snaps.
@@ -185,15 +164,7 @@ impl<N: Number, C: Part<N>, W: Part<N>, P: Part<N>> Law<N> for SumLaw<C, W, P> {
 
     fn slopes(&self) -> Slopes {
         let mut sum = Slopes::default();
-        for law in self.wall.laws() {
-            sum = sum.plus(law.slopes());
-        }
-        for law in self.canceller.laws() {
-            sum = sum.plus(law.slopes());
-        }
-        for law in self.profile.laws() {
-            sum = sum.plus(law.slopes());
-        }
+        each_law!(self.{wall, canceller, profile}.laws(), law => sum = sum.plus(law.slopes()));
         sum
     }
 }

@@ -16,15 +16,21 @@ pub trait Velocity<N: Number>: Clone + core::fmt::Debug + Sized {
     /// If a coefficient does not fit the number format, or it is not such a damper.
     fn of(damper: Option<&Damper>, period: f64) -> Result<Self, BuildError>;
     /// `torque` plus the torque for the velocity in N m, with the environment at `x` (rad).
-    fn add_to(&self, torque: N, x: N) -> N;
+    #[inline(always)]
+    fn add_to(&self, torque: N, _x: N) -> N {
+        torque
+    }
     /// Ends the tick with the environment at `x_e` (rad).
-    fn update(&mut self, x_e: N);
+    #[inline(always)]
+    fn update(&mut self, _x_e: N) {}
     /// Resets the state as if the environment had always been at `x_e` (rad).
-    fn rest_at(&mut self, x_e: N);
+    fn rest_at(&mut self, _x_e: N) {}
     /// Moves its stored positions by `by` rad.
-    fn shift(&mut self, by: N);
+    fn shift(&mut self, _by: N) {}
     /// Derivative of the torque with respect to this tick's position, in N m/rad.
-    fn slope(&self) -> f64;
+    fn slope(&self) -> f64 {
+        0.0
+    }
 }
 
 /// No damping: costs nothing.
@@ -33,26 +39,7 @@ pub struct NoDamping;
 
 impl<N: Number> Velocity<N> for NoDamping {
     fn of(damper: Option<&Damper>, _: f64) -> Result<Self, BuildError> {
-        match damper {
-            None => Ok(Self),
-            Some(_) => Err(BuildError::Structure),
-        }
-    }
-
-    #[inline(always)]
-    fn add_to(&self, torque: N, _: N) -> N {
-        torque
-    }
-
-    #[inline(always)]
-    fn update(&mut self, _: N) {}
-
-    fn rest_at(&mut self, _: N) {}
-
-    fn shift(&mut self, _: N) {}
-
-    fn slope(&self) -> f64 {
-        0.0
+        if damper.is_none() { Ok(Self) } else { Err(BuildError::Structure) }
     }
 }
 
@@ -164,6 +151,16 @@ pub enum AnyVelocity<N: Number> {
     Filtered(Washout<N>),
 }
 
+macro_rules! of_any {
+    ($any:expr, $velocity:ident => $value:expr) => {
+        match $any {
+            Self::None($velocity) => $value,
+            Self::Difference($velocity) => $value,
+            Self::Filtered($velocity) => $value,
+        }
+    };
+}
+
 impl<N: Number> Velocity<N> for AnyVelocity<N> {
     fn of(damper: Option<&Damper>, period: f64) -> Result<Self, BuildError> {
         Ok(match damper {
@@ -174,42 +171,22 @@ impl<N: Number> Velocity<N> for AnyVelocity<N> {
     }
 
     fn add_to(&self, torque: N, x: N) -> N {
-        match self {
-            Self::None(velocity) => velocity.add_to(torque, x),
-            Self::Difference(velocity) => velocity.add_to(torque, x),
-            Self::Filtered(velocity) => velocity.add_to(torque, x),
-        }
+        of_any!(self, velocity => velocity.add_to(torque, x))
     }
 
     fn update(&mut self, x_e: N) {
-        match self {
-            Self::None(velocity) => velocity.update(x_e),
-            Self::Difference(velocity) => velocity.update(x_e),
-            Self::Filtered(velocity) => velocity.update(x_e),
-        }
+        of_any!(self, velocity => velocity.update(x_e))
     }
 
     fn rest_at(&mut self, x_e: N) {
-        match self {
-            Self::None(velocity) => velocity.rest_at(x_e),
-            Self::Difference(velocity) => velocity.rest_at(x_e),
-            Self::Filtered(velocity) => velocity.rest_at(x_e),
-        }
+        of_any!(self, velocity => velocity.rest_at(x_e))
     }
 
     fn shift(&mut self, by: N) {
-        match self {
-            Self::None(velocity) => velocity.shift(by),
-            Self::Difference(velocity) => velocity.shift(by),
-            Self::Filtered(velocity) => velocity.shift(by),
-        }
+        of_any!(self, velocity => velocity.shift(by))
     }
 
     fn slope(&self) -> f64 {
-        match self {
-            Self::None(velocity) => Velocity::<N>::slope(velocity),
-            Self::Difference(velocity) => velocity.slope(),
-            Self::Filtered(velocity) => velocity.slope(),
-        }
+        of_any!(self, velocity => Velocity::<N>::slope(velocity))
     }
 }

@@ -124,10 +124,8 @@ impl Wall {
 
     /// The pole of its velocity filter.
     pub const fn filter(&self) -> Option<f64> {
-        match self.damper {
-            Some(damper) => damper.filter,
-            None => None,
-        }
+        let damper = some!(self.damper);
+        damper.filter
     }
 
     /// The position of rest, or of the face, in rad.

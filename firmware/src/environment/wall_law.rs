@@ -16,9 +16,15 @@ pub trait Place<N>: Clone + core::fmt::Debug + Sized {
     /// If the number format cannot represent its position, or it is not such a side.
     fn of(side: Side) -> Result<Self, BuildError>;
     /// Depth in rad of the position `x` (rad) behind the wall's rest position.
-    fn depth(&self, x: N) -> N;
+    #[inline(always)]
+    fn depth(&self, x: N) -> N {
+        x
+    }
     /// Whether the wall acts only at positive depths and only pushes.
-    fn one_sided(&self) -> bool;
+    #[inline(always)]
+    fn one_sided(&self) -> bool {
+        false
+    }
 }
 
 /// At rest at zero, pushes and pulls: costs nothing.
@@ -31,16 +37,6 @@ impl<N> Place<N> for Centred {
             Side::Centred => Ok(Self),
             _ => Err(BuildError::Structure),
         }
-    }
-
-    #[inline(always)]
-    fn depth(&self, x: N) -> N {
-        x
-    }
-
-    #[inline(always)]
-    fn one_sided(&self) -> bool {
-        false
     }
 }
 
@@ -59,11 +55,6 @@ impl<N: Number> Place<N> for Displaced<N> {
     #[inline(always)]
     fn depth(&self, x: N) -> N {
         x.minus(self.0)
-    }
-
-    #[inline(always)]
-    fn one_sided(&self) -> bool {
-        false
     }
 }
 

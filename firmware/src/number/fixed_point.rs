@@ -1,9 +1,10 @@
 //! 32-bit fixed point: saturating, rounded to nearest, with coefficients that keep 31 bits.
 
+use core::fmt;
 use core::hint::cold_path;
 
 use fixed::FixedI32;
-use fixed::types::extra::LeEqU32;
+use fixed::types::extra::{LeEqU32, Unsigned};
 
 use super::{Format, Number, OutOfRange, Rounding, bounded};
 
@@ -70,7 +71,7 @@ impl Scaled {
 
     /// `bits * self` rounded to nearest: the nearest `i32`, and whether it is that of the product.
     #[inline(always)]
-    fn scale(self, bits: i32) -> (i32, bool) {
+    pub(super) fn scale(self, bits: i32) -> (i32, bool) {
         let product = i64::from(bits) * i64::from(self.mantissa);
         let shift = self.shift & Self::LARGEST_SHIFT;
         let half = i64::from((1_u32 << shift) >> 1);
@@ -98,24 +99,78 @@ fn nearest(value: i64) -> (i32, bool) {
     (if high < 0 { i32::MIN } else { i32::MAX }, false)
 }
 
-impl<Frac: LeEqU32 + 'static> Number for FixedI32<Frac> {
-    type Coefficient = Scaled;
-    const FORMAT: Format = Format::Fixed { fraction_bits: Frac::U32 };
+/// A number of 32 bits in two's complement.
+pub trait FixedPoint: Copy + PartialOrd + fmt::Debug + 'static {
+    /// The number of its fractional bits.
+    type Frac: LeEqU32;
+    /// Zero.
+    const ZERO: Self;
+    /// Whether numbers are the largest of the format that are not above the exact values, in place of the
+    /// nearest.
+    const TRUNCATES: bool;
+    /// The number of these bits.
+    fn of_bits(bits: i32) -> Self;
+    /// Its bits.
+    fn bits(self) -> i32;
+}
+
+impl<Frac: LeEqU32 + 'static> FixedPoint for FixedI32<Frac> {
+    type Frac = Frac;
     const ZERO: Self = Self::ZERO;
+    const TRUNCATES: bool = false;
+
+    #[inline(always)]
+    fn of_bits(bits: i32) -> Self {
+        Self::from_bits(bits)
+    }
+
+    #[inline(always)]
+    fn bits(self) -> i32 {
+        self.to_bits()
+    }
+}
+
+const fn format<F: FixedPoint>() -> Format {
+    let fraction_bits = F::Frac::U32;
+    if F::TRUNCATES { Format::Truncated { fraction_bits } } else { Format::Fixed { fraction_bits } }
+}
+
+/// A step of a format in rad or N m.
+fn step<F: FixedPoint>() -> f64 {
+    FixedI32::<F::Frac>::DELTA.to_num()
+}
+
+/// `bits * scale` as the format rounds products: the nearest `i32`, and whether it is that of the product.
+#[inline(always)]
+fn product<F: FixedPoint>(bits: i32, scale: Scaled) -> (i32, bool) {
+    if F::TRUNCATES { scale.scale_down(bits) } else { scale.scale(bits) }
+}
+
+/// The number of a value, the nearest or the one below it.
+fn rounded<F: FixedPoint>(value: f64, is_down: bool) -> Result<F, OutOfRange> {
+    type Nearest<F> = FixedI32<<F as FixedPoint>::Frac>;
+    let bound = Nearest::<F>::MAX.to_num();
+    let out_of_range = OutOfRange { value, bound, format: format::<F>() };
+    let nearest = Nearest::<F>::checked_from_num(value).ok_or(out_of_range)?;
+    let is_above = is_down && nearest.to_num::<f64>() > value;
+    Ok(F::of_bits(nearest.to_bits().saturating_sub(is_above.into())))
+}
+
+impl<F: FixedPoint> Number for F {
+    type Coefficient = Scaled;
+    const FORMAT: Format = format::<F>();
+    const ZERO: Self = <F as FixedPoint>::ZERO;
 
     fn from_f64(value: f64) -> Result<Self, OutOfRange> {
-        let out_of_range = OutOfRange { value, bound: Self::MAX.to_num(), format: Self::FORMAT };
-        Self::checked_from_num(value).ok_or(out_of_range)
+        rounded(value, F::TRUNCATES)
     }
 
     fn bound_from_f64(value: f64) -> Result<Self, OutOfRange> {
-        let nearest = Self::from_f64(value)?;
-        let above = nearest.to_f64() > value;
-        Ok(if above { nearest.saturating_sub(Self::DELTA) } else { nearest })
+        rounded(value, true)
     }
 
     fn to_f64(self) -> f64 {
-        self.to_num()
+        FixedI32::<F::Frac>::from_bits(self.bits()).to_num()
     }
 
     fn coefficient(value: f64) -> Result<Scaled, OutOfRange> {
@@ -128,79 +183,76 @@ impl<Frac: LeEqU32 + 'static> Number for FixedI32<Frac> {
 
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
-        self.saturating_add(other)
+        Self::of_bits(self.bits().saturating_add(other.bits()))
     }
 
     #[inline(always)]
     fn minus(self, other: Self) -> Self {
-        self.saturating_sub(other)
+        Self::of_bits(self.bits().saturating_sub(other.bits()))
     }
 
     #[inline(always)]
     fn times(self, coefficient: Scaled) -> Self {
-        Self::from_bits(coefficient.scale(self.to_bits()).0)
+        Self::of_bits(product::<F>(self.bits(), coefficient).0)
     }
 
     #[inline(always)]
     fn negated(self) -> Self {
-        self.saturating_neg()
+        Self::of_bits(self.bits().saturating_neg())
     }
 
     #[inline(always)]
     fn within(self, bound: Self) -> bool {
-        self <= bound && self >= bound.saturating_neg()
+        self.bits() <= bound.bits() && self.bits() >= bound.bits().saturating_neg()
     }
 
     #[inline(always)]
     fn is_from_zero_to(self, bound: Self) -> bool {
         // A negative number has more bits than any other.
-        self.to_bits().cast_unsigned() <= bound.to_bits().cast_unsigned()
+        self.bits().cast_unsigned() <= bound.bits().cast_unsigned()
     }
 
     #[inline(always)]
     fn positive_part(self) -> Self {
-        self.max(Self::ZERO)
+        Self::of_bits(self.bits().max(0))
     }
 
     fn angle_scale(radians_per_count: f64) -> Result<Scaled, OutOfRange> {
-        let steps = radians_per_count * Self::DELTA.to_num::<f64>().recip();
-        Scaled::inward(steps, Self::FORMAT)
+        Scaled::inward(radians_per_count * step::<F>().recip(), Self::FORMAT)
     }
 
     #[inline(always)]
     fn angle(count: i32, scale: Scaled) -> (Self, bool) {
-        let (bits, fits) = scale.scale(count);
-        (Self::from_bits(bits), fits)
+        let (bits, fits) = product::<F>(count, scale);
+        (Self::of_bits(bits), fits)
     }
 
     fn parts_scale(parts_per_rad: f64) -> Result<Scaled, OutOfRange> {
-        let parts = parts_per_rad * Self::DELTA.to_num::<f64>();
-        Scaled::new(parts, Self::FORMAT)
+        Scaled::new(parts_per_rad * step::<F>(), Self::FORMAT)
     }
 
     #[inline(always)]
     fn parts(self, scale: Scaled) -> i32 {
-        scale.scale(self.to_bits()).0
+        product::<F>(self.bits(), scale).0
     }
 
     fn part_scale(torque: f64) -> Result<Scaled, OutOfRange> {
-        let steps = torque * Self::DELTA.to_num::<f64>().recip();
-        Scaled::new(steps, Self::FORMAT)
+        Scaled::new(torque * step::<F>().recip(), Self::FORMAT)
     }
 
     #[inline(always)]
     fn of_parts(parts: i32, scale: Scaled) -> Self {
-        Self::from_bits(scale.scale(parts).0)
+        Self::of_bits(product::<F>(parts, scale).0)
     }
 
     fn code_scale(codes_per_torque: f64) -> Result<Scaled, OutOfRange> {
-        let codes = codes_per_torque * Self::DELTA.to_num::<f64>();
-        Scaled::inward(codes, Self::FORMAT)
+        Scaled::inward(codes_per_torque * step::<F>(), Self::FORMAT)
     }
 
     #[inline(always)]
     fn codes_below(self, centre: u16, scale: Scaled) -> u16 {
-        let (below, _) = scale.scale(self.to_bits());
+        // Rounded to nearest also where products are truncated.
+        let (below, _) = scale.scale(self.bits());
         i32::from(centre).saturating_sub(below).clamp(0, 0xfff) as u16
     }
 }

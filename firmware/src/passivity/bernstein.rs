@@ -69,14 +69,8 @@ pub struct Minimum {
     pub at: Interval,
 }
 
-/// Bernstein coefficients of `p` and `r` on one box.
+/// Bernstein coefficients of `p` and `r` on one box, of the same degree.
 #[derive(Clone, Copy)]
-struct Pieces {
-    p: [Interval; SIZE],
-    r: [Interval; SIZE],
-}
-
-/// Bernstein coefficients on `[-1, 1]` of `p` and `r`, of the same degree.
 pub(super) struct Bernstein {
     pub p: [Interval; SIZE],
     pub r: [Interval; SIZE],
@@ -129,28 +123,22 @@ pub const fn minimum(
     closeness: &Precision,
 ) -> Minimum {
     let degree = if p.degree() > r.degree() { p.degree() } else { r.degree() };
-    let mut root = Pieces { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree) };
+    let mut root = Bernstein { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree), degree };
     root.r[0] = root.r[0].and(ends[0]);
     root.r[degree] = root.r[degree].and(ends[1]);
-    minimum_in(&mut root, degree, false, closeness)
+    minimum_in(&mut root, false, closeness)
 }
 
-/// The same from Bernstein coefficients.
+/// The same from Bernstein coefficients on `[-1, 1]`.
 #[inline(never)]
 pub(super) const fn minimum_of(function: &Bernstein, closeness: &Precision) -> Minimum {
-    let mut root = Pieces { p: function.p, r: function.r };
-    minimum_in(&mut root, function.degree, true, closeness)
+    let mut root = *function;
+    minimum_in(&mut root, true, closeness)
 }
 
-const fn minimum_in(
-    root: &mut Pieces,
-    degree: usize,
-    is_rounded: bool,
-    closeness: &Precision,
-) -> Minimum {
+const fn minimum_in(root: &mut Bernstein, is_rounded: bool, closeness: &Precision) -> Minimum {
     let border = closeness.border;
     let mut search = Search {
-        degree,
         is_rounded,
         clearly_below: border.lo() - CLEARANCE * border.lo().abs(),
         clearly_above: border.hi() + CLEARANCE * border.hi().abs(),
@@ -160,7 +148,7 @@ const fn minimum_in(
         lower: f64::INFINITY,
     };
     let left = upper_bound(root.p[0], root.r[0]);
-    let right = upper_bound(root.p[degree], root.r[degree]);
+    let right = upper_bound(root.p[root.degree], root.r[root.degree]);
     search.run(root);
     let lower = search.lower.min(search.upper);
     let flat = left.max(right) <= search.upper + 1e-12 * search.upper.abs();
@@ -178,7 +166,6 @@ const fn upper_bound(p: Interval, r: Interval) -> f64 {
 }
 
 struct Search {
-    degree: usize,
     /// Whether the coefficients of the first box are so inexact that halving makes up for rounding, other
     /// than at the ends, where coefficients are values.
     is_rounded: bool,
@@ -202,7 +189,7 @@ struct Queue {
 
 impl Search {
     /// Searches, beginning with the whole interval, in the memory of `pieces`.
-    const fn run(&mut self, pieces: &mut Pieces) {
+    const fn run(&mut self, pieces: &mut Bernstein) {
         let whole = Waiting { left: -1.0, level: 0, bound: self.look(pieces, -1.0, 2.0) };
         if self.upper < self.clearly_below || self.is_settled(whole.bound) {
             // Most searches end here, and need no memory for boxes.
@@ -213,7 +200,7 @@ impl Search {
     }
 
     #[inline(never)]
-    const fn run_through_boxes(&mut self, pieces: &mut Pieces, whole: Waiting) {
+    const fn run_through_boxes(&mut self, pieces: &mut Bernstein, whole: Waiting) {
         let mut queue = Queue::EMPTY;
         let mut current = self.split(&mut queue, pieces, whole);
         let mut boxes = 1;
@@ -229,7 +216,7 @@ impl Search {
                 current = self.split(&mut queue, pieces, current);
                 continue;
             }
-            match queue.take(pieces, self.degree) {
+            match queue.take(pieces) {
                 Some(next) => current = next,
                 None => return,
             }
@@ -239,21 +226,18 @@ impl Search {
     /// Ends the search, with the remaining boxes as they are.
     const fn give_up(&mut self, queue: &Queue, current: Bound) {
         self.lower = self.lower.min(current.lower);
-        let mut i = 0;
-        while i < queue.len {
+        each!(i in 0..queue.len => {
             self.lower = self.lower.min(queue.waiting[i].bound.lower);
-            i += 1;
-        }
+        });
     }
 
     /// Bounds the minimum on a box: updates the upper bound, returns the lower one.
-    const fn look(&mut self, pieces: &Pieces, left: f64, width: f64) -> Bound {
-        let n = self.degree;
+    const fn look(&mut self, pieces: &Bernstein, left: f64, width: f64) -> Bound {
+        let n = pieces.degree;
         self.evaluate(upper_bound(pieces.p[0], pieces.r[0]), left, width);
         self.evaluate(upper_bound(pieces.p[n], pieces.r[n]), left + width, width);
         let mut bound = Bound { lower: f64::INFINITY, rounding: 0.0 };
-        let mut i = 0;
-        while i <= n {
+        each!(i in 0..=n => {
             let (p, r) = (pieces.p[i], pieces.r[i]);
             if !r.is_positive() {
                 return Bound { lower: f64::NEG_INFINITY, rounding: 0.0 };
@@ -264,8 +248,7 @@ impl Search {
                 let rounding = if improves { 0.0 } else { upper_bound(p, r) - lower };
                 bound = Bound { lower, rounding };
             }
-            i += 1;
-        }
+        });
         bound
     }
 
@@ -289,8 +272,13 @@ impl Search {
     /// Halves the box. Returns the half with the smaller lower bound and queues the other half; a half that
     /// cannot contain a smaller value is settled at once.
     #[inline(never)]
-    const fn split(&mut self, queue: &mut Queue, pieces: &mut Pieces, parent: Waiting) -> Waiting {
-        let n = self.degree;
+    const fn split(
+        &mut self,
+        queue: &mut Queue,
+        pieces: &mut Bernstein,
+        parent: Waiting,
+    ) -> Waiting {
+        let n = pieces.degree;
         let width = box_width(parent.level + 1);
         let middle = parent.left + width;
         let mut right = *pieces;
@@ -311,8 +299,8 @@ impl Search {
         }
     }
 
-    const fn put_aside(&mut self, queue: &mut Queue, pieces: &Pieces, waiting: Waiting) {
-        if self.is_settled(waiting.bound) || !queue.put(pieces, self.degree, waiting) {
+    const fn put_aside(&mut self, queue: &mut Queue, pieces: &Bernstein, waiting: Waiting) {
+        if self.is_settled(waiting.bound) || !queue.put(pieces, waiting) {
             self.lower = self.lower.min(waiting.bound.lower);
         }
     }
@@ -324,35 +312,33 @@ impl Queue {
 
     /// Queues a box; returns whether there was room.
     #[inline(never)]
-    const fn put(&mut self, pieces: &Pieces, degree: usize, waiting: Waiting) -> bool {
+    const fn put(&mut self, pieces: &Bernstein, waiting: Waiting) -> bool {
+        let degree = pieces.degree;
         let stride = 2 * (degree + 1);
         let base = self.len * stride;
         if base + stride > POOL || self.len >= MAX_WAITING {
             return false;
         }
-        let mut i = 0;
-        while i <= degree {
+        each!(i in 0..=degree => {
             self.pool[base + i] = pieces.p[i];
             self.pool[base + degree + 1 + i] = pieces.r[i];
-            i += 1;
-        }
+        });
         self.waiting[self.len] = waiting;
         self.len += 1;
         true
     }
 
-    const fn take(&mut self, pieces: &mut Pieces, degree: usize) -> Option<Waiting> {
+    const fn take(&mut self, pieces: &mut Bernstein) -> Option<Waiting> {
         if self.len == 0 {
             return None;
         }
         self.len -= 1;
+        let degree = pieces.degree;
         let base = self.len * 2 * (degree + 1);
-        let mut i = 0;
-        while i <= degree {
+        each!(i in 0..=degree => {
             pieces.p[i] = self.pool[base + i];
             pieces.r[i] = self.pool[base + degree + 1 + i];
-            i += 1;
-        }
+        });
         Some(self.waiting[self.len])
     }
 }
@@ -365,16 +351,14 @@ const fn box_width(level: u32) -> f64 {
 /// De Casteljau at the middle: `left` becomes the left half, `right` (a copy) the right half.
 const fn halve(left: &mut [Interval; SIZE], right: &mut [Interval; SIZE], n: usize) {
     // right[0..] is reduced in place: after step k, right[i] holds the mean of level k.
-    let mut k = 0;
-    while k <= n {
+    each!(k in 0..=n => {
         left[k] = right[0];
         let mut i = 0;
         while i + k < n {
             right[i] = right[i].add(right[i + 1]).half();
             i += 1;
         }
-        k += 1;
-    }
+    });
     // Level k left its last mean, the right half's coefficient n - k, at right[n - k].
 }
 
@@ -386,8 +370,7 @@ const fn halve(left: &mut [Interval; SIZE], right: &mut [Interval; SIZE], n: usi
 #[inline(never)]
 const fn from_chebyshev(series: &Series, degree: usize) -> [Interval; SIZE] {
     let mut scaled = [Interval::ZERO; SIZE];
-    let mut k = 0;
-    while k <= degree {
+    each!(k in 0..=degree => {
         // Raise from degree k - 1 to k: multiply by (1 - t) + t.
         let mut i = k;
         while i > 0 {
@@ -396,21 +379,16 @@ const fn from_chebyshev(series: &Series, degree: usize) -> [Interval; SIZE] {
         }
         let a = series.coefficient(k);
         if !a.is_zero() {
-            let mut i = 0;
-            while i <= k {
+            each!(i in 0..=k => {
                 let sign = if (k - i) % 2 == 0 { 1.0 } else { -1.0 };
                 let weight = Interval::exact(sign * binomial(2 * k, 2 * i));
                 scaled[i] = scaled[i].add(a.mul(weight));
-                i += 1;
-            }
+            });
         }
-        k += 1;
-    }
-    let mut i = 0;
-    while i <= degree {
+    });
+    each!(i in 0..=degree => {
         scaled[i] = scaled[i].div(Interval::exact(binomial(degree, i)));
-        i += 1;
-    }
+    });
     scaled
 }
 
@@ -418,10 +396,8 @@ const fn from_chebyshev(series: &Series, degree: usize) -> [Interval; SIZE] {
 pub(super) const fn binomial(n: usize, k: usize) -> f64 {
     let k = if k > n - k { n - k } else { k };
     let mut value: u64 = 1;
-    let mut i = 0;
-    while i < k {
+    each!(i in 0..k => {
         value = value * (n - i) as u64 / (i + 1) as u64;
-        i += 1;
-    }
+    });
     value as f64
 }

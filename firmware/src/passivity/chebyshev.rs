@@ -52,11 +52,9 @@ impl Series {
     pub const fn plus(&self, other: &Self) -> Self {
         let mut out = *self;
         out.len = if self.len > other.len { self.len } else { other.len };
-        let mut k = 0;
-        while k < other.len {
+        each!(k in 0..other.len => {
             out.coefficients[k] = out.coefficients[k].add(other.coefficients[k]);
-            k += 1;
-        }
+        });
         out
     }
 
@@ -68,11 +66,9 @@ impl Series {
     /// `factor self`.
     pub const fn scaled(&self, factor: Interval) -> Self {
         let mut out = *self;
-        let mut k = 0;
-        while k < self.len {
+        each!(k in 0..self.len => {
             out.coefficients[k] = self.coefficients[k].mul(factor);
-            k += 1;
-        }
+        });
         out
     }
 
@@ -84,18 +80,14 @@ impl Series {
         }
         let mut out = Self::ZERO;
         out.len = self.len + other.len - 1;
-        let mut i = 0;
-        while i < self.len {
-            let mut j = 0;
-            while j < other.len {
+        each!(i in 0..self.len => {
+            each!(j in 0..other.len => {
                 let half = self.coefficients[i].mul(other.coefficients[j]).half();
                 out.coefficients[i + j] = out.coefficients[i + j].add(half);
                 let apart = i.abs_diff(j);
                 out.coefficients[apart] = out.coefficients[apart].add(half);
-                j += 1;
-            }
-            i += 1;
-        }
+            });
+        });
         Some(out)
     }
 
@@ -153,21 +145,17 @@ impl Series {
 
     /// Adds `value (1 + 2 T_1 + ... + 2 T_n)`.
     const fn add_dirichlet(&mut self, n: usize, value: Interval) {
-        let mut k = 0;
-        while k <= n {
+        each!(k in 0..=n => {
             self.accumulate(k, if k == 0 { 1.0 } else { 2.0 }, value);
-            k += 1;
-        }
+        });
     }
 
     /// Adds `value (1 - 2 T_1 + 2 T_2 - ...)` up to `T_n`, or its negative.
     const fn add_alternating(&mut self, n: usize, positive: bool, value: Interval) {
-        let mut k = 0;
-        while k <= n {
+        each!(k in 0..=n => {
             let sign = if (k % 2 == 0) == positive { 1.0 } else { -1.0 };
             self.accumulate(k, if k == 0 { sign } else { 2.0 * sign }, value);
-            k += 1;
-        }
+        });
     }
 
     /// `2 Re(K(z) z^shift n(z) conj(d(z)))`; `None` if a lag is beyond the capacity.
@@ -180,26 +168,22 @@ impl Series {
     ) -> Option<Self> {
         let mut out = Self::ZERO;
         let (first, last) = (-(d.degree() as i32), n.degree() as i32);
-        let mut lag = first;
-        while lag <= last {
+        each!(lag in first..=last => {
             let moved = lag + shift;
             if moved.unsigned_abs() as usize >= CAPACITY {
                 return None;
             }
             out.add_lag(kernel, moved, correlation(n, d, lag));
-            lag += 1;
-        }
+        });
         Some(out)
     }
 
     /// `abs(d(z))^2`.
     pub const fn squared_magnitude(d: &Polynomial) -> Self {
         let mut out = Self::ZERO;
-        let mut lag = 0;
-        while lag < d.len() {
+        each!(lag in 0..d.len() => {
             out.accumulate(lag, if lag == 0 { 1.0 } else { 2.0 }, correlation(d, d, lag as i32));
-            lag += 1;
-        }
+        });
         out
     }
 
@@ -244,29 +228,25 @@ pub const fn at_cosine(
     d: &Polynomial,
 ) -> (Interval, Interval) {
     let (mut real, mut imaginary) = (Interval::ZERO, Interval::ZERO);
-    let mut lag = -(d.degree() as i32);
-    while lag <= n.degree() as i32 {
+    each!(lag in (-(d.degree() as i32))..=n.degree() as i32 => {
         let g = correlation(n, d, lag);
         let (t, u) = chebyshev_pair(c, (lag + shift).unsigned_abs());
         real = real.add(g.mul(t));
         let signed = if lag + shift < 0 { g.neg() } else { g };
         imaginary = imaginary.add(signed.mul(u));
-        lag += 1;
-    }
+    });
     (real, imaginary)
 }
 
 /// `T_m(c)` and `U_{m-1}(c)`.
 const fn chebyshev_pair(c: Interval, m: u32) -> (Interval, Interval) {
     let (mut t, mut u) = (Interval::ONE, Interval::ZERO);
-    let mut k = 0;
-    while k < m {
+    each!(_step in 0..m => {
         // T_{k+1} = c T_k - (1 - c^2) U_{k-1}, U_k = c U_{k-1} + T_k
         let next_t = c.mul(t).sub(Interval::ONE.sub(c.mul(c)).mul(u));
         u = c.mul(u).add(t);
         t = next_t;
-        k += 1;
-    }
+    });
     (t, u)
 }
 

@@ -19,6 +19,20 @@ pub struct RealPart {
     pub cos_theta: Interval,
 }
 
+impl RealPart {
+    /// A value that is reached anywhere on the circle.
+    pub(crate) const fn everywhere(minimum: Interval) -> Self {
+        Self { minimum, cos_theta: Interval::new(-1.0, 1.0) }
+    }
+
+    /// The larger of two, with its place.
+    pub(crate) const fn or_larger(self, other: Self) -> Self {
+        let Self { cos_theta, .. } =
+            if self.minimum.hi() > other.minimum.hi() { self } else { other };
+        Self { minimum: self.minimum.max(other.minimum), cos_theta }
+    }
+}
+
 /// Input strict passivity: checks the pole conditions (equation 4) and encloses
 /// `min Re G(e^(j theta))`, the index `f` for which `<u, y> >= f ||u||^2` (equation 3).
 ///
@@ -26,19 +40,15 @@ pub struct RealPart {
 /// `-alpha`. With `widen`, single-number coefficients stand for all decimals that round to them.
 #[inline(never)]
 pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, IndexError> {
-    match reduce(&g, widen) {
-        Ok(reduced) => real_part(&reduced, &Precision::TIGHT),
-        Err(obstacle) => Err(obstacle),
-    }
+    let reduced = ok!(reduce(&g, widen));
+    real_part(&reduced, &Precision::TIGHT)
 }
 
 /// Output strict passivity: the largest `d` for which `<u, y> >= d ||y||^2` (equation 2), as `min Re (1/G)`.
 /// `G` must be stable; with a pole on the circle the index is at most 0.
 pub const fn output_passivity(g: Transfer, widen: bool) -> Result<RealPart, IndexError> {
-    match reduce(&g, widen) {
-        Ok(_) => input_passivity(g.inverse(), widen),
-        Err(obstacle) => Err(obstacle),
-    }
+    let _ = ok!(reduce(&g, widen));
+    input_passivity(g.inverse(), widen)
 }
 
 /// The index `alpha_min` of an environment: the least `alpha` for which `alpha + L` is passive,
@@ -83,10 +93,8 @@ pub const fn index_looked_at(
     widen: bool,
     closeness: &Precision,
 ) -> Result<RealPart, IndexError> {
-    match velocity_reduced(environment, period, widen) {
-        Ok(reduced) => reduced_index(&reduced, closeness),
-        Err(obstacle) => Err(obstacle),
-    }
+    let reduced = ok!(velocity_reduced(environment, period, widen));
+    reduced_index(&reduced, closeness)
 }
 
 /// `(T z / (z - 1)) E` with its poles separated: the first half of [`index_looked_at`]. Not inlined: a small
@@ -105,26 +113,19 @@ pub(crate) const fn reduced_index(
     velocity: &Reduced,
     closeness: &Precision,
 ) -> Result<RealPart, IndexError> {
-    match real_part(velocity, closeness) {
-        Ok(found) => Ok(RealPart { minimum: found.minimum.neg(), cos_theta: found.cos_theta }),
-        Err(obstacle) => Err(obstacle),
-    }
+    let found = ok!(real_part(velocity, closeness));
+    Ok(RealPart { minimum: found.minimum.neg(), cos_theta: found.cos_theta })
 }
 
 #[inline(never)]
 const fn real_part(g: &Reduced, closeness: &Precision) -> Result<RealPart, IndexError> {
-    if let Err(obstacle) = residues_at_real_points(g) {
-        return Err(obstacle);
-    }
+    ok!(residues_at_real_points(g));
     let (kernel, shift) = kernel_of(g);
     let Some(mut p) = Series::real_part(kernel, shift, &g.numerator, &g.denominator) else {
         return Err(IndexError::Undecided(UndecidedReason::OutOfRange));
     };
     if let Some(sum) = g.pair {
-        p = match without_pair(g, p, sum.half()) {
-            Ok(p) => p,
-            Err(obstacle) => return Err(obstacle),
-        };
+        p = ok!(without_pair(g, p, sum.half()));
     }
     let r = Series::squared_magnitude(&g.denominator);
     // If the scale's sign exchanges the sides, the enclosure is tight everywhere.

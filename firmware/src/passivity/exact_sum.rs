@@ -18,8 +18,7 @@ impl<const CAPACITY: usize> ExactSum<CAPACITY> {
     pub const fn add(&mut self, number: f64) {
         let mut x = number;
         let mut kept = 0;
-        let mut k = 0;
-        while k < self.used {
+        each!(k in 0..self.used => {
             let y = self.parts[k];
             let sum = x + y;
             let y_seen = sum - x;
@@ -29,8 +28,7 @@ impl<const CAPACITY: usize> ExactSum<CAPACITY> {
                 kept += 1;
             }
             x = sum;
-            k += 1;
-        }
+        });
         self.is_finite &= x.is_finite();
         self.parts[kept] = x;
         self.used = kept + 1;
@@ -45,35 +43,29 @@ impl<const CAPACITY: usize> ExactSum<CAPACITY> {
 
     /// Whether the sum is zero: each of its parts is, since they do not overlap.
     pub const fn is_zero(&self) -> bool {
-        let mut k = 0;
-        while k < self.used {
+        each!(k in 0..self.used => {
             if self.parts[k] != 0.0 {
                 return false;
             }
-            k += 1;
-        }
+        });
         true
     }
 
     /// A lower bound, next to the sum.
     pub const fn rounded_down(&self) -> f64 {
-        let mut sum = 0.0;
-        let mut k = 0;
-        while k < self.used {
-            sum = add_down(sum, self.parts[k]);
-            k += 1;
-        }
-        sum
+        self.times_sign_rounded_down(1.0)
     }
 
     /// A lower bound of its negative.
     pub const fn negative_rounded_down(&self) -> f64 {
+        self.times_sign_rounded_down(-1.0)
+    }
+
+    const fn times_sign_rounded_down(&self, sign: f64) -> f64 {
         let mut sum = 0.0;
-        let mut k = 0;
-        while k < self.used {
-            sum = add_down(sum, -self.parts[k]);
-            k += 1;
-        }
+        each!(k in 0..self.used => {
+            sum = add_down(sum, sign * self.parts[k]);
+        });
         sum
     }
 }

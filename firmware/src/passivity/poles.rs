@@ -98,15 +98,10 @@ pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, IndexError> {
     if work.exact.minus_ones < -1 {
         return Err(IndexError::RepeatedUnitPole { cos_theta: Interval::ONE.neg() });
     }
-    let pair = match work.strip_pairs() {
-        Ok(pair) => pair,
-        Err(obstacle) => return Err(obstacle),
-    };
+    let pair = ok!(work.strip_pairs());
     let exactly = pair.is_some() || work.exact.minus_ones < 0;
     let kept = if exactly { &work.exact } else { &work.wide };
-    if let Err(obstacle) = strictly_schur(&kept.denominator) {
-        return Err(obstacle);
-    }
+    ok!(strictly_schur(&kept.denominator));
     let Some(numerator) = zeros_multiplied(kept) else {
         return Err(IndexError::Undecided(UndecidedReason::OutOfRange));
     };
@@ -160,12 +155,10 @@ pub(super) const fn zeros_multiplied(g: &Transfer) -> Option<Polynomial> {
 
 const fn widened(p: &Polynomial) -> Polynomial {
     let mut values = [Interval::ZERO; super::polynomial::MAX_DEGREE + 1];
-    let mut i = 0;
-    while i < p.len() {
+    each!(i in 0..p.len() => {
         let c = p.coefficient(i);
         values[i] = if c.is_exact() { Interval::decimal(c.lo()) } else { c };
-        i += 1;
-    }
+    });
     Polynomial::ascending(values.split_at(p.len()).0)
 }
 
@@ -304,12 +297,10 @@ const fn circle_pair(p: &Polynomial) -> Result<Option<Interval>, UndecidedReason
             return Ok(if sum.abs().is_below(Interval::exact(2.0)) { Some(sum) } else { None });
         }
         let mut next = [Interval::ZERO; super::polynomial::MAX_DEGREE];
-        let mut i = 1;
-        while i <= n {
+        each!(i in 1..=n => {
             let kept = last.mul(p.coefficient(i));
             next[i - 1] = kept.sub(first.mul(p.coefficient(n - i)));
-            i += 1;
-        }
+        });
         p = Polynomial::ascending(next.split_at(n).0);
         let zeros = p.trailing_zeros();
         if p.len() < n || zeros > 0 {
@@ -321,13 +312,11 @@ const fn circle_pair(p: &Polynomial) -> Result<Option<Interval>, UndecidedReason
 
 const fn is_palindrome(p: &Polynomial) -> bool {
     let n = p.degree();
-    let mut i = 0;
-    while i <= n / 2 {
+    each!(i in 0..=n / 2 => {
         if p.coefficient(i).lo() != p.coefficient(n - i).lo() {
             return false;
         }
-        i += 1;
-    }
+    });
     true
 }
 
@@ -359,11 +348,9 @@ const fn schur_cohn(p: &Polynomial) -> Result<(), IndexError> {
             });
         }
         let mut next = [Interval::ZERO; super::polynomial::MAX_DEGREE];
-        let mut i = 1;
-        while i <= n {
+        each!(i in 1..=n => {
             next[i - 1] = p.coefficient(i).sub(reflection.mul(p.coefficient(n - i)));
-            i += 1;
-        }
+        });
         p = Polynomial::ascending(next.split_at(n).0);
         if p.degree() != n - 1 || p.leading().contains(0.0) {
             return Err(IndexError::Undecided(UndecidedReason::PoleNearCircle));

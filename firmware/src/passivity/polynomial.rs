@@ -94,11 +94,9 @@ impl Polynomial {
     /// Divides by `z^power`, dropping the lowest coefficients.
     pub const fn shifted_down(&self, power: usize) -> Self {
         let mut out = Self::ZERO;
-        let mut i = power;
-        while i < self.len {
+        each!(i in power..self.len => {
             out.coefficients[i - power] = self.coefficients[i];
-            i += 1;
-        }
+        });
         out.len = self.len.saturating_sub(power);
         out
     }
@@ -112,11 +110,9 @@ impl Polynomial {
             return None;
         }
         let mut out = Self::ZERO;
-        let mut i = 0;
-        while i < self.len {
+        each!(i in 0..self.len => {
             out.coefficients[i + power] = self.coefficients[i];
-            i += 1;
-        }
+        });
         out.len = self.len + power;
         Some(out)
     }
@@ -124,11 +120,9 @@ impl Polynomial {
     /// `self * factor`.
     pub const fn scaled(&self, factor: Interval) -> Self {
         let mut out = *self;
-        let mut i = 0;
-        while i < out.len {
+        each!(i in 0..out.len => {
             out.coefficients[i] = out.coefficients[i].mul(factor);
-            i += 1;
-        }
+        });
         out.trimmed()
     }
 
@@ -136,11 +130,9 @@ impl Polynomial {
     pub const fn plus(&self, other: &Self) -> Self {
         let mut out = Self::ZERO;
         let len = if self.len > other.len { self.len } else { other.len };
-        let mut i = 0;
-        while i < len {
+        each!(i in 0..len => {
             out.coefficients[i] = self.coefficient(i).add(other.coefficient(i));
-            i += 1;
-        }
+        });
         out.len = len;
         out.trimmed()
     }
@@ -154,16 +146,12 @@ impl Polynomial {
             return None;
         }
         let mut out = Self::ZERO;
-        let mut i = 0;
-        while i < self.len {
-            let mut j = 0;
-            while j < other.len {
+        each!(i in 0..self.len => {
+            each!(j in 0..other.len => {
                 let product = self.coefficients[i].mul(other.coefficients[j]);
                 out.coefficients[i + j] = out.coefficients[i + j].add(product);
-                j += 1;
-            }
-            i += 1;
-        }
+            });
+        });
         out.len = self.len + other.len - 1;
         Some(out.trimmed())
     }
@@ -241,25 +229,21 @@ impl Polynomial {
 
     /// Whether every coefficient is a single number.
     pub const fn is_exact(&self) -> bool {
-        let mut i = 0;
-        while i < self.len {
+        each!(i in 0..self.len => {
             if !self.coefficients[i].is_exact() {
                 return false;
             }
-            i += 1;
-        }
+        });
         true
     }
 
     /// Whether every coefficient has finite ends.
     pub const fn is_finite(&self) -> bool {
-        let mut i = 0;
-        while i < self.len {
+        each!(i in 0..self.len => {
             if !self.coefficients[i].is_finite() {
                 return false;
             }
-            i += 1;
-        }
+        });
         true
     }
 
@@ -270,12 +254,10 @@ impl Polynomial {
             return false;
         }
         let mut sum = ExactSum::<CAPACITY>::EMPTY;
-        let mut i = 0;
-        while i < self.len {
+        each!(i in 0..self.len => {
             let x = self.coefficients[i].lo();
             sum.add(if matches!(root, UnitRoot::Minus) && i % 2 == 1 { -x } else { x });
-            i += 1;
-        }
+        });
         sum.is_finite && sum.is_zero()
     }
 }

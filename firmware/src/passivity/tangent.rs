@@ -49,13 +49,11 @@ pub(super) const fn real_part(
 pub(super) const fn has_all_roots_inside(p: &Polynomial) -> bool {
     let mut middle = [Interval::ZERO; SIZE];
     let mut change = Interval::ZERO;
-    let mut i = 0;
-    while i < p.len() {
+    each!(i in 0..p.len() => {
         let c = p.coefficient(i);
         middle[i] = Interval::exact(c.midpoint());
         change = change.add(Interval::exact(c.hi()).sub(Interval::exact(c.lo())));
-        i += 1;
-    }
+    });
     let middle = Polynomial::ascending(&middle);
     // The theorem counts roots inside: all of them only if the degree is the same.
     middle.degree() == p.degree()
@@ -69,15 +67,12 @@ pub(super) const fn has_all_roots_inside(p: &Polynomial) -> bool {
 const fn is_hurwitz(p: &Polynomial) -> bool {
     let degree = p.degree();
     let mut rows = [[Interval::ZERO; SIZE]; 2];
-    let mut power = 0;
-    while power <= degree {
+    each!(power in 0..=degree => {
         let from_top = degree - power;
         rows[from_top % 2][from_top / 2] = in_tangent(p, 0, degree, power);
-        power += 1;
-    }
+    });
     let sign = if rows[0][0].is_negative() { Interval::ONE.neg() } else { Interval::ONE };
-    let mut row = 0;
-    while row <= degree {
+    each!(row in 0..=degree => {
         let [above, below] = &rows;
         if !above[0].mul(sign).is_positive() {
             return false;
@@ -92,8 +87,7 @@ const fn is_hurwitz(p: &Polynomial) -> bool {
             }
         }
         rows = [*below, next];
-        row += 1;
-    }
+    });
     true
 }
 
@@ -122,14 +116,12 @@ impl Parts {
     #[inline(never)]
     const fn of(p: &Polynomial, shift: usize, degree: usize) -> Self {
         let mut parts = [[Interval::ZERO; SIZE]; 2];
-        let mut power = 0;
-        while power <= degree {
+        each!(power in 0..=degree => {
             let value = in_tangent(p, shift, degree, power);
             // (jt)^2 = -t^2
             let half = power / 2;
             parts[power % 2][half] = if half % 2 == 0 { value } else { value.neg() };
-            power += 1;
-        }
+        });
         Self { even: Squared(parts[0]), odd: Squared(parts[1]) }
     }
 
@@ -145,29 +137,24 @@ struct Squared(Coefficients);
 impl Squared {
     const fn plus(&self, other: &Self) -> Self {
         let mut out = *self;
-        let mut k = 0;
-        while k < SIZE {
+        each!(k in 0..SIZE => {
             out.0[k] = out.0[k].add(other.0[k]);
-            k += 1;
-        }
+        });
         out
     }
 
     const fn negative(&self) -> Self {
         let mut out = *self;
-        let mut k = 0;
-        while k < SIZE {
+        each!(k in 0..SIZE => {
             out.0[k] = out.0[k].neg();
-            k += 1;
-        }
+        });
         out
     }
 
     /// The product, whose degree is below the capacity.
     const fn times(&self, other: &Self) -> Self {
         let mut out = Self([Interval::ZERO; SIZE]);
-        let mut i = 0;
-        while i < SIZE {
+        each!(i in 0..SIZE => {
             let mut j = 0;
             while i + j < SIZE {
                 if !self.0[i].is_zero() && !other.0[j].is_zero() {
@@ -175,19 +162,16 @@ impl Squared {
                 }
                 j += 1;
             }
-            i += 1;
-        }
+        });
         out
     }
 
     /// Times `t^2`.
     const fn raised(&self) -> Self {
         let mut out = Self([Interval::ZERO; SIZE]);
-        let mut k = 1;
-        while k < SIZE {
+        each!(k in 1..SIZE => {
             out.0[k] = self.0[k - 1];
-            k += 1;
-        }
+        });
         out
     }
 
@@ -195,11 +179,9 @@ impl Squared {
     /// `degree - k`, over its binomial coefficient.
     const fn in_bernstein(&self, degree: usize) -> Coefficients {
         let mut out = [Interval::ZERO; SIZE];
-        let mut k = 0;
-        while k <= degree {
+        each!(k in 0..=degree => {
             out[degree - k] = self.0[k].div(Interval::exact(binomial(degree, k)));
-            k += 1;
-        }
+        });
         out
     }
 }
@@ -208,15 +190,13 @@ impl Squared {
 /// `p_i (1 + s)^(i + shift) (1 - s)^(degree - i - shift)`; rounded only at the end.
 const fn in_tangent(p: &Polynomial, shift: usize, degree: usize, power: usize) -> Interval {
     let (mut low, mut high) = (ExactSum::<CAPACITY>::EMPTY, ExactSum::<CAPACITY>::EMPTY);
-    let mut i = 0;
-    while i < p.len() {
+    each!(i in 0..p.len() => {
         let weight = krawtchouk(degree, i + shift, power);
         let c = p.coefficient(i);
         let (lo, hi) = if weight < 0.0 { (c.hi(), c.lo()) } else { (c.lo(), c.hi()) };
         low.add_product(lo, weight);
         high.add_product(hi, weight);
-        i += 1;
-    }
+    });
     if low.is_finite && high.is_finite {
         Interval::new(low.rounded_down(), -high.negative_rounded_down())
     } else {
@@ -230,14 +210,12 @@ const CAPACITY: usize = 2 * SIZE;
 /// The coefficient of `s^power` in `(1 + s)^i (1 - s)^(degree - i)`: a whole number of at most 16 bits.
 const fn krawtchouk(degree: usize, i: usize, power: usize) -> f64 {
     let mut sum = 0.0;
-    let mut m = 0;
-    while m <= power {
+    each!(m in 0..=power => {
         if m <= degree - i && power - m <= i {
             let term = binomial(degree - i, m) * binomial(i, power - m);
             sum += if m % 2 == 0 { term } else { -term };
         }
-        m += 1;
-    }
+    });
     sum
 }
 

@@ -4,30 +4,17 @@ use fixed::types::I8F24;
 use proptest::prelude::*;
 
 use super::*;
-use crate::encoder::{CounterWidth, RawCount};
+use crate::encoder::RawCount;
 use crate::energy::NoAction;
 use crate::environment::{Canceller, KNOB_MODES, Knots, ModeTable, Profile, ProfileMode, Shape};
-use crate::scene::{Device, Latency, TimeRange, Timing};
-use crate::servo::{Latched, Output, Servo, Transducers};
+use crate::scene::{Latency, TimeRange};
+use crate::servo::{Latched, Output, Servo};
+use crate::test_scene::{self, TRANSDUCERS};
 
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits32,
-    full_scale_torque: 1.0,
-    largest_speed: 100.0,
-};
 const PERIOD: f64 = 1e-3;
 
-/// The paper's device behind the standard coupling.
 const fn scene(environment: Environment) -> Scene {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: PERIOD, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: Some(0.5),
-    }
+    Scene { torque_limit: Some(0.5), ..test_scene::scene(environment) }
 }
 
 const fn rigid(environment: Environment) -> Scene {

@@ -1,7 +1,6 @@
 //! Turns a [`Certified`] scene into a [`TimingChecked`] one: the delays of scene and board are equal, and the
 //! scene also certifies with the board's limits on its torque.
 
-use core::fmt;
 use core::marker::PhantomData;
 
 #[cfg(doc)]
@@ -9,11 +8,11 @@ use super::Certified;
 use super::assessment::Assessment;
 use super::loop_intervals::{LoopIntervals, Missed, has_latency};
 use super::margin::Limited;
-use super::model::{largest_solved, nonlinear_bound};
+use super::model::{largest_solved, nonlinear_bound, solved_bound};
 use super::profile::is_motor_where_limited;
-use super::rules::{Rule, paper_limit};
+use super::rules::paper_limit;
 use super::static_law::{End, needed_at_port};
-use super::validity::first_invalid_number;
+use super::validity::check_numbers;
 use crate::coupling::Coupling;
 use crate::environment::{Environment, EnvironmentModel};
 use crate::latency::TimeRange;
@@ -22,7 +21,7 @@ use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, SHORTEST_PHASE
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 use crate::step::Step;
-use crate::text::Sentence;
+use crate::text::{Sentence, error_with_sentence, push};
 
 /// A certified scene that agrees with the output mode `M` of a board.
 ///
@@ -153,92 +152,60 @@ impl TimingError {
     /// The error as a sentence, the same at compile time, on the host and on the board.
     pub const fn sentence(&self) -> Sentence {
         let mut t = Sentence::new();
-        match self {
-            Self::ReadLate { period, bound, limit } => {
-                t.push("a board reads a count up to ");
-                t.push_number(READ_WITHIN);
-                t.push(" s after the beginning of its period of ");
-                t.push_number(*period);
-                t.push(" s, and needs alpha = ");
-                t.push_number(*bound);
-                t.push(" N m s/rad below ");
-                t.push_number(*limit);
-                t.push(" N m s/rad for that: make the environment a little softer");
-            }
-            Self::Phase { scene, board } => {
-                t.push("the scene has an output delay of ");
-                t.push_number(*scene);
-                t.push(" s, and this board puts its torques out ");
-                t.push_number(*board);
-                t.push(" s after the beginning of a period");
-            }
-            Self::DelayRange { least, most } => {
-                t.push("a board puts its torques out at one time in the period, and the scene's output \
-                        delay is between ");
-                t.push_number(*least);
-                t.push(" s and ");
-                t.push_number(*most);
-                t.push(" s: give it the period of the board");
-            }
-            Self::PhaseRange { phase, shortest, longest } => {
-                t.push("this board would put its torques out ");
-                t.push_number(*phase);
-                t.push(
-                    " s after the beginning of a period, but a code takes time to compute and has to be \
-                     out before the next one is there: the phase must be between ",
-                );
-                t.push_number(*shortest);
-                t.push(" s and ");
-                t.push_number(*longest);
-                t.push(" s");
-            }
-            Self::Unmatched => t.push(
-                "where torques lag, a servo renders only environments behind the matched coupling: give the \
-                 scene that",
+        match *self {
+            Self::ReadLate { period, bound, limit } => push!(t,
+                "a board reads a count up to " {READ_WITHIN} " s after the beginning of its period of " {period}
+                " s, and needs alpha = " {bound} " N m s/rad below " {limit}
+                " N m s/rad for that: make the environment a little softer"),
+            Self::Phase { scene, board } => push!(t,
+                "the scene has an output delay of " {scene} " s, and this board puts its torques out " {board}
+                " s after the beginning of a period"),
+            Self::DelayRange { least, most } => push!(t,
+                "a board puts its torques out at one time in the period, and the scene's output delay is between "
+                {least} " s and " {most} " s: give it the period of the board"),
+            Self::PhaseRange { phase, shortest, longest } => push!(t,
+                "this board would put its torques out " {phase}
+                " s after the beginning of a period, but a code takes time to compute and has to be out before the \
+                 next one is there: the phase must be between " {shortest} " s and " {longest} " s"),
+            Self::Unmatched => push!(
+                t,
+                "where torques lag, a servo renders only environments behind the matched coupling: give the scene \
+                 that"
             ),
-            Self::Coupled => t.push(
-                "the scene has no coupling, and its program is that of a coupled scene: give the scene a \
-                 coupling",
+            Self::Coupled => push!(
+                t,
+                "the scene has no coupling, and its program is that of a coupled scene: give the scene a coupling"
             ),
-            Self::Jitter { jitter } => {
-                t.push("a board reads a count up to ");
-                t.push_number(READ_WITHIN);
-                t.push(
-                    " s after the beginning of its period, which is jitter where torques lag: the ",
-                );
-                t.push("scene's count jitter, or the output jitter if it states no other, has to be that ");
-                t.push("at least, and is ");
-                t.push_number(*jitter);
-                t.push(" s");
-            }
-            Self::NotLate => t.push(
-                "the environment is not late by a whole sample, but on this board a torque takes \
-                 one: give all of it a delay of at least 1",
+            Self::Jitter { jitter } => push!(t,
+                "a board reads a count up to " {READ_WITHIN}
+                " s after the beginning of its period, which is jitter where torques lag: the scene's count jitter, \
+                 or the output jitter if it states no other, has to be that at least, and is " {jitter} " s"),
+            Self::NotLate => push!(
+                t,
+                "the environment is not late by a whole sample, but on this board a torque takes one: give all of \
+                 it a delay of at least 1"
             ),
             Self::Limited { bound, limit } => {
-                t.push(
-                    "the scene passes only as long as its torque is never limited, and a board \
-                     limits it while it fades in and out and at the DAC's full scale",
+                push!(
+                    t,
+                    "the scene passes only as long as its torque is never limited, and a board limits it while it \
+                     fades in and out and at the DAC's full scale"
                 );
                 match (bound, limit) {
-                    (None, _) => t.push(
-                        "; no bound is known then for a rational environment, or without a coupling for \
-                         torques and counts that both jitter beside a lag",
+                    (None, _) => push!(
+                        t,
+                        "; no bound is known then for a rational environment, or without a coupling for torques and \
+                         counts that both jitter beside a lag"
                     ),
-                    (_, None) => t.push(
-                        "; behind a coupling stiffer than the standard one, 2 delta/T, or a rigid \
-                         one, it is not known to be passive then: soften the coupling",
+                    (_, None) => push!(
+                        t,
+                        "; behind a coupling stiffer than the standard one, 2 delta/T, or a rigid one, it is not \
+                         known to be passive then: soften the coupling"
                     ),
-                    (Some(bound), Some(limit)) => {
-                        t.push(": then the environment needs up to ");
-                        t.push_number(*bound);
-                        t.push(" N m s/rad of damping, not below the ");
-                        t.push_number(*limit);
-                        t.push(
-                            " N m s/rad that device and coupling allow; a softer environment, or \
-                             a coupling nearer to the standard one, passes",
-                        );
-                    }
+                    (Some(bound), Some(limit)) => push!(t,
+                        ": then the environment needs up to " {bound} " N m s/rad of damping, not below the " {limit}
+                        " N m s/rad that device and coupling allow; a softer environment, or a coupling nearer to \
+                         the standard one, passes"),
                 }
             }
         }
@@ -246,13 +213,7 @@ impl TimingError {
     }
 }
 
-impl fmt::Display for TimingError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.sentence().as_str())
-    }
-}
-
-impl core::error::Error for TimingError {}
+error_with_sentence!(TimingError);
 
 impl Assessment {
     /// [`TimingChecked::margin`] of the assessed and certified scene; `None` if its numbers do not allow a
@@ -263,10 +224,10 @@ impl Assessment {
 
     /// [`TimingChecked::margin_with`] of that scene.
     pub const fn margin_injecting(&self, scene: &Scene, injected: f64) -> Option<f64> {
-        match agree(OutputTiming::Simultaneous, scene, self) {
-            Ok(limited) => Some(limited.margin(injected)),
-            Err(_) => None,
-        }
+        let Ok(limited) = agree(OutputTiming::Simultaneous, scene, self.format) else {
+            return None;
+        };
+        Some(limited.margin(injected))
     }
 
     /// Checks that a board with the output mode `M` can render the assessed and certified scene, by its
@@ -283,10 +244,8 @@ impl Assessment {
     /// # Errors
     /// The reason why it cannot.
     pub const fn renders_at(&self, scene: &Scene, timing: OutputTiming) -> Result<(), TimingError> {
-        match agree(timing, scene, self) {
-            Ok(_) => Ok(()),
-            Err(error) => Err(error),
-        }
+        ok!(agree(timing, scene, self.format));
+        Ok(())
     }
 }
 
@@ -307,140 +266,128 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     is_late: bool,
     format: Format,
 ) -> Result<Limited, Step> {
-    if first_invalid_number(scene, E::PROFILE).is_some() {
-        return Err(Step::Certificate);
+    if check_numbers(scene, E::PROFILE).is_ok()
+        && let Some(limited) = limited::<E>(M::TIMING, scene, is_late, format)
+    {
+        return Ok(limited);
     }
-    if !M::TIMING.fits(scene.timing.period) || !is_at_its_phase(M::TIMING, scene) {
-        return Err(Step::Certificate);
+    Err(Step::Certificate)
+}
+
+/// The same of a scene whose numbers are valid, for a mode as data.
+#[inline(always)]
+const fn limited<E: EnvironmentModel>(
+    timing: OutputTiming,
+    scene: &Scene,
+    is_late: bool,
+    format: Format,
+) -> Option<Limited> {
+    let is_in_time = is_late || !matches!(timing, OutputTiming::Latched);
+    if !is_in_time || !timing.fits(scene.timing.period) || !is_at_its_phase(timing, scene) {
+        return None;
+    }
+    if E::PROFILE.exists && is_uneven::<E>(&scene.environment) {
+        return None;
     }
     if E::MEMORY.may_be_uncoupled() && matches!(scene.coupling, Coupling::Rigid) {
-        return judged_at_port::<E>(scene, M::TIMING, is_late, format);
+        return limited_at_port::<E>(timing, scene, is_late, format);
     }
     let is_matched = matches!(scene.coupling, Coupling::Matched);
     if has_latency(scene) && !(is_matched && E::MEMORY.is_stored()) {
-        return Err(Step::Certificate);
+        return None;
     }
     let n = &LoopIntervals::of_late::<E>(scene, is_late, format);
-    let solved = match M::TIMING {
-        OutputTiming::Latched if is_late => Some(Interval::ONE),
-        OutputTiming::Latched => None,
+    let solved = match timing {
+        // All of it is late.
+        OutputTiming::Latched => Interval::ONE,
         OutputTiming::Simultaneous | OutputTiming::AtPhase(_) => {
-            largest_solved::<E>(&scene.environment, n)
+            some!(largest_solved::<E>(&scene.environment, n))
         }
     };
-    let Some(solved) = solved else { return Err(Step::Certificate) };
-    if E::PROFILE.exists && is_uneven::<E>(&scene.environment) {
-        return Err(Step::Certificate);
-    }
-    let Some(bound) = nonlinear_bound::<E>(&scene.environment, solved, n) else {
-        return Err(Step::Certificate);
-    };
-    match Limited::of_solved::<E>(scene, n, bound, solved) {
-        Some(limited) if stands_counts_read_late(M::TIMING, &limited, scene, n) => Ok(limited),
-        _ => Err(Step::Certificate),
-    }
+    let bound = some!(nonlinear_bound::<E>(&scene.environment, solved, n));
+    let limited = some!(Limited::of_solved::<E>(scene, n, bound, solved));
+    if stands_counts_read_late(timing, &limited, scene, n) { Some(limited) } else { None }
 }
 
 /// The same of a scene without a coupling (theory, section 16).
 #[inline(never)]
-const fn judged_at_port<E: EnvironmentModel>(
-    scene: &Scene,
+const fn limited_at_port<E: EnvironmentModel>(
     timing: OutputTiming,
+    scene: &Scene,
     is_late: bool,
     format: Format,
-) -> Result<Limited, Step> {
+) -> Option<Limited> {
     let reading = reading_time(timing);
-    let is_in_time = is_late || !matches!(timing, OutputTiming::Latched);
-    if !is_in_time
-        || scene.timing.period <= reading
-        || E::PROFILE.exists && is_uneven::<E>(&scene.environment)
-    {
-        return Err(Step::Certificate);
+    if scene.timing.period <= reading {
+        return None;
     }
     let n = &LoopIntervals::of_late::<E>(scene, is_late, format);
-    match Limited::at_port::<E>(scene, n, reading) {
-        Some(limited) => Ok(limited),
-        None => Err(Step::Certificate),
-    }
+    Limited::at_port::<E>(scene, n, reading)
 }
 
-/// The scene with its torque limited, if a scene with this assessment agrees with a mode.
+/// The scene with its torque limited, if a certified scene agrees with a mode, or the reason why it does not.
 pub(super) const fn agree(
     timing: OutputTiming,
     scene: &Scene,
-    assessment: &Assessment,
+    format: Format,
 ) -> Result<Limited, TimingError> {
+    let is_late = scene.environment.is_late();
+    match limited::<Environment>(timing, scene, is_late, format) {
+        Some(limited) => Ok(limited),
+        None => Err(disagreement(timing, scene, format)),
+    }
+}
+
+/// The reason why a certified scene does not agree with a mode.
+const fn disagreement(timing: OutputTiming, scene: &Scene, format: Format) -> TimingError {
     if matches!(timing, OutputTiming::Latched) && !scene.environment.is_late() {
-        return Err(TimingError::NotLate);
+        return TimingError::NotLate;
     }
     if let (Some(phase), false) = (timing.phase(), timing.fits(scene.timing.period)) {
         let longest = longest_phase(scene.timing.period);
-        return Err(TimingError::PhaseRange { phase, shortest: SHORTEST_PHASE, longest });
+        return TimingError::PhaseRange { phase, shortest: SHORTEST_PHASE, longest };
     }
     if !is_at_its_phase(timing, scene) {
         let board = board_delay(timing, scene);
-        if let TimeRange { least, most } = scene.latency.output_delay
-            && least != most
-        {
-            return Err(TimingError::DelayRange { least, most });
-        }
-        return Err(TimingError::Phase { scene: scene.latency.output_delay.middle(), board });
+        let TimeRange { least, most } = scene.latency.output_delay;
+        return if least == most {
+            TimingError::Phase { scene: scene.latency.output_delay.middle(), board }
+        } else {
+            TimingError::DelayRange { least, most }
+        };
     }
-    let is_rigid = matches!(scene.coupling, Coupling::Rigid);
-    if has_latency(scene) && !is_rigid && !matches!(scene.coupling, Coupling::Matched) {
-        return Err(TimingError::Unmatched);
+    let n = &LoopIntervals::of(scene, format);
+    if matches!(scene.coupling, Coupling::Rigid) {
+        let needed = needed_at_port::<Environment>(scene, n, reading_time(timing), End::Upper);
+        return TimingError::Limited { bound: needed, limit: Some(n.delta.lo()) };
+    }
+    if has_latency(scene) && !matches!(scene.coupling, Coupling::Matched) {
+        return TimingError::Unmatched;
     }
     let is_on_a_board = !matches!(timing, OutputTiming::Simultaneous);
-    if is_on_a_board && !is_rigid && !scene.latency.is_none() && !has_enough_jitter(scene) {
-        let jitter = scene.latency.deviation_of_counts();
-        return Err(TimingError::Jitter { jitter });
+    if is_on_a_board && !scene.latency.is_none() && !has_enough_jitter(scene) {
+        return TimingError::Jitter { jitter: scene.latency.deviation_of_counts() };
     }
-    let n = &LoopIntervals::of(scene, assessment.format);
-    if matches!(scene.coupling, Coupling::Rigid) {
-        return at_port(timing, scene, n);
-    }
-    let bound = limited_bound(scene, assessment.rule, assessment.bound, n);
-    let limited = match bound {
-        Some(bound) => Limited::of(scene, n, bound),
-        None => None,
-    };
-    let Some(limited) = limited else {
-        return Err(TimingError::Limited {
-            bound: match bound {
-                Some(bound) => Some(bound.hi()),
-                None => None,
-            },
-            limit: match paper_limit(n) {
-                Some(limit) => Some(limit.lo()),
-                None => None,
-            },
-        });
-    };
-    if stands_counts_read_late(timing, &limited, scene, n) {
-        return Ok(limited);
-    }
-    Err(TimingError::ReadLate {
-        period: scene.timing.period,
-        bound: limited.bound.hi(),
-        limit: read_late(&limited, n).lo(),
-    })
-}
-
-/// The same of a scene without a coupling, whose torques come at the times of the board.
-const fn at_port(
-    timing: OutputTiming,
-    scene: &Scene,
-    n: &LoopIntervals,
-) -> Result<Limited, TimingError> {
-    let reading = reading_time(timing);
-    if scene.timing.period > reading
-        && !is_uneven::<Environment>(&scene.environment)
-        && let Some(limited) = Limited::at_port::<Environment>(scene, n, reading)
+    let bound = limited_bound(scene, n);
+    if let Some(bound) = bound
+        && let Some(limited) = Limited::of(scene, n, bound)
     {
-        return Ok(limited);
+        return TimingError::ReadLate {
+            period: scene.timing.period,
+            bound: bound.hi(),
+            limit: read_late(&limited, n).lo(),
+        };
     }
-    let needed = needed_at_port::<Environment>(scene, n, reading, End::Upper);
-    Err(TimingError::Limited { bound: needed, limit: Some(n.delta.lo()) })
+    TimingError::Limited {
+        bound: match bound {
+            Some(bound) => Some(bound.hi()),
+            None => None,
+        },
+        limit: match paper_limit(n) {
+            Some(limit) => Some(limit.lo()),
+            None => None,
+        },
+    }
 }
 
 /// The time in s by which a count may be read late. Without a coupling a torque depends on it by its damper
@@ -468,10 +415,7 @@ const fn is_at_its_phase(timing: OutputTiming, scene: &Scene) -> bool {
 /// Time in s from a count to its torque, in addition to an environment's whole samples: until the code is put
 /// out, and one more update with a current loop.
 const fn board_delay(timing: OutputTiming, scene: &Scene) -> f64 {
-    let phase = match timing.phase() {
-        Some(phase) => phase,
-        None => 0.0,
-    };
+    let phase = or!(timing.phase(), 0.0);
     match scene.latency.actuator_updates {
         0 => phase,
         updates => phase + scene.timing.period / updates as f64,
@@ -519,29 +463,17 @@ pub(super) const fn is_uneven<E: EnvironmentModel>(environment: &Environment) ->
     }
 }
 
-/// The bound on the index of a certified scene whose torque is limited; `bound` is the bound that the verdict
-/// compared, for one-sided and limited scenes.
+/// The bound on the index of a certified scene whose torque is limited.
 ///
 /// It also holds for a changing limit: a monotone law clipped at any level is monotone and no steeper, and a
 /// clipped damper or canceller is a fraction of it that may change from tick to tick (theory, section 5). A
 /// falling level removes energy; a rising level adds, once, the energy that the environment stores at its
 /// depth.
-pub(super) const fn limited_bound(
-    scene: &Scene,
-    rule: Rule,
-    bound: Option<Interval>,
-    n: &LoopIntervals,
-) -> Option<Interval> {
+pub(super) const fn limited_bound(scene: &Scene, n: &LoopIntervals) -> Option<Interval> {
     if is_uneven::<Environment>(&scene.environment) {
         return None;
     }
-    if matches!(rule, Rule::Nonlinear) {
-        return bound;
-    }
-    match largest_solved::<Environment>(&scene.environment, n) {
-        Some(solved) => nonlinear_bound::<Environment>(&scene.environment, solved, n),
-        None => None,
-    }
+    solved_bound(&scene.environment, n)
 }
 
 #[cfg(test)]

@@ -1,18 +1,12 @@
 use super::*;
 use crate::certificate::Certified;
 use crate::environment::{Canceller, Environment, Parts, Rational, Wall};
-use crate::scene::{Coupling, Device, Latency, Timing};
+use crate::scene::{Coupling, Latency};
 use crate::servo::{AtPhase, Latched, Simultaneous};
+use crate::test_scene;
 
 const fn scene(environment: Environment, coupling: f64) -> Scene {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 1e-3, worst_period: None },
-        coupling: Coupling::Spring { stiffness: coupling },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
+    Scene { coupling: Coupling::Spring { stiffness: coupling }, ..test_scene::scene(environment) }
 }
 
 fn data(environment: Environment) -> Certified<Scene> {

@@ -100,19 +100,15 @@ impl Profile {
     /// The selected mode, late by `delay` samples; `None` if there is no such mode, or if it came over the
     /// wire.
     pub(super) const fn selected(modes: ModeSelection, delay: usize) -> Option<Self> {
-        match modes.selected() {
-            Some(mode) => Some(Self::of_mode(mode, modes, delay)),
-            None => None,
-        }
+        let mode = some!(modes.selected());
+        Some(Self::of_mode(mode, modes, delay))
     }
 
     /// The same with another mode selected; `None` if there is no such mode, or if it came over the wire,
     /// without the tables of the other modes.
     pub const fn selecting(&self, mode: f64) -> Option<Self> {
-        match &self.modes {
-            Some(modes) => Self::selected(modes.selecting(mode), self.delay),
-            None => None,
-        }
+        let modes = some!(&self.modes);
+        Self::selected(modes.selecting(mode), self.delay)
     }
 
     /// The same structure with the numbers that it has. Of several modes, the table of the selected one; the
@@ -141,18 +137,13 @@ impl Profile {
 
     /// Damping in N m s/rad; 0 without a damper.
     pub const fn damping(&self) -> f64 {
-        match self.damping {
-            Some(damping) => damping,
-            None => 0.0,
-        }
+        or!(self.damping, 0.0)
     }
 
     /// Its damper.
     pub(super) const fn damper(&self) -> Option<Damper> {
-        match self.damping {
-            Some(damping) => Some(Damper { damping, filter: None }),
-            None => None,
-        }
+        let damping = some!(self.damping);
+        Some(Damper { damping, filter: None })
     }
 
     /// The cells of its table; empty if it has none.

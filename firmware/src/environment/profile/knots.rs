@@ -47,11 +47,9 @@ impl<const KNOTS: usize> Knots<KNOTS> {
     pub(super) const fn new(units: [i16; KNOTS], wraps: bool, layout: Layout) -> Self {
         const { assert!(KNOTS.is_power_of_two() && KNOTS >= 8, "a power of two from 8 on") };
         let mut cells = [Cell::between(0, 0); KNOTS];
-        let mut i = 0;
-        while i < KNOTS {
+        each!(i in 0..KNOTS => {
             cells[i] = Cell::between(units[i], units[(i + 1) % KNOTS]);
-            i += 1;
-        }
+        });
         Self { units, cells, outline: Outline::of(&units, wraps), layout }
     }
 
@@ -81,8 +79,7 @@ impl Outline {
     pub const fn of(units: &[i16], wraps: bool) -> Self {
         let mut out =
             Self { knots: units.len() as u32, rise: 0, fall: 0, wraps, sum: 0, is_odd: true };
-        let mut i = 0;
-        while i < units.len() {
+        each!(i in 0..units.len() => {
             let (here, mirrored) = (units[i] as i32, units[(units.len() - i) % units.len()] as i32);
             out.sum += here;
             out.is_odd &= here == -mirrored;
@@ -91,8 +88,7 @@ impl Outline {
                 out.rise = if step > out.rise { step } else { out.rise };
                 out.fall = if -step > out.fall { -step } else { out.fall };
             }
-            i += 1;
-        }
+        });
         out
     }
 }

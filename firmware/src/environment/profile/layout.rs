@@ -3,8 +3,6 @@
 
 use core::f64::consts::TAU;
 
-use super::shape::{down, nearest};
-
 /// Parts of a cell, as a power of two: the unit of places in a table.
 pub(super) const PART_BITS: u32 = 14;
 
@@ -124,4 +122,15 @@ impl SnapPoint {
     pub(crate) const fn torque_of_part(&self, torque: f64, knots: u32) -> f64 {
         torque * self.share / (self.snap * self.parts(knots))
     }
+}
+
+/// The largest whole number that is not above `x`, for magnitudes below 2^62.
+pub(super) const fn down(x: f64) -> f64 {
+    let whole = x as i64 as f64;
+    if whole > x { whole - 1.0 } else { whole }
+}
+
+/// The nearest whole number.
+pub(super) const fn nearest(x: f64) -> f64 {
+    down(x + 0.5)
 }

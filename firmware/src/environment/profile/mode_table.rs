@@ -38,10 +38,7 @@ impl<const KNOTS: usize> ModeTable<KNOTS> {
         let mut found =
             (Layout { torque: 1.0, count: 1.0, centre: 0.0, ends: None, snap: None }, true);
         if !shapes.is_empty() {
-            found = match sampled(shapes, &mut units) {
-                Ok(found) => found,
-                Err(error) => return Err(error),
-            };
+            found = ok!(sampled(shapes, &mut units));
         }
         let (layout, wraps) = found;
         Ok(Self { units, outline: Outline::of(&units, wraps), layout })
@@ -55,7 +52,7 @@ impl<const KNOTS: usize> ModeTable<KNOTS> {
     pub const fn of(shapes: &[Shape]) -> Self {
         match Self::sampled(shapes) {
             Ok(table) => table,
-            Err(error) => panic!("{}", error.sentence().as_str()),
+            Err(error) => error.refuse(),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use core::f64::consts::TAU;
 
+use super::layout::{Ends, down, nearest};
 use super::shape_error::ShapeError;
 
 /// Bounds on the number of pitches from a centre to its snap point; at the lower bound the branches on both
@@ -80,15 +81,6 @@ pub enum Shape {
     Table(&'static [(f64, f64)]),
     /// The same over a period; the last knot closes the period with the torque of the first.
     Periodic(&'static [(f64, f64)]),
-}
-
-/// The angles in rad within which a shape changes, and the stiffness in N m/rad beyond them; zero if the
-/// torque is constant there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Extent {
-    pub from: f64,
-    pub to: f64,
-    pub stiffness: f64,
 }
 
 impl Shape {
@@ -189,17 +181,18 @@ impl Shape {
         if is_whole { Some(whole as u32) } else { None }
     }
 
-    /// The range in which it changes; `None` if it changes everywhere.
-    pub(super) const fn extent(&self) -> Option<Extent> {
+    /// The range in which it changes, and the stiffness beyond it, zero if the torque is constant there;
+    /// `None` if it changes everywhere.
+    pub(super) const fn extent(&self) -> Option<Ends> {
         Some(match *self {
-            Self::EndStops { from, to, stiffness } => Extent { from, to, stiffness },
-            Self::Centre { width, stiffness } => Extent { from: -width, to: width, stiffness },
+            Self::EndStops { from, to, stiffness } => Ends { from, to, stiffness },
+            Self::Centre { width, stiffness } => Ends { from: -width, to: width, stiffness },
             Self::Bistable { distance, torque } => {
                 let far = 1.5 * distance;
-                Extent { from: -far, to: far, stiffness: 2.0 * torque / distance }
+                Ends { from: -far, to: far, stiffness: 2.0 * torque / distance }
             }
             Self::Table(knots) => {
-                Extent { from: knots[0].0, to: knots[knots.len() - 1].0, stiffness: 0.0 }
+                Ends { from: knots[0].0, to: knots[knots.len() - 1].0, stiffness: 0.0 }
             }
             _ => return None,
         })
@@ -253,8 +246,7 @@ impl Shape {
             Self::Table(knots) => return knots_checked(shape, knots, false),
             Self::Periodic(knots) => return knots_checked(shape, knots, true),
         };
-        let mut i = 0;
-        while i < numbers.len() {
+        each!(i in 0..numbers.len() => {
             let (name, value, is_positive) = numbers[i];
             if !value.is_finite() || value.abs() > LARGEST {
                 let bound = "finite, and of a magnitude up to a million";
@@ -263,8 +255,7 @@ impl Shape {
             if is_positive && value <= 0.0 {
                 return Err(ShapeError::Number { shape, name, value, bound: "greater than 0" });
             }
-            i += 1;
-        }
+        });
         if let Self::Magnet { width, .. } = *self
             && width > 0.5 * TAU
         {
@@ -321,14 +312,12 @@ const fn between(knots: &[(f64, f64)], angle: f64) -> f64 {
     if angle <= knots[0].0 {
         return knots[0].1;
     }
-    let mut i = 1;
-    while i < knots.len() {
+    each!(i in 1..knots.len() => {
         let ((from, below), (to, above)) = (knots[i - 1], knots[i]);
         if angle <= to {
             return below + (above - below) * ((angle - from) / (to - from));
         }
-        i += 1;
-    }
+    });
     knots[knots.len() - 1].1
 }
 
@@ -342,15 +331,4 @@ const fn triangle(periods: f64) -> f64 {
     } else {
         -2.0 - 4.0 * part
     }
-}
-
-/// The largest whole number that is not above `x`, for magnitudes below 2^62.
-pub(super) const fn down(x: f64) -> f64 {
-    let whole = x as i64 as f64;
-    if whole > x { whole - 1.0 } else { whole }
-}
-
-/// The nearest whole number.
-pub(super) const fn nearest(x: f64) -> f64 {
-    down(x + 0.5)
 }

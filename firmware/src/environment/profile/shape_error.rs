@@ -1,8 +1,6 @@
 //! The reasons why shapes do not make a torque profile.
 
-use core::fmt;
-
-use crate::text::Sentence;
+use crate::text::{Sentence, error_with_sentence, push};
 
 /// The reason why shapes do not make a torque profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,67 +62,30 @@ impl ShapeError {
     pub const fn sentence(&self) -> Sentence {
         let mut t = Sentence::new();
         match *self {
-            Self::Empty => t.push("a torque profile needs a shape"),
+            Self::Empty => push!(t, "a torque profile needs a shape"),
             Self::Number { shape, name, value, bound } => {
-                t.push("shape ");
-                t.push_number(shape as f64);
-                t.push(": `");
-                t.push(name);
-                t.push("` is ");
-                t.push_number(value);
-                t.push(", and must be ");
-                t.push(bound);
+                push!(t, "shape " {shape} ": `" {name} "` is " {value} ", and must be " {bound});
             }
             Self::Knot { shape, knot, value, bound, limit } => {
-                t.push("shape ");
-                t.push_number(shape as f64);
-                t.push(", knot ");
-                t.push_number(knot as f64);
-                t.push(": ");
-                t.push_number(value);
-                t.push(" must be ");
-                t.push(bound);
+                push!(t, "shape " {shape} ", knot " {knot} ": " {value} " must be " {bound});
                 if let Some(limit) = limit {
-                    t.push(" ");
-                    t.push_number(limit);
+                    push!(t, " " {limit});
                 }
             }
-            Self::Endless { shape } => {
-                t.push("shape ");
-                t.push_number(shape as f64);
-                t.push(
-                    " does not repeat a whole number of times in a turn, so that it needs end stops to keep \
-                     the angle within its range",
-                );
-            }
-            Self::TooFewKnots { knots, needed } => {
-                t.push("the table has ");
-                t.push_number(knots as f64);
-                t.push(" knots, and its narrowest straight piece takes ");
-                t.push_number(needed);
-            }
-            Self::SecondSnap { shape } => {
-                t.push("shape ");
-                t.push_number(shape as f64);
-                t.push(
-                    " is the second one with a snap point, and a torque profile has one at most",
-                );
-            }
-            Self::Flat => t.push("the torque profile has no torque anywhere"),
-            Self::Mean { mean } => {
-                t.push("the mean of the torque over a period is ");
-                t.push_number(mean);
-                t.push(" N m, and must be 0: it would turn the device for ever, as a motor does");
-            }
+            Self::Endless { shape } => push!(t,
+                "shape " {shape} " does not repeat a whole number of times in a turn, so that it needs end stops to \
+                 keep the angle within its range"),
+            Self::TooFewKnots { knots, needed } => push!(t,
+                "the table has " {knots} " knots, and its narrowest straight piece takes " {needed}),
+            Self::SecondSnap { shape } => push!(t,
+                "shape " {shape} " is the second one with a snap point, and a torque profile has one at most"),
+            Self::Flat => push!(t, "the torque profile has no torque anywhere"),
+            Self::Mean { mean } => push!(t,
+                "the mean of the torque over a period is " {mean}
+                " N m, and must be 0: it would turn the device for ever, as a motor does"),
         }
         t
     }
 }
 
-impl fmt::Display for ShapeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.sentence().as_str())
-    }
-}
-
-impl core::error::Error for ShapeError {}
+error_with_sentence!(ShapeError);

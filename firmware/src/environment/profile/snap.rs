@@ -21,15 +21,21 @@ pub trait Holding<N: Number>: Clone + core::fmt::Debug + Sized {
     /// If a coefficient does not fit the number format, or it does not hold the knob in this way.
     fn of(profile: &Profile, origin: i32) -> Result<Self, BuildError>;
     /// `torque` plus the torque of the branch that holds the knob, in N m, at a place in parts.
-    fn add_to(&self, torque: N, place: i32) -> N;
+    #[inline(always)]
+    fn add_to(&self, torque: N, _place: i32) -> N {
+        torque
+    }
     /// Ends the tick with the environment at a place: the knob snaps if the place is beyond the snap point.
-    fn update(&mut self, place: i32);
+    #[inline(always)]
+    fn update(&mut self, _place: i32) {}
     /// Holds the knob in the detent next to a place.
-    fn rest_at(&mut self, place: i32);
+    fn rest_at(&mut self, _place: i32) {}
     /// Moves the branch that holds the knob by `by` parts, a whole number of turns.
-    fn shift(&mut self, by: i32);
+    fn shift(&mut self, _by: i32) {}
     /// [`SnapPoint::hysteresis`]; infinite without a snap point.
-    fn hysteresis(&self) -> f64;
+    fn hysteresis(&self) -> f64 {
+        f64::INFINITY
+    }
 }
 
 /// No snap point: costs nothing.
@@ -38,26 +44,7 @@ pub struct NoSnap;
 
 impl<N: Number> Holding<N> for NoSnap {
     fn of(profile: &Profile, _: i32) -> Result<Self, BuildError> {
-        match profile.snap {
-            None => Ok(Self),
-            Some(_) => Err(BuildError::Structure),
-        }
-    }
-
-    #[inline(always)]
-    fn add_to(&self, torque: N, _: i32) -> N {
-        torque
-    }
-
-    #[inline(always)]
-    fn update(&mut self, _: i32) {}
-
-    fn rest_at(&mut self, _: i32) {}
-
-    fn shift(&mut self, _: i32) {}
-
-    fn hysteresis(&self) -> f64 {
-        f64::INFINITY
+        if profile.snap.is_none() { Ok(Self) } else { Err(BuildError::Structure) }
     }
 }
 
@@ -155,54 +142,38 @@ impl<N: Number> Holding<N> for Snap<N> {
 }
 
 /// An optional snap point, for profiles as data.
-#[derive(Clone, Debug)]
-pub enum AnySnap<N: Number> {
-    /// None.
-    None(NoSnap),
-    /// One.
-    Snap(Snap<N>),
-}
+pub type AnySnap<N> = Option<Snap<N>>;
 
 impl<N: Number> Holding<N> for AnySnap<N> {
     fn of(profile: &Profile, origin: i32) -> Result<Self, BuildError> {
-        Ok(match profile.snap {
-            None => Self::None(NoSnap),
-            Some(_) => Self::Snap(Snap::of(profile, origin)?),
-        })
+        profile.snap.map(|_| Snap::of(profile, origin)).transpose()
     }
 
     #[inline(always)]
     fn add_to(&self, torque: N, place: i32) -> N {
         match self {
-            Self::None(none) => none.add_to(torque, place),
-            Self::Snap(snap) => snap.add_to(torque, place),
+            Some(snap) => snap.add_to(torque, place),
+            None => torque,
         }
     }
 
     #[inline(always)]
     fn update(&mut self, place: i32) {
-        if let Self::Snap(snap) = self {
+        if let Some(snap) = self {
             snap.update(place);
         }
     }
 
     fn rest_at(&mut self, place: i32) {
-        if let Self::Snap(snap) = self {
-            snap.rest_at(place);
-        }
+        self.iter_mut().for_each(|snap| snap.rest_at(place));
     }
 
     fn shift(&mut self, by: i32) {
-        if let Self::Snap(snap) = self {
-            snap.shift(by);
-        }
+        self.iter_mut().for_each(|snap| snap.shift(by));
     }
 
     fn hysteresis(&self) -> f64 {
-        match self {
-            Self::None(none) => Holding::<N>::hysteresis(none),
-            Self::Snap(snap) => snap.hysteresis(),
-        }
+        self.as_ref().map_or(f64::INFINITY, |snap| snap.hysteresis())
     }
 }
 

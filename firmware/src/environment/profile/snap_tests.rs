@@ -10,14 +10,15 @@ use crate::output_timing::Latched;
 use crate::passivity::poles::UndecidedReason;
 use crate::scene::{Coupling, Latency, Scene};
 use crate::servo::{BuildError, Servo, Transducers};
+use crate::test_scene;
 
 static KNOB: Knots<64> =
     Knots::of(&[Shape::detents(24, 0.02).snap(1.1), Shape::end_stops(-2.0, 2.0, 5.0)]);
 static ENDLESS: Knots<64> =
     Knots::of(&[Shape::detents(24, 0.05).snap(0.6), Shape::detents(8, 0.01)]);
 
-fn scene<E>(environment: E) -> Scene<E> {
-    Scene { torque_limit: Some(0.5), ..tests::scene(environment) }
+fn scene<E: Copy>(environment: E) -> Scene<E> {
+    Scene { torque_limit: Some(0.5), ..test_scene::scene(environment) }
 }
 
 #[test]

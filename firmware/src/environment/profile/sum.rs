@@ -3,8 +3,8 @@
 use core::f64::consts::TAU;
 
 use super::knots::{FULL_SCALE, Knots, Outline};
-use super::layout::{Ends, Layout, SnapPoint};
-use super::shape::{Shape, nearest};
+use super::layout::{Ends, Layout, SnapPoint, nearest};
+use super::shape::Shape;
 use super::shape_error::ShapeError;
 
 impl<const KNOTS: usize> Knots<KNOTS> {
@@ -16,10 +16,8 @@ impl<const KNOTS: usize> Knots<KNOTS> {
     /// If the shapes do not make a profile.
     pub const fn sampled(shapes: &[Shape]) -> Result<Self, ShapeError> {
         let mut units = [0; KNOTS];
-        match sampled(shapes, &mut units) {
-            Ok((layout, wraps)) => Ok(Self::new(units, wraps, layout)),
-            Err(error) => Err(error),
-        }
+        let (layout, wraps) = ok!(sampled(shapes, &mut units));
+        Ok(Self::new(units, wraps, layout))
     }
 
     /// For constants: the same, or a compile error with the reason.
@@ -30,7 +28,7 @@ impl<const KNOTS: usize> Knots<KNOTS> {
     pub const fn of(shapes: &[Shape]) -> Self {
         match Self::sampled(shapes) {
             Ok(knots) => knots,
-            Err(error) => panic!("{}", error.sentence().as_str()),
+            Err(error) => error.refuse(),
         }
     }
 }
@@ -41,19 +39,14 @@ impl<const KNOTS: usize> Knots<KNOTS> {
 /// # Errors
 /// If the shapes do not make a profile.
 pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, bool), ShapeError> {
-    let frame = match Frame::of(shapes, units.len()) {
-        Ok(frame) => frame,
-        Err(error) => return Err(error),
-    };
+    let frame = ok!(Frame::of(shapes, units.len()));
     let mut torque: f64 = match frame.snap {
         Some(Shape::SnapDetents { torque, .. }) => torque,
         _ => 0.0,
     };
-    let mut i = 0;
-    while i < units.len() {
+    each!(i in 0..units.len() => {
         torque = torque.max(frame.torque_at(shapes, i).abs());
-        i += 1;
-    }
+    });
     if torque == 0.0 {
         if frame.ends.is_none() {
             return Err(ShapeError::Flat);
@@ -61,15 +54,13 @@ pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, boo
         // All units are zero for any torque.
         torque = 1.0;
     }
-    let mut i = 0;
-    while i < units.len() {
+    each!(i in 0..units.len() => {
         let part = frame.torque_at(shapes, i) / torque;
         units[i] = nearest(part.abs() * FULL_SCALE as f64) as i16;
         if part < 0.0 {
             units[i] = -units[i];
         }
-        i += 1;
-    }
+    });
     if frame.ends.is_none() {
         let mean = mean(shapes);
         // A smaller mean is less than a unit of a knot.
@@ -91,21 +82,17 @@ pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, boo
 /// Makes the knots exactly odd about the first if they are odd except for rounding; returns whether they are
 /// odd.
 const fn make_odd(units: &mut [i16]) -> bool {
-    let mut i = 0;
-    while i < units.len() {
+    each!(i in 0..units.len() => {
         let mirrored = units[(units.len() - i) % units.len()] as i32;
         if (units[i] as i32 + mirrored).abs() > 1 {
             return false;
         }
-        i += 1;
-    }
+    });
     let half = units.len() / 2;
     (units[0], units[half]) = (0, 0);
-    let mut i = 1;
-    while i < half {
+    each!(i in 1..half => {
         units[units.len() - i] = -units[i];
-        i += 1;
-    }
+    });
     true
 }
 
@@ -127,20 +114,16 @@ const fn balance(units: &mut [i16]) {
 /// The mean torque in N m of periodic tables, by their own knots; the mean of other shapes is zero.
 const fn mean(shapes: &[Shape]) -> f64 {
     let mut mean = 0.0;
-    let mut i = 0;
-    while i < shapes.len() {
+    each!(i in 0..shapes.len() => {
         if let Shape::Periodic(knots) = shapes[i] {
             let mut area = 0.0;
-            let mut k = 1;
-            while k < knots.len() {
+            each!(k in 1..knots.len() => {
                 let ((from, below), (to, above)) = (knots[k - 1], knots[k]);
                 area += 0.5 * (below + above) * (to - from);
-                k += 1;
-            }
+            });
             mean += area / (knots[knots.len() - 1].0 - knots[0].0);
         }
-        i += 1;
-    }
+    });
     mean
 }
 
@@ -170,11 +153,8 @@ impl Frame {
         let mut outermost = None;
         let mut single = None;
         let mut snap = None;
-        let mut i = 0;
-        while i < shapes.len() {
-            if let Err(error) = shapes[i].checked(i) {
-                return Err(error);
-            }
+        each!(i in 0..shapes.len() => {
+            ok!(shapes[i].checked(i));
             if let Shape::SnapDetents { .. } = shapes[i] {
                 if snap.is_some() {
                     return Err(ShapeError::SecondSnap { shape: i });
@@ -182,12 +162,10 @@ impl Frame {
                 snap = Some(shapes[i]);
             }
             narrowest = narrowest.min(shapes[i].narrowest());
-            if let Some(of_this) = shapes[i].extent()
-                && of_this.stiffness > 0.0
+            if let Some(reach) = shapes[i].extent()
+                && reach.stiffness > 0.0
             {
                 let is_stops = matches!(shapes[i], Shape::EndStops { .. });
-                let reach =
-                    Ends { from: of_this.from, to: of_this.to, stiffness: of_this.stiffness };
                 match &mut ends {
                     Some(widest) => {
                         if is_stops && (reach.to - reach.from > widest.to - widest.from) {
@@ -218,8 +196,7 @@ impl Frame {
                 }
                 (None, _) => single = Some(i),
             }
-            i += 1;
-        }
+        });
         let frame = match (single, ends) {
             (Some(shape), None) => return Err(ShapeError::Endless { shape }),
             (Some(_), Some(Ends { from, to, .. })) => {
@@ -254,8 +231,7 @@ impl Frame {
             angle = angle.max(from).min(to);
         }
         let mut sum = 0.0;
-        let mut i = 0;
-        while i < shapes.len() {
+        each!(i in 0..shapes.len() => {
             // The outermost springs act beyond the table.
             let is_beyond = match self.outermost {
                 Some(outermost) => outermost == i,
@@ -264,8 +240,7 @@ impl Frame {
             if !is_beyond && !matches!(shapes[i], Shape::SnapDetents { .. }) {
                 sum += shapes[i].torque_at(angle);
             }
-            i += 1;
-        }
+        });
         sum
     }
 }

@@ -1,39 +1,22 @@
 use core::f64::consts::TAU;
-use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use fixed::types::{I8F24, I16F16};
-use proptest::prelude::*;
 
 use super::*;
-use crate::certificate::{Rejection, certify, certify_in};
+use crate::certificate::{Rejection, certify};
 use crate::coupling::Response;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{Discretize, Law};
-use crate::number::{Format, Number, Truncated};
-use crate::scene::{Coupling, Device, Latency, Scene, Timing};
+use crate::number::{Number, Truncated};
+use crate::scene::{Coupling, Scene};
 use crate::servo::{Servo, Transducers};
+use crate::test_scene::{self, scene};
 
 const DETENTS: Knots<64> = Knots::of(&[Shape::detents(24, 0.02)]);
 const KNOB: Knots<16> = Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-2.0, 2.0, 5.0)]);
 
-pub(super) const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 1.0,
-    largest_speed: 100.0,
-};
-
-/// On the paddle of the examples at 1 kHz, with its torque not limited.
-pub(super) fn scene<E>(environment: E) -> Scene<E> {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
-}
+pub(super) const TRANSDUCERS: Transducers =
+    Transducers { counter: CounterWidth::Bits16, ..test_scene::TRANSDUCERS };
 
 /// Detents with another torque.
 fn detents_of(torque: f64, delay: usize) -> Profile {
@@ -82,15 +65,11 @@ fn end_stops_are_springs_beyond_the_range() {
 /// Against the shapes' own torques, from which the table was sampled.
 #[test]
 fn every_format_gives_the_sum_of_the_shapes() {
-    let knots: &[(f64, f64)] = &[(-1.0, 0.03), (-0.4, -0.01), (0.3, 0.02), (1.0, 0.0)];
     let cases: [&[Shape]; 5] = [
         &[Shape::detents(24, 0.02), Shape::detents(12, 0.01)],
         &[Shape::bistable(0.4, 0.05), Shape::texture(0.2, 0.004)],
         &[Shape::centre(0.5, 0.3), Shape::magnet(0.2, 0.1, 0.02)],
-        &[
-            Shape::Table(knots.first_chunk::<4>().map_or(&[], |_| TABLE)),
-            Shape::end_stops(-1.0, 1.0, 4.0),
-        ],
+        &[Shape::Table(TABLE), Shape::end_stops(-1.0, 1.0, 4.0)],
         &[Shape::detents(24, 0.02), Shape::end_stops(-1.0, 1.2, 4.0)],
     ];
     for shapes in cases {
@@ -157,9 +136,8 @@ fn shapes_that_make_no_sense_are_named() {
             "knot 2: 0.01 must be the torque of the first knot, which closes the period: 0"
         )
     );
-    let motor: &[(f64, f64)] = &[(0.0, 0.0), (0.1, 0.02), (TAU / 24.0, 0.0)];
     assert!(
-        refused(&[Shape::Periodic(motor.first_chunk::<3>().map_or(&[], |_| MOTOR))])
+        refused(&[Shape::Periodic(MOTOR)])
             .starts_with("the mean of the torque over a period is 0.01 N m")
     );
     assert!(refused(&[Shape::detents(360, 0.02), Shape::detents(7, 0.02)]).contains("knots"));
@@ -228,23 +206,6 @@ fn motors_are_refused() {
 const LOPSIDED: &[(f64, f64)] =
     &[(0.0, 0.0), (0.05, 0.03), (0.1, 0.0), (0.18, -0.003 / (TAU / 24.0 - 0.1)), (TAU / 24.0, 0.0)];
 
-/// On the paper's paddle at 1 kHz, in the board's number formats.
-#[test]
-fn every_mode_of_a_knob_is_certified() {
-    for mode in MODES.iter().filter(|mode| !mode.shapes.is_empty()) {
-        let sampled = |knots| Profile::sampled(mode.shapes, vec![0; knots].leak(), 1);
-        let profile = [16, 64, 512].into_iter().find_map(|knots| sampled(knots).ok());
-        let profile = profile.unwrap_or_else(|| panic!("{}: too few knots", mode.name));
-        let scene = Scene { torque_limit: Some(1.0), ..scene(profile.alone()) };
-        for format in [Format::F64, Format::F32, I8F24::FORMAT] {
-            let assessment = certify_in(&scene, format)
-                .unwrap_or_else(|error| panic!("{}: {}", mode.name, error.sentence().as_str()));
-            let renders = assessment.renders_in::<crate::servo::Latched>(&scene);
-            assert!(renders.is_ok(), "{}: {renders:?}", mode.name);
-        }
-    }
-}
-
 /// A position that is far away is that of a turn, to the bit.
 #[test]
 fn nothing_is_lost_after_any_number_of_turns() {
@@ -287,96 +248,5 @@ fn a_turn_that_begins_anew_is_not_felt() {
     let (first, later) = (&torques[6144..12288], &torques[6144 * 20..6144 * 21]);
     for (a, b) in first.iter().zip(later) {
         assert!((a - b).abs() < 1e-4, "{a} {b}");
-    }
-}
-
-/// One passive hand on one device, integrated exactly between ticks.
-fn keeps_moving(profile: &Profile, coupling: Option<f64>, damping: f64, hand: (f64, f64)) -> bool {
-    let period = 1e-3;
-    let (mass, spring) = hand;
-    let context = Scene {
-        device: Device { inertia: mass, damping, passivity: None },
-        coupling: coupling.map_or(Coupling::Rigid, |stiffness| Coupling::Spring { stiffness }),
-        ..scene(())
-    }
-    .context();
-    let mut law = Discretize::<f64>::law(&profile.alone(), &context).unwrap();
-    let (mut x, mut v, mut f) = (0.01, 20.0, 0.0);
-    let mut late = 0.0_f64;
-    let ticks = 60_000;
-    for tick in 0..ticks {
-        if let Response::Held(torque) = law.evaluate(x) {
-            f = torque;
-        }
-        law.update(coupling.map_or(x, |k| x - f / k));
-        // Small steps of the linear device under a held torque, each exact to the second order.
-        let steps = 20;
-        let h = period / f64::from(steps);
-        for _ in 0..steps {
-            let a = (-damping * v - spring * x - f) / mass;
-            let middle = v + 0.5 * h * a;
-            let b = (-damping * middle - spring * (x + 0.5 * h * v) - f) / mass;
-            x += h * middle;
-            v += h * b;
-        }
-        if tick > ticks / 2 {
-            late = late.max(v.abs());
-        }
-        if !v.is_finite() || v.abs() > 1e6 {
-            return true;
-        }
-    }
-    // Places in whole parts of a cell let it creep on by a few of them a tick.
-    late > 0.02
-}
-
-static FOUND: AtomicU32 = AtomicU32::new(0);
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-    /// Certified with little to spare, every hand comes to rest.
-    #[test]
-    fn certified_profiles_come_to_rest(
-        tops in proptest::collection::vec(-1.0..1.0_f64, 2..6),
-        behind_coupling in any::<bool>(),
-        delay in 1..3_usize,
-        mass in -0.5..1.0_f64,
-        angle in prop_oneof![Just(0.0), 0.01..2.5_f64],
-    ) {
-        let mean = tops.iter().sum::<f64>() / tops.len() as f64;
-        let count = tops.len() as f64;
-        let pitch = TAU / 8.0;
-        let mut knots: Vec<(f64, f64)> = tops
-            .iter()
-            .enumerate()
-            .map(|(i, top)| (i as f64 * pitch / count, (top - mean) * 0.1))
-            .collect();
-        knots.push((pitch, knots[0].1));
-        let shapes = [Shape::Periodic(knots.leak())];
-        let units = vec![0; 128].leak();
-        let Ok(profile) = Profile::sampled(&shapes, units, delay) else { return Ok(()) };
-        let at = |damping: f64, coupled: bool| Scene {
-            device: Device { inertia: 1e-4, damping, passivity: None },
-            coupling: if coupled {
-                Coupling::Spring { stiffness: 2e3 * damping }
-            } else {
-                Coupling::Rigid
-            },
-            ..scene(profile.alone())
-        };
-        let (mut fails, mut passes) = (1e-6, 10.0);
-        for _ in 0..40 {
-            let damping = 0.5 * (fails + passes);
-            if certify(&at(damping, behind_coupling)).is_ok() { passes = damping } else { fails = damping }
-        }
-        let damping = 1.01 * passes;
-        let coupling = behind_coupling.then_some(2e3 * damping);
-        // In units of the device's own time constant and of the sampling rate.
-        let mass = 10_f64.powf(mass) * damping * 1e-3;
-        let hand = (mass, mass * (angle / 1e-3).powi(2));
-        prop_assert!(!keeps_moving(&profile, coupling, damping, hand), "{damping} {hand:?}");
-        let less = 0.5 * passes;
-        let coupling = behind_coupling.then_some(2e3 * less);
-        FOUND.fetch_add(u32::from(keeps_moving(&profile, coupling, less, hand)), Relaxed);
     }
 }

@@ -6,14 +6,15 @@ use crate::certificate::{
     Certified, Parameter, QuantizationBound, Resolution, TimingChecked, certify, certify_in,
     certify_scene, timing_checked,
 };
-use crate::encoder::{CounterWidth, RawCount};
+use crate::encoder::RawCount;
 use crate::energy::NoAction;
 use crate::environment::{Canceller, Ends, Environment, Knots, Parts, Profile, Shape, Wall};
 use crate::number::Format;
 use crate::parameter::NamedParameters;
 use crate::passivity::interval::Interval;
-use crate::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
-use crate::servo::{AtPhase, Latched, Servo, Transducers};
+use crate::scene::{Coupling, Latency, Scene, TimeRange, Timing};
+use crate::servo::{AtPhase, Latched, Servo};
+use crate::test_scene::{self, TRANSDUCERS, largest_error};
 
 static ENDLESS: Knots<16> = Knots::of(&[Shape::detents(24, 0.02)]);
 static KNOB: Knots<16> = Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-2.0, 2.0, 5.0)]);
@@ -26,22 +27,8 @@ const UNDELAYED: Wall = Wall::damped(30.0, 0.002, 0);
 /// Of the face of a wall.
 const FACE: f64 = 0.3;
 
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits32,
-    full_scale_torque: 1.0,
-    largest_speed: 100.0,
-};
-
 const fn scene(environment: Environment) -> Scene {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: DAMPING, passivity: None },
-        timing: Timing { period: PERIOD, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: Some(0.5),
-    }
+    Scene { torque_limit: Some(0.5), ..test_scene::scene(environment) }
 }
 
 const fn knob(delay: usize) -> Profile {
@@ -264,28 +251,10 @@ fn a_canceller_beside_a_profile_without_ends_feels_no_turn() {
     assert!(largest < 1e-5 && endless.torque_nm() != 0.0, "{largest}");
 }
 
-/// A servo with a coarse encoder and a DAC against a servo with exact positions.
-fn largest_error<N: Number>(scene: &Scene, counts_per_turn: f64) -> f64 {
-    let servo_of =
-        |counts_per_turn| Transducers { counts_per_turn, largest_speed: 1e4, ..TRANSDUCERS };
-    let certified = scene.certify().unwrap();
-    let mut coarse: Servo<_, N> = Servo::new(&certified, &servo_of(counts_per_turn)).unwrap();
-    let fine = 1024.0 * counts_per_turn;
-    let mut exact: Servo<_, f64> = Servo::new(&certified, &servo_of(fine)).unwrap();
-    let mut largest = 0.0_f64;
-    for tick in 0..20_000 {
-        let angle = 1.5 * (f64::from(tick) * 7e-4).sin() + 0.02 * (f64::from(tick) * 0.13).sin();
-        let count = |counts: f64| (angle * counts / core::f64::consts::TAU).round() as i32;
-        coarse.tick(RawCount::from(count(counts_per_turn).cast_unsigned()));
-        exact.tick(RawCount::from(count(fine).cast_unsigned()));
-        largest = largest.max((coarse.torque_nm() - exact.torque_nm()).abs());
-    }
-    largest
-}
-
 #[test]
 fn no_motion_has_a_torque_farther_off_than_the_bound_on_its_limit_cycle() {
     const COUNTS: f64 = 4096.0;
+    const MOTION: [f64; 2] = [1.5, 0.02];
     let spring = Wall::spring(8.0, 1);
     let residual = 0.016;
     for environment in [
@@ -301,8 +270,8 @@ fn no_motion_has_a_torque_farther_off_than_the_bound_on_its_limit_cycle() {
             ..Resolution::default()
         };
         for (found, format) in [
-            (largest_error::<f32>(&scene, COUNTS), Format::F32),
-            (largest_error::<I8F24>(&scene, COUNTS), Format::Fixed { fraction_bits: 24 }),
+            (largest_error::<f32>(&scene, COUNTS, MOTION), Format::F32),
+            (largest_error::<I8F24>(&scene, COUNTS, MOTION), Format::Fixed { fraction_bits: 24 }),
         ] {
             let bound = QuantizationBound::of(&scene, format, &steps).unwrap();
             let encoder = bound.encoder.unwrap();

@@ -51,22 +51,22 @@ pub struct SampledResponse {
 /// One lag: its time constant, and the fractions of a step that remain after a tick and after the rest of a
 /// tick.
 #[derive(Clone, Copy)]
-struct Decay {
-    tau: Interval,
+pub(crate) struct Decay {
+    pub tau: Interval,
     /// The integral of the rest of a step: the time constant, except with linear interpolation between
     /// updates.
-    held: Interval,
+    pub held: Interval,
     /// The same less the integral of its square: half the time constant, except with linear interpolation
     /// between updates.
-    unspread: Interval,
-    tick: Interval,
-    rest: Interval,
+    pub unspread: Interval,
+    pub tick: Interval,
+    pub rest: Interval,
     /// The rest of the tick.
     over: Interval,
 }
 
 impl Decay {
-    const NONE: Self = Self {
+    pub const NONE: Self = Self {
         tau: Interval::ZERO,
         held: Interval::ZERO,
         unspread: Interval::ZERO,
@@ -75,11 +75,11 @@ impl Decay {
         over: Interval::ZERO,
     };
 
-    const fn of(tau: Interval, part: Interval) -> Self {
+    /// The lag with `over` of a tick left.
+    pub const fn of(tau: Interval, over: Interval) -> Self {
         if tau.is_zero() {
             return Self::NONE;
         }
-        let over = Interval::ONE.sub(part);
         let (tick, rest) = (left(Interval::ONE, tau), left(over, tau));
         Self { tau, held: tau, unspread: tau.half(), tick, rest, over }
     }
@@ -87,8 +87,7 @@ impl Decay {
     /// The lag of a current loop with `updates` updates per period. Not inlined: continuous lags do not need
     /// its frame.
     #[inline(never)]
-    const fn sampled(tau: Interval, part: Interval, updates: u16) -> Self {
-        let over = Interval::ONE.sub(part);
+    pub const fn sampled(tau: Interval, over: Interval, updates: u16) -> Self {
         let lag = SampledLag::of(updates, tau);
         let (tick, rest) = (lag.after(Interval::ONE), lag.after(over));
         Self { tau, held: lag.held(), unspread: lag.unspread(), tick, rest, over }
@@ -142,16 +141,16 @@ impl LagIntervals {
         let whole = self.first_whole() + piece as i32;
         let part = self.delay.sub(Interval::exact(whole as f64));
         let part = part.and(Interval::new(0.0, 1.0));
+        let over = Interval::ONE.sub(part);
         let first = match self.updates {
-            0 => Decay::of(self.lags[0], part),
-            updates => Decay::sampled(self.lags[0], part, updates),
+            0 => Decay::of(self.lags[0], over),
+            updates => Decay::sampled(self.lags[0], over, updates),
         };
-        let second = Decay::of(self.lags[1], part);
-        match (first.tau.is_zero(), second.tau.is_zero()) {
-            (true, true) => SampledResponse::of(whole, part, None, None),
-            (false, true) => SampledResponse::of(whole, part, Some(first), None),
-            (true, false) => SampledResponse::of(whole, part, Some(second), None),
-            (false, false) => SampledResponse::of(whole, part, Some(first), Some(second)),
+        let second = Decay::of(self.lags[1], over);
+        if first.tau.is_zero() {
+            SampledResponse::of(whole, part, second, Decay::NONE)
+        } else {
+            SampledResponse::of(whole, part, first, second)
         }
     }
 }
@@ -217,19 +216,16 @@ impl SampledResponse {
         self.ripple.at(c).div(Series::squared_magnitude(&self.lag).at(c))
     }
 
-    const fn of(
-        whole: i32,
-        part: Interval,
-        first: Option<Decay>,
-        second: Option<Decay>,
-    ) -> Option<Self> {
+    /// If there is one lag, it is the first.
+    const fn of(whole: i32, part: Interval, first: Decay, second: Decay) -> Option<Self> {
         let rest = Interval::ONE.sub(part);
         let held = Polynomial::ascending(&[part, rest]);
         let lateness = Series::constant(part.mul(rest));
-        let Some(first) = first else {
+        if first.tau.is_zero() {
             let lag = Polynomial::ascending(&[Interval::ONE]);
             return Some(Self { whole, bracket: held, lag, ripple: lateness });
-        };
+        }
+        let second = if second.tau.is_zero() { None } else { Some(second) };
         let Some((lag, lost)) = lost(first, second) else { return None };
         let Some(bracket) = bracket(&held, &lag, &lost) else { return None };
         // `1 - part + part z`, the conjugate of the held part.
@@ -261,19 +257,26 @@ const fn lost(first: Decay, second: Option<Decay>) -> Option<(Polynomial, Polyno
     let Some(second) = second else {
         return Some((first.pole(), first.passed().scaled(first.held)));
     };
-    let apart = first.tau.sub(second.tau);
-    if apart.contains(0.0) {
-        return alike(&first, &second);
-    }
-    let weights =
-        [first.tau.mul(first.tau).div(apart), second.tau.mul(second.tau).div(apart.neg())];
+    let Some(weights) = weights([first.tau, second.tau]) else { return alike(&first, &second) };
     let one = first.passed().scaled(weights[0]).times(&second.pole());
     let other = second.passed().scaled(weights[1]).times(&first.pole());
     let (Some(one), Some(other)) = (one, other) else { return None };
-    match first.pole().times(&second.pole()) {
-        Some(lag) => Some((lag, one.plus(&other))),
-        None => None,
+    let lag = some!(first.pole().times(&second.pole()));
+    Some((lag, one.plus(&other)))
+}
+
+/// The weight of each lag in the response of both, `tau_1^2 / (tau_1 - tau_2)` and the like; `None` if the
+/// two are not known to be different.
+pub(crate) const fn weights(lags: [Interval; 2]) -> Option<[Interval; 2]> {
+    let [a, b] = lags;
+    if a.is_zero() || b.is_zero() {
+        return Some([a, b]);
     }
+    let apart = a.sub(b);
+    if apart.contains(0.0) {
+        return None;
+    }
+    Some([a.mul(a).div(apart), b.mul(b).div(apart.neg())])
 }
 
 /// The same for two lags that may be equal: with derivatives with respect to the time constant, between the
@@ -337,18 +340,10 @@ impl Port {
         period: Interval,
         added_ripple: Interval,
     ) -> Result<Self, IndexError> {
-        let h = match stable(controller) {
-            Ok(h) => h,
-            Err(error) => return Err(error),
-        };
+        let h = ok!(stable(controller));
         let out_of_range = IndexError::Undecided(UndecidedReason::OutOfRange);
-        let velocity = match lagging(&h, response, period) {
-            Ok(velocity) => velocity,
-            Err(error) => return Err(error),
-        };
-        if let Err(error) = residues_at_real_points(&velocity) {
-            return Err(error);
-        }
+        let velocity = ok!(lagging(&h, response, period));
+        ok!(residues_at_real_points(&velocity));
         let (kernel, shift) = kernel_of(&velocity);
         let (n, d) = (&velocity.numerator, &velocity.denominator);
         let Some(real) = Series::real_part(kernel, shift, n, d) else { return Err(out_of_range) };
@@ -427,10 +422,7 @@ impl Port {
                 break;
             }
             delta = least.max(f64::MIN_POSITIVE);
-            found = match self.index_for(Interval::exact(delta), &Precision::within(CLOSE)) {
-                Ok(found) => found,
-                Err(error) => return Err(error),
-            };
+            found = ok!(self.index_for(Interval::exact(delta), &Precision::within(CLOSE)));
         }
         // A margin for values computed elsewhere from slightly different decimals; no verdict depends on it.
         Ok(Interval::new(least - ROOM * least, enough + ROOM * enough))

@@ -2,33 +2,24 @@ use fixed::types::I8F24;
 
 use super::*;
 use crate::certificate::{Certified, Rejection, certify_in, certify_scene, first_refused_mode};
-use crate::coupling::{Coupling, Response};
+use crate::coupling::Response;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{Discretize, Environment, Knots, Law, Profile};
 use crate::number::{Format, Number};
 use crate::parameter::Parameter;
-use crate::scene::{Device, Latency, Scene, Timing};
+use crate::scene::Scene;
 use crate::scene_type::Typed;
 use crate::servo::{BuildError, Latched, PreparedServo, RenderingOptions, Servo, Transducers};
-use crate::tuning;
+use crate::{test_scene, tuning};
 
 const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits16,
     full_scale_torque: 2.0,
-    largest_speed: 100.0,
+    ..test_scene::TRANSDUCERS
 };
 
-/// On the paper's paddle at 1 kHz.
 const fn scene(profile: Profile) -> Scene {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: profile.alone(),
-        latency: Latency::NONE,
-        torque_limit: Some(1.0),
-    }
+    Scene { torque_limit: Some(1.0), ..test_scene::scene(profile.alone()) }
 }
 
 /// Late by a sample.

@@ -1,0 +1,50 @@
+//! The scene of the tests.
+
+use crate::encoder::{CounterWidth, RawCount};
+use crate::number::Number;
+use crate::scene::{Coupling, Device, Latency, Scene, Timing};
+use crate::servo::Servo;
+use crate::transducers::Transducers;
+
+/// An environment on the paper's paddle at 1 kHz, behind the standard coupling.
+pub(crate) const fn scene<E: Copy>(environment: E) -> Scene<E> {
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 0.001, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 44.0 },
+        environment,
+        latency: Latency::NONE,
+        torque_limit: None,
+    }
+}
+
+pub(crate) const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits32,
+    full_scale_torque: 1.0,
+    largest_speed: 100.0,
+};
+
+/// The largest difference in N m of the torques of a servo with a coarse encoder and a servo with exact
+/// positions, in `f64`, in a slow and a fast motion of these amplitudes in rad.
+pub(crate) fn largest_error<N: Number>(
+    scene: &Scene,
+    counts_per_turn: f64,
+    [slow, fast]: [f64; 2],
+) -> f64 {
+    let transducers =
+        |counts_per_turn| Transducers { counts_per_turn, largest_speed: 1e4, ..TRANSDUCERS };
+    let certified = scene.certify().unwrap();
+    let fine = 1024.0 * counts_per_turn;
+    let mut coarse = Servo::<_, N>::new(&certified, &transducers(counts_per_turn)).unwrap();
+    let mut exact = Servo::<_, f64>::new(&certified, &transducers(fine)).unwrap();
+    let mut largest = 0.0_f64;
+    for tick in 0..20_000 {
+        let angle = slow * (f64::from(tick) * 7e-4).sin() + fast * (f64::from(tick) * 0.13).sin();
+        let count = |counts: f64| (angle * counts / core::f64::consts::TAU).round() as i32;
+        coarse.tick(RawCount::from(count(counts_per_turn)));
+        exact.tick(RawCount::from(count(fine)));
+        largest = largest.max((coarse.torque_nm() - exact.torque_nm()).abs());
+    }
+    largest
+}
