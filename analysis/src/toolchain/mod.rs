@@ -1,6 +1,6 @@
 //! Builds programs for the board; no other module knows how.
 //!
-//! [`prepare`] observes the machine, decides its needs, provides them, and returns a [`Toolchain`], which
+//! [`prepare()`] observes the machine, decides its needs, provides them, and returns a [`Toolchain`], which
 //! everything else uses.
 
 mod apt;
