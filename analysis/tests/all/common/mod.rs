@@ -1,5 +1,7 @@
 //! Shared by the tests of the program: a scene, and the program as a process.
 
+pub mod board;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -22,19 +24,6 @@ damping = 0.01
 delay = 1
 "#;
 
-/// Its simulation, for a report that shows it.
-pub const MOTION: &str = r#"
-[simulation]
-samples = 300
-torque_sine = { amplitude = 1.5, omega = 60.0, phase = 0.0 }
-[human]
-inertia = 1e-4
-damping = 0.02
-stiffness = 4.0
-[limits]
-torque = 0.5
-"#;
-
 /// The program, to be started.
 pub fn program(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_haptic"));
@@ -49,12 +38,13 @@ pub fn haptic(arguments: &[&str]) -> Output {
 
 /// Runs the program with something on its standard input.
 pub fn haptic_reading(arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = program(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    with_input(&mut program(arguments), input)
+}
+
+/// Runs a program with something on its standard input.
+pub fn with_input(program: &mut Command, input: &[u8]) -> Output {
+    program.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = program.spawn().unwrap();
     let mut stdin = child.stdin.take().unwrap();
     let input = input.to_vec();
     // A program that has seen enough may close its input.
@@ -89,6 +79,18 @@ pub fn complaint(output: Output) -> String {
 /// The repository.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+}
+
+/// The documents of users, as paths from the repository.
+pub fn documents() -> Vec<String> {
+    let folders = ["", "docs/", "firmware/", "analysis/virtual-board/"];
+    let of_folder = |folder: &str| {
+        let files = std::fs::read_dir(root().join(folder)).unwrap();
+        let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+        let documents = names.filter(|name| name.ends_with(".md"));
+        documents.map(|name| format!("{folder}{name}")).collect::<Vec<_>>()
+    };
+    folders.into_iter().flat_map(of_folder).collect()
 }
 
 /// A file's text.
