@@ -69,15 +69,9 @@ fn run(folder: &Path, case: &str) {
     let fields = fields(case);
     let (command, into) = fields[1].split_once(" > ").unwrap_or((&fields[1], ""));
     let (command, from) = command.split_once(" < ").unwrap_or((command, ""));
-    let mut command = words(&command.replace("PICTURES", PICTURES)).iter().fold(
-        program(&[]),
-        |mut program, word| {
-            program.arg(word);
-            program
-        },
-    );
+    let words = words(&command.replace("PICTURES", PICTURES));
     let input = if from.is_empty() { String::new() } else { read(folder.join(from)) };
-    let output = with_input(command.current_dir(folder), input.as_bytes());
+    let output = with_input(program(&[]).args(words).current_dir(folder), input.as_bytes());
     let status = output.status.code().expect("an exit status").to_string();
     let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
     if !into.is_empty() {
