@@ -1,5 +1,5 @@
-//! The constants that the page writes for a scene are compiled here, and are that scene to the last bit: those of
-//! presets, and of scenes with what the presets have not, which are files beside the constants.
+//! The constants that the page writes for a scene are compiled here, and are that scene to the last bit: those
+//! of presets, and of scenes with what the presets have not, which are files beside the constants.
 //!
 //! `CONSTANTS=overwrite` keeps new ones in `tests/constants`.
 #![cfg(not(target_os = "none"))]

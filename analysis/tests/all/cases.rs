@@ -14,7 +14,8 @@ pub fn lines(text: &str) -> impl Iterator<Item = String> {
     })
 }
 
-/// A line for each of its alternatives: `<a,b>` is `a` in one and `b` in the other, and `<>` is the same again.
+/// A line for each of its alternatives: `<a,b>` is `a` in one and `b` in the other, and `<>` is the same
+/// again.
 pub fn alternatives(line: &str) -> Vec<String> {
     let mut groups = line.match_indices('<').filter_map(|(start, _)| {
         let (group, _) = line[start + 1..].split_once('>')?;

@@ -3,8 +3,8 @@
 //! A session is a text file in `sessions`, which begins with `wall.toml` in its folder:
 //! - `file NAME` and lines up to an empty one, or `file NAME = OTHER && FROM => TO`: a file is written.
 //! - `board NAME`: the simulated board of a program is started, which listens on `--port PORT`.
-//! - `STATUS | ARGUMENTS | WORDS | ...`: a command is run. `STATUS` may name several. `< FILE` and `> FILE` are
-//!   its input and output. `WORDS` are part of the output, or of a file behind `FILE: `; `!WORDS` are not.
+//! - `STATUS | ARGUMENTS | WORDS | ...`: a command is run. `STATUS` may name several. `< FILE` and `> FILE`
+//!   are its input and output. `WORDS` are part of the output, or of a file behind `FILE: `; `!WORDS` are not.
 //!
 //! See `cases.rs` for what shortens both.
 

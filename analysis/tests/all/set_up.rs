@@ -42,7 +42,7 @@ impl Machine {
         assert!(installed.unwrap().success());
     }
 
-    /// Sets up without a terminal; gives what is said of it.
+    /// Sets up without a terminal; gives its messages.
     fn set_up(&self) -> String {
         let mut command =
             program(&["flash", "damper_wall", "--board", "nucleo-g474re", "--build-only"]);

@@ -109,8 +109,8 @@ fn delayed_wall(stiffness: f64, damping: f64, coupling: f64) -> impl FnMut(&Real
     }
 }
 
-/// The paper's wall; the same in a hand that pushes; and a loop just past the line, whose growing motion must grow
-/// by the right factor.
+/// The paper's wall; the same in a hand that pushes; and a loop just past the line, whose motion must grow by
+/// the right factor.
 #[test]
 fn walls() {
     let held = Hand { inertia: 1e-4, damping: 0.003, stiffness: 6.0 };
@@ -194,8 +194,8 @@ fn chain_with_lag_and_sine() {
     let (k, c) = (r(links[0].stiffness), r(links[0].damping));
     let first = r(masses[0].inertia);
     let over = |x: &Real, m: &Real| x.clone() / m.clone();
-    // States: x1, v1, x2, v2, motor torque, hand's sine and cosine; then the motor's command. Each row has what
-    // is not zero.
+    // States: x1, v1, x2, v2, motor torque, hand's sine and cosine; then the motor's command. Each row has its
+    // numbers that are not zero.
     let rows: [&[(usize, Real)]; 7] = [
         &[(1, r(1.0))],
         &[

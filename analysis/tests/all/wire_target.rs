@@ -1,4 +1,5 @@
-//! The emulated board, over its serial port, while its servo runs in lockstep with a device that is held still.
+//! The emulated board, over its serial port, while its servo runs in lockstep with a device that is held
+//! still.
 
 use std::collections::BTreeSet;
 use std::io::{BufReader, Read, Write};

@@ -1,11 +1,12 @@
-//! Tests that need a tool: where it is missing, and cannot be installed, they report this and count as ignored.
+//! Tests that need a tool: where it is missing, and cannot be installed, they report this and count as
+//! ignored.
 
 use std::process::{Command, ExitCode};
 
 use libtest_mimic::{Arguments, Completion, Trial};
 
-/// Runs tests, each with its name. All but the first are ignored unless they are asked for by a part of a name or
-/// `--include-ignored`. `kind` is shown for tests without their tool, and `what` is what they do with it.
+/// Runs tests, each with its name. All but the first are ignored unless they are asked for by a part of a name
+/// or `--include-ignored`. `kind` is shown for tests without their tool, and `what` is what they do with it.
 pub fn run<T: FnOnce() + Send + 'static>(
     kind: &str,
     what: &str,

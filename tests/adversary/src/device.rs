@@ -86,7 +86,7 @@ pub struct Step {
 }
 
 impl HeldDevice {
-    /// A device of this damping in a hand, whose inertia is that of both, with an amplifier and a sensor that may lag.
+    /// A device of this damping in a hand, whose inertia is that of both. Amplifier and sensor may lag.
     pub fn new(hand: &Hand, damping: f64, lags: &Lags) -> Self {
         let most = lags.segments();
         let mut mass = [hand.inertia, 1.0, 1.0];

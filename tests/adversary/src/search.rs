@@ -112,10 +112,7 @@ impl std::fmt::Display for Counterexample {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { seed, number, outcome, .. } = self;
         let gain = outcome.gained - outcome.allowed;
-        write!(
-            f,
-            "ADVERSARY_SEED={seed}, scene {number}: {gain:.3e} above what is allowed: {self:?}"
-        )
+        write!(f, "ADVERSARY_SEED={seed}, scene {number}: {gain:.3e} above the allowance: {self:?}")
     }
 }
 

@@ -1,5 +1,5 @@
-//! The search finds what wrong rules let pass: the same scenes, hands and patterns as in the search for what the
-//! product lets pass.
+//! The search finds what wrong rules let pass: the same scenes, hands and patterns as in the search for what
+//! the product lets pass.
 
 use adversary::planted::Planted;
 use adversary::scenes::Choice;

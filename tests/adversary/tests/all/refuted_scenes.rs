@@ -4,7 +4,8 @@
 use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-/// A name; the scene; and what it is to a certificate that cancels what numerator and denominator have in common.
+/// A name; the scene; and the same for a certificate that cancels the common factors of numerator and
+/// denominator.
 pub type RefutedScene = (&'static str, Scene, Option<Scene>);
 
 /// The device of the paper in a scene.
