@@ -187,15 +187,3 @@ fn a_port_without_a_sweep_says_what_to_flash() {
         assert_eq!(record, None);
     }
 }
-
-#[test]
-fn a_record_is_kept_of_what_is_measured_and_a_port_excludes_a_file() {
-    for arguments in [
-        &["identify", "r.csv", "--counts-per-rev", "4096", "--record", "s.csv"][..],
-        &["identify", "r.csv", "--port", "unix:/nowhere"],
-        &["identify", "--port", "unix:/nowhere", "--target", "host"],
-    ] {
-        let output = haptic(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    }
-}

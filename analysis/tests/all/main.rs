@@ -3,12 +3,9 @@
 //! those of one file.
 
 mod bench;
-mod charts;
+mod cases;
 mod closed_loop;
 mod common;
-mod composed;
-mod device_files;
-mod filters;
 mod haptic;
 #[cfg(unix)]
 mod identify_port;
@@ -20,12 +17,12 @@ mod profiles;
 mod python_client;
 mod readme;
 mod reference;
+mod refused;
 mod scene_files;
 mod serve;
+mod sessions;
 mod set_up;
-mod simulate_program;
 mod simulation_reference;
-mod snaps;
 mod terminal;
 mod virtual_board;
 mod wire;

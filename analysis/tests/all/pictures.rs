@@ -4,34 +4,14 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::common::{program, read, root};
-
-/// The documents that show them.
-const DOCUMENTS: [&str; 8] = [
-    "README.md",
-    "docs/build.md",
-    "docs/certify.md",
-    "docs/charts.md",
-    "docs/measure.md",
-    "docs/rate-and-format.md",
-    "docs/set-up.md",
-    "docs/torque-profiles.md",
-];
+use crate::cases::words;
+use crate::common::{documents, program, read, root};
 
 /// The commands of the guide that draw, each as its arguments.
 fn commands(guide: &str) -> Vec<Vec<String>> {
     let (_, marked) = guide.split_once("<!-- pictures -->\n```sh\n").expect("a marked block");
     let (lines, _) = marked.split_once("```").expect("an end");
     lines.lines().map(|line| words(line.strip_prefix("cargo haptic ").unwrap())).collect()
-}
-
-/// The words of a command line, of which some are in quotes.
-fn words(line: &str) -> Vec<String> {
-    let part = |(index, part): (usize, &str)| match index % 2 {
-        0 => part.split_whitespace().map(str::to_owned).collect(),
-        _ => vec![part.to_owned()],
-    };
-    line.split('"').enumerate().flat_map(part).collect()
 }
 
 #[test]
@@ -59,13 +39,13 @@ fn the_pictures_of_the_documents_are_what_commands_draw() {
         drawn.push(kept);
     }
     // Every picture that is shown or kept is drawn by a command.
-    for document in DOCUMENTS {
-        let text = read(root().join(document));
+    for document in documents() {
+        let text = read(root().join(&document));
         let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
         // All are in the repository's root or one folder deep.
         let shown = links.map(|link| link.strip_prefix("../").unwrap_or(link));
-        let of_tables = |link: &&str| link.starts_with(TABLES);
-        for picture in shown.filter(|link| link.ends_with(".svg") && !of_tables(link)) {
+        let is_kept = |link: &&str| link.starts_with("analysis/") && !link.starts_with(TABLES);
+        for picture in shown.filter(|link| link.ends_with(".svg") && is_kept(link)) {
             assert!(drawn.contains(&PathBuf::from(picture)), "{document}: {picture}");
         }
     }
@@ -74,16 +54,6 @@ fn the_pictures_of_the_documents_are_what_commands_draw() {
         let file = file.strip_prefix(root()).unwrap().to_owned();
         let is_drawn = drawn.contains(&file) || [TABLES, PAGE].map(Path::new).contains(&&*file);
         assert!(is_drawn || file.extension().unwrap() == "toml", "{file:?}");
-    }
-}
-
-/// The documents state that they are certified.
-#[test]
-fn the_scenes_of_the_pictures_are_certified() {
-    for name in ["wall.toml", "push.toml", "detents.toml", "snap.toml"] {
-        let scene = root().join("analysis/pictures").join(name);
-        let judged = program(&["certify"]).arg(scene).output().unwrap();
-        assert_eq!(judged.status.code(), Some(0), "{name}: {judged:?}");
     }
 }
 

@@ -4,7 +4,8 @@
 use std::io::BufRead;
 use std::process::{Command, Output, Stdio};
 
-use crate::common::{BoardProcess, answer, root, tool};
+use crate::common::board::BoardProcess;
+use crate::common::{answer, root, tool};
 use haptic_servo::certificate::Parameter;
 use haptic_servo::current::IndexOffset;
 use haptic_servo::dac::DacCode;
@@ -150,54 +151,8 @@ fn reads_every_message_to_the_host() {
         ToHost::Telemetry(batch),
         ToHost::Described(description()),
     ];
-    let code = json!({"code": 2, "first": 5000, "second": 979});
-    let read = json!([
-        ["welcome", {"protocol": PROTOCOL, "program": "damper_wall"}],
-        ["board", {"period": 0.001, "timer_counts": 170_000, "counts_per_turn": 61_440.0,
-                   "full_scale_torque": 2.0, "energy_step": 0.25, "longest_gap": 0.036}],
-        ["running", {"sets": 2, "margin": null, "values": [{"parameter": 15, "value": 0.1}]}],
-        ["status", {"state": 4, "fault": code, "link_lost": true, "tick": u32::MAX,
-                    "count": -70_000_000_000_i64, "sets": 3, "missed": 4, "worst_slack": 170_000,
-                    "energy": i64::MIN, "worst_deficit": i64::MAX, "dropped": 5, "thinned": 6,
-                    "discarded": {"broken": 7, "too_long": 8, "checksum": 9, "unknown": 10},
-                    "stack_left": 2048, "reset": 3, "low_brown_out": true,
-                    "power": {"current": -412, "reference": i32::MIN, "voltage": u32::MAX,
-                              "temperature": -15,
-                              "index": {"counts": 16_777_215, "is_reversed": true}}}],
-        ["answer", {"id": 65_535, "refused": {"type": "set", "step": {"type": "servo"}}}],
-        ["answer", {"id": 7, "refused": {"type": "fault", "fault": code}}],
-        ["answer", {"id": 0, "refused": null}],
-        ["remembered", {"fault": code, "tick": 300, "count": -1}],
-        ["telemetry", {"ticks": [
-            {"later": u32::MAX, "moved": -40, "code": 4095, "limit": 5, "state": 3, "slack": 79},
-            {"later": 2, "moved": i32::MAX.wrapping_add(40), "code": 0, "limit": 5, "state": 3,
-             "slack": 79}]}],
-        ["described", {
-            "scene": {
-                "device": {"inertia": 0.25, "damping": 0.022, "passivity": 0.02},
-                "timing": {"period": 0.001, "worst_period": null},
-                "coupling": {"type": "spring", "stiffness": 44.0},
-                "environment": {
-                    "type": "parts", "canceller": {"residual": 0.01, "delay": 0},
-                    "wall": {"stiffness": 22.0, "damper": {"damping": 0.01, "filter": 0.5},
-                             "side": {"type": "face", "position": -0.1}, "delay": 300},
-                    "profile": null},
-                "latency": {
-                    "output_delay": {"least": 0.0, "most": 0.0}, "output_jitter": 0.0,
-                    "count_jitter": 0.0,
-                    "actuator_lag": {"least": 0.0, "most": 0.0},
-                    "sensor_lag": {"least": 0.0, "most": 0.0},
-                    "actuator_response": {"least": 0.0, "most": 0.0},
-                    "actuator_updates": 0},
-                "torque_limit": 1.5,
-            },
-            "transducers": {"counts_per_turn": 61_440.0, "counter": {"type": "16"},
-                            "full_scale_torque": 2.0, "largest_speed": 100.0},
-            "rendering": {"fade": 0.1, "injection": null, "returned": null},
-            "format": {"type": "fixed", "fraction_bits": 24},
-            "timing": {"type": "latched"},
-        }],
-    ]);
+    let read = include_str!("messages.txt").replace("PROTOCOL", &PROTOCOL.to_string());
+    let read: Value = serde_json::from_str(&read).unwrap();
     assert_eq!(printed(DECODE, &messages.map(|message| framed(&message))), read);
 }
 

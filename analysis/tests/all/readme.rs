@@ -2,32 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::{answer, haptic, program, read, root};
-
-/// The documents that name commands of the program.
-const DOCUMENTS: [&str; 21] = [
-    "README.md",
-    "ARCHITECTURE.md",
-    "CHANGELOG.md",
-    "CONTRIBUTING.md",
-    "docs/build.md",
-    "docs/certify.md",
-    "docs/charts.md",
-    "docs/guarantees.md",
-    "docs/knob-modes.md",
-    "docs/measure.md",
-    "docs/power-stage.md",
-    "docs/rate-and-format.md",
-    "docs/set-up.md",
-    "docs/torque-profiles.md",
-    "docs/hardware-report.md",
-    "firmware/boards.md",
-    "firmware/PROTOCOL.md",
-    "firmware/THEORY.md",
-    "firmware/TROUBLESHOOTING.md",
-    "analysis/virtual-board/bridge-faults.md",
-    "analysis/virtual-board/faults.md",
-];
+use crate::common::{answer, documents, haptic, program, read, root};
 
 /// The fenced block behind `<!-- name -->` in a document.
 pub fn block(document: &str, name: &str) -> String {
@@ -141,8 +116,8 @@ fn options(text: &str) -> impl Iterator<Item = &str> {
 #[test]
 fn commands_and_options_that_documents_name_are_there() {
     let mut count = 0;
-    for document in DOCUMENTS {
-        for line in read(root().join(document)).lines() {
+    for document in documents() {
+        for line in read(root().join(&document)).lines() {
             let after = |word| line.split_once(word).map(|(_, after)| after);
             let Some(after) = after("cargo haptic ").or_else(|| after("`haptic ")) else {
                 continue;

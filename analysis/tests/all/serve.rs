@@ -15,8 +15,7 @@ use tungstenite::protocol::CloseFrame;
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Error, Message, WebSocket};
 
-use crate::common::haptic;
-use crate::wire::Rig;
+use crate::wire::off;
 
 type Socket = WebSocket<MaybeTlsStream<TcpStream>>;
 
@@ -74,6 +73,14 @@ fn ask(server: &Server, origin: Option<&str>, token: &str) -> Result<Socket, tun
 
 fn connect(server: &Server) -> Socket {
     ask(server, Some("null"), &server.token()).unwrap()
+}
+
+/// A board, and a page that has heard that its port is open.
+fn connected() -> (FakeBoard, Socket) {
+    let board = FakeBoard::new();
+    let mut socket = connect(&board.server);
+    assert_eq!(text(&mut socket), json!({ "port": "open" }));
+    (board, socket)
 }
 
 /// The next text, as JSON.
@@ -222,9 +229,7 @@ fn the_wire_is_for_the_own_page_and_a_file_alone() {
 
 #[test]
 fn bytes_are_unchanged_both_ways() {
-    let mut board = FakeBoard::new();
-    let mut socket = connect(&board.server);
-    assert_eq!(text(&mut socket), json!({ "port": "open" }));
+    let (mut board, mut socket) = connected();
     let mut random = fastrand::Rng::with_seed(5);
     for length in [1, 2, 255, 256, 4096] {
         let all: Vec<u8> =
@@ -240,7 +245,7 @@ fn bytes_are_unchanged_both_ways() {
 
 #[test]
 fn a_simulated_board_answers_through_the_socket() {
-    let rig = Rig::off(Pacing::RealTime);
+    let (_, rig) = off(Pacing::RealTime);
     let server = serve(&rig.port().parse().unwrap());
     let mut socket = connect(&server);
     let mut buffer = [0; 64];
@@ -260,9 +265,7 @@ fn a_simulated_board_answers_through_the_socket() {
 
 #[test]
 fn a_second_page_is_refused_and_the_first_goes_on() {
-    let mut board = FakeBoard::new();
-    let mut first = connect(&board.server);
-    text(&mut first);
+    let (mut board, mut first) = connected();
     let refused = close(&mut connect(&board.server));
     assert_eq!(u16::from(refused.code), IN_USE);
     assert!(refused.reason.contains("another page has the board"), "{refused:?}");
@@ -279,9 +282,7 @@ fn a_second_page_is_refused_and_the_first_goes_on() {
 
 #[test]
 fn a_port_that_is_lost_is_said_and_opened_again() {
-    let mut board = FakeBoard::new();
-    let mut socket = connect(&board.server);
-    assert_eq!(text(&mut socket), json!({ "port": "open" }));
+    let (mut board, mut socket) = connected();
     drop(board.stream);
     let lost = text(&mut socket);
     assert_eq!(lost["port"], "lost");
@@ -306,9 +307,7 @@ fn a_port_that_is_lost_is_said_and_opened_again() {
 
 #[test]
 fn a_page_that_does_not_read_does_not_stop_the_port() {
-    let mut board = FakeBoard::new();
-    let mut slow = connect(&board.server);
-    text(&mut slow);
+    let (mut board, mut slow) = connected();
     // More than all buffers of the system and of the server together.
     let chunk = vec![7; 1 << 20];
     for _ in 0..64 {
@@ -362,9 +361,7 @@ fn a_page_that_says_text_or_too_much_at_once_is_sent_away() {
 
 #[test]
 fn a_server_that_ends_says_so() {
-    let mut board = FakeBoard::new();
-    let mut socket = connect(&board.server);
-    text(&mut socket);
+    let (mut board, mut socket) = connected();
     let server = std::thread::spawn(move || drop(board.server));
     assert!(close(&mut socket).reason.contains("haptic serve was ended"));
     drop(socket);
@@ -389,19 +386,6 @@ fn other_machines_are_not_served() {
             "{refused}"
         );
     }
-    for (arguments, part) in [
-        (["serve", "--port", "unix:/nowhere", "--listen", "0.0.0.0:0"], "from other machines"),
-        (["serve", "--port", "unix:/nowhere", "--listen", "localhost"], "expected 127.0.0.1:8080"),
-        (
-            ["serve", "--port", "unix:/nowhere/board", "--listen", "127.0.0.1:0"],
-            "cannot open unix:/nowhere/board",
-        ),
-    ] {
-        let run = haptic(&arguments);
-        let said = String::from_utf8_lossy(&run.stderr).into_owned();
-        assert_eq!(run.status.code(), Some(2), "{said}");
-        assert!(said.contains(part), "{said}");
-    }
 }
 
 /// A client that opens a connection and sends only a part of a request.
@@ -412,10 +396,8 @@ fn half_open(server: &Server) -> TcpStream {
 }
 
 #[test]
-fn clients_that_send_half_a_request_do_not_lock_the_page_out() {
-    let mut board = FakeBoard::new();
-    let mut socket = connect(&board.server);
-    text(&mut socket);
+fn clients_without_the_token_do_not_lock_the_page_out() {
+    let (mut board, mut socket) = connected();
     let (host, target) =
         (board.server.address().to_string(), format!("/?token={}", board.server.token()));
     // On a machine with other work one try may be slow.
@@ -430,26 +412,18 @@ fn clients_that_send_half_a_request_do_not_lock_the_page_out() {
         took < Duration::from_secs(1)
     });
     assert!(was_quick);
-    // A page that has sent the token keeps its place.
-    board.stream.write_all(b"still").unwrap();
-    assert_eq!(bytes(&mut socket, 5), b"still");
-}
-
-/// The same of clients that have an answer and do not close.
-#[test]
-fn clients_without_the_token_do_not_lock_the_page_out() {
-    let board = FakeBoard::new();
-    let server = &board.server;
-    let (host, target) = (server.address().to_string(), format!("/?token={}", server.token()));
-    let refused: Vec<TcpStream> = (0..40)
+    // The same of clients that have an answer and do not close.
+    let _refused: Vec<TcpStream> = (0..40)
         .map(|_| {
-            let mut stream = TcpStream::connect(server.address()).unwrap();
+            let mut stream = TcpStream::connect(board.server.address()).unwrap();
             stream.write_all(b"GET / HTTP/1.1\r\n\r\n").unwrap();
             stream
         })
         .collect();
-    assert_eq!(get(server, &target, &host, "").0, 200);
-    drop(refused);
+    assert_eq!(get(&board.server, &target, &host, "").0, 200);
+    // A page that has sent the token keeps its place.
+    board.stream.write_all(b"still").unwrap();
+    assert_eq!(bytes(&mut socket, 5), b"still");
 }
 
 /// Waits for the end of a server, on a slow machine.
@@ -464,9 +438,7 @@ fn assert_ends(server: Server) {
 
 #[test]
 fn a_page_that_reads_slowly_does_not_keep_the_server_from_its_end() {
-    let mut board = FakeBoard::new();
-    let mut slow = connect(&board.server);
-    text(&mut slow);
+    let (mut board, slow) = connected();
     let chunk = vec![7; 1 << 20];
     for _ in 0..16 {
         board.stream.write_all(&chunk).unwrap();
@@ -483,9 +455,7 @@ fn a_page_that_reads_slowly_does_not_keep_the_server_from_its_end() {
 
 #[test]
 fn a_page_that_sends_without_pause_still_gets_the_bytes_of_the_board() {
-    let mut board = FakeBoard::new();
-    let mut socket = connect(&board.server);
-    text(&mut socket);
+    let (mut board, mut socket) = connected();
     let MaybeTlsStream::Plain(stream) = socket.get_ref() else { unreachable!() };
     let sending = stream.try_clone().unwrap();
     std::thread::spawn(move || {

@@ -109,37 +109,26 @@ fn delayed_wall(stiffness: f64, damping: f64, coupling: f64) -> impl FnMut(&Real
     }
 }
 
+/// The paper's wall; the same in a hand that pushes; and a loop just past the line, whose motion must grow by
+/// the right factor.
 #[test]
-fn papers_wall() {
-    let start = Motion { position: 0.001, velocity: 0.0 };
-    let environment = Wall::damped(22.0, 0.01, 1).alone();
-    let servo = delayed_wall(22.0, 0.01, 44.0);
-    let reference = run(&rigid(Hand::default()), &[0.001, 0.0], servo, |_| 0.0);
-    compare("paper's wall", &experiment(environment, Some(44.0), start), &reference);
-}
-
-#[test]
-fn wall_in_a_hand_that_pushes() {
-    let hand = Hand { inertia: 1e-4, damping: 0.003, stiffness: 6.0 };
-    let torque: Vec<f64> = (0..700).map(|k| 0.05 * f64::from((k * 37) % 101) / 101.0).collect();
-    let environment = Wall::damped(22.0, 0.01, 1).alone();
-    let mut experiment = experiment(environment, Some(44.0), Motion::default());
-    experiment.plant = Plant::rigid(DEVICE).with_hand(hand);
-    experiment.hand_torque = TorqueSignal::Held(torque.clone());
-    let at = |k: usize| torque.get(k).copied().unwrap_or(0.0);
-    let servo = delayed_wall(22.0, 0.01, 44.0);
-    let reference = run(&rigid(hand), &[0.0, 0.0], servo, at);
-    compare("wall in a hand", &experiment, &reference);
-}
-
-/// A loop just past the line: a growing motion must grow by the right factor.
-#[test]
-fn loop_that_grows() {
-    let start = Motion { position: 0.0, velocity: 0.1 };
-    let environment = Wall::damped(50.0, 0.0, 1).alone();
-    let servo = delayed_wall(50.0, 0.0, 44.0);
-    let reference = run(&rigid(Hand::default()), &[0.0, 0.1], servo, |_| 0.0);
-    compare("loop that grows", &experiment(environment, Some(44.0), start), &reference);
+fn walls() {
+    let held = Hand { inertia: 1e-4, damping: 0.003, stiffness: 6.0 };
+    let push: Vec<f64> = (0..700).map(|k| 0.05 * f64::from((k * 37) % 101) / 101.0).collect();
+    let free = Hand::default();
+    for (name, [stiffness, damping], hand, push, [position, velocity]) in [
+        ("paper's wall", [22.0, 0.01], free, Vec::new(), [0.001, 0.0]),
+        ("wall in a hand", [22.0, 0.01], held, push, [0.0, 0.0]),
+        ("loop that grows", [50.0, 0.0], free, Vec::new(), [0.0, 0.1]),
+    ] {
+        let environment = Wall::damped(stiffness, damping, 1).alone();
+        let mut experiment = experiment(environment, Some(44.0), Motion { position, velocity });
+        experiment.plant = Plant::rigid(DEVICE).with_hand(hand);
+        experiment.hand_torque = TorqueSignal::Held(push.clone());
+        let at = |k: usize| push.get(k).copied().unwrap_or(0.0);
+        let servo = delayed_wall(stiffness, damping, 44.0);
+        compare(name, &experiment, &run(&rigid(hand), &[position, velocity], servo, at));
+    }
 }
 
 /// Equation 23: `(3b - eps) F(k) = (b - eps) F(k-1) - (2 b be / T) (x_E(k) - x_E(k-1))`, solved
@@ -201,43 +190,43 @@ fn chain_with_lag_and_sine() {
     let mut experiment = experiment(environment, None, Motion::default());
     experiment.plant = Plant::chain(&masses, &links).with_hand(hand).with_actuator_lag(lag);
     experiment.hand_torque = TorqueSignal::Sine { amplitude, omega, phase };
-    let zero = || r(0.0);
     let last = r(masses[1].inertia) + r(hand.inertia);
     let (k, c) = (r(links[0].stiffness), r(links[0].damping));
     let first = r(masses[0].inertia);
-    // States: x1, v1, x2, v2, motor torque, hand's sine and cosine; then the motor's command.
-    let over = |x: Real, m: &Real| x / m.clone();
-    let rates = vec![
-        vec![zero(), r(1.0), zero(), zero(), zero(), zero(), zero(), zero()],
-        vec![
-            over(-k.clone(), &first),
-            over(-(c.clone() + r(masses[0].damping)), &first),
-            over(k.clone(), &first),
-            over(c.clone(), &first),
-            over(r(1.0), &first),
-            zero(),
-            zero(),
-            zero(),
+    let over = |x: &Real, m: &Real| x.clone() / m.clone();
+    // States: x1, v1, x2, v2, motor torque, hand's sine and cosine; then the motor's command. Each row has its
+    // numbers that are not zero.
+    let rows: [&[(usize, Real)]; 7] = [
+        &[(1, r(1.0))],
+        &[
+            (0, over(&-k.clone(), &first)),
+            (1, over(&-(c.clone() + r(masses[0].damping)), &first)),
+            (2, over(&k, &first)),
+            (3, over(&c, &first)),
+            (4, over(&r(1.0), &first)),
         ],
-        vec![zero(), zero(), zero(), r(1.0), zero(), zero(), zero(), zero()],
-        vec![
-            over(k.clone(), &last),
-            over(c.clone(), &last),
-            over(-(k + r(hand.stiffness)), &last),
-            over(-(c + r(masses[1].damping) + r(hand.damping)), &last),
-            zero(),
-            over(r(1.0), &last),
-            zero(),
-            zero(),
+        &[(3, r(1.0))],
+        &[
+            (0, over(&k, &last)),
+            (1, over(&c, &last)),
+            (2, over(&-(k.clone() + r(hand.stiffness)), &last)),
+            (3, over(&-(c.clone() + r(masses[1].damping) + r(hand.damping)), &last)),
+            (5, over(&r(1.0), &last)),
         ],
-        vec![zero(), zero(), zero(), zero(), -r(1.0) / r(lag), zero(), zero(), r(1.0) / r(lag)],
-        vec![zero(), zero(), zero(), zero(), zero(), zero(), r(omega), zero()],
-        vec![zero(), zero(), zero(), zero(), zero(), -r(omega), zero(), zero()],
+        &[(4, -r(1.0) / r(lag)), (7, r(1.0) / r(lag))],
+        &[(6, r(omega))],
+        &[(5, -r(omega))],
     ];
+    let rates = rows.map(|row| {
+        let mut full = vec![r(0.0); 8];
+        row.iter().for_each(|(at, x)| full[*at] = x.clone());
+        full
+    });
+    let rates = rates.to_vec();
     let tick = tick(&rates, PERIOD);
     let (s, c) = r(phase).sin_cos();
-    let mut state =
-        vec![zero(), zero(), zero(), zero(), zero(), r(amplitude) * s, r(amplitude) * c];
+    let mut state = vec![r(0.0); 5];
+    state.extend([r(amplitude) * s, r(amplitude) * c]);
     let mut reference = Trajectory::of_length(0);
     for _ in 0..SAMPLES {
         let torque = r(stiffness) * state[0].clone();

@@ -4,7 +4,8 @@ use analysis::toolchain::BoardModel;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::{BoardProcess, answer, haptic};
+use crate::common::board::BoardProcess;
+use crate::common::{answer, haptic};
 
 #[test]
 #[ignore = "builds for minutes"]
@@ -92,41 +93,10 @@ fn a_brushless_motor_is_aligned_and_then_gives_the_codes_of_the_host() {
     assert!(torques.iter().any(|&torque| torque > 0.02), "{torques:?}");
 }
 
-#[test]
-fn only_a_program_runs_on_a_virtual_board_and_only_on_one_that_there_is() {
-    for (arguments, parts) in [
-        (
-            &["run", "--target", "board:arduino", "damper_wall"][..],
-            ["no board arduino", "nucleo-g474re, b-g431b-esc1, feather-stm32f405"],
-        ),
-        (&["run", "--target", "board", "damper_wall"], ["no target board", "board:NAME"]),
-        (
-            &["run", "--target", "board:nucleo-g474re", "bridge_wall"],
-            ["nucleo-g474re has no bridge", "b-g431b-esc1 has"],
-        ),
-        (
-            &["twin", "bridge_wall", "--board", "feather-stm32f405", "--port", "unix:x"],
-            ["feather-stm32f405 has no bridge", "b-g431b-esc1 has"],
-        ),
-        (
-            &["run", "--target", "board:feather-stm32f405", "--full-scale", "3.5", "damper_wall"],
-            ["is built for", "run it on the host"],
-        ),
-        (
-            &["twin", "damper_wall", "--board", "arduino", "--port", "unix:x"],
-            ["no board arduino", "nucleo-g474re, b-g431b-esc1, feather-stm32f405"],
-        ),
-    ] {
-        let output = haptic(arguments);
-        assert_eq!(output.status.code(), Some(2), "{output:?}");
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(parts.iter().all(|part| said.contains(part)), "{said}");
-    }
-}
-
-/// A virtual board behind a socket.
-fn flashed(board: BoardModel, scene: &str) -> BoardProcess {
-    BoardProcess::start(scene, &["--board", board.name()])
+/// Tunes a board; gives exit status and answer.
+fn tuned(board: &BoardProcess, arguments: &[&str]) -> (Option<i32>, Value) {
+    let output = board.haptic(&[&["tune", "--json"], arguments].concat());
+    (output.status.code(), answer(&output))
 }
 
 #[test]
@@ -143,22 +113,22 @@ fn so_are_those_of_other_boards() {
 /// Over the serial port that the drivers have set up, judged by the certificate in the flash.
 fn tune(boards: &[BoardModel]) {
     for &board in boards {
-        let board = flashed(board, "damper_wall");
-        let (status, running) = board.tune(&[]);
+        let board = BoardProcess::start("damper_wall", &["--board", board.name()]);
+        let (status, running) = tuned(&board, &[]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
         assert_eq!(running["parameters"]["stiffness"], 22.0);
         let (state, reset) = (&running["state"], &running["reset"]);
         assert_eq!((state, reset), (&"disarmed".into(), &"power-on".into()), "{running}");
-        let (status, running) = board.tune(&["--arm"]);
+        let (status, running) = tuned(&board, &["--arm"]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
-        let (status, running) = board.tune(&["stiffness=20"]);
+        let (status, running) = tuned(&board, &["stiffness=20"]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
         assert_eq!(running["parameters"]["stiffness"], 20.0);
         // Past the line: the board itself refuses, names numbers that would pass, and goes on.
-        let (status, refused) = board.tune(&["damping=0.02"]);
+        let (status, refused) = tuned(&board, &["damping=0.02"]);
         assert_eq!(status, Some(1), "{refused}");
         assert!(refused["refused"].to_string().contains("would pass"), "{refused}");
-        let (_, running) = board.tune(&[]);
+        let (_, running) = tuned(&board, &[]);
         assert_eq!(running["parameters"]["damping"], 0.01);
         assert_eq!(running["missed"], 0, "{running}");
     }
@@ -168,10 +138,10 @@ fn tune(boards: &[BoardModel]) {
 #[test]
 #[ignore = "builds for minutes"]
 fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
-    let board = flashed(BoardModel::BG431bEsc1, "bridge_wall");
-    let (status, running) = board.tune(&["--arm"]);
+    let board = BoardProcess::start("bridge_wall", &["--board", "b-g431b-esc1"]);
+    let (status, running) = tuned(&board, &["--arm"]);
     assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
-    let (_, running) = board.tune(&["stiffness=15"]);
+    let (_, running) = tuned(&board, &["stiffness=15"]);
     assert_eq!(running["refused"], Value::Null, "{running}");
     assert_eq!(running["parameters"]["stiffness"], 15.0);
     let power = |which| running["power"][which].as_f64().unwrap();
@@ -180,8 +150,8 @@ fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
     assert!((power("temperature") - 25.0).abs() < 1.0, "{running}");
     assert!(power("current").abs() < 4.0 && power("reference").abs() < 4.0, "{running}");
     // A wall this soft is certified, but a push into it returns more than the supply takes.
-    let (status, refused) = board.tune(&["stiffness=1.5"]);
+    let (status, refused) = tuned(&board, &["stiffness=1.5"]);
     assert_eq!(status, Some(1), "{refused}");
     assert!(refused["refused"].to_string().contains("J to the supply"), "{refused}");
-    assert_eq!(board.tune(&[]).1["parameters"]["stiffness"], 15.0);
+    assert_eq!(tuned(&board, &[]).1["parameters"]["stiffness"], 15.0);
 }

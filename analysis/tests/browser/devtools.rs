@@ -1,9 +1,10 @@
 //! A page in a browser that a test drives: every error fails the test.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use analysis::browser;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// A browser with one page.
 pub struct Page(browser::Page);
@@ -14,55 +15,32 @@ impl Page {
         Self(done(browser::Page::start(width)))
     }
 
-    /// Errors and warnings of the page's console.
-    pub fn complaints(&self) -> &[String] {
-        &self.0.complaints
+    /// The page has complained of nothing.
+    #[track_caller]
+    pub fn assert_silent(&self) {
+        assert_eq!(self.0.complaints, [""; 0]);
     }
 
-    /// Opens an address, and waits until the page reports that it is ready.
-    pub fn open(&mut self, address: &str) {
-        done(self.0.open(address));
+    /// Has the browser save files into a folder.
+    pub fn save_into(&mut self, folder: &Path) {
+        let saves = json!({ "behavior": "allow", "downloadPath": folder });
+        self.call("Page.setDownloadBehavior", saves);
     }
 
     /// Opens a file.
     pub fn open_file(&mut self, page: &Path) {
         self.open(&format!("file://{}", page.display()));
     }
+}
 
-    /// The value of an expression, awaited if it is a promise.
-    pub fn value(&mut self, expression: &str) -> Value {
-        done(self.0.value(expression))
+/// Waits for a file that the browser saves; returns its bytes.
+pub fn saved(file: &Path) -> Vec<u8> {
+    let start = Instant::now();
+    while !file.exists() {
+        assert!(start.elapsed() < Duration::from_secs(60), "no {}", file.display());
+        std::thread::sleep(Duration::from_millis(20));
     }
-
-    /// Waits until an expression is true.
-    pub fn wait_for(&mut self, expression: &str) {
-        done(self.0.wait_for(expression));
-    }
-
-    /// Sends a mouse event at a place of the page.
-    pub fn mouse(&mut self, what: &str, place: [f64; 2]) {
-        done(self.0.mouse(what, place));
-    }
-
-    /// Presses and releases a key, by its name.
-    pub fn key(&mut self, key: &str) {
-        done(self.0.key(key));
-    }
-
-    /// The middle of an element, in pixels of the window.
-    pub fn middle(&mut self, selector: &str) -> [f64; 2] {
-        done(self.0.middle(selector))
-    }
-
-    /// Clicks on an element.
-    pub fn click(&mut self, selector: &str) {
-        done(self.0.click(selector));
-    }
-
-    /// Calls a method of the protocol, and gives its result.
-    pub fn call(&mut self, method: &str, parameters: Value) -> Value {
-        done(self.0.call(method, parameters))
-    }
+    std::fs::read(file).unwrap()
 }
 
 /// The value of a successful operation.
@@ -72,4 +50,37 @@ impl Page {
 #[track_caller]
 fn done<T>(result: Result<T, browser::BrowserError>) -> T {
     result.unwrap_or_else(|error| panic!("{error}"))
+}
+
+macro_rules! operations {
+    ($($(#[$what:meta])* $name:ident($($argument:ident: $of:ty),*) -> $result:ty;)*) => {
+        impl Page {
+            $(
+                $(#[$what])*
+                #[track_caller]
+                pub fn $name(&mut self, $($argument: $of),*) -> $result {
+                    done(self.0.$name($($argument),*))
+                }
+            )*
+        }
+    };
+}
+
+operations! {
+    /// Opens an address, and waits until the page reports that it is ready.
+    open(address: &str) -> ();
+    /// The value of an expression, awaited if it is a promise.
+    value(expression: &str) -> Value;
+    /// Waits until an expression is true.
+    wait_for(expression: &str) -> ();
+    /// Sends a mouse event at a place of the page.
+    mouse(what: &str, place: [f64; 2]) -> ();
+    /// Presses and releases a key, by its name.
+    key(key: &str) -> ();
+    /// The middle of an element, in pixels of the window.
+    middle(selector: &str) -> [f64; 2];
+    /// Clicks on an element.
+    click(selector: &str) -> ();
+    /// Calls a method of the protocol, and gives its result.
+    call(method: &str, parameters: Value) -> Value;
 }

@@ -1,16 +1,15 @@
 //! What leaves the page: a scene file, constants of a program, pictures, and a link.
 
-use std::fs::{self, File};
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::fs;
+use std::io::Cursor;
 
-use serde_json::json;
-
+use crate::common::board::Running;
 use crate::common::{WALL, read, root};
-use crate::devtools::Page;
-use crate::explore::explore;
+use crate::devtools::{Page, saved};
+use crate::explore::{explore, opened};
+use crate::picture::Picture;
 use crate::serve;
-use crate::verdict_page::{REFUSED, assert_silent, certified, certified_by_page, choose, presets};
+use crate::verdict_page::{REFUSED, certified, certified_by_page, choose, presets};
 
 /// The text that a button of the page shows.
 fn exported(page: &mut Page, button: &str) -> String {
@@ -33,9 +32,7 @@ fn constants(preset: &str) -> Option<String> {
 }
 
 pub fn what_the_page_exports_is_the_scene_to_the_bit() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut page = Page::start(1280);
-    page.open_file(&explore(folder.path(), WALL));
+    let (folder, mut page) = opened(1280, WALL);
     let file = folder.path().join("exported.toml");
     for name in presets(&mut page) {
         choose(&mut page, &name);
@@ -50,35 +47,7 @@ pub fn what_the_page_exports_is_the_scene_to_the_bit() {
             None => assert!(constant.contains("Wall::damped(60.0,"), "{constant}"),
         }
     }
-    assert_silent(&page);
-}
-
-/// Has the browser save files into a folder.
-fn save_into(page: &mut Page, folder: &Path) {
-    page.call("Page.setDownloadBehavior", json!({ "behavior": "allow", "downloadPath": folder }));
-}
-
-/// Waits for a file that the browser saves.
-fn saved(file: PathBuf) -> PathBuf {
-    let start = Instant::now();
-    while !file.exists() {
-        let others: Vec<_> = fs::read_dir(file.parent().unwrap()).unwrap().collect();
-        assert!(start.elapsed() < Duration::from_secs(60), "no {}: {others:?}", file.display());
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    file
-}
-
-/// Size of a PNG, and its pixels as red, green and blue.
-fn pixels(file: &Path) -> ([u32; 2], Vec<[u8; 3]>) {
-    let mut reader = png::Decoder::new(File::open(file).unwrap()).read_info().unwrap();
-    let mut bytes = vec![0; reader.output_buffer_size()];
-    let info = reader.next_frame(&mut bytes).unwrap();
-    let samples = info.color_type.samples();
-    assert!(samples >= 3 && info.bit_depth == png::BitDepth::Eight, "{info:?}");
-    bytes.truncate(info.buffer_size());
-    let pixels = bytes.chunks_exact(samples).map(|one| [one[0], one[1], one[2]]).collect();
-    ([info.width, info.height], pixels)
+    page.assert_silent();
 }
 
 /// Pixels of a PNG to one of the page.
@@ -89,10 +58,8 @@ const ABOVE: f64 = 32.0;
 const BELOW: f64 = 8.0;
 
 pub fn each_picture_is_saved_as_a_png_of_its_size() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut page = Page::start(1280);
-    page.open_file(&explore(folder.path(), WALL));
-    save_into(&mut page, folder.path());
+    let (folder, mut page) = opened(1280, WALL);
+    page.save_into(folder.path());
     let names = page.value("[...document.querySelectorAll('.picture')].map((one) => one.id)");
     let names: Vec<String> = serde_json::from_value(names).unwrap();
     let expected = ["handle", "map", "nyquist", "profile", "motion"];
@@ -115,8 +82,9 @@ pub fn each_picture_is_saved_as_a_png_of_its_size() {
         ));
         let [wide, high] = [0, 1].map(|axis| size[axis].as_f64().unwrap());
         page.click(&format!("#picture-{name} button[aria-label^='Save as PNG']"));
-        let file = saved(folder.path().join(format!("delayed-wall-{name}.png")));
-        let ([width, height], pixels) = pixels(&file);
+        let file = saved(&folder.path().join(format!("delayed-wall-{name}.png")));
+        let bytes = Cursor::new(file);
+        let Picture { size: [width, height], pixels, .. } = Picture::read(bytes, "");
         assert_eq!(f64::from(width), SCALE * wide.max(480.0), "{name}");
         assert!(f64::from(height) >= SCALE * (ABOVE + high + BELOW), "{name}: {height}, {high}");
         // Of the picture itself, without title and legend: neither blank nor nothing but ground.
@@ -129,7 +97,7 @@ pub fn each_picture_is_saved_as_a_png_of_its_size() {
         assert!(!drawn.contains(&picture), "{name} is another one");
         drawn.push(picture);
     }
-    assert_silent(&page);
+    page.assert_silent();
 }
 
 /// Has the page copy its link, with a clipboard of the test's own: the machine's clipboard belongs to its
@@ -159,7 +127,7 @@ pub fn a_copied_link_is_the_scene_and_has_no_token() {
 
     // A client with the token has the board.
     let board = serve::board(folder.path());
-    let (_server, address) = serve::started(&["serve", "--port", &board.address().to_string()]);
+    let (_server, address) = Running::start(&["serve", "--port", &board.address().to_string()]);
     let (server, token) = address.split_once("?token=").expect("an address with a token");
     let mut served = Page::start(1280);
     served.open(&address);
@@ -169,6 +137,6 @@ pub fn a_copied_link_is_the_scene_and_has_no_token() {
     let (_, scene) = link.split_once('#').unwrap();
     assert_eq!(of_served, format!("{server}#{scene}"));
     for page in [page, other, served] {
-        assert_silent(&page);
+        page.assert_silent();
     }
 }

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::common::{WALL, haptic};
 use crate::devtools::Page;
-use crate::explore::explore;
+use crate::explore::{explore, opened};
 
 const DRAWING: &str = "#handle-drawing";
 
@@ -23,9 +23,7 @@ fn drag(page: &mut Page, pixels: f64) {
 }
 
 pub fn the_handle_of_the_page_runs_the_servo_of_the_program() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut page = Page::start(1280);
-    page.open_file(&explore(folder.path(), WALL));
+    let (folder, mut page) = opened(1280, WALL);
     drag(&mut page, 120.0);
     page.wait_for("Math.min(...window.haptic.dragged().codes) < 2000");
     let [x, y] = page.middle(DRAWING);
@@ -60,7 +58,7 @@ pub fn the_handle_of_the_page_runs_the_servo_of_the_program() {
         counts.len()
     ));
     assert_eq!(numbers(&again), codes);
-    assert_eq!(page.complaints(), [""; 0]);
+    page.assert_silent();
 }
 
 pub fn a_refused_handle_has_no_torque_until_the_check_is_off() {
@@ -92,5 +90,5 @@ pub fn a_refused_handle_has_no_torque_until_the_check_is_off() {
     page.wait_for("document.getElementById('handle').dataset.oscillates === 'true'");
     let words = page.value("document.getElementById('handle-oscillation').textContent");
     assert!(words.as_str().unwrap().starts_with("Oscillates: "), "{words}");
-    assert_eq!(page.complaints(), [""; 0]);
+    page.assert_silent();
 }

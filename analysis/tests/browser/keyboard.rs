@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use crate::common::WALL;
 use crate::devtools::Page;
 use crate::explore::explore;
-use crate::verdict_page::assert_silent;
+use crate::scene_page::scene;
 
 /// Most presses of a key until all is reached.
 const PRESSES: usize = 400;
@@ -86,10 +86,6 @@ fn walk(page: &mut Page) -> usize {
     seen
 }
 
-fn scene(page: &mut Page) -> Value {
-    serde_json::from_str(page.value("window.haptic.scene()").as_str().unwrap()).unwrap()
-}
-
 fn focus(page: &mut Page, selector: &str) {
     page.value(&format!("document.querySelector({selector:?}).focus()"));
 }
@@ -141,7 +137,7 @@ pub fn the_page_is_operated_by_its_keyboard_in_light_and_dark() {
         move_by_arrows(&mut page);
         export_by_keys(&mut page);
         grounds.push(page.value("getComputedStyle(document.body).backgroundColor"));
-        assert_silent(&page);
+        page.assert_silent();
     }
     assert_ne!(grounds[0], grounds[1]);
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::common::WALL;
 use crate::devtools::Page;
-use crate::explore::explore;
+use crate::explore::{explore, opened};
 
 /// Types a value into a field.
 fn enter(page: &mut Page, field: &str, value: &str) {
@@ -17,7 +17,7 @@ fn enter(page: &mut Page, field: &str, value: &str) {
 }
 
 /// The scene that the page shows.
-fn scene(page: &mut Page) -> Value {
+pub fn scene(page: &mut Page) -> Value {
     let text = page.value("window.haptic.scene()");
     serde_json::from_str(text.as_str().unwrap()).unwrap()
 }
@@ -25,9 +25,7 @@ fn scene(page: &mut Page) -> Value {
 const VERDICT: &str = "document.documentElement.dataset.verdict";
 
 pub fn a_field_changes_the_verdict_and_a_remedy_certifies() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut page = Page::start(1280);
-    page.open_file(&explore(folder.path(), WALL));
+    let (_folder, mut page) = opened(1280, WALL);
     assert_eq!(page.value(VERDICT), "certified");
     enter(&mut page, "#field-environment-stiffness", "60");
     page.wait_for(&format!("{VERDICT} === 'rejected'"));
@@ -46,13 +44,11 @@ pub fn a_field_changes_the_verdict_and_a_remedy_certifies() {
     assert_eq!(page.value(&format!("{field}.getAttribute('aria-invalid')")), "true");
     enter(&mut page, "#field-device-inertia", "2.2e-5");
     page.wait_for(&format!("{VERDICT} === 'certified'"));
-    assert_eq!(page.complaints(), [""; 0]);
+    page.assert_silent();
 }
 
 pub fn on_paper_there_is_nothing_to_operate() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut page = Page::start(1280);
-    page.open_file(&explore(folder.path(), WALL));
+    let (_folder, mut page) = opened(1280, WALL);
     page.call("Emulation.setEmulatedMedia", json!({ "media": "print" }));
     let mut shown = |what: &str| {
         let all = format!("[...document.querySelectorAll({what:?})]");
@@ -83,14 +79,12 @@ pub fn a_link_is_the_scene_and_a_bad_one_is_named() {
     bad.wait_for("!document.querySelector('#notice').hidden");
     assert_eq!(scene(&mut bad)["environment"]["stiffness"], 22);
     for page in [page, other, bad] {
-        assert_eq!(page.complaints(), [""; 0]);
+        page.assert_silent();
     }
 }
 
 pub fn a_narrow_page_is_not_cut_off_and_every_field_has_a_label() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut page = Page::start(360);
-    page.open_file(&explore(folder.path(), WALL));
+    let (_folder, mut page) = opened(360, WALL);
     let width = page.value("document.documentElement.scrollWidth");
     assert!(width.as_f64().unwrap() <= 360.0, "{width}");
     let words = page.value("document.body.textContent");
@@ -110,9 +104,7 @@ pub fn a_narrow_page_is_not_cut_off_and_every_field_has_a_label() {
 }
 
 pub fn the_map_is_drawn_and_moves_the_scene() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut page = Page::start(1280);
-    page.open_file(&explore(folder.path(), WALL));
+    let (_folder, mut page) = opened(1280, WALL);
     page.wait_for("document.querySelector('#picture-map').dataset.progress === 'all'");
     let before = scene(&mut page);
     let place = page.middle("#picture-map > canvas");
@@ -130,5 +122,5 @@ pub fn the_map_is_drawn_and_moves_the_scene() {
         );
         page.wait_for(&label);
     }
-    assert_eq!(page.complaints(), [""; 0]);
+    page.assert_silent();
 }

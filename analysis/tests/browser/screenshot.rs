@@ -5,7 +5,7 @@
 //! too, which have to be those of today to the letter; of its pixels only the large is compared.
 
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{BufReader, BufWriter, Cursor};
 use std::path::{Path, PathBuf};
 
 use base64::Engine;
@@ -14,7 +14,8 @@ use serde_json::json;
 use crate::common::{WALL, root};
 use crate::devtools::Page;
 use crate::explore::explore;
-use crate::verdict_page::{assert_silent, choose};
+use crate::picture::Picture;
+use crate::verdict_page::choose;
 
 /// Pixels of the picture.
 const SIZE: [u32; 2] = [1280, 1120];
@@ -32,61 +33,38 @@ const FAR: f64 = 60.0;
 /// Largest part of squares of another colour: with another font, sliders and lines are elsewhere.
 const PART: f64 = 0.1;
 
-/// A picture: pixels as red, green and blue; and the words that are kept with it.
-struct Picture {
-    size: [u32; 2],
-    bytes: Vec<u8>,
-    words: String,
+fn write(picture: &Picture, file: &Path) {
+    let file = BufWriter::new(File::create(file).unwrap());
+    let mut encoder = png::Encoder::new(file, picture.size[0], picture.size[1]);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Best);
+    encoder.add_itxt_chunk(WORDS.to_owned(), picture.words.clone()).unwrap();
+    encoder.write_header().unwrap().write_image_data(picture.pixels.as_flattened()).unwrap();
 }
 
-impl Picture {
-    fn read(source: impl std::io::Read) -> Self {
-        let mut reader = png::Decoder::new(source).read_info().unwrap();
-        let mut bytes = vec![0; reader.output_buffer_size()];
-        let frame = reader.next_frame(&mut bytes).unwrap();
-        let samples = frame.color_type.samples();
-        assert!(samples >= 3 && frame.bit_depth == png::BitDepth::Eight, "{frame:?}");
-        bytes.truncate(frame.buffer_size());
-        let bytes = bytes.chunks_exact(samples).flat_map(|pixel| &pixel[..3]).copied().collect();
-        let words = reader.info().utf8_text.iter().find(|text| text.keyword == WORDS);
-        let words = words.map_or_else(String::new, |text| text.get_text().unwrap());
-        Self { size: [frame.width, frame.height], bytes, words }
-    }
+/// The mean colour of each square.
+fn squares(picture: &Picture) -> Vec<[f64; 3]> {
+    let [width, height] = picture.size.map(|pixels| pixels as usize);
+    let corners =
+        (0..height / SQUARE).flat_map(|row| (0..width / SQUARE).map(move |column| [column, row]));
+    let mean = |[column, row]: [usize; 2]| {
+        let mut sum = [0.0; 3];
+        for (y, x) in (0..SQUARE).flat_map(|y| (0..SQUARE).map(move |x| (y, x))) {
+            let pixel = picture.pixels[(row * SQUARE + y) * width + column * SQUARE + x];
+            (0..3).for_each(|colour| sum[colour] += f64::from(pixel[colour]));
+        }
+        sum.map(|sum| sum / (SQUARE * SQUARE) as f64)
+    };
+    corners.map(mean).collect()
+}
 
-    fn write(&self, file: &Path) {
-        let file = BufWriter::new(File::create(file).unwrap());
-        let mut encoder = png::Encoder::new(file, self.size[0], self.size[1]);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::Best);
-        encoder.add_itxt_chunk(WORDS.to_owned(), self.words.clone()).unwrap();
-        encoder.write_header().unwrap().write_image_data(&self.bytes).unwrap();
-    }
-
-    /// The mean colour of each square.
-    fn squares(&self) -> Vec<[f64; 3]> {
-        let [width, height] = self.size.map(|pixels| pixels as usize);
-        let corners = (0..height / SQUARE)
-            .flat_map(|row| (0..width / SQUARE).map(move |column| [column, row]));
-        let mean = |[column, row]: [usize; 2]| {
-            let mut sum = [0.0; 3];
-            for (y, x) in (0..SQUARE).flat_map(|y| (0..SQUARE).map(move |x| (y, x))) {
-                let pixel = 3 * ((row * SQUARE + y) * width + column * SQUARE + x);
-                (0..3).for_each(|colour| sum[colour] += f64::from(self.bytes[pixel + colour]));
-            }
-            sum.map(|sum| sum / (SQUARE * SQUARE) as f64)
-        };
-        corners.map(mean).collect()
-    }
-
-    /// The part of the squares in which two pictures of one size have another colour.
-    fn differing(&self, other: &Self) -> f64 {
-        let (own, others) = (self.squares(), other.squares());
-        let is_far = |(a, b): (&[f64; 3], &[f64; 3])| {
-            (0..3).any(|colour| (a[colour] - b[colour]).abs() > FAR)
-        };
-        own.iter().zip(&others).filter(|pair| is_far(*pair)).count() as f64 / own.len() as f64
-    }
+/// The part of the squares in which two pictures of one size have another colour.
+fn differing(one: &Picture, other: &Picture) -> f64 {
+    let (own, others) = (squares(one), squares(other));
+    let is_far =
+        |(a, b): (&[f64; 3], &[f64; 3])| (0..3).any(|colour| (a[colour] - b[colour]).abs() > FAR);
+    own.iter().zip(&others).filter(|pair| is_far(*pair)).count() as f64 / own.len() as f64
 }
 
 /// Takes the handle of the knob at its top, turns it an eighth of a turn, and keeps it there.
@@ -140,8 +118,8 @@ fn taken() -> Picture {
     let shot =
         base64::engine::general_purpose::STANDARD.decode(shot["data"].as_str().unwrap()).unwrap();
     let words = words(&mut page);
-    assert_silent(&page);
-    Picture { words, ..Picture::read(&*shot) }
+    page.assert_silent();
+    Picture { words, ..Picture::read(Cursor::new(shot), WORDS) }
 }
 
 fn kept() -> PathBuf {
@@ -154,11 +132,11 @@ pub fn the_readme_opens_with_the_page_of_today() {
     let taken = taken();
     assert_eq!(taken.size, SIZE);
     if std::env::var_os("PICTURES").is_some_and(|value| value == "overwrite") {
-        taken.write(&kept());
+        write(&taken, &kept());
     }
-    let kept = Picture::read(File::open(kept()).unwrap());
+    let kept = Picture::read(BufReader::new(File::open(kept()).unwrap()), WORDS);
     assert_eq!(kept.size, SIZE, "{HOW}");
     assert_eq!(kept.words, taken.words, "the picture is of another page; {HOW}");
-    let differing = kept.differing(&taken);
+    let differing = differing(&kept, &taken);
     assert!(differing <= PART, "{differing} of the picture is another; {HOW}");
 }

@@ -1,21 +1,20 @@
 //! The page of `haptic serve` in a browser, with a simulated and a virtual board behind it: watched, tuned,
 //! armed, refused, lost and back.
 
-use std::io::{BufRead, BufReader};
 use std::net::TcpListener;
 use std::path::Path;
-use std::process::{Child, Stdio};
 
 use analysis::board_sim::{Pacing, SimulatedBoard};
 use analysis::link::Address;
 use analysis::lockstep::PlantIo;
-use analysis::program::{Program, damper_wall};
+use analysis::program::Program;
 use analysis::serve::{Port, Server};
 use haptic_servo::number::Format;
 use serde_json::Value;
 
-use crate::common::{WALL, program, read};
-use crate::devtools::Page;
+use crate::common::board::{BoardProcess, Running, wall};
+use crate::common::{WALL, read};
+use crate::devtools::{Page, saved};
 use crate::explore::explore;
 
 /// Counts inside of the wall.
@@ -38,25 +37,6 @@ pub fn board(folder: &Path) -> SimulatedBoard {
     let wall = Program::find("damper_wall").unwrap();
     let device = Box::new(Held(folder.join("torn away")));
     wall.listen(device, &address, Pacing::RealTime).unwrap()
-}
-
-/// A process that ends with the test.
-pub struct Ends(Child);
-
-impl Drop for Ends {
-    fn drop(&mut self) {
-        // It may have ended by itself.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-/// Starts the program, and gives the first line that it prints.
-pub fn started(arguments: &[&str]) -> (Ends, String) {
-    let mut child = program(arguments).stdout(Stdio::piped()).spawn().unwrap();
-    let mut line = String::new();
-    BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
-    (Ends(child), line.trim().to_owned())
 }
 
 /// Opens the page of a server, and connects.
@@ -106,14 +86,12 @@ pub fn a_board_is_watched_tuned_armed_and_recorded() {
     let folder = tempfile::tempdir().unwrap();
     let board = board(folder.path());
     let port = board.address().to_string();
-    let (_server, address) = started(&["serve", "--port", &port]);
+    let (_server, address) = Running::start(&["serve", "--port", &port]);
     let mut page = connected(&address);
     assert!(text(&mut page, "state").starts_with("damper_wall: "), "{}", text(&mut page, "state"));
 
     // Refused before it is sent, in the words of the certificate.
-    let mut stiff = damper_wall::SCENE;
-    stiff.environment.wall_mut().unwrap().stiffness = 30.0;
-    let sentence = stiff.certify_in(Format::F32).unwrap_err().to_string();
+    let sentence = wall(30.0, 0.01).certify_in(Format::F32).unwrap_err().to_string();
     type_number(&mut page, "stiffness", "30");
     assert_eq!(text(&mut page, "judged"), sentence);
     assert_eq!(page.value("document.getElementById('board-apply').disabled"), true);
@@ -144,17 +122,10 @@ pub fn a_board_is_watched_tuned_armed_and_recorded() {
     wait_for_state(&mut page, "off");
 
     // The file has a row for each tick, and the head of `haptic scope --csv`.
-    let saves = serde_json::json!({ "behavior": "allow", "downloadPath": folder.path() });
-    page.call("Page.setDownloadBehavior", saves);
+    page.save_into(folder.path());
     let recorded = text(&mut page, "recorded");
     page.click("#board-save");
-    let file = folder.path().join("damper_wall.csv");
-    let start = std::time::Instant::now();
-    while !file.exists() {
-        assert!(start.elapsed().as_secs() < 60, "no file was saved");
-        page.value("1");
-    }
-    let table = read(&file);
+    let table = String::from_utf8(saved(&folder.path().join("damper_wall.csv"))).unwrap();
     let mut lines = table.lines();
     assert_eq!(lines.next(), Some("tick,time,count,position,code,torque,state,limit,slack"));
     assert_eq!(recorded, format!("{} ticks", lines.count()));
@@ -169,7 +140,7 @@ pub fn a_board_is_watched_tuned_armed_and_recorded() {
         "{}",
         text(&mut page, "fault")
     );
-    assert_eq!(page.complaints(), [""; 0]);
+    page.assert_silent();
 }
 
 pub fn a_link_is_lost_and_back_and_a_second_page_is_refused() {
@@ -214,7 +185,7 @@ pub fn a_link_is_lost_and_back_and_a_second_page_is_refused() {
     page.click("#board-disconnect");
     connect(&mut second, &server.url());
     second.wait_for(&format!("{BOARD}.dataset.link === 'on'"));
-    assert_eq!(page.complaints(), [""; 0]);
+    page.assert_silent();
     drop(again);
 }
 
@@ -248,12 +219,8 @@ pub fn a_foreign_page_does_not_reach_the_board() {
 
 /// The flashed program gives the same answers.
 pub fn a_virtual_board_is_watched_and_armed() {
-    let folder = tempfile::tempdir().unwrap();
-    let port = format!("unix:{}", folder.path().join("board").display());
-    let board = ["board-sim", "damper_wall", "--board", "nucleo-g474re", "--port", &port];
-    let (_board, listens) = started(&board);
-    assert!(listens.contains("listens on"), "{listens}");
-    let (_server, address) = started(&["serve", "--port", &port]);
+    let board = BoardProcess::start("damper_wall", &["--board", "nucleo-g474re"]);
+    let (_server, address) = Running::start(&["serve", "--port", &board.port]);
     let mut page = connected(&address);
     arm(&mut page);
     type_number(&mut page, "stiffness", "12.5");
@@ -261,5 +228,5 @@ pub fn a_virtual_board_is_watched_and_armed() {
     wait_for_text(&mut page, "reply", "stiffness=12.5: done");
     page.key("Escape");
     wait_for_state(&mut page, "off");
-    assert_eq!(page.complaints(), [""; 0]);
+    page.assert_silent();
 }

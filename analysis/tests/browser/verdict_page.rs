@@ -6,9 +6,22 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use crate::common::{MOTION, WALL, haptic};
+use crate::common::{WALL, haptic};
 use crate::devtools::Page;
-use crate::explore::explore;
+use crate::explore::opened;
+
+/// The simulation of the wall, for a report that shows it.
+const MOTION: &str = r#"
+[simulation]
+samples = 300
+torque_sine = { amplitude = 1.5, omega = 60.0, phase = 0.0 }
+[human]
+inertia = 1e-4
+damping = 0.02
+stiffness = 4.0
+[limits]
+torque = 0.5
+"#;
 
 /// Columns of a label that `haptic certify` prints.
 const LABEL: usize = 18;
@@ -18,11 +31,6 @@ const PATIENCE: Duration = Duration::from_secs(30);
 
 /// The preset that is there to be refused; all others are certified.
 pub const REFUSED: &str = "beyond the limit";
-
-/// The page has complained of nothing.
-pub fn assert_silent(page: &Page) {
-    assert_eq!(page.complaints(), Vec::<String>::new());
-}
 
 /// Names of the presets.
 pub fn presets(page: &mut Page) -> Vec<String> {
@@ -119,9 +127,7 @@ fn values<'r>(rows: &'r [[String; 2]], label: &str) -> Vec<&'r str> {
 }
 
 pub fn the_rows_of_the_page_are_those_of_the_program() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut page = Page::start(1280);
-    page.open_file(&explore(folder.path(), WALL));
+    let (folder, mut page) = opened(1280, WALL);
     let wall = |changes: &[(&str, &str)]| {
         changes.iter().fold(WALL.to_owned(), |wall, (from, to)| {
             assert!(wall.contains(from), "{from}");
@@ -165,13 +171,11 @@ pub fn the_rows_of_the_page_are_those_of_the_program() {
         let buttons = page.value("document.querySelectorAll('#verdict-rows button').length");
         assert_eq!(buttons == json!(0), remedies == 0, "{rows:?}");
     }
-    assert_silent(&page);
+    page.assert_silent();
 }
 
 pub fn each_preset_is_certified_where_it_should_be() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut page = Page::start(1280);
-    page.open_file(&explore(folder.path(), WALL));
+    let (folder, mut page) = opened(1280, WALL);
     for name in presets(&mut page) {
         choose(&mut page, &name);
         let expected = if name == REFUSED { "rejected" } else { "certified" };
@@ -185,5 +189,5 @@ pub fn each_preset_is_certified_where_it_should_be() {
         assert_eq!([&printed["verdict"], &printed["name"]], [&json!(expected), &json!(name)]);
         compare(&mut page, folder.path());
     }
-    assert_silent(&page);
+    page.assert_silent();
 }

@@ -6,71 +6,49 @@
 #[allow(dead_code)]
 #[path = "../all/common/mod.rs"]
 mod common;
+#[path = "../browser/ignorable.rs"]
+mod ignorable;
+#[allow(dead_code)]
+#[path = "../browser/picture.rs"]
+mod picture;
 
+use std::io::Cursor;
 use std::path::Path;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
 use analysis::toolchain::python::{PythonEnvironment, finished};
 use analysis::toolchain::target_folder;
-use libtest_mimic::{Arguments, Completion, Trial};
 
 use self::common::root;
+use self::picture::Picture;
 
 /// The tests of `agree.py`, each a process.
 const AGREE: [&str; 5] = ["certify", "simulate", "index", "stability_map", "refusals"];
 
-/// The test of `examples/map.py`.
-const EXAMPLE: &str = "the_example_draws_its_map";
-
-/// The benchmark beside packages of Python.
-const PEERS: &str = "peers_are_measured_in_the_same_run";
-
-/// The example without dependencies.
-const IGNORED: &str = "without_python_these_tests_are_ignored";
-
 /// The packages for the build of the package, and for its example.
 const FROM_PYPI: [&str; 3] = ["maturin>=1.9,<2", "numpy", "matplotlib"];
 
-fn main() -> ExitCode {
-    let arguments = Arguments::from_args();
-    // A list of the tests, or other tests, need no Python.
-    let wanted = |name: &str| arguments.filter.as_ref().is_none_or(|part| name.contains(part));
-    let looks = !arguments.list && AGREE.into_iter().chain([EXAMPLE, PEERS, IGNORED]).any(wanted);
-    let environment = PythonEnvironment::kept().unwrap();
-    let fetch = || finished(environment.pip_install().args(FROM_PYPI));
-    let set_up = || {
-        environment.set_up().and_then(|()| fetch().map_err(|why| format!("pip has no PyPI: {why}")))
-    };
-    let missing = looks.then(set_up).and_then(Result::err);
-    if let Some(why) = &missing {
-        eprintln!("skipped: tests/python runs the package for Python: {why}");
-    } else if looks {
-        install(&environment);
-    }
-    let trial = |name: &'static str| {
-        let is_missing = missing.is_some();
-        let run = move || {
-            if is_missing {
-                return Ok(Completion::ignored());
-            }
-            run(name);
-            Ok(Completion::Completed)
-        };
-        let is_wanted = arguments.filter.is_some() || name == AGREE[0];
-        let trial = Trial::ignorable_test(name, run).with_ignored_flag(is_missing || !is_wanted);
-        if is_missing { trial.with_kind("no python") } else { trial }
-    };
-    let trials = AGREE.into_iter().chain([EXAMPLE, PEERS, IGNORED]).map(trial).collect();
-    libtest_mimic::run(&arguments, trials).exit_code()
-}
+const KIND: &str = "no python";
 
-fn run(name: &str) {
-    match name {
-        EXAMPLE => the_example_draws_its_map(),
-        PEERS => peers_are_measured_in_the_same_run(),
-        IGNORED => without_python_these_tests_are_ignored(),
-        _ => agrees(name),
+fn main() -> ExitCode {
+    let mut tests: Vec<(&str, Box<dyn FnOnce() + Send>)> = Vec::new();
+    for test in AGREE {
+        tests.push((test, Box::new(move || agrees(test))));
     }
+    tests.push(("the_example_draws_its_map", Box::new(the_example_draws_its_map)));
+    tests
+        .push(("peers_are_measured_in_the_same_run", Box::new(peers_are_measured_in_the_same_run)));
+    let count = tests.len() + 1;
+    let ignored = move || ignorable::assert_ignored_without_tools(KIND, count, "python3");
+    tests.push(("without_python_these_tests_are_ignored", Box::new(ignored)));
+    ignorable::run(KIND, "tests/python runs the package for Python", tests, || {
+        let environment = PythonEnvironment::kept().unwrap();
+        environment.set_up()?;
+        finished(environment.pip_install().args(FROM_PYPI))
+            .map_err(|why| format!("pip has no PyPI: {why}"))?;
+        install(&environment);
+        Ok(())
+    })
 }
 
 /// Installs the package from this checkout as a user does, but compiled as tests are. The build tools are
@@ -110,15 +88,10 @@ fn the_example_draws_its_map() {
     let (_, shown) = guide.split_once("<!-- map -->\n```text\n").expect("the guide shows it");
     assert_eq!(printed, shown.split_once("```").unwrap().0);
     let picture = std::fs::read(folder.path().join("map.png")).unwrap();
-    let decoder = png::Decoder::new(picture.as_slice());
-    let mut reader = decoder.read_info().unwrap();
-    let mut pixels = vec![0; reader.output_buffer_size()];
-    let frame = reader.next_frame(&mut pixels).unwrap();
-    let is_certified = |pixel: &&[u8]| pixel[..3] == [0x3f, 0x7f, 0xb5];
-    let samples = frame.color_type.samples();
-    let certified = pixels.chunks_exact(samples).filter(is_certified).count();
+    let Picture { size: [width, height], pixels, .. } = Picture::read(Cursor::new(picture), "");
+    let certified = pixels.iter().filter(|pixel| **pixel == [0x3f, 0x7f, 0xb5]).count();
     // Of the left half, the part that is certified, and margins.
-    let share = certified as f64 / f64::from(frame.width * frame.height);
+    let share = certified as f64 / f64::from(width * height);
     assert!((0.05..0.3).contains(&share), "{share}");
 }
 
@@ -155,16 +128,4 @@ fn peers_are_measured_in_the_same_run() {
             }
         }
     }
-}
-
-/// They do not count as passed: runs this program again, with a path that has no programs.
-fn without_python_these_tests_are_ignored() {
-    let this = std::env::current_exe().unwrap();
-    let run = Command::new(this).env("PATH", "/nowhere").output().unwrap();
-    assert!(run.status.success(), "{run:?}");
-    let (shown, said) =
-        (String::from_utf8(run.stdout).unwrap(), String::from_utf8(run.stderr).unwrap());
-    assert_eq!(shown.matches("test [no python] ").count(), AGREE.len() + 3, "{shown}");
-    assert!(shown.contains("0 passed; 0 failed; 8 ignored"), "{shown}");
-    assert!(said.contains("skipped: ") && said.contains("apt install python3"), "{said}");
 }

@@ -67,7 +67,7 @@ pub struct HeldDevice {
     /// The power that the dampers of the hand take is `x' hand x`.
     hand: Matrix,
     /// Damping of the device.
-    damping: f64,
+    pub damping: f64,
     /// Where the torque on the device is in a state.
     force: usize,
 }
@@ -86,13 +86,8 @@ pub struct Step {
 }
 
 impl HeldDevice {
-    /// A device of this damping in a hand, whose inertia is that of both.
-    pub fn new(hand: &Hand, damping: f64) -> Self {
-        Self::lagging(hand, damping, &Lags::default())
-    }
-
-    /// The same with an amplifier and a sensor that lag.
-    pub fn lagging(hand: &Hand, damping: f64, lags: &Lags) -> Self {
+    /// A device of this damping in a hand, whose inertia is that of both. Amplifier and sensor may lag.
+    pub fn new(hand: &Hand, damping: f64, lags: &Lags) -> Self {
         let most = lags.segments();
         let mut mass = [hand.inertia, 1.0, 1.0];
         let (mut link, mut ground) = ([(0.0, 0.0); 3], [(hand.stiffness, hand.damping); 3]);
@@ -166,11 +161,6 @@ impl HeldDevice {
     /// Kinetic and potential energy.
     pub fn energy(&self, x: &State) -> f64 {
         form(&self.energy, x)
-    }
-
-    /// Damping of the device.
-    pub const fn damping(&self) -> f64 {
-        self.damping
     }
 
     /// A part of a period, exactly.

@@ -151,24 +151,17 @@ impl Startup for Board {
     }
 }
 
-/// Keeps the state of the last tick, and how often each reason limited the torque.
+/// Keeps the state of the last tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Last {
     /// The state at the end of it.
     pub state: State,
-    /// Ticks by their reason, in the order of [`LimitReason::ALL`].
-    ///
-    /// [`LimitReason::ALL`]: haptic_servo::torque::LimitReason::ALL
-    pub limits: [u32; 7],
 }
 
 impl FrameSink for Last {
     #[inline]
     fn push(&mut self, frame: Frame) {
         self.state = frame.state;
-        if let Some(ticks) = self.limits.get_mut(frame.limit as usize) {
-            *ticks += 1;
-        }
     }
 
     fn dropped(&self) -> u32 {

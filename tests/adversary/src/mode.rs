@@ -38,16 +38,6 @@ impl Mode {
     pub const fn samples(self) -> f64 {
         if matches!(self, Self::Latched) { 1.0 } else { 0.0 }
     }
-
-    /// Its name.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Latched => "latched",
-            Self::Simultaneous => "simultaneous",
-            Self::AtPhase(_) => "at a phase",
-            Self::Bare => "servo alone",
-        }
-    }
 }
 
 /// What differs from what the scene states: nothing, unless a fault is planted.

@@ -50,9 +50,6 @@ pub struct NormalizedScene {
     pub off: f64,
     /// Sides of zero on which an environment stores energy at once: a profile has two.
     pub sides: f64,
-    /// Part of a period by which a late tick outlasts its own, so that the next one reads its count
-    /// so much later.
-    pub overrun: f64,
     /// Torque of one DAC code.
     pub torque_per_code: f64,
     /// The largest torque of any of its sets.
@@ -98,6 +95,9 @@ pub fn declared(scene: &Scene) -> f64 {
     scene.device.passivity.unwrap_or(scene.device.damping)
 }
 
+/// Share of its margin that a device loses.
+const TAKEN: f64 = 0.9;
+
 /// An angle a sample below which nothing happens in the time that there is.
 const SLOWEST: f64 = 0.1;
 
@@ -141,7 +141,7 @@ impl NormalizedScene {
             face = face.max(scene.environment.wall().map_or(0.0, |wall| wall.face().abs()));
             let lost = match actual.passivity {
                 Some(_) => 0.0,
-                None => drawn.taken * margin(assessment, scene, drawn.rendering.injection),
+                None => TAKEN * margin(assessment, scene, drawn.rendering.injection),
             };
             damping = damping.max(drawn.damping.unwrap_or(has - lost));
             if drawn.mode == Mode::Bare {
@@ -184,7 +184,6 @@ impl NormalizedScene {
             stored: stored / unit,
             off,
             sides: if scene.environment.profile().is_some() { 2.0 } else { 1.0 },
-            overrun: drawn.overrun,
             in_time: READ_WITHIN.max(match drawn.mode {
                 Mode::AtPhase(_) => scene.latency.deviation_of_counts(),
                 _ => 0.0,

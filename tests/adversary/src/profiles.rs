@@ -73,9 +73,3 @@ pub fn scaled(profile: &mut Profile, by: f64) {
         ends.stiffness *= by;
     }
 }
-
-/// The number of tables, by whether they have ends and snap points: so that none is missing.
-pub fn tables() -> [usize; 3] {
-    let count = |is: &dyn Fn(&Profile) -> bool| TABLES.iter().filter(|p| is(p)).count();
-    [TABLES.len(), count(&|p| p.ends.is_some()), count(&|p| p.snap.is_some())]
-}

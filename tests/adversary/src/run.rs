@@ -58,8 +58,6 @@ pub struct Outcome {
     pub residual: f64,
     /// The servo went on although more updates were missed in a row than the certificate tolerates.
     pub went_on: bool,
-    /// Ticks whose torque was limited, by reason.
-    pub limits: [u32; 7],
     /// The largest energy of device and hand.
     pub largest: f64,
 }
@@ -164,63 +162,44 @@ fn next(seed: &mut u64) -> u64 {
     seed.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 32
 }
 
-/// What happens to the ticks, one after the other.
-struct Ticks {
-    pattern: Pattern,
-    at: usize,
-    in_a_row: u32,
+/// The first so many of these, again and again.
+fn repeated<T: Copy, const N: usize>(all: [T; N], length: usize) -> impl Iterator<Item = T> {
+    (0..length).cycle().map(move |at| all[at])
 }
 
-impl Ticks {
-    #[inline]
-    fn next(&mut self) -> TickTiming {
-        match &mut self.pattern {
-            Pattern::AllOnTime => TickTiming::OnTime,
-            Pattern::Periodic(ticks, length) => {
-                let tick = ticks[self.at];
-                self.at = (self.at + 1) % *length;
-                tick
-            }
-            Pattern::Random { seed, missed, late, most } => {
-                let number = next(seed);
-                let tick = if number & 0xff < u64::from(*missed) {
-                    TickTiming::Missed
-                } else if number >> 8 & 0xff < u64::from(*late) {
-                    TickTiming::Late
-                } else {
-                    TickTiming::OnTime
+/// What happens to the ticks, one after the other.
+fn ticks(pattern: Pattern) -> Box<dyn Iterator<Item = TickTiming>> {
+    match pattern {
+        Pattern::AllOnTime => Box::new(std::iter::repeat(TickTiming::OnTime)),
+        Pattern::Periodic(ticks, length) => Box::new(repeated(ticks, length)),
+        Pattern::Random { mut seed, missed, late, most } => {
+            let mut in_a_row = 0;
+            Box::new(std::iter::repeat_with(move || {
+                let number = next(&mut seed);
+                let tick = match number & 0xff < u64::from(missed) {
+                    true => TickTiming::Missed,
+                    false if number >> 8 & 0xff < u64::from(late) => TickTiming::Late,
+                    false => TickTiming::OnTime,
                 };
-                self.in_a_row = if tick == TickTiming::OnTime { 0 } else { self.in_a_row + 1 };
-                if self.in_a_row > *most {
-                    self.in_a_row = 0;
+                in_a_row = if tick == TickTiming::OnTime { 0 } else { in_a_row + 1 };
+                if in_a_row > most {
+                    in_a_row = 0;
                     return TickTiming::OnTime;
                 }
                 tick
-            }
+            }))
         }
     }
 }
 
 /// What happens to the times of torques or counts, tick by tick.
-struct Shifts {
-    signs: Signs,
-    at: usize,
-}
-
-impl Shifts {
-    fn next(&mut self) -> i8 {
-        match &mut self.signs {
-            Signs::Periodic(signs, length) => {
-                let sign = signs[self.at];
-                self.at = (self.at + 1) % *length;
-                sign
-            }
-            Signs::Random { seed } => match next(seed) % 5 {
-                0 | 1 => -1,
-                2 | 3 => 1,
-                _ => 0,
-            },
-        }
+fn shifts(signs: Option<Signs>) -> Box<dyn Iterator<Item = i8>> {
+    match signs {
+        None => Box::new(std::iter::repeat(0)),
+        Some(Signs::Periodic(signs, length)) => Box::new(repeated(signs, length)),
+        Some(Signs::Random { mut seed }) => Box::new(std::iter::repeat_with(move || {
+            [-1, -1, 1, 1, 0][next(&mut seed) as usize % 5]
+        })),
     }
 }
 
@@ -342,12 +321,12 @@ impl<'a> Run<'a> {
         let Schedule { lags, held, .. } = self.schedule;
         if lags.updates == 0 {
             self.x[TORQUE] = torque;
-        } else if self.schedule.is_update(place) {
+        } else if self.schedule.updates.contains(&place) {
             let updates = f64::from(lags.updates);
             let share = 1.0 - (-1.0 / (updates * lags.amplifier)).exp();
             self.x[TORQUE] = (torque - self.x[AMPLIFIED]) * share * updates;
         }
-        self.balance.advance(&mut self.x, step, held.damping());
+        self.balance.advance(&mut self.x, step, held.damping);
     }
 
     /// The tick of this period. `tick`: what happens to it; `shift`: when its torque begins.
@@ -423,7 +402,7 @@ impl<'a> Run<'a> {
             ServoState::Running if was != ServoState::FadingIn => self.balance.openings += 1,
             ServoState::Faulted => {
                 self.outcome.faults += 1;
-                let damping = self.schedule.held.damping().max(f64::MIN_POSITIVE);
+                let damping = self.schedule.held.damping.max(f64::MIN_POSITIVE);
                 let longest = f64::from(self.since.max(1) + 1);
                 self.balance.stops += longest * self.strongest * self.strongest / (4.0 * damping);
             }
@@ -444,7 +423,6 @@ impl<'a> Run<'a> {
         let largest = outcome.start + balance.gained;
         outcome.largest = outcome.largest.max(largest);
         outcome.openings = balance.openings;
-        outcome.limits = self.last.limits;
         if audited {
             let residual = self.schedule.held.energy(&self.x) + balance.taken - largest;
             outcome.residual = outcome.residual.max(residual.abs());
@@ -498,8 +476,8 @@ where
 
     /// Runs a plan. `audited`: with the energy of device and hand beside the account.
     pub fn run(&self, normalized: &NormalizedScene, plan: &Plan, audited: bool) -> Outcome {
-        let NormalizedScene { damping, timing, overrun, .. } = normalized;
-        let schedule = Schedule::new(plan, *damping, timing, *overrun, audited);
+        let NormalizedScene { damping, timing, .. } = normalized;
+        let schedule = Schedule::new(plan, *damping, timing, audited);
         let mut mailbox = Mailbox::new();
         let (mut requests, mut inbox) = mailbox.split();
         if plan.armed_by_boot {
@@ -513,12 +491,12 @@ where
         }
         let window = (plan.periods / 4).max(LOOK);
         let mut rate = Rate { window, before: EnergyBalance::default(), last: -1.0 };
-        let mut ticks = Ticks { pattern: plan.pattern, at: 0, in_a_row: 0 };
-        let shifts = |signs: Option<Signs>| signs.map(|signs| Shifts { signs, at: 0 });
-        let (mut torques, mut counts) = (shifts(plan.jitter.torques), shifts(plan.jitter.counts));
-        let (mut overdue, mut was_late, mut target) = (None, false, 0.0);
+        let shifts = shifts(plan.jitter.torques).zip(shifts(plan.jitter.counts));
+        let (mut overdue, mut target) = (None, 0.0);
         let mut next_request = plan.next_request(0);
-        for period in 0..plan.periods {
+        for (period, (tick, (shift, count))) in
+            (0..plan.periods).zip(ticks(plan.pattern).zip(shifts))
+        {
             if let Some(on) = overdue.take() {
                 run.motor.powered = on;
             }
@@ -528,23 +506,17 @@ where
             }
             run.since += 1;
             run.balance.periods += 1;
-            let tick = ticks.next();
-            let shift = torques.as_mut().map_or(0, Shifts::next);
-            let (_, mut at) = schedule.count(counts.as_mut().map_or(0, Shifts::next));
-            let [delayed, after_late] = schedule.delayed();
+            let (_, mut at) = schedule.count(count);
             match tick {
-                TickTiming::Delayed => at = delayed.1,
-                // A tick that has to wait for the one before it reads its count when that has ended.
-                TickTiming::OnTime | TickTiming::Late if was_late => at = after_late.1,
-                _ => {}
+                TickTiming::Delayed => at = schedule.delayed.1,
+                TickTiming::Missed => {
+                    run.skipped += 1;
+                    run.in_a_row += 1;
+                    at = usize::MAX;
+                }
+                TickTiming::OnTime | TickTiming::Late => {}
             }
-            was_late = tick == TickTiming::Late && normalized.overrun > 0.0;
-            if tick == TickTiming::Missed {
-                run.skipped += 1;
-                run.in_a_row += 1;
-                at = usize::MAX;
-            }
-            for (place, step) in schedule.steps().iter().enumerate() {
+            for (place, step) in schedule.steps.iter().enumerate() {
                 if place == at {
                     let timed = (period, tick, shift);
                     overdue = run.tick(&mut control, &mut inbox, &mut requests, timed);

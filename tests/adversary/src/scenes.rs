@@ -78,28 +78,6 @@ pub enum Kind {
     Sharp,
 }
 
-impl Kind {
-    /// All values.
-    pub const ALL: [Self; 10] = [
-        Self::Wall,
-        Self::FreeMode,
-        Self::FreeModeWall,
-        Self::Rational,
-        Self::Unstable,
-        Self::Hidden,
-        Self::Overstated,
-        Self::Profile,
-        Self::Sum,
-        Self::Sharp,
-    ];
-}
-
-impl std::fmt::Display for Kind {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        std::fmt::Debug::fmt(self, f)
-    }
-}
-
 /// What a search may draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
@@ -107,27 +85,12 @@ pub struct Choice {
     pub kind: Option<Kind>,
     /// Whether all, none or some scenes have a worst period.
     pub worst_period: Option<bool>,
-    /// The same of a torque limit.
-    pub limited: Option<bool>,
-    /// The same of being latched.
-    pub latched: Option<bool>,
-    /// Whether the DAC may reach its full scale where a scene has no torque limit.
-    pub saturates: bool,
-    /// The same of injected damping.
-    pub injected: Option<bool>,
-    /// Part of a period by which late ticks outlast their own.
-    pub overrun: f64,
     /// Whether all, none or some scenes have a latency.
     pub latency: Option<bool>,
     /// Whether all, none or some scenes run by the servo alone.
     pub bare: Option<bool>,
     /// A wrong rule that scenes are accepted by.
     pub planted: Option<Planted>,
-    /// Share of the margin that the device loses.
-    pub taken: f64,
-    /// Whether the margin is not what the assessment states, but how much less damping would still
-    /// be certified.
-    pub bisected: bool,
     /// The damping of the device, over the least with which the scene's controller as it is would
     /// be certified; only linear scenes are drawn then.
     pub weakened: Option<f64>,
@@ -138,16 +101,9 @@ impl Choice {
     pub const ANY: Self = Self {
         kind: None,
         worst_period: None,
-        limited: None,
-        latched: None,
-        saturates: true,
-        injected: None,
-        overrun: 0.0,
         latency: None,
         bare: None,
         planted: None,
-        taken: 0.9,
-        bisected: false,
         weakened: None,
     };
 }
@@ -188,12 +144,8 @@ pub struct RandomScene {
     pub size: f64,
     /// The farthest place to arm at, in rad.
     pub reach: f64,
-    /// Share of the margin that the device loses.
-    pub taken: f64,
     /// The damping of the device in N m s/rad where it is another.
     pub damping: Option<f64>,
-    /// Part of a period by which late ticks outlast their own.
-    pub overrun: f64,
     /// Injected damping over the room that there is for it.
     pub injected: Option<f64>,
 }
@@ -224,15 +176,11 @@ impl RandomScene {
             actual: Actual::default(),
             size,
             reach: size,
-            taken: 0.9,
             damping: None,
-            overrun: 0.0,
             injected: None,
         }
     }
-}
 
-impl RandomScene {
     /// Whether it has more than the errors of scenes without latency are known for.
     pub fn is_general(&self) -> bool {
         let actual = self.actual.latency.is_some();
@@ -305,7 +253,7 @@ fn draw_kind(rng: &mut impl Rng, choice: &Choice) -> (Kind, Numbers, Mode, bool)
         return (kind, format, Mode::Bare, lags);
     }
     // The canceller in front of a wall is undelayed, and so is never latched.
-    let latched = sometimes(rng, choice.latched, 0.6) && kind != Kind::FreeModeWall;
+    let latched = rng.random_bool(0.6) && kind != Kind::FreeModeWall;
     if !lags {
         let mode = if latched { Mode::Latched } else { Mode::Simultaneous };
         return (kind, format, mode, false);
@@ -368,18 +316,14 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let size = log_uniform(rng, if is_general { 2e-2 } else { 1e-3 }, 1.0);
     let full_scale = (unit * size * log_uniform(rng, 0.1, 10.0)).min(100.0);
     let rational = matches!(kind, Kind::Rational | Kind::Unstable | Kind::Hidden);
-    let limited = sometimes(
-        rng,
-        choice.limited,
-        match (rational, lags) {
-            (true, _) => 0.1,
-            (_, true) if kind != Kind::Sharp => 0.7,
-            _ => 0.5,
-        },
-    );
+    let limited = rng.random_bool(match (rational, lags) {
+        (true, _) => 0.1,
+        (_, true) if kind != Kind::Sharp => 0.7,
+        _ => 0.5,
+    });
     // The servo alone is certified for torques that never saturate, or for its scene's limit.
     let unlimited = mode == Mode::Bare && !limited;
-    let full_scale = match (unlimited, limited || choice.saturates) {
+    let full_scale = match (unlimited, limited || choice.weakened.is_none()) {
         (true, _) => 40.0 * unit * size,
         (_, true) => full_scale,
         _ => 10.0 * unit * size,
@@ -539,35 +483,25 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         .map_or_else(Actual::default, |planted| planted.actual(&actual_scene, &scene));
     let judged_as = judged_as.map(|environment| Scene { environment, ..scene });
     let other = rng.random_bool(0.3).then(|| another(rng, &scene, size, format)).flatten();
-    let damping = if choice.bisected || choice.weakened.is_some() {
-        let least = |scene: &Scene| least_damping(scene, format.format());
-        let least = least(&scene)?.max(other.as_ref().and_then(least).unwrap_or(0.0));
-        let has = scene.device.passivity().min(scene.device.damping);
-        Some(match choice.weakened {
-            Some(share) => share * least,
-            None => has - choice.taken * (has - least),
-        })
-    } else {
-        None
+    let damping = match choice.weakened {
+        Some(share) => {
+            let least = |scene: &Scene| least_damping(scene, format.format());
+            Some(share * least(&scene)?.max(other.as_ref().and_then(least).unwrap_or(0.0)))
+        }
+        None => None,
     };
     // The room is known only once the scene is certified.
-    let injected = sometimes(rng, choice.injected, 0.15).then(|| 1.0 - log_uniform(rng, 1e-6, 0.9));
+    let injected = rng.random_bool(0.15).then(|| 1.0 - log_uniform(rng, 1e-6, 0.9));
     Some(RandomScene {
-        kind,
-        scene,
         other,
         judged_as,
         transducers,
         rendering: RenderingOptions { fade, injection: None, ..RenderingOptions::DEFAULT },
-        format,
-        mode,
         actual,
-        size,
         reach,
-        taken: choice.taken,
         damping,
-        overrun: choice.overrun,
         injected,
+        ..RandomScene::of(kind, scene, format, mode, size)
     })
 }
 
@@ -765,8 +699,9 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
     scene
 }
 
-/// Whether the certificate's own quick answer is yes.
-fn passes(scene: &Scene, format: Format) -> bool {
+/// Whether the certificate's own quick answer is yes: refused scenes are looked at for remedies, which takes a
+/// while.
+pub fn passes(scene: &Scene, format: Format) -> bool {
     PassivityProblem::in_format(scene, format).is_ok_and(|posed| posed.is_certified())
 }
 

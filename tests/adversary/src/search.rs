@@ -2,11 +2,9 @@
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
 
 use fixed::types::{I8F24, I12F20};
 use haptic_servo::boot::{Booted, Program, boot};
-use haptic_servo::certificate::{Assessment, certify_in};
 use haptic_servo::environment::Environment;
 use haptic_servo::number::Number;
 use haptic_servo::scene::Scene;
@@ -18,13 +16,11 @@ use haptic_servo::tuning::Tunable;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::coverage::Coverage;
 use crate::hardware::Board;
 use crate::mode::Actual;
 use crate::normalized_scene::NormalizedScene;
 use crate::periodic_motion::least_energy;
 use crate::plan::Plan;
-use crate::report::Counterexample;
 use crate::run::{Control, Machine, Outcome};
 use crate::scenes::{self, Choice, Mode, Numbers, RandomScene};
 
@@ -35,8 +31,6 @@ pub struct Search {
     pub seed: u64,
     /// Scenes to draw.
     pub scenes: u64,
-    /// After that no more are drawn.
-    pub time: Option<Duration>,
     /// The drawn scenes.
     pub choice: Choice,
     /// After so many counterexamples it ends.
@@ -80,8 +74,6 @@ pub struct Found {
     pub largest: f64,
     /// The largest rate of any run; see [`Outcome::rate`].
     pub rate: f64,
-    /// What was drawn of what kind.
-    pub coverage: Coverage,
     /// Runs that refute a certificate.
     pub counterexamples: Vec<Counterexample>,
     /// Certified scenes that give energy away in a periodic motion.
@@ -99,6 +91,31 @@ pub struct PeriodicMotion {
     pub energy: f64,
 }
 
+/// A run in which a certified scene gave energy away, with all that it takes to find it again.
+#[derive(Clone, Debug)]
+pub struct Counterexample {
+    /// The search's seed.
+    pub seed: u64,
+    /// The scene's number in it.
+    pub number: u64,
+    /// What was drawn.
+    pub drawn: RandomScene,
+    /// The same as numbers.
+    pub normalized: NormalizedScene,
+    /// The run.
+    pub plan: Plan,
+    /// What became of it.
+    pub outcome: Outcome,
+}
+
+impl std::fmt::Display for Counterexample {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { seed, number, outcome, .. } = self;
+        let gain = outcome.gained - outcome.allowed;
+        write!(f, "ADVERSARY_SEED={seed}, scene {number}: {gain:.3e} above the allowance: {self:?}")
+    }
+}
+
 impl Found {
     /// No scene, below any height and rate.
     fn nothing() -> Self {
@@ -113,7 +130,6 @@ impl Found {
         self.ticks += other.ticks;
         self.largest = self.largest.max(other.largest);
         self.rate = self.rate.max(other.rate);
-        self.coverage.add(&other.coverage);
         self.counterexamples.extend(other.counterexamples);
         self.motions.extend(other.motions);
     }
@@ -205,7 +221,9 @@ fn alone<N: Number, T: Task>(drawn: &RandomScene, task: T) -> Result<T::Result, 
 where
     Environment: Tunable<N>,
 {
-    certify_quickly(&drawn.scene, drawn.format).ok_or(Unjudged::Refused)?;
+    if !scenes::passes(&drawn.scene, N::FORMAT) {
+        return Err(Unjudged::Refused);
+    }
     let certified = drawn.scene.certify_in(N::FORMAT).map_err(|_| Unjudged::Refused)?;
     let servo = Servo::<_, N>::new(&certified, &drawn.transducers);
     let servo = servo.map_err(|_| Unjudged::Refused)?;
@@ -226,7 +244,9 @@ where
 {
     let mut drawn = drawn.clone();
     // Refused scenes are looked at for remedies, which takes a while.
-    certify_quickly(&drawn.scene, drawn.format).ok_or(Unjudged::Refused)?;
+    if !scenes::passes(&drawn.scene, N::FORMAT) {
+        return Err(Unjudged::Refused);
+    }
     if let Some(share) = drawn.injected {
         let timed = drawn.scene.certify_in(N::FORMAT).ok().and_then(|scene| scene.time::<M>().ok());
         drawn.rendering.injection = timed.map(|timed| timed.injectable_damping() * share);
@@ -239,17 +259,10 @@ where
             PreparedServo::<_, N, M>::new(&timed, &drawn.transducers, &drawn.rendering).ok()?;
         Some((set, assessment))
     };
-    let (own, assessment) = set(&drawn.scene).ok_or(Unjudged::Refused)?;
-    let mut sets = vec![own];
-    let mut assessments: Vec<Assessment> = vec![assessment];
+    let own = set(&drawn.scene).ok_or(Unjudged::Refused)?;
     let other = drawn.other.as_ref().and_then(set);
-    match other {
-        Some((other, assessment)) => {
-            sets.push(other);
-            assessments.push(assessment);
-        }
-        None => drawn.other = None,
-    }
+    let (sets, assessments): (Vec<_>, Vec<_>) = std::iter::once(own).chain(other).unzip();
+    drawn.other = drawn.other.filter(|_| sets.len() > 1);
     let drawn = &drawn;
     let normalized =
         NormalizedScene::of(drawn, &assessments, N::FORMAT).ok_or(Unjudged::Unbounded)?;
@@ -266,17 +279,6 @@ where
         boot::<_, N, M>(&program, &mut board, &requests).map_err(|_| Unjudged::Refused)?;
     let machine = Machine::new(Control::Board(servo_loop), sets);
     Ok(task.with(machine, normalized))
-}
-
-fn certify_quickly(scene: &Scene, format: Numbers) -> Option<()> {
-    let posed =
-        haptic_servo::certificate::PassivityProblem::in_format(scene, format.format()).ok()?;
-    posed.is_certified().then_some(())
-}
-
-/// Why a board refuses a scene in a number format; `None` where it does not.
-pub fn refusal(scene: &Scene, format: Numbers) -> Option<String> {
-    certify_in(scene, format.format()).err().map(|rejection| rejection.to_string())
 }
 
 /// Energy that rounding may leave, over that of the device alone.
@@ -315,12 +317,10 @@ impl Task for Climb<'_> {
     {
         let effort = self.search.effort;
         let mut found = Found { accepted: 1, ..Found::nothing() };
-        found.coverage.scene(self.drawn);
         let rng = &mut self.rng;
         let run = |found: &mut Found, plan: &Plan, audited: bool| -> Outcome {
             let outcome = machine.run(&normalized, plan, audited);
             found.runs += 1;
-            found.coverage.run(plan);
             found.ticks += u64::from(outcome.periods);
             outcome
         };
@@ -396,6 +396,11 @@ impl Task for Climb<'_> {
 }
 
 impl Search {
+    /// A search of the scenes of a seed until the first counterexample.
+    pub fn of(seed: u64) -> Self {
+        Self { seed, scenes: 5000, choice: Choice::ANY, enough: 1, effort: Effort::USUAL }
+    }
+
     /// A scene of this search, by number.
     pub fn scene(&self, number: u64) -> Found {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
@@ -427,7 +432,6 @@ impl Search {
 
     /// The whole search, on two threads.
     pub fn run(&self) -> Found {
-        let began = Instant::now();
         let next = AtomicU64::new(0);
         let all = Mutex::new(Found::nothing());
         std::thread::scope(|scope| {
@@ -436,8 +440,7 @@ impl Search {
                     let mut found = Found::nothing();
                     loop {
                         let number = next.fetch_add(1, Ordering::Relaxed);
-                        let over = self.time.is_some_and(|time| began.elapsed() > time);
-                        if number >= self.scenes || over || found.refuted() >= self.enough {
+                        if number >= self.scenes || found.refuted() >= self.enough {
                             break;
                         }
                         found.add(self.scene(number));

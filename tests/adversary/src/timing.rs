@@ -55,11 +55,6 @@ impl LoopTiming {
         }
     }
 
-    /// Whether there is an amplifier or a sensor that lags.
-    pub fn lags(&self) -> bool {
-        self.amplifier.most > 0.0 || self.sensor.most > 0.0
-    }
-
     /// The lags at one place in their ranges.
     fn lags_at(&self, place: f64) -> Lags {
         Lags {
@@ -84,26 +79,21 @@ pub struct Schedule {
     pub held: HeldDevice,
     /// The lags.
     pub lags: Lags,
-    steps: Vec<Step>,
+    /// The steps from each instant to the next.
+    pub steps: Vec<Step>,
     /// The instants of a count: early, in time, late.
     counts: [Instant; 3],
-    /// The same of a tick that begins late in its period, and of the tick after a late one.
-    delayed: [Instant; 2],
+    /// The instant of a tick that begins late in its period.
+    pub delayed: Instant,
     /// The instants of a torque: early, in time, late.
     torques: [Instant; 3],
     /// The instants at which the amplifier is updated.
-    updates: Vec<usize>,
+    pub updates: Vec<usize>,
 }
 
 impl Schedule {
-    /// The instants of a plan. `overrun`: the part of a period by which a late tick delays the next one.
-    pub fn new(
-        plan: &Plan,
-        damping: f64,
-        timing: &LoopTiming,
-        overrun: f64,
-        audited: bool,
-    ) -> Self {
+    /// The instants of a plan.
+    pub fn new(plan: &Plan, damping: f64, timing: &LoopTiming, audited: bool) -> Self {
         let delay = within(timing.delay, plan.within[0]);
         // No torque begins before its count.
         let shifts = |jitter: f64, signs: Option<Signs>| {
@@ -117,11 +107,10 @@ impl Schedule {
         let torques = torques.map(|shift| start + delay + shift);
         // As the timer of the board counts.
         let late = if plan.pattern.delays() { start + plan.delay } else { start };
-        let delayed = [late, start + overrun];
         let updates: Vec<f64> =
             (0..timing.updates).map(|i| start + f64::from(i) / f64::from(timing.updates)).collect();
         let mut all = vec![0.0];
-        for at in counts.iter().chain(&torques).chain(&delayed).chain(&updates) {
+        for at in counts.iter().chain(&torques).chain([&late]).chain(&updates) {
             let part = part(*at);
             if all.iter().all(|known: &f64| (known - part).abs() > SAME) {
                 all.push(part);
@@ -133,7 +122,7 @@ impl Schedule {
             ((at + SAME) as u32, all.iter().position(near).unwrap_or(0))
         };
         let lags = timing.lags_at(plan.within[1]);
-        let held = HeldDevice::lagging(&plan.hand, damping, &lags);
+        let held = HeldDevice::new(&plan.hand, damping, &lags);
         let ends = all.iter().skip(1).copied().chain([1.0]);
         let lengths = all.iter().zip(ends).map(|(from, to)| to - from);
         let step = |part: f64| if audited { held.audited(part) } else { held.step(part) };
@@ -142,15 +131,10 @@ impl Schedule {
             lags,
             steps: lengths.map(step).collect(),
             counts: counts.map(instant),
-            delayed: delayed.map(instant),
+            delayed: instant(late),
             torques: torques.map(instant),
             updates: updates.into_iter().map(|at| instant(at).1).collect(),
         }
-    }
-
-    /// The steps from each instant to the next.
-    pub fn steps(&self) -> &[Step] {
-        &self.steps
     }
 
     /// When a count is read that comes so early (-1), in time (0) or late (1).
@@ -158,19 +142,9 @@ impl Schedule {
         place(&self.counts, shift)
     }
 
-    /// When a tick reads its count that begins late, and the tick after a late one.
-    pub const fn delayed(&self) -> [Instant; 2] {
-        self.delayed
-    }
-
     /// When a torque begins that comes so early (-1), in time (0) or late (1).
     pub fn torque(&self, shift: i8) -> Instant {
         place(&self.torques, shift)
-    }
-
-    /// Whether the amplifier is updated at a place.
-    pub fn is_update(&self, at: usize) -> bool {
-        self.updates.contains(&at)
     }
 }
 

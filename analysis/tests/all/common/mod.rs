@@ -1,11 +1,12 @@
 //! Shared by the tests of the program: a scene, and the program as a process.
 
-use std::io::{BufRead, BufReader, Write};
+pub mod board;
+
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
-use tempfile::TempDir;
 
 /// The paper's delayed wall, which certifies.
 pub const WALL: &str = r#"name = "delayed wall"
@@ -23,19 +24,6 @@ damping = 0.01
 delay = 1
 "#;
 
-/// Its simulation, for a report that shows it.
-pub const MOTION: &str = r#"
-[simulation]
-samples = 300
-torque_sine = { amplitude = 1.5, omega = 60.0, phase = 0.0 }
-[human]
-inertia = 1e-4
-damping = 0.02
-stiffness = 4.0
-[limits]
-torque = 0.5
-"#;
-
 /// The program, to be started.
 pub fn program(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_haptic"));
@@ -50,12 +38,13 @@ pub fn haptic(arguments: &[&str]) -> Output {
 
 /// Runs the program with something on its standard input.
 pub fn haptic_reading(arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = program(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    with_input(&mut program(arguments), input)
+}
+
+/// Runs a program with something on its standard input.
+pub fn with_input(program: &mut Command, input: &[u8]) -> Output {
+    program.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = program.spawn().unwrap();
     let mut stdin = child.stdin.take().unwrap();
     let input = input.to_vec();
     // A program that has seen enough may close its input.
@@ -63,40 +52,6 @@ pub fn haptic_reading(arguments: &[&str], input: &[u8]) -> Output {
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap();
     output
-}
-
-/// A simulated board as a process, behind a socket; ends with this.
-pub struct BoardProcess {
-    pub process: Child,
-    pub port: String,
-    _folder: TempDir,
-}
-
-impl BoardProcess {
-    /// With the program of a scene, and more arguments; once it listens.
-    pub fn start(scene: &str, more: &[&str]) -> Self {
-        let folder = TempDir::new().unwrap();
-        let port = format!("unix:{}", folder.path().join("board").display());
-        let arguments = [&["board-sim", scene, "--port", &port], more].concat();
-        let mut process = program(&arguments).stdout(Stdio::piped()).spawn().unwrap();
-        let mut said = BufReader::new(process.stdout.take().unwrap()).lines();
-        assert_eq!(said.next().unwrap().unwrap(), format!("{scene} listens on {port}"));
-        Self { process, port, _folder: folder }
-    }
-
-    /// The exit status and the answer of `haptic tune --json`.
-    pub fn tune(&self, arguments: &[&str]) -> (Option<i32>, Value) {
-        let output = haptic(&[&["tune", "--json", "--port", &self.port], arguments].concat());
-        (output.status.code(), answer(&output))
-    }
-}
-
-impl Drop for BoardProcess {
-    fn drop(&mut self) {
-        // It may have ended by itself.
-        let _ = self.process.kill();
-        let _ = self.process.wait();
-    }
 }
 
 /// The program itself, set up.
@@ -124,6 +79,18 @@ pub fn complaint(output: Output) -> String {
 /// The repository.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+}
+
+/// The documents of users, as paths from the repository.
+pub fn documents() -> Vec<String> {
+    let folders = ["", "docs/", "firmware/", "analysis/virtual-board/"];
+    let of_folder = |folder: &str| {
+        let files = std::fs::read_dir(root().join(folder)).unwrap();
+        let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+        let documents = names.filter(|name| name.ends_with(".md"));
+        documents.map(|name| format!("{folder}{name}")).collect::<Vec<_>>()
+    };
+    folders.into_iter().flat_map(of_folder).collect()
 }
 
 /// A file's text.

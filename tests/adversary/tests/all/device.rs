@@ -29,7 +29,7 @@ fn a_held_device_moves_as_the_reference_does() {
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     for _ in 0..500 {
         let hand = draw(&mut rng);
-        let (plant, held) = (Plant::new(&hand), HeldDevice::new(&hand, 1.0));
+        let (plant, held) = (Plant::new(&hand), HeldDevice::new(&hand, 1.0, &Lags::default()));
         let masses = 1 + hand.segments.len();
         let mut x = [0.0; 8];
         x[..2 * masses].fill_with(|| rng.random_range(-1.0..1.0));
@@ -71,7 +71,7 @@ fn amplifier_and_sensor_lag_as_their_time_constants_say() {
         let mut hand = draw(&mut rng);
         hand.segments.truncate(1);
         let (amplifier, sensor) = (rng.random_range(0.05..2.0), rng.random_range(0.05..2.0));
-        let held = HeldDevice::lagging(&hand, 1.0, &Lags { amplifier, updates: 0, sensor });
+        let held = HeldDevice::new(&hand, 1.0, &Lags { amplifier, updates: 0, sensor });
         let mut x = [0.0; 8];
         x.fill_with(|| rng.random_range(-1.0..1.0));
         x[SENSED + 1] = 0.0;

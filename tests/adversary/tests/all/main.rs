@@ -4,8 +4,12 @@
 mod device;
 mod periodic_motion;
 mod planted;
+mod refuted_scenes;
 mod search;
 mod teeth;
 
 /// Scenes of a search: of all planted faults, the rarest shows in the 4155th scene.
 const SCENES: u64 = 5000;
+
+/// Scenes of a search that takes some seconds.
+const FEW: u64 = 500;

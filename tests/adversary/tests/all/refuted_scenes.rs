@@ -4,16 +4,9 @@
 use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
-/// One of them.
-#[derive(Clone, Copy, Debug)]
-pub struct RefutedScene {
-    /// What it was accepted in spite of.
-    pub name: &'static str,
-    /// The scene.
-    pub scene: Scene,
-    /// What it is to a certificate that cancels what its numerator and denominator have in common.
-    pub judged_as: Option<Scene>,
-}
+/// A name; the scene; and the same for a certificate that cancels the common factors of numerator and
+/// denominator.
+pub type RefutedScene = (&'static str, Scene, Option<Scene>);
 
 /// The device of the paper in a scene.
 fn scene(coupling: f64, environment: Environment) -> Scene {
@@ -46,11 +39,10 @@ fn at_rest(environment: Environment) -> Environment {
 /// All values.
 pub fn all() -> Vec<RefutedScene> {
     let damper = |k, b, n| Wall::damped(k, b, n).alone();
-    let refuted = |name, scene| RefutedScene { name, scene, judged_as: None };
-    let hidden = |name, numerator: &[f64], denominator: &[f64]| RefutedScene {
-        name,
-        scene: scene(44.0, rational(numerator, denominator)),
-        judged_as: Some(scene(44.0, rational(&[3.0], &[1.0]))),
+    let refuted = |name, scene| (name, scene, None);
+    let hidden = |name, numerator: &[f64], denominator: &[f64]| {
+        let scene_of = |numerator, denominator| scene(44.0, rational(numerator, denominator));
+        (name, scene_of(numerator, denominator), Some(scene_of(&[3.0], &[1.0])))
     };
     let jitters = |name, delay, jitter, lag, coupling, environment| {
         let latency = Latency { output_jitter: jitter, ..Latency::delayed(delay) };
