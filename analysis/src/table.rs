@@ -16,73 +16,28 @@ use thiserror::Error;
 
 use crate::file::excerpt;
 
-/// Why a file is not a valid table.
+/// Why a file is not a valid table: the file, mostly with a line, and the error there.
 #[derive(Debug, Error)]
-pub enum TableError {
-    /// The file cannot be opened or read.
-    #[error("{file}: cannot be read: {message}")]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// The cause.
-        message: String,
-    },
-    /// A column is missing.
-    #[error("{file}:1: there is no column {wanted}; the columns are {columns}")]
-    NoColumn {
-        /// The file.
-        file: String,
-        /// The names that it could have.
-        wanted: String,
-        /// The columns that there are.
-        columns: String,
-    },
-    /// The first line does not determine the columns.
-    #[error("{file}:1: {message}")]
-    BadHeader {
-        /// The file.
-        file: String,
-        /// The error in it.
-        message: String,
-    },
-    /// A row is not text, or has another number of fields than the header.
-    #[error("{file}:{line}: {message}")]
-    BadRow {
-        /// The file.
-        file: String,
-        /// The line.
-        line: u64,
-        /// The error in it.
-        message: String,
-    },
-    /// A field is invalid in its column.
-    #[error(
-        "{file}:{line}: column {column}, `{name}`: `{value}` is out of bounds; it must be {bound}"
-    )]
-    BadField {
-        /// The file.
-        file: String,
-        /// The line.
-        line: u64,
-        /// The column's number.
-        column: usize,
-        /// The column's name.
-        name: &'static str,
-        /// The text of the field.
-        value: String,
-        /// The valid values.
-        bound: String,
-    },
-    /// Too short.
-    #[error("{file}: {rows} rows below the header are too few; there must be at least {least}")]
-    TooShort {
-        /// The file.
-        file: String,
-        /// The number of rows.
-        rows: usize,
-        /// The least number of rows.
-        least: usize,
-    },
+#[error("{place}: {message}")]
+pub struct TableError {
+    place: String,
+    message: String,
+}
+
+impl TableError {
+    /// An error of the whole file.
+    pub fn of_file(file: &str, message: impl Into<String>) -> Self {
+        Self { place: file.to_owned(), message: message.into() }
+    }
+
+    /// An error in a line, counted from 1.
+    pub fn in_line(file: &str, line: u64, message: impl Into<String>) -> Self {
+        Self { place: format!("{file}:{line}"), message: message.into() }
+    }
+
+    fn unreadable(file: &str, error: &std::io::Error) -> Self {
+        Self::of_file(file, format!("cannot be read: {error}"))
+    }
 }
 
 /// A column by its names, and its valid values.
@@ -165,33 +120,22 @@ pub struct Row<'t> {
 
 impl Table<File> {
     /// Opens a file.
-    ///
-    /// # Errors
-    /// Where it cannot be read, or its first line is not text.
     pub fn open(path: &Path) -> Result<Self, TableError> {
         let file = path.display().to_string();
-        match File::open(path) {
-            Ok(source) => Self::new(&file, source),
-            Err(error) => Err(TableError::Unreadable { file, message: error.to_string() }),
-        }
+        let source = File::open(path).map_err(|error| TableError::unreadable(&file, &error))?;
+        Self::new(&file, source)
     }
 }
 
 impl<R: Read> Table<R> {
     /// A table from anything that can be read; messages call it `file`.
-    ///
-    /// # Errors
-    /// As [`Table::open`].
     pub fn new(file: &str, source: R) -> Result<Self, TableError> {
         let mut source = BufReader::new(source);
         let mut first = Vec::new();
         let read = source.by_ref().take(LONGEST_HEADER).read_until(b'\n', &mut first);
-        read.map_err(|error| TableError::Unreadable {
-            file: file.to_owned(),
-            message: error.to_string(),
-        })?;
+        read.map_err(|error| TableError::unreadable(file, &error))?;
         let delimiter = delimiter(&String::from_utf8_lossy(&first))
-            .map_err(|message| TableError::BadHeader { file: file.to_owned(), message })?;
+            .map_err(|message| TableError::in_line(file, 1, message))?;
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
             .delimiter(delimiter)
@@ -217,15 +161,12 @@ impl<R: Read> Table<R> {
     }
 
     /// Where a column is that may state one of these units, if it is there; without a unit it is in SI units.
-    ///
-    /// # Errors
-    /// Where it states another unit, or two columns have the same name.
     pub fn find_in(
         &self,
         column: Column,
         units: &[Unit],
     ) -> Result<Option<FoundColumn>, TableError> {
-        let bad = |message| TableError::BadHeader { file: self.file.clone(), message };
+        let bad = |message: String| TableError::in_line(&self.file, 1, message);
         for name in column.names {
             let mut found: Option<(FoundColumn, &str)> = None;
             for (index, header) in self.header.iter().enumerate() {
@@ -259,17 +200,11 @@ impl<R: Read> Table<R> {
     }
 
     /// Where a column is that may state one of these units.
-    ///
-    /// # Errors
-    /// As [`Table::find_in`], and where it is missing.
     pub fn column_in(&self, column: Column, units: &[Unit]) -> Result<FoundColumn, TableError> {
         self.find_in(column, units)?.ok_or_else(|| self.missing(column))
     }
 
     /// Where a column is.
-    ///
-    /// # Errors
-    /// Where it is missing.
     pub fn column(&self, column: Column) -> Result<FoundColumn, TableError> {
         self.find(column).ok_or_else(|| self.missing(column))
     }
@@ -279,14 +214,12 @@ impl<R: Read> Table<R> {
         let names: Vec<_> = column.names.iter().map(|name| format!("`{name}`")).collect();
         let columns = self.header.iter().map(excerpt).collect::<Vec<_>>().join(", ");
         let columns = if columns.is_empty() { "none".to_owned() } else { excerpt(&columns) };
-        let (file, wanted) = (self.file.clone(), names.join(" or "));
-        TableError::NoColumn { file, wanted, columns }
+        let message =
+            format!("there is no column {}; the columns are {columns}", names.join(" or "));
+        TableError::in_line(&self.file, 1, message)
     }
 
     /// The next row; `None` at the end.
-    ///
-    /// # Errors
-    /// Where it cannot be read, is not text, or has another number of fields than the header.
     pub fn row(&mut self) -> Result<Option<Row<'_>>, TableError> {
         let line = self.reader.position().line();
         match self.reader.read_record(&mut self.record) {
@@ -302,24 +235,19 @@ impl<R: Read> Table<R> {
     }
 
     /// Checks that at least this many rows have been read.
-    ///
-    /// # Errors
-    /// Where they were fewer.
     pub fn at_least(&self, least: usize) -> Result<(), TableError> {
-        match self.rows {
-            rows if rows < least => {
-                Err(TableError::TooShort { file: self.file.clone(), rows, least })
-            }
-            _ => Ok(()),
+        if self.rows >= least {
+            return Ok(());
         }
+        let rows = self.rows;
+        let few =
+            format!("{rows} rows below the header are too few; there must be at least {least}");
+        Err(TableError::of_file(&self.file, few))
     }
 }
 
 impl Row<'_> {
     /// The field in a column as a number that its bound admits.
-    ///
-    /// # Errors
-    /// Where the field is not such a number.
     pub fn number<T: FromStr>(
         &self,
         place: FoundColumn,
@@ -333,9 +261,6 @@ impl Row<'_> {
     }
 
     /// The same in SI units.
-    ///
-    /// # Errors
-    /// As [`Row::number`].
     pub fn in_si(
         &self,
         place: FoundColumn,
@@ -351,14 +276,10 @@ impl Row<'_> {
 
     /// The error for a field in a column that conflicts with the rows before.
     pub fn bad(&self, place: FoundColumn, bound: &str) -> TableError {
-        TableError::BadField {
-            file: self.file.to_owned(),
-            line: self.line,
-            column: place.index + 1,
-            name: place.name,
-            value: excerpt(self.text(place)),
-            bound: bound.to_owned(),
-        }
+        let (column, name, value) = (place.index + 1, place.name, excerpt(self.text(place)));
+        let message =
+            format!("column {column}, `{name}`: `{value}` is out of bounds; it must be {bound}");
+        TableError::in_line(self.file, self.line, message)
     }
 
     /// The field in a column.
@@ -409,16 +330,13 @@ fn unit_behind<'h>(header: &'h str, name: &str, units: &[Unit]) -> Option<&'h st
 }
 
 fn bad_row(file: &str, line: u64, error: &csv::Error) -> TableError {
-    let file = file.to_owned();
     let message = match error.kind() {
-        csv::ErrorKind::Io(error) => {
-            return TableError::Unreadable { file, message: error.to_string() };
-        }
+        csv::ErrorKind::Io(error) => return TableError::unreadable(file, error),
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("{len} fields; the header has {expected_len}")
         }
         csv::ErrorKind::Utf8 { .. } => "not UTF-8 text".to_owned(),
         _ => excerpt(&error.to_string()),
     };
-    TableError::BadRow { file, line: error.position().map_or(line, Position::line), message }
+    TableError::in_line(file, error.position().map_or(line, Position::line), message)
 }

@@ -96,13 +96,14 @@ impl Motion {
         }
         match table.find_in(ANGLE, RADIANS)? {
             Some(angle) if angle.has_unit => Ok(Self::Angle(angle)),
-            Some(angle) => Err(TableError::BadHeader {
-                file: table.file().to_owned(),
-                message: format!(
+            Some(angle) => Err(TableError::in_line(
+                table.file(),
+                1,
+                format!(
                     "the column `{0}` has no unit: name it `{0} (rad)` or `{0} (deg)`",
                     angle.name
                 ),
-            }),
+            )),
             None => Err(table.missing(COUNTS)),
         }
     }
@@ -213,6 +214,6 @@ impl Times {
             "the time goes from {before} s to {behind} s, by more than one period of {period} s: rows are missing \
              ({missing} rows in {count} gaps in the file). Record again without gaps, or cut the file there"
         );
-        Err(TableError::BadRow { file: file.to_owned(), line, message })
+        Err(TableError::in_line(file, line, message))
     }
 }
