@@ -43,7 +43,7 @@ impl Panels {
             return vec![(None, Self { cases, errors: (0..errors.len()).collect() })];
         }
         let of = |error: usize| Self { cases: cases.clone(), errors: vec![error] };
-        let word = |error: usize| Some(errors[error].column.names[0]);
+        let word = |error: usize| Some(errors[error].name);
         (0..errors.len()).map(|error| (word(error), of(error))).collect()
     }
 

@@ -18,8 +18,7 @@ use crate::link::{Address, LinkError};
 use crate::quantity::significant;
 use crate::run_csv::RunCsvError;
 use crate::simulation::SimulationError;
-use crate::studies::number_format::FormatError;
-use crate::studies::tradeoff::TradeoffError;
+use crate::studies::error::StudyError;
 use crate::table::TableError;
 use crate::toolchain::{BuildError, SetupError, SourcesError};
 use crate::virtual_board::VirtualBoardError;
@@ -118,9 +117,6 @@ pub enum CommandError {
     /// A program does not build.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// The parts of a program could not be measured.
-    #[error(transparent)]
-    TickParts(#[from] crate::studies::tick_parts::TickPartsError),
     /// A program could not be flashed.
     #[error(transparent)]
     Probe(#[from] crate::toolchain::probe::ProbeError),
@@ -130,18 +126,9 @@ pub enum CommandError {
     /// The emulated board failed.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
-    /// A number format has no figures; errors of certificate or simulation have variants.
+    /// A study has no figures.
     #[error(transparent)]
-    Arithmetic(FormatError),
-    /// A set could not be measured on the emulated board.
-    #[error(transparent)]
-    Live(#[from] crate::studies::bench::live::LiveError),
-    /// The page of `haptic explore` could not be measured.
-    #[error(transparent)]
-    Page(#[from] crate::studies::bench::page::PageError),
-    /// A peer of the benchmark failed.
-    #[error(transparent)]
-    Peer(#[from] crate::studies::bench::peer::PeerError),
+    Study(StudyError),
     /// A picture could not be drawn.
     #[error(transparent)]
     Chart(#[from] ChartError),
@@ -246,12 +233,6 @@ pub enum CommandError {
         /// Its time in s.
         time: f64,
     },
-    /// A case of failure could not be shown.
-    #[error(transparent)]
-    Failure(#[from] crate::studies::failures::FailureError),
-    /// Models of a device that cannot be compared.
-    #[error(transparent)]
-    Model(#[from] crate::studies::model::ModelError),
     /// A design for a quantity that the environment does not have.
     #[error("the environment of {scene} has no {quantity}")]
     NoSuchQuantity {
@@ -288,23 +269,12 @@ pub enum CommandError {
     Output(#[from] io::Error),
 }
 
-impl From<FormatError> for CommandError {
-    fn from(error: FormatError) -> Self {
+impl From<StudyError> for CommandError {
+    fn from(error: StudyError) -> Self {
         match error {
-            FormatError::Refused(rejection) => Self::Refused(rejection),
-            FormatError::Simulation(error) => Self::Simulation(error),
-            other => Self::Arithmetic(other),
-        }
-    }
-}
-
-impl From<TradeoffError> for CommandError {
-    fn from(error: TradeoffError) -> Self {
-        match error {
-            TradeoffError::Arithmetic(error) => error.into(),
-            TradeoffError::Setup(error) => error.into(),
-            TradeoffError::Build(error) => error.into(),
-            TradeoffError::Emulator(error) => error.into(),
+            StudyError::Refused(rejection) => Self::Refused(rejection),
+            StudyError::Simulation(error) => Self::Simulation(error),
+            other => Self::Study(other),
         }
     }
 }

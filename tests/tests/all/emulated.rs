@@ -11,8 +11,7 @@ use std::time::Duration;
 use analysis::emulator::{BenchClient, CertifyClient, Emulator, EmulatorError, EmulatorReport};
 use analysis::program::{damper_wall, delayed_spring, free_mode, knob, undelayed_wall};
 use analysis::studies::bench;
-use analysis::studies::bench::live::live_set;
-use analysis::studies::bench::matched::contact_instructions;
+use analysis::studies::bench::on_target::{contact_instructions, live_set, profiles};
 use analysis::studies::number_format::{Motion, cost};
 use analysis::studies::tradeoff::{servo, sine};
 use analysis::toolchain::{NumberFormat, Program, Toolchain, Tools, prepare};
@@ -182,14 +181,14 @@ fn the_board_judges_torque_profiles_as_the_host_does() {
     let elf = TOOLCHAIN.build_harness("certify_server").unwrap_or_else(|error| panic!("{error}"));
     let mut board = CertifyClient::boot(&elf).unwrap();
     let (mut most, mut certified) = (0, 0);
-    for scene in bench::profile::scenes() {
+    for scene in profiles() {
         let reply = judged_alike(&mut board, &scene, &format!("{scene:?}"));
         most = most.max(reply.instructions);
         certified += usize::from(reply.is_certified);
     }
     board.finish().unwrap();
     println!("instructions of the longest judgement of a torque profile: {most}");
-    assert!(certified > 5 && certified < bench::profile::scenes().len(), "{certified}");
+    assert!(certified > 5 && certified < profiles().len(), "{certified}");
     assert!(most <= 3_400_000, "{most}");
 }
 
