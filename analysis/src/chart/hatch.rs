@@ -33,7 +33,8 @@ pub enum Fill {
 }
 
 impl Fill {
-    /// The fill behind samples of this status, and its meaning; `None` for those whose torque was not limited.
+    /// The fill behind samples of this status, and its meaning; `None` for those whose torque was not
+    /// limited.
     pub fn of(status: TickStatus) -> Option<(Self, &'static str)> {
         match status {
             TickStatus::Ran(LimitReason::None) => None,

@@ -42,8 +42,8 @@ impl TickParts {
         Self::of_elf(&elf).map_err(|error| failed(error.to_string()))
     }
 
-    /// The program contains the tick twice, with
-    /// and without [injected damping](Part::Injection), except for their common code.
+    /// The program contains the tick twice, with and without [injected damping](Part::Injection), except for
+    /// their common code.
     fn of_elf(elf: &[u8]) -> Result<Self, ListingError> {
         let mut parts = Self::default();
         listing(elf, |Instruction { functions, bytes, multiplies }| {
