@@ -7,7 +7,7 @@
 
 use std::cell::Cell;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Chain, Cursor, Read};
+use std::io::{BufRead, BufReader, Chain, Cursor, Read};
 use std::path::Path;
 use std::str::FromStr;
 
@@ -16,29 +16,27 @@ use thiserror::Error;
 
 use crate::file::excerpt;
 
-/// Why a file is not a valid table.
+/// Why a file is not a valid table: the file, mostly with a line, and the error there.
 #[derive(Debug, Error)]
 #[error("{place}: {message}")]
 pub struct TableError {
-    /// The file, and where it is known the line.
     place: String,
     message: String,
 }
 
 impl TableError {
-    /// An error in a line of a file.
-    pub fn at(file: &str, line: u64, message: String) -> Self {
-        Self { place: format!("{file}:{line}"), message }
+    /// An error of the whole file.
+    pub fn of_file(file: &str, message: impl Into<String>) -> Self {
+        Self { place: file.to_owned(), message: message.into() }
     }
 
-    /// An error of a whole file.
-    fn whole(file: &str, message: String) -> Self {
-        Self { place: file.to_owned(), message }
+    /// An error in a line, counted from 1.
+    pub fn in_line(file: &str, line: u64, message: impl Into<String>) -> Self {
+        Self { place: format!("{file}:{line}"), message: message.into() }
     }
 
-    /// A file that cannot be opened or read.
-    fn unreadable(file: &str, error: &io::Error) -> Self {
-        Self::whole(file, format!("cannot be read: {error}"))
+    fn unreadable(file: &str, error: &std::io::Error) -> Self {
+        Self::of_file(file, format!("cannot be read: {error}"))
     }
 }
 
@@ -124,10 +122,8 @@ impl Table<File> {
     /// Opens a file.
     pub fn open(path: &Path) -> Result<Self, TableError> {
         let file = path.display().to_string();
-        match File::open(path) {
-            Ok(source) => Self::new(&file, source),
-            Err(error) => Err(TableError::unreadable(&file, &error)),
-        }
+        let source = File::open(path).map_err(|error| TableError::unreadable(&file, &error))?;
+        Self::new(&file, source)
     }
 }
 
@@ -139,7 +135,7 @@ impl<R: Read> Table<R> {
         let read = source.by_ref().take(LONGEST_HEADER).read_until(b'\n', &mut first);
         read.map_err(|error| TableError::unreadable(file, &error))?;
         let delimiter = delimiter(&String::from_utf8_lossy(&first))
-            .map_err(|message| TableError::at(file, 1, message))?;
+            .map_err(|message| TableError::in_line(file, 1, message))?;
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
             .delimiter(delimiter)
@@ -170,7 +166,7 @@ impl<R: Read> Table<R> {
         column: Column,
         units: &[Unit],
     ) -> Result<Option<FoundColumn>, TableError> {
-        let bad = |message| TableError::at(&self.file, 1, message);
+        let bad = |message: String| TableError::in_line(&self.file, 1, message);
         for name in column.names {
             let mut found: Option<(FoundColumn, &str)> = None;
             for (index, header) in self.header.iter().enumerate() {
@@ -220,7 +216,7 @@ impl<R: Read> Table<R> {
         let columns = if columns.is_empty() { "none".to_owned() } else { excerpt(&columns) };
         let message =
             format!("there is no column {}; the columns are {columns}", names.join(" or "));
-        TableError::at(&self.file, 1, message)
+        TableError::in_line(&self.file, 1, message)
     }
 
     /// The next row; `None` at the end.
@@ -240,12 +236,13 @@ impl<R: Read> Table<R> {
 
     /// Checks that at least this many rows have been read.
     pub fn at_least(&self, least: usize) -> Result<(), TableError> {
-        let rows = self.rows;
-        if rows >= least {
+        if self.rows >= least {
             return Ok(());
         }
-        let bound = format!("are too few; there must be at least {least}");
-        Err(TableError::whole(&self.file, format!("{rows} rows below the header {bound}")))
+        let rows = self.rows;
+        let few =
+            format!("{rows} rows below the header are too few; there must be at least {least}");
+        Err(TableError::of_file(&self.file, few))
     }
 }
 
@@ -282,7 +279,7 @@ impl Row<'_> {
         let (column, name, value) = (place.index + 1, place.name, excerpt(self.text(place)));
         let message =
             format!("column {column}, `{name}`: `{value}` is out of bounds; it must be {bound}");
-        TableError::at(self.file, self.line, message)
+        TableError::in_line(self.file, self.line, message)
     }
 
     /// The field in a column.
@@ -341,5 +338,5 @@ fn bad_row(file: &str, line: u64, error: &csv::Error) -> TableError {
         csv::ErrorKind::Utf8 { .. } => "not UTF-8 text".to_owned(),
         _ => excerpt(&error.to_string()),
     };
-    TableError::at(file, error.position().map_or(line, Position::line), message)
+    TableError::in_line(file, error.position().map_or(line, Position::line), message)
 }

@@ -17,3 +17,17 @@ pub fn markdown_table<'h>(
     }
     table
 }
+
+/// A column: its name, whether it has numbers, and its cell in a row.
+pub type Column<R> = (&'static str, bool, fn(&R) -> String);
+
+/// The table of some rows.
+pub fn table_of<R>(rows: &[R], columns: &[Column<R>]) -> Table {
+    let numbers = columns.iter().enumerate().filter(|(_, (_, has_numbers, _))| *has_numbers);
+    let mut table =
+        markdown_table(columns.iter().map(|column| column.0), numbers.map(|(index, _)| index));
+    for row in rows {
+        table.add_row(columns.iter().map(|(_, _, cell)| cell(row)));
+    }
+    table
+}

@@ -1,11 +1,5 @@
 //! The open loop over frequency: gain above phase, with the margins to -1 marked.
 
-use super::axis::Axis;
-use super::legend::{Legend, Sample};
-use super::mark::Mark;
-use super::page::{Page, WIDTH};
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::open_loop::{Margin, OpenLoop};
 use crate::quantity::{shortened, significant};
@@ -22,9 +16,6 @@ const MARGIN: Stroke = Stroke::dashed(&[3, 3], 2);
 const LEVEL: Stroke = Stroke::solid(1).faint();
 
 /// Draws the open loops of named scenes; `wanted` are the ranges of frequency in Hz and of gain, above 0.
-///
-/// # Errors
-/// If there is none, or the drawing fails.
 pub fn bode(
     title: &str,
     loops: &[(String, OpenLoop)],

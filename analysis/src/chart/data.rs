@@ -45,7 +45,7 @@ impl Cell {
 
 /// The rows of a table, which are computed as they are written: a map has millions.
 pub struct Data {
-    header: &'static [&'static str],
+    header: Vec<&'static str>,
     rows: Box<dyn Iterator<Item = Vec<Cell>>>,
 }
 
@@ -55,22 +55,30 @@ impl Data {
         header: &'static [&'static str],
         rows: impl IntoIterator<Item = Vec<Cell>> + 'static,
     ) -> Self {
-        Self { header, rows: Box::new(rows.into_iter()) }
+        Self { header: header.to_vec(), rows: Box::new(rows.into_iter()) }
+    }
+
+    /// A table of such rows: of each column its name, unit included, and its value in a row.
+    pub fn of<R: 'static, const N: usize>(
+        rows: impl IntoIterator<Item = R> + 'static,
+        columns: [(&'static str, fn(&R) -> Cell); N],
+    ) -> Self {
+        let row = move |row: R| columns.iter().map(|(_, value)| value(&row)).collect();
+        let rows = Box::new(rows.into_iter().map(row));
+        Self { header: columns.map(|(name, _)| name).to_vec(), rows }
     }
 
     /// Writes it to a file.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub fn write(self, path: &Path) -> Result<(), ChartError> {
-        let unwritable = |source| ChartError::Data { path: path.to_owned(), source };
+        let unwritable =
+            |source| ChartError::Output { path: path.to_owned(), what: "numbers", source };
         let file = std::fs::File::create(path).map_err(unwritable)?;
         self.write_to(file).map_err(unwritable)
     }
 
     fn write_to(self, to: impl Write) -> std::io::Result<()> {
         let mut table = csv::Writer::from_writer(to);
-        table.write_record(self.header)?;
+        table.write_record(&self.header)?;
         for row in self.rows {
             table.write_record(row.iter().map(Cell::text))?;
         }

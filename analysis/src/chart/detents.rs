@@ -1,13 +1,5 @@
 //! The map of torque profiles over their number of repetitions in a turn and their torque.
 
-use super::axis::Axis;
-use super::hatch::Fill;
-use super::legend::{Legend, Sample};
-use super::mark::Mark;
-use super::page::{HEIGHT, Page, WIDTH};
-use super::palette::FORBIDDEN;
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::profile_curve::DetentLimits;
 
@@ -32,9 +24,6 @@ pub struct DetentMap {
 }
 
 /// Draws a map: the certified region is white.
-///
-/// # Errors
-/// If there is nothing to draw.
 pub fn detents(map: &DetentMap) -> Result<Picture, ChartError> {
     if map.own.points.len() < 2 {
         return Err(ChartError::TooFewPoints);

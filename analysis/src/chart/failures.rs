@@ -1,12 +1,5 @@
 //! The springs that methods of integration show as stable, over their steps per tick.
 
-use super::axis::Axis;
-use super::hatch::Fill;
-use super::legend::{Legend, Sample};
-use super::page::{HEIGHT, Page, WIDTH};
-use super::palette::FORBIDDEN;
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::simulation::method::Method;
 use crate::studies::failures::region::{METHODS, Region};
@@ -21,9 +14,6 @@ const NEEDLESS: Fill = Fill::Level;
 
 /// Draws the devices beside each other: curves of each method's largest stable stiffness, grey where a method
 /// shows an unstable loop as stable, hatched where it shows a stable loop as unstable.
-///
-/// # Errors
-/// If it cannot be drawn.
 pub fn failures(regions: &[Region]) -> Result<Picture, ChartError> {
     let regions_and_lines = [
         (Sample::Region(Fill::Solid(FORBIDDEN)), "called stable, but unstable"),

@@ -1,15 +1,8 @@
 //! The growth of an oscillation that the certificate would have prevented.
 
-use super::axis::Axis;
-use super::page::{HEIGHT, Page, WIDTH};
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 
 /// Draws an angle over time that grows, with the time axis in s.
-///
-/// # Errors
-/// If there are fewer than two samples.
 pub fn growth(title: &str, period: f64, position: &[f64]) -> Result<Picture, ChartError> {
     if position.len() < 2 {
         return Err(ChartError::TooFewPoints);

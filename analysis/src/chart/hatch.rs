@@ -5,8 +5,8 @@ use std::ops::Range;
 use haptic_servo::torque::LimitReason;
 use plotters::prelude::*;
 
+use super::base::{Area, Drawn, UNITS, units};
 use super::palette::{FAINT, FORBIDDEN};
-use super::{Area, Drawn, UNITS, units};
 use crate::simulation::tick_status::TickStatus;
 
 /// Units between two lines of a hatching; all fills of a kind share one grid, so that adjacent narrow fills
@@ -33,17 +33,18 @@ pub enum Fill {
 }
 
 impl Fill {
-    /// The fill behind samples of this status; `None` for those whose torque was not limited.
-    pub fn of(status: TickStatus) -> Option<Self> {
+    /// The fill behind samples of this status, and its meaning; `None` for those whose torque was not
+    /// limited.
+    pub fn of(status: TickStatus) -> Option<(Self, &'static str)> {
         match status {
             TickStatus::Ran(LimitReason::None) => None,
-            TickStatus::Ran(LimitReason::Torque) => Some(Self::Solid(FORBIDDEN)),
-            TickStatus::Ran(LimitReason::DacRange) => Some(Self::Rising),
-            TickStatus::Ran(LimitReason::Angle) => Some(Self::Falling),
-            TickStatus::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
-            TickStatus::Ran(LimitReason::Ramp) => Some(Self::Upright),
-            TickStatus::Ran(LimitReason::Heat) => Some(Self::Squared),
-            TickStatus::Missed => Some(Self::Level),
+            TickStatus::Ran(LimitReason::Torque) => Some((Self::Solid(FORBIDDEN), "torque limit")),
+            TickStatus::Ran(LimitReason::DacRange) => Some((Self::Rising, "converter limit")),
+            TickStatus::Ran(LimitReason::Angle) => Some((Self::Falling, "angle out of range")),
+            TickStatus::Ran(LimitReason::NotANumber) => Some((Self::Crossed, "not a number")),
+            TickStatus::Ran(LimitReason::Ramp) => Some((Self::Upright, "fading in or out")),
+            TickStatus::Ran(LimitReason::Heat) => Some((Self::Squared, "heat limit")),
+            TickStatus::Missed => Some((Self::Level, "tick missed")),
         }
     }
 
@@ -124,7 +125,7 @@ mod tests {
 
     #[test]
     fn every_reason_has_a_fill_of_its_own() {
-        let fills: Vec<_> = TickStatus::all().filter_map(Fill::of).collect();
+        let fills: Vec<_> = TickStatus::all().filter_map(Fill::of).map(|(fill, _)| fill).collect();
         assert_eq!(fills.len(), TickStatus::all().count() - 1);
         for (index, fill) in fills.iter().enumerate() {
             assert!(!fills[..index].contains(fill));

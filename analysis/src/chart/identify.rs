@@ -3,14 +3,6 @@
 
 use std::f64::consts::TAU;
 
-use super::axis::Axis;
-use super::hatch::Fill;
-use super::legend::{Legend, Sample};
-use super::mark::Mark;
-use super::page::Page;
-use super::palette::FORBIDDEN;
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::identify::{FrequencyPoint, Identification};
 use crate::quantity::significant;
@@ -32,9 +24,6 @@ const LATE: Stroke = Stroke::dashed(&[2, 4], 1);
 
 /// Draws the responses `J` of a device with the disk that they lie in, and over frequency their
 /// inverses, with the device that was fitted to them.
-///
-/// # Errors
-/// If there is only one response, or the drawing fails.
 pub fn identify(title: &str, found: &Identification) -> Result<Picture, ChartError> {
     if found.responses.len() < 2 {
         return Err(ChartError::TooFewPoints);

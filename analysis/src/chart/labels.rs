@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use crate::chart::{Area, Drawn, LABEL, UNITS, anchored, units};
+use super::base::{Area, Drawn, LABEL, UNITS, anchored, units};
 
 /// Width of a letter relative to the size of its font: more than the mean of the used letters, so that a name
 /// is never longer than its block.

@@ -1,12 +1,6 @@
 //! The stiffest certified spring over the servo's rate, one panel for each current loop, compared with the
 //! common assumptions.
 
-use super::axis::Axis;
-use super::legend::{Legend, Sample};
-use super::mark::Mark;
-use super::page::{Page, WIDTH};
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::latency_limits::{LatencyLimits, LatencyPoint};
 use crate::quantity::significant;
@@ -29,9 +23,6 @@ const CURVES: [Curve; 4] = [
 
 /// Draws a panel for each current loop. A cross marks a rate at which a hand is known in which the last
 /// curve's spring oscillates on a board with latched torques.
-///
-/// # Errors
-/// If there are fewer than two points.
 pub fn latency(title: &str, loops: &[LatencyLimits]) -> Result<Picture, ChartError> {
     let points = || loops.iter().flat_map(|limits| &limits.points);
     let rates = span(points().map(|point| point.rate));

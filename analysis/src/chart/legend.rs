@@ -3,10 +3,10 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::base::{Area, Drawn, anchored, units};
 use super::hatch::Fill;
 use super::mark::Mark;
 use super::stroke::Stroke;
-use super::{Area, Drawn, anchored, units};
 
 /// Height of a line in pixels.
 const ROW: i32 = 20;
@@ -113,7 +113,7 @@ impl Sample {
                 let (x, y) = (x..right, y - units(7)..y + units(7));
                 fill.draw(area, &x, &y)?;
                 let corners = [(x.start, y.start), (x.end, y.end)];
-                area.draw(&Rectangle::new(corners, BLACK.stroke_width(super::UNITS)))
+                area.draw(&Rectangle::new(corners, BLACK.stroke_width(super::base::UNITS)))
             }
             Self::Point(mark) => mark.draw(area, ((x + right) / 2, y)),
             Self::Nothing => Ok(()),

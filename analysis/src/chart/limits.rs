@@ -1,11 +1,5 @@
 //! The stiffest certified wall over the sample rate, and below it the encoder's ripple.
 
-use super::axis::Axis;
-use super::legend::{Legend, Sample};
-use super::mark::Mark;
-use super::page::{Page, WIDTH};
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::limits::Point;
 use crate::quantity::significant;
@@ -41,9 +35,6 @@ pub struct Own {
 
 /// Draws largest stiffness and torque ripple for several delays. `wanted` is the range of stiffness. A cross
 /// marks the scene's own wall, and a vertical line its rate. `note` states the conditions of the ripple.
-///
-/// # Errors
-/// If there are fewer than two points.
 pub fn limits(
     title: &str,
     note: &str,

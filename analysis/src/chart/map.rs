@@ -1,14 +1,7 @@
 //! The map of walls over stiffness and damping.
 
-use super::axis::Axis;
 use super::cell_polygons::polygons;
-use super::hatch::Fill;
-use super::legend::{Legend, Sample};
-use super::mark::Mark;
-use super::page::{HEIGHT, Page, WIDTH};
 use super::palette::REGIONS;
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::stability_map::border::Border;
 use crate::stability_map::{Map, Region};
@@ -56,9 +49,6 @@ fn named(map: &Map) -> Vec<Region> {
 }
 
 /// Draws a map: the regions in greys, the border of the closed form as a broken line, the scene as a cross.
-///
-/// # Errors
-/// If the drawing fails.
 pub fn map(map: &Map, overlay: &Overlay) -> Result<Picture, ChartError> {
     let x = (Axis::linear(map.stiffness.clone()), "stiffness (N m/rad)");
     let y = (Axis::linear(map.damping.clone()), "damping (N m s/rad)");

@@ -2,8 +2,8 @@
 
 use plotters::prelude::*;
 
+use super::base::{Area, Drawn, UNITS, units};
 use super::palette::{FAINT, FAMILIES};
-use super::{Area, Drawn, UNITS, units};
 
 /// The mark of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]

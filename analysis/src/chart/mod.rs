@@ -2,6 +2,7 @@
 //! readable in print.
 
 mod axis;
+mod base;
 pub mod bode;
 pub mod cell_polygons;
 pub mod data;
@@ -32,26 +33,21 @@ pub mod turn;
 
 use std::ops::Range;
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+// What charts are made of, for `use super::*` in each of them.
+use axis::Axis;
+use base::*;
 pub use data::{Cell, Chart, Data};
 pub use error::ChartError;
+use hatch::Fill;
+use legend::{Legend, Sample};
+use mark::Mark;
+use page::{HEIGHT, Page, WIDTH};
+use palette::FORBIDDEN;
+use panel::{Axes, Panel};
 pub use picture::{Picture, has_extension};
-
-/// Units of the drawing in a pixel. Coordinates are whole numbers, and a curve on whole pixels
-/// would be jagged.
-const UNITS: u32 = 8;
-/// Font of all text; every viewer has one by this name.
-const FONT: &str = "sans-serif";
-/// Size of all text except titles.
-const LABEL: i32 = units(14);
-
-/// Pixels in units of the drawing.
-const fn units(pixels: i32) -> i32 {
-    pixels * UNITS as i32
-}
+use stroke::Stroke;
 
 /// Ranges of the axes, in place of the default ones.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -74,18 +70,6 @@ fn meets(
         }
         _ => Ok(()),
     }
-}
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn<T> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
-
-fn text(size: i32) -> TextStyle<'static> {
-    TextStyle::from((FONT, size)).color(&BLACK)
-}
-
-/// Text with its anchor on the given side.
-fn anchored(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
-    text(LABEL).pos(Pos::new(horizontal, vertical))
 }
 
 /// A range with room on both sides; never empty.

@@ -2,9 +2,11 @@
 
 use plotters::prelude::*;
 
+use super::base::{Area, Drawn, UNITS, text, units};
+use super::error::ChartError;
 use super::legend::Legend;
+use super::picture::Picture;
 use super::strokes::join_strokes;
-use super::{Area, ChartError, Drawn, Picture, UNITS, text, units};
 use crate::quantity::shortened;
 
 /// Usual width and height of a picture without its title and legends, in pixels.

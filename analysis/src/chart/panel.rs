@@ -3,11 +3,11 @@
 use plotters::prelude::*;
 
 use super::axis::Axis;
+use super::base::{Area, Drawn, LABEL, UNITS, text, units};
 use super::frame::{Frame, Place, whole};
 use super::mark::Mark;
 use super::palette::GRID;
 use super::stroke::Stroke;
-use super::{Area, Drawn, LABEL, UNITS, text, units};
 
 /// Room around a panel.
 const MARGIN: i32 = units(14);

@@ -27,9 +27,6 @@ impl Picture {
     }
 
     /// Checks that a picture may have this file, before the work for it.
-    ///
-    /// # Errors
-    /// If it has another extension than `.svg`, or none.
     pub fn check_name(path: &Path) -> Result<(), ChartError> {
         match has_extension(path, "svg") {
             true => Ok(()),
@@ -38,12 +35,12 @@ impl Picture {
     }
 
     /// Writes it to a file.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), ChartError> {
-        std::fs::write(path, &self.svg)
-            .map_err(|source| ChartError::Output { path: path.to_owned(), source })
+        std::fs::write(path, &self.svg).map_err(|source| ChartError::Output {
+            path: path.to_owned(),
+            what: "picture",
+            source,
+        })
     }
 }
 

@@ -1,12 +1,6 @@
 //! A torque profile: torque and potential over angle, the steepest pieces, and the steepest slope that
 //! certifies.
 
-use super::axis::Axis;
-use super::legend::{Legend, Sample};
-use super::mark::Mark;
-use super::page::{Page, WIDTH};
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::profile_curve::{Piece, ProfileCurve};
 use crate::quantity::significant;
@@ -25,9 +19,6 @@ const LIMIT: Stroke = Stroke::dashed(&[12, 4, 2, 4], 1);
 const SNAP: Stroke = Stroke::dashed(&[2, 4], 1);
 
 /// Draws a profile. `limit`: the torque limit in N m.
-///
-/// # Errors
-/// If the drawing fails.
 pub fn profile(
     title: &str,
     curve: &ProfileCurve,

@@ -2,8 +2,8 @@
 
 use plotters::prelude::*;
 
+use super::base::{Area, Drawn, UNITS, units};
 use super::palette::FAINT;
-use super::{Area, Drawn, UNITS, units};
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,11 +1,5 @@
 //! Position, velocity and torque over time.
 
-use super::axis::Axis;
-use super::hatch::Fill;
-use super::legend::{Legend, Sample};
-use super::page::{Page, WIDTH};
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::quantity::significant;
 use crate::simulation::tick_status::TickStatus;
@@ -26,21 +20,18 @@ pub fn data(trace: Trace) -> Data {
         let motion = [trace.time[i].into(), trace.position[i].into(), known(&velocity)];
         motion.into_iter().chain(torques).chain([limit.into()]).collect()
     });
-    match time_unit {
-        TimeUnit::Seconds => {
-            Data::new(&["time", "position", "velocity", "torque", "hand", "limit"], rows)
-        }
-        TimeUnit::Ticks => {
-            Data::new(&["tick", "position", "velocity", "torque", "hand", "limit"], rows)
-        }
-    }
+    let header: &[_] = match time_unit {
+        TimeUnit::Seconds => &["time", "position", "velocity", "torque", "hand", "limit"],
+        TimeUnit::Ticks => &["tick", "position", "velocity", "torque", "hand", "limit"],
+    };
+    Data::new(header, rows)
 }
 
-/// The reasons for limited torques, each once.
-fn reasons(trace: &Trace) -> Vec<(TickStatus, Fill)> {
+/// The reasons for limited torques, each once, with their fills and meanings.
+fn reasons(trace: &Trace) -> Vec<(TickStatus, Fill, &'static str)> {
     let occurs = |status: &TickStatus| trace.limit.contains(status);
-    let grounded = |status| Some((status, Fill::of(status)?));
-    TickStatus::all().filter(occurs).filter_map(grounded).collect()
+    let reason = |status| Fill::of(status).map(|(fill, words)| (status, fill, words));
+    TickStatus::all().filter(occurs).filter_map(reason).collect()
 }
 
 /// Heights of the panels, in pixels.
@@ -60,9 +51,6 @@ const ZERO: Stroke = Stroke::solid(1).faint();
 
 /// Draws position above velocity and torque, over one time axis. The fill shows why the torque was limited or
 /// a tick was missed. `wanted` has the ranges of time and angle to show.
-///
-/// # Errors
-/// If there are fewer than two samples.
 pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
     let samples = trace.time.len();
     if samples < 2 || trace.position.len() != samples || trace.torque.len() != samples {
@@ -74,7 +62,7 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
     meets("vertical", wanted.y.as_ref(), &span(seen()))?;
     let angles = wanted.y.clone().unwrap_or(padded(span(seen()), 0.16));
     let reasons = reasons(trace);
-    let fills = reasons.iter().map(|(status, fill)| (Sample::Region(*fill), name(*status).into()));
+    let fills = reasons.iter().map(|(_, fill, words)| (Sample::Region(*fill), (*words).into()));
     let lines = lines(trace, &times, &angles).into_iter();
     let notes = notes(trace).into_iter().map(|note| (Sample::Nothing, note));
     let legends = vec![Legend::new(2, lines.chain(fills)), Legend::new(1, notes)];
@@ -186,23 +174,6 @@ fn unit(trace: &Trace) -> &'static str {
     }
 }
 
-/// The meaning of a fill.
-fn name(status: TickStatus) -> &'static str {
-    use haptic_servo::torque::LimitReason::{
-        Angle, DacRange, Heat, None, NotANumber, Ramp, Torque,
-    };
-    match status {
-        TickStatus::Ran(None) => "not limited",
-        TickStatus::Ran(Torque) => "torque limit",
-        TickStatus::Ran(DacRange) => "converter limit",
-        TickStatus::Ran(Angle) => "angle out of range",
-        TickStatus::Ran(NotANumber) => "not a number",
-        TickStatus::Ran(Ramp) => "fading in or out",
-        TickStatus::Ran(Heat) => "heat limit",
-        TickStatus::Missed => "tick missed",
-    }
-}
-
 /// The axis of the torque, and the drawn limits.
 fn torque_axis(trace: &Trace, times: &Range<f64>) -> (Range<f64>, Vec<f64>) {
     let torques = seen(&trace.torque, trace, times).chain(seen(&trace.hand_torque, trace, times));
@@ -222,12 +193,12 @@ fn torque(
     area: &Area<'_>,
     trace: &Trace,
     times: &Range<f64>,
-    reasons: &[(TickStatus, Fill)],
+    reasons: &[(TickStatus, Fill, &str)],
 ) -> Drawn<()> {
     let (y, limits) = torque_axis(trace, times);
     let x_name = format!("time ({})", unit(trace));
     let panel = panel(area, times, y, (&x_name, "torque (N m)"))?;
-    for &(status, fill) in reasons {
+    for &(status, fill, _) in reasons {
         shade(&panel, trace, times, (status, fill))?;
     }
     panel.level(ZERO, 0.0)?;

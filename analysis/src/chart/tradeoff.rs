@@ -1,13 +1,7 @@
 //! Speed against accuracy: for each case and each error a panel with all methods, families
 //! distinguished by mark and colour, and the Pareto front with the names of its methods.
 
-use super::axis::Axis;
 use super::labels::{Block, Labels};
-use super::legend::{Legend, Sample};
-use super::mark::Mark;
-use super::page::{Page, WIDTH};
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::studies::tradeoff::{Axis as Figure, Method, Tradeoff};
 
@@ -43,7 +37,7 @@ impl Panels {
             return vec![(None, Self { cases, errors: (0..errors.len()).collect() })];
         }
         let of = |error: usize| Self { cases: cases.clone(), errors: vec![error] };
-        let word = |error: usize| Some(errors[error].column.names[0]);
+        let word = |error: usize| Some(errors[error].name);
         (0..errors.len()).map(|error| (word(error), of(error))).collect()
     }
 
@@ -62,9 +56,6 @@ impl Panels {
 }
 
 /// Draws panels of a table.
-///
-/// # Errors
-/// If no method has a cost and an error, or the drawing fails.
 pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError> {
     let columns = panels.columns();
     let rows = panels.each().count().div_ceil(columns);

@@ -2,13 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::axis::Axis;
-use super::legend::{Legend, Sample};
-use super::mark::Mark;
-use super::page::{Page, WIDTH};
-use super::panel::{Axes, Panel};
 use super::profile::{draw_slopes, slopes};
-use super::stroke::Stroke;
 use super::*;
 use crate::felt_turn::FeltTurn;
 
@@ -20,9 +14,6 @@ const MOTION: Stroke = Stroke::solid(2);
 const HAND: Stroke = Stroke::dashed(&[6, 4], 1);
 
 /// Draws a turn.
-///
-/// # Errors
-/// If the drawing fails.
 pub fn turn(title: &str, turn: &FeltTurn) -> Result<Picture, ChartError> {
     let dots = "torque of the servo's codes, a dot each tick".to_owned();
     let hand = (Sample::Line(HAND), "set-point of the hand".to_owned());

@@ -11,7 +11,7 @@ use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Scene};
 
 use super::explore;
-use super::shared_arguments::JsonOption;
+use super::shared_arguments::{DEFAULT_TICKS, JsonOption};
 use super::status::{CommandError, CommandStatus};
 use crate::compare_run::{Backend, Input, run_with_backend};
 use crate::emulator::EmulatorReport;
@@ -19,18 +19,15 @@ use crate::file;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
-use crate::studies::bench::current;
-use crate::studies::bench::figure::{Budget, Figure, Pair, Ratio};
-use crate::studies::bench::live::live_set;
-use crate::studies::bench::matched;
+use crate::studies::bench::figure::{Budget, Figure, Pair};
+use crate::studies::bench::on_target::{self, live_set};
 use crate::studies::bench::page::scenes::{PageScene, SHOWN};
-use crate::studies::bench::page::{self, Repetitions, ScenePage};
+use crate::studies::bench::page::{self, ScenePage};
 use crate::studies::bench::parts::{self, Inventory};
-use crate::studies::bench::profile;
 use crate::studies::bench::python::{JUDGES, PythonPeers, SIMULATOR};
 use crate::studies::bench::steps::{in_c, step_time, steps_beside};
 use crate::studies::bench::{self, CORE_CLOCK, Rounds};
-use crate::text_table::markdown_table;
+use crate::text_table::table_of;
 use crate::toolchain::{self, BoardModel, NumberFormat, Toolchain, Tools, TorqueOutput};
 
 /// Arguments of `haptic bench`.
@@ -59,10 +56,6 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    fn repetitions(&self) -> Repetitions {
-        if self.quick { Repetitions::QUICK } else { Repetitions::THOROUGH }
-    }
-
     fn rounds(&self) -> Rounds {
         if self.quick { Rounds::QUICK } else { Rounds::THOROUGH }
     }
@@ -99,9 +92,6 @@ const INSTANTS: [(&str, Budget); 2] = [
 /// Of the free bytes of a motor board's flash with a wall on its bridge.
 const FLASH_LEFT: Budget = Budget { value: 40.0 * 1024.0, unit: "bytes", source: "at least" };
 
-/// Ticks of each run in the emulator.
-const DEFAULT_TICKS: usize = 5000;
-
 /// Measures and prints.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if arguments.parts {
@@ -111,7 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         return Ok(CommandStatus::Success);
     }
     let figures = match arguments {
-        Arguments { page: true, .. } => about_pages(arguments.repetitions())?,
+        Arguments { page: true, .. } => about_pages(arguments.rounds())?,
         Arguments { host: true, .. } => on_host(arguments)?,
         _ => everything(arguments)?,
     };
@@ -124,7 +114,7 @@ fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let mut figures = on_host(arguments)?;
-    match about_pages(arguments.repetitions()) {
+    match about_pages(arguments.rounds()) {
         Ok(pages) => figures.extend(pages),
         Err(error) => eprintln!("page of haptic explore: not measured: {error}"),
     }
@@ -145,7 +135,7 @@ fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
 }
 
 /// The cost of the page of `haptic explore` in a browser.
-fn about_pages(repetitions: Repetitions) -> Result<Vec<Figure>, CommandError> {
+fn about_pages(rounds: Rounds) -> Result<Vec<Figure>, CommandError> {
     // A missing browser is reported before anything is built for it.
     let browser = page::watching_browser()?;
     let module = explore::module()?;
@@ -156,14 +146,14 @@ fn about_pages(repetitions: Repetitions) -> Result<Vec<Figure>, CommandError> {
     let pages: Vec<_> = SHOWN.into_iter().map(page).collect::<Result<_, _>>()?;
     let spinner = progress::spinner("measuring the page in a browser");
     let progress = |what: &str| spinner.set_message(what.to_owned());
-    let figures = page::figures(browser, &pages, repetitions, progress)?;
+    let figures = page::figures(browser, &pages, rounds, progress)?;
     spinner.finish_and_clear();
     Ok(figures)
 }
 
 /// Ticks behind the matched coupling; no program has only a wall behind it.
 fn behind_matched(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
-    let most = matched::contact_instructions(&toolchain.build_harness("bench_programs")?)?;
+    let most = on_target::contact_instructions(&toolchain.build_harness("bench_programs")?)?;
     for (what, most) in ["", " and one lag"].into_iter().zip(most) {
         let name =
             format!("damper wall behind the matched coupling{what}, f32: tick, contact, most");
@@ -174,7 +164,7 @@ fn behind_matched(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
 
 /// Verdicts on torque profiles with more knots than those of the programs.
 fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
-    let most = profile::verdict_instructions(&toolchain.build_harness("certify_server")?)?;
+    let most = on_target::verdict_instructions(&toolchain.build_harness("certify_server")?)?;
     for (what, most) in ["", " with its message"].into_iter().zip(most) {
         let name = format!("torque profile of 64 knots: verdict{what} on the target, most");
         figures.push(Figure::within(name, most as f64, &CERTIFICATE));
@@ -185,18 +175,18 @@ fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
 /// The additional work and memory of a board with its own bridge.
 fn about_bridges(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
     let servo = most_of_interrupts(figures);
-    let most = current::instant_instructions(&toolchain.build_harness("bench_programs")?)?;
+    let most = on_target::instant_instructions(&toolchain.build_harness("bench_programs")?)?;
     for ((motor, budget), most) in INSTANTS.into_iter().zip(most.map(f64::from)) {
         let name = format!("current loop, {motor} motor");
         let instant = format!("{name}: instant, sample to compare values, most");
         figures.push(Figure::within(instant, most, &budget));
         let both = Budget {
-            value: current::share_of_core(budget.value, INTERRUPT.value),
+            value: on_target::share_of_core(budget.value, INTERRUPT.value),
             unit: "%",
             source: "the same of both budgets",
         };
         let share = format!("{name}, at 40 kHz with a servo at 10 kHz: of 170 M instructions/s");
-        figures.push(Figure::within(share, current::share_of_core(most, servo), &both));
+        figures.push(Figure::within(share, on_target::share_of_core(most, servo), &both));
     }
     let (board, name) = (BoardModel::BG431bEsc1, "bridge_wall");
     let spinner = progress::spinner("building programs");
@@ -237,7 +227,7 @@ fn on_host(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     let spinner = progress::spinner("measuring this machine");
     let mut figures = beside_peers(rounds, &scenes, peers)?;
     figures.extend(lagging(rounds));
-    let time = bench::verdict_time(&profile::scenes(), rounds.own);
+    let time = bench::verdict_time(&on_target::profiles(), rounds.own);
     let name = "verdict about a torque profile of 64 knots, median";
     figures.push(Figure::within(name, time, &PROFILE));
     figures.extend(maps(rounds));
@@ -284,8 +274,8 @@ fn beside_peers(
 fn lagging(rounds: Rounds) -> [Figure; 4] {
     let time = bench::middle_verdict_time(&bench::lagging_scenes(), rounds.own);
     let springs = bench::lagging_springs();
-    let at_rest = || bench::at_rest::rendered_stiffness(&program::STIFFEST);
-    let same = Pair::computed(at_rest, || springs.ours());
+    let at_rest = bench::at_rest::rendered_stiffness(&program::STIFFEST);
+    let same = Pair { ours: at_rest, peers: springs.ours };
     [
         Figure::within("verdict with delay and lag, degrees 0 to 8, median", time, &LAGGING),
         Figure::beside(
@@ -435,19 +425,18 @@ fn live_sets(name: &str, elf: &Path, figures: &mut Vec<Figure>) -> Result<(), Co
 const LIVE_COUPLING: f64 = 44.0;
 
 fn table(figures: &[Figure]) -> Table {
-    let mut table =
-        markdown_table(["figure", "value", "unit", "against", "ratio", "against what"], [1, 3, 4]);
-    for figure in figures {
-        let number =
-            |value: Option<f64>| value.map_or_else(String::new, |value| significant(value, 4));
-        table.add_row([
-            figure.name.clone(),
-            number(Some(figure.value)),
-            figure.unit.to_owned(),
-            number(figure.against),
-            number(figure.ratio.map(Ratio::get)),
-            figure.source.clone(),
-        ]);
+    fn number(value: Option<f64>) -> String {
+        value.map_or_else(String::new, |value| significant(value, 4))
     }
-    table
+    table_of(
+        figures,
+        &[
+            ("figure", false, |figure| figure.name.clone()),
+            ("value", true, |figure| number(Some(figure.value))),
+            ("unit", false, |figure| figure.unit.to_owned()),
+            ("against", true, |figure| number(figure.against)),
+            ("ratio", true, |figure| number(figure.ratio)),
+            ("against what", false, |figure| figure.source.clone()),
+        ],
+    )
 }

@@ -10,8 +10,7 @@ use crate::file::FileError;
 use crate::link::Address;
 use crate::quantity::significant;
 use crate::simulation::SimulationError;
-use crate::studies::number_format::FormatError;
-use crate::studies::tradeoff::TradeoffError;
+use crate::studies::error::StudyError;
 
 /// Verdict of a command, which becomes the exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,12 +136,6 @@ passed_on! {
     crate::run_csv::RunCsvError,
     crate::serve::ServeError,
     crate::stability_map::MapError,
-    crate::studies::bench::live::LiveError,
-    crate::studies::bench::page::PageError,
-    crate::studies::bench::peer::PeerError,
-    crate::studies::failures::FailureError,
-    crate::studies::model::ModelError,
-    crate::studies::tick_parts::TickPartsError,
     crate::table::TableError,
     crate::toolchain::BuildError,
     crate::toolchain::SetupError,
@@ -162,20 +155,11 @@ impl From<csv::Error> for CommandError {
     }
 }
 
-impl From<FormatError> for CommandError {
-    fn from(error: FormatError) -> Self {
+impl From<StudyError> for CommandError {
+    fn from(error: StudyError) -> Self {
         match error {
-            FormatError::Refused(rejection) => Self::Refused(rejection),
-            FormatError::Simulation(error) => Self::Simulation(error),
-            other => Self::Failed(other.into()),
-        }
-    }
-}
-
-impl From<TradeoffError> for CommandError {
-    fn from(error: TradeoffError) -> Self {
-        match error {
-            TradeoffError::Arithmetic(error) => error.into(),
+            StudyError::Refused(rejection) => Self::Refused(rejection),
+            StudyError::Simulation(error) => Self::Simulation(error),
             other => Self::Failed(other.into()),
         }
     }

@@ -97,7 +97,7 @@ impl Motion {
                 let message = format!(
                     "the column `{name}` has no unit: name it `{name} (rad)` or `{name} (deg)`"
                 );
-                Err(TableError::at(table.file(), 1, message))
+                Err(TableError::in_line(table.file(), 1, message))
             }
             None => Err(table.missing(COUNTS)),
         }
@@ -209,6 +209,6 @@ impl Times {
             "the time goes from {before} s to {behind} s, by more than one period of {period} s: rows are missing \
              ({missing} rows in {count} gaps in the file). Record again without gaps, or cut the file there"
         );
-        Err(TableError::at(file, line, message))
+        Err(TableError::in_line(file, line, message))
     }
 }

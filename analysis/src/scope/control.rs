@@ -1,9 +1,23 @@
 //! Commands to the board that the scope has keys for.
 
 pub use haptic_model::board::request::{Reply, Request};
-use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 use crate::link::change;
+
+/// A key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// A letter, a digit, a sign or a space.
+    Letter(char),
+    /// Enter.
+    Enter,
+    /// Backspace.
+    Backspace,
+    /// Esc.
+    Escape,
+    /// Ctrl-C.
+    Interrupt,
+}
 
 /// The action of a key.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,25 +47,20 @@ pub struct Control {
 impl Control {
     /// Takes a key. Arming takes a capital letter: it switches a motor on. Ctrl-C quits from
     /// anywhere.
-    pub fn press(&mut self, key: KeyEvent) -> Action {
-        if key.kind == KeyEventKind::Release {
-            return Action::None;
-        }
-        if key.modifiers.contains(KeyModifiers::CONTROL) {
-            return if key.code == KeyCode::Char('c') { Action::Quit } else { Action::None };
-        }
+    pub fn press(&mut self, key: Key) -> Action {
         match self.prompt.take() {
-            Some(line) => self.edit(line, key.code),
-            None => self.command(key.code),
+            _ if key == Key::Interrupt => Action::Quit,
+            Some(line) => self.edit(line, key),
+            None => self.command(key),
         }
     }
 
-    fn command(&mut self, key: KeyCode) -> Action {
+    fn command(&mut self, key: Key) -> Action {
         match key {
-            KeyCode::Char('q') | KeyCode::Esc => Action::Quit,
-            KeyCode::Char('A') => Action::Request(Request::Arm),
-            KeyCode::Char('d') => Action::Request(Request::Disarm),
-            KeyCode::Char('t' | ':') => {
+            Key::Letter('q') | Key::Escape => Action::Quit,
+            Key::Letter('A') => Action::Request(Request::Arm),
+            Key::Letter('d') => Action::Request(Request::Disarm),
+            Key::Letter('t' | ':') => {
                 self.prompt = Some(String::new());
                 Action::None
             }
@@ -60,15 +69,15 @@ impl Control {
     }
 
     /// An invalid line stays, to be corrected.
-    fn edit(&mut self, mut line: String, key: KeyCode) -> Action {
+    fn edit(&mut self, mut line: String, key: Key) -> Action {
         match key {
-            KeyCode::Esc => return Action::None,
-            KeyCode::Enter => match change::line(&line) {
+            Key::Escape => return Action::None,
+            Key::Enter => match change::line(&line) {
                 Ok(changes) => return Action::Request(Request::Set(changes)),
                 Err(why) => self.message = Some(why),
             },
-            KeyCode::Backspace => drop(line.pop()),
-            KeyCode::Char(letter) => line.push(letter),
+            Key::Backspace => drop(line.pop()),
+            Key::Letter(letter) => line.push(letter),
             _ => {}
         }
         self.prompt = Some(line);
@@ -85,11 +94,11 @@ mod tests {
 
     fn typed(control: &mut Control, text: &str) -> Action {
         let keys = text.chars().map(|letter| match letter {
-            '\n' => KeyCode::Enter,
-            '\u{8}' => KeyCode::Backspace,
-            letter => KeyCode::Char(letter),
+            '\n' => Key::Enter,
+            '\u{8}' => Key::Backspace,
+            letter => Key::Letter(letter),
         });
-        keys.map(|key| control.press(key.into())).last().unwrap_or(Action::None)
+        keys.map(|key| control.press(key)).last().unwrap_or(Action::None)
     }
 
     #[test]
@@ -110,13 +119,12 @@ mod tests {
         let mut control = Control::default();
         assert_eq!(typed(&mut control, "tqAd"), Action::None);
         assert_eq!(control.prompt.as_deref(), Some("qAd"));
-        assert_eq!(control.press(KeyCode::Esc.into()), Action::None);
+        assert_eq!(control.press(Key::Escape), Action::None);
         assert_eq!(typed(&mut control, "a"), Action::None);
         assert_eq!(typed(&mut control, "A"), Action::Request(Request::Arm));
         assert_eq!(typed(&mut control, "d"), Action::Request(Request::Disarm));
         assert_eq!(typed(&mut control, "q"), Action::Quit);
-        let interrupt = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL);
         typed(&mut control, "t");
-        assert_eq!(control.press(interrupt), Action::Quit);
+        assert_eq!(control.press(Key::Interrupt), Action::Quit);
     }
 }

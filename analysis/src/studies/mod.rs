@@ -3,8 +3,9 @@
 //! charts and the commands show the results.
 
 pub mod bench;
+pub mod error;
 pub mod failures;
-pub mod model;
+pub(crate) mod model;
 pub mod number_format;
 pub mod tick_parts;
 pub mod tradeoff;

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Cursor};
 use std::path::{Path, PathBuf};
 
-use base64::Engine;
+use data_encoding::BASE64;
 use serde_json::json;
 
 use crate::common::{WALL, root};
@@ -115,8 +115,7 @@ fn taken() -> Picture {
     turn_the_knob(&mut page);
     page.value("scrollTo({ top: 0, behavior: 'instant' }) ?? new Promise(requestAnimationFrame)");
     let shot = page.call("Page.captureScreenshot", json!({ "format": "png" }));
-    let shot =
-        base64::engine::general_purpose::STANDARD.decode(shot["data"].as_str().unwrap()).unwrap();
+    let shot = BASE64.decode(shot["data"].as_str().unwrap().as_bytes()).unwrap();
     let words = words(&mut page);
     page.assert_silent();
     Picture { words, ..Picture::read(Cursor::new(shot), WORDS) }

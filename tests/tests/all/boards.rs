@@ -65,15 +65,19 @@ fn check_parts(board: BoardModel, name: &str, program: &Program) {
     for part in parts {
         let Share { instructions, multiplications, .. } = tick.share(part);
         let should = has(name).contains(&part);
-        assert_eq!(instructions > 0, should, "{board}, {name}: {instructions} of {part}");
+        assert_eq!(instructions > 0, should, "{board}, {name}: {instructions} of {part:?}");
         // A face and a delay move numbers and compare them.
         let multiplies = should && !matches!(part, Part::Face | Part::Delay);
-        assert_eq!(multiplications > 0, multiplies, "{board}, {name}: {multiplications} of {part}");
+        assert_eq!(
+            multiplications > 0,
+            multiplies,
+            "{board}, {name}: {multiplications} of {part:?}"
+        );
     }
     // Every servo has an angle and a deflection of its coupling.
     for part in [Part::Encoder, Part::Coupling] {
         let multiplies = tick.share(part).multiplications > 0;
-        assert_eq!(multiplies, !has(name).is_empty(), "{board}, {name}: {part}");
+        assert_eq!(multiplies, !has(name).is_empty(), "{board}, {name}: {part:?}");
     }
 }
 

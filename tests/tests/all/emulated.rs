@@ -9,8 +9,7 @@ use std::time::Duration;
 use analysis::emulator::{CertifyClient, Emulator, EmulatorError, EmulatorReport};
 use analysis::program::{damper_wall, delayed_spring, free_mode, knob, undelayed_wall};
 use analysis::studies::bench;
-use analysis::studies::bench::live::live_set;
-use analysis::studies::bench::matched::contact_instructions;
+use analysis::studies::bench::on_target::{contact_instructions, live_set, profiles};
 use analysis::studies::number_format::{Motion, cost};
 use analysis::studies::tradeoff::{servo, sine};
 use analysis::toolchain::{NumberFormat, Program};
@@ -144,7 +143,7 @@ fn the_board_judges_as_the_host_does() {
     }
     let published = super::latency::scenes().into_iter().step_by(4);
     let lagging = published.chain(bench::lagging_scenes().into_iter().step_by(7));
-    let profiles = bench::profile::scenes();
+    let profiles = profiles();
     let (mut most, mut certified) = (0, 0);
     for scene in lagging {
         let reply = judged_alike(&mut board, &scene, &format!("{scene:?}"));

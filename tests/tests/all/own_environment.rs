@@ -2,7 +2,7 @@
 //! bit, and live parameters that its own statement judges.
 
 use analysis::emulator::Emulator;
-use analysis::studies::bench::live::live_set;
+use analysis::studies::bench::on_target::live_set;
 use analysis::toolchain::NumberFormat;
 use fixed::types::I8F24;
 use haptic_servo::certificate::{Certified, Parameter};

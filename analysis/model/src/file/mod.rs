@@ -5,6 +5,8 @@
 //! as `SCENE.md`), the JSON schema ([`schema`]) and the examples ([`example`]). An unknown key is an error,
 //! and all errors of a file are reported at once.
 
+#[cfg(test)]
+mod any_text;
 pub mod device;
 mod device_file;
 pub mod example;

@@ -6,13 +6,7 @@ mod marks;
 
 use haptic_servo::scene::Scene;
 
-use super::axis::Axis;
 use super::frame::{Frame, Place};
-use super::mark::Mark;
-use super::page::{HEIGHT, Page, WIDTH};
-use super::palette::FORBIDDEN;
-use super::panel::{Axes, Panel};
-use super::stroke::Stroke;
 use super::*;
 use crate::nyquist::{Curve, NyquistScene, Role, critical_lines, usual_window};
 
@@ -58,9 +52,6 @@ fn stroke(curve: &Curve, number: usize) -> Stroke {
 /// its critical line, its least real part and frequencies marked; and, in grey, the environment alone if it
 /// differs. If a pole on the unit circle takes a curve to infinity, a broken line along the frame shows the
 /// side of its closure.
-///
-/// # Errors
-/// If an environment has no transfer function, or there is no scene.
 pub fn nyquist(
     title: &str,
     scenes: &[(String, Scene)],
@@ -87,44 +78,31 @@ fn judged(scenes: &[(String, Scene)]) -> Result<Vec<NyquistScene>, ChartError> {
 }
 
 /// The curves as numbers, at rising angles from 0 to the Nyquist frequency.
-///
-/// # Errors
-/// If an environment has no transfer function.
 pub fn data(scenes: &[(String, Scene)]) -> Result<Data, ChartError> {
     let rows = judged(scenes)?.into_iter().flat_map(|scene| {
         let NyquistScene { name, period, curves, limit, bound, .. } = scene;
+        let lines = [limit, bound].map(|line| line.map(|line| -line));
         curves.into_iter().flat_map(move |curve| {
-            let (name, role) = (name.clone(), curve.role.as_str());
-            let line = limit.map(|limit| -limit);
-            let bound = bound.map(|bound| -bound);
+            let (name, role) = (name.clone(), curve.role);
             let points: Vec<_> = curve.points().collect();
-            points.into_iter().map(move |(theta, (re, im))| {
+            points.into_iter().map(move |(theta, value)| {
                 let frequency = theta / (2.0 * std::f64::consts::PI * period);
-                vec![
-                    (&*name).into(),
-                    role.into(),
-                    theta.into(),
-                    frequency.into(),
-                    re.into(),
-                    im.into(),
-                    line.into(),
-                    bound.into(),
-                ]
+                (name.clone(), role, [theta, frequency], value, lines)
             })
         })
     });
-    Ok(Data::new(
-        &[
-            "scene",
-            "curve",
-            "angle (rad)",
-            "frequency (Hz)",
-            "real part (N m s/rad)",
-            "imaginary part (N m s/rad)",
-            "critical line (N m s/rad)",
-            "bound (N m s/rad)",
-        ],
+    Ok(Data::of(
         rows,
+        [
+            ("scene", |row| row.0.as_str().into()),
+            ("curve", |row| row.1.as_str().into()),
+            ("angle (rad)", |row| row.2[0].into()),
+            ("frequency (Hz)", |row| row.2[1].into()),
+            ("real part (N m s/rad)", |row| row.3.0.into()),
+            ("imaginary part (N m s/rad)", |row| row.3.1.into()),
+            ("critical line (N m s/rad)", |row| row.4[0].into()),
+            ("bound (N m s/rad)", |row| row.4[1].into()),
+        ],
     ))
 }
 

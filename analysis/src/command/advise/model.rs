@@ -6,8 +6,8 @@ use crate::command::shared_arguments::{JsonOption, folder};
 use crate::command::status::{CommandError, CommandStatus};
 use crate::file::{Purpose, load_for};
 use crate::quantity::significant;
-use crate::studies::model::{Advice, Deviation, JudgedModel, advise, percent};
-use crate::text_table::markdown_table;
+use crate::studies::model::{Advice, advise, percent};
+use crate::text_table::table_of;
 
 /// Arguments of `haptic advise --model`; the scene needs a table `simulation`.
 #[derive(Debug, Args)]
@@ -37,55 +37,43 @@ pub fn run(
     answer: &JsonOption,
 ) -> Result<CommandStatus, CommandError> {
     let file = load_for(Purpose::Simulate, scene)?;
-    let advice = advise(&file, folder(scene), arguments.bound)?;
+    let advice = advise(&file, folder(scene), arguments.bound)
+        .map_err(|error| CommandError::Failed(error.into()))?;
     answer.print(&advice, text)?;
     Ok(CommandStatus::Success)
 }
 
 fn text(advice: &Advice) -> String {
-    let mut table = markdown_table(
-        [
-            "model",
-            "states",
-            "steps/s",
-            "certificate",
-            "stability",
-            "delta",
-            "critical stiffness",
-            "angle",
-            "torque",
-            "beyond the bound",
+    let table = table_of(
+        &advice.models,
+        &[
+            ("model", false, |of| of.model.clone()),
+            ("states", true, |of| of.result.states.to_string()),
+            ("steps/s", true, |of| significant(of.result.steps_per_second, 2)),
+            ("certificate", false, |of| {
+                of.result.certificate.map_or_else(|| "none".to_owned(), |it| it.to_string())
+            }),
+            ("stability", false, |of| of.result.stability.to_string()),
+            ("delta", true, |of| number(of.result.delta, of.deviation.delta)),
+            ("critical stiffness", true, |of| {
+                number(of.result.critical_stiffness, of.deviation.critical_stiffness)
+            }),
+            ("angle", true, |of| percent(of.deviation.angle)),
+            ("torque", true, |of| percent(of.deviation.torque)),
+            ("beyond the bound", false, |of| of.beyond.join(", ")),
         ],
-        [1, 2, 5, 6, 7, 8],
     );
-    for judged in &advice.models {
-        table.add_row(row(judged));
-    }
     let reason = advice.no_certificate.as_ref();
     let no_certificate = reason
         .map_or_else(String::new, |reason| format!("\nno certificate to compare with: {reason}\n"));
     format!("scene  {}\n\n{table}\n{no_certificate}\n{}\n", advice.scene, advice.message)
 }
 
-/// A row of numbers with their errors in brackets.
-fn row(judged: &JudgedModel) -> [String; 10] {
-    let JudgedModel { model, result, deviation, beyond, .. } = judged;
-    let Deviation { delta, critical_stiffness, angle, torque } = *deviation;
-    let number = |value: Option<f64>, off: Option<f64>| match (value, off) {
+/// A number with its error in brackets.
+fn number(value: Option<f64>, off: Option<f64>) -> String {
+    match (value, off) {
         (None, _) => "none".to_owned(),
         (Some(value), None) => significant(value, 6),
         (Some(value), Some(off)) => format!("{} ({})", significant(value, 6), percent(off)),
-    };
-    [
-        model.clone(),
-        result.states.to_string(),
-        significant(result.steps_per_second, 2),
-        result.certificate.map_or_else(|| "none".to_owned(), |verdict| verdict.to_string()),
-        result.stability.to_string(),
-        number(result.delta, delta),
-        number(result.critical_stiffness, critical_stiffness),
-        percent(angle),
-        percent(torque),
-        beyond.join(", "),
-    ]
+    }
 }

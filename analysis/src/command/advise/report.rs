@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::quantity::significant;
 use crate::studies::bench::CORE_CLOCK;
 use crate::studies::number_format::{Advice, Candidate, FormatProblem};
-use crate::text_table::markdown_table;
+use crate::text_table::table_of;
 
 /// The result as JSON.
 #[derive(Serialize)]
@@ -139,23 +139,27 @@ fn number(value: f64) -> String {
 
 /// The result as text with a table.
 pub fn text(answered: &FormatReport) -> String {
-    let mut table = markdown_table(
-        [
-            "format",
-            "instructions",
-            "share of the core",
-            "error",
-            "around 1 rad",
-            "limit cycle",
-            "with encoder",
-            "friction needed",
-            "rejected",
+    let table = table_of(
+        &answered.formats,
+        &[
+            ("format", false, |of| of.format.to_owned()),
+            ("instructions", true, |of| figure(Some(of.instructions))),
+            ("share of the core", true, |of| match of.share.is_finite() {
+                true => format!("{} %", number(100.0 * of.share)),
+                false => "none".to_owned(),
+            }),
+            ("error", true, |of| figure(of.losses.map(|losses| losses.error))),
+            ("around 1 rad", true, |of| figure(of.losses.and_then(|it| it.error_elsewhere))),
+            ("limit cycle", true, |of| figure(of.losses.map(|losses| losses.alone.torque))),
+            ("with encoder", true, |of| {
+                figure(of.losses.and_then(|it| it.with_encoder).map(|cycle| cycle.torque))
+            }),
+            ("friction needed", true, |of| {
+                of.rest.map_or_else(|| "none".to_owned(), |it| RoundUp3(it.hum()).to_string())
+            }),
+            ("rejected", false, |of| of.rejected.join("; ")),
         ],
-        1..8,
     );
-    for candidate in &answered.formats {
-        table.add_row(row(candidate));
-    }
     let coupling = answered.coupling_stiffness.map_or_else(
         || "rigid".to_owned(),
         |stiffness| format!("{} N m/rad, the standard one", significant(stiffness, 6)),
@@ -174,25 +178,10 @@ pub fn text(answered: &FormatReport) -> String {
     )
 }
 
-/// A format's figures; torques in N m.
-fn row(candidate: &Candidate) -> [String; 9] {
-    let figure = |value: Option<f64>| match value {
+/// A figure of a table.
+fn figure(value: Option<f64>) -> String {
+    match value {
         Some(value) if value.is_finite() => number(value),
         _ => "none".to_owned(),
-    };
-    let losses = candidate.losses;
-    [
-        candidate.format.to_owned(),
-        figure(Some(candidate.instructions)),
-        match candidate.share.is_finite() {
-            true => format!("{} %", number(100.0 * candidate.share)),
-            false => "none".to_owned(),
-        },
-        figure(losses.map(|losses| losses.error)),
-        figure(losses.and_then(|losses| losses.error_elsewhere)),
-        figure(losses.map(|losses| losses.alone.torque)),
-        figure(losses.and_then(|losses| losses.with_encoder).map(|cycle| cycle.torque)),
-        candidate.rest.map_or_else(|| "none".to_owned(), |rest| RoundUp3(rest.hum()).to_string()),
-        candidate.rejected.join("; "),
-    ]
+    }
 }

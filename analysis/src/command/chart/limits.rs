@@ -89,16 +89,19 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
         ChartError::TooFewPoints => CommandError::NoStiffness { scene: file.name.clone() },
         other => other.into(),
     })?;
-    let rows = drawn.into_iter().flat_map(|curve| {
-        let delay = curve.delay as f64;
-        let row = move |point: Point| {
-            vec![delay.into(), point.rate.into(), point.stiffness.into(), point.ripple.into()]
-        };
-        curve.points.into_iter().map(row)
-    });
-    let header =
-        &["delay (samples)", "sample rate (Hz)", "largest stiffness (N m/rad)", "ripple (N m)"];
-    Ok(Chart { picture, data: Data::new(header, rows) })
+    let rows = drawn
+        .into_iter()
+        .flat_map(|curve| curve.points.into_iter().map(move |point| (curve.delay as f64, point)));
+    let data = Data::of(
+        rows,
+        [
+            ("delay (samples)", |(delay, _)| (*delay).into()),
+            ("sample rate (Hz)", |(_, point): &(f64, Point)| point.rate.into()),
+            ("largest stiffness (N m/rad)", |(_, point)| point.stiffness.into()),
+            ("ripple (N m)", |(_, point)| point.ripple.into()),
+        ],
+    );
+    Ok(Chart { picture, data })
 }
 
 /// The whole number of counts of a rounded step in rad, if one is near enough.

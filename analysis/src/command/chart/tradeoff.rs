@@ -8,13 +8,14 @@ use clap::{Args, ValueEnum};
 
 use crate::chart::tradeoff::Panels;
 use crate::chart::{self, Picture};
+use crate::command::shared_arguments::DEFAULT_TICKS;
 use crate::command::status::{CommandError, CommandStatus};
 use crate::compare_run::{Backend, Input, run_with_backend};
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
 use crate::studies::tradeoff::{
-    self, Comparison, Tradeoff, certificate, rate, servo, simulation, sine, ticks,
+    Comparison, Tradeoff, certificate, rate, servo, simulation, sine, ticks,
 };
 use crate::table::Table;
 use crate::toolchain::{self, NumberFormat, Tools};
@@ -59,8 +60,6 @@ pub enum Topic {
     /// Sample rates: share of the processor against stiffness and ripple of the encoder
     Rate,
 }
-/// Ticks of a run on the emulated board.
-const DEFAULT_TICKS: usize = 5000;
 
 /// All topics except [`Topic::All`].
 const TOPICS: [Topic; 5] =
@@ -86,12 +85,7 @@ impl Topic {
             Self::Servo => Ok(servo::measure()?),
             Self::Sine => Ok(sine::measure()?),
             Self::All | Self::Simulation => Ok(simulation::measure()?),
-            Self::Certificate => {
-                let bar = progress::bar(certificate::steps() as u64, "certificate");
-                let measured = certificate::measure(|| bar.inc(1));
-                bar.finish_and_clear();
-                Ok(measured)
-            }
+            Self::Certificate => Ok(certificate::measure()),
             Self::Rate => Ok(rate::table(&interrupts()?)),
         }
     }
@@ -114,7 +108,8 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         if !arguments.draw_only {
             keep(&topic.measure()?, folder)?;
             if topic == Topic::Servo {
-                keep(&all_ticks()?, folder)?;
+                // The cost of a tick of any scene, for which there is no chart.
+                keep(&ticks::measure()?, folder)?;
             }
         }
         if arguments.draw_only && !table.exists() {
@@ -164,8 +159,7 @@ impl Arguments {
     /// The requested panels.
     fn panels(&self, tradeoff: &Tradeoff) -> Result<Panels, CommandError> {
         let cases = tradeoff.cases();
-        let columns: Vec<_> =
-            tradeoff.comparison.errors.iter().map(|e| e.column.names[0]).collect();
+        let columns: Vec<_> = tradeoff.comparison.errors.iter().map(|e| e.name).collect();
         let known = |asked: &[String], there: &[&str], what| match asked
             .iter()
             .find(|word| !there.contains(&word.as_str()))
@@ -185,16 +179,6 @@ impl Arguments {
         let errors = (0..columns.len()).filter(|&error| is_asked(&self.error, columns[error]));
         Ok(Panels { cases: cases.map(str::to_owned).collect(), errors: errors.collect() })
     }
-}
-
-/// The cost of a tick of any scene, for which there is no chart.
-fn all_ticks() -> Result<Tradeoff, CommandError> {
-    let mut board = tradeoff::any_board()?;
-    let bar = progress::bar(ticks::types() as u64, "types of scenes");
-    let measured = ticks::measure(&mut board, || bar.inc(1))?;
-    bar.finish_and_clear();
-    board.finish()?;
-    Ok(measured)
 }
 
 /// The programs that render a wall, with the mean instructions of their interrupts on the emulated board

@@ -11,7 +11,7 @@ use haptic_servo::certificate::{QuantizationBound, Resolution};
 use haptic_servo::dac::DacCode;
 use haptic_servo::number::Format;
 
-use crate::lockstep::PlantIo;
+use crate::lockstep::{NoRemote, run};
 use crate::program::Program;
 use crate::simulation::Experiment;
 use crate::simulation::torque_signal::TorqueSignal;
@@ -99,13 +99,8 @@ pub fn run_on_host(program: &Program, friction: f64) -> Vec<(i32, u16)> {
     let mut servo = program
         .controller(NumberFormat::F32, &program.transducers)
         .expect("a program's scene has a servo");
-    let mut tick = || {
-        let count = device.count()?;
-        let code = servo.tick(count).code;
-        device.hold(code);
-        Some((count, code))
-    };
-    (0..TICKS).map_while(|_| tick()).collect()
+    let Ok(run) = run::<NoRemote>(&mut device, servo.as_mut(), None, TICKS, || {});
+    run.ticks.iter().map(|tick| (tick.count as i32, tick.code)).collect()
 }
 
 /// Stiffness in N m/rad that a program renders at rest, in closed loop with its device.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::peer::PeerError;
+use crate::studies::error::StudyError;
 
 /// One measured figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -16,36 +16,23 @@ pub struct Figure {
     /// Its budget, or the peer's figure; in the same unit. `None` if there is neither.
     pub against: Option<f64>,
     /// `value / against` if both were measured in this run: below 1 is better for a cost.
-    pub ratio: Option<Ratio>,
+    pub ratio: Option<f64>,
     /// The source of `against`.
     pub source: String,
-}
-
-/// The ratio of a [`Pair`], which alone can compute it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(transparent)]
-pub struct Ratio(f64);
-
-impl Ratio {
-    /// The number.
-    pub fn get(self) -> f64 {
-        self.0
-    }
 }
 
 /// A figure and its peer's, both measured in this run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    ours: f64,
-    peers: f64,
+    /// The figure.
+    pub ours: f64,
+    /// The peer's.
+    pub peers: f64,
 }
 
 impl Pair {
     /// Medians over rounds. Each round measures both, one after the other, so that other load of the machine
     /// affects both. A round before that fills caches and is discarded.
-    ///
-    /// # Errors
-    /// Those of the measurements.
     pub fn in_turns<E>(
         rounds: usize,
         mut ours: impl FnMut() -> Result<f64, E>,
@@ -59,19 +46,9 @@ impl Pair {
         Ok(Self { ours: median(ours), peers: median(peers) })
     }
 
-    /// Both as they are computed now, for figures that do not vary.
-    pub fn computed(ours: impl FnOnce() -> f64, peers: impl FnOnce() -> f64) -> Self {
-        Self { ours: ours(), peers: peers() }
-    }
-
-    /// The figure.
-    pub fn ours(&self) -> f64 {
-        self.ours
-    }
-
     /// The figure over its peer's.
-    pub fn ratio(&self) -> Ratio {
-        Ratio(self.ours / self.peers)
+    pub fn ratio(&self) -> f64 {
+        self.ours / self.peers
     }
 }
 
@@ -119,18 +96,15 @@ impl Figure {
 
     /// This figure measured again, in turns with a peer; the same figure with its budget if the peer is not
     /// available.
-    ///
-    /// # Errors
-    /// If the peer is available and fails.
     pub fn again_beside(
         &self,
         peer: &str,
-        measured: Result<(Pair, String), PeerError>,
-    ) -> Result<Self, PeerError> {
+        measured: Result<(Pair, String), StudyError>,
+    ) -> Result<Self, StudyError> {
         let name = format!("{}: beside {peer}", self.name);
         match measured {
             Ok((pair, source)) => Ok(Self::beside(name, pair, self.unit, source)),
-            Err(PeerError::Unavailable(why)) => {
+            Err(StudyError::NoPeer(why)) => {
                 let why = why.lines().next().unwrap_or_default();
                 let source = format!("{}; {peer} is not available: {why}", self.source);
                 Ok(Self { name, source, ..self.clone() })
@@ -172,7 +146,7 @@ mod tests {
         let (ours, peers) =
             (measure('o', [99.0, 3.0, 1.0, 2.0]), measure('p', [0.0, 4.0, 8.0, 6.0]));
         let pair = Pair::in_turns(3, ours, peers).unwrap();
-        assert_eq!((pair.ours(), pair.ratio().get()), (2.0, 2.0 / 6.0));
+        assert_eq!((pair.ours, pair.ratio()), (2.0, 2.0 / 6.0));
         assert_eq!(log.into_inner(), ['o', 'p', 'o', 'p', 'o', 'p', 'o', 'p']);
     }
 
@@ -180,12 +154,12 @@ mod tests {
     fn a_missing_peer_leaves_the_budget_and_no_ratio() {
         let alone = Figure::within("a step", 8.0, &Budget::of(10.0, "ns"));
         assert_eq!(alone.ratio, None);
-        let missing = Err(PeerError::Unavailable("no cc\n(a cause)".to_owned()));
+        let missing = Err(StudyError::NoPeer("no cc\n(a cause)".to_owned()));
         let row = alone.again_beside("C", missing).unwrap();
         assert_eq!((row.value, row.against, row.ratio), (8.0, Some(10.0), None));
         assert_eq!(row.source, "budget; C is not available: no cc");
         assert!(serde_json::to_value(&row).unwrap()["ratio"].is_null());
-        let broken = Err(PeerError::Wrong("another motion".to_owned()));
+        let broken = Err(StudyError::WrongPeer("another motion".to_owned()));
         assert!(alone.again_beside("C", broken).is_err());
     }
 }

@@ -4,14 +4,11 @@
 //! [`figure::Pair`] that measures both.
 
 pub mod at_rest;
-pub mod current;
 pub mod figure;
-pub mod live;
-pub mod matched;
+pub mod on_target;
 pub mod page;
 pub mod parts;
 pub mod peer;
-pub mod profile;
 pub mod python;
 pub mod steps;
 
@@ -23,17 +20,19 @@ use std::time::Instant;
 use self::figure::{Pair, median};
 use crate::latency_limits::{lag_of, largest_spring};
 use crate::stability_map::{Family, Map, MapError};
+use crate::studies::failures::setting::{PADDLE, PERIOD, rational, rigid};
+use crate::studies::tradeoff::certificate::environments::multiply;
 use haptic_servo::certificate::{PassivityProblem, assess};
-use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Environment, Rational, Wall};
+use haptic_servo::scene::{Coupling, Latency, Scene};
 
 /// Instructions per second of a board's core: 170 MHz, at one cycle per instruction.
 pub const CORE_CLOCK: f64 = 170e6;
 
-/// The number of rounds of a time on this machine, whose median is the figure.
+/// The numbers of repetitions of the measurements on this machine, whose median is the figure.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounds {
-    /// For a time here, or in turns with plain C.
+    /// For a time here, or in turns with plain C or a browser.
     pub own: usize,
     /// In turns with Python.
     pub python: usize,
@@ -41,13 +40,35 @@ pub struct Rounds {
     pub maps: usize,
     /// Compilations of each program.
     pub compilations: usize,
+    /// Openings of each page.
+    pub openings: usize,
+    /// Movements of the mouse in a drag: at least one per frame.
+    pub movements: usize,
+    /// Rounds in a browser before others, in which it optimises functions that are called often.
+    pub warming: usize,
 }
 
 impl Rounds {
-    /// For repeatable figures.
-    pub const THOROUGH: Self = Self { own: 31, python: 9, maps: 5, compilations: 15 };
+    /// For repeatable figures; with four seconds of dragging.
+    pub const THOROUGH: Self = Self {
+        own: 31,
+        python: 9,
+        maps: 5,
+        compilations: 15,
+        openings: 5,
+        movements: 240,
+        warming: 8,
+    };
     /// For their order of magnitude.
-    pub const QUICK: Self = Self { own: 3, python: 1, maps: 1, compilations: 1 };
+    pub const QUICK: Self = Self {
+        own: 3,
+        python: 1,
+        maps: 1,
+        compilations: 1,
+        openings: 1,
+        movements: 60,
+        warming: 1,
+    };
 }
 
 /// Environments to judge: low and high degrees, poles near and far, delays. The coefficients are products of
@@ -56,34 +77,19 @@ pub fn scenes() -> Vec<Scene> {
     let mut scenes = Vec::new();
     for degree in 0..=8 {
         for (radius, delay) in [(0.0, 0), (0.3, 1), (0.7, 2), (0.95, 1), (0.99, 4)] {
-            let mut denominator = vec![1.0];
-            for pole in 0..degree {
+            let denominator = (0..degree).fold(vec![1.0], |product, pole| {
                 let sign = if pole % 2 == 0 { 1.0 } else { -1.0 };
-                let pole = sign * radius * (1.0 - 0.05 * f64::from(pole));
-                denominator.push(0.0);
-                for index in (1..denominator.len()).rev() {
-                    denominator[index] -= pole * denominator[index - 1];
-                }
-            }
+                multiply(&product, &[1.0, -sign * radius * (1.0 - 0.05 * f64::from(pole))])
+            });
             let numerator = denominator.iter().rev().map(|value| 3.0 * value).collect::<Vec<_>>();
-            let rational = Coefficients::new(&numerator).zip(Coefficients::new(&denominator));
-            scenes.extend(rational.map(|(numerator, denominator)| {
-                scene(Rational { numerator, denominator, delay, unit_zeros: 0 })
-            }));
+            let environment = Rational { delay, ..rational(&numerator, &denominator) };
+            scenes.push(Scene {
+                coupling: Coupling::Spring { stiffness: 44.0 },
+                ..rigid(PADDLE, Environment::Rational(environment))
+            });
         }
     }
     scenes
-}
-
-fn scene(rational: Rational) -> Scene {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: Environment::Rational(rational),
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
 }
 
 /// Cells along a side of the measured map.
@@ -91,9 +97,6 @@ const MAP_SIDE: usize = 300;
 
 /// Walls per second in a map of a scene's walls on all cores: both rules, and stability without a hand if
 /// neither certifies. The scene is rigid in its device, as [`scenes`] are.
-///
-/// # Errors
-/// If the scene has no wall.
 pub fn map_rate(scene: &Scene, rounds: usize) -> Result<f64, MapError> {
     let family = Family::rigid("the scene that is measured", scene)?;
     let (stiffness, damping) = family.usual_ranges();
@@ -137,26 +140,22 @@ pub fn middle_verdict_time(scenes: &[Scene], rounds: usize) -> f64 {
 /// 0.022 N m s/rad, with a torque 5 us after its count and a current loop of 3 kHz; and the same with latched
 /// torques and the lag counted as a whole sample.
 pub fn lagging_springs() -> Pair {
-    let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
     let early = Latency::delayed(5e-6).with_actuator_lag(lag_of(3e3));
-    let largest = |latency, delay| largest_spring(&device, 1e-3, latency, delay);
-    Pair::computed(|| largest(early, 0), || largest(Latency::NONE, 2))
+    let largest = |latency, delay| largest_spring(&PADDLE, PERIOD, latency, delay);
+    Pair { ours: largest(early, 0), peers: largest(Latency::NONE, 2) }
 }
 
 /// The part of the device's passivity that certified springs may need behind the matched coupling, where
 /// torques or counts deviate by up to a hundredth of a period from tick to tick.
 pub fn spring_with_jitter() -> f64 {
-    let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
     let scene = Scene {
-        device,
-        timing: Timing { period: 1e-3, worst_period: None },
         coupling: Coupling::Matched,
-        environment: Wall::spring(20.0, 1).alone(),
         latency: Latency { output_jitter: 1e-5, ..Latency::delayed(1e-4) },
         torque_limit: Some(1.0),
+        ..rigid(PADDLE, Wall::spring(20.0, 1).alone())
     };
     let limit = PassivityProblem::of(&scene).ok().and_then(|posed| posed.limit());
-    limit.map_or(0.0, |limit| limit.lo() / device.damping)
+    limit.map_or(0.0, |limit| limit.lo() / PADDLE.damping)
 }
 
 /// Milliseconds that a certificate adds to the compilation of a program: the difference between a program
@@ -166,9 +165,6 @@ pub fn spring_with_jitter() -> f64 {
 /// `latency` is the varying part of the scenes: [`AT_ONCE`] or [`LAGGING`].
 ///
 /// `library` is the built firmware library, `dependencies` the folder of its dependencies.
-///
-/// # Errors
-/// If the compiler cannot be run, or refuses the program.
 pub fn compile_time(
     rustc: &Path,
     library: &Path,

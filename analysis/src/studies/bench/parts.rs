@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use super::figure::Figure;
 use crate::program::{Program, State};
-use crate::studies::tick_parts::{Part, Share, TickParts, TickPartsError};
+use crate::studies::error::StudyError;
+use crate::studies::tick_parts::{Part, Share, TickParts};
 use crate::text_table::markdown_table;
 use crate::toolchain::{self, NumberFormat};
 
@@ -33,7 +34,7 @@ pub struct Inventory {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartShare {
     /// The part.
-    pub part: String,
+    pub part: &'static str,
     /// The share of the part.
     #[serde(flatten)]
     pub share: Share,
@@ -41,12 +42,9 @@ pub struct PartShare {
 
 impl Inventory {
     /// The inventory of a program that was built for the emulated board without log.
-    ///
-    /// # Errors
-    /// If the parts of the program cannot be determined.
-    pub fn of(program: &Program, built: &toolchain::Program) -> Result<Self, TickPartsError> {
+    pub fn of(program: &Program, built: &toolchain::Program) -> Result<Self, StudyError> {
         let tick = TickParts::of_file(&built.path)?;
-        let part = |part: Part| PartShare { part: part.to_string(), share: tick.share(part) };
+        let part = |(part, name)| PartShare { part: name, share: tick.share(part) };
         Ok(Self {
             scene: program.name,
             tick: tick.whole(),
@@ -90,8 +88,8 @@ pub fn table(scenes: &[Inventory]) -> Table {
         _ => format!("{instructions}, {multiplications}, {bytes}"),
     };
     row("both ticks: instructions, of them multiplications, bytes".into(), &|of| share(of.tick));
-    for (index, part) in Part::ALL.iter().enumerate() {
-        row(format!("of it {part}"), &|of| share(of.parts[index].share));
+    for (index, (_, name)) in Part::ALL.iter().enumerate() {
+        row(format!("of it {name}"), &|of| share(of.parts[index].share));
     }
     let bytes = |[f32, fixed]: [usize; 2]| format!("{f32}, {fixed}");
     row("state of the servo in f32, in fixed: bytes".into(), &|of| {

@@ -9,8 +9,9 @@ use haptic_servo::scene::Scene;
 use serde_json::json;
 
 use super::figure::Pair;
-use super::peer::{Peer, PeerError};
+use super::peer::Peer;
 use super::steps::{STEPS, numbers, steps_beside};
+use crate::studies::error::StudyError;
 use crate::toolchain::python::{PythonEnvironment, finished};
 
 const SCRIPT: &str = include_str!("peers.py");
@@ -28,10 +29,7 @@ pub struct PythonPeers(Result<Peer, String>);
 impl PythonPeers {
     /// Installs the packages where they are missing, and starts Python. `progress` gets the packages that
     /// cannot be installed.
-    ///
-    /// # Errors
-    /// If Python is there and does not start.
-    pub fn start(scenes: &[Scene], progress: impl Fn(&str)) -> Result<Self, PeerError> {
+    pub fn start(scenes: &[Scene], progress: impl Fn(&str)) -> Result<Self, StudyError> {
         let environment = PythonEnvironment::kept().map_err(|error| error.to_string());
         let ready = environment.and_then(|python| python.set_up().map(|()| python));
         let python = match ready {
@@ -49,21 +47,18 @@ impl PythonPeers {
         Ok(Self(Ok(Peer::start(command.args(["-c", SCRIPT]), &work(scenes))?)))
     }
 
-    fn peer(&mut self) -> Result<&mut Peer, PeerError> {
-        self.0.as_mut().map_err(|why| PeerError::Unavailable(why.clone()))
+    fn peer(&mut self) -> Result<&mut Peer, StudyError> {
+        self.0.as_mut().map_err(|why| StudyError::NoPeer(why.clone()))
     }
 
     /// The times of a verdict in us, here and by a package, with the source: the package's version, its
     /// method, and its wrong and undecided verdicts.
-    ///
-    /// # Errors
-    /// If there is no such peer, or it fails.
     pub fn verdicts(
         &mut self,
         rounds: usize,
         scenes: &[Scene],
         name: &str,
-    ) -> Result<(Pair, String), PeerError> {
+    ) -> Result<(Pair, String), StudyError> {
         let peer = self.peer()?;
         let about = peer.ask(&format!("about {name}"))?;
         let values = peer.numbers(&format!("values {name}"))?;
@@ -81,7 +76,7 @@ impl PythonPeers {
             judge();
             let start = Instant::now();
             judge();
-            Ok::<_, PeerError>(start.elapsed().as_secs_f64() * each)
+            Ok::<_, StudyError>(start.elapsed().as_secs_f64() * each)
         };
         let pair = Pair::in_turns(rounds, judged, || Ok(peer.number(&seconds)? * each))?;
         let of = values.len();
@@ -89,10 +84,7 @@ impl PythonPeers {
     }
 
     /// The times of a step in ns, here and by a package.
-    ///
-    /// # Errors
-    /// If there is no such peer, or it fails.
-    pub fn steps(&mut self, rounds: usize) -> Result<(Pair, String), PeerError> {
+    pub fn steps(&mut self, rounds: usize) -> Result<(Pair, String), StudyError> {
         let peer = self.peer()?;
         let about = peer.ask(&format!("about {SIMULATOR}"))?;
         let requests = ["values", "seconds"].map(|request| format!("{request} {SIMULATOR}"));

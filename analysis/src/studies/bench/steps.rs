@@ -4,13 +4,14 @@ use std::hint::black_box;
 use std::process::Command;
 use std::time::Instant;
 
-use haptic_servo::environment::Wall;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 
 use super::figure::{Pair, median};
-use super::peer::{Peer, PeerError};
+use super::peer::Peer;
 use crate::device::Motion;
 use crate::simulation::{Experiment, Integration, Simulator, Trajectory};
+use crate::studies::error::StudyError;
+use crate::studies::failures::setting::{PADDLE, PERIOD, rigid, wall_of};
 use crate::toolchain::target_folder;
 
 /// Steps of a run; the same number is in `steps.c`.
@@ -18,8 +19,6 @@ pub const STEPS: usize = 10_000;
 /// Stable without a hand, and so close to its limit there that the motion lasts for all steps.
 const STIFFNESS: f64 = 25.0;
 const COUPLING: f64 = 88.0;
-const PERIOD: f64 = 1e-3;
-const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 /// The position in rad from which the device is released.
 const START: f64 = 1e-3;
 /// Largest difference between a peer's values and ours, as a part of the largest position, velocity or torque:
@@ -36,12 +35,8 @@ const C_OPTIONS: [&str; 2] = ["-O2", "-ffp-contract=off"];
 /// A wall of degree 1 on the paper's device, released from a millirad.
 fn experiment() -> Experiment {
     let scene = Scene {
-        device: DEVICE,
-        timing: Timing { period: PERIOD, worst_period: None },
         coupling: Coupling::Spring { stiffness: COUPLING },
-        environment: Wall::damped(STIFFNESS, 0.0, 1).alone(),
-        latency: Latency::NONE,
-        torque_limit: None,
+        ..rigid(PADDLE, wall_of(STIFFNESS, 0.0, 1))
     };
     let start = Motion { position: START, velocity: 0.0 };
     Experiment { samples: STEPS, start, ..Experiment::still(&scene) }
@@ -49,7 +44,7 @@ fn experiment() -> Experiment {
 
 /// The numbers of that motion for a peer: by hand for a mass and a damper, on an undamped wall one sample late.
 pub fn numbers() -> [f64; 7] {
-    let Device { inertia: m, damping: b, .. } = DEVICE;
+    let Device { inertia: m, damping: b, .. } = PADDLE;
     let decay = f64::exp(-b * PERIOD / m);
     let slide = (1.0 - decay) * m / b;
     let (to_position, to_velocity) = ((PERIOD - slide) / b, (1.0 - decay) / b);
@@ -78,46 +73,43 @@ pub fn step_time(rounds: usize) -> f64 {
 
 /// Times of a step in ns, here and by a peer with these requests for its values and its time; its motion must
 /// be the same.
-///
-/// # Errors
-/// If the peer fails, or its motion differs by more than rounding.
 pub fn steps_beside(
     rounds: usize,
     name: &str,
     peer: &mut Peer,
     [values, seconds]: [&str; 2],
-) -> Result<Pair, PeerError> {
+) -> Result<Pair, StudyError> {
     let mut out = Trajectory::of_length(STEPS);
     simulator().fill(&mut out);
     same_motion(name, &peer.numbers(values)?, &out)?;
-    let theirs = || Ok::<_, PeerError>(peer.number(seconds)? * 1e9 / STEPS as f64);
+    let theirs = || Ok::<_, StudyError>(peer.number(seconds)? * 1e9 / STEPS as f64);
     Pair::in_turns(rounds, || Ok(nanoseconds(&mut out)), theirs)
 }
 
-/// # Errors
-/// The first value of a peer that differs by more than rounding.
-fn same_motion(peer: &str, theirs: &[f64], ours: &Trajectory) -> Result<(), PeerError> {
+/// Refuses a motion of a peer that differs by more than rounding.
+fn same_motion(peer: &str, theirs: &[f64], ours: &Trajectory) -> Result<(), StudyError> {
     let columns = [&ours.position, &ours.velocity, &ours.torque];
     if theirs.len() != 3 * STEPS {
-        return Err(PeerError::Wrong(format!("{} of {} values: {peer}", theirs.len(), 3 * STEPS)));
+        return Err(StudyError::WrongPeer(format!(
+            "{} of {} values: {peer}",
+            theirs.len(),
+            3 * STEPS
+        )));
     }
     for (ours, theirs) in columns.into_iter().zip(theirs.chunks(STEPS)) {
         let largest = ours.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
         // NaN is not the same.
         let is_same = |(ours, theirs): &(&f64, &f64)| (*ours - *theirs).abs() <= ROUNDING * largest;
         if let Some((ours, theirs)) = ours.iter().zip(theirs).find(|pair| !is_same(pair)) {
-            return Err(PeerError::Wrong(format!("{theirs} in place of {ours}: {peer}")));
+            return Err(StudyError::WrongPeer(format!("{theirs} in place of {ours}: {peer}")));
         }
     }
     Ok(())
 }
 
 /// Compiles `steps.c` in the folder of builds, starts it, and returns it with its compiler.
-///
-/// # Errors
-/// If there is no C compiler, or it does not compile.
-pub fn in_c() -> Result<(Peer, String), PeerError> {
-    let missing = |why: String| PeerError::Unavailable(format!("{C_COMPILER}: {why}"));
+pub fn in_c() -> Result<(Peer, String), StudyError> {
+    let missing = |why: String| StudyError::NoPeer(format!("{C_COMPILER}: {why}"));
     let run = |command: &mut Command| {
         let output = command.output().map_err(|error| missing(error.to_string()))?;
         let said = String::from_utf8_lossy(&output.stdout).into_owned();

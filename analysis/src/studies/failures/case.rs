@@ -1,33 +1,10 @@
 //! A question about one loop, and the results of the methods.
 
-use haptic_servo::environment::ShapeError;
 use haptic_servo::scene::Scene;
-use thiserror::Error;
 
-use super::loop_run::{LoopRun, LoopRunError};
+use super::loop_run::LoopRun;
 use super::method_result::MethodResult;
-use crate::chain::ChainError;
-use crate::simulation::SimulationError;
-
-/// The reason why a case has no results.
-#[derive(Debug, Error)]
-pub enum FailureError {
-    /// A loop cannot be simulated.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// A loop cannot be run.
-    #[error(transparent)]
-    Run(#[from] LoopRunError),
-    /// The device is invalid.
-    #[error(transparent)]
-    Chain(#[from] ChainError),
-    /// Shapes do not make a torque profile.
-    #[error(transparent)]
-    Shape(#[from] ShapeError),
-    /// A wall has no largest stiffness.
-    #[error("this wall has no largest certified stiffness")]
-    NoLimit,
-}
+use crate::studies::error::StudyError;
 
 /// A question about one loop.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +13,7 @@ pub struct Case {
     pub name: &'static str,
     /// The question as short text.
     pub question: &'static str,
-    pub(super) evaluate: fn() -> Result<CaseResult, FailureError>,
+    pub(super) evaluate: fn() -> Result<CaseResult, StudyError>,
 }
 
 /// The results of all methods, and the loops that show which of them are right.
@@ -66,10 +43,7 @@ impl CaseResult {
 
 impl Case {
     /// Evaluates all methods.
-    ///
-    /// # Errors
-    /// If the loop cannot be built.
-    pub fn evaluate(&self) -> Result<CaseResult, FailureError> {
+    pub fn evaluate(&self) -> Result<CaseResult, StudyError> {
         (self.evaluate)()
     }
 }

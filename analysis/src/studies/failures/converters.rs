@@ -2,14 +2,9 @@
 
 use haptic_servo::certificate::Resolution;
 use haptic_servo::number::{Arithmetic, Format};
-use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 
-use super::case::{CaseResult, FailureError};
-use super::loop_run::LoopRun;
-use super::method_result::MethodResult;
-use super::motion::Outcome;
-use super::setting::{PADDLE, PADDLES, coupled, friction_for_rest, loop_run, wall_of};
+use super::setting::*;
 use crate::simulation::torque_signal::TorqueSignal;
 
 /// Torque in N m with which the hand leans on the wall.
@@ -18,7 +13,7 @@ const LEANS: f64 = 0.2;
 const SAMPLES: usize = 5000;
 
 /// Fixed point with 16 fractional bits, on a device without friction.
-pub fn fixed_point() -> Result<CaseResult, FailureError> {
+pub fn fixed_point() -> Result<CaseResult, StudyError> {
     let scene = paper();
     // The finest encoder and DAC: their steps cause limit cycles, too.
     let counts_per_turn = f64::from(1 << 22);
@@ -37,7 +32,7 @@ pub fn fixed_point() -> Result<CaseResult, FailureError> {
 }
 
 /// The encoder's steps, without friction and with the friction that section 8 requires.
-pub fn encoder() -> Result<CaseResult, FailureError> {
+pub fn encoder() -> Result<CaseResult, StudyError> {
     let scene = paper();
     let needed = friction_for_rest(&scene, &PADDLES);
     let steps = Resolution::of(&PADDLES, Some(0.0));
@@ -69,7 +64,7 @@ fn leaning(
 }
 
 /// The loop without steps: its eigenvalues, and its simulation.
-fn ideal(scene: &Scene) -> Result<Vec<MethodResult>, FailureError> {
+fn ideal(scene: &Scene) -> Result<Vec<MethodResult>, StudyError> {
     let mut smooth = leaning("no steps", scene, PADDLES, Outcome::Converges, 0.0);
     smooth.experiment.encoder_step = None;
     let linear = MethodResult::in_no_hand(scene)?;

@@ -3,13 +3,9 @@
 use std::f64::consts::PI;
 
 use haptic_servo::certificate::LoopTransfers;
-use haptic_servo::environment::{Coefficients, Environment, Rational};
-use haptic_servo::scene::Scene;
+use haptic_servo::environment::{Environment, Rational};
 
-use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, MethodVerdict};
-use super::motion::Outcome;
-use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run};
+use super::setting::*;
 use crate::device::Hand;
 use crate::response::Response;
 use crate::simulation::SimulationError;
@@ -23,7 +19,7 @@ const DEPTH: f64 = 100.0;
 
 /// An active resonance: its real part is negative within a millionth of a radian, and nowhere else
 /// by more than the device's passivity.
-pub fn grid() -> Result<CaseResult, FailureError> {
+pub fn grid() -> Result<CaseResult, StudyError> {
     let scene = coupled(PADDLE, resonance(DEPTH, angle()));
     let delta = PADDLE.damping;
     let velocity = equivalent(&scene)?.from_velocity(PERIOD);
@@ -54,17 +50,12 @@ fn angle() -> f64 {
 fn resonance(depth: f64, angle: f64) -> Environment {
     let r = 1.0 - NARROW;
     let gain = depth * PADDLE.damping * NARROW / PERIOD;
-    let polynomial = |values: &[f64]| Coefficients::new(values).expect("four coefficients fit");
-    Environment::Rational(Rational {
-        // With two declared zeros at 1.
-        numerator: polynomial(&[-gain, -gain]),
-        denominator: polynomial(&[1.0, -2.0 * r * angle.cos(), r * r, 0.0]),
-        delay: 0,
-        unit_zeros: 2,
-    })
+    // With two declared zeros at 1.
+    let denominator = [1.0, -2.0 * r * angle.cos(), r * r, 0.0];
+    Environment::Rational(Rational { unit_zeros: 2, ..rational(&[-gain, -gain], &denominator) })
 }
 
 /// The environment that gives this scene's controller behind the standard coupling.
-fn equivalent(scene: &Scene) -> Result<Response, FailureError> {
+fn equivalent(scene: &Scene) -> Result<Response, StudyError> {
     Ok(Response::new(LoopTransfers::of(scene).map_err(SimulationError::from)?.equivalent))
 }

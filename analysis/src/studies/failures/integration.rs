@@ -2,10 +2,7 @@
 
 use haptic_servo::servo::Transducers;
 
-use super::case::{CaseResult, FailureError};
-use super::method_result::MethodResult;
-use super::motion::Outcome;
-use super::setting::{KNOB, KNOBS, coupled, loop_run, rigid, wall_of};
+use super::setting::*;
 use crate::simulation::method::Method;
 use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Integration};
@@ -20,7 +17,7 @@ fn two_masses() -> Plant {
 }
 
 /// Explicit Euler: a stable device grows.
-pub fn explicit_euler() -> Result<CaseResult, FailureError> {
+pub fn explicit_euler() -> Result<CaseResult, StudyError> {
     let scene = coupled(KNOB, wall_of(500.0, 0.0, 1));
     let experiment = Experiment { plant: two_masses(), ..Experiment::still(&scene) };
     let by = |name, integration| MethodResult::eigenvalues(name, &experiment, integration);
@@ -36,7 +33,7 @@ pub fn explicit_euler() -> Result<CaseResult, FailureError> {
 }
 
 /// Semi-implicit Euler with few steps: an oscillating wall comes to rest.
-pub fn semi_implicit_euler() -> Result<CaseResult, FailureError> {
+pub fn semi_implicit_euler() -> Result<CaseResult, StudyError> {
     let scene = rigid(KNOB, wall_of(1500.0, 0.0, 0));
     let by = |method, substeps| by_limit(&Experiment::still(&scene), method, substeps, 1500.0);
     let methods = [1, 2, 10].map(|substeps| by(Method::SemiImplicit, substeps));
@@ -50,7 +47,7 @@ pub fn semi_implicit_euler() -> Result<CaseResult, FailureError> {
 }
 
 /// Runge-Kutta of fourth order with one step per tick: two masses in a hand.
-pub fn runge_kutta() -> Result<CaseResult, FailureError> {
+pub fn runge_kutta() -> Result<CaseResult, StudyError> {
     const STIFFNESS: f64 = 2750.0;
     // Friction hides slow growth; a finer encoder needs less friction. The motor is strong enough for a
     // motion that friction does not hide.
@@ -85,7 +82,7 @@ fn by_limit(
     method: Method,
     substeps: u32,
     stiffness: f64,
-) -> Result<MethodResult, FailureError> {
+) -> Result<MethodResult, StudyError> {
     let integration = Integration { method, substeps };
     let limit = critical_stiffness(experiment, integration)?.unwrap_or(f64::INFINITY);
     Ok(MethodResult::bound(name(method, substeps), stiffness, limit, "stable up to {} N m/rad"))

@@ -23,9 +23,6 @@ pub struct LoadedDevice {
 
 impl LoadedDevice {
     /// The device of an experiment at its start, with the encoder and the motor of the servo.
-    ///
-    /// # Errors
-    /// If it is too fast for its motion over a period to be computed.
     pub fn new(
         experiment: &Experiment,
         transducers: &Transducers,

@@ -4,39 +4,19 @@ use firmware_harness::loop_request::{LoopRequest, StartReply};
 use firmware_harness::tables::index_of;
 use haptic_servo::certificate::{Certified, Rejection};
 use haptic_servo::environment::Environment;
-use haptic_servo::number::{Arithmetic, InEach, Number, OutOfRange};
+use haptic_servo::number::{Arithmetic, InEach, Number};
 use haptic_servo::scene::{Device, Scene};
 use haptic_servo::servo::{BuildError, Transducers};
 use serde::Serialize;
-use thiserror::Error;
 
 use super::loaded::LoadedDevice;
-use super::method_result::{MethodResult, MethodVerdict};
+use super::method_result::{MOVES, MethodResult};
 use super::motion::{Motion, Outcome};
 use crate::controller::{Controller, controller};
-use crate::emulator::{EmulatorError, ServoClient};
+use crate::emulator::ServoClient;
 use crate::lockstep::run;
-use crate::simulation::{Experiment, Integration, SimulationError, simulate};
-
-/// The reason why a loop cannot be run.
-#[derive(Debug, Error)]
-pub enum LoopRunError {
-    /// The loop cannot be simulated.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// The board failed.
-    #[error(transparent)]
-    Emulator(#[from] EmulatorError),
-    /// The board refuses a scene that the host accepts, or the reverse.
-    #[error("host and board disagree on whether this scene may run: {0}")]
-    Disagreement(String),
-    /// The servo cannot be built in this arithmetic.
-    #[error(transparent)]
-    Servo(#[from] BuildError),
-    /// The angle does not fit this arithmetic.
-    #[error(transparent)]
-    Angle(#[from] OutOfRange),
-}
+use crate::simulation::{Experiment, Integration, simulate};
+use crate::studies::error::StudyError;
 
 /// A loop to run.
 #[derive(Clone, Debug)]
@@ -78,10 +58,7 @@ impl BoardResult {
 
 impl LoopRun {
     /// The motion of the loop in `f64`, with only the experiment's quantisation.
-    ///
-    /// # Errors
-    /// If it cannot be simulated.
-    pub fn simulated(&self) -> Result<Motion, LoopRunError> {
+    pub fn simulated(&self) -> Result<Motion, StudyError> {
         let positions = match self.arithmetic {
             Arithmetic::F32 => simulate(&self.experiment, Integration::default())?.position,
             _ => self.without_converters()?,
@@ -90,7 +67,7 @@ impl LoopRun {
     }
 
     /// The same with the servo's own arithmetic.
-    fn without_converters(&self) -> Result<Vec<f64>, LoopRunError> {
+    fn without_converters(&self) -> Result<Vec<f64>, StudyError> {
         let mut servo = self.controller(&self.certified()?)?;
         let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
         while device.positions.len() < self.experiment.samples {
@@ -103,23 +80,20 @@ impl LoopRun {
 
     /// The motion of the loop with the emulated board as the servo. The board is compared with the servo on
     /// this machine in every tick.
-    ///
-    /// # Errors
-    /// If the board fails, or disagrees with this machine.
-    pub fn emulated(&self, player: &mut ServoClient) -> Result<BoardResult, LoopRunError> {
+    pub fn emulated(&self, player: &mut ServoClient) -> Result<BoardResult, StudyError> {
         let request = self.request();
         let (reply, here) = (player.start(&request)?, self.certified());
         let certified = match (reply, here) {
             (StartReply::Ready, Ok(certified)) => certified,
             (StartReply::Rejected, Err(_)) => return Ok(BoardResult::Refused),
-            (reply, _) => return Err(LoopRunError::Disagreement(format!("{reply:?}"))),
+            (reply, _) => return Err(StudyError::Disagreement(format!("{reply:?}"))),
         };
         let mut servo = self.controller(&certified)?;
         let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
         let ticks = request.ticks as usize;
         let run = run(&mut device, servo.as_mut(), Some(player), ticks, || {})?;
         match run.difference {
-            Some(difference) => Err(LoopRunError::Disagreement(difference.to_string())),
+            Some(difference) => Err(StudyError::Disagreement(difference.to_string())),
             None => Ok(BoardResult::Ran(Motion::of(&device.positions, self.experiment.samples))),
         }
     }
@@ -136,8 +110,8 @@ impl LoopRun {
         Scene { device: self.claimed.unwrap_or(scene.device), ..scene }
     }
 
-    fn certified(&self) -> Result<Certified<Scene>, LoopRunError> {
-        let refused = |rejection: Rejection| LoopRunError::Disagreement(rejection.to_string());
+    fn certified(&self) -> Result<Certified<Scene>, StudyError> {
+        let refused = |rejection: Rejection| StudyError::Disagreement(rejection.to_string());
         self.scene_for_board().certify().map_err(refused)
     }
 
@@ -177,12 +151,7 @@ impl InEach for Build<'_> {
 
 impl MethodResult {
     /// The verdict of a simulation.
-    ///
-    /// # Errors
-    /// If it cannot be simulated.
-    pub fn simulated(method: &str, loop_run: &LoopRun) -> Result<Self, LoopRunError> {
-        let motion = loop_run.simulated()?;
-        let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
-        Ok(Self::new(method, verdict, motion.last, "at the end it moves to and fro by {} rad"))
+    pub fn simulated(method: &str, loop_run: &LoopRun) -> Result<Self, StudyError> {
+        Ok(Self::of_motion(method, &loop_run.simulated()?, MOVES))
     }
 }

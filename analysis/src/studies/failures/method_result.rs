@@ -6,6 +6,7 @@ use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::Scene;
 use serde::Serialize;
 
+use super::motion::{Motion, Outcome};
 use crate::quantity::significant;
 use crate::simulation::{Experiment, Integration, SimulationError};
 use crate::stability::{closed_loop, eigenvalues, radius};
@@ -65,6 +66,9 @@ pub struct MethodResult {
     pub reason: String,
 }
 
+/// The reason of a verdict by a motion.
+pub const MOVES: &str = "at the end it moves to and fro by {} rad";
+
 impl MethodResult {
     /// A verdict by a number; `reason` has `{}` in the place of the number.
     pub fn new(
@@ -77,10 +81,13 @@ impl MethodResult {
         Self { method: method.into(), verdict, figure: Some(figure), reason }
     }
 
+    /// The verdict by a motion: whether it comes to rest. The number is its last swing in rad.
+    pub fn of_motion(method: impl Into<String>, motion: &Motion, reason: &str) -> Self {
+        let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
+        Self::new(method, verdict, motion.last, reason)
+    }
+
     /// The verdict by the eigenvalues of a loop, as shown by a method of integration.
-    ///
-    /// # Errors
-    /// If there is no loop, or its eigenvalues are not found.
     pub fn eigenvalues(
         method: impl Into<String>,
         experiment: &Experiment,
@@ -91,9 +98,6 @@ impl MethodResult {
     }
 
     /// The verdict by the exact eigenvalues of a scene on its device without a hand.
-    ///
-    /// # Errors
-    /// As of [`Self::eigenvalues`].
     pub fn in_no_hand(scene: &Scene) -> Result<Self, SimulationError> {
         let alone = Experiment::still(scene);
         Self::eigenvalues("exact exponential, in no hand", &alone, Integration::default())

@@ -3,16 +3,13 @@
 //! A case is a question about one loop. Common methods, the certificate and an exact reference answer it;
 //! then the loop runs in simulation and with the emulated board as its servo.
 
-pub mod between_ends;
 mod case;
 pub mod converters;
 pub mod grid;
 pub mod integration;
 pub mod loaded;
 pub mod loop_run;
-pub mod mean_delay;
 pub mod method_result;
-pub mod missed;
 pub mod motion;
 pub mod observer;
 pub mod profiles;
@@ -21,11 +18,12 @@ pub mod report;
 pub mod roots;
 pub mod rules;
 pub mod setting;
+pub mod timing;
 pub mod varying_hand;
 pub mod walls;
 pub mod zigzag;
 
-pub use case::{Case, CaseResult, FailureError};
+pub use case::{Case, CaseResult};
 
 macro_rules! cases {
     ($($name:literal, $question:literal, $evaluate:path;)*) => {
@@ -49,9 +47,9 @@ cases! {
     "fixed-point", "the paper's wall in Q16.16", converters::fixed_point;
     "encoder", "the paper's wall behind an encoder", converters::encoder;
     "zigzag", "a wall with nearly the friction that it needs", zigzag::zigzag;
-    "missed-ticks", "a spring near its limit, ticks missed", missed::missed_ticks;
-    "mean-delay", "a spring half a period late, behind a current loop", mean_delay::mean_delay;
-    "between-ends", "a wall computed ahead and written 5 us after its count", between_ends::between_ends;
+    "missed-ticks", "a spring near its limit, ticks missed", timing::missed_ticks;
+    "mean-delay", "a spring half a period late, behind a current loop", timing::mean_delay;
+    "between-ends", "a wall computed ahead and written 5 us after its count", timing::between_ends;
     "varying-hand", "a resonance behind a current loop, just past its limit", varying_hand::varying_hand;
     "fine-detents", "120 detents of 0.25 N m, a sample late", profiles::fine_detents;
     "ratchet", "24 teeth that push on by 3 N m in the mean", profiles::ratchet;

@@ -72,7 +72,7 @@ impl fmt::Display for Motion {
 }
 
 /// Largest less smallest; infinite if one of them is not finite.
-fn swing(positions: &[f64]) -> f64 {
+pub fn swing(positions: &[f64]) -> f64 {
     if !positions.iter().all(|position| position.is_finite()) {
         return f64::INFINITY;
     }

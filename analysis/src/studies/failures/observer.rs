@@ -6,15 +6,9 @@
 
 use std::f64::consts::TAU;
 
-use haptic_servo::scene::Scene;
 use haptic_servo::torque::LimitReason;
 
-use super::case::{CaseResult, FailureError};
-use super::loaded::LoadedDevice;
-use super::loop_run::LoopRun;
-use super::method_result::{MethodResult, MethodVerdict};
-use super::motion::{Motion, Outcome};
-use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run, wall_of};
+use super::setting::*;
 use crate::simulation::SimulationError;
 use crate::simulation::torque_signal::TorqueSignal;
 use crate::simulation::unquantized_servo::UnquantizedServo;
@@ -25,7 +19,7 @@ const SAMPLES: usize = 4000;
 const LEANS: f64 = 0.2;
 
 /// A wall that needs no observer, with two observers.
-pub fn passivity_observer() -> Result<CaseResult, FailureError> {
+pub fn passivity_observer() -> Result<CaseResult, StudyError> {
     let scene = coupled(PADDLE, wall_of(20.0, 0.0, 1));
     let mut ours =
         loop_run("the certified wall", &scene, PADDLES, Outcome::Converges).pushed(0.0, SAMPLES);
@@ -37,10 +31,8 @@ pub fn passivity_observer() -> Result<CaseResult, FailureError> {
         observed(&scene, &ours, "passivity observer", Divide::Always)?,
         observed(&scene, &ours, "the same, not at v = 0", Divide::WhereItMoves)?,
     ];
-    let motion = ours.simulated()?;
     let reason = "left alone, the device ends within {} rad";
-    let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
-    let truth = MethodResult::new("exact exponential", verdict, motion.last, reason);
+    let truth = MethodResult::of_motion("exact exponential", &ours.simulated()?, reason);
     Ok(CaseResult::of(&scene, methods, truth, [ours]))
 }
 
@@ -57,7 +49,7 @@ fn observed(
     loop_run: &LoopRun,
     method: &str,
     divide: Divide,
-) -> Result<MethodResult, FailureError> {
+) -> Result<MethodResult, StudyError> {
     let mut servo = UnquantizedServo::new(scene).map_err(SimulationError::from)?;
     let mut device = LoadedDevice::new(&loop_run.experiment, &PADDLES)?;
     let step = TAU / PADDLES.counts_per_turn;

@@ -4,13 +4,10 @@
 use std::f64::consts::TAU;
 
 use haptic_servo::environment::{Environment, Profile, Shape, ShapeError};
-use haptic_servo::scene::{Scene, Timing};
+use haptic_servo::scene::Timing;
 
-use super::case::{CaseResult, FailureError};
-use super::loop_run::LoopRun;
-use super::method_result::{MethodResult, MethodVerdict};
-use super::motion::{Motion, Outcome};
-use super::setting::{KNOB, KNOBS, PADDLE, PADDLES, PERIOD, loop_run, rigid};
+use super::method_result::MOVES;
+use super::setting::*;
 use crate::device::Hand;
 use crate::simulation::method::Method;
 use crate::simulation::{Experiment, Integration, simulate};
@@ -46,7 +43,7 @@ const TOOTH: [(f64, f64); 5] = tooth(MEAN);
 const LEVEL_TOOTH: [(f64, f64); 5] = tooth(0.0);
 
 /// Detents that are simulated without hold and delay; with a held torque, a sample late, they do not rest.
-pub fn fine_detents() -> Result<CaseResult, FailureError> {
+pub fn fine_detents() -> Result<CaseResult, StudyError> {
     let hums = detents("0.25 N m", HUMMING, 1, PERIOD, Outcome::LimitCycles)?;
     let hums = hums.with_claimed_passivity(2.0);
     let rests = detents("0.19 N m", CERTIFIED, 1, PERIOD, Outcome::Converges)?;
@@ -63,7 +60,7 @@ pub fn fine_detents() -> Result<CaseResult, FailureError> {
 }
 
 /// A profile whose slopes are all small, and whose mean is not zero.
-pub fn ratchet() -> Result<CaseResult, FailureError> {
+pub fn ratchet() -> Result<CaseResult, StudyError> {
     let turns = turning("let go", &TOOTH, Outcome::Diverges)?;
     let rests = turning("the same less its mean", &LEVEL_TOOTH, Outcome::Converges)?;
     let hand = Hand { stiffness: STIFFNESS, damping: DAMPING, ..Hand::default() };
@@ -73,10 +70,8 @@ pub fn ratchet() -> Result<CaseResult, FailureError> {
         by_slopes(&turns.experiment.scene),
         rests_by("simulation in a hand that holds it", &held, Integration::default())?,
     ];
-    let motion = turns.simulated()?;
-    let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
     let reason = "let go, it turns on by {} rad in the last tenth of the run";
-    let truth = MethodResult::new("exact exponential", verdict, motion.last, reason);
+    let truth = MethodResult::of_motion("exact exponential", &turns.simulated()?, reason);
     let certificate = match profile(&[Shape::Periodic(&TOOTH)], 1) {
         Err(refused @ ShapeError::Mean { mean }) => {
             MethodResult::new("certificate", MethodVerdict::Unsafe, mean, &refused.to_string())
@@ -94,7 +89,7 @@ fn detents(
     delay: usize,
     period: f64,
     expected: Outcome,
-) -> Result<LoopRun, FailureError> {
+) -> Result<LoopRun, StudyError> {
     let environment = profile(&[Shape::detents(DETENTS, torque)], delay)?;
     let timing = Timing { period, worst_period: None };
     let scene = Scene { timing, ..rigid(PADDLE, environment) };
@@ -107,7 +102,7 @@ fn turning(
     what: &'static str,
     tooth: &'static [(f64, f64)],
     expected: Outcome,
-) -> Result<LoopRun, FailureError> {
+) -> Result<LoopRun, StudyError> {
     let ends = Shape::end_stops(-FAR, FAR, STIFFNESS);
     let scene = rigid(KNOB, profile(&[Shape::Periodic(tooth), ends], 1)?);
     let mut loop_run = loop_run(what, &scene, KNOBS, expected).pushed(TURNED, 6000);
@@ -139,12 +134,9 @@ fn rests_by(
     method: &str,
     experiment: &Experiment,
     integration: Integration,
-) -> Result<MethodResult, FailureError> {
+) -> Result<MethodResult, StudyError> {
     let positions = simulate(experiment, integration)?.position;
-    let motion = Motion::of(&positions, experiment.samples);
-    let verdict = MethodVerdict::of(motion.outcome() == Outcome::Converges);
-    let reason = "at the end it moves to and fro by {} rad";
-    Ok(MethodResult::new(method, verdict, motion.last, reason))
+    Ok(MethodResult::of_motion(method, &Motion::of(&positions, experiment.samples), MOVES))
 }
 
 /// The verdict by the slopes alone: `T (L/2 + M)` for a torque that is a sample late.

@@ -1,7 +1,6 @@
 //! The largest stiffness of a spring that a method shows as stable, over its steps per tick.
 
-use super::case::FailureError;
-use crate::limits::{Limit, largest_stiffness};
+use super::setting::*;
 use crate::simulation::method::Method;
 use crate::simulation::{Experiment, Integration};
 use crate::stability::critical_stiffness;
@@ -30,22 +29,17 @@ pub struct Region {
 
 impl Region {
     /// An undelayed spring without a coupling on the heavy knob, and on two masses in a hand.
-    ///
-    /// # Errors
-    /// If an eigenvalue is not found.
-    pub fn all() -> Result<[Self; 2], FailureError> {
+    pub fn all() -> Result<[Self; 2], StudyError> {
         let [knob, held] = simulation::cases();
         Ok([Self::of(knob.name, &knob.experiment)?, Self::of(held.name, &held.experiment)?])
     }
 
-    fn of(device: &'static str, experiment: &Experiment) -> Result<Self, FailureError> {
-        let limit = |method, substeps| -> Result<f64, FailureError> {
+    fn of(device: &'static str, experiment: &Experiment) -> Result<Self, StudyError> {
+        let limit = |method, substeps| -> Result<f64, StudyError> {
             let integration = Integration { method, substeps };
             Ok(critical_stiffness(experiment, integration)?.unwrap_or(0.0))
         };
-        let Limit::RoundUp3(certified) = largest_stiffness(&experiment.scene) else {
-            return Err(FailureError::NoLimit);
-        };
+        let certified = limit_of(&experiment.scene)?;
         let mut apparent = [const { Vec::new() }; METHODS.len()];
         for (method, points) in METHODS.into_iter().zip(&mut apparent) {
             for substeps in SUBSTEPS {

@@ -2,12 +2,13 @@
 
 use serde::Serialize;
 
-use super::case::{Case, FailureError};
+use super::case::Case;
 use super::loop_run::{BoardResult, LoopRun};
 use super::method_result::{Failure, MethodResult};
 use super::motion::{Motion, Outcome};
 use super::walls::{DELAYS, wall};
 use crate::emulator::ServoClient;
+use crate::studies::error::StudyError;
 use crate::worst_hand::HandCase;
 
 /// A case with all its results.
@@ -68,10 +69,7 @@ pub struct WallReport {
 
 impl Case {
     /// Evaluates all methods, and runs the loops, also on the emulated board if there is one.
-    ///
-    /// # Errors
-    /// If a loop cannot be built or run.
-    pub fn report(&self, player: &mut Option<ServoClient>) -> Result<CaseReport, FailureError> {
+    pub fn report(&self, player: &mut Option<ServoClient>) -> Result<CaseReport, StudyError> {
         let result = self.evaluate()?;
         let truth = result.truth.verdict;
         let judged = |result: MethodResult| JudgedMethod { failure: result.failure(truth), result };
@@ -87,10 +85,7 @@ impl Case {
 }
 
 /// The walls of every delay.
-///
-/// # Errors
-/// If a wall has no limit, or cannot be run.
-pub fn walls(player: &mut Option<ServoClient>) -> Result<Vec<WallReport>, FailureError> {
+pub fn walls(player: &mut Option<ServoClient>) -> Result<Vec<WallReport>, StudyError> {
     let report = |delay| {
         let wall = wall(delay)?;
         let runs = [&wall.below[..], &[wall.above]].concat();
@@ -103,7 +98,7 @@ pub fn walls(player: &mut Option<ServoClient>) -> Result<Vec<WallReport>, Failur
 fn run_all(
     runs: &[LoopRun],
     player: &mut Option<ServoClient>,
-) -> Result<Vec<RunResult>, FailureError> {
+) -> Result<Vec<RunResult>, StudyError> {
     let run = |loop_run: &LoopRun| {
         let player = player.as_mut().filter(|_| loop_run.goes_to_a_board());
         let emulated = player.map(|player| loop_run.emulated(player)).transpose()?;

@@ -1,13 +1,11 @@
 //! Roots in floating point: a pole at a distance of a millionth from the circle, with other poles near it.
 
-use haptic_servo::environment::{Coefficients, Environment, Rational};
-use haptic_servo::scene::Scene;
+use haptic_servo::environment::Environment;
 use nalgebra::Complex;
 
-use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, MethodVerdict};
-use super::setting::{PADDLE, rigid};
+use super::setting::*;
 use crate::stability::{eigenvalues, radius};
+use crate::studies::tradeoff::certificate::environments::multiply;
 use crate::studies::tradeoff::certificate::polynomials::companion;
 
 /// Distance of the pole from the circle: 2^-20, so that every coefficient is a double.
@@ -16,41 +14,27 @@ pub const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 pub const OTHERS: f64 = 1.0 / (1 << 8) as f64;
 
 /// A pole outside the circle that computed roots show inside.
-pub fn outside() -> Result<CaseResult, FailureError> {
+pub fn outside() -> Result<CaseResult, StudyError> {
     evaluate(1.0 + BESIDE)
 }
 
 /// The same pole inside, shown outside.
-pub fn inside() -> Result<CaseResult, FailureError> {
+pub fn inside() -> Result<CaseResult, StudyError> {
     evaluate(1.0 - BESIDE)
 }
 
 /// A smooth filter of the fifth order before a spring, with these poles.
 pub fn scene(pole: f64) -> Scene {
-    let coefficients = |values: &[f64]| Coefficients::new(values).expect("six coefficients fit");
-    rigid(
-        PADDLE,
-        Environment::Rational(Rational {
-            numerator: coefficients(&[1e-12]),
-            denominator: coefficients(&denominator(pole)),
-            delay: 0,
-            unit_zeros: 0,
-        }),
-    )
+    rigid(PADDLE, Environment::Rational(rational(&[1e-12], &denominator(pole))))
 }
 
 /// `(z - pole) (z - (1 - OTHERS))^4` in descending powers, without rounding.
 pub fn denominator(pole: f64) -> Vec<f64> {
-    let factor = |product: Vec<f64>, root: f64| {
-        let shifted = [&product[..], &[0.0]].concat();
-        shifted.iter().zip([&[0.0], &product[..]].concat()).map(|(a, b)| a - root * b).collect()
-    };
-    [pole, 1.0 - OTHERS, 1.0 - OTHERS, 1.0 - OTHERS, 1.0 - OTHERS]
-        .into_iter()
-        .fold(vec![1.0], factor)
+    let roots = [pole, 1.0 - OTHERS, 1.0 - OTHERS, 1.0 - OTHERS, 1.0 - OTHERS];
+    roots.into_iter().fold(vec![1.0], |product, root| multiply(&product, &[1.0, -root]))
 }
 
-fn evaluate(pole: f64) -> Result<CaseResult, FailureError> {
+fn evaluate(pole: f64) -> Result<CaseResult, StudyError> {
     let scene = scene(pole);
     let companion = companion(&denominator(pole));
     let plain: Vec<Complex<f64>> = companion.complex_eigenvalues().iter().copied().collect();

@@ -2,23 +2,17 @@
 
 use std::f64::consts::PI;
 
-use haptic_servo::environment::{Coefficients, Environment, Rational};
-use haptic_servo::scene::{Device, Scene};
+use haptic_servo::environment::Environment;
+use haptic_servo::scene::Device;
 use nalgebra::Complex;
 
-use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, MethodVerdict};
-use super::motion::Outcome;
-use super::setting::{
-    KNOB, KNOBS, PADDLE, PADDLES, PERIOD, coupled, friction_for_rest, loop_run, rigid, wall_of,
-};
-use crate::limits::{Limit, largest_stiffness};
+use super::setting::*;
 use crate::response::Response;
 use crate::simulation::SimulationError;
 use crate::simulation::closed_loop::transfers;
 
 /// Continuous time: a mass, a damper and any spring come to rest.
-pub fn continuous_time() -> Result<CaseResult, FailureError> {
+pub fn continuous_time() -> Result<CaseResult, StudyError> {
     const STIFFNESS: f64 = 5000.0;
     let scene = rigid(KNOB, wall_of(STIFFNESS, 0.0, 0));
     // m s^2 + b s + K = 0
@@ -44,13 +38,9 @@ pub fn continuous_time() -> Result<CaseResult, FailureError> {
 }
 
 /// Colgate's and Schenkel's inequality alone: a negative spring passes.
-pub fn negative_spring() -> Result<CaseResult, FailureError> {
+pub fn negative_spring() -> Result<CaseResult, StudyError> {
     const STIFFNESS: f64 = -200.0;
-    let one = |value: f64| Coefficients::new(&[value]).expect("one coefficient fits");
-    let spring = |stiffness: f64| {
-        let (numerator, denominator) = (one(stiffness), one(1.0));
-        Environment::Rational(Rational { numerator, denominator, delay: 0, unit_zeros: 0 })
-    };
+    let spring = |stiffness: f64| Environment::Rational(rational(&[stiffness], &[1.0]));
     let scene = rigid(KNOB, spring(STIFFNESS));
     let needed = colgate_schenkel(&scene)?;
     let reason = "b > T/(2 (1 - cos)) Re((1 - e^-j) C) asks for b above {} N m s/rad";
@@ -72,7 +62,7 @@ pub fn negative_spring() -> Result<CaseResult, FailureError> {
 }
 
 /// The damping in N m s/rad by Colgate's and Schenkel's inequality, on a fine grid.
-fn colgate_schenkel(scene: &Scene) -> Result<f64, FailureError> {
+fn colgate_schenkel(scene: &Scene) -> Result<f64, StudyError> {
     const POINTS: u32 = 10_000;
     let controller = controller(scene)?;
     let at = |theta: f64| {
@@ -85,12 +75,12 @@ fn colgate_schenkel(scene: &Scene) -> Result<f64, FailureError> {
 }
 
 /// From the sampled position to the torque.
-fn controller(scene: &Scene) -> Result<Response, FailureError> {
+fn controller(scene: &Scene) -> Result<Response, StudyError> {
     Ok(Response::new(transfers(scene).map_err(SimulationError::from)?.controller))
 }
 
 /// The rule `K < (b + B) / (T/2 + t_d)` at `B = b`.
-pub fn damped_rule() -> Result<CaseResult, FailureError> {
+pub fn damped_rule() -> Result<CaseResult, StudyError> {
     const DELAY: usize = 1;
     let damping = PADDLE.damping;
     let limit = (PADDLE.damping + damping) / (PERIOD * (0.5 + DELAY as f64));
@@ -102,10 +92,7 @@ pub fn damped_rule() -> Result<CaseResult, FailureError> {
     let shakes =
         loop_run("B = b, 0.7 of that", &scene, PADDLES, Outcome::Diverges).pushed(5.0, 100);
     let without = coupled(PADDLE, wall_of(0.0, 0.5 * damping, DELAY));
-    let Limit::RoundUp3(most) = largest_stiffness(&without) else {
-        return Err(FailureError::NoLimit);
-    };
-    let rests = coupled(PADDLE, wall_of(0.95 * most, 0.5 * damping, DELAY));
+    let rests = coupled(PADDLE, wall_of(0.95 * limit_of(&without)?, 0.5 * damping, DELAY));
     let rests = loop_run("B = b/2 behind the coupling", &rests, PADDLES, Outcome::Converges);
     let runs = [shakes.with_claimed_passivity(10.0), rests.pushed(1.0, 2000)];
     Ok(CaseResult::of(&scene, methods, MethodResult::in_no_hand(&scene)?, runs))

@@ -1,18 +1,24 @@
-//! The common setting of the cases: two devices, walls, and a board's sensors and motors.
+//! All that a case needs: two devices, walls, a board's sensors and motors, and the parts of a result.
 
 use std::f64::consts::TAU;
 
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{Environment, FULL_SCALE, Wall};
+use haptic_servo::environment::{Coefficients, Environment, FULL_SCALE, Rational, Wall};
 use haptic_servo::number::Arithmetic;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+pub use haptic_servo::scene::Scene;
+use haptic_servo::scene::{Coupling, Device, Latency, Timing};
 use haptic_servo::servo::Transducers;
 
-use super::loop_run::LoopRun;
-use super::motion::Outcome;
-use crate::device::Motion;
+pub use super::case::CaseResult;
+pub use super::loaded::LoadedDevice;
+pub use super::loop_run::LoopRun;
+pub use super::method_result::{MethodResult, MethodVerdict};
+pub use super::motion::{Motion, Outcome};
+use crate::device;
+use crate::limits::{Limit, largest_stiffness, standard_coupling};
 use crate::simulation::Experiment;
+pub use crate::studies::error::StudyError;
 
 /// Period of all cases in s.
 pub const PERIOD: f64 = 1e-3;
@@ -45,6 +51,24 @@ pub fn wall_of(stiffness: f64, damping: f64, delay: usize) -> Environment {
     Wall::damped(stiffness, damping, delay).alone()
 }
 
+/// A quotient of polynomials with these descending coefficients, without a delay.
+///
+/// # Panics
+/// If there are too many.
+pub fn rational(numerator: &[f64], denominator: &[f64]) -> Rational {
+    let [numerator, denominator] =
+        [numerator, denominator].map(|values| Coefficients::new(values).expect("few coefficients"));
+    Rational { numerator, denominator, delay: 0, unit_zeros: 0 }
+}
+
+/// The largest certified stiffness of a wall in N m/rad.
+pub fn limit_of(scene: &Scene) -> Result<f64, StudyError> {
+    match largest_stiffness(scene) {
+        Limit::RoundUp3(limit) => Ok(limit),
+        _ => Err(StudyError::NoLimit),
+    }
+}
+
 /// A scene without a coupling.
 pub fn rigid(device: Device, environment: Environment) -> Scene {
     let timing = Timing { period: PERIOD, worst_period: None };
@@ -61,7 +85,7 @@ pub fn rigid(device: Device, environment: Environment) -> Scene {
 /// A scene behind the standard coupling `2 delta / T`.
 pub fn coupled(device: Device, environment: Environment) -> Scene {
     let scene = rigid(device, environment);
-    let stiffness = crate::limits::standard_coupling(&scene);
+    let stiffness = standard_coupling(&scene);
     Scene { coupling: Coupling::Spring { stiffness }, ..scene }
 }
 
@@ -100,7 +124,7 @@ pub fn loop_run(
 impl LoopRun {
     /// The same with an initial `velocity` in rad/s, for a number of samples.
     pub fn pushed(mut self, velocity: f64, samples: usize) -> Self {
-        self.experiment.start = Motion { position: 0.0, velocity };
+        self.experiment.start = device::Motion { position: 0.0, velocity };
         self.experiment.samples = samples;
         self
     }

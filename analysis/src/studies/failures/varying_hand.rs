@@ -11,16 +11,13 @@
 use std::f64::consts::PI;
 
 use haptic_servo::certificate::assess;
-use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::environment::Environment;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::passivity::lagged::LagIntervals;
-use haptic_servo::scene::{Device, Latency, Scene};
+use haptic_servo::scene::{Device, Latency};
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, MethodVerdict};
-use super::motion::Outcome;
-use super::setting::{PADDLE, PADDLES, PERIOD, loop_run, rigid};
+use super::setting::*;
 use crate::chain::Chain;
 use crate::line_search::minimizing_angle;
 use crate::response::Response;
@@ -38,13 +35,7 @@ pub const RESONANCE: [f64; 3] = [1.0, 1.5, 0.625];
 
 /// `gain z / (z^2 + 1.5 z + 0.625)` behind the amplifier.
 fn resonant(gain: f64) -> Scene {
-    let polynomial = |values: &[f64]| Coefficients::new(values).expect("three coefficients fit");
-    let resonance = Environment::Rational(Rational {
-        numerator: polynomial(&[gain, 0.0]),
-        denominator: polynomial(&RESONANCE),
-        delay: 0,
-        unit_zeros: 0,
-    });
+    let resonance = Environment::Rational(rational(&[gain, 0.0], &RESONANCE));
     Scene { latency: Latency::NONE.with_actuator_lag(LAG), ..rigid(LIGHT, resonance) }
 }
 
@@ -55,7 +46,7 @@ pub fn at(times: f64) -> Scene {
 }
 
 /// At 1.005 of the limit, stable in every constant hand and unstable in a varying hand.
-pub fn varying_hand() -> Result<CaseResult, FailureError> {
+pub fn varying_hand() -> Result<CaseResult, StudyError> {
     let scene = at(1.005);
     let device = Chain::rigid(LIGHT.inertia, LIGHT.damping)?;
     let linear = needed(&scene, &device).unwrap_or(f64::NAN);
@@ -109,10 +100,7 @@ fn plane(lag: f64) -> (f64, f64) {
 impl VaryingHand {
     /// The worst hand for a scene behind an amplifier, at the angle with the largest shortage of its
     /// certificate.
-    ///
-    /// # Errors
-    /// If the scene has no transfer function.
-    pub fn against(scene: &Scene) -> Result<Self, FailureError> {
+    pub fn against(scene: &Scene) -> Result<Self, StudyError> {
         let controller = Response::new(transfers(scene).map_err(SimulationError::from)?.controller);
         let (period, damping) = (scene.timing.period, scene.device.damping);
         let lag = scene.latency.actuator_lag.middle() / period;
@@ -145,16 +133,13 @@ impl VaryingHand {
     }
 
     /// Growth per period of the loop of a scene in this hand: the largest eigenvalue of the monodromy matrix.
-    ///
-    /// # Errors
-    /// If the scene has no transfer function, or the eigenvalues are not found.
-    pub fn multiplier(&self, scene: &Scene) -> Result<f64, FailureError> {
+    pub fn multiplier(&self, scene: &Scene) -> Result<f64, StudyError> {
         let found = eigenvalues(&self.monodromy(scene)?)?;
         Ok(radius(&found))
     }
 
     /// Over a period: position, velocity and amplifier, the two of each way, the controller's.
-    fn monodromy(&self, scene: &Scene) -> Result<DMatrix<f64>, FailureError> {
+    fn monodromy(&self, scene: &Scene) -> Result<DMatrix<f64>, StudyError> {
         let transfer = transfers(scene).map_err(SimulationError::from)?.controller;
         let filter = Response::new(transfer).filter().expect("a low degree");
         let (numerator, denominator) = (filter.numerator(), filter.denominator());

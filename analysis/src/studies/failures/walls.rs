@@ -3,14 +3,9 @@
 //!
 //! For a rigid device and a linear wall the certified limit is the true one (theory, section 4.1).
 
-use haptic_servo::scene::Scene;
-
-use super::case::FailureError;
-use super::loop_run::LoopRun;
-use super::motion::Outcome;
-use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run, rigid, wall_of};
+use super::setting::*;
 use crate::chain::Chain;
-use crate::limits::{Limit, largest_stiffness, with_wall};
+use crate::limits::with_wall;
 use crate::worst_hand::{HandCase, plant, search};
 
 /// Delays in samples.
@@ -36,17 +31,12 @@ pub struct Wall {
 
 /// A wall of that delay on the paddle: behind the standard coupling, except for the undelayed wall, whose
 /// stiffness has a limit only without a coupling.
-///
-/// # Errors
-/// If it has no limit, or no hand is found.
-pub fn wall(delay: usize) -> Result<Wall, FailureError> {
+pub fn wall(delay: usize) -> Result<Wall, StudyError> {
     let scene = match delay {
         0 => rigid(PADDLE, wall_of(0.0, 0.0, delay)),
         _ => coupled(PADDLE, wall_of(0.0, 0.0, delay)),
     };
-    let Limit::RoundUp3(limit) = largest_stiffness(&scene) else {
-        return Err(FailureError::NoLimit);
-    };
+    let limit = limit_of(&scene)?;
     let [below, above] = [0.99, 1.01].map(|part| with_wall(&scene, part * limit, None));
     let device = Chain::rigid(PADDLE.inertia, PADDLE.damping)?;
     let hand = search(&above, &device)?.worst;

@@ -5,13 +5,9 @@ use std::f64::consts::TAU;
 
 use haptic_servo::certificate::Resolution;
 use haptic_servo::number::Format;
-use haptic_servo::scene::Scene;
 use haptic_servo::torque::LimitReason;
 
-use super::case::{CaseResult, FailureError};
-use super::method_result::{MethodResult, MethodVerdict};
-use super::motion::Outcome;
-use super::setting::{PADDLE, PADDLES, encoder_friction, loop_run, rigid, wall_of};
+use super::setting::*;
 use crate::simulation::SimulationError;
 use crate::simulation::unquantized_servo::UnquantizedServo;
 
@@ -23,7 +19,7 @@ const BESIDE: f64 = 0.1;
 const ALMOST: f64 = 0.99;
 
 /// A wall with almost the friction that it needs: without the hand it comes to rest.
-pub fn zigzag() -> Result<CaseResult, FailureError> {
+pub fn zigzag() -> Result<CaseResult, StudyError> {
     let scene = wall();
     let needed = encoder_friction(&scene, &PADDLES);
     // With any DAC resolution.
@@ -45,10 +41,7 @@ pub fn wall() -> Scene {
 }
 
 /// Energy in J that a hand gains from a wall and its dry friction in each cycle over an edge of the encoder.
-///
-/// # Errors
-/// If the scene has no law that can run.
-pub fn gained(scene: &Scene, friction: f64) -> Result<f64, FailureError> {
+pub fn gained(scene: &Scene, friction: f64) -> Result<f64, StudyError> {
     let step = TAU / PADDLES.counts_per_turn;
     let mut servo = UnquantizedServo::new(scene).map_err(SimulationError::from)?;
     let mut work = [0.0; 2];

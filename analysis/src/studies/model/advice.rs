@@ -3,28 +3,11 @@
 use std::path::Path;
 
 use serde::Serialize;
-use thiserror::Error;
 
 use super::{Deviation, Model, ModelResult, percent};
 use crate::file::SceneFile;
-use crate::simulation::{Experiment, SimulationError};
-
-/// The reason why models cannot be compared.
-#[derive(Debug, Error)]
-pub enum ModelError {
-    /// The fullest model has no motion or no loop.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// Nothing moves in the run.
-    #[error(
-        "{scene}: nothing moves in its simulation, so models cannot be compared; give it a \
-         position, a velocity or a torque"
-    )]
-    Rest {
-        /// Name of the scene.
-        scene: String,
-    },
-}
+use crate::simulation::Experiment;
+use crate::studies::error::StudyError;
 
 /// The comparison of models.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -63,15 +46,12 @@ pub struct JudgedModel {
 
 /// Compares the models of a file's machine by the file's simulation; `folder` is the folder of its torque
 /// file, `bound` the largest relative error of a number, compared with the fullest model.
-///
-/// # Errors
-/// If the file has no simulation, nothing moves in it, or its scene has no closed loop.
-pub fn advise(file: &SceneFile, folder: &Path, bound: f64) -> Result<Advice, ModelError> {
+pub fn advise(file: &SceneFile, folder: &Path, bound: f64) -> Result<Advice, StudyError> {
     let run = Experiment::of(file, folder)?;
     let fullest = Model::fullest(file);
     let full = ModelResult::of(fullest, file, &run)?;
     if full.motion.position.iter().chain(&full.motion.torque).all(|&value| value == 0.0) {
-        return Err(ModelError::Rest { scene: file.name.clone() });
+        return Err(StudyError::Rest { scene: file.name.clone() });
     }
     let mut models = Vec::new();
     for model in fullest.up_to() {

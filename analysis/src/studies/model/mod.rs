@@ -8,7 +8,7 @@ mod advice;
 mod deviation;
 mod model_result;
 
-pub use advice::{Advice, JudgedModel, ModelError, advise};
+pub use advice::{Advice, advise};
 pub use deviation::{Deviation, percent};
 pub use model_result::ModelResult;
 

@@ -2,6 +2,7 @@ use std::path::Path;
 
 use haptic_servo::scene::{Device, Latency, Scene};
 
+use super::advice::JudgedModel;
 use super::*;
 use crate::chain::{Link, Mass};
 use crate::file::{self, Format, Purpose};

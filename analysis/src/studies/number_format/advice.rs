@@ -4,8 +4,9 @@ use haptic_servo::certificate::QuantizationBound;
 use haptic_servo::number::Arithmetic;
 use serde::{Serialize, Serializer};
 
-use super::{FormatError, Losses, Motion};
+use super::{Losses, Motion};
 use crate::quantity::significant;
+use crate::studies::error::StudyError;
 use crate::verdict::AtRest;
 
 /// The requirements on a format.
@@ -71,20 +72,17 @@ pub struct Advice {
 
 impl Advice {
     /// Evaluates all formats; `instructions` returns those of a tick in each.
-    ///
-    /// # Errors
-    /// If the scene is rejected or cannot be simulated.
     pub fn new(
         motion: &Motion,
         requirements: &Requirements,
-        mut instructions: impl FnMut(Arithmetic) -> Result<f64, FormatError>,
-    ) -> Result<Self, FormatError> {
+        mut instructions: impl FnMut(Arithmetic) -> Result<f64, StudyError>,
+    ) -> Result<Self, StudyError> {
         let mut candidates = Vec::new();
         let mut encoder_hum = None;
         for arithmetic in Arithmetic::ALL {
             let losses = match Losses::of(motion, arithmetic) {
                 Ok(losses) => Ok(losses),
-                Err(error @ (FormatError::Servo(_) | FormatError::Angle(_))) => Err(error),
+                Err(error @ (StudyError::Servo(_) | StudyError::Angle(_))) => Err(error),
                 Err(error) => return Err(error),
             };
             if let (Arithmetic::F64, Ok(losses)) = (arithmetic, &losses) {
@@ -123,7 +121,7 @@ fn hum(candidate: &Candidate) -> f64 {
 fn candidate(
     arithmetic: Arithmetic,
     instructions: f64,
-    losses: Result<Losses, FormatError>,
+    losses: Result<Losses, StudyError>,
     rest: Option<QuantizationBound>,
     requirements: &Requirements,
 ) -> Candidate {

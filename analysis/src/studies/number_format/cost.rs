@@ -1,10 +1,11 @@
 //! The cost of a tick on the emulated board in a format.
 
-use firmware_harness::bench_request::BenchRequest;
+use firmware_harness::bench_request::{BenchRequest, Output};
 use haptic_servo::number::Arithmetic;
 
-use super::{FormatError, Motion};
+use super::Motion;
 use crate::emulator::BenchClient;
+use crate::studies::error::StudyError;
 
 /// Instructions of a tick from count to code, on the emulated board.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,16 +16,25 @@ pub struct Cost {
     pub mean: f64,
 }
 
+impl Cost {
+    /// Of a board's outputs.
+    pub fn of<'o>(outputs: impl IntoIterator<Item = &'o Output>) -> Self {
+        let (mut most, mut sum, mut count) = (0, 0.0, 0.0);
+        for output in outputs {
+            most = output.instructions.max(most);
+            sum += f64::from(output.instructions);
+            count += 1.0;
+        }
+        Self { most, mean: sum / count }
+    }
+}
+
 /// Runs a motion on the board and on this machine.
-///
-/// # Errors
-/// If the scene cannot be represented in this format, if the board fails or has no program for it, or if a
-/// torque or a code of the board differs from this machine's in any bit.
 pub fn cost(
     board: &mut BenchClient,
     motion: &Motion,
     arithmetic: Arithmetic,
-) -> Result<Cost, FormatError> {
+) -> Result<Cost, StudyError> {
     let here = motion.torques(arithmetic)?;
     let units = motion.problem().units(arithmetic);
     let (scene, transducers) = motion.problem().scaled(arithmetic);
@@ -37,10 +47,7 @@ pub fn cost(
         bits(torque, code) != bits(there.value * units.torque, there.code)
     });
     if let Some(tick) = differs {
-        return Err(FormatError::Differs { format: arithmetic.name(), tick });
+        return Err(StudyError::Differs { format: arithmetic.name(), tick });
     }
-    let instructions = there.iter().map(|output| output.instructions);
-    let most = instructions.clone().max().unwrap_or_default();
-    let mean = instructions.map(f64::from).sum::<f64>() / there.len() as f64;
-    Ok(Cost { most, mean })
+    Ok(Cost::of(&there))
 }

@@ -5,9 +5,11 @@ use haptic_servo::environment::Environment;
 use haptic_servo::number::Arithmetic;
 use serde::Serialize;
 
-use super::{FormatError, FormatProblem, FormatServo};
+use super::{FormatProblem, FormatServo};
 use crate::device::{Hand, HandSetpoint, Motion, SimulatedEncoder};
 use crate::simulation::held_device::{DeviceState, HeldDevice};
+use crate::studies::error::StudyError;
+use crate::studies::failures::motion::swing;
 
 /// The limit cycle of a device that is pressed against a wall, or released in free mode.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -34,15 +36,11 @@ const WINDOWS: usize = 40;
 const STEADY: f64 = 0.9;
 
 /// Lets a device come to rest from several starts, with the scene's encoder or with exact angles.
-///
-/// # Errors
-/// If the scene is rejected, cannot be represented in this format, or does not decay within the longest
-/// window.
 pub fn at_rest(
     problem: &FormatProblem,
     arithmetic: Arithmetic,
     with_encoder: bool,
-) -> Result<LimitCycle, FormatError> {
+) -> Result<LimitCycle, StudyError> {
     let encoder = with_encoder.then(|| SimulatedEncoder::new(problem.transducers.counts_per_turn));
     let scene = &problem.scene;
     let device = HeldDevice::of(scene, Hand::default())?;
@@ -65,7 +63,7 @@ pub fn at_rest(
 }
 
 /// Time in s in which the motion decays at least by half without rounding: in `f64`, with exact angles.
-fn window(problem: &FormatProblem, device: &HeldDevice, push: f64) -> Result<f64, FormatError> {
+fn window(problem: &FormatProblem, device: &HeldDevice, push: f64) -> Result<f64, StudyError> {
     let mut window = WINDOW;
     while window <= LONGEST {
         // Four windows together, so that a slow oscillation shows its whole span.
@@ -80,7 +78,7 @@ fn window(problem: &FormatProblem, device: &HeldDevice, push: f64) -> Result<f64
         }
         window *= 2.0;
     }
-    Err(FormatError::NoRest { seconds: LONGEST })
+    Err(StudyError::NoRest { seconds: LONGEST })
 }
 
 /// Number of ticks in a time in s.
@@ -110,7 +108,7 @@ struct Settling<'a> {
 
 impl Settling<'_> {
     /// The limit cycle in a window of `ticks` ticks, after it has stopped shrinking.
-    fn settle(&mut self, ticks: usize) -> Result<LimitCycle, FormatError> {
+    fn settle(&mut self, ticks: usize) -> Result<LimitCycle, StudyError> {
         let mut last = self.window(ticks)?;
         for _ in 1..WINDOWS {
             let next = self.window(ticks)?;
@@ -122,38 +120,19 @@ impl Settling<'_> {
         Ok(last)
     }
 
-    fn window(&mut self, ticks: usize) -> Result<LimitCycle, FormatError> {
-        let (mut torques, mut angles) = (Span::EMPTY, Span::EMPTY);
+    fn window(&mut self, ticks: usize) -> Result<LimitCycle, StudyError> {
+        let (mut torques, mut angles) = (Vec::new(), Vec::new());
         for _ in 0..ticks {
             let angle = self.state.measured();
             let torque = match &self.encoder {
                 Some(encoder) => self.servo.tick(encoder.read(angle)).0,
                 None => self.servo.tick_at(angle)?,
             };
-            torques.add(torque);
-            angles.add(self.state.motion().position);
+            torques.push(torque);
+            angles.push(self.state.motion().position);
             self.device.step(&mut self.state, self.push - torque, HandSetpoint::default());
         }
-        Ok(LimitCycle { torque: torques.length(), angle: angles.length() })
-    }
-}
-
-/// From the lowest to the highest.
-struct Span {
-    low: f64,
-    high: f64,
-}
-
-impl Span {
-    const EMPTY: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
-
-    fn add(&mut self, value: f64) {
-        self.low = self.low.min(value);
-        self.high = self.high.max(value);
-    }
-
-    fn length(&self) -> f64 {
-        self.high - self.low
+        Ok(LimitCycle { torque: swing(&torques), angle: swing(&angles) })
     }
 }
 
@@ -162,10 +141,11 @@ mod tests {
     use haptic_servo::certificate::Resolution;
     use haptic_servo::encoder::CounterWidth;
     use haptic_servo::environment::Wall;
-    use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+    use haptic_servo::scene::{Coupling, Device, Scene};
     use haptic_servo::transducers::Transducers;
 
     use super::*;
+    use crate::studies::failures::setting::rigid;
 
     /// A wall whose certificate leaves `margin` N m s/rad, on a device of so much inertia.
     fn problem(inertia: f64, margin: f64) -> FormatProblem {
@@ -178,14 +158,9 @@ mod tests {
             full_scale_torque: 0.2,
             largest_speed: 100.0,
         };
-        let scene = Scene {
-            device: Device { inertia, damping, passivity: None },
-            timing: Timing { period: 1e-3, worst_period: None },
-            coupling: Coupling::Spring { stiffness: 0.2 },
-            environment,
-            latency: Latency::NONE,
-            torque_limit: None,
-        };
+        let coupling = Coupling::Spring { stiffness: 0.2 };
+        let device = Device { inertia, damping, passivity: None };
+        let scene = Scene { coupling, ..rigid(device, environment) };
         let steps = Resolution::of(&transducers, None);
         FormatProblem { scene, transducers, steps, range: 0.5 }
     }
@@ -195,6 +170,6 @@ mod tests {
         let largest = at_rest(&problem(5e-5, 5e-5), Arithmetic::F64, false).unwrap();
         assert!(largest.torque < 1e-9, "{largest:?}");
         let endless = at_rest(&problem(5e-3, 1e-7), Arithmetic::F64, false);
-        assert!(matches!(endless, Err(FormatError::NoRest { .. })), "{endless:?}");
+        assert!(matches!(endless, Err(StudyError::NoRest { .. })), "{endless:?}");
     }
 }

@@ -3,7 +3,8 @@
 use haptic_servo::number::Arithmetic;
 use serde::Serialize;
 
-use super::{FormatError, LimitCycle, Motion, at_rest};
+use super::{LimitCycle, Motion, at_rest};
+use crate::studies::error::StudyError;
 
 /// The errors of a format.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -20,10 +21,7 @@ pub struct Losses {
 
 impl Losses {
     /// The errors of a format in a motion, and at rest.
-    ///
-    /// # Errors
-    /// If the scene cannot be represented in this format.
-    pub fn of(motion: &Motion, arithmetic: Arithmetic) -> Result<Self, FormatError> {
+    pub fn of(motion: &Motion, arithmetic: Arithmetic) -> Result<Self, StudyError> {
         let elsewhere = motion.around(1.0);
         Ok(Self {
             error: motion.error(arithmetic)?,

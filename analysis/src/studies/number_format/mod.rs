@@ -3,7 +3,6 @@
 
 mod advice;
 mod cost;
-mod error;
 mod friction;
 mod limit_cycle;
 mod losses;
@@ -12,7 +11,6 @@ mod units;
 
 pub use advice::{Advice, Candidate, Requirements};
 pub use cost::{Cost, cost};
-pub use error::FormatError;
 pub use limit_cycle::{LimitCycle, at_rest};
 pub use losses::Losses;
 pub use motion::Motion;
@@ -24,6 +22,7 @@ use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 
 use crate::controller::{Controller, controller};
+use crate::studies::error::StudyError;
 
 /// Default of the largest angle in rad to each side of zero in a scaled format: that of a knob or a paddle.
 pub const HALF_A_TURN: f64 = std::f64::consts::PI;
@@ -65,10 +64,7 @@ impl FormatProblem {
     }
 
     /// The scene's servo in a format, at rest at zero.
-    ///
-    /// # Errors
-    /// If the scene is rejected, or cannot be represented in this format.
-    pub fn servo(&self, arithmetic: Arithmetic) -> Result<FormatServo, FormatError> {
+    pub fn servo(&self, arithmetic: Arithmetic) -> Result<FormatServo, StudyError> {
         let (scene, transducers) = self.scaled(arithmetic);
         let controller = arithmetic.choose(Build { scene, transducers })?;
         Ok(FormatServo { controller, units: self.units(arithmetic) })
@@ -83,10 +79,7 @@ impl FormatServo {
     }
 
     /// The torque in N m at an exact angle in rad.
-    ///
-    /// # Errors
-    /// If the format cannot represent the angle.
-    pub fn tick_at(&mut self, angle: f64) -> Result<f64, FormatError> {
+    pub fn tick_at(&mut self, angle: f64) -> Result<f64, StudyError> {
         Ok(self.controller.tick_at(angle / self.units.angle)? * self.units.torque)
     }
 }
@@ -98,10 +91,10 @@ struct Build {
 }
 
 impl InEach for Build {
-    type Output = Result<Box<dyn Controller>, FormatError>;
+    type Output = Result<Box<dyn Controller>, StudyError>;
 
     fn with<N: Number>(self) -> Self::Output {
-        let certified = self.scene.certify().map_err(|r| FormatError::Refused(Box::new(r)))?;
+        let certified = self.scene.certify().map_err(StudyError::from)?;
         Ok(controller::<_, N>(&certified, &self.transducers)?)
     }
 }
@@ -112,9 +105,10 @@ mod tests {
     use haptic_servo::environment::{
         Canceller, Coefficients, Environment, Parts, Rational, Side, Wall,
     };
-    use haptic_servo::scene::{Coupling, Device, Latency, Timing};
+    use haptic_servo::scene::{Coupling, Device};
 
     use super::*;
+    use crate::studies::failures::setting::{PADDLE, rigid};
 
     /// Units are powers of two: the same bits come out, whatever a servo counts in.
     #[test]
@@ -140,11 +134,9 @@ mod tests {
         ] {
             let scene = Scene {
                 device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.021999) },
-                timing: Timing { period: 1e-3, worst_period: None },
                 coupling: Coupling::Spring { stiffness: 43.9 },
-                environment,
-                latency: Latency::NONE,
                 torque_limit: (environment == spring).then_some(0.3),
+                ..rigid(PADDLE, environment)
             };
             let transducers = Transducers {
                 counts_per_turn: 61_440.0,

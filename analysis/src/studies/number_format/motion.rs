@@ -3,10 +3,11 @@
 use haptic_servo::environment::Environment;
 use haptic_servo::number::Arithmetic;
 
-use super::{FormatError, FormatProblem};
+use super::FormatProblem;
 use crate::controller::controller;
 use crate::hand::HandTrajectory;
 use crate::lockstep::{NoRemote, SimulatedDevice, run};
+use crate::studies::error::StudyError;
 
 /// Counts of a device in a hand, with the servo in `f64`.
 #[derive(Clone, Debug)]
@@ -22,18 +23,15 @@ const APPROACH: f64 = 1.0;
 
 impl Motion {
     /// Moves the device by a hand's trajectory, for a time in s.
-    ///
-    /// # Errors
-    /// If the scene is rejected or cannot be simulated.
     pub fn new(
         problem: &FormatProblem,
         trajectory: HandTrajectory,
         seconds: f64,
-    ) -> Result<Self, FormatError> {
+    ) -> Result<Self, StudyError> {
         let FormatProblem { scene, transducers, .. } = *problem;
         let period = scene.timing.period;
         let mut device = SimulatedDevice::new(&scene, trajectory, &transducers)?;
-        let certified = scene.certify().map_err(|r| FormatError::Refused(Box::new(r)))?;
+        let certified = scene.certify().map_err(StudyError::from)?;
         let mut servo = controller::<_, f64>(&certified, &transducers)?;
         let ticks = (seconds / period).ceil() as usize;
         let Ok(run) = run::<NoRemote>(&mut device, servo.as_mut(), None, ticks, || {});
@@ -81,19 +79,13 @@ impl Motion {
     }
 
     /// Torques in N m and codes in a format, tick by tick.
-    ///
-    /// # Errors
-    /// If the scene cannot be represented in this format.
-    pub fn torques(&self, arithmetic: Arithmetic) -> Result<Vec<(f64, u16)>, FormatError> {
+    pub fn torques(&self, arithmetic: Arithmetic) -> Result<Vec<(f64, u16)>, StudyError> {
         let mut servo = self.problem.servo(arithmetic)?;
         Ok(self.counts.iter().map(|&count| servo.tick(count)).collect())
     }
 
     /// Largest difference in N m of a format's torques to those of `f64` on the same counts.
-    ///
-    /// # Errors
-    /// If the scene cannot be represented in this format.
-    pub fn error(&self, arithmetic: Arithmetic) -> Result<f64, FormatError> {
+    pub fn error(&self, arithmetic: Arithmetic) -> Result<f64, StudyError> {
         let (here, reference) = (self.torques(arithmetic)?, self.torques(Arithmetic::F64)?);
         let pairs = here.iter().zip(&reference).skip(self.begin);
         Ok(pairs.fold(0.0, |most, (here, reference)| (here.0 - reference.0).abs().max(most)))

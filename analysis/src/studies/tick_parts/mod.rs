@@ -7,37 +7,15 @@
 mod listing;
 mod part;
 
-pub use listing::ListingError;
 pub use part::Part;
 
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use listing::{Instruction, listing};
+use listing::{Instruction, ListingError, listing};
 use serde::Serialize;
-use thiserror::Error;
 
-/// The reason why the parts of a program could not be determined.
-#[derive(Debug, Error)]
-pub enum TickPartsError {
-    /// It could not be read.
-    #[error("{path}: {source}")]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The cause.
-        source: io::Error,
-    },
-    /// It cannot be listed.
-    #[error("{path}: {source}")]
-    Listing {
-        /// The file.
-        path: PathBuf,
-        /// The cause.
-        source: ListingError,
-    },
-}
+use crate::studies::error::StudyError;
 
 /// The share of a part in a program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -58,22 +36,15 @@ pub struct TickParts {
 
 impl TickParts {
     /// Determines the parts of the linked program in a file.
-    ///
-    /// # Errors
-    /// If the file cannot be read, or is unsuitable for [`of_elf`](Self::of_elf).
-    pub fn of_file(path: &Path) -> Result<Self, TickPartsError> {
-        let elf = fs::read(path)
-            .map_err(|source| TickPartsError::File { path: path.to_owned(), source })?;
-        Self::of_elf(&elf)
-            .map_err(|source| TickPartsError::Listing { path: path.to_owned(), source })
+    pub fn of_file(path: &Path) -> Result<Self, StudyError> {
+        let failed = |why: String| StudyError::Program { path: path.to_owned(), why };
+        let elf = fs::read(path).map_err(|error| failed(error.to_string()))?;
+        Self::of_elf(&elf).map_err(|error| failed(error.to_string()))
     }
 
-    /// Determines the parts of the linked program in an ELF file. The program contains the tick twice, with
-    /// and without [injected damping](Part::Injection), except for their common code.
-    ///
-    /// # Errors
-    /// If the file is not a program for the board, or has no line tables.
-    pub fn of_elf(elf: &[u8]) -> Result<Self, ListingError> {
+    /// The program contains the tick twice, with and without [injected damping](Part::Injection), except for
+    /// their common code.
+    fn of_elf(elf: &[u8]) -> Result<Self, ListingError> {
         let mut parts = Self::default();
         listing(elf, |Instruction { functions, bytes, multiplies }| {
             if let Some(part) = Part::of(functions) {

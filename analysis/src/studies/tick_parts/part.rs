@@ -1,7 +1,5 @@
 //! The parts of a tick, identified by the functions of their instructions.
 
-use std::fmt;
-
 /// A part of the tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
@@ -58,20 +56,20 @@ const NAMES: [(&str, &str, Part); 18] = [
 ];
 
 impl Part {
-    /// All parts, in the order of a tick.
-    pub const ALL: [Self; 12] = [
-        Self::Encoder,
-        Self::Spring,
-        Self::Damper,
-        Self::Filter,
-        Self::Canceller,
-        Self::Face,
-        Self::Delay,
-        Self::Injection,
-        Self::Coupling,
-        Self::Limit,
-        Self::Converter,
-        Self::Rest,
+    /// All parts with their names, in the order of a tick.
+    pub const ALL: [(Self, &str); 12] = [
+        (Self::Encoder, "encoder"),
+        (Self::Spring, "spring"),
+        (Self::Damper, "damper"),
+        (Self::Filter, "velocity filter"),
+        (Self::Canceller, "canceller"),
+        (Self::Face, "face"),
+        (Self::Delay, "delay"),
+        (Self::Injection, "injected damping"),
+        (Self::Coupling, "coupling"),
+        (Self::Limit, "torque limit"),
+        (Self::Converter, "converter"),
+        (Self::Rest, "rest"),
     ];
 
     /// The part of an instruction, by the functions that it was inlined from, the innermost first; `None` if
@@ -92,25 +90,6 @@ impl Part {
         let is =
             |(begins, has, _): &&(&str, &str, Self)| name.starts_with(begins) && name.contains(has);
         NAMES.iter().find(is).map(|(.., part)| *part)
-    }
-}
-
-impl fmt::Display for Part {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Encoder => "encoder",
-            Self::Spring => "spring",
-            Self::Damper => "damper",
-            Self::Filter => "velocity filter",
-            Self::Canceller => "canceller",
-            Self::Face => "face",
-            Self::Delay => "delay",
-            Self::Coupling => "coupling",
-            Self::Limit => "torque limit",
-            Self::Injection => "injected damping",
-            Self::Converter => "converter",
-            Self::Rest => "rest",
-        })
     }
 }
 

@@ -2,9 +2,6 @@
 
 use crate::table::Column;
 
-/// The format of a number in a table.
-pub const NUMBER: &str = "a number of 0 or more, `inf`, or nothing where there is none";
-
 /// The better direction of a column's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
@@ -17,8 +14,8 @@ pub enum Direction {
 /// A column of a table for an axis of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
-    /// The column in the file.
-    pub column: Column,
+    /// The name of its column in the file.
+    pub name: &'static str,
     /// Name and unit on the axis.
     pub label: &'static str,
     /// The better direction.
@@ -32,20 +29,14 @@ pub struct Axis {
 
 impl Axis {
     /// A column in which smaller numbers are better.
-    pub const fn least(names: &'static [&'static str], label: &'static str) -> Self {
-        let column = Column { names, bound: NUMBER };
-        Self {
-            column,
-            label,
-            direction: Direction::Minimize,
-            floor: f64::MIN_POSITIVE,
-            at_floor: "0",
-        }
+    pub const fn least(name: &'static str, label: &'static str) -> Self {
+        let (direction, floor) = (Direction::Minimize, f64::MIN_POSITIVE);
+        Self { name, label, direction, floor, at_floor: "0" }
     }
 
     /// A column in which greater numbers are better.
-    pub const fn most(names: &'static [&'static str], label: &'static str) -> Self {
-        Self { direction: Direction::Maximize, ..Self::least(names, label) }
+    pub const fn most(name: &'static str, label: &'static str) -> Self {
+        Self { direction: Direction::Maximize, ..Self::least(name, label) }
     }
 
     /// The same with a floor and its name.
@@ -75,15 +66,17 @@ pub struct Comparison {
     /// The errors, with one panel each.
     pub errors: &'static [Axis],
     /// Columns that are kept but not drawn.
-    pub others: &'static [Column],
+    pub others: &'static [&'static str],
     /// Its kept table, as CSV.
     pub kept: &'static [u8],
 }
 
 impl Comparison {
     /// The columns of numbers in the order of the [values](super::Method::values) of a method.
-    pub fn columns(&self) -> impl Iterator<Item = Column> + use<> {
-        let drawn = std::iter::once(self.cost.column).chain(self.errors.iter().map(|e| e.column));
-        drawn.chain(self.others.iter().copied())
+    pub fn columns(&'static self) -> impl Iterator<Item = Column> {
+        let drawn = std::iter::once(&self.cost.name).chain(self.errors.iter().map(|e| &e.name));
+        let bound = "a number of 0 or more, `inf`, or nothing where there is none";
+        let column = move |name| Column { names: std::slice::from_ref(name), bound };
+        drawn.chain(self.others).map(column)
     }
 }

@@ -6,7 +6,6 @@
 
 pub mod certificate;
 mod comparison;
-mod error;
 pub mod rate;
 pub mod servo;
 pub mod simulation;
@@ -14,17 +13,16 @@ pub mod sine;
 pub mod ticks;
 
 use std::io::{Read, Write};
-use std::path::PathBuf;
 use std::time::Instant;
 
-pub use comparison::{Axis, Comparison, Direction, NUMBER};
-pub use error::TradeoffError;
+pub use comparison::{Axis, Comparison, Direction};
 
 use crate::emulator::BenchClient;
 use crate::progress;
 use crate::quantity::significant;
+use crate::studies::error::StudyError;
 use crate::table::{Column, Table, TableError};
-use crate::toolchain::{self, BuildError, Toolchain, Tools};
+use crate::toolchain::{self, Tools};
 
 /// Digits of the numbers in a table: more than the precision of a measured time, and enough to detect a wrong
 /// error.
@@ -116,9 +114,6 @@ impl Tradeoff {
     }
 
     /// Reads a stored table.
-    ///
-    /// # Errors
-    /// If it is not a table of this comparison.
     pub fn read<R: Read>(
         comparison: &'static Comparison,
         mut table: Table<R>,
@@ -141,17 +136,11 @@ impl Tradeoff {
     }
 
     /// The kept table of a comparison.
-    ///
-    /// # Errors
-    /// As of [`Self::read`].
     pub fn kept(comparison: &'static Comparison) -> Result<Self, TableError> {
         Self::read(comparison, Table::new(comparison.name, comparison.kept)?)
     }
 
     /// Writes the table.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub fn write(&self, to: impl Write) -> std::io::Result<()> {
         let mut file = csv::Writer::from_writer(to);
         let words = [CASE, FAMILY, NAME].into_iter();
@@ -181,29 +170,20 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
 }
 
 /// An emulated board that computes the scenes that have a program, and sines.
-///
-/// # Errors
-/// If its program cannot be built or the emulator cannot be started.
-pub fn board() -> Result<BenchClient, TradeoffError> {
-    boot("building the trial of the formats", |tools| tools.build_harness("bench_programs"))
+pub fn board() -> Result<BenchClient, StudyError> {
+    boot("building the trial of the formats", "bench_programs")
 }
 
 /// The same for any scene; its program takes longer to build.
-///
-/// # Errors
-/// As of [`board`].
-pub fn any_board() -> Result<BenchClient, TradeoffError> {
-    boot("building all types of scenes in all formats", |tools| tools.build_harness("bench_all"))
+pub fn any_board() -> Result<BenchClient, StudyError> {
+    boot("building all types of scenes in all formats", "bench_all")
 }
 
-fn boot(
-    what: &str,
-    build: fn(&Toolchain) -> Result<PathBuf, BuildError>,
-) -> Result<BenchClient, TradeoffError> {
+fn boot(what: &str, program: &str) -> Result<BenchClient, StudyError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let spinner = progress::spinner(what);
-    let elf = build(&toolchain)?;
+    let elf = toolchain.build_harness(program)?;
     spinner.finish_and_clear();
     Ok(BenchClient::boot(&elf)?)
 }

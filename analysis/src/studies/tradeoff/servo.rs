@@ -7,30 +7,26 @@ use haptic_servo::environment::{Environment, Side, Wall};
 use haptic_servo::number::Arithmetic;
 use haptic_servo::servo::Transducers;
 
-use super::{Axis, Comparison, Method, NUMBER, Tradeoff, TradeoffError};
+use super::{Axis, Comparison, Method, Tradeoff};
 use crate::emulator::BenchClient;
 use crate::hand::HandTrajectory;
 use crate::program::{self, Program};
-use crate::studies::number_format::{self, FormatError, HALF_A_TURN, Losses, Motion, cost};
-use crate::table::Column;
+use crate::studies::error::StudyError;
+use crate::studies::number_format::{FormatProblem, HALF_A_TURN, Losses, Motion, cost};
 
 /// The comparison.
 pub static COMPARISON: Comparison = Comparison {
     name: "servo",
     title: "Servo: number formats, a tick of each scene at 1 kHz on the emulated Cortex-M4",
-    cost: Axis::least(&["instructions"], "most instructions from count to code"),
+    cost: Axis::least("instructions", "most instructions from count to code"),
     errors: &[
-        Axis::least(&["error"], "largest error of the torque (N m)").floored(FLOOR, NONE),
-        Axis::least(&["error_at_1_rad"], "largest error of the torque around 1 rad (N m)")
+        Axis::least("error", "largest error of the torque (N m)").floored(FLOOR, NONE),
+        Axis::least("error_at_1_rad", "largest error of the torque around 1 rad (N m)")
             .floored(FLOOR, NONE),
-        Axis::least(&["hum"], "limit cycle at rest, without encoder (N m)").floored(FLOOR, NONE),
-        Axis::least(&["cycle"], "smallest limit cycle (rad)").floored(FLOOR, NONE),
+        Axis::least("hum", "limit cycle at rest, without encoder (N m)").floored(FLOOR, NONE),
+        Axis::least("cycle", "smallest limit cycle (rad)").floored(FLOOR, NONE),
     ],
-    others: &[
-        Column { names: &["mean_instructions"], bound: NUMBER },
-        Column { names: &["hum_with_encoder"], bound: NUMBER },
-        Column { names: &["cycle_with_encoder"], bound: NUMBER },
-    ],
+    others: &["mean_instructions", "hum_with_encoder", "cycle_with_encoder"],
     kept: include_bytes!("../../../pictures/tradeoff/servo.csv"),
 };
 
@@ -46,7 +42,7 @@ pub struct Case {
     /// Its name.
     pub name: &'static str,
     /// The scene with its sensor and motor.
-    pub problem: number_format::FormatProblem,
+    pub problem: FormatProblem,
     /// The hand's trajectory.
     pub trajectory: HandTrajectory,
 }
@@ -57,7 +53,7 @@ impl Case {
         let transducers = Transducers { counter: CounterWidth::Bits32, ..program.transducers };
         let (scene, range) = (program.scene, HALF_A_TURN);
         let steps = Resolution::of(&transducers, None);
-        let problem = number_format::FormatProblem { scene, transducers, steps, range };
+        let problem = FormatProblem { scene, transducers, steps, range };
         Self { name: program.name, problem, trajectory: (program.trajectory)() }
     }
 
@@ -68,10 +64,7 @@ impl Case {
     }
 
     /// The motion of the device.
-    ///
-    /// # Errors
-    /// If the scene cannot be simulated.
-    pub fn motion(&self) -> Result<Motion, FormatError> {
+    pub fn motion(&self) -> Result<Motion, StudyError> {
         Motion::new(&self.problem, self.trajectory.clone(), SECONDS)
     }
 }
@@ -90,10 +83,7 @@ pub fn cases() -> Vec<Case> {
 }
 
 /// Measures all formats on all scenes.
-///
-/// # Errors
-/// If the board's program cannot be built or the board fails.
-pub fn measure() -> Result<Tradeoff, TradeoffError> {
+pub fn measure() -> Result<Tradeoff, StudyError> {
     let mut board = super::board()?;
     let mut methods = Vec::new();
     for case in cases() {
@@ -111,7 +101,7 @@ fn row(
     motion: &Motion,
     board: &mut BenchClient,
     arithmetic: Arithmetic,
-) -> Result<Method, FormatError> {
+) -> Result<Method, StudyError> {
     let cost = cost(board, motion, arithmetic)?;
     let Losses { error, error_elsewhere, alone, with_encoder } = Losses::of(motion, arithmetic)?;
     let values = [
@@ -174,7 +164,7 @@ mod tests {
     #[test]
     fn the_wall_hums_as_much_as_experiments_found() {
         let case = Case::of(Program::find("damper_wall").unwrap());
-        let problem = number_format::FormatProblem { range: 0.9, ..case.problem };
+        let problem = FormatProblem { range: 0.9, ..case.problem };
         assert_eq!(problem.units(Arithmetic::I1F31), Units { angle: 1.0, torque: 2.0 });
         let hum =
             |arithmetic, with_encoder| at_rest(&problem, arithmetic, with_encoder).unwrap().torque;

@@ -13,16 +13,17 @@ use firmware_harness::bench_request::{BenchRequest, Output};
 use firmware_harness::rotations::{Rotation, unpacked};
 use firmware_harness::sines::Sine;
 
-use super::{Axis, Comparison, Method, NUMBER, Tradeoff, TradeoffError};
-use crate::table::Column;
+use super::{Axis, Comparison, Method, Tradeoff};
+use crate::studies::error::StudyError;
+use crate::studies::number_format::Cost;
 
 /// The comparison.
 pub static COMPARISON: Comparison = Comparison {
     name: "sine",
     title: "Sine of a sweep, and sine and cosine of a phase, on the emulated Cortex-M4",
-    cost: Axis::least(&["instructions"], "most instructions"),
-    errors: &[Axis::least(&["error"], "largest error (1)")],
-    others: &[Column { names: &["mean_instructions"], bound: NUMBER }],
+    cost: Axis::least("instructions", "most instructions"),
+    errors: &[Axis::least("error", "largest error (1)")],
+    others: &["mean_instructions"],
     kept: include_bytes!("../../../pictures/tradeoff/sine.csv"),
 };
 
@@ -41,46 +42,38 @@ pub fn error(sines: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// Measures all methods.
-///
-/// # Errors
-/// If the board's program cannot be built or the board fails.
-pub fn measure() -> Result<Tradeoff, TradeoffError> {
+pub fn measure() -> Result<Tradeoff, StudyError> {
     let mut board = super::board()?;
     let inputs: Vec<_> = turns().into_iter().map(f32::to_bits).collect();
     let mut methods = Vec::new();
     for sine in Sine::ALL {
-        methods.push(row(sine, &board.compute(&BenchRequest::Sine(sine), &inputs)?));
+        let outputs = board.compute(&BenchRequest::Sine(sine), &inputs)?;
+        let family = match sine {
+            Sine::Micromath => "micromath",
+            Sine::Libm | Sine::LibmDouble => "libm",
+            _ => POLYNOMIALS,
+        };
+        let error = error(outputs.iter().map(|output| output.value));
+        methods.push(row("sine", family, sine.name(), &outputs, error));
     }
     for rotation in Rotation::ALL {
         let outputs = board.compute(&BenchRequest::Rotation(rotation), &angles())?;
-        methods.push(phase_row(rotation, &outputs));
+        let family = match rotation {
+            Rotation::Micromath => "micromath",
+            Rotation::Libm => "libm",
+            Rotation::Table => "table",
+            Rotation::Cubic | Rotation::Quintic | Rotation::Septic => POLYNOMIALS,
+        };
+        let error = largest_torque_error(outputs.iter().map(|output| unpacked(output.value)));
+        methods.push(row(PHASE, family, rotation.name(), &outputs, error));
     }
     board.finish()?;
     Ok(Tradeoff { comparison: &COMPARISON, methods })
 }
 
-fn row(sine: Sine, outputs: &[Output]) -> Method {
-    let [most, mean] = instructions(outputs);
-    let family = match sine {
-        Sine::Micromath => "micromath",
-        Sine::Libm | Sine::LibmDouble => "libm",
-        _ => POLYNOMIALS,
-    };
-    let error = error(outputs.iter().map(|output| output.value));
-    Method::new("sine", family, sine.name(), &[most, error, mean])
-}
-
-fn phase_row(rotation: Rotation, outputs: &[Output]) -> Method {
-    let [most, mean] = instructions(outputs);
-    let family = match rotation {
-        Rotation::Micromath => "micromath",
-        Rotation::Libm => "libm",
-        Rotation::Table => "table",
-        Rotation::Cubic | Rotation::Quintic | Rotation::Septic => POLYNOMIALS,
-    };
-    let pairs = angles().into_iter().zip(outputs.iter().map(|output| unpacked(output.value)));
-    let error = pairs.fold(0.0, |most, (angle, pair)| torque_error(angle, pair).max(most));
-    Method::new(PHASE, family, rotation.name(), &[most, error, mean])
+fn row(case: &str, family: &str, name: &str, outputs: &[Output], error: f64) -> Method {
+    let Cost { most, mean } = Cost::of(outputs);
+    Method::new(case, family, name, &[most.into(), error, mean])
 }
 
 const POLYNOMIALS: &str = "polynomials of our own";
@@ -88,16 +81,15 @@ const POLYNOMIALS: &str = "polynomials of our own";
 /// The case of a motor's phase.
 const PHASE: &str = "phase";
 
-/// Largest number of instructions, and their mean.
-fn instructions(outputs: &[Output]) -> [f64; 2] {
-    let instructions = outputs.iter().map(|output| f64::from(output.instructions));
-    let most = instructions.clone().fold(0.0, f64::max);
-    [most, instructions.sum::<f64>() / outputs.len() as f64]
-}
-
 /// The tested phases: spread over a turn, at irregular distances from a table's entries.
 fn angles() -> Vec<u32> {
     (0..TURNS).map(|k| k.wrapping_mul(2_654_435_769)).collect()
+}
+
+/// Largest error of the torque for sines and cosines, one pair for each tested phase.
+fn largest_torque_error(pairs: impl IntoIterator<Item = [f32; 2]>) -> f64 {
+    let pairs = angles().into_iter().zip(pairs);
+    pairs.fold(0.0, |most, (angle, pair)| torque_error(angle, pair).max(most))
 }
 
 /// Relative error of the torque of a current loop with this sine and cosine of an angle: it controls the
@@ -114,54 +106,37 @@ fn torque_error(angle: u32, [sine, cosine]: [f32; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    fn kept() -> Tradeoff {
-        Tradeoff::kept(&COMPARISON).unwrap()
-    }
-
     /// The kept errors are those of the same code here, beside a sine in `f64`.
     #[test]
-    fn the_kept_errors_of_a_sweep_are_those_of_the_host() {
-        let kept = kept();
-        assert_eq!(kept.methods.len(), Sine::ALL.len() + Rotation::ALL.len());
-        for (sine, kept) in Sine::ALL.into_iter().zip(&kept.methods) {
-            let here = error(turns().into_iter().map(|turn| f64::from(sine.of_turn(turn))));
+    fn the_kept_errors_are_those_of_the_host() {
+        let sines = Sine::ALL.map(|sine| {
+            let error = error(turns().into_iter().map(|turn| f64::from(sine.of_turn(turn))));
+            ("sine", sine.name(), error)
+        });
+        let rotations = Rotation::ALL.map(|rotation| {
+            let pairs = angles().into_iter().map(|angle| rotation.of_angle(angle));
+            (PHASE, rotation.name(), largest_torque_error(pairs))
+        });
+        let here: Vec<_> = sines.into_iter().chain(rotations).collect();
+        let kept = Tradeoff::kept(&COMPARISON).unwrap().methods;
+        assert_eq!(kept.len(), here.len());
+        for ((case, name, here), kept) in here.into_iter().zip(kept) {
+            assert_eq!((case, name), (&*kept.case, &*kept.name));
             let there = kept.error(0).unwrap();
-            assert_eq!(sine.name(), kept.name);
-            assert!((here / there - 1.0).abs() < 1e-5, "{}: {here}, {there}", sine.name());
+            assert!((here / there - 1.0).abs() < 1e-5, "{name}: {here}, {there}");
         }
     }
 
-    /// No costlier method is used if the error of a cheaper one is below a DAC step.
+    /// No costlier method is used if the error of a cheaper one is below a step of the DAC: half a code at
+    /// full scale.
     #[test]
-    fn the_sweep_has_the_cheapest_sine_that_no_code_shows() {
-        let kept = kept();
+    fn the_cheapest_sine_that_no_code_shows_is_used() {
+        let kept = Tradeoff::kept(&COMPARISON).unwrap();
         let code = 0.5 / f64::from(haptic_servo::dac::DacCode::CODES_TO_FULL_SCALE);
-        let front = kept.front("sine", 0);
-        let enough = front.iter().find(|method| method.error(0).unwrap() < code).unwrap();
-        assert_eq!(enough.name, Sine::Quintic.name());
-    }
-
-    /// The kept errors of the torque are those of the same code here.
-    #[test]
-    fn the_kept_errors_of_a_phase_are_those_of_the_host() {
-        let kept = kept();
-        for (rotation, kept) in Rotation::ALL.into_iter().zip(&kept.methods[Sine::ALL.len()..]) {
-            let here = angles()
-                .into_iter()
-                .fold(0.0, |most, angle| torque_error(angle, rotation.of_angle(angle)).max(most));
-            let there = kept.error(0).unwrap();
-            assert_eq!((rotation.name(), PHASE), (&*kept.name, &*kept.case));
-            assert!((here / there - 1.0).abs() < 1e-5, "{}: {here}, {there}", rotation.name());
+        for (case, used) in [("sine", Sine::Quintic.name()), (PHASE, Rotation::Table.name())] {
+            let front = kept.front(case, 0);
+            let enough = front.iter().find(|method| method.error(0).unwrap() < code).unwrap();
+            assert_eq!(enough.name, used);
         }
-    }
-
-    /// As for the sweep: half a code at full scale.
-    #[test]
-    fn a_phase_has_the_cheapest_sine_that_no_code_shows() {
-        let kept = kept();
-        let code = 0.5 / f64::from(haptic_servo::dac::DacCode::CODES_TO_FULL_SCALE);
-        let front = kept.front(PHASE, 0);
-        let enough = front.iter().find(|method| method.error(0).unwrap() < code).unwrap();
-        assert_eq!(enough.name, Rotation::Table.name());
     }
 }

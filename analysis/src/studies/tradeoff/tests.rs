@@ -3,12 +3,12 @@ use super::*;
 static COMPARISON: Comparison = Comparison {
     name: "test",
     title: "A test",
-    cost: Axis::least(&["time"], "time (s)"),
+    cost: Axis::least("time", "time (s)"),
     errors: &[
-        Axis::least(&["error"], "error (1)").floored(1e-9, "rounding"),
-        Axis::most(&["stiffness"], "stiffness (N m/rad)"),
+        Axis::least("error", "error (1)").floored(1e-9, "rounding"),
+        Axis::most("stiffness", "stiffness (N m/rad)"),
     ],
-    others: &[Column { names: &["steps"], bound: NUMBER }],
+    others: &["steps"],
     kept: b"",
 };
 

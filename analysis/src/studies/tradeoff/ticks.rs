@@ -13,15 +13,16 @@ use haptic_servo::number::Arithmetic;
 
 use super::servo::Case;
 use super::{Axis, Comparison, Method, Tradeoff};
-use crate::emulator::BenchClient;
 use crate::program::{Program, knob};
-use crate::studies::number_format::{FormatError, cost};
+use crate::progress;
+use crate::studies::error::StudyError;
+use crate::studies::number_format::cost;
 
 /// The comparison: types of scenes are its cases, and it has no error to draw.
 pub static COMPARISON: Comparison = Comparison {
     name: "ticks",
     title: "Servo: number formats, a tick of each type of scene on the emulated Cortex-M4",
-    cost: Axis::least(&["instructions"], "most instructions from count to code"),
+    cost: Axis::least("instructions", "most instructions from count to code"),
     errors: &[],
     others: &[],
     kept: include_bytes!("../../../pictures/tradeoff/ticks.csv"),
@@ -32,20 +33,21 @@ const DELAYS: [usize; 3] = [0, 1, MAX_DELAY];
 /// Measured degrees.
 const DEGREES: [usize; 4] = [1, 2, 4, MAX_DEGREE];
 
-/// Measures all types in all formats; `step` is called after each type.
-///
-/// # Errors
-/// If the board fails, or its results differ from this machine's.
-pub fn measure(board: &mut BenchClient, mut step: impl FnMut()) -> Result<Tradeoff, FormatError> {
+/// Measures all types in all formats.
+pub fn measure() -> Result<Tradeoff, StudyError> {
+    let (mut board, cases) = (super::any_board()?, cases());
+    let bar = progress::bar(cases.len() as u64, "types of scenes");
     let mut methods = Vec::new();
-    for case in cases() {
+    for case in cases {
         let (motion, name) = (case.motion()?, type_of(&case.problem.scene.environment));
         for arithmetic in Arithmetic::ALL {
-            let most = cost(board, &motion, arithmetic)?.most.into();
+            let most = cost(&mut board, &motion, arithmetic)?.most.into();
             methods.push(Method::new(&name, "", arithmetic.name(), &[most]));
         }
-        step();
+        bar.inc(1);
     }
+    bar.finish_and_clear();
+    board.finish()?;
     Ok(Tradeoff { comparison: &COMPARISON, methods })
 }
 
@@ -54,11 +56,6 @@ pub fn instructions(table: &Tradeoff, environment: &Environment, arithmetic: Ari
     let wanted = type_of(environment);
     let found = table.of(&wanted).find(|method| method.name == arithmetic.name());
     found.and_then(Method::cost).unwrap_or(f64::INFINITY)
-}
-
-/// Number of types.
-pub fn types() -> usize {
-    cases().len()
 }
 
 /// The type of an environment, which determines the instructions of its tick, as text; with the measured

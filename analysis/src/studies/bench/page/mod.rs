@@ -8,12 +8,13 @@ use std::time::Instant;
 
 use haptic_servo::number::Format;
 use serde_json::{Value, json};
-use thiserror::Error;
 
 use self::scenes::PageScene;
+use super::Rounds;
 use super::figure::{Budget, Figure, Pair, median};
-use crate::browser::{BrowserError, Page, Site};
-use crate::file::{self, FileError};
+use crate::browser::{Page, Site};
+use crate::file;
+use crate::studies::error::StudyError;
 use crate::verdict::judge_file;
 
 /// Runs in the page before its own scripts.
@@ -40,61 +41,6 @@ const STROKES: f64 = 3.0;
 /// Its reach to either side of the slider's middle, as a fraction of the slider's length.
 const REACH: f64 = 0.3;
 
-/// The numbers of repetitions of a page's measurements.
-#[derive(Clone, Copy, Debug)]
-pub struct Repetitions {
-    /// Openings of each page.
-    openings: usize,
-    /// Movements of the mouse in a drag: at least one per frame.
-    movements: usize,
-    /// Rounds of verdicts; the result is their median.
-    rounds: usize,
-    /// Rounds before that, in which the browser optimises functions that are called often.
-    rounds_before: usize,
-}
-
-impl Repetitions {
-    /// For repeatable figures: four seconds of dragging.
-    pub const THOROUGH: Self = Self { openings: 5, movements: 240, rounds: 31, rounds_before: 8 };
-    /// For their order of magnitude.
-    pub const QUICK: Self = Self { openings: 1, movements: 60, rounds: 3, rounds_before: 1 };
-}
-
-/// The reason why a page could not be measured.
-#[derive(Debug, Error)]
-pub enum PageError {
-    /// The browser fails.
-    #[error(transparent)]
-    Browser(#[from] BrowserError),
-    /// The page reported errors.
-    #[error("the page complains of {0:?}")]
-    Complaints(Vec<String>),
-    /// No verdict was computed while a slider was dragged.
-    #[error("the page with the scene {scene} has judged nothing while {key} was dragged")]
-    NothingJudged {
-        /// The scene.
-        scene: &'static str,
-        /// The key.
-        key: &'static str,
-    },
-    /// A scene of the measurement cannot be judged here.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The answer is not valid JSON.
-    #[error("an answer cannot be written: {0}")]
-    Json(#[from] serde_json::Error),
-    /// The page's answer differs from this program's.
-    #[error("to {question} the page answers {of_page}, and this program {here}")]
-    OtherAnswer {
-        /// The scene.
-        question: String,
-        /// The page's answer.
-        of_page: Value,
-        /// This program's.
-        here: String,
-    },
-}
-
 /// A page with its scene.
 pub struct ScenePage {
     /// The scene.
@@ -104,10 +50,7 @@ pub struct ScenePage {
 }
 
 /// A browser that records the pages opened in it.
-///
-/// # Errors
-/// If there is no browser.
-pub fn watching_browser() -> Result<Page, PageError> {
+pub fn watching_browser() -> Result<Page, StudyError> {
     let mut browser = Page::start(WIDTH)?;
     browser.run_first(WATCH)?;
     Ok(browser)
@@ -115,30 +58,27 @@ pub fn watching_browser() -> Result<Page, PageError> {
 
 /// All figures of the pages of scenes, the first of which is the page that `haptic explore` writes without a
 /// file. Calls `progress` with the name of each measurement.
-///
-/// # Errors
-/// If a page does not behave as expected.
 pub fn figures(
     mut browser: Page,
     pages: &[ScenePage],
-    repetitions: Repetitions,
+    rounds: Rounds,
     progress: impl Fn(&str),
-) -> Result<Vec<Figure>, PageError> {
+) -> Result<Vec<Figure>, StudyError> {
     let size = pages.first().map(|page| page.text.len() as f64);
     let size = size.map(|size| Figure::within("page of haptic explore: size", size, &SIZE));
     let mut figures: Vec<_> = size.into_iter().collect();
     for ScenePage { scene, text } in pages {
         let site = Site::of(text.clone())?;
         progress(&format!("opening the page, {}", scene.name));
-        figures.extend(opened(&mut browser, &site, scene, repetitions)?);
+        figures.extend(opened(&mut browser, &site, scene, rounds)?);
         progress(&format!("dragging {} on the page, {}", scene.dragged, scene.name));
-        figures.extend(dragged(&mut browser, scene, repetitions)?);
+        figures.extend(dragged(&mut browser, scene, rounds)?);
     }
     progress("judging in the page and here");
-    figures.extend(compared(&mut browser, repetitions)?);
+    figures.extend(compared(&mut browser, rounds)?);
     match browser.complaints.is_empty() {
         true => Ok(figures),
-        false => Err(PageError::Complaints(browser.complaints.clone())),
+        false => Err(StudyError::Complaints(browser.complaints.clone())),
     }
 }
 
@@ -155,11 +95,11 @@ fn opened(
     browser: &mut Page,
     site: &Site,
     scene: &PageScene,
-    repetitions: Repetitions,
-) -> Result<Vec<Figure>, PageError> {
+    rounds: Rounds,
+) -> Result<Vec<Figure>, StudyError> {
     const PICTURE: &str = "document.querySelector('#picture-map')?.dataset";
     let [mut shown, mut first, mut all] = [const { Vec::new() }; 3];
-    for _ in 0..repetitions.openings {
+    for _ in 0..rounds.openings {
         browser.go_to("about:blank")?;
         browser.go_to(&site.url())?;
         browser.wait_for("window.bench?.shown !== undefined")?;
@@ -183,9 +123,9 @@ fn opened(
 fn dragged(
     browser: &mut Page,
     scene: &PageScene,
-    repetitions: Repetitions,
-) -> Result<Vec<Figure>, PageError> {
-    let movements = repetitions.movements;
+    rounds: Rounds,
+) -> Result<Vec<Figure>, StudyError> {
+    let movements = rounds.movements;
     let slider = format!("[data-key=\"{}\"] input[type=range]", scene.dragged);
     let [left, top, width, height] = browser.place(&slider)?;
     let at = |movement: usize| {
@@ -204,7 +144,7 @@ fn dragged(
         .map(|what| browser.numbers(&format!("{seen}.{what}")));
     let (frames, full, quick) = (frames?, full?, quick?);
     if full.is_empty() && quick.is_empty() {
-        return Err(PageError::NothingJudged { scene: scene.name, key: scene.dragged });
+        return Err(StudyError::NothingJudged { scene: scene.name, key: scene.dragged });
     }
     // If remedies take longer than a frame, they are computed when the hand rests.
     let measured = [
@@ -221,7 +161,7 @@ fn dragged(
 
 /// The times of the same verdicts in the open page and in this program, alternately, from a scene as JSON to
 /// its verdict as JSON; the answers must be equal.
-fn compared(browser: &mut Page, repetitions: Repetitions) -> Result<[Figure; 2], PageError> {
+fn compared(browser: &mut Page, rounds: Rounds) -> Result<[Figure; 2], StudyError> {
     let questions: Vec<String> = scenes::judged().iter().map(Value::to_string).collect();
     browser.value(&format!("window.bench.start({})", json!(questions)))?;
     let answers = browser.value("window.bench.answers()")?;
@@ -230,25 +170,25 @@ fn compared(browser: &mut Page, repetitions: Repetitions) -> Result<[Figure; 2],
         let of_page = &answers[index];
         if *of_page != here.as_str() {
             let (question, of_page) = (question.clone(), of_page.clone());
-            return Err(PageError::OtherAnswer { question, of_page, here });
+            return Err(StudyError::OtherAnswer { question, of_page, here });
         }
     }
-    browser.value(&format!("window.bench.round({})", repetitions.rounds_before))?;
+    browser.value(&format!("window.bench.round({})", rounds.warming))?;
     let microseconds = 1e3 / questions.len() as f64;
     let pair = Pair::in_turns(
-        repetitions.rounds,
-        || Ok::<_, PageError>(browser.number("window.bench.round(1)")? * microseconds),
+        rounds.own,
+        || Ok::<_, StudyError>(browser.number("window.bench.round(1)")? * microseconds),
         || Ok(round(&questions)? * microseconds),
     )?;
     let name = format!("page: verdict, {} scenes, median", questions.len());
     Ok([
         Figure::beside(name, pair, "us", "natively on one core"),
-        Figure::within("page: verdict, WebAssembly over native", pair.ratio().get(), &OVER_NATIVE),
+        Figure::within("page: verdict, WebAssembly over native", pair.ratio(), &OVER_NATIVE),
     ])
 }
 
 /// Time of all answers in this program in ms.
-fn round(questions: &[String]) -> Result<f64, PageError> {
+fn round(questions: &[String]) -> Result<f64, StudyError> {
     let start = Instant::now();
     for question in questions {
         black_box(certify(black_box(question))?);
@@ -257,7 +197,7 @@ fn round(questions: &[String]) -> Result<f64, PageError> {
 }
 
 /// The work of the page's module for `certify`, with the same functions.
-fn certify(question: &str) -> Result<String, PageError> {
+fn certify(question: &str) -> Result<String, StudyError> {
     let file = file::parse("scene", file::Format::Json, question)?;
     let report = judge_file(&file, Format::F64);
     Ok(serde_json::to_string(&report)?)

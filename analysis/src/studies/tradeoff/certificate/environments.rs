@@ -186,7 +186,8 @@ fn pair(radius: f64, cosine: f64) -> [f64; 3] {
     [1.0, -2.0 * radius * cosine, radius * radius]
 }
 
-fn multiply(a: &[f64], b: &[f64]) -> Vec<f64> {
+/// The product of two polynomials, of which each is ascending or each is descending.
+pub fn multiply(a: &[f64], b: &[f64]) -> Vec<f64> {
     let mut product = vec![0.0; a.len() + b.len() - 1];
     for (i, x) in a.iter().enumerate() {
         for (j, y) in b.iter().enumerate() {

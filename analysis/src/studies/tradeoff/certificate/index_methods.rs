@@ -12,22 +12,12 @@ use nalgebra::Complex;
 use super::environments::{Environment, PERIOD};
 use super::polynomials::{monomials, real_part, roots, squared};
 use crate::closed_form;
+use crate::studies::failures::method_result::MethodVerdict;
 
 /// Coarsest angle of a logarithmic grid in rad.
 const NEAREST: f64 = 1e-6;
 /// A root with at most this imaginary part counts as real.
 const REAL: f64 = 1e-6;
-
-/// A verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum IndexVerdict {
-    /// Passive.
-    Yes,
-    /// Not passive.
-    No,
-    /// Undecided.
-    Open,
-}
 
 /// A method's result.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,8 +25,8 @@ pub struct IndexResult {
     /// Bounds on the index in N m s/rad, one number twice if the method has no bounds; `None` if it
     /// has no result.
     pub alpha: Option<(f64, f64)>,
-    /// The verdict.
-    pub verdict: IndexVerdict,
+    /// Whether the environment is passive on the device.
+    pub verdict: MethodVerdict,
 }
 
 /// A method for an index and a verdict.
@@ -114,8 +104,7 @@ impl IndexMethod {
             Self::Decision => {
                 let limit = Interval::exact(delta);
                 let found = proved(index_near(transfer(environment), period, false, limit), delta);
-                let is_proved = found.verdict == IndexVerdict::Yes;
-                let verdict = if is_proved { IndexVerdict::Yes } else { IndexVerdict::No };
+                let verdict = MethodVerdict::of(found.verdict == MethodVerdict::Safe);
                 Some(IndexResult { alpha: None, verdict })
             }
             Self::Grid(grid) => Some(seen(environment, delta, || Some(grid.least(environment)))),
@@ -134,9 +123,9 @@ fn transfer(environment: &Environment) -> Transfer {
 
 fn enclosed(alpha: Interval, delta: f64) -> IndexResult {
     let verdict = match () {
-        () if alpha.hi() < delta => IndexVerdict::Yes,
-        () if alpha.lo() >= delta => IndexVerdict::No,
-        () => IndexVerdict::Open,
+        () if alpha.hi() < delta => MethodVerdict::Safe,
+        () if alpha.lo() >= delta => MethodVerdict::Unsafe,
+        () => MethodVerdict::Undecided,
     };
     IndexResult { alpha: Some((alpha.lo(), alpha.hi())), verdict }
 }
@@ -144,8 +133,10 @@ fn enclosed(alpha: Interval, delta: f64) -> IndexResult {
 fn proved(found: Result<RealPart, IndexError>, delta: f64) -> IndexResult {
     match found {
         Ok(found) => enclosed(found.minimum, delta),
-        Err(IndexError::Undecided(_)) => IndexResult { alpha: None, verdict: IndexVerdict::Open },
-        Err(_) => IndexResult { alpha: None, verdict: IndexVerdict::No },
+        Err(IndexError::Undecided(_)) => {
+            IndexResult { alpha: None, verdict: MethodVerdict::Undecided }
+        }
+        Err(_) => IndexResult { alpha: None, verdict: MethodVerdict::Unsafe },
     }
 }
 
@@ -153,18 +144,20 @@ fn proved(found: Result<RealPart, IndexError>, delta: f64) -> IndexResult {
 /// part.
 fn seen(environment: &Environment, delta: f64, least: impl Fn() -> Option<f64>) -> IndexResult {
     let nothing = |verdict| IndexResult { alpha: None, verdict };
-    let Some(poles) = roots(&environment.denominator) else { return nothing(IndexVerdict::Open) };
+    let Some(poles) = roots(&environment.denominator) else {
+        return nothing(MethodVerdict::Undecided);
+    };
     let at_one = |values: &[f64]| values.iter().sum::<f64>();
     let residue = at_one(&environment.numerator) / at_one(&environment.denominator);
     if poles.iter().any(|pole| pole.norm() >= 1.0) || residue < 0.0 {
-        return nothing(IndexVerdict::No);
+        return nothing(MethodVerdict::Unsafe);
     }
     match least() {
-        Some(least) => {
-            let verdict = if -least < delta { IndexVerdict::Yes } else { IndexVerdict::No };
-            IndexResult { alpha: Some((-least, -least)), verdict }
-        }
-        None => nothing(IndexVerdict::Open),
+        Some(least) => IndexResult {
+            alpha: Some((-least, -least)),
+            verdict: MethodVerdict::of(-least < delta),
+        },
+        None => nothing(MethodVerdict::Undecided),
     }
 }
 

@@ -11,28 +11,26 @@ use std::hint::black_box;
 
 use rayon::prelude::*;
 
-use super::{Axis, Comparison, Method, NUMBER, Tradeoff, fastest};
-use crate::table::Column;
-use environments::{EACH, Kind, environment, reference_index};
-use index_methods::{Grid, IndexMethod, IndexResult, IndexVerdict};
+use super::{Axis, Comparison, Method, Tradeoff, fastest};
+use crate::progress;
+use crate::studies::failures::method_result::MethodVerdict;
+use environments::{EACH, Environment, Kind, environment, reference_index};
+use index_methods::{Grid, IndexMethod, IndexResult};
 
 /// The comparison.
 pub static COMPARISON: Comparison = Comparison {
     name: "certificate",
     title: "Certificate: ways to the index alpha and the verdict, on 2500 environments of each kind",
-    cost: Axis::least(&["microseconds"], "time of a verdict (microseconds)"),
+    cost: Axis::least("microseconds", "time of a verdict (microseconds)"),
     errors: &[
         // The indices are doubles with an error of at most one place.
-        Axis::least(&["alpha_error"], "error of alpha, 99 of 100 below it (part)")
+        Axis::least("alpha_error", "error of alpha, 99 of 100 below it (part)")
             .floored(1e-15, "a double's last places"),
-        Axis::least(&["wrong_yes"], "not passive, and passed, of 2500").floored(0.5, "none"),
-        Axis::least(&["wrong_no"], "passive, and refused, of 2500").floored(0.5, "none"),
-        Axis::least(&["open"], "left undecided, of 2500").floored(0.5, "none"),
+        Axis::least("wrong_yes", "not passive, and passed, of 2500").floored(0.5, "none"),
+        Axis::least("wrong_no", "passive, and refused, of 2500").floored(0.5, "none"),
+        Axis::least("open", "left undecided, of 2500").floored(0.5, "none"),
     ],
-    others: &[
-        Column { names: &["median_error"], bound: NUMBER },
-        Column { names: &["largest_error"], bound: NUMBER },
-    ],
+    others: &["median_error", "largest_error"],
     kept: include_bytes!("../../../../pictures/tradeoff/certificate.csv"),
 };
 
@@ -78,49 +76,44 @@ pub fn candidates() -> Vec<Candidate> {
     all
 }
 
-/// Measures all methods on all environments; `step` is called after each method on each kind.
-pub fn measure(mut step: impl FnMut()) -> Tradeoff {
+/// Measures all methods on all environments.
+pub fn measure() -> Tradeoff {
+    let all = candidates();
+    let known = |kind| all.iter().filter(move |one| evaluated(&one.method, kind, 0).is_some());
+    let steps = Kind::ALL.into_iter().map(|kind| known(kind).count()).sum::<usize>();
+    let bar = progress::bar(steps as u64, "certificate");
     let mut methods = Vec::new();
     for kind in Kind::ALL {
-        let candidates = candidates();
-        let knows = |candidate: &&Candidate| evaluated(&candidate.method, kind, 0).is_some();
-        let candidates: Vec<_> = candidates.iter().filter(knows).collect();
-        let work = |candidate: &&Candidate| {
-            let method = candidate.method.clone();
-            let posed: Vec<_> = (0..TIMED)
-                .map(|number| {
-                    let environment = environment(kind, number);
-                    let delta = environment.delta(reference_index(kind, number));
-                    (environment, delta)
-                })
-                .collect();
+        let posed: Vec<_> = (0..TIMED).map(|number| posed(kind, number)).collect();
+        let work = |candidate: &'_ Candidate| {
+            let (method, posed) = (candidate.method.clone(), &posed);
             move || {
-                for (environment, delta) in &posed {
+                for (environment, delta) in posed {
                     black_box(method.evaluate(black_box(environment), *delta));
                 }
             }
         };
-        let mut works: Vec<_> = candidates.iter().map(work).collect();
-        let times = fastest(ROUNDS, &mut works);
-        for (candidate, time) in candidates.into_iter().zip(times) {
+        let times = fastest(ROUNDS, &mut known(kind).map(work).collect::<Vec<_>>());
+        for (candidate, time) in known(kind).zip(times) {
             let errors = MethodErrors::of(&candidate.method, kind, 0..EACH);
             methods.push(errors.row(kind, candidate, 1e6 * time / TIMED as f64));
-            step();
+            bar.inc(1);
         }
     }
+    bar.finish_and_clear();
     Tradeoff { comparison: &COMPARISON, methods }
 }
 
-/// Steps of [`measure`].
-pub fn steps() -> usize {
-    let all = candidates();
-    let known = |kind| all.iter().filter(|one| evaluated(&one.method, kind, 0).is_some()).count();
-    Kind::ALL.into_iter().map(known).sum()
+/// An environment with the passivity of its device.
+fn posed(kind: Kind, number: usize) -> (Environment, f64) {
+    let environment = environment(kind, number);
+    let delta = environment.delta(reference_index(kind, number));
+    (environment, delta)
 }
 
 fn evaluated(method: &IndexMethod, kind: Kind, number: usize) -> Option<IndexResult> {
-    let environment = environment(kind, number);
-    method.evaluate(&environment, environment.delta(reference_index(kind, number)))
+    let (environment, delta) = posed(kind, number);
+    method.evaluate(&environment, delta)
 }
 
 /// Errors of a method on many environments.
@@ -146,9 +139,9 @@ impl MethodErrors {
         for (number, said) in answers {
             let (environment, truth) = (environment(kind, number), reference_index(kind, number));
             match (said.verdict, environment.is_passive(truth)) {
-                (IndexVerdict::Yes, false) => errors.wrong_yes += 1,
-                (IndexVerdict::No, true) => errors.wrong_no += 1,
-                (IndexVerdict::Open, _) => errors.open += 1,
+                (MethodVerdict::Safe, false) => errors.wrong_yes += 1,
+                (MethodVerdict::Unsafe, true) => errors.wrong_no += 1,
+                (MethodVerdict::Undecided, _) => errors.open += 1,
                 _ => {}
             }
             let looks = !matches!(method, IndexMethod::Decision);

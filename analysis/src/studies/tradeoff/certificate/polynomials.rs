@@ -2,7 +2,7 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::environments::Environment;
+use super::environments::{Environment, multiply};
 use crate::stability::eigenvalues;
 
 /// Ascending coefficients.
@@ -23,13 +23,7 @@ impl Ascending {
 
     /// Product.
     pub(super) fn times(&self, other: &Self) -> Self {
-        let mut product = vec![0.0; (self.0.len() + other.0.len()).saturating_sub(1)];
-        for (i, a) in self.0.iter().enumerate() {
-            for (j, b) in other.0.iter().enumerate() {
-                product[i + j] += a * b;
-            }
-        }
-        Self(product)
+        Self(multiply(&self.0, &other.0))
     }
 
     /// Difference.

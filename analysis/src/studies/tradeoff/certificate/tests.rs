@@ -74,7 +74,7 @@ fn a_proof_is_never_wrong_and_grids_and_roots_are() {
 /// A danger, a loss, and a loss that is known: each has a panel of its own, and no panel has a sum.
 #[test]
 fn wrong_passes_wrong_refusals_and_undecided_verdicts_are_drawn_apart() {
-    let drawn = COMPARISON.errors.iter().map(|axis| axis.column.names[0]);
+    let drawn = COMPARISON.errors.iter().map(|axis| axis.name);
     assert_eq!(drawn.collect::<Vec<_>>(), ["alpha_error", "wrong_yes", "wrong_no", "open"]);
 }
 

@@ -6,11 +6,10 @@ mod stepper;
 
 use std::hint::black_box;
 
-use super::{Axis, Comparison, Method as Row, NUMBER, Tradeoff, fastest};
+use super::{Axis, Comparison, Method as Row, Tradeoff, fastest};
 use crate::simulation::method::Method;
 use crate::simulation::{Integration, SimulationError, Trajectory, simulate};
 use crate::stability::critical_stiffness;
-use crate::table::Column;
 
 pub use cases::{Case, cases};
 
@@ -21,20 +20,17 @@ use stepper::Stepper;
 pub static COMPARISON: Comparison = Comparison {
     name: "simulation",
     title: "Simulation: methods of integration by their steps in a sample of 1 ms",
-    cost: Axis::most(&["samples_per_second"], "samples simulated a second"),
+    cost: Axis::most("samples_per_second", "samples simulated a second"),
     errors: &[
         // The precision of the reference, which `analysis/tests/all/simulation_reference.rs` checks with
         // sixty digits.
-        Axis::least(&["angle_error"], "largest error of the angle (part of its largest)")
+        Axis::least("angle_error", "largest error of the angle (part of its largest)")
             .floored(1e-12, "no error seen"),
         // The precision of the stability limits.
-        Axis::least(&["verdict_error"], "error of the largest stable stiffness (part)")
+        Axis::least("verdict_error", "error of the largest stable stiffness (part)")
             .floored(1e-9, "no error seen"),
     ],
-    others: &[
-        Column { names: &["substeps"], bound: NUMBER },
-        Column { names: &["largest_stable_stiffness"], bound: NUMBER },
-    ],
+    others: &["substeps", "largest_stable_stiffness"],
     kept: include_bytes!("../../../../pictures/tradeoff/simulation.csv"),
 };
 
@@ -59,9 +55,6 @@ pub fn cheapest(table: &Tradeoff, bound: f64) -> Option<&Row> {
 }
 
 /// Measures all methods on all motions.
-///
-/// # Errors
-/// If a motion cannot be computed.
 pub fn measure() -> Result<Tradeoff, SimulationError> {
     let mut methods = Vec::new();
     for case in cases() {

@@ -1,0 +1,30 @@
+//! The surface that all charts are drawn on: its units and its text.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Units of the drawing in a pixel. Coordinates are whole numbers, and a curve on whole pixels
+/// would be jagged.
+pub const UNITS: u32 = 8;
+/// Font of all text; every viewer has one by this name.
+pub const FONT: &str = "sans-serif";
+/// Size of all text except titles.
+pub const LABEL: i32 = units(14);
+
+/// Pixels in units of the drawing.
+pub const fn units(pixels: i32) -> i32 {
+    pixels * UNITS as i32
+}
+
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub type Drawn<T> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
+
+pub fn text(size: i32) -> TextStyle<'static> {
+    TextStyle::from((FONT, size)).color(&BLACK)
+}
+
+/// Text with its anchor on the given side.
+pub fn anchored(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
+    text(LABEL).pos(Pos::new(horizontal, vertical))
+}

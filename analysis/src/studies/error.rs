@@ -1,0 +1,95 @@
+//! The reasons why a study has no figures.
+
+use std::io;
+use std::path::PathBuf;
+
+use haptic_servo::certificate::Rejection;
+use haptic_servo::environment::ShapeError;
+use haptic_servo::number::OutOfRange;
+use haptic_servo::servo::BuildError;
+use serde_json::Value;
+use thiserror::Error;
+
+use crate::browser::BrowserError;
+use crate::chain::ChainError;
+use crate::emulator::EmulatorError;
+use crate::file::FileError;
+use crate::link::LinkError;
+use crate::simulation::SimulationError;
+use crate::toolchain;
+
+/// The reason why a study has no figures, as its sentence says.
+#[allow(missing_docs)]
+#[derive(Debug, Error)]
+pub enum StudyError {
+    #[error("{0}")]
+    Refused(Box<Rejection>),
+    #[error(transparent)]
+    Chain(#[from] ChainError),
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    Servo(#[from] BuildError),
+    #[error("the device's angle: {0}")]
+    Angle(#[from] OutOfRange),
+    #[error(transparent)]
+    Setup(#[from] toolchain::SetupError),
+    #[error(transparent)]
+    Build(#[from] toolchain::BuildError),
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Browser(#[from] BrowserError),
+    #[error("an answer cannot be written: {0}")]
+    Json(#[from] serde_json::Error),
+    #[error("{path}: {why}")]
+    Program { path: PathBuf, why: String },
+    #[error("this wall has no largest certified stiffness")]
+    NoLimit,
+    #[error(
+        "{scene}: nothing moves in its simulation, so models cannot be compared; give it a \
+         position, a velocity or a torque"
+    )]
+    Rest { scene: String },
+    /// The limit cycle at rest cannot be found, within so many seconds.
+    #[error(
+        "the motion of this device does not decay by half in {seconds} s, so a limit cycle at rest \
+         cannot be distinguished from it: give the device more damping, or the scene more margin"
+    )]
+    NoRest { seconds: f64 },
+    /// Also where another code comes out.
+    #[error("host and board disagree on whether this scene may run: {0}")]
+    Disagreement(String),
+    /// Ticks are counted from 0.
+    #[error(
+        "in {format} the torque of the emulated board differs from that of this machine at tick \
+         {tick}: its program has another version"
+    )]
+    Differs { format: &'static str, tick: usize },
+    /// The compiler, the interpreter or the package of a peer is missing.
+    #[error("{0}")]
+    NoPeer(String),
+    #[error("a peer of the benchmark ended: {0}")]
+    PeerEnded(#[from] io::Error),
+    /// Something else, or other numbers: its work is not equal.
+    #[error("a peer of the benchmark answered {0}")]
+    WrongPeer(String),
+    #[error("the page complains of {0:?}")]
+    Complaints(Vec<String>),
+    #[error("the page with the scene {scene} has judged nothing while {key} was dragged")]
+    NothingJudged { scene: &'static str, key: &'static str },
+    #[error("to {question} the page answers {of_page}, and this program {here}")]
+    OtherAnswer { question: String, of_page: Value, here: String },
+}
+
+impl From<Rejection> for StudyError {
+    fn from(rejection: Rejection) -> Self {
+        Self::Refused(Box::new(rejection))
+    }
+}
