@@ -161,7 +161,7 @@ fn no_closed_motion_takes_more_energy_than_the_bound_allows() {
         let (mut judged, mut near) = (0, 0);
         while judged < scenes() {
             let Some(drawn) = draw(rng, &choice(kind)) else { continue };
-            // The index of a wall without a torque limit is that of a linear loop.
+            // Without a torque limit, a wall on both sides is judged as a linear loop, by another bound.
             if kind == Kind::Wall && drawn.scene.torque_limit.is_none() {
                 continue;
             }
