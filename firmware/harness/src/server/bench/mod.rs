@@ -18,7 +18,7 @@ use haptic_servo::servo::Transducers;
 pub use super::HostClosed;
 use super::{Host, serve};
 use crate::bench_request::{BLOCK, BenchRequest, Inputs, Output, Outputs};
-use crate::currents::{CurrentBench, Input};
+use crate::currents::Input;
 use crate::rotations::{self, Rotation};
 use crate::sines::Sine;
 
