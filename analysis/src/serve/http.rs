@@ -5,6 +5,8 @@ use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use tungstenite::http::StatusCode;
+
 use crate::link::is_timeout;
 
 /// Longest head of a request in bytes: much longer than that of a browser.
@@ -201,18 +203,7 @@ fn drain(mut stream: &TcpStream) {
     }
 }
 
-const fn reason(status: u16) -> &'static str {
-    match status {
-        200 => "OK",
-        204 => "No Content",
-        400 => "Bad Request",
-        403 => "Forbidden",
-        404 => "Not Found",
-        405 => "Method Not Allowed",
-        408 => "Request Timeout",
-        426 => "Upgrade Required",
-        431 => "Request Header Fields Too Large",
-        503 => "Service Unavailable",
-        _ => "Refused",
-    }
+fn reason(status: u16) -> &'static str {
+    let known = StatusCode::from_u16(status).ok().and_then(|status| status.canonical_reason());
+    known.unwrap_or("Refused")
 }
