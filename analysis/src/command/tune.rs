@@ -145,32 +145,23 @@ fn print(
     running: &ActiveParameters,
     status: &Status,
 ) -> Result<(), CommandError> {
-    let (board, mut out) = (link.board(), io::stdout().lock());
+    let board = link.board();
     if let Some(sentence) = refused {
         writeln!(io::stderr(), "{sentence}")?;
     }
-    writeln!(out, "{} on {}: {}", link.program(), link.address(), status.state)?;
-    if let Some(fault) = status.fault {
-        writeln!(out, "stopped: {fault}")?;
+    let mut lines = vec![format!("{} on {}: {}", link.program(), link.address(), status.state)];
+    lines.extend(status.fault.map(|fault| format!("stopped: {fault}")));
+    lines.extend(link.previous_fault().as_ref().map(formatting::previous_fault));
+    lines.extend([formatting::reset(status), formatting::numbers(running)]);
+    lines.extend(modes::modes(link.program(), running));
+    lines.push(formatting::reserves(running, status, board, None));
+    lines.push(formatting::energy(status, board));
+    if let Some(power) = status.power.map(Power::from) {
+        lines.push(power.to_string());
+        lines.extend(power.index_offset());
     }
-    if let Some(remembered) = link.previous_fault() {
-        writeln!(out, "{}", formatting::previous_fault(&remembered))?;
-    }
-    writeln!(out, "{}", formatting::reset(status))?;
-    writeln!(out, "{}", formatting::numbers(running))?;
-    if let Some(modes) = modes::modes(link.program(), running) {
-        writeln!(out, "{modes}")?;
-    }
-    writeln!(out, "{}", formatting::reserves(running, status, board, None))?;
-    writeln!(out, "{}", formatting::energy(status, board))?;
-    if let Some(reading) = status.power {
-        let power = Power::from(reading);
-        writeln!(out, "{power}")?;
-        if let Some(offset) = power.index_offset() {
-            writeln!(out, "{offset}")?;
-        }
-    }
-    writeln!(out, "{}", formatting::losses(status, link.discarded()))?;
+    lines.push(formatting::losses(status, link.discarded()));
+    writeln!(io::stdout(), "{}", lines.join("\n"))?;
     Ok(())
 }
 
