@@ -78,6 +78,9 @@ impl Client {
     ) -> Result<(), String> {
         let received = self.wire.receive(bytes, now);
         while let Some(event) = self.wire.next_event() {
+            if let Event::Lost(why) = event {
+                return Err(why);
+            }
             self.take(event, now, &mut each);
         }
         let ended = received.and_then(|()| self.wire.tick(now));
@@ -86,9 +89,6 @@ impl Client {
     }
 
     /// Sends a request. A set is certified here first.
-    ///
-    /// # Errors
-    /// The reason if it is not sent.
     pub fn request(&mut self, request: Request, now: Duration) -> Result<(), String> {
         self.wire.check_free(&request).map_err(|reply| reply.line(&request))?;
         if let Request::Set(changes) = &request {

@@ -65,9 +65,6 @@ pub fn index(
 }
 
 /// The number format with a name.
-///
-/// # Errors
-/// If there is no such format.
 pub fn format_of(name: &str) -> Result<Format, Refusal> {
     number::format(name).map_err(|bound| Refusal::Argument {
         name: "format".to_owned(),

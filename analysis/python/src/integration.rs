@@ -14,9 +14,6 @@ pub fn names() -> Vec<&'static str> {
 }
 
 /// The method and the steps of two arguments.
-///
-/// # Errors
-/// If one of them is out of its bound.
 pub fn integration(method: &str, substeps: i64) -> Result<Integration, Refusal> {
     let out_of_bounds = |name: &str, value: String, bound: String| Refusal::Argument {
         name: name.to_owned(),

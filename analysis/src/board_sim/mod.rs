@@ -76,9 +76,6 @@ pub enum SimulatedBoardError {
 
 impl SimulatedBoard {
     /// Boots a program and listens there.
-    ///
-    /// # Errors
-    /// Where the address cannot be listened at.
     pub fn start<E, N, M>(
         name: &'static str,
         program: Program<E>,
@@ -98,9 +95,6 @@ impl SimulatedBoard {
     }
 
     /// Serves a virtual board that has been switched on at the address; `period` of its servo in s.
-    ///
-    /// # Errors
-    /// Where the address cannot be listened at.
     pub fn from_virtual_board(
         board: DrivingBoard,
         address: &Address,

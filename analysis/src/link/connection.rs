@@ -102,14 +102,14 @@ impl Wire {
     }
 
     fn ended(&self, error: ClientError) -> LinkError {
-        let address = self.address.clone();
         match error {
             ClientError::Protocol(error) => error.into(),
-            ClientError::Silent { .. } => LinkError::Silent { address, after: QUERY.end },
+            ClientError::Silent { .. } => {
+                LinkError::Silent { address: self.address.clone(), after: QUERY.end }
+            }
             ClientError::Unanswered { .. } => {
                 self.unanswered("the request for its status", SILENCE)
             }
-            ClientError::Restarted => LinkError::Restarted,
         }
     }
 
@@ -180,41 +180,26 @@ impl Link {
     }
 
     /// Changes these numbers, all or none, and waits until they run.
-    ///
-    /// # Errors
-    /// Where the board does not answer.
     pub fn set(&mut self, changes: Changes) -> Result<RequestResult, LinkError> {
         self.request("the change of its parameters", Request::Set(changes))
     }
 
     /// Switches the amplifier on, or clears a fault and does so.
-    ///
-    /// # Errors
-    /// Where the board does not answer.
     pub fn arm(&mut self) -> Result<RequestResult, LinkError> {
         self.request("the request to arm", Request::Arm)
     }
 
     /// Has a motor board begin to align its brushless motor, which moves the handle.
-    ///
-    /// # Errors
-    /// Where the board does not answer.
     pub fn align(&mut self) -> Result<RequestResult, LinkError> {
         self.request("the request to align the motor", Request::Align)
     }
 
     /// Fades the torque out and switches the amplifier off.
-    ///
-    /// # Errors
-    /// Where the board does not answer.
     pub fn disarm(&mut self) -> Result<RequestResult, LinkError> {
         self.request("the request to disarm", Request::Disarm)
     }
 
     /// The scene that runs, with all numbers of its servo.
-    ///
-    /// # Errors
-    /// Where the board does not answer.
     pub fn description(&mut self) -> Result<Description, LinkError> {
         self.wire.client.description = None;
         self.ask("the request for its description", &ToBoard::Describe, |client, _| {
@@ -223,9 +208,6 @@ impl Link {
     }
 
     /// The active parameters.
-    ///
-    /// # Errors
-    /// Where the board does not answer.
     pub fn parameters(&mut self) -> Result<ActiveParameters, LinkError> {
         self.ask("the request for its parameters", &ToBoard::Get, |_, event| match event {
             Some(Event::ActiveParameters(parameters)) => Some(parameters),
@@ -234,9 +216,6 @@ impl Link {
     }
 
     /// The board's status.
-    ///
-    /// # Errors
-    /// Where the board does not answer.
     pub fn status(&mut self) -> Result<Status, LinkError> {
         self.ask("the request for its status", &ToBoard::Status, |_, event| match event {
             Some(Event::Status(status, _)) => Some(status),

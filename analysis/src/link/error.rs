@@ -55,9 +55,6 @@ pub enum LinkError {
         /// The time waited.
         after: Duration,
     },
-    /// The board has restarted without its settings.
-    #[error("the board was started again")]
-    Restarted,
     /// The port is gone.
     #[error("the link to {address} is lost: {source}")]
     Lost {

@@ -74,6 +74,8 @@ enum PollEnd {
     Over,
     /// The link.
     Lost(LinkError),
+    /// The board has restarted without its settings.
+    Restarted,
 }
 
 impl From<LinkError> for PollEnd {
@@ -106,19 +108,14 @@ impl PollerThread {
             };
             match end {
                 Ok(()) | Err(PollEnd::Over) => return,
+                Err(PollEnd::Restarted) => {}
                 Err(PollEnd::Lost(error)) => {
-                    self.lost(error.to_string());
-                    if !matches!(error, LinkError::Restarted) {
-                        self.wait_before_retry();
-                    }
+                    // The receiver may be gone; the next check of `ended` tells.
+                    let _ = self.events.send(Event::Lost(error.to_string()));
+                    self.wait_before_retry();
                 }
             }
         }
-    }
-
-    fn lost(&self, why: String) {
-        // The receiver may be gone; the next check of `ended` tells.
-        let _ = self.events.send(Event::Lost(why));
     }
 
     /// Waits a while before the next try.
@@ -162,7 +159,11 @@ impl PollerThread {
 
     fn forward(&self, wire: &mut Wire) -> Result<(), PollEnd> {
         while let Some(event) = wire.client.next_event() {
+            let has_restarted = matches!(event, Event::Lost(_));
             self.events.send(event)?;
+            if has_restarted {
+                return Err(PollEnd::Restarted);
+            }
         }
         Ok(())
     }

@@ -23,9 +23,6 @@ impl Recorder {
     }
 
     /// Adds a tick.
-    ///
-    /// # Errors
-    /// Where it cannot be written.
     pub fn add(&mut self, sample: &Sample) -> io::Result<()> {
         if self.count == 0 {
             writeln!(self.rows, "{COLUMNS}")?;
@@ -36,9 +33,6 @@ impl Recorder {
     }
 
     /// Writes everything that was added.
-    ///
-    /// # Errors
-    /// Where it cannot be written.
     pub fn flush(&mut self) -> io::Result<()> {
         self.rows.flush()
     }

@@ -16,9 +16,6 @@ pub struct Token(String);
 
 impl Token {
     /// A new token, from the system's random numbers.
-    ///
-    /// # Errors
-    /// If the system has none.
     pub fn random() -> Result<Self, getrandom::Error> {
         let mut bytes = [0; BYTES];
         getrandom::fill(&mut bytes)?;
@@ -54,9 +51,6 @@ impl Access {
     }
 
     /// Checks that the request names this machine by its own address: a foreign name may point here.
-    ///
-    /// # Errors
-    /// The answer.
     pub fn check_host(&self, head: &Head) -> Result<(), HttpResponse> {
         let host = head.header("host")?.unwrap_or_default();
         if self.hosts.iter().any(|own| own.eq_ignore_ascii_case(host)) {
@@ -67,9 +61,6 @@ impl Access {
     }
 
     /// Checks that the requesting page, if it is a page, is of this server or from a file.
-    ///
-    /// # Errors
-    /// The answer.
     pub fn check_origin(&self, head: &Head) -> Result<(), HttpResponse> {
         let is_own = |origin: &str| {
             origin
@@ -90,9 +81,6 @@ impl Access {
     }
 
     /// Checks that the client has sent the token.
-    ///
-    /// # Errors
-    /// The answer.
     pub fn check_token(&self, head: &Head) -> Result<(), HttpResponse> {
         if head.query("token").is_some_and(|given| self.token.is(given)) {
             return Ok(());

@@ -70,9 +70,6 @@ pub struct Server {
 
 impl Server {
     /// Checks that an address is reachable only from this machine.
-    ///
-    /// # Errors
-    /// If it is not.
     pub fn check(listen: SocketAddr) -> Result<(), ServeError> {
         if listen.ip().is_loopback() {
             Ok(())

@@ -140,9 +140,6 @@ impl Drop for Seat {
 
 impl Port {
     /// Opens the port.
-    ///
-    /// # Errors
-    /// If it cannot be opened.
     pub fn open(address: &Address) -> Result<Self, LinkError> {
         let address = address.clone();
         match open(&address) {

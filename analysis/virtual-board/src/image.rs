@@ -15,9 +15,6 @@ pub struct Image {
 
 impl Image {
     /// The program in an ELF file.
-    ///
-    /// # Errors
-    /// If it is not an ELF file.
     pub fn of_elf(file: Vec<u8>) -> Result<Self, object::Error> {
         let data = file.as_slice();
         let header = FileHeader32::<Endianness>::parse(data)?;

@@ -36,9 +36,6 @@ pub struct Machine {
 
 impl Machine {
     /// Boots a board with this program in its flash and this device at its pins.
-    ///
-    /// # Errors
-    /// If the file cannot be read, or is not a program for the chip.
     pub fn boot(
         elf: &Path,
         chip: &'static Chip,
@@ -52,9 +49,6 @@ impl Machine {
     }
 
     /// The same with a program in memory.
-    ///
-    /// # Errors
-    /// If it is not for the chip.
     pub fn power_on(
         image: Image,
         chip: &'static Chip,
@@ -117,9 +111,6 @@ impl Machine {
     }
 
     /// Runs for a number of instructions.
-    ///
-    /// # Errors
-    /// If the board cannot continue.
     pub fn run_for(&mut self, instructions: u64) -> Result<(), BoardError> {
         let end = self.board().now + instructions;
         while self.board().now < end {

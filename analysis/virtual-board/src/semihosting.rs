@@ -90,9 +90,6 @@ pub struct Guest {
 impl Guest {
     /// Switches a board on with a program that reads its questions from the first file and writes
     /// its answers to the second.
-    ///
-    /// # Errors
-    /// Where the file cannot be read, or is not a program for the chip.
     pub fn boot(
         elf: &Path,
         chip: &'static Chip,
@@ -106,9 +103,6 @@ impl Guest {
     }
 
     /// The same with a program that is called with a command line, and asks nothing.
-    ///
-    /// # Errors
-    /// As for [`Self::boot`].
     pub fn boot_command(
         elf: &Path,
         chip: &'static Chip,
@@ -129,9 +123,6 @@ impl Guest {
     }
 
     /// Asks, and waits until the program has filled `answer`.
-    ///
-    /// # Errors
-    /// Where it does not.
     pub fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), CallError> {
         self.requests.extend(request);
         while self.replies.len() < answer.len() {

@@ -39,7 +39,7 @@ pub enum Event {
     ActiveParameters(ActiveParameters),
     /// The result of a request.
     Reply(Request, Reply),
-    /// The link is lost, and a new one is tried: of the program that has the port.
+    /// The link is lost, or the board has restarted without its settings: the conversation has to begin again.
     Lost(String),
 }
 
@@ -68,9 +68,6 @@ pub enum ClientError {
         /// The address.
         address: String,
     },
-    /// The board has restarted without its settings.
-    #[error("the board was started again")]
-    Restarted,
 }
 
 /// A conversation with a board.
@@ -167,7 +164,7 @@ impl Client {
             if let Some(message) = self.decoder.push::<ToHost<String>>(byte) {
                 match self.greeting {
                     Some(_) => self.take_greeting(message, now)?,
-                    None => self.take_news(message, now)?,
+                    None => self.take_news(message, now),
                 }
             }
         }
@@ -211,9 +208,6 @@ impl Client {
     }
 
     /// Sends a request, one at a time, except that disarming never waits.
-    ///
-    /// # Errors
-    /// The reason if it is not sent.
     pub fn request(&mut self, request: Request, now: Duration) -> Result<(), Reply> {
         self.check_free(&request)?;
         self.give_up();
@@ -227,9 +221,6 @@ impl Client {
     }
 
     /// Checks that a request can be sent.
-    ///
-    /// # Errors
-    /// The reason if not.
     pub fn check_free(&self, request: &Request) -> Result<(), Reply> {
         if self.greeting.is_some() {
             return Err(Reply::NoLink);
@@ -299,7 +290,7 @@ impl Client {
         Ok(())
     }
 
-    fn take_news(&mut self, message: ToHost<String>, now: Duration) -> Result<(), ClientError> {
+    fn take_news(&mut self, message: ToHost<String>, now: Duration) {
         self.heard = now;
         match message {
             ToHost::Telemetry(batch) => {
@@ -308,7 +299,8 @@ impl Client {
             ToHost::Status(status) => {
                 let last = self.status.replace(status);
                 if last.is_some_and(|last| status.tick.wrapping_sub(last.tick) > u32::MAX / 2) {
-                    return Err(ClientError::Restarted);
+                    self.events.push_back(Event::Lost("the board was started again".to_owned()));
+                    return;
                 }
                 self.events.push_back(Event::Status(status, self.discarded()));
                 // Another client changed the parameters.
@@ -329,7 +321,6 @@ impl Client {
             // Replies to a repeated hello.
             ToHost::Welcome { .. } | ToHost::PreviousFault(_) | ToHost::Board(_) => {}
         }
-        Ok(())
     }
 
     fn take_answer(&mut self, id: Id, outcome: Outcome, now: Duration) {
