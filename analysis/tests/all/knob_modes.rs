@@ -4,61 +4,29 @@ use std::process::Output;
 
 use crate::common::{haptic, read, root};
 use crate::readme::block;
-use analysis::board_sim::{Pacing, SimulatedBoard};
-use analysis::link::{Address, Link, RequestResult};
-use analysis::lockstep::PlantIo;
-use analysis::program::{Program, knob_modes};
+use crate::wire::{Rig, text};
+use analysis::board_sim::Pacing;
+use analysis::link::RequestResult;
+use analysis::program::knob_modes;
 use haptic_servo::certificate::{Parameter, certify_in};
 use haptic_servo::environment::{KNOB_MODES, MODES, Profile, Shape};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Scene};
 use haptic_servo::servo::Latched;
-use tempfile::TempDir;
 
-/// A knob that a hand holds at 50 degrees.
-struct Held;
-
-impl PlantIo for Held {
-    fn count(&mut self) -> Option<i32> {
-        Some(61_440 * 50 / 360)
-    }
-
-    fn hold(&mut self, _: u16) {}
+/// A board with the knob, which a hand holds at 50 degrees.
+fn knob() -> Rig {
+    Rig::holding("knob_modes", 61_440 * 50 / 360, Pacing::Unthrottled)
 }
 
-/// A board with the knob, and where it listens.
-struct Rig {
-    board: SimulatedBoard,
-    _folder: TempDir,
-}
-
-impl Rig {
-    fn new() -> Self {
-        let folder = TempDir::new().unwrap();
-        let address = Address::Unix(folder.path().join("board"));
-        let knob = Program::find("knob_modes").unwrap();
-        let board = knob.listen(Box::new(Held), &address, Pacing::Unthrottled).unwrap();
-        Self { board, _folder: folder }
-    }
-
-    fn link(&self) -> Link {
-        Link::open(self.board.address()).unwrap()
-    }
-
-    fn tune(&self, arguments: &[&str]) -> Output {
-        let port = self.board.address().to_string();
-        haptic(&[&["tune", "--port", &port], arguments].concat())
-    }
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
+fn tune(rig: &Rig, arguments: &[&str]) -> Output {
+    rig.haptic(&[&["tune"], arguments].concat())
 }
 
 #[test]
 fn tune_selects_a_mode_and_lists_them_by_name() {
-    let rig = Rig::new();
-    let output = rig.tune(&["mode=3"]);
+    let rig = knob();
+    let output = tune(&rig, &["mode=3"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let printed = text(&output.stdout);
     assert!(printed.contains("mode=3"), "{printed}");
@@ -73,7 +41,7 @@ fn tune_selects_a_mode_and_lists_them_by_name() {
 
 #[test]
 fn every_mode_is_selected_after_every_other() {
-    let rig = Rig::new();
+    let rig = knob();
     let mut link = rig.link();
     assert_eq!(link.arm().unwrap(), RequestResult::Done);
     for step in 1..KNOB_MODES.len() {
@@ -94,9 +62,9 @@ fn every_mode_is_selected_after_every_other() {
 
 #[test]
 fn a_mode_that_there_is_not_is_refused_by_name_value_and_bound() {
-    let rig = Rig::new();
+    let rig = knob();
     for (value, shown) in [("99", "99"), ("-1", "-1"), ("1.5", "1.5")] {
-        let output = rig.tune(&[&format!("mode={value}")]);
+        let output = tune(&rig, &[&format!("mode={value}")]);
         assert_eq!(output.status.code(), Some(1), "{output:?}");
         assert_eq!(
             text(&output.stderr).trim_end(),
@@ -104,7 +72,7 @@ fn a_mode_that_there_is_not_is_refused_by_name_value_and_bound() {
         );
         assert!(text(&output.stdout).contains("mode=0"), "{output:?}");
     }
-    let output = rig.tune(&["stiffness=3"]);
+    let output = tune(&rig, &["stiffness=3"]);
     let said = text(&output.stderr);
     assert!(said.contains("no stiffness; it has coupling.stiffness, torque_limit, mode"), "{said}");
 }
@@ -127,32 +95,32 @@ fn another_mode_is_refused_with_numbers_that_it_is_not_certified_with() {
     let stiffness =
         stiffness.into_iter().find(|&stiffness| passes(0.0, stiffness) && !passes(8.0, stiffness));
     let stiffness = stiffness.expect("a coupling that mode 8 is too steep for");
-    let rig = Rig::new();
+    let rig = knob();
     let set = |name: &str, value: f64| format!("{name}={value}");
     let soft = set("coupling.stiffness", stiffness);
-    assert_eq!(rig.tune(&[&soft]).status.code(), Some(0));
+    assert_eq!(tune(&rig, &[&soft]).status.code(), Some(0));
     for arguments in
         [&["mode=8"][..], &["mode=8", "torque_limit=0.5"], &["mode=8", "torque_limit=5"]]
     {
-        let output = rig.tune(arguments);
+        let output = tune(&rig, arguments);
         assert_eq!(output.status.code(), Some(1), "{output:?}");
         let said = text(&output.stderr);
         assert!(said.starts_with("mode 8 is not certified with the other numbers"), "{said}");
         assert!(said.contains("the board alone has its table"), "{said}");
     }
     // With the numbers of the program every mode can be selected again.
-    assert_eq!(rig.tune(&["coupling.stiffness=44"]).status.code(), Some(0));
+    assert_eq!(tune(&rig, &["coupling.stiffness=44"]).status.code(), Some(0));
     // A refusal that does not depend on the mode has its own reason.
     for mode in ["mode=0", "mode=1"] {
         for (change, part) in [
             ("torque_limit=5", "above the DAC's full scale"),
             ("torque_limit=-1", "the torque limit is -1 N m"),
         ] {
-            let said = text(&rig.tune(&[mode, change]).stderr);
+            let said = text(&tune(&rig, &[mode, change]).stderr);
             assert!(said.contains(part), "{mode} {change}: {said}");
         }
     }
-    assert_eq!(rig.tune(&["mode=8"]).status.code(), Some(0));
+    assert_eq!(tune(&rig, &["mode=8"]).status.code(), Some(0));
 }
 
 /// The guide's table has the numbers of the shapes.

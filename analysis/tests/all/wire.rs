@@ -28,9 +28,9 @@ use tempfile::TempDir;
 /// Counts inside the wall at which the device is held.
 const DEPTH: i32 = 300;
 
-/// A device held still, and the codes that its motor received.
-#[derive(Clone, Default)]
-struct Held(Arc<Mutex<Codes>>);
+/// A device held still at a count, and the codes that its motor received.
+#[derive(Clone)]
+struct Held(i32, Arc<Mutex<Codes>>);
 
 #[derive(Default)]
 struct Codes {
@@ -41,11 +41,11 @@ struct Codes {
 
 impl PlantIo for Held {
     fn count(&mut self) -> Option<i32> {
-        Some(DEPTH)
+        Some(self.0)
     }
 
     fn hold(&mut self, code: u16) {
-        let mut codes = self.0.lock().unwrap();
+        let mut codes = self.1.lock().unwrap();
         codes.ticks += 1;
         codes.last = code;
         *codes.seen.entry(code).or_default() += 1;
@@ -55,14 +55,14 @@ impl PlantIo for Held {
 impl Held {
     /// Forgets the codes so far.
     fn forget(&self) {
-        self.0.lock().unwrap().seen.clear();
+        self.1.lock().unwrap().seen.clear();
     }
 
     /// The code after this many more ticks.
     fn after(&self, ticks: u64) -> u16 {
-        let end = self.0.lock().unwrap().ticks + ticks;
+        let end = self.1.lock().unwrap().ticks + ticks;
         loop {
-            let codes = self.0.lock().unwrap();
+            let codes = self.1.lock().unwrap();
             if codes.ticks >= end {
                 return codes.last;
             }
@@ -88,11 +88,16 @@ impl Rig {
 
     /// The same board just after it is switched on: not armed.
     pub fn off(pacing: Pacing) -> Self {
+        Self::holding("damper_wall", DEPTH, pacing)
+    }
+
+    /// A board with a program whose device is held at a count; not armed.
+    pub fn holding(program: &str, count: i32, pacing: Pacing) -> Self {
         let folder = TempDir::new().unwrap();
         let address = Address::Unix(folder.path().join("board"));
-        let held = Held::default();
-        let wall = Program::find("damper_wall").unwrap();
-        let board = wall.listen(Box::new(held.clone()), &address, pacing).unwrap();
+        let held = Held(count, Arc::default());
+        let program = Program::find(program).unwrap();
+        let board = program.listen(Box::new(held.clone()), &address, pacing).unwrap();
         Self { held, board, _folder: folder }
     }
 
@@ -100,18 +105,18 @@ impl Rig {
         self.board.address().to_string()
     }
 
-    fn link(&self) -> Link {
+    pub fn link(&self) -> Link {
         Link::open(self.board.address()).unwrap()
     }
 
-    fn haptic(&self, arguments: &[&str]) -> Output {
+    pub fn haptic(&self, arguments: &[&str]) -> Output {
         let port = self.port();
         let (command, rest) = arguments.split_first().unwrap();
         haptic(&[&[*command, "--port", &port], rest].concat())
     }
 }
 
-fn text(bytes: &[u8]) -> String {
+pub fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
@@ -450,7 +455,7 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
                 refused += 1;
                 // Not for a single tick.
                 let last = rig.held.after(150);
-                let seen: Vec<u16> = rig.held.0.lock().unwrap().seen.keys().copied().collect();
+                let seen: Vec<u16> = rig.held.1.lock().unwrap().seen.keys().copied().collect();
                 assert_eq!(seen, [last], "set {i}");
             }
         }
