@@ -43,12 +43,14 @@ pub struct BasicTimer {
     overflow: Option<u64>,
 }
 
-impl BasicTimer {
+impl Default for BasicTimer {
     /// The timer after reset.
-    pub fn new() -> Self {
+    fn default() -> Self {
         Self { registers: Registers::new(REGISTERS), counting: 0, count: 0, overflow: None }
     }
+}
 
+impl BasicTimer {
     /// The time of its next overflow.
     pub fn due(&self) -> Option<u64> {
         self.overflow
@@ -131,7 +133,7 @@ mod tests {
 
     /// Prepared for a prescaler of 3 and a period of 1000, and started at 5000.
     fn started(divider: u64) -> BasicTimer {
-        let mut tick_timer = BasicTimer::new();
+        let mut tick_timer = BasicTimer::default();
         for (register, value) in
             [(PSC, 2), (ARR, 999), (CR1, ONLY_OVERFLOW), (EGR, 1), (DIER, 1), (CR1, ENABLE)]
         {
@@ -156,7 +158,7 @@ mod tests {
     #[test]
     fn a_count_that_is_set_makes_the_first_period_shorter() {
         for divider in [1, 2] {
-            let mut timer = BasicTimer::new();
+            let mut timer = BasicTimer::default();
             for (register, value) in [(PSC, 2), (ARR, 999), (CR1, ONLY_OVERFLOW), (EGR, 1)] {
                 timer.write(register, value, 0, divider).unwrap();
             }
@@ -188,7 +190,7 @@ mod tests {
         assert_eq!(tick_timer.due(), Some(8000));
         assert!(tick_timer.advance(8000, 1));
         assert_eq!(tick_timer.due(), Some(9000));
-        let mut tick_timer = BasicTimer::new();
+        let mut tick_timer = BasicTimer::default();
         tick_timer.write(DIER, UPDATE, 0, 1).unwrap();
         tick_timer.write(EGR, UPDATE, 0, 1).unwrap();
         assert!(tick_timer.line(), "an update by the program is one, unless it says otherwise");
