@@ -49,6 +49,9 @@ pub struct Data {
     rows: Box<dyn Iterator<Item = Vec<Cell>>>,
 }
 
+/// A column: its name, unit included, and its value in a row.
+pub type Column<R> = (&'static str, fn(&R) -> Cell);
+
 impl Data {
     /// A table with these names of its columns, units included.
     pub fn new(
@@ -58,10 +61,10 @@ impl Data {
         Self { header: header.to_vec(), rows: Box::new(rows.into_iter()) }
     }
 
-    /// A table of such rows: of each column its name, unit included, and its value in a row.
+    /// A table of such rows.
     pub fn of<R: 'static, const N: usize>(
         rows: impl IntoIterator<Item = R> + 'static,
-        columns: [(&'static str, fn(&R) -> Cell); N],
+        columns: [Column<R>; N],
     ) -> Self {
         let row = move |row: R| columns.iter().map(|(_, value)| value(&row)).collect();
         let rows = Box::new(rows.into_iter().map(row));

@@ -48,8 +48,8 @@ pub fn share_of_core(instant: f64, servo: f64) -> f64 {
 }
 
 /// Largest number of instructions of a tick behind the matched coupling, from count to code in contact, in
-/// `f32`: for the damper wall without delay whose torques come 10 us after their counts, and for the same with
-/// a current loop of 3 kHz.
+/// `f32`: for the damper wall without delay whose torques come 10 us after their counts, and for the same
+/// with a current loop of 3 kHz.
 pub fn contact_instructions(elf: &Path) -> Result<[u32; 2], EmulatorError> {
     let mut board = BenchClient::boot(elf)?;
     let prompt = Latency::delayed(1e-5);
