@@ -17,7 +17,7 @@ pub enum Limit {
     /// No stiffness is certified.
     Nothing,
     /// Up to this one in N m/rad.
-    RoundUp3(f64),
+    AtMost(f64),
     /// Any stiffness: the hand feels the coupling.
     Any,
 }
@@ -113,7 +113,7 @@ pub fn largest_stiffness(scene: &Scene) -> Limit {
         let middle = 0.5 * (low + high);
         if passes(middle.exp()) { low = middle } else { high = middle }
     }
-    Limit::RoundUp3(low.exp())
+    Limit::AtMost(low.exp())
 }
 
 /// Largest change of torque in N m for each rad of position error: the sum of the absolute values
@@ -179,7 +179,7 @@ impl Curves {
         let half_a_count = std::f64::consts::PI / self.counts_per_turn;
         let (stiffness, used) = match largest_stiffness(&timed) {
             Limit::Nothing => return None,
-            Limit::RoundUp3(stiffness) => (stiffness, self.used * stiffness),
+            Limit::AtMost(stiffness) => (stiffness, self.used * stiffness),
             Limit::Any => {
                 let stiffness = coupling_stiffness(&timed)?;
                 (stiffness, RIGID * stiffness)
@@ -207,21 +207,17 @@ mod tests {
     #[test]
     fn the_largest_stiffness_is_the_formulas() {
         for delay in 1..=4 {
-            let Limit::RoundUp3(k) = largest_stiffness(&wall(0.0, delay, STANDARD)) else {
-                panic!()
-            };
+            let Limit::AtMost(k) = largest_stiffness(&wall(0.0, delay, STANDARD)) else { panic!() };
             near(k, 0.022 / (0.001 * (delay as f64 - 0.5)), 1e-9);
         }
-        let Limit::RoundUp3(k) = largest_stiffness(&wall(0.01, 1, STANDARD)) else { panic!() };
+        let Limit::AtMost(k) = largest_stiffness(&wall(0.01, 1, STANDARD)) else { panic!() };
         near(k, 24.0, 1e-9);
         assert_eq!(largest_stiffness(&wall(0.0, 0, STANDARD)), Limit::Any);
         assert_eq!(largest_stiffness(&wall(0.03, 1, STANDARD)), Limit::Nothing);
         // Undelayed it needs 0.03 - K T / 2: only the stiff ones pass, and all of them.
         assert_eq!(largest_stiffness(&wall(-0.03, 0, STANDARD)), Limit::Any);
         // A rigid coupling costs a sample: K < b / (T (n + 1/2)).
-        let Limit::RoundUp3(k) = largest_stiffness(&wall(0.0, 0, Coupling::Rigid)) else {
-            panic!()
-        };
+        let Limit::AtMost(k) = largest_stiffness(&wall(0.0, 0, Coupling::Rigid)) else { panic!() };
         near(k, 44.0, 1e-9);
     }
 

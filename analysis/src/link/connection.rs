@@ -203,7 +203,7 @@ impl Link {
     pub fn description(&mut self) -> Result<Description, LinkError> {
         self.wire.client.description = None;
         self.ask("the request for its description", &ToBoard::Describe, |client, _| {
-            client.description.clone()
+            client.description
         })
     }
 

@@ -28,7 +28,7 @@ impl Area {
     }
 }
 
-/// The characters of a terminal. What is written outside of it is left out.
+/// The characters of a terminal. Text outside of it is left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Canvas {
     width: usize,

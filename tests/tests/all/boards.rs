@@ -105,7 +105,8 @@ fn toolchain() -> Toolchain {
 #[test]
 fn where_no_board_is_named_the_compiler_names_all_of_them() {
     let source = include_str!("../../../firmware/src/board/mod.rs");
-    let messages: Vec<_> = source.split("compile_error!(").skip(1).collect();
+    let messages = source.split("compile_error!(").skip(1);
+    let messages: Vec<_> = messages.filter(|message| message.contains("board-qemu")).collect();
     assert_eq!(messages.len(), 2);
     for message in messages {
         let message = message.split(");").next().unwrap();

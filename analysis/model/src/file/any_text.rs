@@ -5,7 +5,8 @@ use proptest::prelude::*;
 use super::example;
 use crate::file::{self, Format};
 
-const WALL: &str = r#"device = { inertia = 2.2e-5, damping = 0.022 }
+const WALL: &str = r#"name = "wall"
+device = { inertia = 2.2e-5, damping = 0.022 }
 servo = { period = 0.001 }
 coupling = { stiffness = 44.0 }
 environment = { type = "damper-wall", stiffness = 22.0, damping = 0.01, delay = 1 }

@@ -203,7 +203,7 @@ impl Family {
     pub fn usual_ranges(&self) -> (Range<f64>, Range<f64>) {
         let delta = assess(&self.scene).delta.midpoint();
         let stiffest = match largest_stiffness(&self.member(0.0, 0.0)) {
-            Limit::RoundUp3(stiffness) => stiffness,
+            Limit::AtMost(stiffness) => stiffness,
             Limit::Any | Limit::Nothing => 2.0 * delta / self.scene.timing.period,
         };
         (0.0..1.8 * stiffest, -0.6 * delta..1.25 * delta)

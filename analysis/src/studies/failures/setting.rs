@@ -64,7 +64,7 @@ pub fn rational(numerator: &[f64], denominator: &[f64]) -> Rational {
 /// The largest certified stiffness of a wall in N m/rad.
 pub fn limit_of(scene: &Scene) -> Result<f64, StudyError> {
     match largest_stiffness(scene) {
-        Limit::RoundUp3(limit) => Ok(limit),
+        Limit::AtMost(limit) => Ok(limit),
         _ => Err(StudyError::NoLimit),
     }
 }

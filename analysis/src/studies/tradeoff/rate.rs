@@ -37,7 +37,7 @@ pub fn table(programs: &[(&Program, f64)]) -> Tradeoff {
 /// The stiffest wall; `None` if no stiffness is certified, or every one.
 fn row(program: &Program, instructions: f64, rate: f64) -> Option<Method> {
     let scene = at_period(&program.scene, 1.0 / rate);
-    let Limit::RoundUp3(stiffness) = largest_stiffness(&with_wall(&scene, 0.0, Some(1))) else {
+    let Limit::AtMost(stiffness) = largest_stiffness(&with_wall(&scene, 0.0, Some(1))) else {
         return None;
     };
     // The delay is one sample with any coupling.
