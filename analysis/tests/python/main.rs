@@ -30,8 +30,11 @@ const FROM_PYPI: [&str; 3] = ["maturin>=1.9,<2", "numpy", "matplotlib"];
 
 const KIND: &str = "no python";
 
+/// A test by its name.
+type Test = (&'static str, Box<dyn FnOnce() + Send>);
+
 fn main() -> ExitCode {
-    let mut tests: Vec<(&str, Box<dyn FnOnce() + Send>)> = Vec::new();
+    let mut tests: Vec<Test> = Vec::new();
     for test in AGREE {
         tests.push((test, Box::new(move || agrees(test))));
     }
