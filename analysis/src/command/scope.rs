@@ -10,7 +10,8 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use haptic_model::board::timing::stream_every;
-use signal_hook::consts::SIGINT;
+use ratatui::DefaultTerminal;
+use ratatui::crossterm::event::{self, Event as Input};
 
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::seconds;
@@ -18,7 +19,6 @@ use crate::link::{Address, Link};
 use crate::scope::control::Action;
 use crate::scope::poller::BoardPoller;
 use crate::scope::record::Recorder;
-use crate::scope::screen::Screen;
 use crate::scope::{Scope, tui};
 use crate::terminal;
 
@@ -68,7 +68,10 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if to_output || !io::stdout().is_terminal() || terminal::is_dumb() {
         session.record(recorder.as_mut())?;
     } else {
-        session.show(&mut Screen::open()?, recorder.as_mut())?;
+        let mut screen = ratatui::try_init()?;
+        let shown = session.show(&mut screen, recorder.as_mut());
+        ratatui::try_restore()?;
+        shown?;
     }
     if let Some(recorder) = &mut recorder {
         recorder.flush()?;
@@ -118,7 +121,7 @@ impl Session {
     /// Records without a view.
     fn record(&mut self, mut recorder: Option<&mut Recorder>) -> Result<(), CommandError> {
         let interrupted = Arc::new(AtomicBool::new(false));
-        signal_hook::flag::register(SIGINT, interrupted.clone())?;
+        signal_hook::flag::register(signal_hook::consts::SIGINT, interrupted.clone())?;
         let mut lost = None;
         while !self.is_over() && !interrupted.load(Ordering::Relaxed) {
             self.listen(Instant::now() + PICTURE, recorder.as_deref_mut())?;
@@ -134,13 +137,19 @@ impl Session {
     /// Shows a view.
     fn show(
         &mut self,
-        screen: &mut Screen,
+        screen: &mut DefaultTerminal,
         mut recorder: Option<&mut Recorder>,
     ) -> Result<(), CommandError> {
         while !self.is_over() {
             self.listen(Instant::now() + PICTURE, recorder.as_deref_mut())?;
-            screen.show(&tui::draw(&self.scope, Screen::size()), terminal::has_colour(true))?;
-            for key in screen.keys()? {
+            screen.draw(|frame| {
+                tui::draw(frame, &self.scope);
+                if !terminal::has_colour(true) {
+                    tui::without_colour(frame);
+                }
+            })?;
+            while event::poll(Duration::ZERO)? {
+                let Input::Key(key) = event::read()? else { continue };
                 match self.scope.control.press(key) {
                     Action::None => {}
                     Action::Request(request) => self.poller.request(request),

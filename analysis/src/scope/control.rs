@@ -1,23 +1,9 @@
 //! Commands to the board that the scope has keys for.
 
 pub use haptic_model::board::request::{Reply, Request};
+use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 use crate::link::change;
-
-/// A key.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Key {
-    /// A letter, a digit, a sign or a space.
-    Letter(char),
-    /// Enter.
-    Enter,
-    /// Backspace.
-    Backspace,
-    /// Esc.
-    Escape,
-    /// Ctrl-C.
-    Interrupt,
-}
 
 /// The action of a key.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,20 +33,25 @@ pub struct Control {
 impl Control {
     /// Takes a key. Arming takes a capital letter: it switches a motor on. Ctrl-C quits from
     /// anywhere.
-    pub fn press(&mut self, key: Key) -> Action {
+    pub fn press(&mut self, key: KeyEvent) -> Action {
+        if key.kind == KeyEventKind::Release {
+            return Action::None;
+        }
+        if key.modifiers.contains(KeyModifiers::CONTROL) {
+            return if key.code == KeyCode::Char('c') { Action::Quit } else { Action::None };
+        }
         match self.prompt.take() {
-            _ if key == Key::Interrupt => Action::Quit,
-            Some(line) => self.edit(line, key),
-            None => self.command(key),
+            Some(line) => self.edit(line, key.code),
+            None => self.command(key.code),
         }
     }
 
-    fn command(&mut self, key: Key) -> Action {
+    fn command(&mut self, key: KeyCode) -> Action {
         match key {
-            Key::Letter('q') | Key::Escape => Action::Quit,
-            Key::Letter('A') => Action::Request(Request::Arm),
-            Key::Letter('d') => Action::Request(Request::Disarm),
-            Key::Letter('t' | ':') => {
+            KeyCode::Char('q') | KeyCode::Esc => Action::Quit,
+            KeyCode::Char('A') => Action::Request(Request::Arm),
+            KeyCode::Char('d') => Action::Request(Request::Disarm),
+            KeyCode::Char('t' | ':') => {
                 self.prompt = Some(String::new());
                 Action::None
             }
@@ -69,15 +60,15 @@ impl Control {
     }
 
     /// An invalid line stays, to be corrected.
-    fn edit(&mut self, mut line: String, key: Key) -> Action {
+    fn edit(&mut self, mut line: String, key: KeyCode) -> Action {
         match key {
-            Key::Escape => return Action::None,
-            Key::Enter => match change::line(&line) {
+            KeyCode::Esc => return Action::None,
+            KeyCode::Enter => match change::line(&line) {
                 Ok(changes) => return Action::Request(Request::Set(changes)),
                 Err(why) => self.message = Some(why),
             },
-            Key::Backspace => drop(line.pop()),
-            Key::Letter(letter) => line.push(letter),
+            KeyCode::Backspace => drop(line.pop()),
+            KeyCode::Char(letter) => line.push(letter),
             _ => {}
         }
         self.prompt = Some(line);
@@ -94,11 +85,11 @@ mod tests {
 
     fn typed(control: &mut Control, text: &str) -> Action {
         let keys = text.chars().map(|letter| match letter {
-            '\n' => Key::Enter,
-            '\u{8}' => Key::Backspace,
-            letter => Key::Letter(letter),
+            '\n' => KeyCode::Enter,
+            '\u{8}' => KeyCode::Backspace,
+            letter => KeyCode::Char(letter),
         });
-        keys.map(|key| control.press(key)).last().unwrap_or(Action::None)
+        keys.map(|key| control.press(key.into())).last().unwrap_or(Action::None)
     }
 
     #[test]
@@ -119,12 +110,13 @@ mod tests {
         let mut control = Control::default();
         assert_eq!(typed(&mut control, "tqAd"), Action::None);
         assert_eq!(control.prompt.as_deref(), Some("qAd"));
-        assert_eq!(control.press(Key::Escape), Action::None);
+        assert_eq!(control.press(KeyCode::Esc.into()), Action::None);
         assert_eq!(typed(&mut control, "a"), Action::None);
         assert_eq!(typed(&mut control, "A"), Action::Request(Request::Arm));
         assert_eq!(typed(&mut control, "d"), Action::Request(Request::Disarm));
         assert_eq!(typed(&mut control, "q"), Action::Quit);
+        let interrupt = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL);
         typed(&mut control, "t");
-        assert_eq!(control.press(Key::Interrupt), Action::Quit);
+        assert_eq!(control.press(interrupt), Action::Quit);
     }
 }

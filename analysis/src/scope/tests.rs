@@ -7,6 +7,8 @@ use haptic_servo::servo_loop::{Frame, State};
 use haptic_servo::torque::LimitReason;
 use haptic_servo::wire::Discarded;
 use haptic_servo::wire::message::{ActiveParameters, BoardUnits, Changes, PreviousFault, Status};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
 
 use super::history::History;
 use super::poller::Event;
@@ -69,8 +71,10 @@ fn connected() -> Scope {
 }
 
 /// The content of a terminal of that size, line by line.
-fn screen(scope: &Scope, width: usize, height: usize) -> String {
-    tui::draw(scope, (width, height)).to_string()
+fn screen(scope: &Scope, width: u16, height: u16) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+    terminal.draw(|frame| tui::draw(frame, scope)).unwrap();
+    terminal.backend().to_string()
 }
 
 #[test]
@@ -109,7 +113,7 @@ fn shows_what_a_power_stage_measures() {
     });
     take(&mut scope, Event::Status(Status { power, ..STATUS }, Discarded::default()));
     let shown = screen(&scope, 120, 40);
-    let lines: Vec<_> = shown.lines().map(str::trim_end).collect();
+    let lines: Vec<_> = shown.lines().map(|line| line.trim_matches('"').trim_end()).collect();
     let at = lines.iter().position(|line| *line == LINE);
     let at = at.unwrap_or_else(|| panic!("{LINE:?} is not a line of\n{shown}"));
     // Between the facts of every board, of which none gives way.
@@ -148,22 +152,30 @@ fn shows_the_line_that_is_typed_and_all_of_the_answer() {
                     delta = 0.022 N m s/rad that the device has; it would pass with stiffness <= 16";
     scope.control.message = Some(sentence.to_owned());
     let shown = screen(&scope, 60, 40);
-    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let words = |text: &str| {
+        text.replace(['"', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ")
+    };
     assert!(words(&shown).contains(&words(sentence)), "{shown}");
     assert!(shown.contains("tune: stiffness = 2_") && shown.contains("Enter sends"), "{shown}");
 }
 
 #[test]
 fn colours_can_be_left_out() {
-    let canvas = tui::draw(&connected(), (80, 24));
-    // Bold and dim stay.
-    let colours = |has_colour| {
-        let rows: Vec<String> = canvas.rows(has_colour).collect();
-        rows.concat().matches("\x1b[3").count()
+    let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
+    let scope = connected();
+    let coloured = |terminal: &Terminal<TestBackend>| {
+        let cells = &terminal.backend().buffer().content;
+        cells.iter().filter(|cell| cell.fg != ratatui::style::Color::Reset).count()
     };
-    assert!(colours(true) > 0);
-    assert_eq!(colours(false), 0);
-    assert!(canvas.rows(false).any(|row| row.contains("\x1b[1m")));
+    terminal.draw(|frame| tui::draw(frame, &scope)).unwrap();
+    assert!(coloured(&terminal) > 0);
+    terminal
+        .draw(|frame| {
+            tui::draw(frame, &scope);
+            tui::without_colour(frame);
+        })
+        .unwrap();
+    assert_eq!(coloured(&terminal), 0);
 }
 
 #[test]
