@@ -130,9 +130,6 @@ pub mod torque;
 pub mod dac;
 pub mod power_reading;
 
-#[cfg(test)]
-mod fixture;
-
 // The current of a motor on a board's own power stage.
 pub mod current;
 

@@ -1,4 +1,4 @@
-//! The scene of the tests.
+//! The scenes and the motors of the tests.
 
 use crate::encoder::{CounterWidth, RawCount};
 use crate::number::Number;
@@ -7,7 +7,7 @@ use crate::servo::Servo;
 use crate::transducers::Transducers;
 
 /// An environment on the paper's paddle at 1 kHz, behind the standard coupling.
-pub(crate) const fn scene<E: Copy>(environment: E) -> Scene<E> {
+pub(crate) const fn scene<E>(environment: E) -> Scene<E> {
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },
@@ -18,12 +18,17 @@ pub(crate) const fn scene<E: Copy>(environment: E) -> Scene<E> {
     }
 }
 
+/// An encoder whose counter does not overflow, and a small motor.
 pub(crate) const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits32,
     full_scale_torque: 1.0,
     largest_speed: 100.0,
 };
+
+/// The paddle's encoder and motor on a board.
+pub(crate) const PADDLE: Transducers =
+    Transducers { counter: CounterWidth::Bits16, full_scale_torque: 2.0, ..TRANSDUCERS };
 
 /// The largest difference in N m of the torques of a servo with a coarse encoder and a servo with exact
 /// positions, in `f64`, in a slow and a fast motion of these amplitudes in rad.

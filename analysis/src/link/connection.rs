@@ -52,13 +52,16 @@ impl Wire {
         self.began.elapsed()
     }
 
-    /// Sends the messages that are due, and waits for bytes until a time at the latest.
+    /// Waits for bytes until a time at the latest, and sends the messages that are due then. It reads first: the
+    /// bytes that came while this process did not run are no silence.
     pub fn carry(&mut self, until: Instant) -> Result<(), LinkError> {
-        let now = self.now();
-        self.client.tick(now).map_err(|error| self.ended(error))?;
         let received = self.exchange(until).map_err(|source| self.lost(source))?;
         let now = self.now();
-        self.client.receive(&self.bytes[..received], now).map_err(|error| self.ended(error))
+        self.client
+            .receive(&self.bytes[..received], now)
+            .and_then(|()| self.client.tick(now))
+            .map_err(|error| self.ended(error))?;
+        self.flush().map_err(|source| self.lost(source))
     }
 
     /// Sends the waiting bytes; returns the number of received bytes.

@@ -107,3 +107,16 @@ fn flash_says_how_much_the_board_has() {
     let size = " of 524288 bytes; the linker's map, which fits every board, allows 131072\n";
     assert!(said.contains("flash: ") && said.contains(size), "{said}");
 }
+
+#[test]
+fn json_has_the_fields_of_the_contract_and_nothing_else_is_printed() {
+    let output = haptic(&["certify", "--json", "-"], WALL.as_bytes());
+    assert!(output.stderr.is_empty(), "{output:?}");
+    let [Value::Object(answer)] = &lines(&output)[..] else { panic!("one object") };
+    let mut fields: Vec<&str> = answer.keys().map(String::as_str).collect();
+    fields.sort_unstable();
+    let fields = fields.join(" ");
+    let wanted = "alpha alpha_coupled assumptions delta margin message name reason remedies rules \
+                  theta verdict";
+    assert_eq!(fields, wanted);
+}

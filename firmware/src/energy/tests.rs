@@ -22,7 +22,10 @@ const TRANSDUCERS: Transducers = Transducers {
 };
 
 const fn spring(stiffness: f64) -> Scene {
-    crate::fixture::scene(Wall::spring(stiffness, 1).alone(), Some(1.5))
+    Scene {
+        torque_limit: Some(1.5),
+        ..crate::test_scene::scene(Wall::spring(stiffness, 1).alone())
+    }
 }
 
 /// Ticks in which the encoder moved by `step` and a code was written.

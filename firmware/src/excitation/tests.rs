@@ -1,7 +1,7 @@
 //! Sweeps as they are played.
 
 use super::*;
-use crate::fixture::TRANSDUCERS as MOTOR;
+use crate::test_scene::PADDLE as MOTOR;
 
 const LOW: Tone = Tone { frequency: 4.0, amplitude: 0.5, settle: 2, measured: 6 };
 const HIGH: Tone = Tone { frequency: 240.0, amplitude: 2.0, settle: 6, measured: 24 };

@@ -14,7 +14,7 @@ const TRANSDUCERS: Transducers = Transducers {
 };
 
 const fn scene(environment: Environment) -> Scene {
-    crate::fixture::scene(environment, Some(1.0))
+    Scene { torque_limit: Some(1.0), ..crate::test_scene::scene(environment) }
 }
 
 const WALL: Scene = scene(Wall::damped(22.0, 0.01, 1).behind(0.0).alone());

@@ -12,6 +12,7 @@ use analysis::studies::failures::method_result::Failure;
 use analysis::studies::failures::motion::Outcome;
 use analysis::studies::failures::report::{CaseReport, walls};
 use analysis::studies::failures::setting::{KNOB, PADDLE, PADDLES, PERIOD};
+use analysis::studies::failures::varying_hand::{self, VaryingHand};
 use analysis::studies::failures::{ALL, Case, roots, setting, walls as wall, zigzag};
 use haptic_servo::environment::{Environment, Rational};
 use haptic_servo::scene::Scene;
@@ -215,4 +216,15 @@ fn walls_rest_below_the_limit_and_not_above_it() {
         // of a device on which it would not.
         assert_eq!(refused, usize::from(report.delay == 1));
     }
+}
+
+/// The hand that varies is passive: its ways never return more than they were given, and none of them by itself
+/// grows.
+#[test]
+fn a_hand_that_varies_is_passive() {
+    let hand = VaryingHand::against(&varying_hand::at(1.005)).unwrap();
+    let [one, other] = hand.ways;
+    let returned = one.weight * one.weight + other.weight * other.weight;
+    assert!((returned - 1.0).abs() < 1e-12, "{returned}");
+    assert!(one.pole.abs() < 1.0 && other.pole.abs() < 1.0, "{hand:?}");
 }

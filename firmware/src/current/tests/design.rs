@@ -220,7 +220,7 @@ fn room_and_voltage_agree() {
 fn the_push_has_the_winding_at_over_current() {
     for (current_loop, stored) in [(BRUSHED, 3.75e-3), (BRUSHLESS, 1.5 * 0.5 * 0.15e-3 * 25.0)] {
         let free = crate::environment::Canceller { residual: 0.01, delay: 1 }.alone();
-        let scene = crate::fixture::scene(free, None);
+        let scene = crate::test_scene::scene(free);
         let push = current_loop.push(&scene, &TRANSDUCERS, Some(0.001));
         assert_eq!((push.torque, push.speed, push.injected), (0.2, 100.0, 0.001));
         assert!(push.stored >= stored && push.stored < stored * (1.0 + 1e-9), "{push:?}");

@@ -26,7 +26,7 @@ const TICKS: usize = 150;
 
 /// The paper's device behind the standard coupling.
 const fn scene<E>(environment: E) -> Scene<E> {
-    crate::fixture::scene(environment, None)
+    crate::test_scene::scene(environment)
 }
 
 /// A hand that pushes in, holds, trembles and comes back: counts, at most about 0.2 rad.

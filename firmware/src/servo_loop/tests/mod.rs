@@ -16,16 +16,16 @@ use super::*;
 use crate::boot::Program;
 use crate::environment::{Environment, Wall};
 use crate::fault::FaultRecord;
-use crate::fixture;
 use crate::reset::ResetCause;
 use crate::scene::{Coupling, Scene, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
+use crate::test_scene;
 
 /// The paper's device and coupling; ramps of a hundred ticks.
 const fn program<E: Copy>(environment: E) -> Program<E> {
     Program {
-        scene: fixture::scene(environment, Some(1.0)),
-        transducers: fixture::TRANSDUCERS,
+        scene: Scene { torque_limit: Some(1.0), ..test_scene::scene(environment) },
+        transducers: test_scene::PADDLE,
         rendering: RenderingOptions { fade: 0.1, injection: None, ..RenderingOptions::DEFAULT },
         options: Options::DEFAULT,
     }

@@ -1,11 +1,16 @@
-//! Torque profiles that are changed under the hand: another mode.
+//! Torque profiles that are changed under the hand: another torque, another number of detents, another mode.
 
 use super::swap::{largest_step, set};
 use super::*;
 use crate::certificate::{Certified, Parameter};
-use crate::environment::{KNOB_MODES, Profile};
+use crate::environment::{KNOB_MODES, Knots, Profile, Shape};
 use crate::scene_type::Typed;
+use crate::tuning;
 
+static DETENTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.05)]);
+
+/// With a torque limit near their torque, so that a step of the fade is small beside it.
+const KNOB: Program<Environment> = limited(program(Profile::of(&DETENTS, 1).alone()), 0.1);
 const CERTIFIED: Certified<Scene> =
     limited(program(Profile::of_modes(&KNOB_MODES, 1).alone()), 0.2).scene.certified();
 crate::scene_type!(KnobModes: CERTIFIED);
@@ -18,6 +23,62 @@ const fn limited<E: Copy>(mut program: Program<E>, torque: f64) -> Program<E> {
 
 /// Codes of 1 N m.
 const CODES: f64 = 895.5;
+
+/// The code of detents at a count at rest, by their own formula: a wave of straight lines whose top is
+/// `torque`, behind a coupling of 44 N m/rad.
+fn detents(count: i32, detents: f64, torque: f64) -> f64 {
+    let mut behind = 0.0;
+    for _ in 0..100 {
+        let angle = f64::from(count) / 61_440.0 * core::f64::consts::TAU - behind / 44.0;
+        let places = angle / core::f64::consts::TAU * detents;
+        let away = places - places.round();
+        let falls = (2.0 - 4.0 * away.abs()) * away.signum();
+        behind = torque * if away.abs() < 0.25 { 4.0 * away } else { falls };
+    }
+    2048.0 - behind * CODES
+}
+
+/// The hand holds still where the old torque and the new one differ: what it feels of the change is a torque
+/// that falls away, nothing, and a torque that comes back.
+#[test]
+fn the_torque_and_the_number_of_detents_change_without_a_step() {
+    // A quarter of the pitch of 24 detents, where theirs is largest; that of 20 ones is less.
+    let count = 61_440 / 96;
+    let mut bench: Bench<_, f32, Latched> = Bench::armed(&KNOB, Board::new()).unwrap();
+    bench.stand(count, 200);
+    let mut scene = KNOB;
+    for (number, torque, changes) in [
+        (20.0, 0.05, &[(Parameter::Count, 20.0)][..]),
+        (20.0, 0.02, &[(Parameter::ProfileTorque, 0.02)]),
+        (24.0, 0.08, &[(Parameter::ProfileTorque, 0.08), (Parameter::Count, 24.0)]),
+        (24.0, 0.08, &[(Parameter::Centre, core::f64::consts::TAU / 96.0)]),
+    ] {
+        let before = bench.board.codes().len() - 1;
+        bench.requests.submit(set(&scene, changes)).unwrap();
+        scene.scene = tuning::apply(&scene.scene, changes).unwrap();
+        bench.stand(count, 60);
+        assert_eq!(bench.notices().last(), Some(&Notice::Applied));
+        let codes = &bench.board.codes()[before..];
+        let (old, new) = (codes[0], *codes.last().unwrap());
+        let is_centre = changes[0].0 == Parameter::Centre;
+        let expected = if is_centre { 2048.0 } else { detents(count, number, torque) };
+        assert!((f64::from(new) - expected).abs() <= 1.0, "{changes:?}: {new}, not {expected}");
+        assert_ne!(old, new, "{changes:?}");
+        // A tenth of the torque limit a tick, which is ten steps of a clamp that opens in a hundred ticks.
+        let fade = (0.1 * 0.1 * CODES).ceil() as i32;
+        assert!(largest_step(codes) <= fade, "{changes:?}: {codes:?}");
+        // Away for ten ticks and more, as long as a new set runs before its clamp opens.
+        let gap = codes.iter().filter(|code| **code == 2048).count();
+        assert!(gap >= 10, "{changes:?}: {codes:?}");
+        // Never more than before or after, and on their side, but for a tick in which the detents do not know
+        // yet what the coupling gives under the ramp's last step.
+        let (low, high) = (old.min(new) - 1, old.max(new).max(2048));
+        assert!(codes.iter().all(|code| (low..=high).contains(code)), "{changes:?}: {codes:?}");
+        let gap = longest_gap(&KNOB.rendering, 1e-3);
+        let settled = (gap * 1e3) as usize + 1;
+        assert!(codes[settled..].iter().all(|code| *code == new), "{changes:?}: {codes:?}");
+    }
+}
 
 /// A hand on a knob that turns slowly while every mode is selected, whatever was selected before.
 #[test]

@@ -19,25 +19,28 @@ use crate::environment::{
     Canceller, Damper, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side, Wall,
 };
 use crate::fault::Fault;
-use crate::fixture;
 use crate::number::Format;
 use crate::scene::{Device, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
 use crate::servo_loop::{
     Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, OutputEvent, ServoLoop, State,
 };
+use crate::test_scene;
 use crate::tuning::RenderError;
 use crate::wire::message::LONGEST_TO_HOST;
 use crate::wire::{Discarded, encode, largest_frame};
 
-const SCENE: Scene = fixture::scene(Wall::damped(22.0, 0.01, 1).behind(0.0).alone(), Some(1.0));
+const SCENE: Scene = Scene {
+    torque_limit: Some(1.0),
+    ..test_scene::scene(Wall::damped(22.0, 0.01, 1).behind(0.0).alone())
+};
 
 fn program() -> Program<Environment> {
     Program {
         scene: SCENE,
         transducers: Transducers {
             largest_speed: Transducers::NO_HAND_IS_FASTER,
-            ..fixture::TRANSDUCERS
+            ..test_scene::PADDLE
         },
         rendering: RenderingOptions { fade: 0.02, injection: None, ..RenderingOptions::DEFAULT },
         options: servo_loop::Options::DEFAULT,

@@ -5,9 +5,6 @@ use adversary::planted::Planted;
 use adversary::scenes::Choice;
 use adversary::search::Search;
 
-/// Rules that are refuted within few scenes.
-const SOON: [Planted; 3] = [Planted::LagIgnored, Planted::DelayIgnored, Planted::MissedUpdates];
-
 /// Whether the search finds it among the first scenes.
 fn is_found(planted: Planted, scenes: u64) -> bool {
     let choice = Choice { planted: Some(planted), ..Choice::ANY };
@@ -19,13 +16,8 @@ fn is_found(planted: Planted, scenes: u64) -> bool {
     found.refuted() > 0
 }
 
+/// It ends at the first refutation: of all rules, the rarest shows in the 4155th scene.
 #[test]
-fn the_search_finds_what_some_planted_rules_let_pass() {
-    assert!(SOON.into_iter().all(|planted| is_found(planted, super::FEW)));
-}
-
-#[test]
-#[ignore = "searches for minutes"]
 fn the_search_finds_what_every_planted_rule_lets_pass() {
     let all = Planted::ALL.into_iter();
     let missed: Vec<_> = all.filter(|planted| !is_found(*planted, super::SCENES)).collect();

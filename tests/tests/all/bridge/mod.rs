@@ -1,5 +1,6 @@
 //! What a bridge renders, in closed loop.
 
+mod back_emf;
 mod rig;
 mod servos;
 
