@@ -2,7 +2,6 @@
 //! against which the feedback works.
 
 #[path = "../../../../firmware/src/bin/bridge_paddle/mod.rs"]
-#[allow(dead_code)]
 mod bridge_paddle;
 
 use super::rig::{Machine, Rig};
