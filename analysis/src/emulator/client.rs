@@ -40,7 +40,7 @@ pub struct Client<Server> {
 impl<Server> Client<Server> {
     /// Starts the program, built by [`build_harness`](crate::toolchain::Toolchain::build_harness).
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self::with_transport(Guest::boot(elf, &[])?))
+        Ok(Self::with_transport(Guest::boot(elf)?))
     }
 
     /// A client of a running program.

@@ -108,16 +108,7 @@ impl Emulator {
     /// Starts a scene's program. A program that refuses to run is detected at the first
     /// [`exchange`](Self::exchange).
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Self::boot_with(elf, &[])
-    }
-
-    /// The same, with a socket for a debugger in addition to the serial port: `debugger` in its folder.
-    pub fn boot_for_debugger(elf: &Path) -> Result<Self, EmulatorError> {
-        Self::boot_with(elf, &["-gdb", "unix:debugger,server=on,wait=off"])
-    }
-
-    fn boot_with(elf: &Path, more: &[&str]) -> Result<Self, EmulatorError> {
-        Ok(Self { guest: Guest::boot(elf, more)?, number: 0, exchanges: 0 })
+        Ok(Self { guest: Guest::boot(elf)?, number: 0, exchanges: 0 })
     }
 
     /// The same with another timeout.
@@ -208,7 +199,7 @@ struct Guest {
 }
 
 impl Guest {
-    fn boot(elf: &Path, more: &[&str]) -> Result<Self, EmulatorError> {
+    fn boot(elf: &Path) -> Result<Self, EmulatorError> {
         let program = |source| EmulatorError::Program { path: elf.into(), source };
         let path = elf.canonicalize().map_err(program)?;
         let decoder = LogDecoder::of_program(&std::fs::read(&path).map_err(program)?);
@@ -217,7 +208,6 @@ impl Guest {
         let errors = File::create(folder.path().join(ERRORS)).map_err(EmulatorError::Pipe)?;
         let mut process = emulator()
             .args(BOARD)
-            .args(more)
             .arg("-kernel")
             .arg(path)
             .current_dir(folder.path())
