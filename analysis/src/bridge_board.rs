@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use haptic_model::board::client::frame;
 use haptic_servo::current::CurrentLoop;
 use haptic_servo::dac::DacCode;
 use haptic_servo::scene::Scene;
@@ -13,7 +14,6 @@ use crate::shaft::{HandHeldShaft, LedShaft, Shaft};
 use crate::toolchain::BoardModel;
 use crate::virtual_board::{
     LONGEST_ARMING, Sample, VirtualBoard, VirtualBoardError, VirtualBoardReport, fading_samples,
-    request,
 };
 
 /// Periods of the modulation in which the current sensors' offsets are measured, twice over.
@@ -90,7 +90,7 @@ impl BridgeBoard {
         let hand = HandTrajectory::push_and_let_go();
         let mut shaft = HandHeldShaft::new(scene, hand, &self.transducers, self.current_loop)?;
         shaft.let_go(true);
-        let mut bytes = request(&ToBoard::Align { id: 0 });
+        let mut bytes = frame(&ToBoard::Align { id: 0 });
         let samples = (LONGEST_ALIGNMENT / scene.timing.period) as usize;
         let mut has_begun = false;
         for _ in 0..samples {
@@ -119,7 +119,7 @@ impl BridgeBoard {
     }
 
     fn arm(&mut self, shaft: &mut LedShaft) -> Result<(), VirtualBoardError> {
-        let mut bytes = request(&ToBoard::Arm { id: 0 });
+        let mut bytes = frame(&ToBoard::Arm { id: 0 });
         for _ in 0..LONGEST_ARMING {
             if self.period(shaft, &std::mem::take(&mut bytes))?.amplifier {
                 return Ok(());

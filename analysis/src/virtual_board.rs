@@ -8,11 +8,11 @@ use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
+use haptic_model::board::client::frame;
 use haptic_servo::current::{Drive, Motor, Regeneration, Winding};
 use haptic_servo::dac::DacCode;
 use haptic_servo::servo::RenderingOptions;
-use haptic_servo::wire::message::{LONGEST_TO_BOARD, ToBoard};
-use haptic_servo::wire::{encode, largest_frame};
+use haptic_servo::wire::message::ToBoard;
 
 use crate::emulator::InstructionStats;
 use crate::emulator::log::LogDecoder;
@@ -89,13 +89,6 @@ pub struct VirtualBoardReport {
     pub resets: u32,
     /// Lines of the log.
     pub log: Vec<String>,
-}
-
-/// A request as it goes over the serial port.
-pub fn request(message: &ToBoard) -> Vec<u8> {
-    let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-    // The buffer has room for the longest message.
-    encode(message, &mut buffer).unwrap_or_default().to_vec()
 }
 
 /// Samples from arming until the clamp of a servo with this period in s has opened.
@@ -178,7 +171,7 @@ impl VirtualBoard {
     /// Arms the servo over the serial port, and runs until the clamp of a servo with this period in s has
     /// opened. The device stands still meanwhile.
     pub fn arm_and_wait(&mut self, period: f64) -> Result<(), VirtualBoardError> {
-        let mut arm = request(&ToBoard::Arm { id: 0 });
+        let mut arm = frame(&ToBoard::Arm { id: 0 });
         for _ in 0..LONGEST_ARMING {
             let on = self.sample()?.amplifier;
             self.answer(self.count, &std::mem::take(&mut arm))?;

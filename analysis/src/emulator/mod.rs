@@ -20,10 +20,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+use haptic_model::board::client::frame;
 use haptic_servo::board::lockstep_protocol::{TickInput, TickOutput};
 use haptic_servo::servo_loop::State;
-use haptic_servo::wire::message::{LONGEST_TO_BOARD, ToBoard};
-use haptic_servo::wire::{encode, largest_frame};
+use haptic_servo::wire::message::ToBoard;
 use tempfile::TempDir;
 
 pub use bench_client::BenchClient;
@@ -173,8 +173,7 @@ impl Emulator {
     /// Requests arming over the board's serial port, like any host.
     fn arm(&self) -> io::Result<UnixStream> {
         let mut port = UnixStream::connect(self.port())?;
-        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-        port.write_all(encode(&ToBoard::Arm { id: 0 }, &mut buffer).map_err(io::Error::other)?)?;
+        port.write_all(&frame(&ToBoard::Arm { id: 0 }))?;
         Ok(port)
     }
 
