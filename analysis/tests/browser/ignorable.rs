@@ -5,18 +5,24 @@ use std::process::{Command, ExitCode};
 
 use libtest_mimic::{Arguments, Completion, Trial};
 
-/// Runs tests, each with its name. All but the first are ignored unless they are asked for by a part of a name
-/// or `--include-ignored`. `kind` is shown for tests without their tool, and `what` is what they do with it.
+/// Runs tests, each with its name. All but the first `always` are ignored unless they are asked for by a part of
+/// a name or `--include-ignored`. `kind` is shown for tests without their tool, and `what` is what they do with
+/// it.
 pub fn run<T: FnOnce() + Send + 'static>(
     kind: &str,
     what: &str,
+    always: usize,
     tests: Vec<(&str, T)>,
     set_up: impl FnOnce() -> Result<(), String>,
 ) -> ExitCode {
     let arguments = Arguments::from_args();
+    let asks_for_all = arguments.ignored || arguments.include_ignored;
     // A list of the tests, or other tests, need no tool.
-    let is_wanted = |name: &str| arguments.filter.as_ref().is_none_or(|part| name.contains(part));
-    let looks = !arguments.list && tests.iter().any(|(name, _)| is_wanted(name));
+    let is_wanted = |(number, (name, _)): (usize, &(&str, T))| match &arguments.filter {
+        Some(part) => name.contains(part),
+        None => asks_for_all || number < always,
+    };
+    let looks = !arguments.list && tests.iter().enumerate().any(is_wanted);
     let missing = looks.then(set_up).and_then(Result::err);
     if let Some(why) = &missing {
         eprintln!("skipped: {what}: {why}");
@@ -30,7 +36,7 @@ pub fn run<T: FnOnce() + Send + 'static>(
             test();
             Ok(Completion::Completed)
         };
-        let is_left_out = arguments.filter.is_none() && number > 0;
+        let is_left_out = arguments.filter.is_none() && number >= always;
         let trial = Trial::ignorable_test(name, run).with_ignored_flag(is_missing || is_left_out);
         if is_missing { trial.with_kind(kind) } else { trial }
     };
@@ -41,7 +47,7 @@ pub fn run<T: FnOnce() + Send + 'static>(
 /// They do not count as passed: runs this program again, with a path that has no programs.
 pub fn assert_ignored_without_tools(kind: &str, count: usize, package: &str) {
     let this = std::env::current_exe().unwrap();
-    let run = Command::new(this).env("PATH", "/nowhere").output().unwrap();
+    let run = Command::new(this).arg("--include-ignored").env("PATH", "/nowhere").output().unwrap();
     assert!(run.status.success(), "{run:?}");
     let [shown, said] = [run.stdout, run.stderr].map(|text| String::from_utf8(text).unwrap());
     assert_eq!(shown.matches(&format!("test [{kind}] ")).count(), count, "{shown}");

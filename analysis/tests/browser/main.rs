@@ -64,7 +64,7 @@ const KIND: &str = "no chromium";
 
 fn main() -> ExitCode {
     let what = "tests/browser looks at pages with chromium";
-    ignorable::run(KIND, what, all(), || set_up_tool(NAME))
+    ignorable::run(KIND, what, 1, all(), || set_up_tool(NAME))
 }
 
 fn ignored_without_a_browser() {

@@ -1,7 +1,7 @@
 //! The package for Python, installed by pip from this checkout: its answers against those of the program, and
 //! its example. It needs Python, and the packages that it is built and drawn with, which come from PyPI the
-//! first time. Where they are missing, these tests report this and count as ignored. All but the first are
-//! also ignored, unless they are asked for by a part of a name or `--include-ignored`.
+//! first time. Where they are missing, these tests report this and count as ignored. They are also
+//! ignored unless they are asked for by a part of a name or `--include-ignored`.
 
 #[allow(dead_code)]
 #[path = "../all/common/mod.rs"]
@@ -44,7 +44,7 @@ fn main() -> ExitCode {
     let count = tests.len() + 1;
     let ignored = move || ignorable::assert_ignored_without_tools(KIND, count, "python3");
     tests.push(("without_python_these_tests_are_ignored", Box::new(ignored)));
-    ignorable::run(KIND, "tests/python runs the package for Python", tests, || {
+    ignorable::run(KIND, "tests/python runs the package for Python", 0, tests, || {
         let environment = PythonEnvironment::kept().unwrap();
         environment.set_up()?;
         finished(environment.pip_install().args(FROM_PYPI))

@@ -136,6 +136,7 @@ fn judged_alike(board: &mut CertifyClient, scene: &Scene, name: &str) -> Certify
 /// The same of the reference cases, of scenes whose torque lags, and of torque profiles of 64 knots; none takes
 /// longer than it may.
 #[test]
+#[ignore = "builds for minutes"]
 fn the_board_judges_as_the_host_does() {
     let mut board = CertifyClient::boot(&harness("certify_server")).unwrap();
     for case in vectors::all() {
@@ -163,6 +164,7 @@ fn the_board_judges_as_the_host_does() {
 /// Torques and codes are those of the host, bit for bit, in every number format; there the scene is
 /// data, on the board it is a type.
 #[test]
+#[ignore = "builds for minutes"]
 fn every_format_computes_as_the_host_does() {
     let mut board = bench_board();
     for (number, case) in servo::cases().iter().enumerate() {
@@ -198,6 +200,7 @@ fn every_format_computes_as_the_host_does() {
 /// So are those behind the matched coupling, with one lag and without; the wall's depth and its torque's limit
 /// change what a tick does.
 #[test]
+#[ignore = "builds for minutes"]
 fn behind_the_matched_coupling_a_board_computes_as_the_host_does() {
     let mut board = bench_board();
     let environment = Wall::damped(22.0, 0.01, 0).behind(0.01).alone();
@@ -249,6 +252,7 @@ fn a_board_that_does_nothing_is_an_error() {
 /// However a set is judged, taken or refused, by its certificate or by its timing, the answer comes
 /// and a kibibyte of stack is left.
 #[test]
+#[ignore = "builds for minutes"]
 fn every_set_is_answered_with_stack_to_spare() {
     for name in ["delayed_spring", "damper_wall", "free_mode", "knob"] {
         let elf = program(name, NumberFormat::F32);
@@ -269,6 +273,7 @@ fn every_set_is_answered_with_stack_to_spare() {
 /// An instruction takes 32 ns here, so that a phase of 10 us is 312 of them: enough for the tick in
 /// floating point, but not in fixed point, which a real board has five times as many cycles for.
 #[test]
+#[ignore = "builds for minutes"]
 fn a_tick_that_is_longer_than_its_phase_keeps_the_board_from_being_armed() {
     let mut board = Emulator::boot(&program("undelayed_wall", NumberFormat::Fixed)).unwrap();
     let error = board.arm_and_wait().unwrap_err();

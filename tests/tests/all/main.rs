@@ -7,6 +7,7 @@ mod bits;
 mod boards;
 mod bridge;
 mod closed_motions;
+mod corpus;
 mod crowded;
 mod current;
 mod decision;

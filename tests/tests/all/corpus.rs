@@ -1,8 +1,8 @@
 //! What coverage-guided search has found to take every branch that it reached, once more.
 
-#[path = "../fuzz/bodies/decoder.rs"]
+#[path = "../../../firmware/fuzz/bodies/decoder.rs"]
 mod decoder;
-#[path = "../fuzz/bodies/parameters.rs"]
+#[path = "../../../firmware/fuzz/bodies/parameters.rs"]
 mod parameters;
 
 /// Runs every input: a line of hexadecimal digits each.
@@ -25,10 +25,10 @@ fn bytes(line: &str) -> Option<Vec<u8>> {
 
 #[test]
 fn any_bytes_on_the_wire() {
-    replay("decoder", include_str!("../fuzz/corpus/decoder.hex"), decoder::run);
+    replay("decoder", include_str!("../../../firmware/fuzz/corpus/decoder.hex"), decoder::run);
 }
 
 #[test]
 fn any_changes_of_any_scene() {
-    replay("parameters", include_str!("../fuzz/corpus/parameters.hex"), parameters::run);
+    replay("parameters", include_str!("../../../firmware/fuzz/corpus/parameters.hex"), parameters::run);
 }
