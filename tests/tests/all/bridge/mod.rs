@@ -224,18 +224,3 @@ fn a_boards_servo_behind_the_matched_coupling_is_what_was_certified_and_comes_to
     }
     println!("{largest} N m off of {} N m", bound.hum());
 }
-
-#[test]
-fn another_bandwidth_is_another_latency_and_a_lower_one_a_lower_limit() {
-    let of = |bandwidth: f64| {
-        let machine = Machine { drive: Drive { bandwidth, ..MACHINE.drive }, ..MACHINE };
-        let latency = latency(&machine.current_loop());
-        (latency.actuator_lag.middle(), limit(Coupling::Rigid, latency))
-    };
-    let limits = [300.0, 1000.0, 1500.0, 2000.0, 2500.0].map(of);
-    println!("{limits:?}");
-    for pair in limits.windows(2) {
-        let [(slow, lower), (fast, higher)] = [pair[0], pair[1]];
-        assert!(slow > 1.1 * fast && lower < 0.99 * higher, "{limits:?}");
-    }
-}
