@@ -9,29 +9,9 @@ use serde::de::DeserializeOwned;
 
 use super::{EmulatorError, Guest};
 
-/// A board with a program that answers requests in bytes.
-pub trait Transport {
-    /// Sends bytes to the board and waits until it has filled `answer`.
-    fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError>;
-
-    /// Ends the requests, and waits for the program's end.
-    fn finish(self: Box<Self>) -> Result<(), EmulatorError>;
-}
-
-/// Through pipes to QEMU.
-impl Transport for Guest {
-    fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
-        Self::exchange(self, request, answer)
-    }
-
-    fn finish(self: Box<Self>) -> Result<(), EmulatorError> {
-        Self::finish(*self).map(drop)
-    }
-}
-
 /// The client of a program of the harness.
 pub struct Client<Server> {
-    pub(super) board: Box<dyn Transport>,
+    pub(super) board: Guest,
     /// Ticks of a servo that have been requested and not run.
     pub(super) ticks_left: u32,
     server: PhantomData<Server>,
@@ -40,12 +20,7 @@ pub struct Client<Server> {
 impl<Server> Client<Server> {
     /// Starts the program, built by [`build_harness`](crate::toolchain::Toolchain::build_harness).
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self::with_transport(Guest::boot(elf)?))
-    }
-
-    /// A client of a running program.
-    pub fn with_transport(board: impl Transport + 'static) -> Self {
-        Self { board: Box::new(board), ticks_left: 0, server: PhantomData }
+        Ok(Self { board: Guest::boot(elf)?, ticks_left: 0, server: PhantomData })
     }
 
     /// Sends a request to the board, and returns its reply.
@@ -77,6 +52,6 @@ impl<Server> Client<Server> {
     /// Ends the board.
     pub fn finish(mut self) -> Result<(), EmulatorError> {
         self.run_ticks_left()?;
-        self.board.finish()
+        self.board.finish().map(drop)
     }
 }

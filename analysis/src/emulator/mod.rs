@@ -28,7 +28,7 @@ use tempfile::TempDir;
 
 pub use bench_client::BenchClient;
 pub use certify_client::CertifyClient;
-pub use client::{Client, Transport};
+pub use client::Client;
 pub use report::{Calibration, CertificateBits, EmulatorReport, InstructionStats};
 pub use servo_client::ServoClient;
 
@@ -92,8 +92,6 @@ pub enum EmulatorError {
     Serial(#[source] io::Error),
     #[error("malformed reply from the emulated board: its program has another version")]
     NoReply,
-    #[error("no reply from the board: {0}")]
-    Transport(#[source] Box<dyn std::error::Error + Send + Sync>),
     #[error(
         "the emulated board has no benchmark program for this scene: it has programs for a spring \
          or a damper wall at zero, a one-sided damper wall anywhere, and free mode, each one \

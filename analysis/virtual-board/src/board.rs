@@ -2,11 +2,9 @@
 
 mod bus;
 
-use crate::chip::{
-    BREAKS, CONVERSION_INTERRUPT, Chip, LOCK_UP_BREAKS, PWM_INTERRUPTS, TICK_INTERRUPT, TORQUE,
-};
+use crate::chip::{BREAKS, CONVERSION_INTERRUPT, Chip, LOCK_UP_BREAKS, TICK_INTERRUPT, TORQUE};
 use crate::core::System;
-use crate::core::exceptions::{FIRST_INTERRUPT, SYS_TICK};
+use crate::core::exceptions::FIRST_INTERRUPT;
 use crate::device::{Device, FixedDevice};
 use crate::encoder_index::EncoderIndex;
 use crate::error::{AccessError, NotModelled};
@@ -196,7 +194,7 @@ impl VirtualBoard {
 
     /// The time of the next event that is not an instruction.
     pub fn due(&self) -> u64 {
-        let timers = [self.tick_timer.due(), self.phase_timer.due(), self.system.systick.due()];
+        let timers = [self.tick_timer.due(), self.phase_timer.due()];
         timers
             .into_iter()
             .chain([self.serial.due(), self.watchdog.due(), self.power_stage.due()])
@@ -217,9 +215,6 @@ impl VirtualBoard {
             self.dac.trigger(Trigger::Tim7);
         }
         self.serial.advance(now, self.clock.bus_divider());
-        if self.system.systick.advance(now) {
-            self.system.exceptions.pend(SYS_TICK);
-        }
         self.update_interrupt_lines();
         self.record_pin_events();
         self.watchdog.due().is_some_and(|due| due <= now)
@@ -293,8 +288,8 @@ impl VirtualBoard {
         if let Some(number) = floating {
             let address = CONVERTERS[number];
             let unit = self.chip.at(address).map(|map_entry| map_entry.name);
-            let (register, written, why) = (None, None, AccessError::Floating);
-            self.stopped.get_or_insert(NotModelled { unit, register, address, written, why });
+            let (written, why) = (None, AccessError::Floating);
+            self.stopped.get_or_insert(NotModelled { unit, address, written, why });
         }
     }
 
@@ -344,9 +339,6 @@ impl VirtualBoard {
         if self.chip.gates.is_some() {
             let line = self.power_stage.conversion_line();
             exceptions.set_line(FIRST_INTERRUPT + CONVERSION_INTERRUPT, line);
-            for (number, line) in PWM_INTERRUPTS.into_iter().zip(self.power_stage.timer.lines()) {
-                exceptions.set_line(FIRST_INTERRUPT + number, line);
-            }
         }
     }
 

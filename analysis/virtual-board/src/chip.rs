@@ -1,12 +1,58 @@
 //! The chips: address and clock of each peripheral, and the connections of its pins.
 
-use crate::names;
-use crate::peripheral::clock::{self, Layout};
 use crate::peripheral::pins::Pins;
 use crate::peripheral::registers::Table;
+use crate::peripheral::{clock, dac, serial};
 
-use crate::peripheral::{clock_f4, clock_g4, dac, serial};
-use crate::unit::{Stage, Unit};
+/// A peripheral of either chip, by what it is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Reset and clock control.
+    Clock,
+    /// Power control.
+    Power,
+    /// The flash memory's interface.
+    Flash,
+    /// System configuration.
+    Configuration,
+    /// The debug registers.
+    Debug,
+    /// A port of pins: 0 is A.
+    Pins(usize),
+    /// TIM6.
+    TickTimer,
+    /// TIM7.
+    PhaseTimer,
+    /// The free-running clock.
+    FreeClock,
+    /// The encoder's counter.
+    Encoder,
+    /// The DAC.
+    Dac,
+    /// The serial port.
+    Serial,
+    /// The independent watchdog.
+    Watchdog,
+    /// A unit of the power stage.
+    Stage(Stage),
+}
+
+/// A unit of the power stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// TIM1, the modulator.
+    PwmTimer,
+    /// ADC1 or ADC2: 0 is the first.
+    Adc(usize),
+    /// What both converters share.
+    AdcCommon,
+    /// The comparators.
+    Comparators,
+    /// The operational amplifiers.
+    OpAmps,
+    /// DAC3, the comparators' thresholds.
+    ThresholdDac,
+}
 
 /// Entry of the memory map: address and name of a unit.
 #[derive(Clone, Copy, Debug)]
@@ -80,8 +126,6 @@ pub struct Chip {
     pub configuration: Table,
     /// Its unit for debugging.
     pub debug: Table,
-    /// Names of its units' registers, by offset.
-    pub names: fn(Unit, u32) -> Option<&'static str>,
     /// Its ports after reset.
     pub ports: fn(usize) -> Pins,
 }
@@ -90,8 +134,6 @@ pub struct Chip {
 pub const TICK_INTERRUPT: u16 = 54;
 /// ADC1 and ADC2: the current loop's interrupt.
 pub const CONVERSION_INTERRUPT: u16 = 18;
-/// TIM1's breaks and its updates.
-pub const PWM_INTERRUPTS: [u16; 2] = [24, 25];
 /// The pin that the DAC drives: PA4 on both.
 pub const TORQUE: (usize, u32) = (0, 4);
 
@@ -151,9 +193,6 @@ const FLASH_G4: Table = &[(0x00, 0x0004_0600, 0x0004_0F0F), (0x18, 0, 0), (0x20,
 /// The F405's ACR and OPTCR.
 const FLASH_F405: Table = &[(0x00, 0, 0x0000_0707), (0x14, 0x0FFF_AAED, 0)];
 
-static G4: &Layout = &clock_g4::LAYOUT;
-static F4: &Layout = &clock_f4::LAYOUT;
-
 /// The units of an STM32G4, except the timers of the encoder's counter and of the free-running clock, which
 /// depend on the board.
 static G4_MAP: &[MapEntry] = &[
@@ -211,10 +250,9 @@ pub static NUCLEO_G474RE: Chip = Chip {
     // USART2_TX and USART2_RX.
     serial: ([(0, 2), (0, 3)], 7),
     serial_interrupt: 38,
-    clock: G4,
+    clock: &clock::G4,
     dac: dac::G4,
     usart: &serial::G4,
-    names: names::g4,
     power: POWER_G4,
     flash_interface: FLASH_G4,
     options: 0x20,
@@ -310,10 +348,9 @@ pub static STM32F405: Chip = Chip {
     // USART3_TX and USART3_RX.
     serial: ([(1, 10), (1, 11)], 7),
     serial_interrupt: 39,
-    clock: F4,
+    clock: &clock::F405,
     dac: dac::F405,
     usart: &serial::F405,
-    names: names::f405,
     power: POWER_F405,
     flash_interface: FLASH_F405,
     options: 0x14,
@@ -324,14 +361,6 @@ pub static STM32F405: Chip = Chip {
         1 => Pins::new(0x0000_0280, 0x0000_00C0, 0x0000_0100),
         _ => Pins::new(0, 0, 0),
     },
-};
-
-/// QEMU's `netduinoplus2`: the same chip on a board without connections, with only TIM2 modelled. As in QEMU,
-/// it counts without being clocked.
-pub static NETDUINO_PLUS_2: Chip = Chip {
-    name: "netduinoplus2",
-    map: &[&[ungated(0x4000_0000, "TIM2", Unit::FreeClock)]],
-    ..STM32F405
 };
 
 impl Chip {

@@ -5,7 +5,6 @@ use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn};
 
 use crate::board::VirtualBoard;
 use crate::core::exceptions::Masks;
-use crate::halt::Halt;
 use crate::it_block::PcHistory;
 
 /// The regions of peripherals, and of the core's own registers.
@@ -13,6 +12,25 @@ const REGIONS: [(u64, u64); 2] = [(0x4000_0000, 0x2000_0000), (0xE000_0000, 0x00
 /// The engine's numbers of what interrupts it.
 const BREAKPOINT: u32 = 7;
 const RETURN_FROM_EXCEPTION: u32 = 8;
+
+/// Why the core has stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Halt {
+    /// An event may be due before the next instruction.
+    Attention,
+    /// It waits for an interrupt.
+    Waiting,
+    /// It returns from an exception, with this word.
+    Returning(u32),
+    /// There is no memory for an instruction, or for data at the address.
+    NoMemory { fetch: bool, address: u32 },
+    /// No such instruction.
+    Undefined,
+    /// A breakpoint in the program.
+    Breakpoint,
+    /// Not in a state to execute: not Thumb.
+    Invalid,
+}
 
 /// The engine with its context.
 pub type Engine<'a> = Unicorn<'a, Context>;

@@ -6,17 +6,15 @@
 //!
 //! - [`machine`]: the board with its power on.
 //! - [`board`]: the units, and the connected device.
-//! - [`chip`]: the chips: their memory maps, and the pins that the boards use; [`unit`](mod@unit): the kinds
-//!   of peripherals.
+//! - [`chip`]: the chips: their memory maps, their kinds of peripherals, and the pins that the boards use.
 //! - [`peripheral`], [`core`]: the units, and the core's parts other than its instructions.
 //! - [`power_stage`]: TIM1 and the analogue units, with the circuit around them; [`motor`]: its currents.
 //! - [`device`]: the device at the board; [`bridge_memory`]: the state of a program in its memory.
 //!   [`encoder_index`]: the encoder's third output.
 //! - [`meter`]: instructions of a tick.
-//! - [`processor`]: the instructions, which a library executes; `hooks`: its callbacks; [`halt`]: the reasons
-//!   for its stops.
+//! - [`processor`]: the instructions, which a library executes; `hooks`: its callbacks, and the reasons for its
+//!   stops.
 //! - [`error`]: the reasons why a board cannot boot or continue.
-//! - [`semihosting`]: a debugger that answers a program's calls.
 //!
 //! Time is counted in instructions, each of which takes one clock of the core. So the order of all events is
 //! right, but their duration on a chip is not modelled.
@@ -29,17 +27,13 @@ pub mod device;
 pub mod encoder_index;
 pub mod error;
 mod frame;
-pub mod halt;
 mod hooks;
 pub mod image;
 mod it_block;
 pub mod machine;
 pub mod meter;
 pub mod motor;
-mod names;
 pub mod peripheral;
 pub mod power_stage;
 pub mod processor;
 mod rtt;
-pub mod semihosting;
-pub mod unit;

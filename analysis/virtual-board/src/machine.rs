@@ -13,7 +13,7 @@ use crate::core::system::FaultStatus;
 use crate::device::Device;
 use crate::error::{BoardError, BootError};
 use crate::frame::THUMB;
-use crate::halt::Halt;
+use crate::hooks::Halt;
 use crate::image::Image;
 use crate::peripheral::clock::Cause;
 use crate::processor::Processor;
@@ -31,7 +31,7 @@ pub struct Machine {
     resets: Vec<(u64, Cause)>,
     log: Vec<u8>,
     /// Whether a debugger is connected, which gets the program's breakpoints.
-    pub(crate) debugged: bool,
+    pub debugged: bool,
 }
 
 impl Machine {

@@ -367,37 +367,6 @@ mod tests {
         }
     }
 
-    /// With hardly any resistance: the voltage over the winding is plus and minus half of the supply's,
-    /// since the other leg is at the mean, so a triangle of V/(4 L f) from peak to peak.
-    #[test]
-    fn the_ripple_at_half_duty_is_a_triangle() {
-        let mut motor = Motor::new(Winding::Brushed, 1e-6, INDUCTANCE, CONSTANT);
-        let period = 1.0 / 40e3;
-        // A back-EMF of half of the supply, so that the mean of the voltage is zero.
-        motor.turn(0.0, 0.5 * SUPPLY / CONSTANT);
-        motor.advance([High, Low, Off], SUPPLY, 0.25 * period);
-        let amplitude = SUPPLY * period / (8.0 * INDUCTANCE);
-        assert_near(motor.currents()[0], amplitude, 1e-6);
-        motor.advance([Low, Low, Off], SUPPLY, 0.5 * period);
-        assert_near(motor.currents()[0], -amplitude, 1e-6);
-        motor.advance([High, Low, Off], SUPPLY, 0.25 * period);
-        assert_near(motor.currents()[0], 0.0, 1e-6);
-    }
-
-    /// One phase against the two others in parallel: 3/2 of a phase.
-    #[test]
-    fn one_terminal_against_two_is_a_phase_and_a_half() {
-        let mut motor = brushless();
-        let seconds = 4e-4;
-        motor.advance([High, Low, Low], SUPPLY, seconds);
-        let closed =
-            SUPPLY / (1.5 * RESISTANCE) * (1.0 - (-seconds * RESISTANCE / INDUCTANCE).exp());
-        assert_near(motor.currents()[0], closed, 1e-10);
-        for terminal in [1, 2] {
-            assert_near(motor.currents()[terminal], -0.5 * closed, 1e-10);
-        }
-    }
-
     /// Torque times speed is the power of the currents against the back-EMF, and its constant is that of
     /// currents in the best angle, wherever the rotor is and however the wires are permuted.
     #[test]
@@ -503,19 +472,6 @@ mod tests {
         }
     }
 
-    /// Back into the supply: faster than a short circuit would let it decay.
-    #[test]
-    fn a_freewheeling_current_ends_when_the_closed_form_says() {
-        let mut motor = brushed();
-        motor.advance([High, Low, Off], SUPPLY, 3e-4);
-        let from = motor.currents()[0];
-        let end = INDUCTANCE / RESISTANCE * (1.0 + from * RESISTANCE / SUPPLY).ln();
-        motor.advance([Off; 3], SUPPLY, 0.999 * end);
-        assert!(motor.currents()[0] > 0.0);
-        motor.advance([Off; 3], SUPPLY, 0.002 * end);
-        assert_eq!(motor.currents(), [0.0; 3]);
-    }
-
     #[test]
     fn a_bridge_that_is_off_rectifies_a_back_emf_above_the_supply_only() {
         for mut motor in [brushed(), brushless()] {
@@ -527,32 +483,5 @@ mod tests {
             let totals = motor.advance([Off; 3], SUPPLY, 1e-2);
             assert!(totals.charge < 0.0 && totals.torque < 0.0, "it brakes: {totals:?}");
         }
-    }
-
-    #[test]
-    fn an_open_wire_carries_nothing_and_a_short_much() {
-        let mut open = brushless();
-        open.open[0] = true;
-        open.advance([High, Low, Low], SUPPLY, 1e-3);
-        assert_eq!(open.currents(), [0.0; 3]);
-        let mut short = brushless();
-        short.short = Some((0.02, 5e-6));
-        short.turn(0.3, 50.0);
-        short.advance([High, Low, Low], SUPPLY, 1e-5);
-        assert!(short.currents()[0] > 25.0, "{:?}", short.currents());
-        assert_eq!(short.torque(), 0.0);
-    }
-
-    /// A current that a switch's dead time interrupts goes on through the diode that its sign chooses.
-    #[test]
-    fn a_dead_time_takes_voltage_by_the_sign_of_the_current() {
-        let at = |first: f64, leg| {
-            let mut motor = brushed();
-            motor.currents = [first, -first, 0.0];
-            motor.advance([leg, Low, Off], SUPPLY, 1e-6);
-            motor.currents()[0]
-        };
-        assert_eq!(at(2.0, Off), at(2.0, Low));
-        assert_eq!(at(-2.0, Off), at(-2.0, High));
     }
 }

@@ -7,22 +7,17 @@
 mod circuit;
 pub mod gate_log;
 pub mod parts;
-#[cfg(test)]
-mod tests;
 
 pub use circuit::{Circuit, Supply};
 
-use crate::chip::Chip;
+use crate::chip::{Chip, Stage};
 use crate::device::Device;
 use crate::motor::Leg;
 use crate::peripheral::Access;
-use crate::peripheral::adc::{Adc, AdcClock, AdcCommon};
-use crate::peripheral::comparators::{Comparators, Inputs};
-use crate::peripheral::op_amps::OpAmps;
+use crate::peripheral::adc::{Adc, AdcClock};
+use crate::peripheral::analogue::Analogue;
 use crate::peripheral::pins::{Level, Pins};
-use crate::peripheral::pwm_timer::{Breaker, PwmTimer};
-use crate::peripheral::threshold_dac::ThresholdDac;
-use crate::unit::Stage;
+use crate::peripheral::pwm_timer::{BREAK, PwmTimer, SYSTEM_BREAK};
 
 /// Levels of the gates: high sides, then low sides of the phases U, V and W.
 pub type Gates = [Level; 6];
@@ -75,10 +70,9 @@ pub struct PowerStage {
     pub timer: PwmTimer,
     /// ADC1 and ADC2.
     pub adcs: [Adc; 2],
-    adc_common: AdcCommon,
-    comparators: Comparators,
-    op_amps: OpAmps,
-    thresholds: ThresholdDac,
+    analogue: Analogue,
+    /// Outputs of the comparators.
+    tripped: [bool; 4],
     gates: Gates,
     /// Up to when everything here has happened.
     now: u64,
@@ -161,7 +155,7 @@ impl PowerStage {
 
     /// A break by the chip itself.
     pub fn break_by_system(&mut self) {
-        self.timer.break_off(Breaker::System);
+        self.timer.break_off(SYSTEM_BREAK);
     }
 
     /// What the program reads.
@@ -169,12 +163,7 @@ impl PowerStage {
         match unit {
             Stage::PwmTimer => self.timer.read(offset, self.now),
             Stage::Adc(number) => self.adcs[number].read(offset),
-            Stage::AdcCommon => {
-                self.adc_common.read(offset, [self.adcs[0].flags(), self.adcs[1].flags()])
-            }
-            Stage::Comparators => self.comparators.read(offset),
-            Stage::OpAmps => self.op_amps.read(offset),
-            Stage::ThresholdDac => self.thresholds.read(offset),
+            _ => self.analogue.read(unit, offset, self.tripped),
         }
     }
 
@@ -196,10 +185,7 @@ impl PowerStage {
                 return Ok(triggers);
             }
             Stage::Adc(number) => self.adcs[number].write(offset, value, now, clock),
-            Stage::AdcCommon => self.adc_common.write(offset, value),
-            Stage::Comparators => self.comparators.write(offset, value),
-            Stage::OpAmps => self.op_amps.write(offset, value),
-            Stage::ThresholdDac => self.thresholds.write(offset, value),
+            _ => self.analogue.write(unit, offset, value),
         }?;
         Ok(false)
     }
@@ -209,15 +195,12 @@ impl PowerStage {
         match unit {
             Stage::PwmTimer => self.timer = PwmTimer::default(),
             Stage::Adc(number) => self.adcs[number] = Adc::default(),
-            Stage::AdcCommon => self.adc_common = AdcCommon::default(),
-            Stage::Comparators => self.comparators = Comparators::default(),
-            Stage::OpAmps => self.op_amps = OpAmps::default(),
-            Stage::ThresholdDac => self.thresholds = ThresholdDac::default(),
+            _ => self.analogue.reset(unit),
         }
     }
 
     fn clock(&self, around: &Surroundings<'_>) -> AdcClock {
-        AdcClock { core: around.core, divider: self.adc_common.divider() }
+        AdcClock { core: around.core, divider: self.analogue.adc_divider() }
     }
 
     fn trigger(&mut self, around: &Surroundings<'_>) {
@@ -278,31 +261,22 @@ impl PowerStage {
 
     /// Compares, and lets the timer break.
     fn compare(&mut self, around: &Surroundings<'_>) {
-        if !self.comparators.any_is_on() {
-            self.broken = None;
-        } else {
-            let inputs = self.inputs(&self.circuit, around);
-            self.comparators.compare(inputs, self.references());
-        }
+        self.tripped = self.analogue.compare(self.inputs(&self.circuit, around));
         let since = self.broken.unwrap_or(self.now);
-        let is_broken = self.timer.is_broken_by(self.comparators.outputs());
+        let is_broken = self.timer.is_broken_by(self.tripped);
         self.broken = is_broken.then_some(since);
         if is_broken && self.now >= since + self.timer.filter() {
-            self.timer.break_off(Breaker::Input);
+            self.timer.break_off(BREAK);
         }
     }
 
-    fn references(&self) -> [f64; 2] {
-        self.thresholds.outputs().map(|part| part * REFERENCE)
-    }
-
-    /// Voltages at the comparators' pins.
-    fn inputs(&self, circuit: &Circuit, around: &Surroundings<'_>) -> Inputs {
-        let mut inputs = Inputs::default();
-        let legs = self.legs();
+    /// Voltages at the comparators' pins, as parts of the reference; none where nothing is wired to one.
+    fn inputs(&self, circuit: &Circuit, around: &Surroundings<'_>) -> [Option<f64>; 4] {
+        let (mut inputs, legs) = ([None; 4], self.legs());
         for phase in 0..3 {
             let is_wired = is_analog(around.ports, SHUNTS[phase]);
-            inputs[COMPARATOR[phase]] = is_wired.then(|| circuit.compared(phase, legs[phase]));
+            let part = || circuit.compared(phase, legs[phase]) / REFERENCE;
+            inputs[COMPARATOR[phase]] = is_wired.then(part);
         }
         inputs
     }
@@ -311,7 +285,7 @@ impl PowerStage {
     fn voltage(&self, adc: usize, channel: u32, around: &Surroundings<'_>) -> Option<f64> {
         let ports = around.ports;
         let amplified = |phase: usize| {
-            let is_on = self.op_amps.is_on(phase) && is_analog(ports, SHUNTS[phase]);
+            let is_on = self.analogue.amplifies(phase) && is_analog(ports, SHUNTS[phase]);
             let leg = self.legs()[phase];
             (is_on && is_analog(ports, AMPLIFIED[phase]))
                 .then(|| self.circuit.amplified(phase, leg))
@@ -379,33 +353,26 @@ impl PowerStage {
 
     /// Whether a comparator's output may change before the next event, by how fast currents can change at most.
     fn can_trip(&self, next: u64, around: &Surroundings<'_>) -> bool {
-        let change = self.circuit.largest_shunt_change(seconds(next - self.now, around));
+        let seconds = seconds(next - self.now, around);
+        let change = self.circuit.largest_shunt_change(seconds) / REFERENCE;
         let inputs = self.inputs(&self.circuit, around);
         let outputs = |change: f64| {
-            let mut comparators = self.comparators;
-            comparators
-                .compare(inputs.map(|input| input.map(|volts| volts + change)), self.references());
-            comparators.outputs()
+            self.analogue.compare(inputs.map(|input| input.map(|part| part + change)))
         };
-        // Each output is one as long as its input is above a level.
-        let (low, high) = (outputs(-change), outputs(change));
-        low != high || self.timer.is_broken_by(low)
+        let low = outputs(-change);
+        low != outputs(change) || self.timer.is_broken_by(low)
     }
 
     /// The clock before the next event at which a comparator begins to break the outputs.
     fn trips(&self, next: u64, around: &Surroundings<'_>) -> Option<u64> {
-        if self.broken.is_some() || !self.timer.is_on() || !self.comparators.any_is_on() {
-            return None;
-        }
-        if !self.can_trip(next, around) {
+        let cannot = self.broken.is_some() || !self.timer.is_on() || !self.analogue.compares();
+        if cannot || !self.can_trip(next, around) {
             return None;
         }
         let breaks = |at: u64| {
             let mut circuit = self.circuit;
             circuit.advance(self.legs(), seconds(at - self.now, around));
-            let mut comparators = self.comparators;
-            comparators.compare(self.inputs(&circuit, around), self.references());
-            self.timer.is_broken_by(comparators.outputs())
+            self.timer.is_broken_by(self.analogue.compare(self.inputs(&circuit, around)))
         };
         let look = |number: u64| self.now + (next - self.now) * number / LOOKS;
         let late = (1..=LOOKS).find(|&number| breaks(look(number)))?;

@@ -11,14 +11,11 @@ use unicorn_engine::{Arch, ArmCpuModel, Mode, Prot, RegisterARM, Unicorn, uc_err
 use crate::board::VirtualBoard;
 use crate::chip::{COUPLED, FLASH, RAM};
 use crate::core::exceptions::Masks;
-use crate::halt::Halt;
-use crate::hooks::{self, Context, Engine};
+use crate::hooks::{self, Context, Engine, Halt};
 
 /// The core.
 pub struct Processor {
     engine: Engine<'static>,
-    /// No instruction has come from RAM.
-    ram_is_data: bool,
 }
 
 /// An address at which nothing is ever executed, since a run has to end somewhere.
@@ -44,14 +41,15 @@ impl Processor {
         for (base, size, access) in [
             (FLASH, chip.flash, Prot::READ | Prot::EXEC),
             (COUPLED, chip.coupled.0, coupled),
-            // Until an instruction is fetched from there.
+            // No program executes from there: each store would have to be looked at for instructions, which takes
+            // the engine long.
             (RAM, chip.ram, Prot::READ | Prot::WRITE),
         ] {
             let mapped = engine.mem_map(base.into(), size.into(), access);
             mapped.expect("the chip's memories do not overlap");
         }
         hooks::wire(&mut engine);
-        let mut core = Self { engine, ram_is_data: true };
+        let mut core = Self { engine };
         core.forget();
         core
     }
@@ -77,15 +75,6 @@ impl Processor {
     /// Runs until something may have to be done, at the latest at a time. With `masked`, also as
     /// soon as the masks change.
     pub fn run(&mut self, until: u64, masked: bool) -> Halt {
-        loop {
-            let halt = self.execute(until, masked);
-            if !self.has_let_ram_execute(halt) {
-                return halt;
-            }
-        }
-    }
-
-    fn execute(&mut self, until: u64, masked: bool) -> Halt {
         let pc = u64::from(self.register(RegisterARM::PC));
         self.engine.get_data_mut().begin(until, masked);
         let result = self.engine.emu_start(pc | 1, NOWHERE, 0, 0);
@@ -98,21 +87,6 @@ impl Processor {
             Err(uc_error::INSN_INVALID) if self.has_waited() => Halt::Waiting,
             Err(uc_error::INSN_INVALID) => Halt::Undefined,
             Err(_) => Halt::Invalid,
-        }
-    }
-
-    /// Lets instructions come from RAM if the core has stopped because the first one does. Before,
-    /// no store has to be looked at for instructions that it changes, which takes the engine long.
-    fn has_let_ram_execute(&mut self, halt: Halt) -> bool {
-        let ram = self.board().chip().ram;
-        match halt {
-            Halt::NoMemory { fetch: true, address }
-                if self.ram_is_data && address.wrapping_sub(RAM) < ram =>
-            {
-                self.ram_is_data = false;
-                self.engine.mem_protect(RAM.into(), ram.into(), Prot::ALL).is_ok()
-            }
-            _ => false,
         }
     }
 
@@ -185,7 +159,7 @@ impl Processor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chip::{Chip, STM32F405};
+    use crate::chip::Chip;
     use crate::device::FixedDevice;
 
     /// `b .`
@@ -213,13 +187,10 @@ mod tests {
     fn instructions_come_only_from_where_the_chip_lets_them() {
         for chip in Chip::ALL {
             let coupled = chip.coupled.1;
-            let behind = RAM + chip.ram;
             for (at, is_memory) in [
                 (FLASH, true),
                 (COUPLED, coupled),
-                (RAM, true),
-                (behind - 2, true),
-                (behind, false),
+                (RAM, false),
                 (FLASH - 0x1000, false),
                 (0x6000_0000, false),
             ] {
@@ -251,25 +222,6 @@ mod tests {
                 let (halt, _) = execute(chip, FLASH, &[access, STAY], [address, 0, 0, 0]);
                 assert_eq!(halt, expected, "{}, {access:#x} of {address:#x}", chip.name);
             }
-        }
-    }
-
-    /// In a page that was data until then, and in a page that was executed before.
-    #[test]
-    fn an_instruction_that_a_store_has_changed_is_executed_as_it_is_now() {
-        const CODE: &[u16] = &[
-            0x6001, // str r1, [r0]
-            0x4798, // blx r3
-            0x3101, // adds r1, #1
-            0x6001, // str r1, [r0]
-            0x4798, // blx r3
-            STAY,
-        ];
-        // movs r2, #1; bx lr. And the second time, with a 2.
-        const FIRST: u32 = 0x4770_2201;
-        for place in [RAM + 0x1000, RAM + 2 * CODE.len() as u32] {
-            let (_, core) = execute(&STM32F405, RAM, CODE, [place, FIRST, 0, place | 1]);
-            assert_eq!(core.register(RegisterARM::R2), 2, "{place:#x}");
         }
     }
 }

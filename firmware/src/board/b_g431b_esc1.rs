@@ -18,7 +18,7 @@ use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
 use super::stm32::output::OutputPin;
 #[cfg(feature = "bridge")]
-use super::stm32::output::bridge::index::IndexPin;
+use super::stm32::output::bridge::encoder::IndexPin;
 #[cfg(feature = "bridge")]
 use super::stm32::output::gates::{Gate, Gates};
 use super::stm32::serial::{self, Serial};

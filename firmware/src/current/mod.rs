@@ -32,7 +32,7 @@ mod supervision;
 pub use alignment::{Alignment, AlignmentStep};
 pub use controller::CurrentController;
 pub use current_loop::CurrentLoop;
-pub use drive::{Drive, DriveError, DutyCurrent, DutyError, Motor, Regeneration, Supply, Winding};
+pub use drive::{Drive, DriveError, Motor, Regeneration, Supply, Winding};
 pub use fault::{AlignmentError, PowerFault};
 pub use modulation::{Duties, PwmTiming, Sample, sine_and_cosine};
 pub use phase::{EncoderIndex, IndexOffset, OffsetCheck, PhaseAlignment};

@@ -1,10 +1,10 @@
 //! The board's bus: the reads and writes of a program, and the errors of accesses.
 
 use super::{BusAccess, VirtualBoard};
-use crate::chip::{MapEntry, TICK_INTERRUPT};
+use crate::chip::{MapEntry, Stage, TICK_INTERRUPT, Unit};
 use crate::core::System;
 use crate::core::exceptions::Number;
-use crate::core::system::{SYSTEM, WATCH, pends};
+use crate::core::system::{SYSTEM, pends};
 use crate::error::{AccessError, NotModelled};
 use crate::peripheral::Access;
 use crate::peripheral::basic_timer::BasicTimer;
@@ -14,7 +14,6 @@ use crate::peripheral::pins::{self, Level};
 use crate::peripheral::registers::Registers;
 use crate::peripheral::serial::Serial;
 use crate::power_stage::Surroundings;
-use crate::unit::{Stage, Unit};
 
 /// The target of an address, with the offset of a register.
 enum Target {
@@ -22,8 +21,6 @@ enum Target {
     Priorities(Number),
     /// The system control space.
     System(u32),
-    /// The unit with the cycle counter.
-    Watch(u32),
     /// A peripheral.
     Unit(&'static MapEntry, u32),
 }
@@ -32,7 +29,6 @@ impl Target {
     fn name(&self) -> &'static str {
         match self {
             Self::Priorities(_) | Self::System(_) => "the system control space",
-            Self::Watch(_) => "the DWT",
             Self::Unit(map_entry, _) => map_entry.name,
         }
     }
@@ -93,8 +89,7 @@ impl VirtualBoard {
                 let bytes = numbers.rev().map(|number| self.system.exceptions.priority(number));
                 Ok(bytes.fold(0, |word, byte| word << 8 | u32::from(byte)))
             }
-            Target::System(offset) => self.system.read(offset, self.now),
-            Target::Watch(offset) => self.system.read_watch(offset, self.now),
+            Target::System(offset) => self.system.read(offset),
             Target::Unit(map_entry, offset) => self.read_unit(map_entry.unit, offset),
         };
         value.map_err(|why| (Some(target.name()), AccessError::Unit(why)))
@@ -113,9 +108,8 @@ impl VirtualBoard {
                 if pends(offset, value, TICK_INTERRUPT) {
                     self.end_sample();
                 }
-                self.system.write(offset, value, self.now)
+                self.system.write(offset, value)
             }
-            Target::Watch(offset) => self.system.write_watch(offset, value, self.now),
             Target::Unit(map_entry, offset) => self.write_unit(map_entry.unit, offset, value),
         };
         done.map_err(|why| (Some(target.name()), AccessError::Unit(why)))
@@ -126,9 +120,6 @@ impl VirtualBoard {
         if let Some(offset) = within(address, SYSTEM) {
             let priorities = System::priority_at(offset).map(Target::Priorities);
             return Ok(priorities.unwrap_or(Target::System(offset)));
-        }
-        if let Some(offset) = within(address, WATCH) {
-            return Ok(Target::Watch(offset));
         }
         let map_entry = self.map_entry(address)?;
         // The serial port's data register may be accessed by bytes.
@@ -275,11 +266,7 @@ impl VirtualBoard {
 
     /// Stores the first failed access, which ends the run.
     fn stop(&mut self, (unit, why): Fault, address: u32, written: Option<u32>) {
-        let chip = self.chip();
-        let map_entry = chip.at(address);
-        let register =
-            map_entry.and_then(|map_entry| (chip.names)(map_entry.unit, address - map_entry.base));
-        self.stopped.get_or_insert(NotModelled { unit, register, address, written, why });
+        self.stopped.get_or_insert(NotModelled { unit, address, written, why });
     }
 }
 

@@ -299,23 +299,4 @@ mod tests {
         exceptions.leave();
         assert_eq!(exceptions.next(OPEN), Some(LOW));
     }
-
-    #[test]
-    fn of_equal_priorities_the_lower_number_comes_first() {
-        let mut exceptions = two();
-        exceptions.set_priority(LOW, 0);
-        exceptions.pend(HIGH);
-        exceptions.pend(LOW);
-        assert_eq!(exceptions.next(OPEN), Some(LOW));
-    }
-
-    #[test]
-    fn a_disabled_interrupt_waits() {
-        let mut exceptions = two();
-        exceptions.enable(LOW, false);
-        exceptions.pend(LOW);
-        assert!(!exceptions.any_pending());
-        exceptions.enable(LOW, true);
-        assert_eq!(exceptions.next(OPEN), Some(LOW));
-    }
 }

@@ -2,7 +2,6 @@
 
 pub mod exceptions;
 pub mod system;
-pub mod systick;
 
 pub use exceptions::Exceptions;
 pub use system::System;

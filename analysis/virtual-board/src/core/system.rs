@@ -1,15 +1,12 @@
-//! The system control space and the cycle counter (ARM DDI 0403E, B3.2, B3.4 and C1.8).
+//! The system control space (ARM DDI 0403E, B3.2 and B3.4).
 
 use super::exceptions::{
     Exceptions, FIRST_INTERRUPT, HARD_FAULT, INTERRUPTS, Number, PEND_SV, SYS_TICK,
 };
-use super::systick::SysTick;
 use crate::peripheral::{Access, Unmodelled, only};
 
 /// First address of the system control space.
 pub const SYSTEM: u32 = 0xE000_E000;
-/// First address of the unit with the cycle counter.
-pub const WATCH: u32 = 0xE000_1000;
 
 /// AIRCR: the key to write with it, and the value read instead.
 const KEY: u32 = 0x05FA;
@@ -34,8 +31,6 @@ const CPUID: u32 = 0x410F_C241;
 pub struct System {
     /// Which exceptions are pending and active.
     pub exceptions: Exceptions,
-    /// The core's timer.
-    pub systick: SysTick,
     /// A reset was requested.
     pub reset_requested: bool,
     vectors: u32,
@@ -44,10 +39,6 @@ pub struct System {
     /// CFSR, HFSR.
     faults: (u32, u32),
     fault_address: u32,
-    monitor: u32,
-    watch: u32,
-    /// The cycle counter's zero.
-    cycles_from: u64,
 }
 
 /// The modelled bits of CFSR.
@@ -84,9 +75,8 @@ impl System {
     }
 
     /// Reads a word of the system control space.
-    pub fn read(&mut self, offset: u32, now: u64) -> Access<u32> {
+    pub fn read(&self, offset: u32) -> Access<u32> {
         Ok(match offset {
-            0x010..=0x018 => self.systick.read(offset - 0x010, now)?,
             0x100..0x180 => self.bits(offset & 0x7F, Exceptions::is_enabled),
             0x180..0x200 => self.bits(offset & 0x7F, Exceptions::is_enabled),
             0x200..0x280 => self.bits(offset & 0x7F, Exceptions::is_pending),
@@ -106,16 +96,14 @@ impl System {
             0xD88 => self.coprocessors,
             // No debugger is connected.
             0xDF0 => 0,
-            0xDFC => self.monitor,
             0xF34 => KEPT,
             _ => return Err(Unmodelled::Register),
         })
     }
 
     /// Writes a word of the system control space.
-    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Access<()> {
+    pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
         match offset {
-            0x010..=0x018 => self.systick.write(offset - 0x010, value, now)?,
             0x100..0x180 => self.each(offset & 0x7F, value, |e, n| e.enable(n, true)),
             0x180..0x200 => self.each(offset & 0x7F, value, |e, n| e.enable(n, false)),
             0x200..0x280 => self.each(offset & 0x7F, value, Exceptions::pend),
@@ -135,10 +123,6 @@ impl System {
                 only(value, FLOATING_POINT)?;
                 self.coprocessors = value;
             }
-            0xDFC => {
-                only(value, 1 << 24)?;
-                self.monitor = value;
-            }
             0xF34 if value == KEPT => {}
             _ => return Err(Unmodelled::Register),
         }
@@ -154,31 +138,6 @@ impl System {
             0xD18..0xD24 => Some(4 + (offset - 0xD18) as Number),
             _ => None,
         }
-    }
-
-    /// Reads the unit with the cycle counter.
-    pub fn read_watch(&self, offset: u32, now: u64) -> Access<u32> {
-        match offset {
-            0x0 => Ok(self.watch),
-            0x4 if self.watch & 1 != 0 => Ok((now - self.cycles_from) as u32),
-            0x4 => Ok(0),
-            _ => Err(Unmodelled::Register),
-        }
-    }
-
-    /// Writes it.
-    pub fn write_watch(&mut self, offset: u32, value: u32, now: u64) -> Access<()> {
-        match offset {
-            0x0 => {
-                only(value, 1)?;
-                self.watch = value;
-            }
-            0x4 => self.cycles_from = now.wrapping_sub(value.into()),
-            // The lock of software access, which this core does not have: also ignored by the core.
-            0xFB0 => {}
-            _ => return Err(Unmodelled::Register),
-        }
-        Ok(())
     }
 
     /// ICSR: the pending and active exceptions.

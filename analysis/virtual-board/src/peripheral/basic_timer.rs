@@ -142,18 +142,6 @@ mod tests {
         tick_timer
     }
 
-    #[test]
-    fn a_period_is_prescaler_times_reload_in_the_timer_s_own_clocks() {
-        for divider in [1, 2] {
-            let (mut tick_timer, period) = (started(divider), 3000 * divider);
-            assert_eq!(tick_timer.due(), Some(5000 + period));
-            assert!(!tick_timer.advance(5000 + period - 1, divider) && !tick_timer.line());
-            // Late or not, the next one is a period behind.
-            assert!(tick_timer.advance(5000 + period + 7, divider) && tick_timer.line());
-            assert_eq!(tick_timer.due(), Some(5000 + 2 * period));
-        }
-    }
-
     /// As far ahead as its count is set to, and then once a period.
     #[test]
     fn a_count_that_is_set_makes_the_first_period_shorter() {
@@ -170,17 +158,6 @@ mod tests {
             assert_eq!(timer.due(), Some(5000 + 3030 * divider));
             assert!(timer.write(CNT, 0, 6000, divider).is_err(), "while it counts");
         }
-    }
-
-    #[test]
-    fn its_flag_stays_until_it_is_cleared() {
-        let mut tick_timer = started(1);
-        assert!(tick_timer.advance(8000, 1));
-        tick_timer.write(SR, UPDATE, 8001, 1).unwrap();
-        assert!(tick_timer.line(), "a one leaves it");
-        tick_timer.write(SR, 0, 8002, 1).unwrap();
-        assert!(!tick_timer.line());
-        assert_eq!(tick_timer.due(), Some(11_000));
     }
 
     #[test]

@@ -15,8 +15,8 @@ pub struct Layout {
     pub causes: u32,
     /// Its bit that forgets them.
     pub forget: u32,
-    /// What the causes of resets are called there.
-    pub flags: fn(Cause) -> u32,
+    /// Its flags of a power-on, a brown-out and loaded option bytes, beside that of the pin.
+    pub flags: [u32; 3],
     /// The register and its bit that say that the crystal has failed.
     pub failed: (u32, u32),
     /// CFGR: the choice of the internal oscillator, which takes over then.
@@ -28,9 +28,164 @@ pub struct Layout {
     pub at_once: u64,
     /// CFGR: where it has the slow peripheral bus's divider.
     pub slow_bus: u32,
-    /// The system's clock in Hz for a crystal of so many; none where what was chosen does not run.
-    pub system: fn(&dyn Fn(u32) -> u32, crystal: u64) -> Option<u64>,
+    /// CFGR: the choice of the crystal.
+    pub crystal: u32,
+    /// CFGR: the choice of the phase-locked loop.
+    pub looped: u32,
+    /// The phase-locked loop.
+    pub pll: Pll,
 }
+
+/// PLLCFGR: where it is, and its fields, each by its shift and its bits.
+#[derive(Debug)]
+pub struct Pll {
+    register: u32,
+    /// The mask of the source, and its values of the internal oscillator and of the crystal.
+    source: [u32; 3],
+    /// The input's divider, and what is added to it.
+    input: (u32, u32, u64),
+    times: (u32, u32),
+    /// The output's divider: twice the field plus one.
+    output: (u32, u32),
+    /// The output's switch; 0 if it has none.
+    on: u32,
+}
+
+/// The internal oscillator in Hz.
+const INTERNAL: u64 = 16_000_000;
+
+impl Pll {
+    /// Its output in Hz for a crystal of so many.
+    fn locked(&self, value: u32, crystal: u64) -> Option<u64> {
+        let field = |shift: u32, bits: u32| u64::from(value >> shift & ((1 << bits) - 1));
+        let [mask, internal, external] = self.source;
+        let source = match value & mask {
+            source if source == internal => INTERNAL,
+            source if source == external => crystal,
+            _ => 0,
+        };
+        let (shift, bits, added) = self.input;
+        let divider = (field(shift, bits) + added) * 2 * (field(self.output.0, self.output.1) + 1);
+        let is_on = value & self.on == self.on;
+        (source * field(self.times.0, self.times.1)).checked_div(divider).filter(|_| is_on)
+    }
+}
+
+/// The G4's (RM0440, 7.4).
+pub static G4: Layout = Layout {
+    registers: &[
+        // CR: both oscillators, the loop, and what watches the crystal.
+        (0x00, 0x0000_0500, (1 << 8) | (1 << 16) | (1 << 18) | SECURITY | (1 << 24)),
+        // CFGR: the system's clock and the buses' dividers.
+        (0x08, 0x0000_0005, 0x0000_3FF3),
+        // PLLCFGR.
+        (0x0C, 0x0000_1000, 0xFFFF_FFFF),
+        // CIFR: no interrupt is enabled.
+        (0x1C, 0, 0),
+        // The resets: AHB1, AHB2, APB1, APB2.
+        (0x28, 0, u32::MAX),
+        (0x2C, 0, u32::MAX),
+        (0x38, 0, u32::MAX),
+        (0x3C, 0, u32::MAX),
+        (0x40, 0, u32::MAX),
+        // The clocks: AHB1, AHB2, APB1, APB2.
+        (0x48, 0x0000_0100, u32::MAX),
+        (0x4C, 0, u32::MAX),
+        (0x58, 0, u32::MAX),
+        (0x5C, 0, u32::MAX),
+        (0x60, 0, u32::MAX),
+        // CCIPR, CCIPR2: every peripheral at its bus's clock, USART2 also at the system's, which is the same
+        // where nothing divides.
+        (0x88, 0, 0b01 << 2),
+        (0x9C, 0, 0),
+        // BDCR: the clock of the day and its reset, which nothing here uses.
+        (0x90, 0, (1 << 16) | (1 << 15) | (0b11 << 8)),
+        // CSR: the slow oscillator, and forgetting the causes of resets.
+        (0x94, 0, 1 | (1 << 23)),
+        // CRRCR: the oscillator of 48 MHz.
+        (0x98, 0, 1),
+    ],
+    choice: 0x08,
+    causes: 0x94,
+    forget: 1 << 23,
+    // Of power-on and brown-out it is the same one.
+    flags: [1 << 27, 1 << 27, 1 << 25],
+    failed: (0x1C, 1 << 8),
+    internal: 1,
+    switches: &[
+        CRYSTAL,
+        LOOP,
+        // The internal oscillators: of 16 MHz, the slow one, and the one of 48 MHz.
+        (0x00, 1 << 8, 1 << 10),
+        (0x94, 1, 1 << 1),
+        (0x98, 1, 1 << 1),
+    ],
+    // RM0440, system clock selection, which ST's driver follows: beyond 80 MHz in two steps.
+    at_once: 85_000_000,
+    slow_bus: 8,
+    crystal: 2,
+    looped: 3,
+    pll: Pll {
+        register: 0x0C,
+        source: [0b11, 2, 3],
+        input: (4, 4, 1),
+        times: (8, 7),
+        output: (25, 2),
+        on: 1 << 24,
+    },
+};
+
+/// The F405's (RM0090, 7.3).
+pub static F405: Layout = Layout {
+    registers: &[
+        // CR: both oscillators, the loop, and what watches the crystal.
+        (0x00, 0x0000_0083, 1 | (1 << 16) | (1 << 18) | SECURITY | (1 << 24)),
+        // PLLCFGR.
+        (0x04, 0x2400_3010, 0xFFFF_FFFF),
+        // CFGR: the system's clock and the buses' dividers.
+        (0x08, 0, 0x0000_FCF3),
+        // CIR: no interrupt is enabled.
+        (0x0C, 0, 0),
+        // The resets: AHB1, APB1, APB2.
+        (0x10, 0, u32::MAX),
+        (0x20, 0, u32::MAX),
+        (0x24, 0, u32::MAX),
+        // The clocks: AHB1, APB1, APB2.
+        (0x30, 0x0010_0000, u32::MAX),
+        (0x40, 0, u32::MAX),
+        (0x44, 0, u32::MAX),
+        // BDCR: the clock of the day and its reset, which nothing here uses.
+        (0x70, 0, (1 << 16) | (1 << 15) | (0b11 << 8)),
+        // CSR: the slow oscillator, and forgetting the causes of resets.
+        (0x74, 0, 1 | (1 << 24)),
+        // PLLI2SCFGR, left alone.
+        (0x84, 0x2400_3000, 0),
+        // DCKCFGR of larger chips of the family: reads as zero here, and the driver leaves it so.
+        (0x8C, 0, 0),
+    ],
+    choice: 0x08,
+    causes: 0x74,
+    forget: 1 << 24,
+    // Power-on is a brown-out, too; option bytes are loaded by any reset, and by no reset of their own.
+    flags: [1 << 25 | 1 << 27, 1 << 25, 0],
+    failed: (0x0C, 1 << 7),
+    internal: 0,
+    // With the internal oscillators: of 16 MHz, and the slow one.
+    switches: &[CRYSTAL, LOOP, (0x00, 1, 1 << 1), (0x74, 1, 1 << 1)],
+    // No bound in RM0090.
+    at_once: u64::MAX,
+    slow_bus: 10,
+    crystal: 1,
+    looped: 2,
+    pll: Pll {
+        register: 0x04,
+        source: [1 << 22, 0, 1 << 22],
+        input: (0, 6, 0),
+        times: (6, 9),
+        output: (16, 2),
+        on: 0,
+    },
+};
 
 /// The switch of the crystal's oscillator.
 pub const CRYSTAL: (u32, u32, u32) = (0x00, 1 << 16, 1 << 17);
@@ -79,11 +234,24 @@ impl Cause {
 }
 
 /// CSR: flags of the causes that both families have, at the same places. Every reset pulls the pin.
-pub const PIN: u32 = 1 << 26;
-pub(super) const SOFTWARE: u32 = PIN | 1 << 28;
-pub(super) const WATCHDOG: u32 = PIN | 1 << 29;
-pub(super) const WINDOW_WATCHDOG: u32 = PIN | 1 << 30;
-pub(super) const LOW_POWER: u32 = PIN | 1 << 31;
+const PIN: u32 = 1 << 26;
+
+impl Layout {
+    fn flags_of(&self, cause: Cause) -> u32 {
+        let [power, brown_out, option_bytes] = self.flags;
+        let flag = match cause {
+            Cause::Power => power,
+            Cause::BrownOut => brown_out,
+            Cause::OptionBytes => option_bytes,
+            Cause::Pin => 0,
+            Cause::Software => 1 << 28,
+            Cause::Watchdog => 1 << 29,
+            Cause::WindowWatchdog => 1 << 30,
+            Cause::LowPower => 1 << 31,
+        };
+        PIN | flag
+    }
+}
 
 /// The unit.
 #[derive(Clone, Debug)]
@@ -100,7 +268,7 @@ impl Clock {
     pub fn new(layout: &'static Layout, crystal: u64, cause: Cause) -> Self {
         let registers = Registers::new(layout.registers);
         let mut clock = Self { layout, registers, crystal, crystal_runs: true };
-        clock.remember((layout.flags)(cause));
+        clock.remember(layout.flags_of(cause));
         clock
     }
 
@@ -152,9 +320,16 @@ impl Clock {
             8..12 => 1 << (hpre - 7),
             _ => 1 << (hpre - 6),
         };
-        let crystal = if self.crystal_runs { self.crystal } else { 0 };
-        let system = (self.layout.system)(&|offset| self.get(offset), crystal);
-        system.unwrap_or(0) / divider
+        let (layout, crystal) = (self.layout, if self.crystal_runs { self.crystal } else { 0 });
+        let system = match self.get(layout.choice) & 0b11 {
+            choice if choice == layout.internal => INTERNAL,
+            choice if choice == layout.crystal => crystal,
+            choice if choice == layout.looped && self.get(LOOP.0) & LOOP.1 != 0 => {
+                layout.pll.locked(self.get(layout.pll.register), crystal).unwrap_or(0)
+            }
+            _ => 0,
+        };
+        system / divider
     }
 
     /// Whether what the core's clock comes from does not run any longer.

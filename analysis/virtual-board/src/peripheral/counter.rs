@@ -185,49 +185,6 @@ impl Counter {
 mod tests {
     use super::*;
 
-    /// The counter of an encoder, with this mode and enable of its captures.
-    fn capturing(mode: u32, enable: u32) -> Counter {
-        let mut counter = Counter::new(16);
-        for (register, value) in [
-            (SMCR, BOTH_CHANNELS),
-            (CCMR1, OWN_INPUTS),
-            (CCMR2, mode),
-            (CCER, CHANNELS | enable),
-            (CR1, ENABLE),
-        ] {
-            counter.write(register, value, 0, 1).unwrap();
-        }
-        counter
-    }
-
-    #[test]
-    fn a_trigger_captures_the_count() {
-        let mut counter = capturing(TRIGGERED_CAPTURE, CAPTURES);
-        counter.turn(-3);
-        assert_eq!(counter.read(CCR4, 0, 1), Ok(0));
-        counter.capture();
-        counter.turn(1);
-        assert_eq!(counter.read(CCR4, 0, 1), Ok(0xFFFD));
-        assert_eq!(counter.read(CNT, 0, 1), Ok(0xFFFE));
-    }
-
-    #[test]
-    fn an_index_captures_the_count_until_it_is_read() {
-        let mode = TRIGGERED_CAPTURE | INDEX_CAPTURE | 0x30;
-        let mut counter = capturing(mode, CAPTURES | CAPTURES_INDEX);
-        assert_eq!((counter.index_filter(), counter.read(SR, 0, 1)), (3, Ok(0)));
-        counter.turn(7);
-        counter.index();
-        counter.turn(1);
-        assert_eq!(counter.read(SR, 0, 1), Ok(INDEX_CAPTURED));
-        assert_eq!(counter.read(CCR4, 0, 1), Ok(0), "the other channel");
-        assert_eq!(counter.read(CCR3, 0, 1), Ok(7));
-        assert_eq!(counter.read(SR, 0, 1), Ok(0));
-        counter.index();
-        counter.write(SR, !INDEX_CAPTURED, 0, 1).unwrap();
-        assert_eq!(counter.read(SR, 0, 1), Ok(0));
-    }
-
     #[test]
     fn a_channel_that_captures_nothing_is_not_read() {
         let mut counter = Counter::new(16);

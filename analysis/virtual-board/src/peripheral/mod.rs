@@ -2,19 +2,15 @@
 //! names the register, never a silent zero.
 
 pub mod adc;
+pub mod analogue;
 pub mod basic_timer;
 pub mod clock;
-pub mod clock_f4;
-pub mod clock_g4;
-pub mod comparators;
 pub mod counter;
 pub mod dac;
-pub mod op_amps;
 pub mod pins;
 pub mod pwm_timer;
 pub mod registers;
 pub mod serial;
-pub mod threshold_dac;
 pub mod watchdog;
 
 /// Why an access is not modelled.

@@ -8,7 +8,6 @@ use super::{Access, Unmodelled, only};
 
 const CR1: u32 = 0x00;
 const CR2: u32 = 0x04;
-const DIER: u32 = 0x0C;
 const SR: u32 = 0x10;
 const EGR: u32 = 0x14;
 const CCMR1: u32 = 0x18;
@@ -24,31 +23,26 @@ const CCR3: u32 = 0x3C;
 const BDTR: u32 = 0x44;
 const AF1: u32 = 0x60;
 
-/// CR1: counting, updates by an overflow only set the flag, the direction, centre-aligned mode 1, and a
-/// reload value that waits for an update.
+/// CR1: counting, updates by an overflow only set the flag, the direction, and centre-aligned mode 1.
 const ENABLE: u32 = 1;
 const ONLY_OVERFLOW: u32 = 1 << 2;
 const DOWN: u32 = 1 << 4;
 const CENTRE_ALIGNED: u32 = 0b01 << 5;
-const MODES: u32 = 0b11 << 5;
-const PRELOADED: u32 = 1 << 7;
 /// CR2: the update is the trigger output.
 const TRIGGER_UPDATE: u32 = 0b010 << 4;
-/// DIER, SR and EGR: the update and the break; SR: the system's break.
+/// SR and EGR: the update.
 const UPDATE: u32 = 1;
-const BREAK: u32 = 1 << 7;
-const SYSTEM_BREAK: u32 = 1 << 13;
-/// CCMR1 and CCMR2, of a channel: a compare value that waits for an update, and the mode.
-const CHANNEL_PRELOADED: u32 = 1 << 3;
-const MODE: u32 = (0b111 << 4) | (1 << 16);
-/// PWM mode 2: active from the compare value on.
-const PWM_2: u32 = 0b111 << 4;
+/// SR and EGR: a break by a comparator or by the program.
+pub const BREAK: u32 = 1 << 7;
+/// SR: a break by the clock security system, or by the core that is locked up.
+pub const SYSTEM_BREAK: u32 = 1 << 13;
+/// CCMR1 and CCMR2, of a channel: a compare value that waits for an update, and PWM mode 2, which is active from
+/// that value on.
+const CHANNEL: u32 = (1 << 3) | (0b111 << 4);
 /// CCER: the two outputs of channel 1; four bits further for each channel.
 const BOTH_OUTPUTS: u32 = 0b0101;
-/// BDTR: the dead time, the lock, the states of outputs that are off, the break and its polarity, and the
-/// main output enable.
+/// BDTR: the dead time, the states of outputs that are off, the break and its polarity, and the main output enable.
 const DEAD_TIME: u32 = 0xFF;
-const LOCK: u32 = 0b11 << 8;
 const OFF_WHILE_IDLE: u32 = 1 << 10;
 const OFF_WHILE_RUNNING: u32 = 1 << 11;
 const OFF_MODES: u32 = OFF_WHILE_IDLE | OFF_WHILE_RUNNING;
@@ -58,18 +52,14 @@ const BREAKS: u32 = BREAK_ENABLE | BREAK_HIGH;
 /// BDTR: how long a break's input has to stay, of which only numbers of the core's clocks are modelled.
 const FILTER: u32 = 0b11 << 16;
 const MAIN_OUTPUT: u32 = 1 << 15;
-/// AF1: the break's pin, to which nothing is wired, so that its level is low; and the comparators 1, 2 and 4
-/// with their polarities.
+/// AF1: the break's pin, to which nothing is wired, so that its level is low; and the comparators 1, 2 and 4.
 const BREAK_PIN: u32 = 1;
 const COMPARATORS: [(usize, u32); 3] = [(0, 1), (1, 2), (3, 4)];
 const COMPARATOR_BITS: u32 = (1 << 1) | (1 << 2) | (1 << 4);
-const POLARITY_BITS: u32 = COMPARATOR_BITS << 9;
 
-const CHANNEL: u32 = CHANNEL_PRELOADED | MODE;
 const REGISTERS: Table = &[
-    (CR1, 0, ENABLE | ONLY_OVERFLOW | CENTRE_ALIGNED | PRELOADED),
+    (CR1, 0, ENABLE | ONLY_OVERFLOW | CENTRE_ALIGNED),
     (CR2, 0, TRIGGER_UPDATE),
-    (DIER, 0, UPDATE | BREAK),
     (SR, 0, 0),
     (CCMR1, 0, CHANNEL | CHANNEL << 8),
     // Channel 3 alone.
@@ -82,8 +72,8 @@ const REGISTERS: Table = &[
     (CCR1, 0, 0xFFFF),
     (CCR2, 0, 0xFFFF),
     (CCR3, 0, 0xFFFF),
-    (BDTR, 0, DEAD_TIME | LOCK | OFF_MODES | BREAKS | FILTER | MAIN_OUTPUT),
-    (AF1, BREAK_PIN, BREAK_PIN | COMPARATOR_BITS | POLARITY_BITS),
+    (BDTR, 0, DEAD_TIME | OFF_MODES | BREAKS | FILTER | MAIN_OUTPUT),
+    (AF1, BREAK_PIN, BREAK_PIN | COMPARATOR_BITS),
 ];
 const COMPARE: [u32; 3] = [CCR1, CCR2, CCR3];
 
@@ -103,15 +93,6 @@ pub struct Instant {
     pub valley: bool,
     /// The trigger output rises.
     pub trigger: bool,
-}
-
-/// Who asks for a break.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Breaker {
-    /// A comparator.
-    Input,
-    /// The clock security system, or the core that is locked up.
-    System,
 }
 
 /// The counter.
@@ -134,7 +115,7 @@ struct Reference {
 #[derive(Clone, Debug)]
 pub struct PwmTimer {
     registers: Registers,
-    /// The reload value that it counts with.
+    /// The reload value.
     top: u32,
     /// Turns of the counter that are still to come before an update.
     left: u32,
@@ -201,11 +182,6 @@ impl PwmTimer {
         matches!(self.count, Count::Running { .. })
     }
 
-    /// Core clocks from valley to valley.
-    pub fn period(&self) -> u64 {
-        2 * u64::from(self.top)
-    }
-
     /// When the present period has begun, while it counts.
     pub fn valley(&self) -> Option<u64> {
         match self.count {
@@ -214,26 +190,18 @@ impl PwmTimer {
         }
     }
 
-    /// The compare values in effect.
-    pub fn compared(&self) -> [u32; 3] {
-        self.compared
-    }
-
     /// Whether the outputs are enabled as a whole.
     pub fn is_on(&self) -> bool {
         self.registers.has(BDTR, MAIN_OUTPUT)
     }
 
-    /// Whether comparators' outputs of these levels are a break, once they have lasted for
-    /// [`Self::filter`].
+    /// Whether comparators' outputs of these levels are a break, once they have lasted for [`Self::filter`].
     pub fn is_broken_by(&self, levels: [bool; 4]) -> bool {
-        let (registers, is_high) = (&self.registers, self.registers.has(BDTR, BREAK_HIGH));
-        let pin_breaks = registers.has(AF1, BREAK_PIN) && !is_high;
-        let breaks = |(comparator, bit): (usize, u32)| {
-            let is_inverted = registers.has(AF1, 1 << (bit + 9));
-            registers.has(AF1, 1 << bit) && (levels[comparator] ^ is_inverted) == is_high
-        };
-        let is_asked = pin_breaks || COMPARATORS.into_iter().any(breaks);
+        let registers = &self.registers;
+        let breaks =
+            |(comparator, bit): (usize, u32)| registers.has(AF1, 1 << bit) && levels[comparator];
+        // Active low, the open pin breaks.
+        let is_asked = !registers.has(BDTR, BREAK_HIGH) || COMPARATORS.into_iter().any(breaks);
         registers.has(BDTR, BREAK_ENABLE) && is_asked
     }
 
@@ -245,30 +213,18 @@ impl PwmTimer {
         }
     }
 
-    /// A break: the outputs are off from here on.
-    pub fn break_off(&mut self, breaker: Breaker) {
-        if !self.registers.has(BDTR, BREAK_ENABLE) {
-            return;
+    /// A break with this flag: the outputs are off from here on.
+    pub fn break_off(&mut self, flag: u32) {
+        if self.registers.has(BDTR, BREAK_ENABLE) {
+            self.registers.change(BDTR, MAIN_OUTPUT, 0);
+            self.registers.change(SR, 0, flag);
         }
-        self.registers.change(BDTR, MAIN_OUTPUT, 0);
-        let flag = match breaker {
-            Breaker::Input => BREAK,
-            Breaker::System => SYSTEM_BREAK,
-        };
-        self.registers.change(SR, 0, flag);
-    }
-
-    /// Levels of its interrupt lines: of breaks, of updates.
-    pub fn lines(&self) -> [bool; 2] {
-        let is_asked =
-            |enable, flags| self.registers.has(DIER, enable) && self.registers.has(SR, flags);
-        [is_asked(BREAK, BREAK | SYSTEM_BREAK), is_asked(UPDATE, UPDATE)]
     }
 
     /// What it drives the gates of a leg with.
     pub fn outputs(&self, leg: usize, now: u64) -> Outputs {
         let both = |level| Outputs { high: level, low: level };
-        if !self.registers.has(CCER, BOTH_OUTPUTS << (4 * leg)) {
+        if self.registers.get(CCER) >> (4 * leg) & BOTH_OUTPUTS != BOTH_OUTPUTS {
             return both(Level::Floating);
         }
         if !self.is_on() {
@@ -309,44 +265,28 @@ impl PwmTimer {
             // Bits are cleared by writing zero.
             SR => self.registers.change(SR, !value, 0),
             EGR => triggers = self.generate(value, now)?,
+            ARR if self.runs() => return Err(Unmodelled::Register),
+            ARR => {
+                self.registers.write(ARR, value)?;
+                self.top = value;
+            }
+            BDTR if value & MAIN_OUTPUT != 0 && !self.is_on() => {
+                self.registers.write(BDTR, value)?;
+                // A dead time comes before the first switch, too.
+                self.references.iter_mut().for_each(|reference| reference.since = now);
+            }
             CNT => match self.count {
                 Count::Stopped(_) if value <= self.top => self.count = Count::Stopped(value),
                 _ => return Err(Unmodelled::Register),
             },
-            _ => {
-                self.registers.check(offset, value, 0)?;
-                self.set(offset, value, now)?;
+            CCMR1 | CCMR2 => {
+                check_modes(value)?;
+                self.registers.write(offset, value)?;
             }
+            _ => self.registers.write(offset, value)?,
         }
         self.compare_at(now);
         Ok(triggers)
-    }
-
-    /// Sets a register whose bits are modelled. What the lock protects stays as it is.
-    fn set(&mut self, offset: u32, value: u32, now: u64) -> Access<()> {
-        let mut locked = 0;
-        match offset {
-            CCMR1 | CCMR2 => self.check_modes(offset, value)?,
-            CCER => check_channels(value)?,
-            ARR => self.take_reload(value)?,
-            BDTR => {
-                let breaks = if self.is_locked(1) { DEAD_TIME | LOCK | BREAKS | FILTER } else { 0 };
-                locked = breaks | if self.is_locked(2) { OFF_MODES } else { 0 };
-                if value & MAIN_OUTPUT != 0 && !self.is_on() {
-                    // A dead time comes before the first switch, too.
-                    self.references.iter_mut().for_each(|reference| reference.since = now);
-                }
-            }
-            AF1 if self.is_locked(1) => locked = u32::MAX,
-            _ => {}
-        }
-        self.registers.change(offset, !locked, value & !locked);
-        if let Some(channel) = COMPARE.iter().position(|&compare| compare == offset)
-            && !self.is_preloaded(channel)
-        {
-            self.compared[channel] = value;
-        }
-        Ok(())
     }
 
     fn set_control(&mut self, value: u32, now: u64) -> Access<()> {
@@ -354,7 +294,7 @@ impl PwmTimer {
         let value = value & !DOWN;
         self.registers.check(CR1, value, 0)?;
         let is_on = value & ENABLE != 0;
-        if is_on && value & MODES != CENTRE_ALIGNED {
+        if is_on && value & CENTRE_ALIGNED == 0 {
             return Err(Unmodelled::Bits(ENABLE));
         }
         if is_on != self.runs() {
@@ -392,31 +332,6 @@ impl PwmTimer {
         Ok(triggers)
     }
 
-    fn check_modes(&self, register: u32, value: u32) -> Access<()> {
-        for mode in [value & MODE, value >> 8 & MODE] {
-            if mode != 0 && mode != PWM_2 {
-                return Err(Unmodelled::Bits(mode));
-            }
-        }
-        let changes = value ^ self.registers.get(register);
-        if self.is_locked(3) && changes != 0 { Err(Unmodelled::Bits(changes)) } else { Ok(()) }
-    }
-
-    /// A reload value that does not wait for an update is not modelled while the counter runs.
-    fn take_reload(&mut self, value: u32) -> Access<()> {
-        if !self.registers.has(CR1, PRELOADED) {
-            if self.runs() {
-                return Err(Unmodelled::Bits(value));
-            }
-            self.top = value;
-        }
-        Ok(())
-    }
-
-    fn is_locked(&self, level: u32) -> bool {
-        self.registers.get(BDTR) & LOCK >= level << 8
-    }
-
     /// The counter is at the top or at zero: an update, unless further turns come first (RM0440, 28.3.3).
     /// Whether the trigger output rises.
     fn turn_around(&mut self) -> bool {
@@ -431,15 +346,7 @@ impl PwmTimer {
         self.left = self.registers.get(RCR);
         self.registers.change(SR, 0, UPDATE);
         self.compared = COMPARE.map(|register| self.registers.get(register));
-        // At the top, the way down is that of the way up: a new one begins at zero.
-        if !matches!(self.count, Count::Running { was_at_top: true, .. }) {
-            self.top = self.registers.get(ARR);
-        }
         self.registers.get(CR2) == TRIGGER_UPDATE
-    }
-
-    fn is_preloaded(&self, channel: usize) -> bool {
-        self.mode(channel) & CHANNEL_PRELOADED != 0
     }
 
     fn mode(&self, channel: usize) -> u32 {
@@ -449,7 +356,7 @@ impl PwmTimer {
     /// Takes the references' edges down.
     fn compare_at(&mut self, now: u64) {
         for channel in 0..3 {
-            let active = self.mode(channel) & MODE == PWM_2 && self.is_from_on(channel, now);
+            let active = self.mode(channel) == CHANNEL && self.is_from_on(channel, now);
             if active != self.references[channel].active {
                 self.references[channel] = Reference { active, since: now };
             }
@@ -489,15 +396,14 @@ impl PwmTimer {
     }
 }
 
-/// CCER: both outputs of a channel or none.
-fn check_channels(value: u32) -> Access<()> {
-    for leg in 0..3 {
-        let outputs = value >> (4 * leg) & BOTH_OUTPUTS;
-        if outputs != 0 && outputs != BOTH_OUTPUTS {
-            return Err(Unmodelled::Bits(outputs << (4 * leg)));
-        }
+/// CCMR1 and CCMR2: each channel in PWM mode 2, or not used.
+fn check_modes(value: u32) -> Access<()> {
+    let is_modelled = |mode: u32| mode == 0 || mode == CHANNEL;
+    if is_modelled(value & 0xFF) && is_modelled(value >> 8) {
+        Ok(())
+    } else {
+        Err(Unmodelled::Bits(value))
     }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -519,16 +425,15 @@ mod tests {
     /// Set up, with the compare values 500, 1000 and one above the top, and started at 10,000.
     fn started() -> PwmTimer {
         let mut timer = PwmTimer::default();
-        let mode = PWM_2 | CHANNEL_PRELOADED;
         write(
             &mut timer,
             0,
             &[
-                (CR1, CENTRE_ALIGNED | PRELOADED | ONLY_OVERFLOW),
+                (CR1, CENTRE_ALIGNED | ONLY_OVERFLOW),
                 (ARR, TOP),
                 (RCR, 1),
-                (CCMR1, mode | mode << 8),
-                (CCMR2, mode),
+                (CCMR1, CHANNEL | CHANNEL << 8),
+                (CCMR2, CHANNEL),
                 (CCR1, 500),
                 (CCR2, 1000),
                 (CCR3, TOP + 1),
@@ -537,10 +442,9 @@ mod tests {
                 (CR2, TRIGGER_UPDATE),
                 (AF1, COMPARATOR_BITS),
                 (BDTR, ON),
-                (DIER, BREAK),
             ],
         );
-        write(&mut timer, START, &[(CR1, CENTRE_ALIGNED | PRELOADED | ONLY_OVERFLOW | ENABLE)]);
+        write(&mut timer, START, &[(CR1, CENTRE_ALIGNED | ONLY_OVERFLOW | ENABLE)]);
         timer
     }
 
@@ -567,29 +471,6 @@ mod tests {
         let period = 2 * u64::from(TOP);
         let triggers = run(&mut timer, START, START + 3 * period + 5);
         assert_eq!(triggers, [1, 2, 3].map(|periods| START + periods * period));
-        assert_eq!(timer.period(), period);
-    }
-
-    /// As the manual has it: the repetition counter counts turns, and began with the one behind the write.
-    #[test]
-    fn a_repetition_that_is_written_late_puts_the_update_at_the_peak() {
-        let mut timer = started();
-        write(&mut timer, START, &[(RCR, 0), (EGR, UPDATE), (RCR, 1)]);
-        let triggers = run(&mut timer, START, START + 3 * 2 * u64::from(TOP));
-        let top = u64::from(TOP);
-        assert_eq!(triggers, [1, 3, 5].map(|turns| START + turns * top));
-    }
-
-    #[test]
-    fn the_counter_goes_up_and_down() {
-        let timer = started();
-        let top = u64::from(TOP);
-        for (passed, count, down) in
-            [(0, 0, 0), (700, 700, 0), (top, TOP, DOWN), (top + 25, TOP - 25, DOWN)]
-        {
-            assert_eq!(timer.read(CNT, START + passed), Ok(count));
-            assert_eq!(timer.read(CR1, START + passed).unwrap() & DOWN, down);
-        }
     }
 
     /// The high side conducts around the peak, the low side around the valley, and between them neither,
@@ -619,30 +500,6 @@ mod tests {
     }
 
     #[test]
-    fn a_compare_value_of_zero_is_always_active() {
-        let mut timer = started();
-        write(&mut timer, START, &[(CCR1, 0)]);
-        let period = 2 * u64::from(TOP);
-        run(&mut timer, START, START + period + 200);
-        for now in [START + period + 200, START + 2 * period - 1, START + 2 * period] {
-            run(&mut timer, START + period + 200, now);
-            assert_eq!(levels(&timer, 0, now), (true, false));
-        }
-    }
-
-    #[test]
-    fn a_compare_value_waits_for_the_update() {
-        let mut timer = started();
-        let period = 2 * u64::from(TOP);
-        write(&mut timer, START + 10, &[(CCR1, 1500)]);
-        run(&mut timer, START + 10, START + period - 1);
-        assert_eq!(timer.compared()[0], 500);
-        assert_eq!(timer.read(CCR1, START + 20), Ok(1500));
-        run(&mut timer, START + period - 1, START + period);
-        assert_eq!(timer.compared()[0], 1500);
-    }
-
-    #[test]
     fn a_break_takes_all_outputs_away_at_once_and_for_good() {
         let mut timer = started();
         let now = START + 700;
@@ -650,66 +507,14 @@ mod tests {
         assert_eq!(levels(&timer, 0, now), (true, false));
         assert!(!timer.is_broken_by([false, false, true, false]), "no input");
         assert!(timer.is_broken_by([false, false, false, true]));
-        timer.break_off(Breaker::Input);
+        timer.break_off(BREAK);
         for leg in 0..3 {
             let low = Outputs { high: Level::Low, low: Level::Low };
             assert_eq!(timer.outputs(leg, now), low);
         }
-        assert_eq!(timer.lines(), [true, false]);
         assert_eq!(timer.read(SR, now).unwrap() & BREAK, BREAK);
         run(&mut timer, now, now + 10_000);
         assert!(!timer.is_on());
-        write(&mut timer, now + 10_000, &[(SR, 0)]);
-        assert_eq!(timer.lines(), [false, false]);
-    }
-
-    /// It is low, which is a break where the break is active low.
-    #[test]
-    fn the_break_s_pin_is_open() {
-        for (polarity, breaks) in [(BREAK_HIGH, false), (0, true)] {
-            let mut timer = PwmTimer::default();
-            write(&mut timer, 0, &[(BDTR, BREAK_ENABLE | polarity | 0b11 << 16)]);
-            assert_eq!(timer.is_broken_by([false; 4]), breaks);
-            assert_eq!(timer.filter(), 8);
-        }
-    }
-
-    /// Both polarities of both places that have one.
-    #[test]
-    fn polarities_of_the_break_and_of_its_input_cancel() {
-        for (break_high, inverted) in [(false, false), (false, true), (true, false), (true, true)] {
-            let mut timer = PwmTimer::default();
-            let polarity = if inverted { 1 << 10 } else { 0 };
-            let control = BREAK_ENABLE | if break_high { BREAK_HIGH } else { 0 };
-            write(&mut timer, 0, &[(AF1, 1 << 1 | polarity), (BDTR, control)]);
-            for level in [false, true] {
-                let expected = level ^ inverted == break_high;
-                assert_eq!(timer.is_broken_by([level, false, false, false]), expected);
-            }
-        }
-    }
-
-    #[test]
-    fn the_main_output_begins_with_a_dead_time() {
-        let mut timer = started();
-        let now = START + 300;
-        run(&mut timer, START, now);
-        write(&mut timer, now, &[(EGR, BREAK)]);
-        assert_eq!(levels(&timer, 0, now), (false, false));
-        write(&mut timer, now, &[(SR, 0), (BDTR, ON)]);
-        assert_eq!(levels(&timer, 0, now), (false, false));
-        assert_eq!(timer.next(now), Some(now + u64::from(DEAD)));
-        assert_eq!(levels(&timer, 0, now + u64::from(DEAD)), (false, true));
-    }
-
-    #[test]
-    fn outputs_that_are_off_float_unless_they_are_asked_to_be_driven() {
-        let mut timer = started();
-        write(&mut timer, START, &[(BDTR, ON & !MAIN_OUTPUT & !OFF_WHILE_IDLE)]);
-        let floating = Outputs { high: Level::Floating, low: Level::Floating };
-        assert_eq!(timer.outputs(0, START), floating);
-        write(&mut timer, START, &[(BDTR, ON), (CCER, 0)]);
-        assert_eq!(timer.outputs(0, START), floating);
     }
 
     #[test]
@@ -722,15 +527,6 @@ mod tests {
     }
 
     #[test]
-    fn a_lock_keeps_the_break_and_the_dead_time() {
-        let mut timer = started();
-        let locked = ON | 0b10 << 8;
-        write(&mut timer, START, &[(BDTR, locked), (BDTR, 0), (AF1, 0)]);
-        assert_eq!(timer.read(BDTR, START), Ok(locked & !MAIN_OUTPUT));
-        assert_eq!(timer.read(AF1, START), Ok(COMPARATOR_BITS));
-    }
-
-    #[test]
     fn what_is_not_modelled_is_refused() {
         let mut timer = started();
         for (register, value) in [
@@ -738,8 +534,8 @@ mod tests {
             (CR1, 0b10 << 5),
             (CR2, 1 << 8),
             (CCMR1, 0b110 << 4),
-            (CCER, 1),
             (CCER, 1 << 12),
+            (ARR, TOP - 1),
             (BDTR, 1 << 14),
             (AF1, 1 << 3),
             (BDTR, 1 << 18),

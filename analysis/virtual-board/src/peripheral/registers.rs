@@ -35,6 +35,11 @@ impl Registers {
         self.get(offset) & bits != 0
     }
 
+    /// Whether a register has all of these bits set.
+    pub fn has_all(&self, offset: u32, bits: u32) -> bool {
+        self.get(offset) & bits == bits
+    }
+
     /// Sets a register of the table, also a read-only one.
     pub fn set(&mut self, offset: u32, value: u32) {
         self.values[offset as usize / 4] = value;

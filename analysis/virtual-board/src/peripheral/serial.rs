@@ -335,33 +335,4 @@ mod tests {
             assert_eq!(received(&mut port), b'z'.into(), "{}", variant.on);
         }
     }
-
-    #[test]
-    fn silence_behind_a_byte_is_told_once() {
-        for variant in [&G4, &F405] {
-            let mut port = open(variant);
-            port.send(b"a");
-            port.advance(0, DIVIDER);
-            port.advance(BYTE, DIVIDER);
-            assert_eq!(status(&mut port) & IDLE, 0, "{}", variant.on);
-            port.advance(2 * BYTE, DIVIDER);
-            assert_eq!(status(&mut port) & IDLE, IDLE, "{}", variant.on);
-            assert_eq!(port.due(), None, "{}", variant.on);
-        }
-    }
-
-    #[test]
-    fn what_is_sent_leaves_byte_by_byte() {
-        for variant in [&G4, &F405] {
-            let mut port = open(variant);
-            port.write(variant.to_send, b'x'.into()).unwrap();
-            port.advance(0, DIVIDER);
-            assert_eq!(status(&mut port) & SENT, 0, "{}", variant.on);
-            port.advance(BYTE - 1, DIVIDER);
-            assert_eq!(port.take_sent(), b"", "{}", variant.on);
-            port.advance(BYTE, DIVIDER);
-            assert_eq!(port.take_sent(), b"x", "{}", variant.on);
-            assert_eq!(status(&mut port) & SENT, SENT, "{}", variant.on);
-        }
-    }
 }

@@ -56,8 +56,6 @@ pub struct Circuit {
     pub leaks: [f64; 3],
     /// Charge of the supply of each high side's gate, as a part of the full one.
     bootstraps: [f64; 3],
-    /// Whether the encoder's two wires are swapped.
-    pub encoder_is_reversed: bool,
     /// Whether the motor's shaft is held.
     pub is_blocked: bool,
     /// How the device moved last.
@@ -78,7 +76,6 @@ impl Default for Circuit {
             amplifier_errors: [0.0; 3],
             leaks: [0.0; 3],
             bootstraps: [0.0; 3],
-            encoder_is_reversed: false,
             is_blocked: false,
             motion: Motion::default(),
             torque: 0.0,
@@ -131,8 +128,7 @@ impl Circuit {
         }
         // The angle in the middle of the period to come.
         motor.turn(self.motion.angle + 0.5 * seconds * self.motion.speed, self.motion.speed);
-        let counts = self.motion.counts;
-        if self.encoder_is_reversed { -counts } else { counts }
+        self.motion.counts
     }
 
     /// How far the voltage at a shunt's pin can change within a time, in V and s, while no leg is switched.

@@ -1,4 +1,4 @@
-//! An hour of contact and of free motion: into the wall and out of it, turns that wrap the encoder's
+//! Minutes of contact and of free motion: into the wall and out of it, turns that wrap the encoder's
 //! counter, and parameters that are changed while it is felt.
 
 use std::num::NonZeroU32;
@@ -18,8 +18,8 @@ use crate::device::{HandHeldDevice, Sample};
 
 /// Samples of the servo in a minute.
 const MINUTE: u64 = 60_000;
-/// Minutes of use; with a core for each chip they take a minute and a half.
-const MINUTES: u64 = 60;
+/// Minutes of use.
+const MINUTES: u64 = 10;
 
 /// A device in a hand that does the same over and over; and once a minute the encoder is spun away
 /// from the wall and back, far enough for a counter of 16 bits to wrap.
@@ -71,7 +71,7 @@ impl Use {
     fn boot(chip: &'static Chip, minutes: u64) -> Self {
         let program = Program::find("damper_wall").unwrap();
         let mut bench = Bench::boot(chip, program.name, Spun::of(program, minutes));
-        // Hours of them would be gigabytes.
+        // They would take much memory.
         bench.board_mut().events = None;
         bench.armed();
         Self { bench, sets: 0, gaps: 0, last: None }
@@ -170,6 +170,6 @@ fn used(chip: &'static Chip, minutes: u64) {
 }
 
 #[test]
-fn an_hour_of_use_misses_no_tick_and_loses_no_count() {
+fn ten_minutes_of_use_miss_no_tick_and_lose_no_count() {
     on_both(|chip| used(chip, MINUTES));
 }

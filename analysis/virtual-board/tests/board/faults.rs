@@ -5,10 +5,10 @@ use haptic_servo::reset::ResetCause;
 use haptic_servo::wire::message::{Outcome, Refusal};
 use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;
+use virtual_board::chip::Unit;
 use virtual_board::chip::{Chip, TICK_INTERRUPT};
 use virtual_board::core::exceptions::{FIRST_INTERRUPT, NON_MASKABLE, Number};
 use virtual_board::peripheral::pins::Level;
-use virtual_board::unit::Unit;
 
 use crate::bench::{Bench, MID_SCALE, on_both};
 use crate::provoked::{Case, check_kept, run_on};

@@ -155,27 +155,6 @@ fn a_record_outlives_a_reset_and_a_flipped_bit_makes_it_none() {
     });
 }
 
-/// A corrupted number in memory cannot be distinguished from a valid one; the torque limit holds for any
-/// value.
-#[test]
-fn a_coefficient_with_a_flipped_bit_pushes_no_harder_than_the_limit() {
-    on_both(|chip| {
-        for bit in 0..32 {
-            let mut bench = pushing(chip);
-            for place in coefficient(&mut bench) {
-                bench.flip(place, 1 << bit);
-            }
-            let from = bench.pins().samples.len();
-            bench.run(100);
-            for sample in &bench.pins().samples[from..] {
-                assert!(sample.code.unwrap().abs_diff(MID_SCALE) <= LIMIT, "bit {bit}: {sample:?}");
-            }
-            let fault = bench.fault();
-            assert!(matches!(fault, None | Some(Fault::NotANumber)), "bit {bit}: {fault:?}");
-        }
-    });
-}
-
 /// A wall with a face never pulls, and goes by the sign there, also by that of no number.
 #[test]
 fn a_position_that_is_no_number_with_a_negative_sign_gives_no_torque() {

@@ -199,18 +199,6 @@ fn before_each(code: Code) -> std::ops::Range<u64> {
 }
 
 #[test]
-fn a_program_goes_on_after_an_interrupt_anywhere() {
-    on_both(|chip| {
-        let mut program = Interrupted::boot(chip);
-        program.check(&[]);
-        for after in before_each(BODY) {
-            program.check(&[(after, PEND_SV)]);
-        }
-        assert_eq!(program.words(COUNTS), [ADDED * BODY.len() as u32, 0]);
-    });
-}
-
-#[test]
 fn an_interrupt_goes_on_after_another_one_anywhere() {
     on_both(|chip| {
         let mut program = Interrupted::boot(chip);
@@ -221,50 +209,5 @@ fn an_interrupt_goes_on_after_another_one_anywhere() {
         }
         let times = (BODY.len() * LOWER.len()) as u32;
         assert_eq!(program.words(COUNTS), [ADDED * times, times]);
-    });
-}
-
-/// The second comes before the program has used a floating-point register again.
-#[test]
-fn a_program_goes_on_after_two_interrupts_in_a_row() {
-    on_both(|chip| {
-        let mut program = Interrupted::boot(chip);
-        for after in before_each(BODY) {
-            for number in [PEND_SV, SYS_TICK] {
-                program.check(&[(after, PEND_SV), (LOWER.len() as u64, number)]);
-            }
-        }
-    });
-}
-
-/// Addresses of the body's instructions, each with whether it is in a conditional block.
-fn places(body: u32) -> Vec<(u32, bool)> {
-    let (mut at, mut left) = (body, 0);
-    let place = |&word: &u32| {
-        let place = (at, left > 0);
-        at += if word >> 16 == 0 { 2 } else { 4 };
-        // How many follow stands in the lowest bit that is set.
-        let begins = word & !0xFF == 0xBF00 && word & 0xF != 0;
-        left = if begins { 4 - word.trailing_zeros() } else { u32::saturating_sub(left, 1) };
-        place
-    };
-    BODY.iter().map(place).collect()
-}
-
-/// A core may be interrupted there; this one finishes a block first, which no program can tell from
-/// an interrupt that comes some instructions later.
-#[test]
-fn a_conditional_block_is_finished_before_an_interrupt_is_served() {
-    on_both(|chip| {
-        let mut program = Interrupted::boot(chip);
-        let mut interrupted = Vec::new();
-        for after in 0..BODY.len() as u64 - 1 {
-            program.begin(after);
-            interrupted.push(program.machine.core_mut().register(RegisterARM::PC) & !1);
-        }
-        for (at, in_block) in places(program.body).into_iter().rev().skip(1) {
-            let what = format!("{at:#x}");
-            assert_eq!(interrupted.contains(&at), !in_block, "{what}: {interrupted:x?}");
-        }
     });
 }

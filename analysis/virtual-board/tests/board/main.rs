@@ -6,7 +6,6 @@ mod at_rest;
 mod bench;
 mod bridge;
 mod contact;
-mod corpus;
 mod device;
 mod faults;
 mod harmless;

@@ -73,23 +73,6 @@ fn its_torques_are_those_of_a_board_of_the_firmware() {
     assert_eq!(own[..length], ours[..length]);
 }
 
-/// A torque changes at an update of the timer that paces, and at no other time.
-#[test]
-fn its_codes_come_out_at_the_next_update() {
-    let mut bench = boot();
-    bench.armed();
-    bench.pins().turns.extend([3; 300]);
-    bench.run(300);
-    let period = bench.period();
-    let due = bench.board().tick_timer.due().unwrap();
-    let changes = |(at, event): &(u64, Event)| matches!(event, Event::Torque(_)).then_some(*at);
-    let times: Vec<_> = bench.events().iter().filter_map(changes).skip(1).collect();
-    assert!(times.len() > 20);
-    let late: Vec<_> = times.iter().map(|at| (period - (due - at) % period) % period).collect();
-    // A virtual board's time goes by instructions: an event may be a cycle behind its cause.
-    assert!(late.iter().all(|after| *after <= 1), "{late:?}");
-}
-
 const fn case(
     fault: &'static str,
     cause: &'static str,

@@ -1,10 +1,6 @@
-//! Torques at a phase of their own period: when they come, to the instruction, and what a late tick leaves.
+//! Torques at a phase of their own period: when they come, to the instruction.
 
 use analysis::program::undelayed_wall;
-use haptic_servo::fault::Fault;
-use haptic_servo::servo_loop::State;
-use haptic_servo::wire::message::Outcome;
-use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;
 use virtual_board::chip::Chip;
 
@@ -17,8 +13,6 @@ const INTO: i32 = 300;
 const STEP: i32 = 40;
 /// Samples after a step until the code stands still.
 const SETTLING: u64 = 300;
-/// Instructions from an update to after the count is read, and before a code is written.
-const READ: u64 = 45;
 /// Instructions by which the phase's timer is started behind the pacing timer.
 const STARTED: u64 = 12;
 
@@ -80,73 +74,5 @@ fn the_slack_is_that_up_to_the_phase() {
         let left = phase(chip) - written;
         // Around the measured code there are an interrupt's entry and the reading of the clock.
         assert!(slack < left && slack + 100 > left, "{slack} of {left}");
-    });
-}
-
-/// Stopped by this fault; the torque goes from the one before to none and there was nothing between.
-fn check_stopped(bench: &mut Bench, before: u16, from: u64) -> Fault {
-    bench.run(2);
-    assert_eq!(bench.status().state, State::Faulted);
-    let torques: Vec<_> = bench.torques_after(from).collect();
-    assert_eq!(torques, [MID_SCALE], "after {before}");
-    let off = bench.amplifier_off(from).expect("the amplifier is off") - from;
-    assert!(off < bench.period() / 20, "off after {off} instructions");
-    let fault = bench.fault().unwrap();
-    bench.run(20);
-    assert_eq!(bench.arm(), Outcome::Done);
-    fault
-}
-
-/// The core waits between count and code, as for a memory that does not answer.
-#[test]
-fn a_code_that_is_late_is_a_fault_and_never_at_the_motor() {
-    on_both(|chip| {
-        let mut bench = pushing(chip);
-        // A wait that leaves enough changes nothing.
-        for (wait, is_late) in [(phase(chip) / 2, false), (phase(chip), true)] {
-            let (_, before) = codes(&bench);
-            bench.turn(STEP);
-            bench.run_to_update();
-            let update = bench.now();
-            bench.run_for(READ);
-            assert_eq!(codes(&bench).0, before, "written already");
-            bench.board_mut().now += wait;
-            if !is_late {
-                bench.run(SETTLING);
-                assert_eq!(bench.status().state, State::Running);
-                continue;
-            }
-            let fault = check_stopped(&mut bench, before, update);
-            let Fault::LateTick { late, allowed } = fault else { panic!("{fault:?}") };
-            let divider = bench.board().clock.timer_divider();
-            let phase = phase(chip) / divider;
-            assert!((phase - 1..=phase).contains(&u64::from(allowed)), "{fault:?}");
-            assert!(late > allowed, "{fault:?}");
-        }
-    });
-}
-
-/// Interrupts are masked through an update, for three microseconds behind it: the code would be in time,
-/// but its count is not that of the period's beginning.
-#[test]
-fn a_count_that_is_read_late_is_a_fault_though_its_code_is_in_time() {
-    on_both(|chip| {
-        let mut bench = pushing(chip);
-        let (_, before) = codes(&bench);
-        let (ahead, behind) = (500, 3 * chip.core / 1_000_000);
-        bench.run_to_update();
-        bench.run_for(bench.period() - ahead);
-        let began = bench.now();
-        bench.machine.core_mut().set_register(RegisterARM::PRIMASK, 1);
-        bench.run_for(ahead + behind);
-        bench.machine.core_mut().set_register(RegisterARM::PRIMASK, 0);
-        let fault = check_stopped(&mut bench, before, began);
-        let Fault::LateTick { late, allowed } = fault else { panic!("{fault:?}") };
-        let divider = bench.board().clock.timer_divider();
-        let microsecond = chip.core / 1_000_000 / divider;
-        assert!(
-            u64::from(allowed) <= microsecond && u64::from(late) < 5 * microsecond,
-            "{fault:?}"
-        );
     });
 }

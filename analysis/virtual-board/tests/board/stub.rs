@@ -1,5 +1,6 @@
 //! A piece of code that a board's program does not know, and that holds up one of its interrupts.
 
+use virtual_board::chip::FLASH;
 use virtual_board::core::exceptions::{FIRST_INTERRUPT, Number};
 
 use crate::assembly::bytes;
@@ -14,7 +15,7 @@ pub enum Masks {
     All,
 }
 
-/// Bytes of it, at the end of RAM.
+/// Bytes of it, at the end of flash.
 const SIZE: u32 = 32;
 
 /// Holds the serial port's interrupt up for so many instructions before its handler, from the next
@@ -22,7 +23,7 @@ const SIZE: u32 = 32;
 pub fn hold_up(bench: &mut Bench, instructions: u64, masks: Masks) -> u64 {
     let chip = bench.board().chip();
     let number: Number = FIRST_INTERRUPT + chip.serial_interrupt;
-    let at = 0x2000_0000 + chip.ram - SIZE;
+    let at = FLASH + chip.flash - SIZE;
     let handler = bench.machine.divert(number, Some(at));
     let code = stub(instructions, masks, handler);
     assert!(bench.machine.core_mut().set_memory(at, &code));

@@ -72,36 +72,6 @@ fn assert_still(bench: &Bench) {
     );
 }
 
-/// Every byte alone, and random bytes with zeros between them, which end frames; the next request is received.
-#[test]
-fn no_noise_begins_a_sweep() {
-    let (chip, file) = file();
-    let mut bench = Bench::boot_file(chip, file, FixedDevice);
-    bench.run(5);
-    // Of Numerical Recipes: the same bytes on every machine.
-    let mut random = 3_u32;
-    let mut random_byte = || {
-        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (random >> 24) as u8
-    };
-    let noise = (0..=u8::MAX).chain((0..=u8::MAX).flat_map(|byte| [byte, 0]));
-    let noise = noise.chain(std::iter::repeat_with(&mut random_byte).take(4000));
-    let noise: Vec<u8> = noise.collect();
-    for piece in noise.chunks(20) {
-        bench.board_mut().send(piece);
-        bench.run(1);
-    }
-    bench.run(20);
-    assert_still(&bench);
-    bench.board_mut().send(&SweepRequest::BEGIN.frame());
-    bench.run(20);
-    assert_eq!(bench.board().amplifier(), Level::High);
-    // A second request to begin ends it, and begins nothing afterwards.
-    bench.board_mut().send(&SweepRequest::BEGIN.frame());
-    bench.run(3);
-    assert_ended(&mut bench, SweepEnd::Stopped, "begun twice");
-}
-
 #[test]
 fn a_sweep_ends_where_the_host_says_so_or_says_nothing() {
     let mut bench = playing(200);

@@ -7,8 +7,6 @@ use crate::bench::{Bench, on_both};
 /// Counts into the wall, and further steps that each change the code by some.
 const INTO: i32 = 300;
 const STEP: i32 = 40;
-/// The code that far into the wall and two steps further.
-const DEEP: u16 = 1500;
 /// Samples after a step until the code stands still: the wall's damping and the coupling let an
 /// alternation decay by a factor of 0.96 a sample.
 const SETTLING: u64 = 300;
@@ -61,41 +59,4 @@ fn a_count_reaches_the_dac_within_its_sample_and_the_motor_exactly_at_the_next()
         assert!(new != output && new == held);
         assert_eq!(bench.events().last(), Some(&(update, Event::Torque(Some(new)))));
     });
-}
-
-#[test]
-fn a_count_that_comes_after_it_was_read_waits_for_the_next_sample() {
-    on_both(|chip| {
-        let mut bench = Bench::running(chip, "damper_wall");
-        bench.turn(INTO);
-        bench.run(SETTLING);
-        // The instruction after an update up to which a step still counts in that tick.
-        let (mut early, mut late) = (0, bench.board().meter.interrupt().most);
-        assert!(counts_in_this_tick(&mut bench, early));
-        assert!(!counts_in_this_tick(&mut bench, late));
-        while late - early > 1 {
-            let middle = (early + late) / 2;
-            if counts_in_this_tick(&mut bench, middle) { early = middle } else { late = middle }
-        }
-        // One instruction earlier and later say the same as far from it.
-        for after in 0..early + 20 {
-            assert_eq!(counts_in_this_tick(&mut bench, after), after <= early);
-        }
-    });
-}
-
-/// Whether a step that comes so many instructions after an update is in the code of that tick.
-fn counts_in_this_tick(bench: &mut Bench, after: u64) -> bool {
-    let held = |bench: &Bench| bench.board().dac.held();
-    bench.run(SETTLING);
-    bench.run_to_update();
-    let before = held(bench);
-    bench.run_for(after);
-    let into = if before < DEEP { -STEP } else { STEP };
-    bench.board_mut().turn_encoder(into);
-    bench.run_for(1000);
-    let counted = held(bench) != before;
-    bench.run(1);
-    assert_ne!(held(bench), before, "it counts in the next one");
-    counted
 }

@@ -4,8 +4,6 @@
 #![no_std]
 #![no_main]
 
-mod cycles;
-
 use haptic_servo::board::input_filter::InputFilter;
 use haptic_servo::board::stm32::output::Setup;
 use haptic_servo::board::stm32::output::dac::present_code;
@@ -189,11 +187,5 @@ mod tests {
             wait(&mut hardware, 500);
         }
         Ok(())
-    }
-
-    #[test]
-    #[timeout(90)]
-    fn cycles_of_the_servo_over_a_minute() -> Result<(), Failure> {
-        cycles::measure()
     }
 }

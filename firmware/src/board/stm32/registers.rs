@@ -3,7 +3,7 @@
 use embassy_stm32::pac;
 use embassy_stm32::pac::iwdg::vals::Key;
 
-use super::output::{Output, Pace, Setup};
+use super::output::{self, Output, Pace, Setup};
 use super::quadrature::Counter;
 use super::wiring::ENCODER;
 use super::{family, reset};
@@ -47,7 +47,7 @@ impl Registers {
 impl Hardware for Registers {
     #[inline(always)]
     fn count(&mut self) -> RawCount {
-        self.pace.count()
+        output::count()
     }
 
     #[inline(always)]
@@ -83,12 +83,12 @@ impl Hardware for Registers {
 
     #[inline(always)]
     fn periods_since_last(&mut self) -> u32 {
-        self.pace.periods_since_last()
+        self.pace.begun_by(output::period_began())
     }
 
     #[inline(always)]
     fn time_in_period(&mut self) -> u32 {
-        self.pace.periods().elapsed()
+        self.pace.elapsed()
     }
 
     #[inline(always)]
@@ -110,7 +110,7 @@ impl Startup for Registers {
         // While a debugger halts the core the DAC holds its last code, so the watchdog, which removes the
         // torque, must not halt with the core.
         family::keep_watchdog_running();
-        let counts = period::watchdog_counts(self.pace.periods().seconds());
+        let counts = period::watchdog_counts(self.pace.seconds());
         pac::IWDG.kr().write(|w| w.set_key(Key::START));
         pac::IWDG.kr().write(|w| w.set_key(Key::ENABLE));
         pac::IWDG.rlr().write(|w| w.set_rl(counts));
@@ -125,6 +125,6 @@ impl Startup for Registers {
     }
 
     fn period(&self) -> u32 {
-        self.pace.periods().counts()
+        self.pace.counts()
     }
 }

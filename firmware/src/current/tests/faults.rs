@@ -7,12 +7,6 @@ use super::rig::{Handle, Rig, ThreePhases};
 use super::*;
 use crate::encoder::RawCount;
 
-/// Instants until a fault, and the fault.
-fn fault(rig: &mut Rig, code: i16, instants: usize) -> (usize, PowerFault) {
-    let first = (0..instants).find_map(|k| rig.instant(code).err().map(|fault| (k, fault)));
-    first.expect("there is a fault")
-}
-
 #[test]
 fn does_not_start_without_offsets_in_range() {
     let mut rig = Rig::off(&BRUSHED);
@@ -123,32 +117,6 @@ fn a_thermistor_that_is_open_or_shorted_is_a_fault() {
     ] {
         assert_eq!(told(count), fault, "{count}");
     }
-}
-
-#[test]
-fn a_short_circuit_is_over_current() {
-    let mut rig = Rig::started(&BRUSHED);
-    rig.motor.inductance *= 0.01;
-    rig.motor.resistance *= 0.1;
-    let (instants, fault) = fault(&mut rig, FULL_SCALE, 100);
-    assert!(instants < 10, "{instants}");
-    let PowerFault::OverCurrent { current: 5000.., largest: 4_950..=5_000 } = fault else {
-        panic!("{fault:?}")
-    };
-}
-
-#[test]
-fn a_broken_wire_is_a_current_that_does_not_follow() {
-    let mut rig = Rig::started(&BRUSHED);
-    rig.motor.resistance = 1e6;
-    // So much that the voltage is enough, and so little that the current is zero.
-    let (instants, fault) = fault(&mut rig, 500, 2000);
-    assert!(instants > 30 && instants < 200, "{instants}");
-    let (PowerFault::CurrentNotFollowing { largest: 1000, .. } | PowerFault::SaturatedDuty { .. }) =
-        fault
-    else {
-        panic!("{fault:?}")
-    };
 }
 
 #[test]

@@ -71,12 +71,6 @@ impl Rig {
         Ok(current)
     }
 
-    /// The time until the next instant with these duties.
-    pub fn hold(&mut self, duties: Duties) {
-        self.loaded = duties;
-        self.switch();
-    }
-
     /// A period of the modulation, from the middle of the low sides to the next one.
     fn switch(&mut self) {
         let counts = f64::from(BRUSHED.timer_counts());

@@ -2,15 +2,15 @@
 
 use haptic_servo::fault::Fault;
 use haptic_servo::wire::message::{Outcome, ToBoard};
-use virtual_board::power_stage::gate_log::{any_high, off_since};
+use virtual_board::power_stage::gate_log::any_high;
 use virtual_board::power_stage::parts::Parts;
 use virtual_board::power_stage::{Circuit, Supply};
 
-use super::bench::{INSTANT, armed, asked_torque, boot, circuit, gates, run_to_valley};
-use super::bridge_wall::{SCENE, TRANSDUCERS};
+use super::bench::{INSTANT, armed, asked_torque, boot, circuit, gates};
+use super::bridge_wall::TRANSDUCERS;
 use super::brushless::{Held, wired};
-use super::gates::{INTO, pushing};
-use super::paddle::{paddle, still};
+use super::gates::INTO;
+use super::paddle::still;
 use crate::stub::{Masks, hold_up};
 
 /// No gate is high in any of them, not for a clock.
@@ -113,91 +113,4 @@ fn boards_with_parts_at_the_ends_of_their_tolerances_give_their_torque() {
         let stage = &bench.board().power_stage;
         assert_eq!((stage.uncharged(), stage.shoot_through()), (None, None), "{name}");
     }
-}
-
-/// The comparators need no program.
-#[test]
-fn a_short_is_broken_while_all_interrupts_are_masked() {
-    let mut bench = pushing();
-    hold_up(&mut bench, 40 * INSTANT, Masks::All);
-    run_to_valley(&mut bench);
-    let began = bench.now();
-    circuit(&mut bench).motor.as_mut().unwrap().short = Some((0.01, 0.5e-6));
-    // At nearly equal duties the current rises from edge to edge, to 9 A above the level at which the comparators
-    // trip without a current.
-    bench.run_for(4 * INSTANT);
-    let off = off_since(gates(&bench)).expect("no gate is high");
-    println!("{} clocks behind the short", off - began);
-    assert!(off - began < 4 * INSTANT);
-    bench.run(10);
-    assert_eq!(off_since(gates(&bench)), Some(off), "and it stays so");
-    assert!(bench.status().fault.is_some());
-}
-
-/// Resistance and inductance of 40 % more and less: the feedback makes the same torque of the same count.
-#[test]
-fn a_motor_whose_winding_is_another_makes_the_same_torque() {
-    let torque = |resistance: f64, inductance: f64| {
-        let mut bench = pushing();
-        let motor = circuit(&mut bench).motor.as_mut().unwrap();
-        motor.resistance *= resistance;
-        motor.inductance *= inductance;
-        bench.run(50);
-        assert!(bench.is_on());
-        circuit(&mut bench).mean_torque()
-    };
-    let wanted = torque(1.0, 1.0);
-    for (resistance, inductance) in [(1.4, 0.7), (0.7, 1.3), (1.4, 1.4)] {
-        let made = torque(resistance, inductance);
-        println!("{made:.4} N m in place of {wanted:.4}");
-        assert!((made / wanted - 1.0).abs() < 0.02);
-    }
-}
-
-/// It cannot be distinguished from a pushed device: the torque has the wrong sign, and its limit holds.
-#[test]
-fn swapped_wires_and_a_reversed_encoder_push_no_harder_than_the_limit() {
-    for swaps_wires in [false, true] {
-        let mut bench = boot(still());
-        if swaps_wires {
-            circuit(&mut bench).motor.as_mut().unwrap().wires = [1, 0, 2];
-        } else {
-            circuit(&mut bench).encoder_is_reversed = true;
-        }
-        armed(&mut bench);
-        bench.run(110);
-        bench.turn(INTO);
-        let limit = SCENE.torque_limit.unwrap_or(TRANSDUCERS.full_scale_torque);
-        let mut largest: f64 = 0.0;
-        for _ in 0..400 {
-            bench.run(1);
-            largest = largest.max(circuit(&mut bench).mean_torque().abs());
-        }
-        println!("at most {largest:.3} N m, {:?}", bench.fault());
-        assert!(largest <= 1.05 * limit, "{largest} N m");
-    }
-}
-
-/// Swings back, and then into the wall.
-fn strikes(time: f64) -> f64 {
-    if time < 0.3 { -0.35 } else { 0.35 }
-}
-
-/// The energy that the wall brakes goes into the supply's capacitor: the gates are off before its voltage is
-/// much above the limit, and the rest of the motion does not raise it further.
-#[test]
-fn a_supply_that_takes_nothing_back_is_not_lifted_far() {
-    let mut bench = boot(paddle(strikes, 0.0));
-    circuit(&mut bench).supply = Supply::that_stores(24.0, 2e-5);
-    armed(&mut bench);
-    let mut highest: f64 = 24.0;
-    for _ in 0..900 {
-        bench.run(1);
-        highest = highest.max(circuit(&mut bench).supply.volts);
-    }
-    let told = bench.fault();
-    println!("{highest:.2} V, {told:?}");
-    assert_eq!(told.map(Fault::as_str), Some("over-voltage"));
-    assert!(highest > 25.2 && highest < 26.5, "{highest} V");
-    assert!(!bench.is_on());
 }

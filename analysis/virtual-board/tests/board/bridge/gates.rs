@@ -1,6 +1,7 @@
 //! When the gates are high, and when never.
 
-use virtual_board::chip::{FREEZE_TIM1, TIM1_FREEZES};
+use virtual_board::chip::{B_G431B_ESC1, FREEZE_TIM1, TIM1_FREEZES};
+use virtual_board::error::BoardError;
 use virtual_board::peripheral::clock::Cause;
 use virtual_board::power_stage::gate_log::{any_high, first_high, off_since, shortest_dead_time};
 
@@ -9,6 +10,8 @@ use super::bridge_wall::CURRENT_LOOP;
 use super::paddle::still;
 use crate::bench::Bench;
 
+/// The first port of pins.
+const PORTS: u32 = 0x4800_0000;
 /// Counts into the wall.
 pub const INTO: i32 = 200;
 
@@ -69,11 +72,39 @@ fn a_reset_takes_the_gates_away_at_once() {
     }
 }
 
+/// What the virtual board finds by itself: both switches of a leg are on, here of U by pins that are outputs.
 #[test]
-fn a_power_cycle_takes_the_gates_away_at_once() {
+fn two_switches_of_a_leg_are_never_on_unnoticed() {
     let mut bench = pushing();
-    bench.machine.power_cycle();
-    let reset = bench.now();
-    bench.run(100);
-    assert!(off_since(gates(&bench)).is_some_and(|off| off <= reset));
+    for (gate, _) in B_G431B_ESC1.gates.unwrap().iter().step_by(3) {
+        let ((port, pin), board) = (*gate, bench.board_mut());
+        let base = PORTS + 0x400 * port as u32;
+        let modes = board.read(base, 4) & !(0b11 << (2 * pin));
+        board.write(base + 0x18, 4, 1 << pin);
+        board.write(base, 4, modes | 0b01 << (2 * pin));
+    }
+    let end = bench.machine.run_for(10);
+    assert!(matches!(end, Err(BoardError::ShootThrough { leg: 0, .. })), "{end:?}");
+}
+
+/// A converter samples behind an amplifier that is off.
+#[test]
+fn a_channel_that_nothing_drives_is_named() {
+    const OPAMP1: u32 = 0x4001_0300;
+    let mut bench = pushing();
+    bench.board_mut().write(OPAMP1, 4, 0);
+    let end = bench.machine.run_for(2 * INSTANT).unwrap_err().to_string();
+    assert!(end.contains("ADC1") && end.contains("nothing drives"), "{end}");
+}
+
+/// The drivers supply the gates of the high sides from capacitors, which only the low sides charge: here too slowly.
+#[test]
+fn a_high_side_whose_supply_is_not_charged_does_not_conduct() {
+    let mut bench = boot(still());
+    circuit(&mut bench).parts.bootstrap = 1.0;
+    armed(&mut bench);
+    bench.run(125);
+    let board = bench.board();
+    assert!(board.power_stage.uncharged().is_some());
+    assert_eq!(board.power_stage.circuit.currents(), [0.0; 3]);
 }

@@ -9,7 +9,7 @@ use virtual_board::encoder_index::EncoderIndex;
 use virtual_board::power_stage::gate_log::any_high;
 
 use super::bench::gates;
-use super::brushless::{Held, aligned, check_stays_off, check_torque, wired};
+use super::brushless::{Held, check_stays_off, check_torque, wired};
 use super::brushless_index::{DRIVE, OFFSET, TRANSDUCERS};
 use crate::bench::Bench;
 
@@ -111,22 +111,6 @@ fn the_first_index_after_a_reset_aligns_the_motor_and_no_gate_is_high_before() {
     let encoder = &bench.board().encoder;
     assert_eq!(encoder.filters(), [encoder.index_filter(); 2]);
     check_torque(&mut held, "by the index");
-}
-
-/// The board reports a number that a program may state: the magnets' angle at the index.
-#[test]
-fn an_alignment_and_an_index_give_the_offset() {
-    let wanted = 1900.0;
-    let (mut held, fault) = aligned(wired([0, 1, 2], magnets(wanted)), |_| {});
-    assert_eq!((fault, told(&mut held.bench)), (None, None));
-    let board = held.bench.board_mut();
-    // It was at zero when the board was switched on.
-    let position = i64::from(board.encoder.value(0, 1) as u16 as i16);
-    board.index = Some(EncoderIndex { position, ..index() });
-    let IndexOffset { counts, is_reversed } = turn_past(&mut held).expect("the index has come");
-    let degrees = (f64::from(counts) - wanted) / electrical_counts() * 360.0;
-    println!("{counts} counts, {degrees:.2} degrees off");
-    assert!(!is_reversed && degrees.abs() < 5.0, "{counts}");
 }
 
 #[test]

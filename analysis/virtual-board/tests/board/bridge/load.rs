@@ -5,12 +5,15 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use analysis::toolchain::{BoardModel, Tools, TorqueOutput, prepare};
+use unicorn_engine::RegisterARM;
 use virtual_board::chip::B_G431B_ESC1;
+use virtual_board::device::FixedDevice;
+use virtual_board::error::BoardError;
+use virtual_board::machine::Machine;
 use virtual_board::motor::{Motor, Winding};
 use virtual_board::peripheral::pins::Level;
 use virtual_board::power_stage::gate_log::any_high;
 use virtual_board::power_stage::{Circuit, Gates, Supply};
-use virtual_board::semihosting::{CallError, Guest};
 
 use super::bench::INSTANT;
 
@@ -60,6 +63,31 @@ fn as_stated(test: &str, circuit: &mut Circuit) {
     circuit.supply = Supply::stiff(volts);
 }
 
+/// Runs the test that begins at an address; whether it has ended with success.
+fn passes(machine: &mut Machine, entry: u32) -> bool {
+    // The program asks its debugger for the test's name, and gets there without it.
+    assert!(call(machine).is_some(), "it does not ask for its test");
+    machine.core_mut().set_register(RegisterARM::PC, entry | 1);
+    call(machine) == Some(SUCCESS)
+}
+
+/// The next call of the debugger: the operation, and two words of its block; none where the board cannot continue.
+fn call(machine: &mut Machine) -> Option<[u32; 3]> {
+    let end = machine.run_for(LONGEST);
+    let Err(BoardError::Breakpoint { .. }) = end else {
+        println!("{end:?}");
+        return None;
+    };
+    let core = machine.core();
+    let block = core.register(RegisterARM::R1);
+    let word = |place| core.word(place).unwrap_or(0);
+    Some([core.register(RegisterARM::R0), word(block), word(block + 4)])
+}
+
+/// SYS_EXIT_EXTENDED for the reason ADP_Stopped_ApplicationExit, with the status 0 ("Semihosting for AArch32 and
+/// AArch64", ARM, 2025Q1).
+const SUCCESS: [u32; 3] = [0x20, 0x20026, 0];
+
 /// What a test did.
 struct Run {
     passes: bool,
@@ -71,27 +99,21 @@ impl Run {
     /// Of a test in a circuit. The gates are off at its end.
     fn of(test: &str, change: fn(&mut Circuit)) -> Self {
         let name = format!("{}___{test}_entrypoint", test.len() + "___entrypoint".len());
-        let probe = Guest::boot_command(file(), &B_G431B_ESC1, "").unwrap();
-        let (address, _) =
-            probe.machine().image().symbol_ending(&name).expect("the test has a name");
-        let command: &'static str = format!("run_addr {}", address | 1).leak();
-        let mut guest = Guest::boot_command(file(), &B_G431B_ESC1, command).unwrap();
-        let board = guest.machine_mut().board_mut();
+        let mut machine = Machine::boot(file(), &B_G431B_ESC1, Box::new(FixedDevice)).unwrap();
+        machine.debugged = true;
+        let (entry, _) = machine.image().symbol_ending(&name).expect("the test has a name");
+        let board = machine.board_mut();
         board.gates = Some(Vec::new());
         as_stated(test, &mut board.power_stage.circuit);
         change(&mut board.power_stage.circuit);
-        let end = loop {
-            if let Err(error) = guest.run_to_call() {
-                break error;
-            }
-        };
-        let board = guest.machine_mut().board_mut();
-        println!("{test}: {end}, {} clocks", board.now);
+        let passes = passes(&mut machine, entry);
+        let board = machine.board_mut();
+        println!("{test}: {passes}, {} clocks", board.now);
         assert!(!board.power_stage.timer.is_on(), "{test}: the gates are on at the end");
         assert!(!board.power_stage.gates().contains(&Level::High), "{test}: a gate is high");
         assert!(board.now < LONGEST, "{test}: {} clocks", board.now);
         let gates = board.gates.take().unwrap();
-        Self { passes: end == CallError::Ended(0), gates }
+        Self { passes, gates }
     }
 
     fn has_switched(&self) -> bool {

@@ -10,7 +10,6 @@ mod index;
 mod load;
 mod paddle;
 mod regeneration;
-mod release;
 mod same;
 mod wall;
 

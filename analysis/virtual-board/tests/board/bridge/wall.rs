@@ -2,6 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use haptic_servo::servo_loop::State;
+use virtual_board::power_stage::Supply;
+
 use super::bench::{armed, boot, circuit};
 use super::bridge_wall::{SCENE, TRANSDUCERS};
 use super::paddle::paddle;
@@ -40,4 +43,25 @@ fn a_hand_that_leans_against_the_wall_comes_to_rest() {
     let held = FRICTION / stiffness;
     assert!(free.iter().all(|&count| count == free[0]) && angle(free[0]) < held, "{:?}", free[0]);
     assert!(bench.is_on());
+}
+
+/// The motor throws the bare device, and its back-EMF changes as fast as it can.
+#[test]
+fn a_hand_that_lets_go_at_the_torque_limit_is_no_fault() {
+    const END: f64 = 0.3;
+    let limit = SCENE.torque_limit.expect("the scene has a limit");
+    let grown = |time: f64| ((time - 0.15) / 0.1).clamp(0.0, 1.0);
+    let hand = move |time: f64| if time < END { 0.99 * limit * grown(time) } else { 0.0 };
+    let mut bench = boot(paddle(hand, 0.0));
+    circuit(&mut bench).supply = Supply::stiff(24.0);
+    let armed = armed(&mut bench);
+    bench.run((END * 1e3) as u64 - 1);
+    let pushed = circuit(&mut bench).mean_torque();
+    bench.run(40);
+    let counts: Vec<_> = bench.pins().samples[armed..].iter().map(|it| it.count).collect();
+    let back = counts.windows(2).map(|pair| pair[0] - pair[1]).max().unwrap();
+    let most = TRANSDUCERS.largest_speed * TRANSDUCERS.counts_per_turn / TAU * 1e-3;
+    println!("{pushed:.3} N m, then up to {back} counts in a ms, of {most:.0}");
+    assert_eq!((bench.fault(), bench.status().state), (None, State::Running));
+    assert!(pushed < -0.95 * limit && f64::from(back) > 0.4 * most, "{pushed}, {back}");
 }

@@ -7,7 +7,8 @@ use embassy_stm32::pac;
 use embassy_stm32::peripherals::DAC1;
 use embassy_stm32::rcc;
 
-use super::Pace;
+use super::pace::Pace;
+use super::tick_timer;
 use crate::board::stm32::family::TIMER_TRIGGER;
 use crate::board::stm32::wiring::AMPLIFIER;
 use crate::build_error::BuildError;
@@ -109,13 +110,13 @@ impl Output {
     /// # Errors
     /// If the board cannot pace the period in s: see [`period`](crate::period::check).
     pub fn new(_: Setup, period: f64, timing: OutputTiming) -> Result<(Self, Pace), BuildError> {
-        Ok((Self(()), Pace::prepare(period, timing)?))
+        Ok((Self(()), tick_timer::prepare(period, timing)?))
     }
 
     /// Starts the timers: one latches the DAC, which holds mid-scale, and one paces the servo.
     pub fn start(&mut self, pace: &mut Pace, timing: OutputTiming) {
         latch(timing);
-        pace.start();
+        tick_timer::start(pace, timing);
     }
 
     /// Sets the code of the next torque.

@@ -11,16 +11,19 @@ pub mod bridge;
 pub mod dac;
 #[cfg(feature = "bridge")]
 pub mod gates;
-mod periods;
+mod pace;
 #[cfg(not(feature = "bridge"))]
 mod tick_timer;
 
 #[cfg(feature = "bridge")]
-pub use bridge::{Output, Pace, Setup, off, power_reading, stop};
+pub use bridge::encoder::{count, period_began};
+#[cfg(feature = "bridge")]
+pub use bridge::{Output, Setup, off, power_reading, stop};
 #[cfg(not(feature = "bridge"))]
 pub use dac::{Output, Setup, off, power_reading, stop};
+pub use pace::Pace;
 #[cfg(not(feature = "bridge"))]
-pub use tick_timer::TickTimer as Pace;
+pub use tick_timer::{count, period_began};
 
 use embassy_stm32::pac;
 

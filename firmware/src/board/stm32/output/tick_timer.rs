@@ -23,7 +23,7 @@ use embassy_stm32::pac::timer::vals::{Mms, Urs};
 use embassy_stm32::peripherals;
 use embassy_stm32::rcc;
 
-use super::periods::{Periods, now};
+use super::pace::{Pace, now};
 use crate::board::stm32::quadrature::Counter;
 use crate::board::stm32::wiring::{ENCODER, TIMER_CLOCK};
 use crate::build_error::BuildError;
@@ -107,71 +107,49 @@ const PRESCALERS: u32 = 16;
 /// The number of values of a 16-bit counter.
 const MOST: f64 = 65_536.0;
 
-/// Paces the servo by a timer. The servo's interrupt owns it.
-#[derive(Debug)]
-pub struct TickTimer {
-    periods: Periods,
-    /// Whether the timer of a phase also runs.
-    has_phase: bool,
+/// Sets up the timers for a period in s and does not start them. The servo's interrupt must still be disabled.
+///
+/// # Errors
+/// If the board cannot pace it: see [`period`](period::check).
+pub fn prepare(seconds: f64, timing: OutputTiming) -> Result<Pace, BuildError> {
+    let period = Period::of(seconds)?;
+    rcc::enable_and_reset::<peripherals::TIM6>();
+    set_up(TIMER, period);
+    TIMER.dier().write(|w| w.set_uie(true));
+    if let Some(phase) = timing.phase() {
+        rcc::enable_and_reset::<peripherals::TIM7>();
+        set_up(PHASE_TIMER, period);
+        let behind = period.counts - period.counts_in(phase);
+        // TIM7_CNT: it overflows `phase` counts after the start, and then once per period.
+        PHASE_TIMER.cnt().write(|w| w.set_cnt(behind as u16));
+    }
+    // The cast saturates.
+    let in_time = (period.clock * READ_WITHIN) as u32;
+    Ok(Pace::new(period.clock_counts(), period.seconds(), in_time))
 }
 
-impl TickTimer {
-    /// Sets up the timers for a period in s and does not start them. The servo's interrupt must still be
-    /// disabled.
-    ///
-    /// # Errors
-    /// If the board cannot pace it: see [`period`](period::check).
-    pub fn prepare(seconds: f64, timing: OutputTiming) -> Result<Self, BuildError> {
-        let period = Period::of(seconds)?;
-        rcc::enable_and_reset::<peripherals::TIM6>();
-        set_up(TIMER, period);
-        TIMER.dier().write(|w| w.set_uie(true));
-        if let Some(phase) = timing.phase() {
-            rcc::enable_and_reset::<peripherals::TIM7>();
-            set_up(PHASE_TIMER, period);
-            let behind = period.counts - period.counts_in(phase);
-            // TIM7_CNT: it overflows `phase` counts after the start, and then once per period.
-            PHASE_TIMER.cnt().write(|w| w.set_cnt(behind as u16));
+/// Starts the clock before the timer, and the timer of a phase last, so that no torque comes before its phase. The
+/// torque is later by the two accesses, some tens of nanoseconds; a count is read later by more than that.
+pub fn start(pace: &mut Pace, timing: OutputTiming) {
+    pace.start(|| {
+        TIMER.cr1().modify(|w| w.set_cen(true));
+        if timing.phase().is_some() {
+            PHASE_TIMER.cr1().modify(|w| w.set_cen(true));
         }
-        // The cast saturates.
-        let in_time = (period.clock * READ_WITHIN) as u32;
-        let has_phase = timing.phase().is_some();
-        let periods = Periods::new(period.clock_counts(), period.seconds(), in_time);
-        Ok(Self { periods, has_phase })
-    }
+    });
+}
 
-    /// Starts the clock before the timer, so that no period begins before the clock's, and the timer of a
-    /// phase last, so that no torque comes before its phase. The torque is later by the two accesses, some
-    /// tens of nanoseconds; a count is read later by more than that.
-    pub fn start(&mut self) {
-        let has_phase = self.has_phase;
-        self.periods.start(|| {
-            TIMER.cr1().modify(|w| w.set_cen(true));
-            if has_phase {
-                PHASE_TIMER.cr1().modify(|w| w.set_cen(true));
-            }
-        });
-    }
+/// The encoder's count.
+#[inline(always)]
+pub fn count() -> RawCount {
+    ENCODER.count()
+}
 
-    /// The encoder's count.
-    #[inline(always)]
-    pub fn count(&self) -> RawCount {
-        ENCODER.count()
-    }
-
-    /// Acknowledges the tick; returns the periods that have begun since the last call: see
-    /// [`Hardware::periods_since_last`](crate::servo_loop::Hardware::periods_since_last).
-    #[inline(always)]
-    pub fn periods_since_last(&mut self) -> u32 {
-        TIMER.sr().write(|w| w.set_uif(false));
-        self.periods.begun_by(now())
-    }
-
-    /// The periods and their time.
-    #[inline(always)]
-    pub const fn periods(&self) -> &Periods {
-        &self.periods
-    }
+/// Acknowledges the tick, whose period may count as begun now.
+#[inline(always)]
+pub fn period_began() -> u32 {
+    TIMER.sr().write(|w| w.set_uif(false));
+    now()
 }
 
 /// Sets a basic timer's period and makes its update its trigger output, without starting it.

@@ -7,9 +7,9 @@ use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
 use super::{
-    STATE, State, WAITING, index, latest, off, over_current, pace, pwm, sense, tell, tell_heat,
+    STATE, State, WAITING, encoder, latest, off, over_current, pwm, sense, tell, tell_heat,
 };
-use crate::board::stm32::output::periods::now;
+use crate::board::stm32::output::pace::now;
 use crate::current::{
     Alignment, AlignmentStep, CurrentController, CurrentLoop, Heating, OffsetCheck, PowerFault,
     Sample, TripSearch,
@@ -74,10 +74,10 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     #[inline(always)]
     pub fn run(&mut self) {
         // Sampling.
-        let (position, now) = (pace::captured(), now());
+        let (position, now) = (encoder::captured(), now());
         let begins = self.instant == 0;
         if begins {
-            pace::begin_period(position, now);
+            encoder::begin_period(position, now);
         }
         let since_last = now.wrapping_sub(core::mem::replace(&mut self.last, now));
         pwm::acknowledge();
@@ -94,7 +94,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             cold_path();
             self.otherwise(&sample, since_last);
         }
-        if BRUSHLESS && index::has_come() {
+        if BRUSHLESS && encoder::has_index() {
             cold_path();
             self.take_index();
         }
@@ -140,7 +140,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     #[cold]
     #[inline(never)]
     fn take_index(&mut self) {
-        let observed = self.controller.observe_index(index::take());
+        let observed = self.controller.observe_index(encoder::take_index());
         latest::keep_index(self.controller.index_offset());
         if let Err(fault) = observed {
             stop(fault);

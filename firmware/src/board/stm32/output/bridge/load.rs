@@ -4,7 +4,7 @@
 
 use embassy_stm32::pac;
 
-use super::{over_current, pace, pwm, sense};
+use super::{encoder, over_current, pwm, sense};
 use crate::board::stm32::output::gates::Gate;
 use crate::board::stm32::wiring::GATES;
 use crate::current::{CurrentLoop, Duties, PowerFault, Sample, TripCodes, TripSearch};
@@ -24,7 +24,7 @@ impl Load {
         GATES.connect(current_loop.phases());
         over_current::prepare();
         sense::prepare();
-        pace::capture_counts();
+        encoder::capture_counts();
         pwm::start();
         Self { current_loop }
     }
@@ -36,7 +36,7 @@ impl Load {
             pwm::acknowledge();
             let currents = sense::currents();
             let (bus, temperature) = sense::bus_and_temperature();
-            Sample { currents, bus, temperature, position: pace::captured() }
+            Sample { currents, bus, temperature, position: encoder::captured() }
         })
     }
 

@@ -7,7 +7,7 @@
 //!  (sense)
 //! interrupt     [I][servo ] [I]         [I]                     [I][servo]
 //!  (interrupt)   |   count read at 0, code for the next period   |
-//!  (pace)        the code of the period before is the reference from here on ...
+//!  (encoder)     the code of the period before is the reference from here on ...
 //! voltage                   v(0)        v(1)                          duties act one update after they
 //!                                                                     were computed
 //! current                               moves                         and so the torque after one h
@@ -16,13 +16,12 @@
 //! The gates are off from reset until the servo arms. Each fault turns them off by one write, and an
 //! over-current by [hardware](over_current) alone.
 
-pub mod index;
+pub mod encoder;
 mod interrupt;
 mod latest;
 #[cfg(feature = "on-target")]
 pub mod load;
 mod over_current;
-mod pace;
 mod pwm;
 mod sense;
 
@@ -34,10 +33,10 @@ use embassy_stm32::interrupt::{InterruptExt, Priority};
 
 pub use interrupt::CurrentIsr;
 pub use latest::power_reading;
-pub use pace::Pace;
 
 use crate::board::isr_cell::IsrCell;
-use crate::board::stm32::wiring::GATES;
+use crate::board::stm32::output::pace::Pace;
+use crate::board::stm32::wiring::{GATES, TIMER_CLOCK};
 use crate::build_error::BuildError;
 use crate::current::{AlignmentError, CurrentLoop, HeatStep, PowerFault, TorqueSource};
 use crate::dac::DacCode;
@@ -123,7 +122,7 @@ impl Output {
             );
         }
         if current_loop.has_index() {
-            index::capture();
+            encoder::capture_index();
         }
         (setup.fill)(timing);
         let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
@@ -131,16 +130,20 @@ impl Output {
             is_brushless: current_loop.is_brushless(),
             start_up: current_loop.start_up_ticks(),
         };
-        Ok((output, Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
+        encoder::capture_counts();
+        let seconds = f64::from(counts.get()) / TIMER_CLOCK;
+        // After a PWM period the next capture overwrites the count.
+        let in_time = 2 * u32::from(current_loop.timer_counts());
+        Ok((output, Pace::new(counts, seconds, in_time)))
     }
 
     /// Starts the current interrupt, with the gates low.
     pub fn start(&mut self, pace: &mut Pace, _: OutputTiming) {
-        index::forget();
+        encoder::forget_index();
         interrupts::ADC1_2.set_priority(Priority::P0);
         // SAFETY: its handler finds its cell filled.
         unsafe { interrupts::ADC1_2.enable() };
-        pace.start();
+        pace.start(pwm::start);
     }
 
     /// Sets the code of the next torque, which the current loop takes over when it is due.

@@ -1,4 +1,4 @@
-//! The free-running clock, and the servo's periods counted by it. The pace of the servo owns it.
+//! The pace of the servo: its periods, counted by a free-running clock. The servo's interrupt owns it.
 
 use core::num::NonZeroU32;
 
@@ -13,13 +13,13 @@ pub fn now() -> u32 {
 
 /// Counts the periods.
 #[derive(Debug)]
-pub struct Periods {
+pub struct Pace {
     clock: PeriodClock,
     /// The paced period in s.
     seconds: f64,
 }
 
-impl Periods {
+impl Pace {
     /// Periods of `counts` clock counts and `seconds`; a tick is in time within `in_time` counts. Prepares
     /// the clock, which does not run yet.
     pub fn new(counts: NonZeroU32, seconds: f64, in_time: u32) -> Self {
