@@ -21,10 +21,8 @@ use rand_chacha::ChaCha8Rng;
 use virtual_board::chip::NETDUINO_PLUS_2;
 use virtual_board::semihosting::{CallError, Guest};
 
-static TOOLCHAIN: LazyLock<Toolchain> = LazyLock::new(|| {
-    prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
-        .unwrap_or_else(|error| panic!("{error}"))
-});
+static TOOLCHAIN: LazyLock<Toolchain> =
+    LazyLock::new(|| prepare(Tools::CompilerAndEmulator).unwrap_or_else(|error| panic!("{error}")));
 
 /// A program on the virtual board.
 struct VirtualGuest(Guest);
