@@ -57,7 +57,7 @@ fn sines_are_equal() {
             .each_mut()
             .map(|board| board.compute(&BenchRequest::Sine(sine), &words).unwrap());
         for ((turn, here), qemu) in inputs.iter().zip(here).zip(qemu) {
-            let name = format!("{} of {turn:e}, {:08x}", sine.name(), turn.to_bits());
+            let name = format!("{sine:?} of {turn:e}, {:08x}", turn.to_bits());
             // Between the two boards there is no choice.
             assert_eq!(here.to_bytes(), qemu.to_bytes(), "{name}");
             assert_eq!(bits(here.value), bits(sine.of_turn(*turn).into()), "{name}");
