@@ -1,7 +1,7 @@
 //! Builds programs for the board; no other module knows how.
 //!
-//! [`prepare()`] provides the tools that the machine lacks, and returns a [`Toolchain`], which everything else
-//! uses.
+//! [`prepare()`] provides the tools that the machine lacks, and returns a [`Toolchain`], which everything
+//! else uses.
 
 mod board;
 mod build;

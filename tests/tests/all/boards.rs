@@ -79,8 +79,9 @@ fn check_parts(board: BoardModel, name: &str, program: &Program) {
     }
 }
 
-/// The indices of the parts that a program's ticks have instructions of, by its line tables: a tick is compiled
-/// into the servo's interrupt as a whole. The innermost function that an instruction was inlined from counts.
+/// The indices of the parts that a program's ticks have instructions of, by its line tables: a tick is
+/// compiled into the servo's interrupt as a whole. The innermost function that an instruction was inlined from
+/// counts.
 fn parts_of_ticks(path: &Path) -> BTreeSet<usize> {
     const TICK: (&str, &str) = ("<haptic_servo::servo::prepared_servo::PreparedServo<", "::tick");
     let is_tick = |name: &String| name.starts_with(TICK.0) && name.ends_with(TICK.1);

@@ -1,5 +1,5 @@
-//! Where methods fail: every verdict that has to be wrong is, ours is not, and the loops do what was said with
-//! the emulated board as their servo.
+//! Where methods fail: every verdict that has to be wrong is, ours is not, and the loops do what was said
+//! with the emulated board as their servo.
 //!
 //! Figures of methods are computed here once more, by other means.
 
