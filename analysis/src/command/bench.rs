@@ -10,7 +10,6 @@ use haptic_servo::certificate::Parameter;
 use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Scene};
 
-use super::explore;
 use super::shared_arguments::{DEFAULT_TICKS, JsonOption};
 use super::status::{CommandError, CommandStatus};
 use crate::compare_run::{Backend, Input, run_with_backend};
@@ -69,8 +68,6 @@ const CERTIFICATE: Budget =
 const INTERRUPT: Budget = Budget::of(150.0, "instructions");
 /// Of the servo's share of a core.
 const CORE: Budget = Budget::of(15.0, "%");
-/// Of the size of the page of `haptic explore`.
-const PAGE: Budget = Budget::of(700e3, "bytes");
 /// Ticks per second for the share of the CPU.
 const TICK_RATE: f64 = 20e3;
 /// Of a tick of the damper wall behind the matched coupling, in contact.
@@ -93,12 +90,10 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(CommandStatus::Success)
 }
 
-/// The figures of this machine, of the page's size, and of the programs on the emulated board.
+/// The figures of this machine, and of the programs on the emulated board.
 fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     let toolchain = toolchain::prepare(Tools::CompilerAndEmulator)?;
     let mut figures = on_host(arguments)?;
-    let page = explore::page(None)?.len() as f64;
-    figures.push(Figure::within("page of haptic explore: size", page, &PAGE));
     let spinner = progress::spinner("building programs");
     let f32 = toolchain.build_scenes(program::NAMES, NumberFormat::F32)?;
     let fixed = toolchain.build_scenes(program::NAMES, NumberFormat::Fixed)?;

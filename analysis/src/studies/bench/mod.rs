@@ -42,11 +42,9 @@ pub struct Rounds {
 
 impl Rounds {
     /// For repeatable figures.
-    pub const THOROUGH: Self =
-        Self { own: 31, python: 9, maps: 5, compilations: 15, openings: 5, movements: 240 };
+    pub const THOROUGH: Self = Self { own: 31, python: 9, maps: 5, compilations: 15 };
     /// For their order of magnitude.
-    pub const QUICK: Self =
-        Self { own: 3, python: 1, maps: 1, compilations: 1, openings: 1, movements: 60 };
+    pub const QUICK: Self = Self { own: 3, python: 1, maps: 1, compilations: 1 };
 }
 
 /// Environments to judge: low and high degrees, poles near and far, delays. The coefficients are products of
