@@ -92,12 +92,6 @@ impl Page {
         Ok(())
     }
 
-    /// Runs a script in each page that is opened from now on, before the page's own scripts.
-    pub fn run_first(&mut self, script: &str) -> Result<(), BrowserError> {
-        let method = "Page.addScriptToEvaluateOnNewDocument";
-        self.call(method, json!({ "source": script })).map(|_| ())
-    }
-
     /// Opens an address, and waits until the page reports that it is ready.
     pub fn open(&mut self, address: &str) -> Result<(), BrowserError> {
         self.go_to(address)?;

@@ -42,33 +42,21 @@ impl Frame {
         self.nearest((x, y))
     }
 
-    /// The last point in which a line leaves the frame; `None` if it ends inside, or is never inside.
-    pub fn exit(&self, line: impl DoubleEndedIterator<Item = Place>) -> Option<Place> {
-        let mut outer = None;
-        for place in line.rev().filter(|place| place.0.is_finite() && place.1.is_finite()) {
-            if self.contains(place) {
-                return outer.map(|outer| self.crossing(place, outer));
-            }
-            outer = Some(place);
-        }
-        None
-    }
-
-    /// The parts of a line inside, up to the border; `frame` gives the frame of each place by its number.
-    pub fn clip(line: &[Place], frame: impl Fn(usize) -> Self) -> Vec<Vec<Place>> {
+    /// The parts of a line inside, up to the border.
+    pub fn clip(&self, line: &[Place]) -> Vec<Vec<Place>> {
         let mut parts: Vec<Vec<Place>> = Vec::new();
         let mut open = false;
         for (i, &place) in line.iter().enumerate() {
-            let inside = frame(i).contains(place);
+            let inside = self.contains(place);
             let before = i.checked_sub(1).map(|j| line[j]).filter(|p| p.0.is_finite());
             match (open, inside) {
                 (false, true) => {
-                    let entry = before.map(|before| frame(i).crossing(place, before));
+                    let entry = before.map(|before| self.crossing(place, before));
                     parts.push(entry.into_iter().chain([place]).collect());
                 }
                 (true, _) => {
                     if let (Some(part), Some(before)) = (parts.last_mut(), before) {
-                        let end = if inside { place } else { frame(i).crossing(before, place) };
+                        let end = if inside { place } else { self.crossing(before, place) };
                         part.extend([end].into_iter().filter(|end| end.0.is_finite()));
                     }
                 }
@@ -89,10 +77,7 @@ mod tests {
     #[test]
     fn lines_end_on_the_border() {
         let line = [(5.0, -4.0), (5.0, 5.0), (7.0, 5.0), (11.0, 7.0), (f64::NAN, f64::INFINITY)];
-        let parts = Frame::clip(&line, |_| FRAME);
+        let parts = FRAME.clip(&line);
         assert_eq!(parts, [[(5.0, 2.0), (5.0, 5.0), (7.0, 5.0), (9.0, 6.0)]]);
-        assert_eq!(FRAME.exit(line.into_iter()), Some((9.0, 6.0)));
-        assert_eq!(FRAME.exit(line.into_iter().rev()), Some((5.0, 2.0)));
-        assert_eq!(FRAME.exit(line[..2].iter().copied()), None);
     }
 }

@@ -127,7 +127,7 @@ impl<'a, 'b> Panel<'a, 'b> {
     /// Draws a line through values, as far as it is in the panel.
     pub fn curve(&self, stroke: Stroke, values: impl IntoIterator<Item = (f64, f64)>) -> Drawn<()> {
         let places: Vec<_> = values.into_iter().map(|value| self.place(value)).collect();
-        let parts = Frame::clip(&places, |_| self.frame);
+        let parts = self.frame.clip(&places);
         parts.iter().try_for_each(|part| self.line(stroke, part))
     }
 

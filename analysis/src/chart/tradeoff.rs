@@ -18,47 +18,13 @@ const LEVEL: Stroke = Stroke::dashed(&[2, 4], 1);
 /// Largest number of readable columns of panels at the width of a page.
 const COLUMNS: usize = 2;
 
-/// The panels of a picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Panels {
-    /// The cases.
-    pub cases: Vec<String>,
-    /// Indices of the errors.
-    pub errors: Vec<usize>,
-}
-
-impl Panels {
-    /// All panels of a table in one or more legible charts: one, or one for each error, with a word for its
-    /// name.
-    pub fn all(table: &Tradeoff) -> Vec<(Option<&'static str>, Self)> {
-        let cases: Vec<_> = table.cases().into_iter().map(str::to_owned).collect();
-        let errors = table.comparison.errors;
-        if errors.len() <= COLUMNS {
-            return vec![(None, Self { cases, errors: (0..errors.len()).collect() })];
-        }
-        let of = |error: usize| Self { cases: cases.clone(), errors: vec![error] };
-        let word = |error: usize| Some(errors[error].name);
-        (0..errors.len()).map(|error| (word(error), of(error))).collect()
-    }
-
-    /// Columns and rows: a row for each case, or for two cases if there is only one error.
-    fn columns(&self) -> usize {
-        match self.errors.len() {
-            1 => self.cases.len().clamp(1, COLUMNS),
-            many => many,
-        }
-    }
-
-    fn each(&self) -> impl Iterator<Item = (&str, usize)> {
-        let of = |case| self.errors.iter().map(move |&error| (case, error));
-        self.cases.iter().map(String::as_str).flat_map(of)
-    }
-}
-
-/// Draws panels of a table.
-pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError> {
-    let columns = panels.columns();
-    let rows = panels.each().count().div_ceil(columns);
+/// Draws a panel for each case of a table and each of these errors: a row for each case, or for two cases if
+/// there is only one error.
+pub fn tradeoff(table: &Tradeoff, errors: &[usize]) -> Result<Picture, ChartError> {
+    let cases = table.cases();
+    let columns = if errors.len() == 1 { cases.len().clamp(1, COLUMNS) } else { errors.len() };
+    let panels = cases.iter().flat_map(|&case| errors.iter().map(move |&error| (case, error)));
+    let rows = panels.clone().count().div_ceil(columns);
     let cost = &table.comparison.cost;
     let costs = range(table, cost, Method::cost).ok_or(ChartError::TooFewPoints)?;
     let width = (PANEL.0 * columns as i32).max(WIDTH);
@@ -72,7 +38,7 @@ pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError
     let heights = [PANEL.1 * rows as i32];
     Page { title: table.comparison.title, width, heights: &heights, legends }.draw(|areas| {
         let areas = areas[0].split_evenly((rows, columns));
-        areas.iter().zip(panels.each()).try_for_each(|(area, (case, error))| {
+        areas.iter().zip(panels).try_for_each(|(area, (case, error))| {
             Methods { table, case, error }.paint(area, costs.clone())
         })
     })

@@ -1,4 +1,4 @@
-//! `haptic bench`: the cost of a certificate, a tick and a page.
+//! `haptic bench`: the cost of a certificate, a simulated step and a tick.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -10,20 +10,15 @@ use haptic_servo::certificate::Parameter;
 use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Scene};
 
-use super::explore;
 use super::shared_arguments::{DEFAULT_TICKS, JsonOption};
 use super::status::{CommandError, CommandStatus};
 use crate::compare_run::{Backend, Input, run_with_backend};
 use crate::emulator::EmulatorReport;
-use crate::file;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
 use crate::studies::bench::figure::{Budget, Figure, Pair};
 use crate::studies::bench::on_target::{self, live_set};
-use crate::studies::bench::page::scenes::{PageScene, SHOWN};
-use crate::studies::bench::page::{self, ScenePage};
-use crate::studies::bench::parts::{self, Inventory};
 use crate::studies::bench::python::{JUDGES, PythonPeers, SIMULATOR};
 use crate::studies::bench::steps::{in_c, step_time, steps_beside};
 use crate::studies::bench::{self, CORE_CLOCK, Rounds};
@@ -33,22 +28,15 @@ use crate::toolchain::{self, BoardModel, NumberFormat, Toolchain, Tools, TorqueO
 /// Arguments of `haptic bench`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Print only the parts of a tick in the scenes' programs: instructions, state, flash, RAM
-    #[arg(long)]
-    pub parts: bool,
-    /// Print only what the page of `haptic explore` costs in a browser, which is chromium: size, opening,
-    /// frames, maps, and verdicts against those of this program
-    #[arg(long, conflicts_with = "parts")]
-    pub page: bool,
     /// Print only the figures of this machine: verdicts, simulated steps, maps, compilation
-    #[arg(long, conflicts_with_all = ["parts", "page"])]
+    #[arg(long)]
     pub host: bool,
     /// Also measure numpy, slycot, python-control and scipy, in turns with this program; installs them from
     /// PyPI into the folder of builds
-    #[arg(long, conflicts_with_all = ["parts", "page"])]
+    #[arg(long)]
     pub peers: bool,
     /// Measure each time a few times only, for its order of magnitude
-    #[arg(long, conflicts_with = "parts")]
+    #[arg(long)]
     pub quick: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
@@ -94,14 +82,7 @@ const FLASH_LEFT: Budget = Budget { value: 40.0 * 1024.0, unit: "bytes", source:
 
 /// Measures and prints.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    if arguments.parts {
-        let toolchain = toolchain::prepare(Tools::Compiler, |step| eprintln!("set-up: {step}"))?;
-        let scenes = inventories(&toolchain)?;
-        arguments.answer.print(&scenes, |scenes| format!("{}\n", parts::table(scenes)))?;
-        return Ok(CommandStatus::Success);
-    }
     let figures = match arguments {
-        Arguments { page: true, .. } => about_pages(arguments.rounds())?,
         Arguments { host: true, .. } => on_host(arguments)?,
         _ => everything(arguments)?,
     };
@@ -109,45 +90,23 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(CommandStatus::Success)
 }
 
-/// The figures of this machine, of the page, and of the programs on the emulated board.
+/// The figures of this machine, and of the programs on the emulated board.
 fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
-    let toolchain =
-        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
+    let toolchain = toolchain::prepare(Tools::CompilerAndEmulator)?;
     let mut figures = on_host(arguments)?;
-    match about_pages(arguments.rounds()) {
-        Ok(pages) => figures.extend(pages),
-        Err(error) => eprintln!("page of haptic explore: not measured: {error}"),
-    }
     let spinner = progress::spinner("building programs");
     let f32 = toolchain.build_scenes(program::NAMES, NumberFormat::F32)?;
     let fixed = toolchain.build_scenes(program::NAMES, NumberFormat::Fixed)?;
+    let bare = toolchain.build_bare(program::NAMES)?;
     spinner.finish_and_clear();
-    let scenes = inventories(&toolchain)?;
-    for (((program, f32), fixed), scene) in program::ALL.iter().zip(&f32).zip(&fixed).zip(scenes) {
+    for (((program, f32), fixed), bare) in program::ALL.iter().zip(&f32).zip(&fixed).zip(&bare) {
         on_target(program, [(NumberFormat::F32, f32), (NumberFormat::Fixed, fixed)], &mut figures)?;
         live_sets(program.name, f32, &mut figures)?;
-        figures.extend(scene.figures());
+        figures.extend(memory(program, bare));
     }
     behind_matched(&toolchain, &mut figures)?;
     about_profiles(&toolchain, &mut figures)?;
     about_bridges(&toolchain, &mut figures)?;
-    Ok(figures)
-}
-
-/// The cost of the page of `haptic explore` in a browser.
-fn about_pages(rounds: Rounds) -> Result<Vec<Figure>, CommandError> {
-    // A missing browser is reported before anything is built for it.
-    let browser = page::watching_browser()?;
-    let module = explore::module()?;
-    let page = |scene: PageScene| -> Result<ScenePage, CommandError> {
-        let file = file::as_json("scene", file::Format::Toml, scene.toml)?;
-        Ok(ScenePage { scene, text: crate::explore::page(&module, &file)? })
-    };
-    let pages: Vec<_> = SHOWN.into_iter().map(page).collect::<Result<_, _>>()?;
-    let spinner = progress::spinner("measuring the page in a browser");
-    let progress = |what: &str| spinner.set_message(what.to_owned());
-    let figures = page::figures(browser, &pages, rounds, progress)?;
-    spinner.finish_and_clear();
     Ok(figures)
 }
 
@@ -209,13 +168,20 @@ fn most_of_interrupts(figures: &[Figure]) -> f64 {
     interrupts.map(|figure| figure.value).fold(0.0, f64::max)
 }
 
-/// The inventory of every program.
-fn inventories(toolchain: &Toolchain) -> Result<Vec<Inventory>, CommandError> {
-    let spinner = progress::spinner("building programs");
-    let built = toolchain.build_bare(program::NAMES)?;
-    spinner.finish_and_clear();
-    let pairs = program::ALL.iter().zip(&built);
-    Ok(pairs.map(|(program, built)| Inventory::of(program, built)).collect::<Result<_, _>>()?)
+/// Memory of a program without log, and the state of its servo.
+fn memory(program: &Program, bare: &toolchain::Program) -> [Figure; 6] {
+    let [float, fixed] = [NumberFormat::F32, NumberFormat::Fixed].map(program.state);
+    let figures = [
+        ("flash without log", bare.sizes.flash()),
+        ("RAM without log", bare.sizes.ram()),
+        ("state of the servo, f32", float.servo as u64),
+        ("state of the servo, fixed", fixed.servo as u64),
+        ("state of the environment, f32", float.environment as u64),
+        ("state of the environment, fixed", fixed.environment as u64),
+    ];
+    figures.map(|(what, value)| {
+        Figure::alone(format!("{}: {what}", program.name), value as f64, "bytes")
+    })
 }
 
 /// The figures of this machine.

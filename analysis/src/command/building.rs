@@ -8,7 +8,7 @@ use crate::toolchain::{self, BuildError, NumberFormat, Toolchain, Tools};
 
 /// Sets up tools, and prints each step.
 pub fn set_up(tools: Tools) -> Result<Toolchain, CommandError> {
-    Ok(toolchain::prepare(tools, |step| eprintln!("set-up: {step}"))?)
+    Ok(toolchain::prepare(tools)?)
 }
 
 /// Builds something behind a spinner with its name.

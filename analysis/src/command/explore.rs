@@ -57,7 +57,7 @@ pub(super) fn page(scene: Option<&str>) -> Result<String, CommandError> {
 }
 
 /// The program of every page.
-pub(super) fn module() -> Result<Vec<u8>, CommandError> {
+fn module() -> Result<Vec<u8>, CommandError> {
     let toolchain = set_up(Tools::CompilerForBrowser)?;
     let what = "the certificate and the servo for a browser";
     let path = building(what, || toolchain.build_browser_module())?;

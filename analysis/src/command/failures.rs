@@ -11,17 +11,16 @@ use super::shared_arguments::JsonOption;
 use super::status::{CommandError, CommandStatus};
 use crate::emulator::ServoClient;
 use crate::progress;
-use crate::quantity::significant;
 use crate::studies::failures::loop_run::BoardResult;
 use crate::studies::failures::method_result::{Failure, MethodResult};
-use crate::studies::failures::report::{CaseReport, RunResult, WallReport, walls};
+use crate::studies::failures::report::{CaseReport, RunResult};
 use crate::studies::failures::{ALL, Case};
 use crate::toolchain::{Tools, prepare};
 
 /// Arguments of `haptic failures`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of one case; `walls` are walls on both sides of their limit. Default: all
+    /// Name of one case; default: all
     #[arg(long, value_name = "NAME", value_parser = names())]
     pub case: Option<String>,
     /// Also run the loops with the servo on the emulated board
@@ -34,18 +33,14 @@ pub struct Arguments {
     pub answer: JsonOption,
 }
 
-/// Name of the walls among the cases.
-const WALLS: &str = "walls";
-
 fn names() -> PossibleValuesParser {
-    ALL.iter().map(|case| case.name).chain([WALLS]).collect::<Vec<_>>().into()
+    ALL.iter().map(|case| case.name).collect::<Vec<_>>().into()
 }
 
 /// All requested results.
 #[derive(Debug, Serialize)]
 struct Found {
     cases: Vec<CaseReport>,
-    walls: Vec<WallReport>,
 }
 
 /// Judges and runs the loops: the status is negative if a result is not as expected.
@@ -53,35 +48,32 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let wanted = |name: &str| arguments.case.as_deref().is_none_or(|case| case == name);
     let mut player = match arguments.emulate {
         true => {
-            let toolchain = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))?;
+            let toolchain = prepare(Tools::CompilerAndEmulator)?;
             Some(ServoClient::boot(&toolchain.build_harness("servo_server")?)?)
         }
         false => None,
     };
     let cases: Vec<&Case> = ALL.iter().filter(|case| wanted(case.name)).collect();
-    let bar = progress::bar(cases.len() as u64 + 1, "cases");
+    let bar = progress::bar(cases.len() as u64, "cases");
     let mut report = |case: &&Case| {
         bar.inc(1);
         case.report(&mut player)
     };
     let cases = cases.iter().map(&mut report).collect::<Result<Vec<_>, _>>()?;
-    let walls = if wanted(WALLS) { walls(&mut player)? } else { Vec::new() };
     bar.finish_and_clear();
     if let Some(player) = player {
         player.finish()?;
     }
-    let found = Found { cases, walls };
+    let found = Found { cases };
     match arguments.csv {
         true => csv(&found.cases)?,
         false => arguments.answer.print(&found, text)?,
     }
-    let holds = found.cases.iter().all(CaseReport::holds);
-    Ok(CommandStatus::of(holds && found.walls.iter().all(WallReport::holds)))
+    Ok(CommandStatus::of(found.cases.iter().all(CaseReport::holds)))
 }
 
 fn text(found: &Found) -> String {
-    let cases = found.cases.iter().map(case);
-    cases.chain(found.walls.iter().map(wall)).collect::<Vec<_>>().join("\n")
+    found.cases.iter().map(case).collect::<Vec<_>>().join("\n")
 }
 
 /// A case as lines: the verdict of each method, and the runs.
@@ -116,21 +108,6 @@ fn runs(text: &mut String, results: &[RunResult]) {
         };
         let _ = writeln!(text, "  run: {what:<42}   simulated, {simulated}{emulated}");
     }
-}
-
-fn wall(wall: &WallReport) -> String {
-    let WallReport { delay, limit, hand, runs } = wall;
-    let number = |value: f64| significant(value, 5);
-    let mut text = format!(
-        "a wall {delay} samples late: certified up to {} N m/rad; worst in a hand of {} kg m^2, \
-         {} N m s/rad and {} N m/rad\n",
-        number(*limit),
-        number(hand.hand.inertia),
-        number(hand.hand.damping),
-        number(hand.hand.stiffness),
-    );
-    self::runs(&mut text, runs);
-    text
 }
 
 /// One row per verdict, including the certificate's and the truth.

@@ -70,10 +70,6 @@ pub enum CommandError {
          one certifies, or it does not repeat"
     )]
     NoDetents { scene: String },
-    #[error("{}: one chart shows one topic; name one of {topics}", picture.display())]
-    NoTopic { picture: PathBuf, topics: String },
-    #[error("there is no {what} `{word}`; there are {there}")]
-    NoPanel { what: &'static str, word: String, there: String },
     #[error(
         "{}: there is no such table; --draw-only reads the tables from the folder of -o, or the kept \
          ones without -o", table.display()

@@ -17,7 +17,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
-use std::process::{Child, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use haptic_model::board::client::frame;
@@ -203,7 +203,7 @@ impl Guest {
         let folder = TempDir::with_prefix("haptic-").map_err(EmulatorError::Pipe)?;
         let pipes = Pipes::make(folder.path()).map_err(EmulatorError::Pipe)?;
         let errors = File::create(folder.path().join(ERRORS)).map_err(EmulatorError::Pipe)?;
-        let mut process = emulator()
+        let mut process = Command::new(emulator())
             .args(BOARD)
             .arg("-kernel")
             .arg(path)

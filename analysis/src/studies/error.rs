@@ -1,16 +1,13 @@
 //! The reasons why a study has no figures.
 
 use std::io;
-use std::path::PathBuf;
 
 use haptic_servo::certificate::Rejection;
 use haptic_servo::environment::ShapeError;
 use haptic_servo::number::OutOfRange;
 use haptic_servo::servo::BuildError;
-use serde_json::Value;
 use thiserror::Error;
 
-use crate::browser::BrowserError;
 use crate::chain::ChainError;
 use crate::emulator::EmulatorError;
 use crate::file::FileError;
@@ -44,12 +41,6 @@ pub enum StudyError {
     Link(#[from] LinkError),
     #[error(transparent)]
     File(#[from] FileError),
-    #[error(transparent)]
-    Browser(#[from] BrowserError),
-    #[error("an answer cannot be written: {0}")]
-    Json(#[from] serde_json::Error),
-    #[error("{path}: {why}")]
-    Program { path: PathBuf, why: String },
     #[error("this wall has no largest certified stiffness")]
     NoLimit,
     #[error(
@@ -80,12 +71,6 @@ pub enum StudyError {
     /// Something else, or other numbers: its work is not equal.
     #[error("a peer of the benchmark answered {0}")]
     WrongPeer(String),
-    #[error("the page complains of {0:?}")]
-    Complaints(Vec<String>),
-    #[error("the page with the scene {scene} has judged nothing while {key} was dragged")]
-    NothingJudged { scene: &'static str, key: &'static str },
-    #[error("to {question} the page answers {of_page}, and this program {here}")]
-    OtherAnswer { question: String, of_page: Value, here: String },
 }
 
 impl From<Rejection> for StudyError {

@@ -11,7 +11,6 @@ use super::memory::Memory;
 use super::output::last_lines;
 use super::size::Sizes;
 use super::sources::{Sources, SourcesError, workspace_root};
-use super::unpacked::{QEMU, Unpacked};
 use super::{BoardModel, Target, TorqueOutput};
 
 const TARGET: &str = Target::BOARD.name;
@@ -317,11 +316,10 @@ impl Toolchain {
 
     /// Cargo, without the environment of a command that may have started this program.
     fn cargo(&self, target: Target) -> Command {
-        let unpacked = self.workspace.unpacked();
         let root = &self.workspace.root;
         let mut command = match self.compiler {
             Compiler::Own => own_cargo(root),
-            Compiler::Debian => Command::new(unpacked.program("cargo", "/usr/bin/cargo")),
+            Compiler::Debian => Command::new("/usr/bin/cargo"),
         };
         command.current_dir(root);
         for name in INHERITED {
@@ -332,11 +330,9 @@ impl Toolchain {
             // Debian has no compiled `core` for these targets; its source is built with the program, which
             // needs unstable features of cargo.
             command.env_remove("RUSTUP_TOOLCHAIN");
-            command.env("RUSTC", unpacked.program("rustc", "/usr/bin/rustc"));
-            command.env("RUSTC_BOOTSTRAP", "1");
-            unpacked.add_libraries(&mut command);
+            command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1");
             let (variable, linker) = target.linker;
-            command.env(variable, unpacked.program(linker, linker)).args(target.libraries);
+            command.env(variable, linker).args(target.libraries);
             command.envs(target.flags);
         }
         command
@@ -400,15 +396,10 @@ impl Program {
     }
 }
 
-/// The emulator, to be started: the unpacked one, or the installed one.
-pub fn emulator() -> Command {
-    Workspace::find().map_or_else(|_| Command::new(QEMU), |found| found.unpacked().emulator())
-}
-
 impl Workspace {
-    /// The packages that are unpacked for this workspace.
-    pub(super) fn unpacked(&self) -> Unpacked {
-        Unpacked::beside(&self.target)
+    /// The folder of packages that are unpacked for this workspace.
+    pub(super) fn packages(&self) -> PathBuf {
+        self.target.join("packages")
     }
 
     /// The workspace that this program was built from.

@@ -1,7 +1,6 @@
 //! The output of a program that was started here.
 
-use std::io;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 /// The end of a long text.
 pub(super) fn last_lines(text: &str, count: usize) -> String {
@@ -12,20 +11,16 @@ pub(super) fn last_lines(text: &str, count: usize) -> String {
 /// The output of a program that succeeds, without input.
 ///
 /// # Errors
-/// The command, with the end of its output and [`io::ErrorKind::Other`] if it has run.
-pub(super) fn finished(command: &mut Command) -> io::Result<Output> {
-    let words: Vec<_> = std::iter::once(command.get_program())
-        .chain(command.get_args())
-        .map(|word| word.to_string_lossy().into_owned())
-        .collect();
-    let words = words.join(" ");
+/// The command, with the end of its output if it has run.
+pub fn finished(command: &mut Command) -> Result<String, String> {
+    let words = std::iter::once(command.get_program()).chain(command.get_args());
+    let words = words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ");
     let output = command.stdin(Stdio::null()).output();
-    let output =
-        output.map_err(|error| io::Error::new(error.kind(), format!("`{words}`: {error}")))?;
+    let output = output.map_err(|error| format!("`{words}`: {error}"))?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
     if output.status.success() {
-        return Ok(output);
+        return Ok(text);
     }
-    let said = [&*output.stdout, &output.stderr].concat();
-    let said = last_lines(&String::from_utf8_lossy(&said), 20);
-    Err(io::Error::other(format!("`{words}` ended with {}:\n{said}", output.status)))
+    let said = text + &String::from_utf8_lossy(&output.stderr);
+    Err(format!("`{words}` ended with {}:\n{}", output.status, last_lines(&said, 20)))
 }

@@ -5,16 +5,14 @@
 //! packages are used: a compiler, and the source of `core` to build for the target.
 
 use std::env;
-use std::io;
+use std::fs::DirEntry;
 use std::path::Path;
 use std::process::Command;
 
-use super::apt::Apt;
 use super::build::{Compiler, Toolchain, Workspace};
 use super::output::finished;
-use super::package::{Package, by_hand, output};
-use super::unpacked::Unpacked;
-use super::{BuildError, Target, Version};
+use super::packages::{COMPILER, EMULATOR, NATIVE, Package, install};
+use super::{BuildError, Target};
 
 /// The purpose of the set-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,11 +29,11 @@ pub enum Tools {
 
 impl Tools {
     /// The target of the programs, and the packages in addition to the compiler's.
-    const fn needs(self) -> (Target, &'static [Package]) {
+    const fn needs(self) -> (Target, &'static [Package<'static>]) {
         match self {
             Self::Compiler => (Target::BOARD, &[]),
-            Self::CompilerAndEmulator => (Target::BOARD, &[Package::EMULATOR]),
-            Self::CompilerAndVirtualBoard => (Target::BOARD, &Package::NATIVE),
+            Self::CompilerAndEmulator => (Target::BOARD, &[EMULATOR]),
+            Self::CompilerAndVirtualBoard => (Target::BOARD, &NATIVE),
             Self::CompilerForBrowser => (Target::BROWSER, &[]),
         }
     }
@@ -46,188 +44,80 @@ impl Tools {
 #[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum SetupError {
     #[error(
-        "tools to build and run the programs for boards are missing:{}\nnot installed here: {why}",
-        by_hand(packages, target)
+        "tools to build for {target} are missing: a Rust toolchain with this target (rustup target add \
+         {target}), or Debian's: apt-get install --no-install-recommends {}",
+        packages.join(" ")
     )]
-    Missing { packages: Vec<Package>, target: &'static str, why: io::Error },
-    #[error("{0:?} were installed, but are still not found")]
-    InVain(Vec<&'static str>),
-    #[error(transparent)]
-    Rustup(#[from] io::Error),
+    Compiler { packages: Vec<&'static str>, target: &'static str },
+    #[error(
+        "tools to run programs for boards are missing: apt-get install --no-install-recommends {} \
+         (Debian), or the same tools of your system",
+        .0.join(" ")
+    )]
+    Missing(Vec<&'static str>),
+    #[error("{0}")]
+    Rustup(String),
     #[error(transparent)]
     Workspace(#[from] BuildError),
 }
 
 /// Ensures that programs for the board can be built and, if requested, run; returns the toolchain.
 ///
-/// As root on Debian it installs missing packages. If that would remove a package, or without root's rights,
-/// it unpacks them into a folder of this workspace. With rustup it adds the target, unless the machine's owner
-/// forbids it. `progress` receives each step before it is taken. No package is ever removed.
+/// As root on Debian it installs missing packages, and prints them before that; no package is ever removed.
+/// With rustup it adds the target, unless the machine's owner forbids it.
 ///
 /// # Errors
-/// Otherwise, [`SetupError::Missing`] states exactly what to install.
-pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, SetupError> {
+/// Otherwise, the error states exactly what to install.
+pub fn prepare(tools: Tools) -> Result<Toolchain, SetupError> {
     let workspace = Workspace::find()?;
     // Two programs that install at the same time would disturb each other.
     let _lock = workspace.lock("setup")?;
-    let unpacked = workspace.unpacked();
     let (target, more) = tools.needs();
-    let is_there = |package: Package| package.is_there(&unpacked);
-    let needs = Needs::of(more, Own::observe(target), is_there);
-    let apt = Apt::new(&unpacked, &progress);
-    for packages in &needs.packages {
-        if let Err(why) = apt.provide(packages) {
-            let mut packages = needs.packages.concat();
-            packages.retain(|package| !is_there(*package));
-            return Err(SetupError::Missing { packages, target: target.name, why });
-        }
-        if !packages.iter().all(|package| is_there(*package)) {
-            return Err(SetupError::InVain(packages.iter().map(|package| package.name).collect()));
-        }
-    }
-    if needs.adds_target {
-        progress(&format!("rustup target add {target}"));
-        finished(Command::new("rustup").args(["target", "add", target.name]))?;
-    }
-    Ok(Toolchain::new(needs.compiler, workspace))
+    let compiler = if has_core(target) {
+        Compiler::Own
+    } else if may_add_target() {
+        eprintln!("set-up: rustup target add {target}");
+        let mut rustup = Command::new("rustup");
+        finished(rustup.args(["target", "add", target.name])).map_err(SetupError::Rustup)?;
+        Compiler::Own
+    } else {
+        let missing = |packages| SetupError::Compiler { packages, target: target.name };
+        install(&COMPILER, workspace.packages()).map_err(missing)?;
+        Compiler::Debian
+    };
+    install(more, workspace.packages()).map_err(SetupError::Missing)?;
+    Ok(Toolchain::new(compiler, workspace))
 }
 
 /// Makes sure that a program is installed beside the project; its package has the same name.
-pub fn set_up_tool(name: &str) -> Result<(), String> {
-    set_up_package(name, &[name, "--version"])
-}
-
-/// Makes sure that a package is installed beside the project: `command` has to succeed. If it fails, root on
-/// Debian installs the package, as for the project's other tools.
 ///
 /// # Errors
-/// Elsewhere, with the package to install.
-pub fn set_up_package(name: &str, command: &[&str]) -> Result<(), String> {
-    let is_there = || output(Command::new(command[0]).args(&command[1..])).is_some();
-    if is_there() {
-        return Ok(());
-    }
-    let by_hand = format!("install it (Debian: apt install {name})");
-    // Installed, never unpacked.
-    let unpacked = Unpacked::beside(Path::new(""));
-    match Apt::new(&unpacked, &|step| eprintln!("{step}")).install(name) {
-        Ok(()) if is_there() => Ok(()),
-        Ok(()) => Err(by_hand),
-        Err(error) => Err(format!("{error}; {by_hand}")),
-    }
+/// With the package to install.
+pub fn set_up_tool(name: &str) -> Result<(), String> {
+    set_up_package(name, &format!("{name} --version"))
 }
 
-/// The toolchain that cargo runs here.
-#[derive(Clone, Copy, Debug)]
-struct Own {
-    /// The version of its compiler, if there is one.
-    rust: Option<Version>,
-    /// Whether it has `core` for the target of the programs.
-    has_target: bool,
-    /// Whether there is a rustup, to add the target.
-    rustup: bool,
-    /// Whether the machine's owner forbids fetching toolchains.
-    fetching_forbidden: bool,
+/// Makes sure that a package is installed beside the project: a command of the shell then succeeds.
+///
+/// # Errors
+/// With the package to install.
+pub fn set_up_package(name: &str, check: &str) -> Result<(), String> {
+    let folder = Workspace::find().map_err(|error| error.to_string())?.packages();
+    let missing = |_| format!("install it (Debian: apt install {name})");
+    install(&[(name, check)], folder).map_err(missing)
 }
 
-impl Own {
-    fn observe(target: Target) -> Self {
-        let rustc = || Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
-        let version = output(rustc().arg("--version"));
-        let folder = output(rustc().args(["--print", "target-libdir", "--target", target.name]));
-        let forbids = |value| value == "0";
-        Self {
-            rust: version.and_then(|version| Version::find(&version)),
-            has_target: folder.is_some_and(|folder| has_core(Path::new(folder.trim()))),
-            rustup: output(Command::new("rustup").arg("--version")).is_some(),
-            fetching_forbidden: env::var_os("RUSTUP_AUTO_INSTALL").is_some_and(forbids),
-        }
-    }
+/// Whether the toolchain that cargo runs here has a compiled `core` for the target.
+fn has_core(target: Target) -> bool {
+    let mut rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
+    let folder = finished(rustc.args(["--print", "target-libdir", "--target", target.name]));
+    let entries = folder.ok().and_then(|folder| Path::new(folder.trim()).read_dir().ok());
+    let is_core = |entry: DirEntry| entry.file_name().to_string_lossy().starts_with("libcore-");
+    entries.is_some_and(|entries| entries.flatten().any(is_core))
 }
 
-/// Whether a folder of libraries holds a compiled `core`.
-fn has_core(folder: &Path) -> bool {
-    let Ok(entries) = folder.read_dir() else { return false };
-    entries.flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("libcore-"))
-}
-
-/// The compiler for the board, and its needs.
-#[derive(Debug, PartialEq, Eq)]
-struct Needs {
-    compiler: Compiler,
-    /// Whether rustup has to add the target.
-    adds_target: bool,
-    /// Missing packages, which are installed or unpacked together.
-    packages: Vec<Vec<Package>>,
-}
-
-impl Needs {
-    /// Of tools with these packages besides the compiler's: a pure function of what was observed.
-    fn of(more: &[Package], own: Own, is_there: impl Fn(Package) -> bool) -> Self {
-        let serves = own.rust.is_some_and(|rust| rust >= Version::RUST);
-        let adds_target = serves && !own.has_target && own.rustup && !own.fetching_forbidden;
-        let is_own = serves && own.has_target || adds_target;
-        let compiler = if is_own { Compiler::Own } else { Compiler::Debian };
-        let wanted: [&[Package]; 2] = [if is_own { &[] } else { &Package::COMPILER }, more];
-        let missing = wanted.map(|all| all.iter().copied().filter(|one| !is_there(*one)).collect());
-        let packages = missing.into_iter().filter(|missing: &Vec<_>| !missing.is_empty()).collect();
-        Self { compiler, adds_target, packages }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// rustup's toolchain, without the target.
-    const OWN: Own = Own {
-        rust: Some(Version::RUST),
-        has_target: false,
-        rustup: true,
-        fetching_forbidden: false,
-    };
-
-    fn needs(own: Own, packages: &[Package]) -> Needs {
-        Needs::of(&[Package::EMULATOR], own, |package| packages.contains(&package))
-    }
-
-    #[test]
-    fn rustup_adds_the_target_where_it_may() {
-        let expected = Needs { compiler: Compiler::Own, adds_target: true, packages: Vec::new() };
-        assert_eq!(needs(OWN, &[Package::EMULATOR]), expected);
-        // Also beside Debian's packages, which would be a second compiler.
-        let all = [&Package::COMPILER[..], &[Package::EMULATOR]].concat();
-        assert_eq!(needs(OWN, &all), expected);
-    }
-
-    #[test]
-    fn rustup_fetches_nothing_where_it_is_forbidden_or_not_there() {
-        // It would fetch another toolchain.
-        let old = Own { rust: Some(Version { major: 1, minor: 85 }), has_target: true, ..OWN };
-        let none = Own { rust: None, rustup: false, ..OWN };
-        let forbidden = Own { fetching_forbidden: true, ..OWN };
-        let (compiler, adds_target) = (Compiler::Debian, false);
-        let [rustc, cargo, source, lld] = Package::COMPILER;
-        for own in [forbidden, Own { rustup: false, ..OWN }, old, none] {
-            let expected = |packages| Needs { compiler, adds_target, packages };
-            let all = vec![Package::COMPILER.to_vec(), vec![Package::EMULATOR]];
-            assert_eq!(needs(own, &all.concat()), expected(Vec::new()));
-            assert_eq!(needs(own, &[]), expected(all));
-            let some = needs(own, &[rustc, cargo, Package::EMULATOR]);
-            assert_eq!(some, expected(vec![vec![source, lld]]));
-        }
-    }
-
-    #[test]
-    fn a_toolchain_with_the_target_serves_wherever_it_is_from() {
-        let own = Own { has_target: true, rustup: false, fetching_forbidden: true, ..OWN };
-        let packages = vec![vec![Package::EMULATOR]];
-        let expected = Needs { compiler: Compiler::Own, adds_target: false, packages };
-        assert_eq!(needs(own, &[]), expected);
-        // A virtual board needs no emulator.
-        let (_, native) = Tools::CompilerAndVirtualBoard.needs();
-        let [cmake, .., libclang] = Package::NATIVE;
-        let missing = Needs::of(native, own, |package| package != cmake && package != libclang);
-        assert_eq!(missing.packages, [[cmake, libclang]]);
-    }
+/// Whether there is a rustup to add a target, and the machine's owner does not forbid fetching.
+fn may_add_target() -> bool {
+    let forbidden = env::var_os("RUSTUP_AUTO_INSTALL").is_some_and(|value| value == "0");
+    !forbidden && finished(Command::new("rustup").arg("--version")).is_ok()
 }

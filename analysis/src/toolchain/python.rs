@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use super::output;
+pub use super::output::finished;
 use super::prepare::{set_up_package, set_up_tool};
 use super::{BuildError, target_folder};
 
@@ -48,7 +48,7 @@ impl PythonEnvironment {
     pub fn set_up(&self) -> Result<(), String> {
         set_up_tool("python3")?;
         // Debian has the part that puts pip into an environment in a package of its own.
-        set_up_package("python3-venv", &["python3", "-c", "import ensurepip"])?;
+        set_up_package("python3-venv", "python3 -c 'import ensurepip'")?;
         if !self.0.join("pyvenv.cfg").exists() {
             let made = finished(Command::new("python3").args(["-m", "venv"]).arg(&self.0));
             made.inspect_err(|_| {
@@ -58,12 +58,4 @@ impl PythonEnvironment {
         }
         Ok(())
     }
-}
-
-/// Runs a program to its end.
-///
-/// # Errors
-/// The last lines of its output, if it fails.
-pub fn finished(command: &mut Command) -> Result<(), String> {
-    output::finished(command).map(drop).map_err(|error| error.to_string())
 }

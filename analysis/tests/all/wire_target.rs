@@ -23,7 +23,7 @@ const STEP: usize = 10;
 
 /// The emulated board with the damper wall, armed, and the device in it.
 fn emulated() -> Emulator {
-    let tools = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}")).unwrap();
+    let tools = prepare(Tools::CompilerAndEmulator).unwrap();
     let elf = tools.build_scene("damper_wall", NumberFormat::F32).unwrap();
     let mut emulator = Emulator::boot(&elf).unwrap();
     emulator.arm_and_wait().unwrap();

@@ -28,14 +28,6 @@ pub fn opened(width: u32, scene: &str) -> (tempfile::TempDir, Page) {
     (folder, page)
 }
 
-/// The page that starts with the program's own scene.
-pub fn explore_without_file(folder: &Path) -> String {
-    let page = folder.join("explore.html");
-    let run = haptic(&["explore", "-o", page.to_str().unwrap()]);
-    assert_eq!(run.status.code(), Some(0), "{run:?}");
-    read(page)
-}
-
 /// A random number between two, evenly distributed.
 fn between(random: &mut fastrand::Rng, least: f64, most: f64) -> f64 {
     least + (most - least) * random.f64()
@@ -149,6 +141,10 @@ pub fn the_root_says_the_verdict_for_programs() {
     assert_eq!(verdict, "certified");
     assert_eq!(page.value("window.haptic.certify(window.haptic.scene()).verdict"), "certified");
     page.assert_silent();
+    // The program has a scene of its own.
+    let own = folder.path().join("own.html");
+    let run = haptic(&["explore", "-o", own.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
     let size = read(&file).len();
     assert!(size <= 700_000, "{size} bytes");
     for outside in ["src=\"http", "href=\"http", "@import", "url(http"] {

@@ -1,7 +1,6 @@
 //! The page as its reader sees it, in a browser. Where there is no browser, and none can be installed,
 //! these tests report this and count as ignored; see `ignorable.rs`.
 
-mod bench;
 #[allow(dead_code)]
 #[path = "../all/common/mod.rs"]
 mod common;
@@ -54,9 +53,6 @@ fn all() -> Vec<(&'static str, fn())> {
         exports::a_copied_link_is_the_scene_and_has_no_token
         keyboard::the_page_is_operated_by_its_keyboard_in_light_and_dark
         screenshot::the_readme_opens_with_the_page_of_today
-        bench::each_figure_of_the_page_has_its_reference
-        bench::without_a_browser_no_page_is_measured
-        bench::what_goes_wrong_on_a_page_is_an_error
     }
 }
 

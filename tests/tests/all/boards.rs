@@ -1,12 +1,16 @@
 //! Every program for every board that can be flashed: it builds, fits, and says which chip it is
 //! for.
 
+use std::collections::BTreeSet;
 use std::io::{self, Write};
+use std::path::Path;
 
-use analysis::studies::tick_parts::{Part, Share, TickParts};
+use addr2line::Context;
+use addr2line::gimli::{Dwarf, EndianSlice, LittleEndian};
 use analysis::toolchain::{
     BoardModel, BuildError, NumberFormat, Program, Toolchain, Tools, TorqueOutput, prepare, probe,
 };
+use object::{Object, ObjectSection, SectionKind};
 
 /// What a debug probe calls a board's chip (the names are those of the chips' data sheets).
 fn chip(board: BoardModel) -> &'static str {
@@ -42,43 +46,67 @@ fn check(toolchain: &Toolchain, board: BoardModel, name: &str, program: &Program
     assert_eq!(probe::chip(&elf).unwrap(), chip(board));
 }
 
-/// Parts of a tick that a scene may do without: which of them are in a program.
-fn has(name: &str) -> &'static [Part] {
-    match name {
-        "delayed_spring" | "supervised_spring" => &[Part::Spring, Part::Delay],
-        "damper_wall" => &[Part::Spring, Part::Damper, Part::Face, Part::Delay],
-        // Torques are later than positions on these boards.
-        "free_mode" => &[Part::Canceller, Part::Delay],
-        // Free motion that ends at a wall, neither of them late.
-        "undelayed_spring" => &[Part::Spring],
-        "undelayed_wall" => &[Part::Spring, Part::Damper, Part::Face, Part::Canceller],
-        // It measures a device, and renders no scene.
-        _ => &[],
-    }
-}
+/// Parts of a tick that a scene may do without: the beginning of their functions' names, and the scenes that
+/// have them.
+const PARTS: [(&str, &[&str]); 5] = [
+    (
+        "<haptic_servo::environment::wall_law::WallLaw<",
+        &[
+            "delayed_spring",
+            "supervised_spring",
+            "damper_wall",
+            "undelayed_spring",
+            "undelayed_wall",
+        ],
+    ),
+    ("<haptic_servo::environment::velocity::Difference<", &["damper_wall", "undelayed_wall"]),
+    // A canceller's, and a filtered wall's.
+    ("<haptic_servo::environment::velocity::Washout<", &["free_mode", "undelayed_wall"]),
+    ("<haptic_servo::environment::wall_law::Face<", &["damper_wall", "undelayed_wall"]),
+    // Torques are later than positions on these boards.
+    (
+        "<haptic_servo::environment::delay_line::",
+        &["delayed_spring", "supervised_spring", "damper_wall", "free_mode"],
+    ),
+];
 
 /// The instructions of a scene's tick are of what the scene uses, and of nothing else.
 fn check_parts(board: BoardModel, name: &str, program: &Program) {
-    let tick = TickParts::of_file(&program.path).unwrap_or_else(|error| panic!("{error}"));
-    let parts =
-        [Part::Spring, Part::Damper, Part::Filter, Part::Canceller, Part::Face, Part::Delay];
-    for part in parts {
-        let Share { instructions, multiplications, .. } = tick.share(part);
-        let should = has(name).contains(&part);
-        assert_eq!(instructions > 0, should, "{board}, {name}: {instructions} of {part:?}");
-        // A face and a delay move numbers and compare them.
-        let multiplies = should && !matches!(part, Part::Face | Part::Delay);
-        assert_eq!(
-            multiplications > 0,
-            multiplies,
-            "{board}, {name}: {multiplications} of {part:?}"
-        );
+    let found = parts_of_ticks(&program.path);
+    for (part, (function, scenes)) in PARTS.iter().enumerate() {
+        let is_there = found.contains(&part);
+        assert_eq!(is_there, scenes.contains(&name), "{board}, {name}: {function}");
     }
-    // Every servo has an angle and a deflection of its coupling.
-    for part in [Part::Encoder, Part::Coupling] {
-        let multiplies = tick.share(part).multiplications > 0;
-        assert_eq!(multiplies, !has(name).is_empty(), "{board}, {name}: {part:?}");
+}
+
+/// The indices of the parts that a program's ticks have instructions of, by its line tables: a tick is
+/// compiled into the servo's interrupt as a whole. The innermost function that an instruction was inlined from
+/// counts.
+fn parts_of_ticks(path: &Path) -> BTreeSet<usize> {
+    const TICK: (&str, &str) = ("<haptic_servo::servo::prepared_servo::PreparedServo<", "::tick");
+    let is_tick = |name: &String| name.starts_with(TICK.0) && name.ends_with(TICK.1);
+    let part = |name: &String| PARTS.iter().position(|part| name.starts_with(part.0));
+    let elf = std::fs::read(path).unwrap();
+    let file = object::File::parse(&*elf).unwrap();
+    let tables = Dwarf::load(|id| -> Result<_, object::Error> {
+        let section = file.section_by_name(id.name());
+        let data = section.map_or(Ok(&[][..]), |section| section.data())?;
+        Ok(EndianSlice::new(data, LittleEndian))
+    });
+    let context = Context::from_dwarf(tables.unwrap()).unwrap();
+    let mut parts = BTreeSet::new();
+    for section in file.sections().filter(|section| section.kind() == SectionKind::Text) {
+        for address in (section.address()..section.address() + section.size()).step_by(2) {
+            let mut frames = context.find_frames(address).skip_all_loads().unwrap();
+            let mut names = Vec::new();
+            while let Some(frame) = frames.next().unwrap() {
+                names.extend(frame.function.map(|name| name.demangle().unwrap().into_owned()));
+            }
+            let tick = names.iter().position(is_tick).unwrap_or(0);
+            parts.extend(names[..tick].iter().find_map(part));
+        }
     }
+    parts
 }
 
 /// They run by hand only, but shall not rot.
@@ -98,7 +126,7 @@ fn the_tests_on_a_board_build() {
 }
 
 fn toolchain() -> Toolchain {
-    prepare(Tools::Compiler, |step| eprintln!("{step}")).unwrap_or_else(|error| panic!("{error}"))
+    prepare(Tools::Compiler).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// What the compiler says of a program for no board in particular.

@@ -80,7 +80,7 @@ fn a_scene_of_another_crate_runs_on_a_board() {
     let folder = copy("on_a_board");
     let map = Path::new(env!("CARGO_MANIFEST_DIR")).join("../memory.x");
     std::fs::copy(map, folder.path().join("memory.x")).expect("the linker's map");
-    let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
+    let toolchain = prepare(Tools::Compiler);
     let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
     let built = toolchain.build_foreign(folder.path(), "knob");
     let program = built.unwrap_or_else(|error| panic!("{error}"));

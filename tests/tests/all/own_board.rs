@@ -15,8 +15,7 @@ fn source(name: &str) -> String {
 #[test]
 #[ignore = "builds for minutes"]
 fn a_board_of_another_crate_builds_and_fits() {
-    let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"))
-        .unwrap_or_else(|error| panic!("{error}"));
+    let toolchain = prepare(Tools::Compiler).unwrap_or_else(|error| panic!("{error}"));
     let sizes = toolchain.build_own_board().unwrap_or_else(|error| panic!("{error}")).sizes;
     let memory = toolchain.memory().unwrap();
     assert!(sizes.text > 0 && sizes.flash() <= memory.flash, "{} bytes", sizes.flash());

@@ -6,10 +6,8 @@ use std::sync::LazyLock;
 use analysis::emulator::BenchClient;
 use analysis::toolchain::{NumberFormat, Toolchain, Tools, prepare};
 
-pub static TOOLCHAIN: LazyLock<Toolchain> = LazyLock::new(|| {
-    prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
-        .unwrap_or_else(|error| panic!("{error}"))
-});
+pub static TOOLCHAIN: LazyLock<Toolchain> =
+    LazyLock::new(|| prepare(Tools::CompilerAndEmulator).unwrap_or_else(|error| panic!("{error}")));
 
 /// The program of a scene in f32 on the emulated board.
 pub fn scene(name: &str) -> PathBuf {

@@ -113,8 +113,6 @@ pub struct Curve {
 /// The part of a curve between two poles, or from or to the real axis.
 #[derive(Debug)]
 pub struct Branch {
-    /// Numbers of the poles at its ends, where there are poles.
-    pub poles: [Option<usize>; 2],
     /// Rising angles in rad.
     pub angles: Vec<f64>,
     /// Real and imaginary part at each.
@@ -379,17 +377,16 @@ fn branches(
     lowest: Option<f64>,
     point: impl Fn(f64) -> (f64, f64),
 ) -> Vec<Branch> {
-    let at = |theta: f64| (theta, poles.iter().position(|pole| pole.theta == theta));
     let inner = poles.iter().map(|pole| pole.theta).filter(|theta| *theta > 0.0 && *theta < PI);
-    let cuts: Vec<_> = [0.0].into_iter().chain(inner).chain([PI]).map(at).collect();
-    let between = |pair: &[(f64, Option<usize>)]| {
-        let mut angles: Vec<f64> = angles(pair[0].0, pair[1].0).collect();
+    let cuts: Vec<_> = [0.0].into_iter().chain(inner).chain([PI]).collect();
+    let between = |pair: &[f64]| {
+        let mut angles: Vec<f64> = angles(pair[0], pair[1]).collect();
         let (first, last) = (angles[0], angles[angles.len() - 1]);
         angles.extend(around(lowest).filter(|theta| first < *theta && *theta < last));
         angles.sort_by(f64::total_cmp);
         angles.dedup();
         let values = angles.iter().copied().map(&point).collect();
-        Branch { poles: [pair[0].1, pair[1].1], angles, values }
+        Branch { angles, values }
     };
     cuts.windows(2).map(between).collect()
 }

@@ -113,9 +113,7 @@ fn sentence(pole: &UnitCirclePole) -> String {
             format!("{place}: repeated, a whole turn or more at infinity: not passive")
         }
         (None, Kind::Simple(_)) => {
-            format!(
-                "{place}: residue of the wrong angle, askew at infinity (shown at +): not passive"
-            )
+            format!("{place}: residue of the wrong angle, askew at infinity: not passive")
         }
     }
 }

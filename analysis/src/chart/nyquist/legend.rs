@@ -1,17 +1,15 @@
 //! The legend below a Nyquist plot.
 
 use super::super::legend::{Legend, Sample};
-use super::infinity::FAR;
-use super::{BOUND, CRITICAL, Curve, NyquistScene, Role, lines};
+use super::{BOUND, CRITICAL, NyquistScene, lines};
 use crate::nyquist::{critical_lines, words};
 use crate::quantity::{shortened, significant};
-use crate::unit_circle_poles::UnitCirclePole;
 
 /// Longest name in the legend, in letters.
 const LONGEST_NAME: usize = 48;
 
 /// Of each scene its curves and its bound, of which only the first line of words has a sample; then the lines
-/// that are not to be crossed, and the closures at infinity.
+/// that are not to be crossed.
 pub(super) fn legend(scenes: &[NyquistScene]) -> Legend {
     let is_single = scenes.len() == 1;
     let of = |(index, (scene, lines)): (usize, (&NyquistScene, Vec<super::Line<'_>>))| {
@@ -38,10 +36,5 @@ pub(super) fn legend(scenes: &[NyquistScene]) -> Legend {
         (Sample::Line(CRITICAL), format!("critical line, {name} = {}", significant(line, 4)))
     };
     let critical = critical_lines(scenes).into_iter().map(critical);
-    let closes = |curve: &Curve| {
-        curve.role != Role::Alone && curve.poles.iter().any(UnitCirclePole::is_simple)
-    };
-    let mut curves = scenes.iter().flat_map(|scene| &scene.curves);
-    let far = curves.any(closes).then(|| (Sample::Line(FAR), "at infinity".to_owned()));
-    Legend::new(1, rows.chain(critical).chain(far))
+    Legend::new(1, rows.chain(critical))
 }

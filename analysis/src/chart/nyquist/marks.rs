@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{Curve, NyquistScene};
-use crate::chart::frame::{Frame, Place, whole};
+use crate::chart::frame::{Place, whole};
 use crate::chart::labels::{Block, Labels};
 use crate::chart::mark::Mark;
 use crate::chart::panel::Panel;
@@ -17,19 +17,18 @@ const STEPS: [f64; 3] = [1.0, 2.0, 5.0];
 /// Room on both sides of a curve.
 const CLEAR: i32 = units(5);
 
-/// Marks frequencies inside a frame on the judged curve, and the point of its phase margin, and writes their
+/// Marks frequencies on the judged curve, and the point of its phase margin, and writes their
 /// names, if there is room beside curves and lines. `minima` are the points of least real part, with the
-/// numbers of their scenes; `ways` are the closures at infinity.
+/// numbers of their scenes.
 pub(super) fn draw(
     panel: &Panel<'_, '_>,
     scenes: &[NyquistScene],
-    frame: Frame,
     minima: &[((f64, f64), String)],
-    ways: &[Vec<Place>],
 ) -> Drawn<()> {
+    let frame = panel.frame;
     let corners = [(frame.left, frame.top), (frame.right, frame.bottom)].map(|place| whole(&place));
     let mut labels = Labels::within(Block::new(corners[0], corners[1]));
-    keep_clear_of_lines(panel, scenes, ways, &mut labels);
+    keep_clear_of_lines(panel, scenes, &mut labels);
     let judged = || scenes.iter().flat_map(judged_curves);
     for (scene, curve) in judged() {
         if let Some((_, _, value)) = scene.phase_margin(curve) {
@@ -62,12 +61,7 @@ pub(super) fn draw(
 }
 
 /// Keeps names off all lines and curves.
-fn keep_clear_of_lines(
-    panel: &Panel<'_, '_>,
-    scenes: &[NyquistScene],
-    ways: &[Vec<Place>],
-    labels: &mut Labels,
-) {
+fn keep_clear_of_lines(panel: &Panel<'_, '_>, scenes: &[NyquistScene], labels: &mut Labels) {
     let all = panel.frame;
     let curves = || scenes.iter().flat_map(|scene| &scene.curves);
     let limits = scenes.iter().flat_map(|scene| [scene.limit, scene.bound]).flatten();
@@ -86,13 +80,10 @@ fn keep_clear_of_lines(
         let upper: Vec<_> = curve.values().map(|&value| panel.place(value)).collect();
         let lower: Vec<_> = upper.iter().map(|&place| panel.mirrored(place)).collect();
         for half in [upper, lower] {
-            for part in Frame::clip(&half, |_| all) {
+            for part in all.clip(&half) {
                 labels.keep_clear_of(&part.iter().map(whole).collect::<Vec<_>>(), CLEAR);
             }
         }
-    }
-    for way in ways {
-        labels.keep_clear_of(&way.iter().map(whole).collect::<Vec<_>>(), CLEAR);
     }
 }
 

@@ -1,12 +1,10 @@
 //! The paper's Nyquist plots: the judged transfer function of a scene, and the line that it must not cross.
 
-mod infinity;
 mod legend;
 mod marks;
 
 use haptic_servo::scene::Scene;
 
-use super::frame::{Frame, Place};
 use super::*;
 use crate::nyquist::{Curve, NyquistScene, Role, critical_lines, usual_window};
 
@@ -50,8 +48,7 @@ fn stroke(curve: &Curve, number: usize) -> Stroke {
 
 /// Draws the Nyquist plots of named scenes for velocity, `(T z / (z - 1)) G`: the judged curve in black, with
 /// its critical line, its least real part and frequencies marked; and, in grey, the environment alone if it
-/// differs. If a pole on the unit circle takes a curve to infinity, a broken line along the frame shows the
-/// side of its closure.
+/// differs. If a pole on the unit circle takes a curve to infinity, the legend has the side of its closure.
 pub fn nyquist(
     title: &str,
     scenes: &[(String, Scene)],
@@ -121,41 +118,27 @@ fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()>
     panel.level(AXIS, 0.0)?;
     panel.upright(AXIS, 0.0)?;
     criticals.iter().try_for_each(|line| panel.upright(CRITICAL, line.0))?;
-    let patterns = lines(scenes);
-    let through: Vec<_> = scenes.iter().flat_map(|s| &s.curves).collect();
-    let frames = infinity::frames(&panel, &through);
-    let mut ways = Vec::new();
-    for (line, frames) in patterns.iter().flatten().zip(&frames) {
-        ways.extend(draw_curve(&panel, line, frames)?);
-    }
+    lines(scenes).iter().flatten().try_for_each(|line| draw_curve(&panel, line))?;
     // All motion of a scene is on the right of its bound.
     let mut bounds = scenes.iter().filter_map(|scene| Some(-scene.bound?));
     bounds.try_for_each(|bound| panel.upright(BOUND, bound))?;
     let minima = draw_minima(&panel, scenes, (x.end - x.start, y.end))?;
-    let inner = frames.iter().flatten().last().copied().unwrap_or(panel.frame);
-    marks::draw(&panel, scenes, inner, &minima, &ways)
+    marks::draw(&panel, scenes, &minima)
 }
 
 /// The curve, and in a thinner line its mirror image for negative angles, with arrows in the direction of
-/// rising angles; its asymptote at rest, if it goes to infinity, as a hairline; and its closures at infinity,
-/// which are returned.
-fn draw_curve(panel: &Panel<'_, '_>, line: &Line<'_>, frames: &[Frame]) -> Drawn<Vec<Vec<Place>>> {
+/// rising angles; and its asymptote at rest, if it goes to infinity, as a hairline.
+fn draw_curve(panel: &Panel<'_, '_>, line: &Line<'_>) -> Drawn<()> {
     let Line { stroke, curve } = line;
     let judged = curve.role.is_judged();
     if let Some(re) = curve.asymptote.filter(|_| judged) {
         panel.upright(ASYMPTOTE, re)?;
     }
     for branch in &curve.branches {
-        let [first, last] = branch.poles.map(|pole| {
-            let drawn = pole.filter(|&pole| curve.poles[pole].is_simple());
-            drawn.map_or(panel.frame, |pole| frames[pole])
-        });
         let places: Vec<_> = branch.values.iter().map(|&value| panel.place(value)).collect();
-        let half = places.len() / 2;
-        let frame = |place| if place < half { first } else { last };
         let mirrored: Vec<_> = places.iter().map(|&place| panel.mirrored(place)).collect();
         for (places, width, arrow) in [(&places, 2, 0.4), (&mirrored, 1, 0.6)] {
-            let parts = Frame::clip(places, frame);
+            let parts = panel.frame.clip(places);
             let longest = parts.iter().max_by_key(|part| part.len());
             if let Some(part) = longest.filter(|_| judged) {
                 // The mirror image has the opposite direction.
@@ -168,8 +151,7 @@ fn draw_curve(panel: &Panel<'_, '_>, line: &Line<'_>, frames: &[Frame]) -> Drawn
             parts.iter().try_for_each(|part| panel.line(stroke.wide(width), part))?;
         }
     }
-    // Curves that are not judged may leave the frame.
-    if curve.role == Role::Alone { Ok(Vec::new()) } else { infinity::draw(panel, curve, frames) }
+    Ok(())
 }
 
 /// Marks the minima, and returns them with their labels: in a row for several at one place; a single scene

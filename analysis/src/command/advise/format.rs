@@ -1,5 +1,4 @@
-//! `haptic advise --max-limit-cycle --rate`: the cheapest sufficient number format, and the cheapest
-//! sufficient method of simulation.
+//! `haptic advise --max-limit-cycle --rate`: the cheapest sufficient number format.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +8,7 @@ use haptic_servo::encoder::CounterWidth;
 use haptic_servo::scene::{Coupling, Scene};
 use haptic_servo::servo::Transducers;
 
-use super::report::{FormatReport, SimulationMethod, message, text};
+use super::report::{FormatReport, message, text};
 use crate::command::file_scene::{hand_trajectory, scene_file};
 use crate::command::shared_arguments::JsonOption;
 use crate::command::status::{CommandError, CommandStatus};
@@ -21,7 +20,7 @@ use crate::studies::bench::CORE_CLOCK;
 use crate::studies::number_format::{
     Advice, FormatProblem, HALF_A_TURN, Motion, Requirements, cost,
 };
-use crate::studies::tradeoff::{self, Tradeoff, simulation, ticks};
+use crate::studies::tradeoff::{self, Tradeoff, ticks};
 
 /// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]
@@ -52,10 +51,6 @@ pub struct FormatArguments {
     #[arg(long = "max-angle", alias = "range", value_name = "ANGLE", value_parser = positive,
           default_value_t = HALF_A_TURN, allow_negative_numbers = true)]
     pub range: f64,
-    /// Largest relative error of the critical stiffness in a simulation
-    #[arg(long = "stiffness-error", alias = "verdict", value_name = "PART", value_parser = part,
-          default_value_t = 0.01, allow_negative_numbers = true)]
-    pub verdict: f64,
     /// Count the instructions of this scene on the emulated board, instead of using the kept table
     #[arg(long)]
     pub measure: bool,
@@ -98,7 +93,6 @@ pub fn run(
     let answered = FormatReport {
         format: advice.choice().map(|choice| choice.format),
         message: message(&query.problem, arguments.hum, &advice),
-        simulation: simulated(arguments.verdict)?,
         scene: query.name,
         rate: arguments.rate,
         coupling_stiffness: match query.problem.scene.coupling {
@@ -163,17 +157,6 @@ fn measured(motion: &Motion, requirements: &Requirements) -> Result<Advice, Comm
     })?;
     board.finish()?;
     Ok(advice)
-}
-
-/// The cheapest method of simulation whose relative error of the verdict is within a bound.
-fn simulated(bound: f64) -> Result<Option<SimulationMethod>, CommandError> {
-    let table = Tradeoff::kept(&simulation::COMPARISON)?;
-    Ok(simulation::cheapest(&table, bound).map(|method| SimulationMethod {
-        method: method.family.clone(),
-        substeps: method.values[simulation::SUBSTEPS_COLUMN].unwrap_or(f64::NAN),
-        samples_per_second: method.cost().unwrap_or(f64::NAN),
-        verdict_error: method.error(simulation::VERDICT).unwrap_or(f64::NAN),
-    }))
 }
 
 fn rate(text: &str) -> Result<f64, String> {

@@ -23,27 +23,12 @@ pub struct FormatReport {
     pub coupling_stiffness: Option<f64>,
     /// The cheapest format that satisfies the requirements.
     pub format: Option<&'static str>,
-    /// The cheapest method of simulation.
-    pub simulation: Option<SimulationMethod>,
     /// Limit cycle in N m caused by the encoder alone.
     pub encoder_hum: Option<f64>,
     /// All formats, the cheapest first.
     pub formats: Vec<Candidate>,
     /// The result as text.
     pub message: String,
-}
-
-/// A method of simulation, at the rate of the kept table.
-#[derive(Serialize)]
-pub struct SimulationMethod {
-    /// Its name.
-    pub method: String,
-    /// Its steps per sample.
-    pub substeps: f64,
-    /// Samples per second of computing time.
-    pub samples_per_second: f64,
-    /// Relative error of its largest stable stiffness.
-    pub verdict_error: f64,
 }
 
 /// The result as text.
@@ -165,16 +150,8 @@ pub fn text(answered: &FormatReport) -> String {
         |stiffness| format!("{} N m/rad, the standard one", significant(stiffness, 6)),
     );
     let FormatReport { scene, rate, message, .. } = answered;
-    let simulation = answered.simulation.as_ref().map_or_else(String::new, |simulated| {
-        let SimulationMethod { method, substeps, verdict_error, .. } = simulated;
-        let error = significant(100.0 * verdict_error, 2);
-        format!(
-            "\nThe cheapest method to simulate a rigid device is {method}, steps in a sample: \
-             {substeps}; its critical stiffness has an error of {error} %.\n"
-        )
-    });
     format!(
-        "scene     {scene}, certified at {rate} Hz\ncoupling  {coupling}\n\n{table}\n\n{message}\n{simulation}"
+        "scene     {scene}, certified at {rate} Hz\ncoupling  {coupling}\n\n{table}\n\n{message}\n"
     )
 }
 

@@ -1,4 +1,4 @@
-//! Measured cost of a certificate, a step, a tick and a page, beside a budget or beside a peer of the same run.
+//! Measured cost of a certificate, a step and a tick, beside a budget or beside a peer of the same run.
 //!
 //! A row of the table is a [`figure::Figure`]: `new` for a budget, `beside` for a peer, which needs a
 //! [`figure::Pair`] that measures both.
@@ -6,8 +6,6 @@
 pub mod at_rest;
 pub mod figure;
 pub mod on_target;
-pub mod page;
-pub mod parts;
 pub mod peer;
 pub mod python;
 pub mod steps;
@@ -32,7 +30,7 @@ pub const CORE_CLOCK: f64 = 170e6;
 /// The numbers of repetitions of the measurements on this machine, whose median is the figure.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounds {
-    /// For a time here, or in turns with plain C or a browser.
+    /// For a time here, or in turns with plain C.
     pub own: usize,
     /// In turns with Python.
     pub python: usize,
@@ -40,35 +38,13 @@ pub struct Rounds {
     pub maps: usize,
     /// Compilations of each program.
     pub compilations: usize,
-    /// Openings of each page.
-    pub openings: usize,
-    /// Movements of the mouse in a drag: at least one per frame.
-    pub movements: usize,
-    /// Rounds in a browser before others, in which it optimises functions that are called often.
-    pub warming: usize,
 }
 
 impl Rounds {
-    /// For repeatable figures; with four seconds of dragging.
-    pub const THOROUGH: Self = Self {
-        own: 31,
-        python: 9,
-        maps: 5,
-        compilations: 15,
-        openings: 5,
-        movements: 240,
-        warming: 8,
-    };
+    /// For repeatable figures.
+    pub const THOROUGH: Self = Self { own: 31, python: 9, maps: 5, compilations: 15 };
     /// For their order of magnitude.
-    pub const QUICK: Self = Self {
-        own: 3,
-        python: 1,
-        maps: 1,
-        compilations: 1,
-        openings: 1,
-        movements: 60,
-        warming: 1,
-    };
+    pub const QUICK: Self = Self { own: 3, python: 1, maps: 1, compilations: 1 };
 }
 
 /// Environments to judge: low and high degrees, poles near and far, delays. The coefficients are products of

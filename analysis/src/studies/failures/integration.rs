@@ -1,7 +1,5 @@
 //! Methods of integration that show a wrong behaviour of a loop (theory, section 9).
 
-use haptic_servo::servo::Transducers;
-
 use super::setting::*;
 use crate::simulation::method::Method;
 use crate::simulation::plant::Plant;
@@ -44,27 +42,6 @@ pub fn semi_implicit_euler() -> Result<CaseResult, StudyError> {
     let rests = rigid(KNOB, wall_of(900.0, 0.0, 0));
     let rests = loop_run("900 N m/rad", &rests, KNOBS, Outcome::Converges).pushed(1.0, 3000);
     Ok(CaseResult::of(&scene, methods, by(Method::Exact, 1)?, [shakes, rests]))
-}
-
-/// Runge-Kutta of fourth order with one step per tick: two masses in a hand.
-pub fn runge_kutta() -> Result<CaseResult, StudyError> {
-    const STIFFNESS: f64 = 2750.0;
-    // Friction hides slow growth; a finer encoder needs less friction. The motor is strong enough for a
-    // motion that friction does not hide.
-    let counts_per_turn = f64::from(1 << 22);
-    let fine = Transducers { counts_per_turn, full_scale_torque: 100.0, ..KNOBS };
-    let scene = rigid(KNOB, wall_of(STIFFNESS, 0.0, 0));
-    let experiment = Experiment { plant: two_masses(), ..Experiment::still(&scene) };
-    let by = |method| by_limit(&experiment, method, 1, STIFFNESS);
-    let methods = vec![by(Method::Rk4)?, by(Method::Tustin)?];
-    let rests = rigid(KNOB, wall_of(900.0, 0.0, 0));
-    let mut runs = [
-        loop_run("2750 N m/rad", &scene, fine, Outcome::Diverges).with_claimed_passivity(3.0),
-        loop_run("900 N m/rad", &rests, fine, Outcome::Converges),
-    ]
-    .map(|loop_run| loop_run.pushed(2.0, 15_000));
-    runs.iter_mut().for_each(|loop_run| loop_run.experiment.plant = two_masses());
-    Ok(CaseResult::of(&scene, methods, by(Method::Exact)?, runs))
 }
 
 /// The name of a method with a number of steps.

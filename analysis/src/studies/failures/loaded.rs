@@ -50,7 +50,7 @@ impl LoadedDevice {
     }
 
     /// Applies the motor's `torque` in N m over a tick, and over the missed ticks after it.
-    pub fn apply(&mut self, torque: f64) {
+    fn apply(&mut self, torque: f64) {
         loop {
             self.positions.push(self.position());
             self.machine.tick(self.positions.len() - 1, &self.hand_torque, torque);

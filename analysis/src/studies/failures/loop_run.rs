@@ -4,15 +4,15 @@ use firmware_harness::loop_request::{LoopRequest, StartReply};
 use firmware_harness::tables::index_of;
 use haptic_servo::certificate::{Certified, Rejection};
 use haptic_servo::environment::Environment;
-use haptic_servo::number::{Arithmetic, InEach, Number};
+use haptic_servo::number::Arithmetic;
 use haptic_servo::scene::{Device, Scene};
-use haptic_servo::servo::{BuildError, Transducers};
+use haptic_servo::servo::Transducers;
 use serde::Serialize;
 
 use super::loaded::LoadedDevice;
 use super::method_result::{MOVES, MethodResult};
 use super::motion::{Motion, Outcome};
-use crate::controller::{Controller, controller};
+use crate::controller::controller;
 use crate::emulator::ServoClient;
 use crate::lockstep::run;
 use crate::simulation::{Experiment, Integration, simulate};
@@ -27,8 +27,6 @@ pub struct LoopRun {
     pub experiment: Experiment,
     /// Encoder and motor of the board.
     pub transducers: Transducers,
-    /// The board's arithmetic.
-    pub arithmetic: Arithmetic,
     /// The device in the board's scene, in place of the true one: with more damping and passivity, because
     /// otherwise a board does not run a rejected scene.
     pub claimed: Option<Device>,
@@ -59,23 +57,8 @@ impl BoardResult {
 impl LoopRun {
     /// The motion of the loop in `f64`, with only the experiment's quantisation.
     pub fn simulated(&self) -> Result<Motion, StudyError> {
-        let positions = match self.arithmetic {
-            Arithmetic::F32 => simulate(&self.experiment, Integration::default())?.position,
-            _ => self.without_converters()?,
-        };
+        let positions = simulate(&self.experiment, Integration::default())?.position;
         Ok(Motion::of(&positions, self.experiment.samples))
-    }
-
-    /// The same with the servo's own arithmetic.
-    fn without_converters(&self) -> Result<Vec<f64>, StudyError> {
-        let mut servo = self.controller(&self.certified()?)?;
-        let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
-        while device.positions.len() < self.experiment.samples {
-            let torque = servo.tick_at(device.position())?;
-            device.apply(-torque);
-        }
-        device.positions.truncate(self.experiment.samples);
-        Ok(device.positions)
     }
 
     /// The motion of the loop with the emulated board as the servo. The board is compared with the servo on
@@ -88,7 +71,7 @@ impl LoopRun {
             (StartReply::Rejected, Err(_)) => return Ok(BoardResult::Refused),
             (reply, _) => return Err(StudyError::Disagreement(format!("{reply:?}"))),
         };
-        let mut servo = self.controller(&certified)?;
+        let mut servo = controller::<Environment, f32>(&certified, &self.transducers)?;
         let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
         let ticks = request.ticks as usize;
         let run = run(&mut device, servo.as_mut(), Some(player), ticks, || {})?;
@@ -119,7 +102,7 @@ impl LoopRun {
         LoopRequest {
             scene: self.scene_for_board(),
             transducers: self.transducers,
-            arithmetic: self.arithmetic,
+            arithmetic: Arithmetic::F32,
             ticks: self.ticks() as u32,
         }
     }
@@ -128,24 +111,6 @@ impl LoopRun {
     fn ticks(&self) -> usize {
         let Experiment { missed, samples, .. } = &self.experiment;
         missed.ticks().take(*samples).filter(|is_missed| !is_missed).count()
-    }
-
-    fn controller(&self, certified: &Certified<Scene>) -> Result<Box<dyn Controller>, BuildError> {
-        self.arithmetic.choose(Build { certified, transducers: &self.transducers })
-    }
-}
-
-/// Builds a servo in an arithmetic selected at run time.
-struct Build<'a> {
-    certified: &'a Certified<Scene>,
-    transducers: &'a Transducers,
-}
-
-impl InEach for Build<'_> {
-    type Output = Result<Box<dyn Controller>, BuildError>;
-
-    fn with<N: Number>(self) -> Self::Output {
-        controller::<Environment, N>(self.certified, self.transducers)
     }
 }
 

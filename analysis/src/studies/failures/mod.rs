@@ -4,15 +4,14 @@
 //! then the loop runs in simulation and with the emulated board as its servo.
 
 mod case;
-pub mod converters;
+pub mod encoder;
 pub mod grid;
 pub mod integration;
 pub mod loaded;
 pub mod loop_run;
 pub mod method_result;
 pub mod motion;
-pub mod observer;
-pub mod profiles;
+pub mod ratchet;
 pub mod region;
 pub mod report;
 pub mod roots;
@@ -20,7 +19,6 @@ pub mod rules;
 pub mod setting;
 pub mod timing;
 pub mod varying_hand;
-pub mod walls;
 pub mod zigzag;
 
 pub use case::{Case, CaseResult};
@@ -36,23 +34,19 @@ macro_rules! cases {
 cases! {
     "explicit-euler", "a certified wall on two masses", integration::explicit_euler;
     "semi-implicit-euler", "a spring of 1500 N m/rad", integration::semi_implicit_euler;
-    "runge-kutta", "a spring of 2750 N m/rad on two masses in a hand", integration::runge_kutta;
     "continuous-time", "a spring of 5000 N m/rad", rules::continuous_time;
     "negative-spring", "a spring of -200 N m/rad", rules::negative_spring;
     "damped-rule", "a late wall whose damping is the device's", rules::damped_rule;
     "grid", "a resonance of the wrong sign", grid::grid;
     "pole-outside", "a filter with a pole at 1 + 2^-20", roots::outside;
     "pole-inside", "a filter with a pole at 1 - 2^-20", roots::inside;
-    "passivity-observer", "a certified wall and an observer", observer::passivity_observer;
-    "fixed-point", "the paper's wall in Q16.16", converters::fixed_point;
-    "encoder", "the paper's wall behind an encoder", converters::encoder;
+    "encoder", "the paper's wall behind an encoder", encoder::encoder;
     "zigzag", "a wall with nearly the friction that it needs", zigzag::zigzag;
     "missed-ticks", "a spring near its limit, ticks missed", timing::missed_ticks;
     "mean-delay", "a spring half a period late, behind a current loop", timing::mean_delay;
     "between-ends", "a wall computed ahead and written 5 us after its count", timing::between_ends;
     "varying-hand", "a resonance behind a current loop, just past its limit", varying_hand::varying_hand;
-    "fine-detents", "120 detents of 0.25 N m, a sample late", profiles::fine_detents;
-    "ratchet", "24 teeth that push on by 3 N m in the mean", profiles::ratchet;
+    "ratchet", "24 teeth that push on by 3 N m in the mean", ratchet::ratchet;
 }
 
 impl Case {

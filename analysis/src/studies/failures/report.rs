@@ -6,10 +6,8 @@ use super::case::Case;
 use super::loop_run::{BoardResult, LoopRun};
 use super::method_result::{Failure, MethodResult};
 use super::motion::{Motion, Outcome};
-use super::walls::{DELAYS, wall};
 use crate::emulator::ServoClient;
 use crate::studies::error::StudyError;
-use crate::worst_hand::HandCase;
 
 /// A case with all its results.
 #[derive(Clone, Debug, Serialize)]
@@ -53,20 +51,6 @@ pub struct RunResult {
     pub emulated: Option<BoardResult>,
 }
 
-/// A wall on both sides of its limit.
-#[derive(Clone, Debug, Serialize)]
-pub struct WallReport {
-    /// Delay in samples.
-    pub delay: usize,
-    /// Largest certified stiffness in N m/rad.
-    pub limit: f64,
-    /// The hand in which it oscillates at 1.01 of that stiffness.
-    pub hand: HandCase,
-    /// The runs.
-    #[serde(rename = "trials")]
-    pub runs: Vec<RunResult>,
-}
-
 impl Case {
     /// Evaluates all methods, and runs the loops, also on the emulated board if there is one.
     pub fn report(&self, player: &mut Option<ServoClient>) -> Result<CaseReport, StudyError> {
@@ -82,17 +66,6 @@ impl Case {
             runs: run_all(&result.runs, player)?,
         })
     }
-}
-
-/// The walls of every delay.
-pub fn walls(player: &mut Option<ServoClient>) -> Result<Vec<WallReport>, StudyError> {
-    let report = |delay| {
-        let wall = wall(delay)?;
-        let runs = [&wall.below[..], &[wall.above]].concat();
-        let runs = run_all(&runs, player)?;
-        Ok(WallReport { delay, limit: wall.limit, hand: wall.hand, runs })
-    };
-    DELAYS.map(report).collect()
 }
 
 fn run_all(
@@ -122,12 +95,5 @@ impl CaseReport {
         self.methods.iter().any(|judged| judged.failure.is_some())
             && self.certificate.failure(self.truth.verdict).is_none()
             && self.runs.iter().all(RunResult::is_as_expected)
-    }
-}
-
-impl WallReport {
-    /// Whether all runs are as expected.
-    pub fn holds(&self) -> bool {
-        self.hand.grows() && self.runs.iter().all(RunResult::is_as_expected)
     }
 }

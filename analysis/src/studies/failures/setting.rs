@@ -5,7 +5,6 @@ use std::f64::consts::TAU;
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::CounterWidth;
 use haptic_servo::environment::{Coefficients, Environment, FULL_SCALE, Rational, Wall};
-use haptic_servo::number::Arithmetic;
 pub use haptic_servo::scene::Scene;
 use haptic_servo::scene::{Coupling, Device, Latency, Timing};
 use haptic_servo::servo::Transducers;
@@ -118,7 +117,7 @@ pub fn loop_run(
 ) -> LoopRun {
     let experiment =
         Experiment { friction: friction_for_rest(scene, &transducers), ..Experiment::still(scene) };
-    LoopRun { what, experiment, transducers, arithmetic: Arithmetic::F32, claimed: None, expected }
+    LoopRun { what, experiment, transducers, claimed: None, expected }
 }
 
 impl LoopRun {

@@ -6,10 +6,8 @@
 
 pub mod certificate;
 mod comparison;
-pub mod rate;
 pub mod servo;
 pub mod simulation;
-pub mod sine;
 pub mod ticks;
 
 use std::io::{Read, Write};
@@ -169,7 +167,7 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
     times
 }
 
-/// An emulated board that computes the scenes that have a program, and sines.
+/// An emulated board that computes the scenes that have a program.
 pub fn board() -> Result<BenchClient, StudyError> {
     boot("building the trial of the formats", "bench_programs")
 }
@@ -180,8 +178,7 @@ pub fn any_board() -> Result<BenchClient, StudyError> {
 }
 
 fn boot(what: &str, program: &str) -> Result<BenchClient, StudyError> {
-    let toolchain =
-        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
+    let toolchain = toolchain::prepare(Tools::CompilerAndEmulator)?;
     let spinner = progress::spinner(what);
     let elf = toolchain.build_harness(program)?;
     spinner.finish_and_clear();

@@ -59,7 +59,7 @@ pub fn build(chip: &'static Chip, names: &[&str]) -> Vec<PathBuf> {
 
 /// The same with any output.
 pub fn build_for(chip: &'static Chip, output: TorqueOutput, names: &[&str]) -> Vec<PathBuf> {
-    let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
+    let toolchain = prepare(Tools::Compiler);
     let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
     let board = BoardModel::find(chip.name).unwrap();
     let built = toolchain.build_for(board, output, names, NumberFormat::F32);

@@ -24,8 +24,7 @@ const LIMIT: u16 = 896;
 fn boot() -> Bench {
     static FILE: OnceLock<PathBuf> = OnceLock::new();
     let file = FILE.get_or_init(|| {
-        let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"))
-            .unwrap_or_else(|error| panic!("{error}"));
+        let toolchain = prepare(Tools::Compiler).unwrap_or_else(|error| panic!("{error}"));
         toolchain.build_own_board().unwrap_or_else(|error| panic!("{error}")).path
     });
     Bench::boot_file(&STM32F405, file, FixedDevice)

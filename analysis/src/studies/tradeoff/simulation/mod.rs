@@ -34,25 +34,12 @@ pub static COMPARISON: Comparison = Comparison {
     kept: include_bytes!("../../../../pictures/tradeoff/simulation.csv"),
 };
 
-/// Index of the verdict's error among the errors.
-pub const VERDICT: usize = 1;
-/// Index of the steps among the columns.
-pub const SUBSTEPS_COLUMN: usize = 3;
 /// Steps in a tick.
 const SUBSTEPS: [u32; 8] = [1, 2, 3, 5, 10, 20, 50, 100];
 /// Rounds of the measurement; the result is the fastest.
 const ROUNDS: usize = 31;
 /// A relative error of the angle above which the motion is lost.
 const LOST: f64 = 1e3;
-
-/// The cheapest method in a table of this comparison whose largest stable stiffness for the rigid device has
-/// at most a given relative error.
-pub fn cheapest(table: &Tradeoff, bound: f64) -> Option<&Row> {
-    let [rigid, _] = cases();
-    let is_enough = |method: &&Row| method.error(VERDICT).is_some_and(|error| error <= bound);
-    // From the cheapest to the best.
-    table.front(rigid.name, VERDICT).into_iter().find(is_enough)
-}
 
 /// Measures all methods on all motions.
 pub fn measure() -> Result<Tradeoff, SimulationError> {

@@ -36,7 +36,7 @@ const LONGEST: u64 = 170_000_000 / 4;
 fn file() -> &'static PathBuf {
     static FILE: OnceLock<PathBuf> = OnceLock::new();
     FILE.get_or_init(|| {
-        let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
+        let toolchain = prepare(Tools::Compiler);
         let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
         let built = toolchain.build_tests(BoardModel::BG431bEsc1, TorqueOutput::Bridge);
         built.unwrap_or_else(|error| panic!("{error}"))
