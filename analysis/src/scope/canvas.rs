@@ -23,7 +23,7 @@ pub struct Area {
     pub y: Range<usize>,
 }
 
-/// The characters of a terminal. What is written outside of it is left out.
+/// The characters of a terminal. Text outside of it is left out.
 #[derive(Clone, Debug)]
 pub struct Canvas {
     width: usize,
@@ -57,7 +57,7 @@ impl Canvas {
         })
     }
 
-    /// Writes lines from a row on, in place of what is there.
+    /// Writes lines from a row on, in place of the text there.
     pub fn lines(&mut self, first: usize, lines: &[Line]) {
         for (y, line) in (first..).zip(lines) {
             let write = |x, (text, style): &(String, Style)| self.write((x, y), text, *style);

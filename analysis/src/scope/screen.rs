@@ -12,11 +12,11 @@ use terminal_size::{Height, Width, terminal_size_of};
 use super::canvas::Canvas;
 use super::keys::{Key, KeyReader};
 
-/// Switch to the alternate screen, hide the cursor, do not wrap lines, and mark what is pasted; and back
+/// Switch to the alternate screen, hide the cursor, do not wrap lines, and mark pasted text; and back
 /// (ECMA-48, private modes of xterm).
 const OPEN: &str = "\x1b[?1049h\x1b[?25l\x1b[?7l\x1b[?2004h";
 const CLOSE: &str = "\x1b[?2004l\x1b[?7h\x1b[?25h\x1b[?1049l";
-/// Take what is written between these as one picture, where a terminal can.
+/// The begin and the end of a picture, which a terminal may show at once.
 const BEGIN: &str = "\x1b[?2026h";
 const END: &str = "\x1b[?2026l";
 

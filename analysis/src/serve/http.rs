@@ -24,7 +24,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// The head of a request.
 #[derive(Debug)]
 pub struct Head {
-    /// What is asked for, and its headers.
+    /// The target and the headers.
     pub request: Request,
     /// Bytes received after the head.
     pub rest: Vec<u8>,
