@@ -1,7 +1,10 @@
-//! Properties of the terminal: its colours and its width.
+//! Properties of the terminal: its colours, its width, and the signals that end a program there.
 
-use std::io::{stderr, stdout};
+use std::io::{self, stderr, stdout};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
+use signal_hook::consts::{SIGINT, SIGTERM};
 use terminal_size::{Height, Width, terminal_size_of};
 
 /// Whether colours may be written to a stream that is a terminal: not if `NO_COLOR`
@@ -31,4 +34,13 @@ const LEAST: usize = 20;
 
 fn columns(size: Option<(Width, Height)>) -> Option<usize> {
     size.map(|(Width(columns), _)| usize::from(columns).max(LEAST))
+}
+
+/// Has Ctrl-C and a signal to end set this flag, in place of ending the program at once.
+pub fn interrupted() -> io::Result<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        signal_hook::flag::register(signal, flag.clone())?;
+    }
+    Ok(flag)
 }

@@ -27,10 +27,10 @@ pub fn finite(name: &str, bytes: &[u8], unit: &str) -> Result<Vec<f64>, Refusal>
     let numbers: Vec<f64> = chunks.iter().map(|bytes| f64::from_ne_bytes(*bytes)).collect();
     match numbers.iter().position(|number| !number.is_finite()) {
         None => Ok(numbers),
-        Some(index) => Err(Refusal::Argument {
-            name: format!("{name}[{index}]"),
-            value: numbers[index].to_string(),
-            bound: format!("it must be a finite number in {unit}"),
-        }),
+        Some(index) => {
+            let (name, value) = (format!("{name}[{index}]"), numbers[index].to_string());
+            let bound = format!("it must be a finite number in {unit}");
+            Err(Refusal::argument(&name, &value, &bound))
+        }
     }
 }

@@ -66,11 +66,7 @@ pub fn index(
 
 /// The number format with a name.
 pub fn format_of(name: &str) -> Result<Format, Refusal> {
-    number::format(name).map_err(|bound| Refusal::Argument {
-        name: "format".to_owned(),
-        value: format!("{name:?}"),
-        bound,
-    })
+    number::format(name).map_err(|bound| Refusal::argument("format", &format!("{name:?}"), &bound))
 }
 
 fn verdict(scene: &Source, format: Format) -> Result<String, Refusal> {

@@ -15,23 +15,16 @@ pub fn names() -> Vec<&'static str> {
 
 /// The method and the steps of two arguments.
 pub fn integration(method: &str, substeps: i64) -> Result<Integration, Refusal> {
-    let out_of_bounds = |name: &str, value: String, bound: String| Refusal::Argument {
-        name: name.to_owned(),
-        value,
-        bound,
-    };
     let found = Method::ALL.into_iter().find(|one| one.as_str() == method);
-    let found = found.ok_or_else(|| {
+    let method = found.ok_or_else(|| {
         let bound = format!("it must be one of {}", names().join(", "));
-        out_of_bounds("method", format!("{method:?}"), bound)
+        Refusal::argument("method", &format!("{method:?}"), &bound)
     })?;
     match u32::try_from(substeps) {
-        Ok(substeps @ 1..) if i64::from(substeps) <= MOST => {
-            Ok(Integration { method: found, substeps })
-        }
+        Ok(steps @ 1..) if substeps <= MOST => Ok(Integration { method, substeps: steps }),
         _ => {
             let bound = format!("it must be a whole number from 1 to {MOST}");
-            Err(out_of_bounds("substeps", substeps.to_string(), bound))
+            Err(Refusal::argument("substeps", &substeps.to_string(), &bound))
         }
     }
 }

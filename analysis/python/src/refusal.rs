@@ -18,54 +18,48 @@ pyo3::create_exception!(
 /// The reason for a failure.
 #[derive(Debug, Error)]
 pub enum Refusal {
-    /// A file, or a text, with the places of its errors.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A dictionary, which has no lines.
-    #[error("{}", sentences(.0))]
-    Dictionary(FileError),
-    /// A number that the number format cannot represent.
-    #[error(transparent)]
-    DoesNotFit(#[from] DoesNotFit),
-    /// The scene has no motion.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// The scene has no map.
-    #[error(transparent)]
-    Map(#[from] MapError),
-    /// An argument.
-    #[error("`{name}` = {value} is out of bounds; {bound}")]
-    Argument {
-        /// Its name.
-        name: String,
-        /// Its value.
-        value: String,
-        /// Its bound.
-        bound: String,
-    },
-    /// No number could be written.
-    #[error("the answer has no JSON: {0}")]
-    Json(#[from] serde_json::Error),
+    /// The sentence of a `SceneError`.
+    #[error("{0}")]
+    Scene(String),
     /// A signal, or an exception of Python's own.
     #[error(transparent)]
     Python(#[from] PyErr),
 }
 
+impl Refusal {
+    /// The refusal of an argument.
+    pub fn argument(name: &str, value: &str, bound: &str) -> Self {
+        Self::Scene(format!("`{name}` = {value} is out of bounds; {bound}"))
+    }
+
+    /// The refusal of a dictionary, which has no lines: one line for each error, without places.
+    pub fn dictionary(error: &FileError) -> Self {
+        let each = std::iter::once(error).chain(&error.rest);
+        let mut lines: Vec<String> = each.map(|error| error.problem.to_string()).collect();
+        if error.untold > 0 {
+            lines.push(format!("and {} more problems", error.untold));
+        }
+        Self::Scene(lines.join("\n"))
+    }
+}
+
+macro_rules! scene_errors {
+    ($($error:ty),*) => {
+        $(impl From<$error> for Refusal {
+            fn from(error: $error) -> Self {
+                Self::Scene(error.to_string())
+            }
+        })*
+    };
+}
+
+scene_errors!(FileError, DoesNotFit, SimulationError, MapError, serde_json::Error);
+
 impl From<Refusal> for PyErr {
     fn from(refusal: Refusal) -> Self {
         match refusal {
             Refusal::Python(error) => error,
-            other => SceneError::new_err(other.to_string()),
+            Refusal::Scene(sentence) => SceneError::new_err(sentence),
         }
     }
-}
-
-/// One line for each error, without places.
-fn sentences(error: &FileError) -> String {
-    let each = std::iter::once(error).chain(&error.rest);
-    let mut lines: Vec<String> = each.map(|error| error.problem.to_string()).collect();
-    if error.untold > 0 {
-        lines.push(format!("and {} more problems", error.untold));
-    }
-    lines.join("\n")
 }

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use haptic_model::file::{self, Format, Purpose, SceneFile};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::refusal::Refusal;
@@ -11,33 +10,10 @@ use crate::refusal::Refusal;
 /// The name of a text without a file in errors.
 const NAME: &str = "scene";
 
-/// A scene before it is read.
+/// A scene before it is read: the form of its text, as `haptic/__init__.py` names it, and the text. That is a
+/// `path`, a `text` in TOML or JSON, or the JSON of a `dictionary`, whose lines its author has not seen.
 #[derive(FromPyObject)]
-pub struct Source(Form, String);
-
-/// The form of its text.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Form {
-    /// The path of a file.
-    Path,
-    /// TOML or JSON.
-    Text,
-    /// The JSON of a dictionary, whose lines its author has not seen.
-    Dictionary,
-}
-
-impl<'py> FromPyObject<'_, 'py> for Form {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        match object.extract::<&str>()? {
-            "path" => Ok(Self::Path),
-            "text" => Ok(Self::Text),
-            "dictionary" => Ok(Self::Dictionary),
-            other => Err(PyValueError::new_err(format!("`{other}` is not a form of a scene"))),
-        }
-    }
-}
+pub struct Source(String, String);
 
 impl Source {
     /// Reads it.
@@ -46,16 +22,16 @@ impl Source {
     /// As for a scene file: every invalid key.
     pub fn read(&self, purpose: Purpose) -> Result<SceneFile, Refusal> {
         let parse = |format| file::parse_for(purpose, NAME, format, &self.1);
-        match self.0 {
-            Form::Path => Ok(file::load_for(purpose, self.path())?),
-            Form::Text => Ok(parse(Format::of(NAME, &self.1))?),
-            Form::Dictionary => parse(Format::Json).map_err(Refusal::Dictionary),
+        match self.0.as_str() {
+            "path" => Ok(file::load_for(purpose, self.path())?),
+            "dictionary" => parse(Format::Json).map_err(|error| Refusal::dictionary(&error)),
+            _ => Ok(parse(Format::of(NAME, &self.1))?),
         }
     }
 
     /// The folder of the files that it names.
     pub fn folder(&self) -> &Path {
-        let parent = (self.0 == Form::Path).then(|| Path::new(&self.1).parent());
+        let parent = (self.0 == "path").then(|| Path::new(&self.1).parent());
         parent.flatten().unwrap_or(Path::new(""))
     }
 
@@ -69,8 +45,8 @@ impl Source {
 #[pyfunction]
 pub fn load(py: Python<'_>, scene: Source) -> Result<String, Refusal> {
     py.detach(|| {
-        let value = match scene.0 {
-            Form::Path => file::load_json(scene.path())?,
+        let value = match scene.0.as_str() {
+            "path" => file::load_json(scene.path())?,
             _ => file::as_json(NAME, Format::of(NAME, &scene.1), &scene.1)?,
         };
         Ok(serde_json::to_string(&value)?)

@@ -44,11 +44,8 @@ fn transfer(
         "controller" => transfers.controller,
         "equivalent" => transfers.equivalent,
         _ => {
-            return Err(Refusal::Argument {
-                name: "of".to_owned(),
-                value: format!("{of:?}"),
-                bound: "it must be one of environment, controller, equivalent".to_owned(),
-            });
+            let bound = "it must be one of environment, controller, equivalent";
+            return Err(Refusal::argument("of", &format!("{of:?}"), bound));
         }
     });
     Ok(if from_velocity { response.from_velocity(scene.timing.period) } else { response })

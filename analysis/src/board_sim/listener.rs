@@ -1,12 +1,9 @@
 //! The socket of a simulated board.
 
 use std::io::{self, ErrorKind, Read, Write};
-use std::net::{TcpListener, TcpStream};
-#[cfg(unix)]
+use std::net::TcpListener;
 use std::os::unix::fs::FileTypeExt;
-#[cfg(unix)]
 use std::os::unix::net::{UnixListener, UnixStream};
-#[cfg(unix)]
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -36,7 +33,6 @@ const QUEUE_TIMEOUT: Duration = Duration::from_millis(100);
 
 enum Socket {
     Tcp(TcpListener),
-    #[cfg(unix)]
     Unix(UnixListener, PathBuf),
 }
 
@@ -50,7 +46,6 @@ impl Listener {
                 let address = listener.local_addr()?.to_string();
                 (Socket::Tcp(listener), Address::Tcp(address))
             }
-            #[cfg(unix)]
             Address::Unix(path) => {
                 let listener = bind_unix(path)?;
                 listener.set_nonblocking(true)?;
@@ -100,7 +95,6 @@ impl Listener {
 }
 
 /// Binds a Unix socket; replaces the socket file that a killed program left behind.
-#[cfg(unix)]
 fn bind_unix(path: &Path) -> io::Result<UnixListener> {
     let taken = |why: &str| io::Error::new(ErrorKind::AddrInUse, why);
     match UnixListener::bind(path) {
@@ -142,30 +136,23 @@ fn send(client: &mut dyn Stream, bytes: &[u8]) -> io::Result<usize> {
 }
 
 impl Socket {
+    /// The next client, if one waits.
     fn accept(&self) -> Option<Box<dyn Stream>> {
-        match self {
-            Self::Tcp(listener) => listener.accept().ok().and_then(|(stream, _)| tcp(stream).ok()),
-            #[cfg(unix)]
-            Self::Unix(listener, _) => {
-                listener.accept().ok().and_then(|(stream, _)| unix(stream).ok())
-            }
-        }
+        let accepted: io::Result<Box<dyn Stream>> = match self {
+            Self::Tcp(listener) => listener.accept().and_then(|(stream, _)| {
+                stream.set_nonblocking(true)?;
+                stream.set_nodelay(true)?;
+                Ok(Box::new(stream) as _)
+            }),
+            Self::Unix(listener, _) => listener.accept().and_then(|(stream, _)| {
+                stream.set_nonblocking(true)?;
+                Ok(Box::new(stream) as _)
+            }),
+        };
+        accepted.ok()
     }
 }
 
-fn tcp(stream: TcpStream) -> io::Result<Box<dyn Stream>> {
-    stream.set_nonblocking(true)?;
-    stream.set_nodelay(true)?;
-    Ok(Box::new(stream))
-}
-
-#[cfg(unix)]
-fn unix(stream: UnixStream) -> io::Result<Box<dyn Stream>> {
-    stream.set_nonblocking(true)?;
-    Ok(Box::new(stream))
-}
-
-#[cfg(unix)]
 impl Drop for Socket {
     fn drop(&mut self) {
         if let Self::Unix(_, path) = self {

@@ -2,13 +2,11 @@
 
 use std::io::{self, Write};
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::rebuild_with_scene;
 use super::status::{CommandError, CommandStatus};
@@ -20,6 +18,7 @@ use crate::link::Address;
 use crate::lockstep::SimulatedDevice;
 use crate::program::Program;
 use crate::shaft::HandHeldShaft;
+use crate::terminal;
 use crate::toolchain::{BoardModel, NumberFormat};
 
 /// Arguments of `haptic board-sim`.
@@ -51,10 +50,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(50);
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let name = &arguments.scene;
     let program = Program::find(name).ok_or_else(|| no_program(name))?;
-    let enough = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        signal_hook::flag::register(signal, enough.clone())?;
-    }
+    let enough = terminal::interrupted()?;
     let trajectory = (program.trajectory)().repeated_until(HAND_DURATION);
     let built = |board| VirtualBoardBuild::build(board, program, NumberFormat::F32);
     let built = arguments.board.map(built).transpose()?;

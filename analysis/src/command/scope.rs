@@ -10,8 +10,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use haptic_model::board::timing::stream_every;
-use ratatui::DefaultTerminal;
-use ratatui::crossterm::event::{self, Event as Input};
+use signal_hook::consts::SIGHUP;
 
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::seconds;
@@ -19,6 +18,7 @@ use crate::link::{Address, Link};
 use crate::scope::control::Action;
 use crate::scope::poller::BoardPoller;
 use crate::scope::record::Recorder;
+use crate::scope::screen::Screen;
 use crate::scope::{Scope, tui};
 use crate::terminal;
 
@@ -48,30 +48,27 @@ const PICTURE: Duration = Duration::from_millis(33);
 
 /// Shows or records a board's telemetry until the time is up or the user quits.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let to_output = match &arguments.csv {
-        Some(path) => path == Path::new("-"),
-        // A pipe or a file gets rows.
-        None => !io::stdout().is_terminal() || terminal::is_dumb(),
-    };
+    let is_screen = io::stdout().is_terminal() && !terminal::is_dumb();
+    // A pipe or a file gets rows.
+    let to_output = arguments.csv.as_deref().map_or(!is_screen, |path| path == Path::new("-"));
     let link = Link::open(&arguments.port)?;
     let every = arguments.every.unwrap_or_else(|| stream_every(link.board().period));
-    let mut recorder = match (&arguments.csv, to_output) {
-        (_, true) => Some(Recorder::new(Box::new(io::stdout()), every)),
-        (Some(path), false) => Some(Recorder::new(Box::new(create(path)?), every)),
-        (None, false) => None,
+    let rows: Option<Box<dyn Write>> = match &arguments.csv {
+        _ if to_output => Some(Box::new(io::stdout())),
+        Some(path) => Some(Box::new(create(path)?)),
+        None => None,
     };
+    let mut recorder = rows.map(|rows| Recorder::new(rows, every));
     let mut session = Session {
+        interrupted: terminal::interrupted()?,
         scope: Scope::new(arguments.port.to_string(), arguments.window.as_secs_f64()),
         poller: BoardPoller::start(link, every),
         end: arguments.duration.map(|duration| Instant::now() + duration),
     };
-    if to_output || !io::stdout().is_terminal() || terminal::is_dumb() {
+    if to_output || !is_screen {
         session.record(recorder.as_mut())?;
     } else {
-        let mut screen = ratatui::try_init()?;
-        let shown = session.show(&mut screen, recorder.as_mut());
-        ratatui::try_restore()?;
-        shown?;
+        session.show(recorder.as_mut())?;
     }
     if let Some(recorder) = &mut recorder {
         recorder.flush()?;
@@ -95,6 +92,7 @@ fn create(path: &Path) -> Result<File, CommandError> {
 }
 
 struct Session {
+    interrupted: Arc<AtomicBool>,
     scope: Scope,
     poller: BoardPoller,
     end: Option<Instant>,
@@ -102,7 +100,8 @@ struct Session {
 
 impl Session {
     fn is_over(&self) -> bool {
-        self.end.is_some_and(|end| Instant::now() >= end)
+        self.interrupted.load(Ordering::Relaxed)
+            || self.end.is_some_and(|end| Instant::now() >= end)
     }
 
     /// Receives messages until then.
@@ -120,10 +119,8 @@ impl Session {
 
     /// Records without a view.
     fn record(&mut self, mut recorder: Option<&mut Recorder>) -> Result<(), CommandError> {
-        let interrupted = Arc::new(AtomicBool::new(false));
-        signal_hook::flag::register(signal_hook::consts::SIGINT, interrupted.clone())?;
         let mut lost = None;
-        while !self.is_over() && !interrupted.load(Ordering::Relaxed) {
+        while !self.is_over() {
             self.listen(Instant::now() + PICTURE, recorder.as_deref_mut())?;
             if self.scope.lost != lost {
                 lost.clone_from(&self.scope.lost);
@@ -134,22 +131,14 @@ impl Session {
         Ok(())
     }
 
-    /// Shows a view.
-    fn show(
-        &mut self,
-        screen: &mut DefaultTerminal,
-        mut recorder: Option<&mut Recorder>,
-    ) -> Result<(), CommandError> {
+    /// Shows a view. It ends with the terminal, too.
+    fn show(&mut self, mut recorder: Option<&mut Recorder>) -> Result<(), CommandError> {
+        signal_hook::flag::register(SIGHUP, self.interrupted.clone())?;
+        let mut screen = Screen::open()?;
         while !self.is_over() {
             self.listen(Instant::now() + PICTURE, recorder.as_deref_mut())?;
-            screen.draw(|frame| {
-                tui::draw(frame, &self.scope);
-                if !terminal::has_colour(true) {
-                    tui::without_colour(frame);
-                }
-            })?;
-            while event::poll(Duration::ZERO)? {
-                let Input::Key(key) = event::read()? else { continue };
+            screen.show(&tui::draw(&self.scope, screen.size()), terminal::has_colour(true))?;
+            for key in screen.keys()? {
                 match self.scope.control.press(key) {
                     Action::None => {}
                     Action::Request(request) => self.poller.request(request),

@@ -2,18 +2,17 @@
 
 use std::io::{self, Write};
 use std::net::SocketAddr;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::Duration;
 
 use clap::Args;
-use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::explore;
 use super::status::{CommandError, CommandStatus};
 use crate::link::Address;
 use crate::serve::{Port, Server};
+use crate::terminal;
 
 /// Arguments of `haptic serve`.
 #[derive(Debug, Args)]
@@ -40,10 +39,7 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 
 /// Serves the page and the board's wire until Ctrl-C, or a signal to end.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let over = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
-        signal_hook::flag::register(signal, over.clone())?;
-    }
+    let over = terminal::interrupted()?;
     Server::check(arguments.listen)?;
     // First, because a missing port is reported at once, and building a page takes a while.
     let port = Port::open(&arguments.port)?;

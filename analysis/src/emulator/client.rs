@@ -1,57 +1,113 @@
-//! Clients of the harness's programs, which answer requests in bytes.
+//! The client of the harness's programs, which answer requests in bytes.
 
-use std::marker::PhantomData;
 use std::path::Path;
 
-use firmware_harness::scene_codec::{FRAME, decode, encode};
+use firmware_harness::bench_request::{BLOCK, BenchRequest, Output, Outputs};
+use firmware_harness::loop_request::{LoopRequest, StartReply};
+use firmware_harness::scene_codec::{CertifyReply, CertifyRequest, FRAME, decode, encode};
+use haptic_servo::scene::Scene;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::{EmulatorError, Guest};
+use crate::lockstep::RemoteServo;
 
-/// The client of a program of the harness.
-pub struct Client<Server> {
-    pub(super) board: Guest,
+/// The client of a program of the harness, which answers one kind of requests.
+pub struct Client {
+    board: Guest,
     /// Ticks of a servo that have been requested and not run.
-    pub(super) ticks_left: u32,
-    server: PhantomData<Server>,
+    ticks_left: u32,
 }
 
-impl<Server> Client<Server> {
+/// The client of `certify_server`: certificates by the board.
+pub type CertifyClient = Client;
+/// The client of `servo_server`: the servos of several scenes, one after the other.
+pub type ServoClient = Client;
+/// The client of `bench_programs` and `bench_all`: torques and sines, with the instructions of each.
+pub type BenchClient = Client;
+
+impl Client {
     /// Starts the program, built by [`build_harness`](crate::toolchain::Toolchain::build_harness).
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self { board: Guest::boot(elf)?, ticks_left: 0, server: PhantomData })
+        Ok(Self { board: Guest::boot(elf)?, ticks_left: 0 })
     }
 
     /// Sends a request to the board, and returns its reply.
-    pub(super) fn ask<Q: Serialize, R: DeserializeOwned>(
-        &mut self,
-        request: &Q,
-    ) -> Result<R, EmulatorError> {
+    fn ask<Q: Serialize, R: DeserializeOwned>(&mut self, request: &Q) -> Result<R, EmulatorError> {
         let mut reply = [0; FRAME];
         self.board.exchange(&encode(request), &mut reply)?;
         decode(&reply).ok_or(EmulatorError::NoReply)
     }
 
-    /// The code of a servo for a count.
-    pub(super) fn tick(&mut self, raw: i32) -> Result<u16, EmulatorError> {
-        let mut code = [0; 2];
-        self.board.exchange(&raw.to_le_bytes(), &mut code)?;
-        self.ticks_left = self.ticks_left.saturating_sub(1);
-        Ok(u16::from_le_bytes(code))
+    /// Lets the board certify a scene.
+    pub fn certify(&mut self, scene: &Scene) -> Result<CertifyReply, EmulatorError> {
+        self.ask(&CertifyRequest(*scene))
+    }
+
+    /// Lets the board certify a scene and, if it passes, run its servo from rest. The remaining ticks of the
+    /// previous request run first, with the device at zero.
+    pub fn start(&mut self, request: &LoopRequest) -> Result<StartReply, EmulatorError> {
+        self.run_ticks_left()?;
+        let reply = self.ask(request)?;
+        if reply == StartReply::Ready {
+            self.ticks_left = request.ticks;
+        }
+        Ok(reply)
     }
 
     /// Runs the remaining ticks of a servo, with the device at zero.
-    pub(super) fn run_ticks_left(&mut self) -> Result<(), EmulatorError> {
+    fn run_ticks_left(&mut self) -> Result<(), EmulatorError> {
         while self.ticks_left > 0 {
-            self.tick(0)?;
+            self.exchange(0)?;
         }
         Ok(())
+    }
+
+    /// Lets the board compute the results of all inputs: counts of an encoder, or the bits of parts of a
+    /// turn.
+    pub fn compute(
+        &mut self,
+        request: &BenchRequest,
+        inputs: &[u32],
+    ) -> Result<Vec<Output>, EmulatorError> {
+        if !self.ask(request)? {
+            return Err(EmulatorError::NoBenchProgram);
+        }
+        let mut outputs = Vec::with_capacity(inputs.len() + BLOCK);
+        for block in inputs.chunks(BLOCK) {
+            outputs.extend(self.block(block)?);
+        }
+        // The padding of the last block.
+        outputs.truncate(inputs.len());
+        self.board.exchange(&[0], &mut [])?;
+        Ok(outputs)
+    }
+
+    fn block(&mut self, block: &[u32]) -> Result<Outputs, EmulatorError> {
+        let last = block.last().copied().unwrap_or_default();
+        let inputs: [[u8; 4]; BLOCK] =
+            std::array::from_fn(|i| block.get(i).copied().unwrap_or(last).to_le_bytes());
+        let request = [&[1], inputs.as_flattened()].concat();
+        let mut answer = [[0; Output::BYTES]; BLOCK];
+        self.board.exchange(&request, answer.as_flattened_mut())?;
+        Ok(answer.map(Output::from_bytes))
     }
 
     /// Ends the board.
     pub fn finish(mut self) -> Result<(), EmulatorError> {
         self.run_ticks_left()?;
         self.board.finish().map(drop)
+    }
+}
+
+impl RemoteServo for Client {
+    type Error = EmulatorError;
+
+    /// The code of a servo for a count: one tick of the current request.
+    fn exchange(&mut self, raw: i32) -> Result<u16, EmulatorError> {
+        let mut code = [0; 2];
+        self.board.exchange(&raw.to_le_bytes(), &mut code)?;
+        self.ticks_left = self.ticks_left.saturating_sub(1);
+        Ok(u16::from_le_bytes(code))
     }
 }

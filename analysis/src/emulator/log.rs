@@ -5,21 +5,9 @@ use std::thread::JoinHandle;
 
 use defmt_decoder::{DecodeError, Table};
 
-/// Reads a program's log while it runs.
-pub struct LogReader {
-    lines: JoinHandle<Vec<String>>,
-}
-
 /// Turns a program's log into lines, with the strings in the program's file.
 pub struct LogDecoder {
     table: Option<Table>,
-}
-
-impl LogReader {
-    /// The lines, once the program has ended.
-    pub fn lines(self) -> Vec<String> {
-        self.lines.join().unwrap_or_else(|_| vec!["the log could not be decoded".into()])
-    }
 }
 
 impl LogDecoder {
@@ -30,15 +18,13 @@ impl LogDecoder {
 
     /// Reads until the program ends. The log must be read while the program runs, because a full pipe would
     /// stop the board.
-    pub fn follow(self, mut output: impl Read + Send + 'static) -> LogReader {
-        LogReader {
-            lines: std::thread::spawn(move || {
-                let mut bytes = Vec::new();
-                // Bytes before an error of the pipe are still a log.
-                let _ = output.read_to_end(&mut bytes);
-                self.decode(&bytes)
-            }),
-        }
+    pub fn follow(self, mut output: impl Read + Send + 'static) -> JoinHandle<Vec<String>> {
+        std::thread::spawn(move || {
+            let mut bytes = Vec::new();
+            // Bytes before an error of the pipe are still a log.
+            let _ = output.read_to_end(&mut bytes);
+            self.decode(&bytes)
+        })
     }
 
     /// The lines in these bytes, which begin with a frame; an incomplete frame is omitted.

@@ -4,20 +4,18 @@
 //! folder; the board's log comes through the emulator's standard output. A guest that does not answer within
 //! [`TIMEOUT`] is an error, and the emulator is always ended.
 
-mod bench_client;
-mod certify_client;
 mod client;
 pub mod log;
 mod pipes;
 pub mod plant_thread;
 mod report;
-mod servo_client;
 
 use std::fs::File;
 use std::io::{self, Write};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use haptic_model::board::client::frame;
@@ -26,14 +24,11 @@ use haptic_servo::servo_loop::State;
 use haptic_servo::wire::message::ToBoard;
 use tempfile::TempDir;
 
-pub use bench_client::BenchClient;
-pub use certify_client::CertifyClient;
-pub use client::Client;
+pub use client::{BenchClient, CertifyClient, Client, ServoClient};
 pub use report::{Calibration, CertificateBits, EmulatorReport, InstructionStats};
-pub use servo_client::ServoClient;
 
 use crate::toolchain::{QEMU, emulator};
-use log::{LogDecoder, LogReader};
+use log::LogDecoder;
 use pipes::Pipes;
 
 /// The arguments of the emulated board. With `icount` each instruction takes 32 ns of the board's time,
@@ -156,8 +151,10 @@ impl Emulator {
         const AT_REST: TickInput = TickInput { count: 0, missed: 0 };
         // The port is open after the first tick.
         see(self.tick(AT_REST)?);
-        // Kept until the board has answered, so that the next client does not read this answer.
-        let _port = self.arm().map_err(EmulatorError::Serial)?;
+        // Over the serial port, like any host. Kept until the board has answered, so that the next client does
+        // not read this answer.
+        let mut port = UnixStream::connect(self.port()).map_err(EmulatorError::Serial)?;
+        port.write_all(&frame(&ToBoard::Arm { id: 0 })).map_err(EmulatorError::Serial)?;
         for _ in 0..LONGEST_FADING {
             let output = self.tick(AT_REST)?;
             see(output);
@@ -166,13 +163,6 @@ impl Emulator {
             }
         }
         Err(EmulatorError::NotArmed)
-    }
-
-    /// Requests arming over the board's serial port, like any host.
-    fn arm(&self) -> io::Result<UnixStream> {
-        let mut port = UnixStream::connect(self.port())?;
-        port.write_all(&frame(&ToBoard::Arm { id: 0 }))?;
-        Ok(port)
     }
 
     /// Ends the run and returns the board's measurements and log.
@@ -190,7 +180,7 @@ impl Emulator {
 struct Guest {
     process: Child,
     pipes: Option<Pipes>,
-    log: Option<LogReader>,
+    log: Option<JoinHandle<Vec<String>>>,
     folder: TempDir,
     timeout: Duration,
 }
@@ -271,7 +261,8 @@ impl Guest {
     }
 
     fn take_log(&mut self) -> Vec<String> {
-        self.log.take().map(LogReader::lines).unwrap_or_default()
+        let undecoded = |_| vec!["the log could not be decoded".into()];
+        self.log.take().map_or(Vec::new(), |log| log.join().unwrap_or_else(undecoded))
     }
 
     /// The output of board and emulator for an error's text.

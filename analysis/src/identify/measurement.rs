@@ -66,21 +66,15 @@ pub fn measure<const N: usize>(
 }
 
 /// Writes a record as a CSV file that can be [read](super::record::load) again.
-pub fn write(record: &Record, out: impl io::Write) -> io::Result<()> {
-    let mut writer = csv::Writer::from_writer(out);
-    let labelled = record.frequency.is_some();
-    let columns: &[&str] = &["time", "torque", "counts", "frequency"];
-    writer.write_record(if labelled { columns } else { &columns[..3] })?;
+pub fn write(record: &Record, mut out: impl io::Write) -> io::Result<()> {
+    let label = if record.frequency.is_some() { ",frequency" } else { "" };
+    writeln!(out, "time,torque,counts{label}")?;
     for (row, (torque, counts)) in record.torque.iter().zip(&record.counts).enumerate() {
         // Without the last digits, which are the product's rounding.
         let time = significant(row as f64 * record.period, 15);
-        writer.write_field(time)?;
-        writer.write_field(torque.to_string())?;
-        writer.write_field(counts.to_string())?;
-        if let Some(frequency) = record.frequency.as_ref().and_then(|all| all.get(row)) {
-            writer.write_field(frequency.to_string())?;
-        }
-        writer.write_record(None::<&[u8]>)?;
+        let frequency =
+            record.frequency.as_ref().map_or(String::new(), |all| format!(",{}", all[row]));
+        writeln!(out, "{time},{torque},{counts}{frequency}")?;
     }
-    writer.flush()
+    out.flush()
 }

@@ -9,7 +9,7 @@ use haptic_servo::wire::sweep::SweepRequest;
 use thiserror::Error;
 
 use super::torque_source;
-use crate::link::{Address, LinkError, Transport, is_timeout, open};
+use crate::link::{Address, LinkError, Transport, open, read_within};
 
 /// Timeout for a board's description, and between rows.
 const TIMEOUT: Duration = Duration::from_secs(2);
@@ -232,13 +232,8 @@ impl SweepPort {
     /// The next line; `None` if there is none before the time is up.
     fn line(&mut self, until: Instant) -> Result<Option<String>, PortError> {
         loop {
-            if let Some(end) = self.rest.iter().position(|&byte| byte == b'\n') {
-                let line: Vec<u8> = self.rest.drain(..=end).collect();
-                return Ok(Some(String::from_utf8_lossy(&line).trim_end().to_owned()));
-            }
-            // Noise without an end of a line is not kept.
-            if self.rest.len() > LONGEST_LINE {
-                self.rest.clear();
+            if let Some(line) = first_line(&mut self.rest) {
+                return Ok(Some(line));
             }
             if self.told.elapsed() >= LISTENING {
                 self.send(&SweepRequest::Listening)?;
@@ -250,20 +245,27 @@ impl SweepPort {
             // No operating system takes a timeout of zero.
             let wait = left.clamp(Duration::from_millis(1), LISTENING);
             let mut bytes = [0; 4096];
-            let read =
-                self.transport.wait_at_most(wait).and_then(|()| self.transport.read(&mut bytes));
-            match read {
-                Ok(0) => return Err(self.lost(io::ErrorKind::UnexpectedEof.into())),
-                Ok(count) => self.rest.extend_from_slice(&bytes[..count]),
-                Err(error) if is_timeout(&error) => {}
-                Err(error) => return Err(self.lost(error)),
-            }
+            let read = read_within(self.transport.as_mut(), &mut bytes, wait);
+            let count = read.map_err(|source| self.lost(source))?;
+            self.rest.extend_from_slice(&bytes[..count]);
         }
     }
 
     fn lost(&self, source: io::Error) -> PortError {
         LinkError::Lost { address: self.address.clone(), source }.into()
     }
+}
+
+/// Takes the first line out of some bytes. Noise without an end of a line is not kept.
+fn first_line(bytes: &mut Vec<u8>) -> Option<String> {
+    let Some(end) = bytes.iter().position(|&byte| byte == b'\n') else {
+        if bytes.len() > LONGEST_LINE {
+            bytes.clear();
+        }
+        return None;
+    };
+    let line: Vec<u8> = bytes.drain(..=end).collect();
+    Some(String::from_utf8_lossy(&line).trim_end().to_owned())
 }
 
 /// `PROTOCOL,period,counts per turn,ticks,travel,speed`, and of a bridge the numbers of its current loop.
@@ -293,48 +295,13 @@ fn describe(fields: &str) -> Option<Description> {
 mod tests {
     use super::*;
 
-    /// A line that never ends.
-    struct Noise;
-
-    impl io::Read for Noise {
-        fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-            bytes.fill(b'x');
-            Ok(bytes.len())
-        }
-    }
-
-    impl io::Write for Noise {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            Ok(bytes.len())
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
-
-    impl Transport for Noise {
-        fn wait_at_most(&mut self, _: Duration) -> io::Result<()> {
-            Ok(())
-        }
-    }
-
     #[test]
     fn noise_without_an_end_is_not_kept() {
-        let description = describe("3,0.001,61440,52500,0.7,85").unwrap();
-        let address = Address::Tcp("board:1".to_owned());
-        let (transport, rest) = (Box::new(Noise), Vec::new());
-        let mut port = SweepPort { address, transport, rest, told: Instant::now(), description };
-        assert_eq!(port.line(Instant::now() + Duration::from_millis(50)).unwrap(), None);
-        assert!(port.rest.len() <= LONGEST_LINE + 4096, "{} bytes", port.rest.len());
-    }
-
-    #[test]
-    fn every_end_says_what_to_do() {
-        let sentences = SweepEnd::ALL.map(|end| remedy(end, &0.7, &85.0));
-        assert!(sentences.iter().all(|sentence| sentence.len() > 15));
-        assert!(sentences[SweepEnd::Travel as usize].contains("0.7 rad"));
-        assert!(sentences[SweepEnd::Speed as usize].contains("85 rad/s"));
+        let mut bytes = vec![b'x'; LONGEST_LINE + 1];
+        assert_eq!((first_line(&mut bytes), bytes.len()), (None, 0));
+        bytes.extend(b"a line\r\nrest");
+        assert_eq!(first_line(&mut bytes).as_deref(), Some("a line"));
+        assert_eq!((first_line(&mut bytes), bytes.as_slice()), (None, &b"rest"[..]));
     }
 
     #[test]

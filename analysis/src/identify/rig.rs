@@ -3,10 +3,8 @@
 
 use std::collections::VecDeque;
 
-use haptic_servo::scene::Device;
 use nalgebra::DVector;
 
-use super::record::Record;
 use crate::device::SimulatedEncoder;
 use crate::simulation::SimulationError;
 use crate::simulation::discrete_plant::{DiscretePlant, Discretization};
@@ -103,60 +101,6 @@ impl MeasuredDevice {
                 self.seen = self.state[POSITION];
             }
         }
-    }
-}
-
-/// One sine.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Excitation {
-    /// Frequency in Hz.
-    pub frequency: f64,
-    /// Amplitude in N m.
-    pub amplitude: f64,
-    /// Duration in s.
-    pub duration: f64,
-}
-
-/// Applies one sine after the other, and records; `felt` is the torque in N m that the device gets at a phase
-/// in rad of a sine.
-pub fn play(
-    device: &mut MeasuredDevice,
-    period: f64,
-    sines: &[Excitation],
-    felt: impl Fn(&Excitation, f64) -> f64,
-) -> Record {
-    let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
-    for sine in sines {
-        for tick in 0..(sine.duration / period).round() as usize {
-            let phase = std::f64::consts::TAU * sine.frequency * (tick as f64 * period);
-            torque.push(sine.amplitude * phase.sin());
-            counts.push(f64::from(device.count()));
-            frequency.push(sine.frequency);
-            device.hold(felt(sine, phase));
-        }
-    }
-    Record { period, torque, counts, frequency: Some(frequency) }
-}
-
-/// A rig with a rigid device.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rig {
-    /// The device.
-    pub device: Device,
-    /// Time constant in s of its amplifier; 0 for an amplifier without lag.
-    pub actuator_lag: f64,
-    /// How it is driven and measured.
-    pub sensing: Sensing,
-}
-
-impl Rig {
-    /// Applies one sine after the other, from rest, and records.
-    pub fn measure(&self, sines: &[Excitation]) -> Result<Record, SimulationError> {
-        let (rigid, lag) = (Plant::rigid(self.device), self.actuator_lag);
-        let plant = if lag > 0.0 { rigid.with_actuator_lag(lag) } else { rigid };
-        let mut device = MeasuredDevice::new(&plant, &self.sensing)?;
-        let felt = |sine: &Excitation, phase: f64| sine.amplitude * phase.sin();
-        Ok(play(&mut device, self.sensing.period, sines, felt))
     }
 }
 

@@ -3,8 +3,9 @@
 use haptic_servo::scene::Device;
 
 use super::record::parse;
-use super::rig::{Excitation, Rig, Sensing};
+use super::rig::{MeasuredDevice, Sensing};
 use super::*;
+use crate::simulation::plant::Plant;
 
 const PADDLE: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
 const KNOB: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
@@ -17,6 +18,47 @@ const SENSING: Sensing = Sensing {
     output_delay: 0.0,
     seed: 1,
 };
+
+/// One sine: its frequency in Hz, its amplitude in N m, its duration in s.
+#[derive(Clone, Copy, Debug)]
+struct Excitation {
+    frequency: f64,
+    amplitude: f64,
+    duration: f64,
+}
+
+/// A rig with a rigid device, and an amplifier with a lag in s.
+struct Rig {
+    device: Device,
+    actuator_lag: f64,
+    sensing: Sensing,
+}
+
+impl Rig {
+    /// Applies one sine after the other, from rest, and records.
+    fn measure(&self, sines: &[Excitation]) -> Record {
+        self.play(sines, |sine, phase| sine.amplitude * phase.sin())
+    }
+
+    /// The same; `felt` is the torque in N m that the device gets at a phase in rad of a sine.
+    fn play(&self, sines: &[Excitation], felt: impl Fn(&Excitation, f64) -> f64) -> Record {
+        let (rigid, lag, period) =
+            (Plant::rigid(self.device), self.actuator_lag, self.sensing.period);
+        let plant = if lag > 0.0 { rigid.with_actuator_lag(lag) } else { rigid };
+        let mut device = MeasuredDevice::new(&plant, &self.sensing).unwrap();
+        let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
+        for sine in sines {
+            for tick in 0..(sine.duration / period).round() as usize {
+                let phase = std::f64::consts::TAU * sine.frequency * (tick as f64 * period);
+                torque.push(sine.amplitude * phase.sin());
+                counts.push(f64::from(device.count()));
+                frequency.push(sine.frequency);
+                device.hold(felt(sine, phase));
+            }
+        }
+        Record { period, torque, counts, frequency: Some(frequency) }
+    }
+}
 
 /// A rig with an amplifier without lag.
 fn rig(device: Device, sensing: Sensing) -> Rig {
@@ -37,7 +79,7 @@ fn sines(device: Device, frequencies: &[f64], amplitude: f64) -> Vec<Excitation>
 const LOW_TO_HIGH: &[f64] = &[0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 
 fn identified(rig: &Rig, frequencies: &[f64], amplitude: f64) -> Identification {
-    let record = rig.measure(&sines(rig.device, frequencies, amplitude)).unwrap();
+    let record = rig.measure(&sines(rig.device, frequencies, amplitude));
     identify(&record, &Correction::of_encoder(rig.sensing.counts_per_turn)).unwrap()
 }
 
@@ -74,7 +116,7 @@ fn ten_microseconds_of_skew_are_found_and_taken_out() {
     assert!((found.disk.delta - 0.30).abs() < 0.01, "{:?}", found.disk);
     assert!((found.bias + 0.20).abs() < 0.01, "{}", found.bias);
     // A declared delay is not a skew.
-    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02)).unwrap();
+    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02));
     let correction =
         Correction { count_delay: 1e-5, ..Correction::of_encoder(rig.sensing.counts_per_turn) };
     let declared = identify(&record, &correction).unwrap();
@@ -97,7 +139,7 @@ fn without_noise_only_the_counts_are_left() {
 #[test]
 fn steps_are_found_without_labels() {
     let rig = rig(PADDLE, Sensing { torque_noise: 0.02, ..SENSING });
-    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02)).unwrap();
+    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02));
     let blind = Record { frequency: None, ..record.clone() };
     let (labelled, found) = (step::steps(&record).0, step::steps(&blind).0);
     assert_eq!(found.len(), labelled.len());
@@ -111,7 +153,7 @@ fn steps_are_found_without_labels() {
 #[test]
 fn too_little_motion_is_said_to_be_so() {
     let rig = rig(PADDLE, SENSING);
-    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 1e-5)).unwrap();
+    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 1e-5));
     let error =
         identify(&record, &Correction::of_encoder(rig.sensing.counts_per_turn)).unwrap_err();
     assert!(error.to_string().contains("use a larger torque"), "{error}");
@@ -239,7 +281,7 @@ fn a_tone_that_is_left_out_is_named_with_the_reason() {
     let mut tones = sines(PADDLE, LOW_TO_HIGH, 0.02);
     tones[2].duration = 1.0;
     tones[7].amplitude *= 5e-3;
-    let record = rig.measure(&tones).unwrap();
+    let record = rig.measure(&tones);
     let found = identify(&record, &Correction::of_encoder(61_440.0)).unwrap();
     let said = left_out::grouped(&found.left_out);
     assert_eq!(said.len(), 2, "{said:?}");
@@ -250,5 +292,6 @@ fn a_tone_that_is_left_out_is_named_with_the_reason() {
     assert!(said[1].starts_with("the tone of 64 Hz") && said[1].contains("counts"), "{said:?}");
 }
 
+mod clipping;
 mod friction;
 mod latency;

@@ -144,26 +144,12 @@ mod tests {
 
     #[test]
     fn it_is_that_of_a_loop_that_runs() {
-        for (source, hertz) in [(PADDLE, 40.0), (PADDLE, 240.0), (PADDLE, 2000.0)] {
+        for hertz in [40.0, 240.0, 2000.0] {
             let omega = TAU * hertz;
-            let (found, expected) = (impedance(&source, omega), simulated(&source, omega));
+            let (found, expected) = (impedance(&PADDLE, omega), simulated(&PADDLE, omega));
             let off = (found - expected).norm() / expected.norm();
-            println!("{hertz} Hz: {found} {expected}");
             assert!(off < 1e-3, "{hertz} Hz: {found} in place of {expected}");
         }
-    }
-
-    /// A steady acceleration leaves the current `Ke/k_i dv/dt` with `k_i = K R/h` at the samples: a mass.
-    /// Between them the voltage is held while the back-EMF goes on: the mean of that arc is
-    /// `Ke h^2/(12 L) dv/dt` less, where an instant is short beside the winding's time constant.
-    #[test]
-    fn slow_motion_feels_a_mass() {
-        let omega = 1.0;
-        let mass = PADDLE.gain * PADDLE.instant / (PADDLE.feedback * PADDLE.resistance);
-        let arc = PADDLE.gain * PADDLE.instant.powi(2) / (12.0 * PADDLE.inductance);
-        let found = impedance(&PADDLE, omega);
-        assert!((found.im / (omega * (mass - arc)) - 1.0).abs() < 1e-5, "{found}");
-        assert!(found.re.abs() < 1e-3 * found.im, "{found}");
     }
 
     #[test]

@@ -65,45 +65,39 @@ pub enum LinkError {
     },
 }
 
+/// The other programs that have a serial port open; empty for a socket.
+fn holders_of(address: &Address) -> String {
+    match address {
+        Address::Serial { port, .. } => holders(port),
+        _ => String::new(),
+    }
+}
+
 /// The process that uses the port; if there is none, the available ports.
 fn why_not(address: &Address) -> String {
-    match address {
-        Address::Serial { port, .. } => match holders(port) {
-            nobody if nobody.is_empty() => ports(address),
-            holders => holders,
-        },
-        _ => String::new(),
+    let holders = holders_of(address);
+    if !holders.is_empty() || !matches!(address, Address::Serial { .. }) {
+        return holders;
+    }
+    // The library panics where Linux lists no terminals, as in a container.
+    let is_listed = !cfg!(target_os = "linux") || Path::new("/sys/class/tty").exists();
+    let ports = is_listed.then(serialport::available_ports).and_then(Result::ok);
+    match ports.filter(|ports| !ports.is_empty()) {
+        None => "; there is no serial port here".to_owned(),
+        Some(ports) => {
+            let names: Vec<String> = ports.into_iter().map(|port| port.port_name).collect();
+            format!("; the serial ports here are {}", names.join(", "))
+        }
     }
 }
 
 /// Why no reply came: another process reads the port, or no board is there.
 fn why_silent(address: &Address) -> String {
-    let holders = match address {
-        Address::Serial { port, .. } => holders(port),
-        _ => String::new(),
-    };
-    if holders.is_empty() {
-        ": is it powered, flashed with a scene's program, and is this its port (and its speed)?"
-            .to_owned()
-    } else {
-        holders
-    }
-}
-
-/// The available ports.
-fn ports(address: &Address) -> String {
-    if !matches!(address, Address::Serial { .. }) {
-        return String::new();
-    }
-    // The library panics where Linux lists no terminals, as in a container.
-    if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").exists() {
-        return "; there is no serial port here".to_owned();
-    }
-    match serialport::available_ports() {
-        Ok(ports) if !ports.is_empty() => {
-            let names: Vec<String> = ports.into_iter().map(|port| port.port_name).collect();
-            format!("; the serial ports here are {}", names.join(", "))
+    match holders_of(address) {
+        nobody if nobody.is_empty() => {
+            ": is it powered, flashed with a scene's program, and is this its port (and its speed)?"
+                .to_owned()
         }
-        _ => "; there is no serial port here".to_owned(),
+        holders => holders,
     }
 }

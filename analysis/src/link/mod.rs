@@ -6,7 +6,7 @@ mod error;
 mod holder;
 mod transport;
 
-pub use address::{Address, AddressError};
+pub use address::Address;
 pub(crate) use connection::Wire;
 pub use connection::{Link, Message};
 pub use error::LinkError;

@@ -2,7 +2,6 @@
 
 use std::io::{self, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
-#[cfg(unix)]
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
@@ -31,7 +30,6 @@ impl Transport for TcpStream {
     }
 }
 
-#[cfg(unix)]
 impl Transport for UnixStream {
     fn wait_at_most(&mut self, limit: Duration) -> io::Result<()> {
         self.set_read_timeout(Some(limit))
@@ -48,14 +46,11 @@ pub fn open(address: &Address) -> io::Result<Box<dyn Transport>> {
             Box::new(port)
         }
         Address::Tcp(address) => Box::new(connect(address)?),
-        #[cfg(unix)]
         Address::Unix(path) => {
             let stream = UnixStream::connect(path)?;
             stream.set_write_timeout(Some(TIMEOUT))?;
             Box::new(stream)
         }
-        #[cfg(not(unix))]
-        Address::Unix(_) => return Err(io::ErrorKind::Unsupported.into()),
     })
 }
 

@@ -1,8 +1,8 @@
 //! Commands to the board that the scope has keys for.
 
 pub use haptic_model::board::request::{Reply, Request};
-use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
+use super::keys::Key;
 use crate::link::change;
 
 /// The action of a key.
@@ -33,42 +33,36 @@ pub struct Control {
 impl Control {
     /// Takes a key. Arming takes a capital letter: it switches a motor on. Ctrl-C quits from
     /// anywhere.
-    pub fn press(&mut self, key: KeyEvent) -> Action {
-        if key.kind == KeyEventKind::Release {
-            return Action::None;
-        }
-        if key.modifiers.contains(KeyModifiers::CONTROL) {
-            return if key.code == KeyCode::Char('c') { Action::Quit } else { Action::None };
-        }
+    pub fn press(&mut self, key: Key) -> Action {
         match self.prompt.take() {
-            Some(line) => self.edit(line, key.code),
-            None => self.command(key.code),
+            _ if key == Key::Interrupt => Action::Quit,
+            Some(line) => self.edit(line, key),
+            None => self.command(key),
         }
     }
 
-    fn command(&mut self, key: KeyCode) -> Action {
+    /// A letter behind Esc does what it does alone, but it does not arm: it may be part of another key.
+    fn command(&mut self, key: Key) -> Action {
         match key {
-            KeyCode::Char('q') | KeyCode::Esc => Action::Quit,
-            KeyCode::Char('A') => Action::Request(Request::Arm),
-            KeyCode::Char('d') => Action::Request(Request::Disarm),
-            KeyCode::Char('t' | ':') => {
-                self.prompt = Some(String::new());
-                Action::None
-            }
-            _ => Action::None,
+            Key::Letter('A') => return Action::Request(Request::Arm),
+            Key::Letter('d') | Key::Alt('d') => return Action::Request(Request::Disarm),
+            Key::Letter('q') | Key::Alt('q') => return Action::Quit,
+            Key::Letter('t' | ':') | Key::Alt('t' | ':') => self.prompt = Some(String::new()),
+            _ => {}
         }
+        Action::None
     }
 
     /// An invalid line stays, to be corrected.
-    fn edit(&mut self, mut line: String, key: KeyCode) -> Action {
+    fn edit(&mut self, mut line: String, key: Key) -> Action {
         match key {
-            KeyCode::Esc => return Action::None,
-            KeyCode::Enter => match change::line(&line) {
+            Key::Escape => return Action::None,
+            Key::Enter => match change::line(&line) {
                 Ok(changes) => return Action::Request(Request::Set(changes)),
                 Err(why) => self.message = Some(why),
             },
-            KeyCode::Backspace => drop(line.pop()),
-            KeyCode::Char(letter) => line.push(letter),
+            Key::Backspace => drop(line.pop()),
+            Key::Letter(letter) | Key::Pasted(letter) => line.push(letter),
             _ => {}
         }
         self.prompt = Some(line);
@@ -85,11 +79,11 @@ mod tests {
 
     fn typed(control: &mut Control, text: &str) -> Action {
         let keys = text.chars().map(|letter| match letter {
-            '\n' => KeyCode::Enter,
-            '\u{8}' => KeyCode::Backspace,
-            letter => KeyCode::Char(letter),
+            '\n' => Key::Enter,
+            '\u{8}' => Key::Backspace,
+            letter => Key::Letter(letter),
         });
-        keys.map(|key| control.press(key.into())).last().unwrap_or(Action::None)
+        keys.map(|key| control.press(key)).last().unwrap_or(Action::None)
     }
 
     #[test]
@@ -110,13 +104,12 @@ mod tests {
         let mut control = Control::default();
         assert_eq!(typed(&mut control, "tqAd"), Action::None);
         assert_eq!(control.prompt.as_deref(), Some("qAd"));
-        assert_eq!(control.press(KeyCode::Esc.into()), Action::None);
+        assert_eq!(control.press(Key::Escape), Action::None);
         assert_eq!(typed(&mut control, "a"), Action::None);
         assert_eq!(typed(&mut control, "A"), Action::Request(Request::Arm));
         assert_eq!(typed(&mut control, "d"), Action::Request(Request::Disarm));
         assert_eq!(typed(&mut control, "q"), Action::Quit);
-        let interrupt = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL);
         typed(&mut control, "t");
-        assert_eq!(control.press(interrupt), Action::Quit);
+        assert_eq!(control.press(Key::Interrupt), Action::Quit);
     }
 }

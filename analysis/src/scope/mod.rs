@@ -1,9 +1,12 @@
 //! A live view of a board: its messages, their history, and the screen.
 
+pub mod canvas;
 pub mod control;
+pub mod keys;
 pub mod modes;
 pub mod poller;
 pub mod record;
+pub mod screen;
 #[cfg(test)]
 mod tests;
 pub mod tui;

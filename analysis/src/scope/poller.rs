@@ -4,7 +4,7 @@
 use std::num::NonZeroU32;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, SendError, Sender};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -45,8 +45,14 @@ impl BoardPoller {
     }
 
     /// The next event, if there is one within that time.
+    ///
+    /// # Panics
+    /// If its thread has.
     pub fn next(&self, timeout: Duration) -> Option<Event> {
-        self.events.recv_timeout(timeout).ok()
+        match self.events.recv_timeout(timeout) {
+            Err(RecvTimeoutError::Disconnected) => panic!("the poller of the board has ended"),
+            event => event.ok(),
+        }
     }
 }
 
@@ -68,54 +74,26 @@ struct PollerThread {
     every: NonZeroU32,
 }
 
-/// Why polling a board ended.
-enum PollEnd {
-    /// The receiver is gone.
-    Over,
-    /// The link.
-    Lost(LinkError),
-    /// The board has restarted without its settings.
-    Restarted,
-}
-
-impl From<LinkError> for PollEnd {
-    fn from(error: LinkError) -> Self {
-        Self::Lost(error)
-    }
-}
-
-impl From<SendError<Event>> for PollEnd {
-    fn from(_: SendError<Event>) -> Self {
-        Self::Over
-    }
-}
-
 impl PollerThread {
     fn run(&self, first: Link) {
         let address = first.address().clone();
-        let mut link = Some(first);
-        while !self.is_over() {
-            let end = match link.take() {
-                Some(link) => self.poll_board(link),
-                None => match Link::open(&address) {
-                    Ok(again) => {
-                        self.reject_requests();
-                        link = Some(again);
-                        continue;
-                    }
-                    Err(error) => Err(error.into()),
-                },
-            };
-            match end {
-                Ok(()) | Err(PollEnd::Over) => return,
-                Err(PollEnd::Restarted) => {}
-                Err(PollEnd::Lost(error)) => {
-                    // The receiver may be gone; the next check of `ended` tells.
-                    let _ = self.events.send(Event::Lost(error.to_string()));
-                    self.wait_before_retry();
-                }
+        let mut link = Ok(first);
+        loop {
+            if let Err(error) = link.and_then(|link| self.poll_board(link)) {
+                self.send(Event::Lost(error.to_string()));
+                self.wait_before_retry();
             }
+            if self.is_over() {
+                return;
+            }
+            link = Link::open(&address);
+            self.reject_requests();
         }
+    }
+
+    fn send(&self, event: Event) {
+        // The receiver waits for this thread before it goes.
+        let _ = self.events.send(event);
     }
 
     /// Waits a while before the next try.
@@ -127,53 +105,53 @@ impl PollerThread {
         }
     }
 
-    /// Forwards the board's messages until the link or the receiver is lost.
-    fn poll_board(&self, link: Link) -> Result<(), PollEnd> {
+    /// Forwards the board's messages until the link is lost, the board has restarted without its settings, or
+    /// the end.
+    fn poll_board(&self, link: Link) -> Result<(), LinkError> {
         let (program, board) = (link.program().to_owned(), *link.board());
         let previous_fault = link.previous_fault();
-        self.events.send(Event::Connected { program, board, previous_fault })?;
+        self.send(Event::Connected { program, board, previous_fault });
         let mut wire = link.into_wire();
         let now = wire.now();
         wire.client.watch(self.every, now);
         let polled = self.poll_until_lost(&mut wire);
         wire.client.give_up();
-        self.forward(&mut wire)?;
+        self.forward(&mut wire);
         polled?;
-        Ok(wire.send_last(&ToBoard::Stream(None))?)
+        if self.is_over() { wire.send_last(&ToBoard::Stream(None)) } else { Ok(()) }
     }
 
-    fn poll_until_lost(&self, wire: &mut Wire) -> Result<(), PollEnd> {
-        while !self.is_over() {
+    fn poll_until_lost(&self, wire: &mut Wire) -> Result<(), LinkError> {
+        let mut has_restarted = false;
+        while !self.is_over() && !has_restarted {
             for request in self.requests.try_iter() {
                 let now = wire.now();
                 if let Err(reply) = wire.client.request(request.clone(), now) {
-                    self.events.send(Event::Reply(request, reply))?;
+                    self.send(Event::Reply(request, reply));
                 }
             }
             let carried = wire.carry(Instant::now() + POLL_INTERVAL);
-            self.forward(wire)?;
+            has_restarted = self.forward(wire);
             carried?;
         }
         Ok(())
     }
 
-    fn forward(&self, wire: &mut Wire) -> Result<(), PollEnd> {
+    /// Forwards the events so far; returns whether the board has restarted.
+    fn forward(&self, wire: &mut Wire) -> bool {
+        let mut has_restarted = false;
         while let Some(event) = wire.client.next_event() {
-            let has_restarted = matches!(event, Event::Lost(_));
-            self.events.send(event)?;
-            if has_restarted {
-                return Err(PollEnd::Restarted);
-            }
+            has_restarted |= matches!(event, Event::Lost(_));
+            self.send(event);
         }
-        Ok(())
+        has_restarted
     }
 
     /// Drops requests without a link: a key that was pressed some time ago must not switch a motor
     /// on.
     fn reject_requests(&self) {
         for request in self.requests.try_iter() {
-            // The receiver may be gone; the next check of `ended` tells.
-            let _ = self.events.send(Event::Reply(request, Reply::NoLink));
+            self.send(Event::Reply(request, Reply::NoLink));
         }
     }
 

@@ -7,12 +7,10 @@ use haptic_servo::servo_loop::{Frame, State};
 use haptic_servo::torque::LimitReason;
 use haptic_servo::wire::Discarded;
 use haptic_servo::wire::message::{ActiveParameters, BoardUnits, Changes, PreviousFault, Status};
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
 
 use super::history::History;
 use super::poller::Event;
-use super::sample::Sample;
+use super::sample::{COLUMNS, Row, Sample, Scale};
 use super::{Scope, tui};
 
 const BOARD: BoardUnits = BoardUnits {
@@ -71,10 +69,8 @@ fn connected() -> Scope {
 }
 
 /// The content of a terminal of that size, line by line.
-fn screen(scope: &Scope, width: u16, height: u16) -> String {
-    let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-    terminal.draw(|frame| tui::draw(frame, scope)).unwrap();
-    terminal.backend().to_string()
+fn screen(scope: &Scope, width: usize, height: usize) -> String {
+    tui::draw(scope, (width, height)).to_string()
 }
 
 #[test]
@@ -113,7 +109,7 @@ fn shows_what_a_power_stage_measures() {
     });
     take(&mut scope, Event::Status(Status { power, ..STATUS }, Discarded::default()));
     let shown = screen(&scope, 120, 40);
-    let lines: Vec<_> = shown.lines().map(|line| line.trim_matches('"').trim_end()).collect();
+    let lines: Vec<_> = shown.lines().map(str::trim_end).collect();
     let at = lines.iter().position(|line| *line == LINE);
     let at = at.unwrap_or_else(|| panic!("{LINE:?} is not a line of\n{shown}"));
     // Between the facts of every board, of which none gives way.
@@ -152,38 +148,37 @@ fn shows_the_line_that_is_typed_and_all_of_the_answer() {
                     delta = 0.022 N m s/rad that the device has; it would pass with stiffness <= 16";
     scope.control.message = Some(sentence.to_owned());
     let shown = screen(&scope, 60, 40);
-    let words = |text: &str| {
-        text.replace(['"', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ")
-    };
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words(&shown).contains(&words(sentence)), "{shown}");
     assert!(shown.contains("tune: stiffness = 2_") && shown.contains("Enter sends"), "{shown}");
 }
 
 #[test]
 fn colours_can_be_left_out() {
-    let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
-    let scope = connected();
-    let coloured = |terminal: &Terminal<TestBackend>| {
-        let cells = &terminal.backend().buffer().content;
-        cells.iter().filter(|cell| cell.fg != ratatui::style::Color::Reset).count()
-    };
-    terminal.draw(|frame| tui::draw(frame, &scope)).unwrap();
-    assert!(coloured(&terminal) > 0);
-    terminal
-        .draw(|frame| {
-            tui::draw(frame, &scope);
-            tui::without_colour(frame);
-        })
-        .unwrap();
-    assert_eq!(coloured(&terminal), 0);
+    let canvas = tui::draw(&connected(), (80, 24));
+    // Bold and dim stay.
+    let rows = |has_colour| canvas.rows(has_colour).collect::<String>();
+    assert!(rows(true).contains("\x1b[3"));
+    assert!(!rows(false).contains("\x1b[3") && rows(false).contains("\x1b[1m"));
 }
 
 #[test]
 fn fits_any_terminal_and_needs_no_board() {
-    for (width, height) in [(1, 1), (3, 20), (20, 3), (80, 24), (300, 100)] {
-        screen(&Scope::new("COM3".to_owned(), 5.0), width, height);
-        screen(&connected(), width, height);
+    let mut full = connected();
+    full.control.message = Some("a long answer ".repeat(50));
+    full.control.prompt = Some("stiffness".repeat(5));
+    for width in [0, 1, 2, 3, 10, 13, 14, 40, 300] {
+        for height in 0..30 {
+            let empty = Scope::new("COM3".to_owned(), 5.0);
+            for scope in [&empty, &connected(), &full] {
+                screen(scope, width, height);
+            }
+        }
     }
+    // In few rows, the state and the keys stay.
+    let shown = screen(&connected(), 30, 3);
+    let rows: Vec<_> = shown.lines().collect();
+    assert!(rows[0].contains("running") && rows[2].contains("q quits"), "{shown}");
 }
 
 fn sample(tick: u64, torque: f64) -> Sample {
@@ -222,4 +217,23 @@ fn a_curve_keeps_every_peak_and_forgets_what_is_old() {
     // A board that was started again counts from zero.
     history.push(sample(1, 1.0));
     assert_eq!(history.range(|sample| sample.torque), Some((1.0, 1.0)));
+}
+
+/// The rows of a record equal those of a CSV library, byte for byte.
+#[test]
+fn rows_are_those_of_the_library_for_csv() {
+    let (timer_counts, counts_per_turn, full_scale_torque) = (170_000, 4000.0, 1.791);
+    let mut scale =
+        Scale::new(BoardUnits { timer_counts, counts_per_turn, full_scale_torque, ..BOARD });
+    let mut library = csv::Writer::from_writer(Vec::new());
+    let mut rows = format!("{COLUMNS}\n");
+    for (i, code) in [0, 2047, 2048, 2049, 4095].into_iter().enumerate() {
+        let (tick, count, slack) = (3 * i as u32, 1 - i as i32, 7 * i as u32);
+        let code = DacCode::new(code).unwrap();
+        let frame = Frame { code, slack, ..frame(tick, count, LimitReason::Torque) };
+        let row = Row::from(&scale.sample(&frame));
+        library.serialize(&row).unwrap();
+        rows += &format!("{row}\n");
+    }
+    assert_eq!(rows, String::from_utf8(library.into_inner().unwrap()).unwrap());
 }

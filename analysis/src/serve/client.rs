@@ -8,7 +8,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use serde_json::json;
-use tungstenite::handshake::derive_accept_key;
+use tungstenite::handshake::server::{Response, create_response, write_response};
+use tungstenite::http::{StatusCode, header};
 use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
@@ -31,37 +32,19 @@ const QUEUE_TIMEOUT: Duration = Duration::from_millis(500);
 /// Time in which a refused page may confirm that the socket is closed.
 const GOODBYE: Duration = Duration::from_secs(1);
 
-/// Checks that the request is an upgrade to a WebSocket; returns the key for the response.
-pub fn check_upgrade(head: &Head) -> Result<String, HttpResponse> {
-    let has = |name, word: &str| {
-        let value = head.header(name)?.unwrap_or_default();
-        Ok::<_, HttpResponse>(value.split(',').any(|part| part.trim().eq_ignore_ascii_case(word)))
-    };
-    if !has("upgrade", "websocket")? || !has("connection", "upgrade")? {
-        let why = "/wire is a WebSocket: ask for an upgrade".to_owned();
-        return Err(HttpResponse::refusal(426, why).with("Upgrade: websocket"));
-    }
-    match head.header("sec-websocket-version")? {
-        Some("13") => {}
-        version => {
-            let version = version.unwrap_or_default();
-            let why = format!("version `{version}` of WebSocket is not served here: 13 is");
-            return Err(HttpResponse::refusal(426, why).with("Sec-WebSocket-Version: 13"));
-        }
-    }
-    match head.header("sec-websocket-key")? {
-        Some(key) if !key.is_empty() => Ok(derive_accept_key(key.as_bytes())),
-        _ => Err(HttpResponse::refusal(400, "the header sec-websocket-key is missing".to_owned())),
-    }
+/// Checks that the request is an upgrade to a WebSocket; returns the response.
+pub fn check_upgrade(head: &Head) -> Result<Response, HttpResponse> {
+    create_response(&head.request).map_err(|error| {
+        let why = format!("/wire is a WebSocket: {error}");
+        HttpResponse::refusal(StatusCode::UPGRADE_REQUIRED, why)
+            .with(header::UPGRADE, "websocket")
+            .with(header::SEC_WEBSOCKET_VERSION, "13")
+    })
 }
 
 /// Carries the wire of a page until the page or the server ends it.
-pub(super) fn carry(mut stream: &TcpStream, rest: Vec<u8>, key: &str, shared: &Shared) {
-    let accepted = format!(
-        "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
-         Sec-WebSocket-Accept: {key}\r\n\r\n"
-    );
-    let is_open = std::io::Write::write_all(&mut stream, accepted.as_bytes()).is_ok()
+pub(super) fn carry(stream: &TcpStream, rest: Vec<u8>, accepted: &Response, shared: &Shared) {
+    let is_open = write_response(stream, accepted).is_ok()
         && stream.set_read_timeout(Some(POLL_INTERVAL)).is_ok();
     if !is_open {
         return;
@@ -106,7 +89,7 @@ type End = Option<CloseFrame>;
 
 impl From<PageRefusal> for CloseFrame {
     fn from(refusal: PageRefusal) -> Self {
-        Self { code: refusal.code().into(), reason: refusal.to_string().into() }
+        Self { code: refusal.close_code().into(), reason: refusal.to_string().into() }
     }
 }
 

@@ -5,14 +5,17 @@ use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use tungstenite::http::StatusCode;
+use tungstenite::Error;
+use tungstenite::error::{CapacityError, ProtocolError};
+use tungstenite::handshake::machine::TryParse;
+use tungstenite::handshake::server::{Request, write_response};
+use tungstenite::http::header::{HeaderName, HeaderValue};
+use tungstenite::http::{Response, StatusCode, header};
 
 use crate::link::is_timeout;
 
 /// Longest head of a request in bytes: much longer than that of a browser.
 const LONGEST: usize = 16_384;
-/// Largest number of header lines.
-const HEADERS: usize = 100;
 /// Longest time that a request or its answer may take.
 pub const TIMEOUT: Duration = Duration::from_secs(5);
 /// Longest time between two checks whether the server ends.
@@ -21,10 +24,8 @@ const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// The head of a request.
 #[derive(Debug)]
 pub struct Head {
-    /// Its method.
-    pub method: String,
-    target: String,
-    headers: Vec<(String, String)>,
+    /// The target and the headers.
+    pub request: Request,
     /// Bytes received after the head.
     pub rest: Vec<u8>,
 }
@@ -37,19 +38,20 @@ impl Head {
     pub fn read(mut stream: &TcpStream, over: &AtomicBool) -> Result<Self, HttpResponse> {
         let (mut bytes, mut chunk) = (Vec::new(), [0; 4096]);
         let end = Instant::now() + TIMEOUT;
-        let cut_off = || HttpResponse::refusal(400, "the request ends in its head".to_owned());
+        let bad = |why: &str| HttpResponse::refusal(StatusCode::BAD_REQUEST, why.to_owned());
+        let cut_off = || bad("the request ends in its head");
         stream.set_read_timeout(Some(POLL_INTERVAL)).map_err(|_| cut_off())?;
         loop {
-            if let Some(head) = Self::parse(&bytes)? {
-                return Ok(head);
+            if let Some((length, request)) = Request::try_parse(&bytes).map_err(no_request)? {
+                return Ok(Self { request, rest: bytes.split_off(length) });
             }
             if bytes.len() > LONGEST {
                 let why = format!("the head of the request is longer than {LONGEST} bytes");
-                return Err(HttpResponse::refusal(431, why));
+                return Err(HttpResponse::refusal(TOO_LONG, why));
             }
             if Instant::now() > end || over.load(Ordering::Relaxed) {
                 let why = format!("the request has not ended within {} s", TIMEOUT.as_secs());
-                return Err(HttpResponse::refusal(408, why));
+                return Err(HttpResponse::refusal(StatusCode::REQUEST_TIMEOUT, why));
             }
             match stream.read(&mut chunk) {
                 Ok(0) => return Err(cut_off()),
@@ -60,110 +62,91 @@ impl Head {
         }
     }
 
-    /// The head at the beginning of these bytes; `None` if it is incomplete.
-    fn parse(bytes: &[u8]) -> Result<Option<Self>, HttpResponse> {
-        let mut headers = [httparse::EMPTY_HEADER; HEADERS];
-        let mut request = httparse::Request::new(&mut headers);
-        let length = match request.parse(bytes) {
-            Ok(httparse::Status::Complete(length)) => length,
-            Ok(httparse::Status::Partial) => return Ok(None),
-            Err(error) => {
-                let status = if error == httparse::Error::TooManyHeaders { 431 } else { 400 };
-                return Err(HttpResponse::refusal(
-                    status,
-                    format!("this is not a request: {error}"),
-                ));
-            }
-        };
-        let header = |header: &httparse::Header<'_>| {
-            (header.name.to_ascii_lowercase(), String::from_utf8_lossy(header.value).into_owned())
-        };
-        Ok(Some(Self {
-            method: request.method.unwrap_or_default().to_owned(),
-            target: request.path.unwrap_or_default().to_owned(),
-            headers: request.headers.iter().map(header).collect(),
-            rest: bytes.get(length..).unwrap_or_default().to_vec(),
-        }))
-    }
-
-    /// The path, without the query.
-    pub fn path(&self) -> &str {
-        self.target.split('?').next().unwrap_or_default()
-    }
-
     /// The value of a query parameter.
     pub fn query(&self, name: &str) -> Option<&str> {
-        let (_, query) = self.target.split_once('?')?;
-        let mut each = query.split('&').filter_map(|pair| pair.split_once('='));
+        let mut each =
+            self.request.uri().query()?.split('&').filter_map(|pair| pair.split_once('='));
         each.find(|(given, _)| *given == name).map(|(_, value)| value)
     }
 
-    /// A header by its name in small letters.
+    /// A header.
     ///
     /// # Errors
     /// The response if it occurs twice, because readers differ in whether the first or the last counts.
-    pub fn header(&self, name: &str) -> Result<Option<&str>, HttpResponse> {
-        let mut all = self.headers.iter().filter(|(given, _)| given == name);
+    pub fn header(&self, name: HeaderName) -> Result<Option<&str>, HttpResponse> {
+        let mut all = self.request.headers().get_all(&name).iter();
         match (all.next(), all.next()) {
             (_, Some(_)) => {
-                Err(HttpResponse::refusal(400, format!("the header {name} is there twice")))
+                let why = format!("the header {name} is there twice");
+                Err(HttpResponse::refusal(StatusCode::BAD_REQUEST, why))
             }
-            (one, None) => Ok(one.map(|(_, value)| value.trim())),
+            (one, None) => Ok(one.map(|value| value.to_str().unwrap_or_default().trim())),
         }
+    }
+}
+
+const TOO_LONG: StatusCode = StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE;
+
+/// The response to bytes that are not a request.
+fn no_request(error: Error) -> HttpResponse {
+    let why = format!("this is not a request: {error}");
+    match error {
+        Error::Protocol(ProtocolError::WrongHttpMethod) => {
+            let why = "only GET is served here".to_owned();
+            HttpResponse::refusal(StatusCode::METHOD_NOT_ALLOWED, why).with(header::ALLOW, "GET")
+        }
+        Error::Capacity(CapacityError::TooManyHeaders) => HttpResponse::refusal(TOO_LONG, why),
+        _ => HttpResponse::refusal(StatusCode::BAD_REQUEST, why),
     }
 }
 
 /// An answer, after which the connection is closed.
 #[derive(Debug)]
-pub struct HttpResponse {
-    status: u16,
-    headers: Vec<String>,
-    kind: &'static str,
-    body: String,
-}
+pub struct HttpResponse(Box<Response<String>>);
 
 impl HttpResponse {
+    /// A response that nothing keeps, and whose address is not sent as a referrer.
+    pub fn new(status: StatusCode, kind: &'static str, body: String) -> Self {
+        let length = body.len();
+        let mut response = Response::new(body);
+        *response.status_mut() = status;
+        response.headers_mut().insert(header::CONTENT_LENGTH, length.into());
+        Self(Box::new(response))
+            .with(header::CONTENT_TYPE, kind)
+            .with(header::CACHE_CONTROL, "no-store")
+            .with(header::REFERRER_POLICY, "no-referrer")
+            .with(header::X_CONTENT_TYPE_OPTIONS, "nosniff")
+            .with(header::CONNECTION, "close")
+    }
+
     /// A refusal as text.
-    pub fn refusal(status: u16, sentence: String) -> Self {
-        let (headers, kind) = (Vec::new(), "text/plain; charset=utf-8");
-        Self { status, headers, kind, body: sentence + "\n" }
+    pub fn refusal(status: StatusCode, sentence: String) -> Self {
+        Self::new(status, "text/plain; charset=utf-8", sentence + "\n")
     }
 
-    /// A page that no other page may embed, and whose address is not sent as a referrer.
+    /// A page that no other page may embed.
     pub fn page(page: &str) -> Self {
-        let headers = ["Content-Security-Policy: frame-ancestors 'none'", "X-Frame-Options: DENY"];
-        let (headers, kind) = (headers.map(str::to_owned).into(), "text/html; charset=utf-8");
-        Self { status: 200, headers, kind, body: page.to_owned() }
-    }
-
-    /// An empty response.
-    pub fn nothing() -> Self {
-        let kind = "text/plain; charset=utf-8";
-        Self { status: 204, headers: Vec::new(), kind, body: String::new() }
+        Self::new(StatusCode::OK, "text/html; charset=utf-8", page.to_owned())
+            .with(header::CONTENT_SECURITY_POLICY, "frame-ancestors 'none'")
+            .with(header::X_FRAME_OPTIONS, "DENY")
     }
 
     /// With one more header.
-    pub fn with(mut self, header: &str) -> Self {
-        self.headers.push(header.to_owned());
+    pub fn with(mut self, name: HeaderName, value: &'static str) -> Self {
+        self.0.headers_mut().insert(name, HeaderValue::from_static(value));
         self
     }
 
     /// Sends the response. If a client does not take it, it has gone.
     pub fn send(&self, stream: &TcpStream) {
-        let Self { status, headers, kind, body } = self;
-        let mut text = format!("HTTP/1.1 {status} {}\r\n", reason(*status));
-        for header in headers {
-            text += &format!("{header}\r\n");
-        }
-        text += &format!(
-            "Content-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
-             Referrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
-            body.len()
-        );
-        text += body;
-        let sent = write(stream, text.as_bytes());
+        let mut bytes = Vec::new();
+        let written = write_response(&mut bytes, &self.0);
+        bytes.extend_from_slice(self.0.body().as_bytes());
         // Closing with bytes unread would reset the connection, and the answer with it.
-        if sent.is_ok() && stream.shutdown(std::net::Shutdown::Write).is_ok() {
+        if written.is_ok()
+            && write(stream, &bytes).is_ok()
+            && stream.shutdown(std::net::Shutdown::Write).is_ok()
+        {
             drain(stream);
         }
     }
@@ -201,9 +184,4 @@ fn drain(mut stream: &TcpStream) {
             _ => return,
         }
     }
-}
-
-fn reason(status: u16) -> &'static str {
-    let known = StatusCode::from_u16(status).ok().and_then(|status| status.canonical_reason());
-    known.unwrap_or("Refused")
 }

@@ -21,6 +21,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use thiserror::Error;
+use tungstenite::http::StatusCode;
 
 use self::access::{Access, Token};
 use self::connections::{CONNECTIONS, Connection, Connections};
@@ -101,7 +102,7 @@ impl Server {
             page,
             seats: seats.clone(),
             over: over.clone(),
-            connections: Arc::new(Connections::default()),
+            connections: Connections::default(),
             report,
         });
         let (of_port, of_listener) = (shared.clone(), shared);
@@ -168,63 +169,59 @@ fn connection(stream: TcpStream, shared: &Arc<Shared>) -> Option<JoinHandle<()>>
     if !is_ready {
         return None;
     }
-    let stream = Arc::new(stream);
-    let Some(connection) = shared.connections.open(&stream) else {
-        let busy = format!(
-            "there are {CONNECTIONS} connections already: close other pages of this server"
-        );
-        HttpResponse::refusal(503, busy).send(&stream);
-        return None;
-    };
-    let shared = shared.clone();
-    Some(thread::spawn(move || serve(&stream, &connection, &shared)))
+    match shared.connections.open(stream) {
+        Ok(connection) => {
+            let shared = shared.clone();
+            Some(thread::spawn(move || serve(&connection, &shared)))
+        }
+        Err(stream) => {
+            let busy = format!(
+                "there are {CONNECTIONS} connections already: close other pages of this server"
+            );
+            HttpResponse::refusal(StatusCode::SERVICE_UNAVAILABLE, busy).send(&stream);
+            None
+        }
+    }
 }
 
 /// Answers one request, or carries the wire of one page.
-fn serve(stream: &TcpStream, connection: &Connection, shared: &Shared) {
-    let head = match Head::read(stream, &shared.over) {
-        Ok(head) => head,
-        Err(answer) => return answer.send(stream),
-    };
-    let route = route(&head, shared);
-    if matches!(route, Ok(Route::Page | Route::Wire { .. })) {
-        connection.trust();
-    }
-    match route {
-        Ok(Route::Page) => HttpResponse::page(&shared.page).send(stream),
-        Ok(Route::Nothing) => HttpResponse::nothing().send(stream),
-        Ok(Route::Wire { key }) => client::carry(stream, head.rest, &key, shared),
-        Err(answer) => answer.send(stream),
+fn serve(connection: &Connection, shared: &Shared) {
+    let head = Head::read(&connection.stream, &shared.over);
+    match head.and_then(|head| answer(connection, head, shared)) {
+        Ok(None) => {}
+        Ok(Some(answer)) | Err(answer) => answer.send(&connection.stream),
     }
 }
 
-/// The requested resource.
-enum Route {
-    /// The page.
-    Page,
-    /// The icon that browsers request from every server.
-    Nothing,
-    /// The wire.
-    Wire {
-        /// The key that the page's browser expects in the response.
-        key: String,
-    },
-}
-
-fn route(head: &Head, shared: &Shared) -> Result<Route, HttpResponse> {
-    if head.method != "GET" {
-        let why = format!("{} is not served here: GET is", head.method);
-        return Err(HttpResponse::refusal(405, why).with("Allow: GET"));
-    }
-    shared.access.check_host(head)?;
-    shared.access.check_origin(head)?;
-    match head.path() {
-        "/" => shared.access.check_token(head).map(|()| Route::Page),
-        "/wire" => {
-            shared.access.check_token(head)?;
-            client::check_upgrade(head).map(|key| Route::Wire { key })
+/// The answer, unless the wire was carried.
+fn answer(
+    connection: &Connection,
+    head: Head,
+    shared: &Shared,
+) -> Result<Option<HttpResponse>, HttpResponse> {
+    let access = &shared.access;
+    access.check_host(&head)?;
+    access.check_origin(&head)?;
+    match head.request.uri().path() {
+        "/" => {
+            access.check_token(&head)?;
+            connection.trust();
+            Ok(Some(HttpResponse::page(&shared.page)))
         }
-        "/favicon.ico" => Ok(Route::Nothing),
-        path => Err(HttpResponse::refusal(404, format!("there is no {path} here: / is the page"))),
+        "/wire" => {
+            access.check_token(&head)?;
+            let accepted = client::check_upgrade(&head)?;
+            connection.trust();
+            client::carry(&connection.stream, head.rest, &accepted, shared);
+            Ok(None)
+        }
+        // Browsers request this icon from every server.
+        "/favicon.ico" => {
+            Ok(Some(HttpResponse::new(StatusCode::NO_CONTENT, "text/plain", String::new())))
+        }
+        path => {
+            let why = format!("there is no {path} here: / is the page");
+            Err(HttpResponse::refusal(StatusCode::NOT_FOUND, why))
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -51,25 +51,23 @@ pub struct Seats {
 }
 
 struct State {
-    /// The number of a seat, and the channel to its page.
-    client: Option<(u64, SyncSender<News>)>,
-    /// Number of seats taken so far.
-    taken: u64,
+    /// Whether the page is still there, and the channel to it.
+    client: Option<(Weak<()>, SyncSender<News>)>,
     /// The reason if the port is not open.
     lost: Option<String>,
 }
 
 /// The page that uses the port; releases it when dropped.
 pub struct Seat {
-    seats: Seats,
-    number: u64,
+    to_board: SyncSender<Vec<u8>>,
     news: Receiver<News>,
+    _taken: Arc<()>,
 }
 
 /// Seats, and the bytes from their pages to the board.
 pub fn seats() -> (Seats, Receiver<Vec<u8>>) {
     let (to_board, wire) = sync_channel(MESSAGES);
-    let shared = Arc::new(Mutex::new(State { client: None, taken: 0, lost: None }));
+    let shared = Arc::new(Mutex::new(State { client: None, lost: None }));
     (Seats { shared, to_board }, wire)
 }
 
@@ -77,16 +75,16 @@ impl Seats {
     /// Takes the port, if no page has it.
     pub fn take(&self) -> Option<Seat> {
         self.with(|state| {
-            if state.client.is_some() {
+            if state.client.as_ref().is_some_and(|(page, _)| page.strong_count() > 0) {
                 return None;
             }
             let (client, news) = sync_channel(READS);
             let first = state.lost.clone().map_or(News::Open, News::Lost);
             // There is room for one.
             let _ = client.try_send(first);
-            state.taken += 1;
-            state.client = Some((state.taken, client));
-            Some(Seat { seats: self.clone(), number: state.taken, news })
+            let taken = Arc::new(());
+            state.client = Some((Arc::downgrade(&taken), client));
+            Some(Seat { to_board: self.to_board.clone(), news, _taken: taken })
         })
     }
 
@@ -121,20 +119,11 @@ impl Seat {
     /// # Errors
     /// The bytes, if too many are waiting.
     pub fn send(&self, bytes: Vec<u8>) -> Result<(), Vec<u8>> {
-        match self.seats.to_board.try_send(bytes) {
+        match self.to_board.try_send(bytes) {
             Err(TrySendError::Full(bytes)) => Err(bytes),
             // Without the port's thread the server ends.
             Ok(()) | Err(TrySendError::Disconnected(_)) => Ok(()),
         }
-    }
-}
-
-impl Drop for Seat {
-    fn drop(&mut self) {
-        // A page that lost the port must not take it from the next one.
-        self.seats.with(|state| {
-            state.client.take_if(|(number, _)| *number == self.number);
-        });
     }
 }
 

@@ -33,12 +33,8 @@ pub enum PageRefusal {
 }
 
 impl PageRefusal {
-    /// The status of a response, or the code with which a socket is closed, from the codes for private use.
-    pub const fn code(&self) -> u16 {
-        match self {
-            Self::Host { .. } | Self::Origin { .. } | Self::Token => 403,
-            Self::InUse => 4000,
-            Self::TooSlow => 4001,
-        }
+    /// The code with which a socket is closed, from those for private use.
+    pub const fn close_code(&self) -> u16 {
+        if matches!(self, Self::TooSlow) { 4001 } else { 4000 }
     }
 }

@@ -13,6 +13,6 @@ pub(super) struct Shared {
     pub page: String,
     pub seats: Seats,
     pub over: Arc<AtomicBool>,
-    pub connections: Arc<Connections>,
+    pub connections: Connections,
     pub report: Report,
 }

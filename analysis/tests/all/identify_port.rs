@@ -149,6 +149,12 @@ fn every_end_before_the_last_is_named_and_what_there_is_is_kept() {
         let (sentence, record) = Board { ends: Some((700, end)), ..Board::default() }.complaint();
         let begins = format!("the sweep ended with `{}` after 700 of 58000 rows: ", end.as_str());
         assert!(sentence.contains(&begins), "{sentence}");
+        let limit = match end {
+            SweepEnd::Travel => Some(format!("by more than {} rad", LIMITS.travel)),
+            SweepEnd::Speed => Some(format!("faster than {} rad/s", LIMITS.speed)),
+            _ => None,
+        };
+        assert!(limit.is_none_or(|limit| sentence.contains(&limit)), "{sentence}");
         assert_eq!(record.unwrap().lines().count(), 701);
     }
     // A record that lost rows on the way is incomplete, too.

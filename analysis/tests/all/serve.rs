@@ -173,7 +173,7 @@ fn the_page_is_for_those_who_know_the_token_and_the_address() {
     }
     let (_, page) = get(server, &with, &own, "");
     for header in
-        ["Cache-Control: no-store", "Referrer-Policy: no-referrer", "frame-ancestors 'none'"]
+        ["cache-control: no-store", "referrer-policy: no-referrer", "frame-ancestors 'none'"]
     {
         assert!(page.contains(header), "{page}");
     }

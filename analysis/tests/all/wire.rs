@@ -15,11 +15,11 @@ use analysis::lockstep::PlantIo;
 use analysis::program::{Program, damper_wall};
 use analysis::scope::Scope;
 use analysis::scope::control::{Action, Reply, Request};
+use analysis::scope::keys::Key;
 use analysis::scope::poller::{BoardPoller, Event};
 use haptic_servo::certificate::Parameter;
 use haptic_servo::number::Format;
 use haptic_servo::wire::message::Changes;
-use ratatui::crossterm::event::KeyCode;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -182,8 +182,8 @@ fn the_scope_tunes_arms_and_disarms_the_board_that_it_shows() {
     let poller = BoardPoller::start(rig.link(), NonZeroU32::MIN);
     let mut press = |text: &str, said: &str, is_so: fn(&Scope) -> bool| {
         for letter in text.chars() {
-            let key = if letter == '\n' { KeyCode::Enter } else { KeyCode::Char(letter) };
-            if let Action::Request(request) = scope.control.press(key.into()) {
+            let key = if letter == '\n' { Key::Enter } else { Key::Letter(letter) };
+            if let Action::Request(request) = scope.control.press(key) {
                 poller.request(request);
             }
         }

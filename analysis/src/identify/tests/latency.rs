@@ -26,7 +26,7 @@ fn record(device: Device, output: Output, seed: u64) -> Record {
     let sines =
         tones.map(|(frequency, amplitude, duration)| Excitation { frequency, amplitude, duration });
     let sensing = Sensing { torque_noise: 0.005, output_delay: output.delay, seed, ..SENSING };
-    Rig { device, actuator_lag: output.lag, sensing }.measure(&sines).unwrap()
+    Rig { device, actuator_lag: output.lag, sensing }.measure(&sines)
 }
 
 fn measured(device: Device, output: Output, seed: u64) -> Identification {
@@ -129,7 +129,7 @@ impl From<Output> for Model {
 fn a_late_torque_is_seen_as_late_counts_are() {
     let sines = sines(KNOB, &[8.0, 64.0], 0.02);
     let rig = |skew, output_delay| rig(KNOB, Sensing { skew, output_delay, ..SENSING });
-    let counts = |rig: Rig| rig.measure(&sines).unwrap().counts;
+    let counts = |rig: Rig| rig.measure(&sines).counts;
     assert_eq!(counts(rig(3e-4, 0.0)), counts(rig(0.0, 3e-4)));
     assert_eq!(counts(rig(5e-4, 0.0)), counts(rig(2e-4, 3e-4)));
     let whole = counts(rig(0.0, 2e-3));
