@@ -505,6 +505,9 @@ keys! {
     LARGEST_SPEED = other("supply.largest_speed", "rad/s", POSITIVE), Default(100.0), "25.0";
 }
 
+/// The keys of parts that may be beside every type of environment that is a sum of parts.
+pub const BESIDE: &[&Key] = &[];
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,7 +1,6 @@
 use fixed::types::I8F24;
 use proptest::prelude::*;
 
-use super::*;
 use crate::certificate::{
     Certified, Parameter, QuantizationBound, Resolution, TimingChecked, certify, certify_in,
     certify_scene, timing_checked,
@@ -108,7 +107,7 @@ fn what_has_no_proof_is_refused_with_a_sentence() {
     let undelayed = free_mode(0.01, None, endless(0));
     assert_eq!(
         refusal(undelayed, spring),
-        "rejected: the delay is 0 samples, and must be at least 1 where a wall or a canceller is beside the \
+        "rejected: the delay is 0 samples, and must be at least 1 where another part is beside the \
          torque profile"
     );
     let endless = wall_and_profile(WALL.behind(FACE), endless(1));
