@@ -29,7 +29,6 @@
 
 mod assessment;
 mod assumption;
-mod beside_profile;
 mod between;
 mod deviation;
 mod digits;
@@ -38,6 +37,7 @@ mod loop_intervals;
 mod margin;
 mod model;
 mod modes;
+mod part;
 mod port;
 mod problem;
 mod profile;
