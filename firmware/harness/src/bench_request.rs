@@ -10,6 +10,7 @@ use haptic_servo::servo::Transducers;
 use serde::{Deserialize, Serialize};
 
 use crate::currents::CurrentBench;
+use crate::rotations::Rotation;
 use crate::sines::Sine;
 
 /// The computation that is measured.
@@ -28,6 +29,8 @@ pub enum BenchRequest {
     },
     /// The sine of each part of a turn, which is the bits of an `f32`.
     Sine(Sine),
+    /// Sine and cosine of each angle, [packed](crate::rotations::packed).
+    Rotation(Rotation),
     /// The compare values of a current loop at each instant, from rest: of
     /// [`Input`](crate::currents::Input)s.
     Current(CurrentBench),

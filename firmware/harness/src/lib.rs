@@ -1,19 +1,44 @@
 //! Requests of tests and measurements to the [`haptic_servo`] on the emulated board, and the servers there.
 //!
 //! A host sends a scene to the board: to certify it ([`scene_codec`]), to run its servo ([`loop_request`]), or to
-//! measure the instructions of its torques ([`bench_request`]). On the board a `server` answers. No program
-//! that drives a motor needs any of this.
+//! measure the instructions of its torques ([`bench_request`]) and of sines ([`sines`]). On the board a `server`
+//! answers. No program that drives a motor needs any of this.
 #![cfg_attr(not(test), no_std)]
 
 pub mod bench_request;
 pub mod currents;
 pub mod loop_request;
+pub mod rotations;
 pub mod scene_codec;
 pub mod sines;
 pub mod tables;
 
 #[cfg(all(target_os = "none", feature = "emulated"))]
 pub mod server;
+
+/// An enumeration of the means of a computation, with the name of each for tables.
+macro_rules! means {
+    ($(#[$about:meta])* $means:ident { $($(#[$doc:meta])* $each:ident: $name:literal,)+ }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+        pub enum $means {
+            $($(#[$doc])* $each,)+
+        }
+
+        impl $means {
+            /// All values.
+            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$each),+];
+
+            /// Its name, for tables.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$each => $name,)+
+                }
+            }
+        }
+    };
+}
+use means;
 
 /// The program of a server. On the host it tells which program of the host starts it.
 #[macro_export]

@@ -11,7 +11,7 @@ use analysis::program::{damper_wall, delayed_spring, free_mode, knob, undelayed_
 use analysis::studies::bench;
 use analysis::studies::bench::on_target::{contact_instructions, live_set, profiles};
 use analysis::studies::number_format::{Motion, cost};
-use analysis::studies::tradeoff::servo;
+use analysis::studies::tradeoff::{servo, sine};
 use analysis::toolchain::{NumberFormat, Program};
 use firmware_harness::bench_request::BenchRequest;
 use firmware_harness::scene_codec::{CertifyReply, IntervalBits};
@@ -174,6 +174,14 @@ fn every_format_computes_as_the_host_does() {
             let cost = cost(&mut board, &motion, arithmetic);
             let cost = cost.unwrap_or_else(|error| panic!("{name}: {error}"));
             assert!(cost.most > 0, "{name}");
+        }
+    }
+    let turns: Vec<_> = sine::turns().into_iter().map(f32::to_bits).collect();
+    for sine in Sine::ALL {
+        let outputs = board.compute(&BenchRequest::Sine(sine), &turns).unwrap();
+        for (turn, output) in turns.iter().zip(outputs) {
+            let here = f64::from(sine.of_turn(f32::from_bits(*turn)));
+            assert_eq!(output.value.to_bits(), here.to_bits(), "{} {turn:x}", sine.name());
         }
     }
     // A type of scene that the program has not is refused, and the next question is answered.

@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use crate::chart;
 use crate::command::status::{CommandError, CommandStatus};
 use crate::quantity::significant;
-use crate::studies::tradeoff::{Comparison, Tradeoff, certificate, servo, simulation, ticks};
+use crate::studies::tradeoff::{Comparison, Tradeoff, certificate, servo, simulation, sine, ticks};
 use crate::table::Table;
 
 /// Arguments of `haptic chart tradeoff`.
@@ -34,6 +34,8 @@ pub enum Topic {
     All,
     /// Number formats of the servo: instructions against error and limit cycle
     Servo,
+    /// Ways to compute a sine: instructions against error
+    Sine,
     /// Methods of integration: time against error of the motion and of the verdict
     Simulation,
     /// Methods to compute the certificate: time against error of the index and of the verdict
@@ -41,7 +43,7 @@ pub enum Topic {
 }
 
 /// All topics except [`Topic::All`].
-const TOPICS: [Topic; 3] = [Topic::Servo, Topic::Simulation, Topic::Certificate];
+const TOPICS: [Topic; 4] = [Topic::Servo, Topic::Sine, Topic::Simulation, Topic::Certificate];
 
 impl Topic {
     fn topics(self) -> Vec<Self> {
@@ -51,6 +53,7 @@ impl Topic {
     fn comparison(self) -> &'static Comparison {
         match self {
             Self::Servo => &servo::COMPARISON,
+            Self::Sine => &sine::COMPARISON,
             Self::All | Self::Simulation => &simulation::COMPARISON,
             Self::Certificate => &certificate::COMPARISON,
         }
@@ -59,6 +62,7 @@ impl Topic {
     fn measure(self) -> Result<Tradeoff, CommandError> {
         match self {
             Self::Servo => Ok(servo::measure()?),
+            Self::Sine => Ok(sine::measure()?),
             Self::All | Self::Simulation => Ok(simulation::measure()?),
             Self::Certificate => Ok(certificate::measure()),
         }

@@ -8,6 +8,7 @@ pub mod certificate;
 mod comparison;
 pub mod servo;
 pub mod simulation;
+pub mod sine;
 pub mod ticks;
 
 use std::io::{Read, Write};
@@ -167,7 +168,7 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
     times
 }
 
-/// An emulated board that computes the scenes that have a program.
+/// An emulated board that computes the scenes that have a program, and sines.
 pub fn board() -> Result<BenchClient, StudyError> {
     boot("building the trial of the formats", "bench_programs")
 }

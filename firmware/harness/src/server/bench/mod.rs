@@ -19,6 +19,7 @@ pub use super::HostClosed;
 use super::{Host, serve};
 use crate::bench_request::{BLOCK, BenchRequest, Inputs, Output, Outputs};
 use crate::currents::Input;
+use crate::rotations::{self, Rotation};
 use crate::sines::Sine;
 
 /// The types of environments whose servos a program contains. A servo of an environment as data would need
@@ -43,8 +44,12 @@ pub fn run<K: SceneSet>() -> ! {
                 arithmetic.choose(ServoBench::<K> { job, scenes: PhantomData })
             }
             BenchRequest::Sine(sine) => bench.run(|turn| {
-                let value = sine.of_turn(f32::from_bits(turn)).into();
-                Output { value, code: 0, instructions: 0 }
+                let (value, time) = timed(sine, turn);
+                Output { value: value.into(), code: 0, instructions: time }
+            }),
+            BenchRequest::Rotation(rotation) => bench.run(|angle| {
+                let (pair, time) = timed_rotation(rotation, angle);
+                Output { value: rotations::packed(pair), code: 0, instructions: time }
             }),
             BenchRequest::Current(current) => {
                 let (mut controller, mut instant) = (current.started(), 0);
@@ -126,6 +131,25 @@ impl Bench<'_> {
     }
 }
 
+/// Sine and cosine of an angle, and the time that they took.
+fn timed_rotation(rotation: Rotation, angle: u32) -> ([f32; 2], u32) {
+    macro_rules! each {
+        ($($kind:ident),*) => {
+            match rotation {
+                $(Rotation::$kind => {
+                    let mut bits = [0; 2];
+                    let time = meter::measure(angle, |angle| {
+                        bits = Rotation::$kind.of_angle(angle).map(f32::to_bits);
+                        (bits[0], bits[1])
+                    });
+                    (bits.map(f32::from_bits), time)
+                })*
+            }
+        };
+    }
+    each!(Micromath, Libm, Cubic, Quintic, Septic, Table)
+}
+
 /// An instant of a current loop, and the time that it took. A fault has no compare values; the loop restarts
 /// after it.
 #[inline(never)]
@@ -141,6 +165,26 @@ fn timed_instant(controller: &mut CurrentController, input: u32, instant: u32) -
         }
     });
     (compare, time)
+}
+
+/// The sine of the bits of a part of a turn, and the time that it took. The choice is outside the measured
+/// interval.
+fn timed(sine: Sine, turn: u32) -> (f32, u32) {
+    macro_rules! each {
+        ($($kind:ident),*) => {
+            match sine {
+                $(Sine::$kind => {
+                    let mut bits = 0;
+                    let time = meter::measure(turn, |turn| {
+                        bits = Sine::$kind.of_turn(f32::from_bits(turn)).to_bits();
+                        (bits, bits)
+                    });
+                    (f32::from_bits(bits), time)
+                })*
+            }
+        };
+    }
+    each!(Micromath, Libm, LibmDouble, Cubic, Quintic, Septic, Nonic)
 }
 
 /// Benchmark of a servo whose types are still to be chosen.
