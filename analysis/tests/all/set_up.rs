@@ -45,7 +45,7 @@ impl Machine {
 
     fn command(&self) -> Command {
         let mut command =
-            program(&["flash", "damper_wall", "--board", "nucleo-g474re", "--build-only"]);
+            program(&["flash", "identify", "--board", "nucleo-g474re", "--build-only"]);
         command.env("PATH", self.0.path()).env("RUSTUP_AUTO_INSTALL", "0").env_remove("RUSTC");
         command.env("CARGO_TARGET_DIR", self.0.path().join("target"));
         command
