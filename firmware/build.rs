@@ -4,7 +4,8 @@
 use std::env;
 use std::path::Path;
 
-fn main() {
+/// Also for a package with a program of a scene outside of this one.
+pub fn main() {
     // Without this line, the script would run after a change of any file of the package.
     println!("cargo:rerun-if-changed=Cargo.toml");
     // Used by the tests on a board.

@@ -9,6 +9,9 @@ pub mod delayed_spring;
 #[allow(unexpected_cfgs)]
 #[path = "../../firmware/src/bin/free_mode.rs"]
 pub mod free_mode;
+// The device of the other examples.
+#[path = "../../firmware/src/bin/brushless_shaft/mod.rs"]
+mod brushless_shaft;
 // Not a scene, and so not among them: the program that measures a device.
 #[path = "../../firmware/src/bin/identify.rs"]
 pub mod identify;
@@ -29,12 +32,13 @@ use std::sync::OnceLock;
 use haptic_servo::current::CurrentLoop;
 use haptic_servo::number::Number;
 use haptic_servo::rendering::Rendering;
-use haptic_servo::scene::Scene;
+use haptic_servo::scene::{Device, Scene};
 use haptic_servo::servo::{BuildError, Servo, Transducers};
 use serde::Serialize;
 
 use crate::board_sim::{Pacing, SimulatedBoard};
 use crate::controller::Controller;
+use crate::file::{self, Format, example};
 use crate::hand::HandTrajectory;
 use crate::link::Address;
 use crate::lockstep::{PlantIo, SimulatedDevice};
@@ -125,6 +129,18 @@ impl Program {
     }
 }
 
+/// Whether a device is that of an example, a program's or a scene file's: by its inertia and damping, of which
+/// no two devices have the same.
+pub fn is_example(device: &Device) -> bool {
+    let chain = example::toml(example::CHAIN)
+        .and_then(|text| file::parse(example::CHAIN, Format::Toml, &text).ok());
+    let of_programs = [damper_wall::SCENE.device, brushless_shaft::SCENE.device];
+    of_programs
+        .into_iter()
+        .chain(chain.map(|file| file.scene.device))
+        .any(|it| (it.inertia, it.damping) == (device.inertia, device.damping))
+}
+
 /// The program that this build has besides [`ALL`].
 static MORE: OnceLock<Program> = OnceLock::new();
 
@@ -213,6 +229,16 @@ pub static STIFFEST: Program = crate::program!(undelayed_spring, undelayed_sprin
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_device_of_an_example_is_known_by_its_numbers() {
+        let text = example::toml("damper-wall").unwrap();
+        let device = file::parse("wall", Format::Toml, &text).unwrap().scene.device;
+        assert!(is_example(&device) && is_example(&brushless_shaft::SCENE.device));
+        assert!(is_example(&Device { passivity: Some(0.0194), ..device }));
+        assert!(!is_example(&Device { damping: device.damping.next_down(), ..device }));
+        assert!(!is_example(&Device { inertia: 3e-5, ..device }));
+    }
 
     /// A stiffness and the sample that is late; for the wall a face, a damping and the last position,
     /// too; for free mode the canceller's gain, its rate and its state, and the sample that is late.

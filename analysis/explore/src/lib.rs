@@ -8,7 +8,6 @@
 
 pub mod buffer;
 pub mod client;
-pub mod constant;
 pub mod handle;
 pub mod judge;
 pub mod keys;
@@ -58,7 +57,7 @@ functions! {
     /// A scene: the scene file in TOML.
     toml = scene_text::toml;
     /// A scene: the constants of a Rust program.
-    constant = constant::constant;
+    constant = scene_text::constant;
     /// A scene for the handle, and the hand that holds it.
     handle_hold = handle::hold;
     /// The handle's next ticks: their numbers.

@@ -1,6 +1,6 @@
 //! Scenes as texts: read without a verdict, and written as a scene file.
 
-use haptic_model::file::{self, FileError, Format, Problem, SceneFile, write};
+use haptic_model::file::{self, FileError, Format, Problem, SceneFile, constant, write};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -66,6 +66,11 @@ pub fn parse(text: &str, _: &mut Vec<f64>) -> PageResult {
 /// A scene as a scene file in TOML, which reads back with the same bits.
 pub fn toml(text: &str, _: &mut Vec<f64>) -> PageResult {
     read(text).map(|file| write::toml(&file)).map_err(|error| error.to_string())
+}
+
+/// A scene as the constants of a program.
+pub fn constant(text: &str, _: &mut Vec<f64>) -> PageResult {
+    read(text).map_err(|error| error.to_string()).and_then(|file| constant::constants(&file))
 }
 
 #[cfg(test)]

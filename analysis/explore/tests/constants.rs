@@ -1,6 +1,8 @@
 //! The constants that the page writes for a scene are compiled here, and are that scene to the last bit: those
 //! of presets, and of scenes with what the presets have not, which are files beside the constants.
 //!
+//! `program` is a whole program, which is compiled with its checks.
+//!
 //! `CONSTANTS=overwrite` keeps new ones in `tests/constants`.
 #![cfg(not(target_os = "none"))]
 // A program needs its certificate.
@@ -8,7 +10,9 @@
 
 use std::path::Path;
 
-use haptic_explore::{constant, presets};
+use haptic_explore::presets;
+use haptic_explore::scene_text::constant;
+use haptic_model::file::program::program;
 use haptic_model::file::{Format, parse};
 use haptic_servo::scene::Scene;
 
@@ -26,6 +30,7 @@ macro_rules! kept {
 kept! {
     delayed_spring damper_wall free_mode knob undelayed_wall
     bridge composed damped filtered placed rational response rigid snap table
+    program
 }
 
 fn preset(name: &str) -> Option<&'static str> {
@@ -42,16 +47,22 @@ fn the_constants_of_scenes_are_the_scenes() {
         };
         let read = || std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
         let toml = of_preset.map_or_else(read, str::to_owned);
-        let text = constant::constant(&toml, &mut Vec::new())
-            .unwrap_or_else(|why| panic!("{name}: {why}"));
-        let file = folder.join(format!("{name}.rs"));
+        let file = parse(name, Format::Toml, &toml).unwrap_or_else(|error| panic!("{error}"));
+        let text = match *name {
+            "program" => {
+                let transducers = file.board_transducers(None, None).unwrap();
+                program(&file, &transducers, "program.toml")
+            }
+            _ => constant(&toml, &mut Vec::new()),
+        };
+        let text = text.unwrap_or_else(|why| panic!("{name}: {why}"));
+        let path = folder.join(format!("{name}.rs"));
         if std::env::var_os("CONSTANTS").is_some_and(|how| how == "overwrite") {
-            std::fs::write(&file, &text).unwrap();
+            std::fs::write(&path, &text).unwrap();
             continue;
         }
-        assert_eq!(text, std::fs::read_to_string(&file).unwrap(), "{name}");
-        let scene = parse(name, Format::Toml, &toml).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(*kept, scene.scene, "{name}");
+        assert_eq!(text, std::fs::read_to_string(&path).unwrap(), "{name}");
+        assert_eq!(*kept, file.scene, "{name}");
     }
 }
 
@@ -65,7 +76,7 @@ fn presets_are_the_scenes_of_the_programs() {
         ("knob", include_str!("../../../firmware/src/bin/knob.rs")),
     ];
     for (name, program) in programs {
-        let text = constant::constant(preset(name).unwrap(), &mut Vec::new()).unwrap();
+        let text = constant(preset(name).unwrap(), &mut Vec::new()).unwrap();
         let of_scene = program.lines().skip_while(|line| !line.starts_with("pub const SCENE"));
         let lines: Vec<_> = of_scene
             .take_while(|line| *line != "};")
@@ -77,7 +88,7 @@ fn presets_are_the_scenes_of_the_programs() {
         }
     }
     let paddle = include_str!("../../../firmware/src/bin/paddle/mod.rs");
-    let text = constant::constant(preset("knob").unwrap(), &mut Vec::new()).unwrap();
+    let text = constant(preset("knob").unwrap(), &mut Vec::new()).unwrap();
     let device = text.lines().find_map(|line| line.trim().strip_prefix("device: ")).unwrap();
     assert!(paddle.contains(device.trim_end_matches(',')), "{device}");
 }

@@ -5,9 +5,14 @@ use super::status::CommandError;
 use crate::file::{self, SceneFile};
 use crate::hand::HandTrajectory;
 
+/// Whether a scene's name is that of a file, not of a program.
+pub fn is_file(name: &str) -> bool {
+    name.contains(['.', '/', '\\']) || name == "-" || std::path::Path::new(name).exists()
+}
+
 /// A scene file, or the error that there is neither such a file nor such a program.
 pub fn scene_file(name: &str) -> Result<SceneFile, CommandError> {
-    if !name.contains(['.', '/', '\\']) && name != "-" && !std::path::Path::new(name).exists() {
+    if !is_file(name) {
         return Err(CommandError::NoScene {
             name: name.to_owned(),
             programs: rebuild_with_scene::scenes(),

@@ -1,4 +1,4 @@
-//! `haptic flash`: builds a scene's program for a board and flashes it.
+//! `haptic flash`: builds the program of a scene, or of a scene file, for a board and flashes it.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -6,25 +6,32 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::building::{building, set_up};
+use super::file_program::FileProgram;
+use super::file_scene::{is_file, scene_file};
 use super::status::{CommandError, CommandStatus};
+use crate::file::SceneFile;
+use crate::program::{self, Program};
 use crate::toolchain::{BoardModel, Memory, NumberFormat, Tools, TorqueOutput, probe};
 
 /// Arguments of `haptic flash`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program in firmware/src/bin, for example damper_wall or identify
-    #[arg(value_name = "PROGRAM")]
-    pub program: String,
+    /// Scene file, or name of a program in firmware/src/bin, for example damper_wall or identify
+    #[arg(value_name = "SCENE")]
+    pub scene: String,
     /// Board to build for: nucleo-g474re, b-g431b-esc1 or feather-stm32f405
     #[arg(long, value_parser = BoardModel::find)]
     pub board: BoardModel,
     /// What makes the torque: the board's DAC, for an amplifier outside, or its own bridge; by default what
-    /// the program's scene is certified with
+    /// the program's scene is certified with, and the DAC for a file
     #[arg(long, value_enum)]
     pub output: Option<TorqueOutput>,
     /// Number format of the servo
     #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
     pub format: NumberFormat,
+    /// Flash a scene that is certified for a device of the examples, not for yours
+    #[arg(long)]
+    pub example_device: bool,
     /// Build only: print sizes and path of the program, and flash nothing
     #[arg(long)]
     pub build_only: bool,
@@ -35,11 +42,23 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
+    let (board, name) = (arguments.board, arguments.scene.as_str());
+    let file = is_file(name).then(|| scene_file(name)).transpose()?;
+    check_device(arguments, file.as_ref())?;
+    let file = file.map(|file| program_of(arguments, &file)).transpose()?;
     let toolchain = set_up(Tools::Compiler)?;
-    let (board, name) = (arguments.board, arguments.program.as_str());
-    let output = arguments.output.map_or_else(|| toolchain.output_of(name), Ok)?;
-    let build = || toolchain.build_for(board, output, &[name], arguments.format);
-    let program = building(&format!("{name} for {board}"), build)?.swap_remove(0);
+    let output = match (arguments.output, &file) {
+        (Some(output), _) => output,
+        (None, Some(_)) => TorqueOutput::Dac,
+        (None, None) => toolchain.output_of(name)?,
+    };
+    let program = match &file {
+        Some(file) => file.build(&toolchain, Some(board), arguments.format)?,
+        None => {
+            let build = || toolchain.build_for(board, output, &[name], arguments.format);
+            building(&format!("{name} for {board}"), build)?.swap_remove(0)
+        }
+    };
     let chip = probe::chip(&read(&program.path)?)?;
     let (sizes, memory) = (program.sizes, toolchain.memory()?);
     let mut out = io::stdout();
@@ -56,6 +75,32 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         probe::run(&program.path, &chip, arguments.probe.as_deref())?;
     }
     Ok(CommandStatus::Success)
+}
+
+/// Refuses a scene for a device of the examples, or only says so if nothing is flashed. A program without a
+/// scene has no device.
+fn check_device(arguments: &Arguments, file: Option<&SceneFile>) -> Result<(), CommandError> {
+    let name = &arguments.scene;
+    let device = match file {
+        Some(file) => Some(file.scene.device),
+        None => Program::find(name).map(|program| program.scene.device),
+    };
+    if arguments.example_device || !device.is_some_and(|device| program::is_example(&device)) {
+        return Ok(());
+    }
+    let example = CommandError::ExampleDevice { scene: name.clone() };
+    if !arguments.build_only {
+        return Err(example);
+    }
+    Ok(writeln!(io::stderr(), "note: {example}")?)
+}
+
+fn program_of(arguments: &Arguments, file: &SceneFile) -> Result<FileProgram, CommandError> {
+    let name = &arguments.scene;
+    match arguments.output {
+        Some(TorqueOutput::Bridge) => Err(CommandError::FileOnBridge { file: name.clone() }),
+        _ => FileProgram::of(file, name, None, None),
+    }
 }
 
 /// The part of a board's flash that the linker's map does not use, because one map fits every board.

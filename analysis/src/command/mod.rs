@@ -12,6 +12,7 @@ mod design;
 mod device;
 mod explore;
 mod failures;
+mod file_program;
 mod file_scene;
 mod flash;
 mod identify;
@@ -121,9 +122,9 @@ commands! {
     Device(device),
     /// Identify a device from a measurement: inertia, damping, passivity, lag and delay.
     Identify(identify),
-    /// Copy a scene's program, to begin a scene of your own.
+    /// Copy a scene's program, or write that of a scene file, to begin a program of your own.
     New(new),
-    /// Build a scene's program for a board and flash it.
+    /// Build the program of a scene or of a scene file for a board and flash it.
     Flash(flash),
     /// Run a scene's servo tick by tick: on this machine, the emulated board or a virtual board.
     Run(run),
@@ -172,6 +173,7 @@ impl Command {
     fn program(&self) -> Option<&str> {
         match self {
             Self::Run(arguments) => Some(&arguments.scene),
+            Self::Flash(arguments) => Some(&arguments.scene),
             Self::BoardSim(arguments) => Some(&arguments.scene),
             Self::Advise(arguments) if arguments.format.is_some() => Some(&arguments.scene),
             _ => None,

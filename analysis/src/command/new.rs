@@ -1,9 +1,11 @@
-//! `haptic new`: copies a scene's program.
+//! `haptic new`: copies a scene's program, or writes that of a scene file.
 
 use std::io::{self, Write};
 
 use clap::Args;
 
+use super::file_program::FileProgram;
+use super::file_scene::{is_file, scene_file};
 use super::status::{CommandError, CommandStatus};
 use crate::toolchain::Sources;
 
@@ -13,7 +15,8 @@ pub struct Arguments {
     /// Name of the new scene: lower-case letters, digits and underscores
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// Scene to copy
+    /// Scene to copy: a program in firmware/src/bin, or a scene file, whose device, encoder, motor and
+    /// environment become constants
     #[arg(long, value_name = "SCENE", default_value = "damper_wall")]
     pub from: String,
 }
@@ -21,11 +24,27 @@ pub struct Arguments {
 /// Writes the scene's file, and prints its path and the next steps.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let Arguments { name, from } = arguments;
-    let path = Sources::find()?.begin(name, from)?;
+    let sources = Sources::find()?;
+    let (text, begun) = if is_file(from) {
+        let file = scene_file(from)?;
+        let program = FileProgram::of(&file, from, None, None)?;
+        file.scene.certify().map_err(|rejection| CommandError::FileNotBuilt {
+            file: from.clone(),
+            why: Box::new(CommandError::Refused(Box::new(rejection))),
+            is_certified: false,
+        })?;
+        (program.text, format!("is the program of {from}, with its numbers as constants:"))
+    } else {
+        (
+            sources.copied(name, from)?,
+            format!("is a copy of {from}: change its environment, and then"),
+        )
+    };
+    let path = sources.begin(name, &text)?;
     writeln!(
         io::stdout(),
         "{path}\n  \
-         is a copy of {from}: change its environment, and then\n  \
+         {begun}\n  \
          cargo haptic run {name}                               on this machine\n  \
          cargo haptic run {name} --target board:nucleo-g474re  as flashed, on a virtual board\n  \
          cargo haptic flash {name} --board nucleo-g474re       on a board",

@@ -11,7 +11,8 @@ use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 use serde::Serialize;
 
-use super::building::emulated;
+use super::building::{emulated, set_up};
+use super::file_program::FileProgram;
 use super::file_scene::{hand_trajectory, scene_file};
 use super::outcome::{section, text};
 use super::shared_arguments::{DEFAULT_TICKS, JsonOption, MAX_TICKS, json};
@@ -29,7 +30,7 @@ use crate::program::Program;
 use crate::progress;
 use crate::shaft::{HandHeldShaft, RecordedShaft};
 use crate::tick_gaps::TickGaps;
-use crate::toolchain::{BoardModel, NumberFormat};
+use crate::toolchain::{BoardModel, NumberFormat, Tools};
 use crate::{counts_csv, verdict};
 
 /// The target of a run.
@@ -77,9 +78,8 @@ impl fmt::Display for Target {
 /// Arguments of `haptic run`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program in firmware/src/bin, for example damper_wall; on the host also a scene
-    /// file. Its table `human` is the hand; its table `simulation` is read by `haptic simulate`
-    /// only
+    /// Name of a program in firmware/src/bin, for example damper_wall, or a scene file. Its table `human` is
+    /// the hand; its table `simulation` is read by `haptic simulate` only
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Target: host, qemu (the emulated board), or board:NAME (the program as flashed, on a virtual
@@ -121,8 +121,14 @@ struct RunSetup {
     transducers: Transducers,
     trajectory: HandTrajectory,
     controller: Box<dyn Controller>,
-    /// The program for the board, if there is one.
-    program: Option<&'static Program>,
+    program: RunProgram,
+}
+
+/// The program for a board.
+enum RunProgram {
+    Named(&'static Program),
+    /// Of a scene file, if it runs on a board.
+    OfFile(Option<FileProgram>),
 }
 
 /// The result as JSON.
@@ -240,7 +246,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
         transducers,
         trajectory: (program.trajectory)(),
         controller: program.controller(format, &transducers)?,
-        program: Some(program),
+        program: RunProgram::Named(program),
     })
 }
 
@@ -248,7 +254,12 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
     let file = scene_file(&arguments.scene)?;
     let certified =
         file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
-    let transducers = file.transducers(arguments.counts_per_rev, arguments.full_scale);
+    let (counts, full_scale) = (arguments.counts_per_rev, arguments.full_scale);
+    let is_on_board = arguments.target != Target::Host;
+    let program = is_on_board
+        .then(|| FileProgram::of(&file, &arguments.scene, counts, full_scale))
+        .transpose()?;
+    let transducers = file.transducers(counts, full_scale);
     let controller = match arguments.format {
         NumberFormat::F32 => controller::<_, f32>(&certified, &transducers)?,
         NumberFormat::Fixed => controller::<_, fixed::types::I8F24>(&certified, &transducers)?,
@@ -258,7 +269,8 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
     }
     let trajectory = hand_trajectory(&file);
     let (name, scene) = (file.name, file.scene);
-    Ok(RunSetup { name, scene, transducers, trajectory, controller, program: None })
+    let program = RunProgram::OfFile(program);
+    Ok(RunSetup { name, scene, transducers, trajectory, controller, program })
 }
 
 /// The parts of a scene file that a run does not use, as text: the servo runs on a rigid device in a hand's
@@ -304,17 +316,23 @@ impl Built {
 }
 
 fn build(setup: &RunSetup, arguments: &Arguments) -> Result<Built, CommandError> {
-    if arguments.target == Target::Host {
-        return Ok(Built::Nothing);
-    }
-    let Some(program) = setup.program else {
-        return Err(CommandError::FileOnBoard { scene: setup.name.clone() });
-    };
     let format = arguments.format;
-    if let Target::Board(board) = arguments.target {
-        return Ok(Built::Virtual(VirtualBoardBuild::build(board, program, format)?));
-    }
-    Ok(Built::Emulated(emulated(program.name, format)?))
+    Ok(match (arguments.target, &setup.program) {
+        (Target::Host, _) | (_, RunProgram::OfFile(None)) => Built::Nothing,
+        (Target::Board(board), RunProgram::Named(program)) => {
+            Built::Virtual(VirtualBoardBuild::build(board, program, format)?)
+        }
+        (Target::Board(board), RunProgram::OfFile(Some(file))) => {
+            Built::Virtual(VirtualBoardBuild::of_file(board, file, format)?)
+        }
+        (Target::Qemu, RunProgram::Named(program)) => {
+            Built::Emulated(emulated(program.name, format)?)
+        }
+        (Target::Qemu, RunProgram::OfFile(Some(file))) => {
+            let toolchain = set_up(Tools::CompilerAndEmulator)?;
+            Built::Emulated(file.build(&toolchain, None, format)?.path)
+        }
+    })
 }
 
 fn print(
@@ -328,7 +346,9 @@ fn print(
         rows(&mut out, &outcome.run)?;
     } else if arguments.answer.json {
         json(&mut out, &summary(arguments, &setup.name, outcome, gaps))?;
-    } else if let (Target::Board(_), Some(program)) = (arguments.target, setup.program) {
+    } else if let (Target::Board(_), &RunProgram::Named(program)) =
+        (arguments.target, &setup.program)
+    {
         let report = verdict::judge(program.name, &setup.scene);
         write!(out, "{}", section(program, &report, outcome))?;
     } else {

@@ -40,14 +40,24 @@ pub enum CommandError {
     NoProgram { name: String, programs: String },
     #[error(
         "{file} is a file; a simulated board needs the name of a scene's program: {programs}; \
-         `cargo haptic new NAME` begins one"
+         `cargo haptic new NAME --from {file}` writes one"
     )]
     FileOnSimulatedBoard { file: String, programs: String },
+    #[error("{file}: {why}")]
+    NoBoardProgram { file: String, why: String },
     #[error(
-        "{scene} is a scene file, which runs on the host only; a board needs a program in \
-         firmware/src/bin: `cargo haptic new NAME` begins one"
+        "{file}: a scene file has no motor for a board's own bridge; \
+         `cargo haptic new NAME --from bridge_wall` begins a program that has"
     )]
-    FileOnBoard { scene: String },
+    FileOnBridge { file: String },
+    #[error(
+        "{scene} is certified for a device of the examples, by its inertia and damping, not for yours: on \
+         another device it may oscillate. Measure yours (docs/measure.md), or state --example-device"
+    )]
+    ExampleDevice { scene: String },
+    /// The program of a scene file. Exit status 1 if the file's scene is not certified.
+    #[error("{file}: {why}")]
+    FileNotBuilt { file: String, why: Box<CommandError>, is_certified: bool },
     #[error(
         "the program {program} is built for {counts_per_turn} counts a turn and {full_scale} N m \
          at full scale; change its TRANSDUCERS, or run it on the host"
@@ -167,6 +177,7 @@ impl CommandError {
         matches!(
             self,
             Self::Refused(_)
+                | Self::FileNotBuilt { is_certified: false, .. }
                 | Self::LeftOut { .. }
                 | Self::RanAway { .. }
                 | Self::Simulation(SimulationError::Overflow { .. })

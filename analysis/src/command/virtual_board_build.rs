@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use haptic_servo::current::CurrentLoop;
+use haptic_servo::servo::Transducers;
 
 use super::building::{building, set_up};
+use super::file_program::FileProgram;
 use super::status::CommandError;
 use crate::bridge_board::BridgeBoard;
 use crate::compare_run::Backend;
@@ -17,7 +19,8 @@ pub struct VirtualBoardBuild {
     executable: PathBuf,
     board: BoardModel,
     elf: PathBuf,
-    program: &'static Program,
+    /// The current loop of the board's own bridge, with the encoder and the motor behind it.
+    bridge: Option<(&'static CurrentLoop, Transducers)>,
 }
 
 impl VirtualBoardBuild {
@@ -35,7 +38,20 @@ impl VirtualBoardBuild {
             let elf = toolchain.build_for(board, output, &[name], format)?.swap_remove(0).path;
             Ok((elf, toolchain.build_virtual_board()?))
         })?;
-        Ok(Self { executable, board, elf, program })
+        let bridge = program.bridge.as_ref().map(|bridge| (bridge, program.transducers));
+        Ok(Self { executable, board, elf, bridge })
+    }
+
+    /// The same with the program of a scene file.
+    pub fn of_file(
+        board: BoardModel,
+        program: &FileProgram,
+        format: NumberFormat,
+    ) -> Result<Self, CommandError> {
+        let toolchain = set_up(Tools::CompilerAndVirtualBoard)?;
+        let elf = program.build(&toolchain, Some(board), format)?.path;
+        let executable = building("the virtual board", || toolchain.build_virtual_board())?;
+        Ok(Self { executable, board, elf, bridge: None })
     }
 
     /// Boots a board whose program drives a DAC.
@@ -47,8 +63,8 @@ impl VirtualBoardBuild {
     pub fn boot_bridge(
         &self,
     ) -> Result<Option<(BridgeBoard, &'static CurrentLoop)>, VirtualBoardError> {
-        let Some(current_loop) = self.program.bridge else { return Ok(None) };
-        let (executable, transducers) = (&self.executable, self.program.transducers);
+        let Some((current_loop, transducers)) = self.bridge else { return Ok(None) };
+        let executable = &self.executable;
         let board =
             BridgeBoard::boot(executable, self.board, &self.elf, current_loop, transducers)?;
         Ok(Some((board, current_loop)))

@@ -103,19 +103,26 @@ struct Variant<'a> {
     features: String,
     /// The addition to the names of the programs' files.
     suffix: String,
+    /// The file of the scene that [`SCENE_PACKAGE`] makes a program of.
+    scene: Option<&'a Path>,
 }
+
+/// The package of a scene's file in another place than `firmware/src/bin`, and its program.
+const SCENE_PACKAGE: &str = "haptic-scene";
+/// The variable that names the scene or its file.
+const SCENE_VARIABLE: &str = "HAPTIC_SCENE";
 
 impl Variant<'static> {
     /// Scenes' programs in a number format.
     fn scene(features: &str, format: NumberFormat, suffix: &str) -> Self {
         let fixed = if format == NumberFormat::Fixed { ",fixed-point" } else { "" };
         let (features, suffix) = (format!("{features}{fixed}"), format!("-{format}{suffix}"));
-        Self { package: "haptic-servo", features, suffix }
+        Self { package: "haptic-servo", features, suffix, scene: None }
     }
 
     /// The only program of a package.
     fn of(package: &'static str, features: &str) -> Self {
-        Self { package, features: features.into(), suffix: String::new() }
+        Self { package, features: features.into(), suffix: String::new(), scene: None }
     }
 }
 
@@ -182,6 +189,39 @@ impl Toolchain {
         let [features, suffix] = board_variant(board, output)?;
         let variant = Variant::scene(&features, format, &suffix);
         self.scenes_programs(names, &variant)?.into_iter().map(Program::at).collect()
+    }
+
+    /// Writes the program of a scene file below cargo's folder, and returns its file.
+    pub fn write_scene(&self, name: &str, text: &str) -> Result<PathBuf, BuildError> {
+        let folder = self.workspace.target.join("scenes");
+        let path = folder.join(format!("{name}.rs"));
+        // A program that is written again is built again.
+        if fs::read_to_string(&path).is_ok_and(|before| before == text) {
+            return Ok(path);
+        }
+        match fs::create_dir_all(&folder).and_then(|()| fs::write(&path, text)) {
+            Ok(()) => Ok(path),
+            Err(source) => Err(BuildError::File { path, source }),
+        }
+    }
+
+    /// Builds the program in a file of [`write_scene`](Self::write_scene): for a board's DAC as if to be flashed,
+    /// or for the emulated board with its log.
+    pub fn build_written(
+        &self,
+        file: &Path,
+        board: Option<BoardModel>,
+        format: NumberFormat,
+    ) -> Result<Program, BuildError> {
+        let [features, suffix] = match board {
+            Some(board) => board_variant(board, TorqueOutput::Dac)?,
+            None => ["board-qemu,log".to_owned(), String::new()],
+        };
+        let name = file.file_stem().map(|name| name.to_string_lossy()).unwrap_or_default();
+        let variant = Variant::scene(&features, format, &suffix);
+        let suffix = format!("-{name}{}", variant.suffix);
+        let variant = Variant { package: SCENE_PACKAGE, suffix, scene: Some(file), ..variant };
+        Program::at(self.build(&[SCENE_PACKAGE], &variant)?.swap_remove(0))
     }
 
     /// Builds the tests that run on a board, like a user, and returns their file: a board's own bridge has
@@ -295,8 +335,9 @@ impl Toolchain {
         // Cargo puts every variant of a program in the same place; the lock keeps it there until it is
         // copied.
         let _lock = self.workspace.lock("build")?;
-        let Variant { package, features, suffix } = variant;
+        let Variant { package, features, suffix, scene } = variant;
         let mut cargo = self.cargo(Target::BOARD);
+        cargo.envs(scene.map(|scene| (SCENE_VARIABLE, scene)));
         cargo.args(["--release", "--package", package, "--target", TARGET]);
         cargo.args(names.iter().flat_map(|name| ["--bin", name])).args(["--features", features]);
         output_of(&names.join(", "), &mut cargo)?;
@@ -342,17 +383,16 @@ impl Toolchain {
 /// Builds the program `haptic` with one more scene, and returns its file. It is built like this program, for
 /// this machine, so that their common parts are reused.
 pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
-    const NAME: &str = "haptic-scene";
     let workspace = Workspace::find()?;
     let _lock = workspace.lock("scene")?;
     let mut cargo = own_cargo(&workspace.root);
     // Cargo's folder of the profile `dev` has a different name.
     let (profile, folder) =
         if cfg!(debug_assertions) { ("dev", "debug") } else { ("host", "host") };
-    cargo.args(["build", "--package", NAME, "--profile", profile]);
-    cargo.env("CARGO_TARGET_DIR", &workspace.target).env("HAPTIC_SCENE", scene);
+    cargo.args(["build", "--package", SCENE_PACKAGE, "--profile", profile]);
+    cargo.env("CARGO_TARGET_DIR", &workspace.target).env(SCENE_VARIABLE, scene);
     output_of(scene, &mut cargo)?;
-    workspace.keep(&workspace.target.join(folder).join(NAME), &format!("haptic-{scene}"))
+    workspace.keep(&workspace.target.join(folder).join(SCENE_PACKAGE), &format!("haptic-{scene}"))
 }
 
 /// The file of a test, if a line of cargo's messages reports that it was built.

@@ -105,32 +105,39 @@ impl Sources {
         Ok(programs)
     }
 
-    /// Creates a scene as a copy of another, and returns its file. The comment at the top of the copied file
-    /// is omitted.
+    /// The text of a scene that begins as a copy of another, without the comment at the top of that file.
     ///
     /// # Errors
-    /// If the name is invalid or in use, or the scene to copy does not exist.
-    pub fn begin(&self, name: &str, from: &str) -> Result<PathBuf, SourcesError> {
-        check(name).map_err(|why| SourcesError::Name { name: name.into(), why })?;
+    /// If the scene to copy does not exist.
+    pub fn copied(&self, name: &str, from: &str) -> Result<String, SourcesError> {
         let scenes = self.scenes()?;
         if !scenes.iter().any(|scene| scene == from) {
             return Err(SourcesError::NoScene { name: from.into(), scenes });
         }
-        let failed = |path: &Path, source| SourcesError::File { path: path.into(), source };
-        let (other, path) = (self.file(from), self.file(name));
-        let text = fs::read_to_string(&other).map_err(|source| failed(&other, source))?;
+        let path = self.file(from);
+        let text =
+            fs::read_to_string(&path).map_err(|source| SourcesError::File { path, source })?;
         let rest = text.lines().skip_while(|line| line.starts_with("//!"));
         let head = format!("//! The scene {name}, begun as a copy of {from}.");
         let text: String =
             std::iter::once(head.as_str()).chain(rest).flat_map(|line| [line, "\n"]).collect();
-        let text = on_own_device(&text);
+        Ok(on_own_device(&text))
+    }
+
+    /// Creates a scene with this text, and returns its file.
+    ///
+    /// # Errors
+    /// If the name is invalid or in use.
+    pub fn begin(&self, name: &str, text: &str) -> Result<PathBuf, SourcesError> {
+        check(name).map_err(|why| SourcesError::Name { name: name.into(), why })?;
+        let path = self.file(name);
         // Never overwrites a file, even one created meanwhile.
         match File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes())) {
             Ok(()) => Ok(path),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                 Err(SourcesError::Exists(path))
             }
-            Err(source) => Err(failed(&path, source)),
+            Err(source) => Err(SourcesError::File { path, source }),
         }
     }
 }
@@ -142,7 +149,20 @@ fn on_own_device(text: &str) -> String {
     if !text.contains(PADDLE) {
         return text.to_owned();
     }
-    text.replace(PADDLE, "mod device;").replace("paddle::", "device::")
+    let text = text.replace(PADDLE, "mod device;").replace("paddle::", "device::");
+    let (mut sorted, mut imports) = (String::new(), Vec::new());
+    for line in text.lines() {
+        // With its new name the module is imported in another place: in the order of rustfmt, where it is
+        // imported for users, too.
+        let is_import = line.starts_with("use ") || line.starts_with("pub use ");
+        if is_import && line.ends_with(';') {
+            imports.push(line);
+            continue;
+        }
+        imports.sort_by_key(|line| line.trim_start_matches("pub "));
+        sorted.extend(imports.drain(..).chain([line]).flat_map(|line| [line, "\n"]));
+    }
+    sorted
 }
 
 /// Checks the name of a new scene; the error is the reason why it is invalid.
@@ -168,8 +188,9 @@ mod tests {
 
     #[test]
     fn only_the_paddle_without_a_bridge_is_replaced_by_the_user_s_device() {
-        let paddle = "mod paddle;\nuse paddle::PERIOD;";
-        assert_eq!(on_own_device(paddle), "mod device;\nuse device::PERIOD;");
+        let paddle = "mod paddle;\n\nuse haptic::Wall;\npub use paddle::PERIOD;\n\n";
+        let sorted = "mod device;\n\npub use device::PERIOD;\nuse haptic::Wall;\n\n";
+        assert_eq!(on_own_device(paddle), sorted);
         let bridge = "mod bridge_paddle;\nuse bridge_paddle::PERIOD;";
         assert_eq!(on_own_device(bridge), bridge);
     }
@@ -199,19 +220,20 @@ mod tests {
         fs::write(sources.file("wall"), other).unwrap();
         fs::write(sources.file("identify"), "haptic_servo::sweep_program!(SWEEP);\n").unwrap();
 
-        let path = sources.begin("soft", "wall").unwrap();
+        let path = sources.begin("soft", &sources.copied("soft", "wall").unwrap()).unwrap();
         let text = fs::read_to_string(&path).unwrap();
         let head = "//! The scene soft, begun as a copy of wall.\n";
         assert_eq!(text, format!("{head}#![no_std]\n\nhaptic_servo::scene_program! {{}}\n"));
         assert_eq!(sources.scenes().unwrap(), ["soft", "wall"]);
         assert_eq!(sources.programs().unwrap(), ["identify", "soft", "wall"]);
 
-        let said = |name, from| sources.begin(name, from).unwrap_err().to_string();
+        let said = |name| sources.begin(name, "").unwrap_err().to_string();
         fs::write(&path, "mine").unwrap();
-        assert!(said("soft", "wall").ends_with("soft.rs exists already; nothing was changed"));
+        assert!(said("soft").ends_with("soft.rs exists already; nothing was changed"));
         assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
-        assert_eq!(said("x", "identify"), "there is no scene identify; there are wall");
-        assert!(said("match", "wall").starts_with("`match` is not a valid name of a scene: "));
+        assert!(said("match").starts_with("`match` is not a valid name of a scene: "));
         assert!(!sources.file("match").exists());
+        let copied = sources.copied("x", "identify").unwrap_err().to_string();
+        assert_eq!(copied, "there is no scene identify; there are soft, wall");
     }
 }

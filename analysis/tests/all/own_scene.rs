@@ -2,12 +2,16 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::sync::Mutex;
 
 use crate::common::board::BoardProcess;
 use crate::common::{answer, complaint, haptic, read, root};
 
 /// Its name, used by no scene.
 const NAME: &str = "scene_of_a_test";
+
+/// One test has the file at a time.
+static ONE: Mutex<()> = Mutex::new(());
 
 /// Its file, which goes with the test.
 struct Scene(PathBuf);
@@ -17,10 +21,10 @@ impl Scene {
         root().join("firmware/src/bin").join(NAME).with_extension("rs")
     }
 
-    fn begin() -> Self {
+    fn begin(from: &str) -> Self {
         // A killed test may have left it.
         let _ = fs::remove_file(Self::file());
-        let begun = haptic(&["new", NAME]);
+        let begun = haptic(&["new", NAME, "--from", from]);
         assert!(begun.status.success(), "{begun:?}");
         let said = String::from_utf8(begun.stdout).unwrap();
         assert!(said.starts_with(Self::file().to_str().unwrap()), "{said}");
@@ -46,7 +50,8 @@ impl Drop for Scene {
 #[test]
 #[ignore = "builds for minutes"]
 fn a_new_file_is_all_that_the_commands_need() {
-    let scene = Scene::begin();
+    let _alone = ONE.lock();
+    let scene = Scene::begin("damper_wall");
     let again = complaint(haptic(&["new", NAME]));
     assert!(again.contains("exists already"), "{again}");
 
@@ -79,6 +84,71 @@ fn a_new_file_is_all_that_the_commands_need() {
     assert!(refused.contains("does not compile") && refused.contains("would pass"), "{refused}");
     assert!(copied("damper_wall").stdout == original.stdout);
 }
+
+/// A scene file, with its device in a file of its own, is all that a board needs, and the program that begins
+/// with it is the same scene.
+#[test]
+#[ignore = "builds for minutes"]
+fn a_scene_file_runs_on_boards_and_becomes_a_program() {
+    let _alone = ONE.lock();
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("knob.toml", KNOB);
+    write("own wall.toml", WALL);
+    let file = folder.path().join("own wall.toml");
+    let file = file.to_str().unwrap();
+    for target in ["qemu", "board:nucleo-g474re"] {
+        let run = haptic(&["run", file, "--target", target, "--ticks", "1000", "--json"]);
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        assert_eq!(answer(&run)["codes_equal"], 1000, "{target}");
+    }
+    let flash = |more: &[&str]| {
+        let flash = ["flash", file, "--board", "nucleo-g474re", "--build-only"];
+        haptic(&[&flash, more].concat())
+    };
+    let built = flash(&[]);
+    assert!(built.status.success() && built.stderr.is_empty(), "{built:?}");
+    assert!(String::from_utf8_lossy(&built.stdout).contains("scene-own wall-f32-nucleo"));
+
+    let run = |scene: &str| haptic(&["run", scene, "--csv", "--ticks", "1000"]);
+    let scene = Scene::begin(file);
+    let (own, of_file) = (run(NAME), run(file));
+    assert!(own.status.success(), "{}", String::from_utf8_lossy(&own.stderr));
+    assert!(own.stdout == of_file.stdout);
+    drop(scene);
+
+    // The compiler points at the constant, and the message names the file.
+    write("own wall.toml", &WALL.replace("stiffness = 5", "stiffness = 50"));
+    let refused = flash(&[]);
+    assert_eq!(refused.status.code(), Some(1), "{refused:?}");
+    let said = String::from_utf8_lossy(&refused.stderr);
+    for part in ["own wall.toml: ", "would pass with stiffness", "scenes/own wall.rs:"] {
+        assert!(said.contains(part), "{said}");
+    }
+}
+
+const KNOB: &str = "\
+[device]
+inertia = 3e-5
+damping = 0.003
+[limits]
+encoder_step = 0.0015339807878856412
+full_scale = 0.3
+torque = 0.2
+";
+
+const WALL: &str = "\
+name = 'a wall of my own'
+device = 'knob.toml'
+[servo]
+period = 0.0005
+[coupling]
+stiffness = 12
+[environment]
+type = 'delayed-spring'
+stiffness = 5
+delay = 1
+";
 
 /// After a measurement the user changes one file, and the scenes of the project still compile: they use
 /// another device.

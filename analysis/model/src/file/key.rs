@@ -202,8 +202,10 @@ keys! {
     /// Name of the scene, as reports and pictures show it.
     NAME = other("name", "", Bound::Other(Form::Text, "a string")), Needed, "\"a wall\"";
 
-    /// The machine that the hand holds.
-    DEVICE = other("device", "", TABLE), Needed, "";
+    /// The machine that the hand holds. In place of this table, `device = "knob.toml"` at the top names a file
+    /// that has it, and that may have `[limits]` and `[supply]`, too; each of their keys is in one of both files.
+    /// The name is relative to the scene file; of standard input or a line of a batch, to the working folder.
+    DEVICE = other("device", "", Bound::Other(Form::Table, "a table, or the name of a device file")), Needed, "";
     /// Inertia of a rigid device. The certificate does not use it; simulations do.
     INERTIA = of(Parameter::Inertia), Needed, "2.2e-5";
     /// Viscous damping of a rigid device.

@@ -4,15 +4,19 @@
 //! keys in another ([`kind`]). The reader uses these tables, and so do the reference ([`mod@reference`], kept
 //! as `SCENE.md`), the JSON schema ([`schema`]) and the examples ([`example`]). An unknown key is an error,
 //! and all errors of a file are reported at once.
+//! A scene file may name a file with its device, which is read as if it stood in the scene file
+//! ([`key::DEVICE`]).
 
 #[cfg(test)]
 mod any_text;
+pub mod constant;
 pub mod device;
 mod device_file;
 pub mod example;
 pub mod key;
 pub mod kind;
 pub mod profile;
+pub mod program;
 pub mod reference;
 pub mod scene;
 pub mod schema;
@@ -24,8 +28,11 @@ pub mod write;
 mod faults;
 mod filter;
 mod json;
+mod named_device;
 mod problem;
 mod section;
+mod source;
+mod texts;
 mod toml;
 mod transducers;
 mod tree;
@@ -37,34 +44,11 @@ pub use device::Purpose;
 pub use device_file::DeviceFile;
 pub use problem::{FileError, Problem, excerpt};
 pub use scene::SceneFile;
+pub use source::{Format, MAX_BYTES, text_of};
 
 use faults::{Faults, Read};
-use problem::Fault;
+use texts::Texts;
 use tree::Node;
-
-/// Longest scene file in bytes: a hundred times the longest that is written by hand, and still read quickly.
-pub const MAX_BYTES: u64 = 4 << 20;
-
-/// The two formats of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// TOML.
-    Toml,
-    /// JSON.
-    Json,
-}
-
-impl Format {
-    /// By the file's extension; if it is unknown, an object's brace means JSON.
-    pub fn of(file: &str, text: &str) -> Self {
-        match Path::new(file).extension().and_then(|extension| extension.to_str()) {
-            Some("toml") => Self::Toml,
-            Some("json") => Self::Json,
-            _ if text.trim_start().starts_with('{') => Self::Json,
-            _ => Self::Toml,
-        }
-    }
-}
 
 /// Reads a scene file to certify; `-` is standard input.
 pub fn load(file: &str) -> Result<SceneFile, FileError> {
@@ -104,13 +88,14 @@ fn load_with<T>(
     if file.is_empty() {
         return Err(FileError::whole("", 1, 1, Problem::NoName));
     }
-    let (file, bytes) = match file {
-        "-" => ("<stdin>", bounded(std::io::stdin().lock())),
-        _ => (file, std::fs::File::open(file).map_err(unreadable).and_then(bounded)),
+    let (file, folder, bytes) = match file {
+        "-" => ("<stdin>", None, source::bounded(std::io::stdin().lock())),
+        _ => (file, Path::new(file).parent(), source::bytes(Path::new(file))),
     };
     let bytes = bytes.map_err(|problem| FileError::whole(file, 1, 1, problem))?;
     let text = text_of(file, 1, &bytes)?;
-    parse_with(file, 1, Format::of(file, text), text, read)
+    let texts = Texts::new(file, 1, text);
+    parsed(texts, folder, Format::of(file, text), read)
 }
 
 /// Parses the text of a scene file that is called `file`, to certify it.
@@ -155,49 +140,24 @@ fn parse_with<T>(
     text: &str,
     read: impl FnOnce(Node, Source<'_>) -> Read<T>,
 ) -> Result<T, FileError> {
+    parsed(Texts::new(file, first_line, text), None, format, read)
+}
+
+/// Reads a text, and the device file that it names, relative to a folder or the working folder.
+fn parsed<T>(
+    mut texts: Texts<'_>,
+    folder: Option<&Path>,
+    format: Format,
+    read: impl FnOnce(Node, Source<'_>) -> Read<T>,
+) -> Result<T, FileError> {
     let faults = Faults::default();
-    let found = root(format, text, &faults).and_then(|root| read(root, (text, &faults)));
-    match (found, FileError::of(file, text, first_line, faults.sorted())) {
+    let found = source::root(format, texts.all(), &faults)
+        .and_then(|root| named_device::merged(&mut texts, root, folder, &faults))
+        .and_then(|root| read(root, (texts.all(), &faults)));
+    match (found, texts.error(faults.sorted())) {
         (Ok(found), None) => Ok(found),
         (_, Some(error)) => Err(error),
         // A failed read has been reported; this case is only a fallback.
-        (Err(_), None) => Err(FileError::whole(file, first_line, 1, Problem::Empty)),
+        (Err(_), None) => Err(texts.whole(Problem::Empty)),
     }
-}
-
-/// The bytes of a file as text, or the place of the first byte that is not.
-pub fn text_of<'b>(file: &str, first_line: usize, bytes: &'b [u8]) -> Result<&'b str, FileError> {
-    std::str::from_utf8(bytes).map_err(|error| {
-        let offset = error.valid_up_to();
-        let before = &bytes[..offset];
-        let line = first_line + before.iter().filter(|&&byte| byte == b'\n').count();
-        let column = 1 + before.iter().rev().take_while(|&&byte| byte != b'\n').count();
-        let byte = bytes.get(offset).copied().unwrap_or_default();
-        FileError::whole(file, line, column, Problem::NotText { byte, offset })
-    })
-}
-
-fn root(format: Format, text: &str, faults: &Faults) -> Read<Node> {
-    let root = match format {
-        Format::Toml => toml::parse(text, faults)?,
-        Format::Json => json::parse(text, faults)?,
-    };
-    if scene::is_empty(&root) {
-        return Err(faults.report(Fault { span: 0..0, problem: Problem::Empty }));
-    }
-    Ok(root)
-}
-
-fn bounded(source: impl std::io::Read) -> Result<Vec<u8>, Problem> {
-    let mut bytes = Vec::new();
-    std::io::Read::read_to_end(&mut std::io::Read::take(source, MAX_BYTES + 1), &mut bytes)
-        .map_err(unreadable)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(Problem::TooLong { bound: MAX_BYTES });
-    }
-    Ok(bytes)
-}
-
-fn unreadable(error: std::io::Error) -> Problem {
-    Problem::Unreadable(error.to_string())
 }

@@ -122,17 +122,16 @@ pub struct FileError {
 }
 
 impl FileError {
-    /// Places faults, in their order, in the text that they were found in, whose first line is line
-    /// `first_line` of the file; nothing where there are none.
-    pub fn of(file: &str, text: &str, first_line: usize, faults: Vec<Fault>) -> Option<Self> {
+    /// Places faults in their order; nothing where there are none.
+    pub fn of(faults: Vec<Fault>, at: impl Fn(Fault) -> Self) -> Option<Self> {
         let untold = faults.len().saturating_sub(MOST);
-        let mut placed =
-            faults.into_iter().take(MOST).map(|fault| Self::new(file, text, first_line, fault));
+        let mut placed = faults.into_iter().take(MOST).map(at);
         let first = placed.next()?;
         Some(Self { rest: placed.collect(), untold, ..first })
     }
 
-    fn new(file: &str, text: &str, first_line: usize, fault: Fault) -> Self {
+    /// A fault in the text that it was found in, whose first line is line `first_line` of the file.
+    pub fn at(file: &str, text: &str, first_line: usize, fault: Fault) -> Self {
         let start = text.floor_char_boundary(fault.span.start);
         let before = &text[..start];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

@@ -14,7 +14,7 @@ use super::profile::{self, ProfileTable, Shapes};
 use super::section::Section;
 use super::simulation::{self, Simulation};
 use super::supply::{FileSupply, supply};
-use super::tree::{Node, Value};
+use super::tree::Node;
 use super::updates;
 use crate::chain::Chain;
 use crate::device::Hand;
@@ -245,7 +245,8 @@ fn coupling_of(mut section: Section<'_>) -> Read<Coupling> {
     coupling
 }
 
-fn limits_of(mut section: Section<'_>) -> Read<[Option<f64>; 3]> {
+/// Reads `[limits]`: the torque limit, the encoder's step, and the motor's full scale.
+pub fn limits_of(mut section: Section<'_>) -> Read<[Option<f64>; 3]> {
     let [torque, encoder, full_scale] =
         [&key::TORQUE_LIMIT, &key::ENCODER_STEP, &key::FULL_SCALE].map(|key| section.optional(key));
     section.finish();
@@ -343,9 +344,4 @@ fn polynomial(section: &mut Section<'_>, key: &Key, most: usize) -> Read<(Coeffi
         if value.len() > MAX_DEGREE + 1 { None } else { Coefficients::new(significant) };
     let coefficients = coefficients.ok_or_else(|| section.out_of_bounds(key))?;
     Ok((coefficients, taken))
-}
-
-/// Whether a parsed file has nothing in it.
-pub fn is_empty(root: &Node) -> bool {
-    matches!(&root.value, Value::Table(entries) if entries.is_empty())
 }

@@ -47,11 +47,16 @@ fn table(path: &str) -> Value {
             schema["oneOf"] = json!([spring, matched]);
             schema
         }
-        // Inertia and damping are those of a rigid body, and a chain's masses have their own.
+        // Inertia and damping are those of a rigid body, a chain's masses have their own, and a file has all.
         "device" => {
             let mut schema = object(keys, |_| false);
             let body = [key::INERTIA.name(), key::DEVICE_DAMPING.name()];
-            schema["oneOf"] = json!([{ "required": body }, { "required": [key::MASS.name()] }]);
+            schema["type"] = json!(["object", "string"]);
+            schema["oneOf"] = json!([
+                { "type": "object", "required": body },
+                { "type": "object", "required": [key::MASS.name()] },
+                { "type": "string" },
+            ]);
             schema
         }
         _ => object(keys, |key| key.presence == Presence::Needed),

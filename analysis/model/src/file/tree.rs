@@ -42,6 +42,22 @@ pub struct Entry {
     pub node: Node,
 }
 
+impl Node {
+    /// Moves all places by this number of bytes.
+    pub fn shift(&mut self, bytes: usize) {
+        let moved = |span: &Span| span.start + bytes..span.end + bytes;
+        self.span = moved(&self.span);
+        match &mut self.value {
+            Value::List(items) => items.iter_mut().for_each(|item| item.shift(bytes)),
+            Value::Table(entries) => entries.iter_mut().for_each(|entry| {
+                entry.span = moved(&entry.span);
+                entry.node.shift(bytes);
+            }),
+            _ => {}
+        }
+    }
+}
+
 impl Value {
     /// The value as JSON.
     pub fn into_json(self) -> serde_json::Value {

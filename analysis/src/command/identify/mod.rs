@@ -45,8 +45,8 @@ pub struct Arguments {
     pub reading: Reading,
     #[command(flatten)]
     pub answer: JsonOption,
-    /// Write the table `device` of a scene file to this file, and the delay for its table `servo` as a
-    /// comment
+    /// Write the device to this file, which a scene file names: `device = "FILE.toml"` at its top; the delay
+    /// for the scene's table `servo` is a comment in it
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -177,18 +177,22 @@ struct Report<'a> {
 /// Prints the device; the status is negative if it has no passivity for a certificate, or if a code of the
 /// emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let Measured { record, origin, counts_per_turn, torque_source } = measured(arguments)?;
+    let Measured { record, origin, counts_per_turn, full_scale, torque_source } =
+        measured(arguments)?;
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
     let stated = arguments.reading.correction(counts_per_turn, settle);
     let correction = Correction { source: stated.source.or(torque_source), ..stated };
     let found = identify::identify(&record, &correction)?;
     let notes = notes(&found);
+    let table = device_file(&found, counts_per_turn, full_scale);
     if let Some(path) = &arguments.output {
-        write(path, device_table(&found))?;
+        write(path, &table)?;
     }
     let taken_out = TakenOut::of(&record, &correction);
     let report = report(&found, taken_out, &notes, origin.as_ref());
-    arguments.answer.print(&report, |report| text(&found, report, &notes, origin.as_ref()))?;
+    arguments
+        .answer
+        .print(&report, |report| text(&found, report, &notes, origin.as_ref()) + "\n" + &table)?;
     let differs = origin.and_then(|origin| origin.difference);
     if let Some(difference) = differs {
         eprintln!("{difference}");
@@ -202,6 +206,8 @@ struct Measured {
     /// The origin of a simulated measurement.
     origin: Option<Origin>,
     counts_per_turn: f64,
+    /// The motor's torque in N m at the largest code, if the program `identify` of this workspace drove it.
+    full_scale: Option<f64>,
     /// The board's current loop, if it has one.
     torque_source: Option<TorqueSource>,
 }
@@ -213,17 +219,28 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
     let keep = arguments.record.as_deref();
     if let Some(address) = &arguments.port {
         let (record, board) = port::measure(address, keep)?;
-        let counts_per_turn = stated.unwrap_or(board.counts_per_turn);
-        return Ok(Measured { record, origin: None, counts_per_turn, torque_source: board.source });
+        let is_same = board.counts_per_turn == target::COUNTS_PER_TURN && board.source.is_none();
+        return Ok(Measured {
+            record,
+            origin: None,
+            counts_per_turn: stated.unwrap_or(board.counts_per_turn),
+            full_scale: is_same.then_some(target::FULL_SCALE),
+            torque_source: board.source,
+        });
     }
     if let Some(target) = arguments.target.target {
         let simulated = &arguments.target;
         let (measured, origin) = target::measure(simulated, target, file, keep, counts_per_turn)?;
-        let (record, origin) = (measured.record, Some(origin));
-        return Ok(Measured { record, origin, counts_per_turn, torque_source: None });
+        return Ok(Measured {
+            record: measured.record,
+            origin: Some(origin),
+            counts_per_turn,
+            full_scale: Some(target::FULL_SCALE),
+            torque_source: None,
+        });
     }
     let record = load(file.unwrap_or(Path::new("-")), counts_per_turn)?;
-    Ok(Measured { record, origin: None, counts_per_turn, torque_source: None })
+    Ok(Measured { record, origin: None, counts_per_turn, full_scale: None, torque_source: None })
 }
 
 /// Identifies the device of a recorded file.
@@ -387,8 +404,23 @@ fn latency_lines(found: &Identification) -> String {
     )
 }
 
-/// The table for a scene file.
-pub fn device_table(found: &Identification) -> String {
+/// The device file: the device, its encoder, and its motor if that is known.
+fn device_file(found: &Identification, counts_per_turn: f64, full_scale: Option<f64>) -> String {
+    let step = std::f64::consts::TAU / counts_per_turn;
+    let full_scale = match full_scale {
+        Some(torque) => format!("full_scale = {torque:?} # N m, as the program states it"),
+        None => {
+            "# full_scale = the motor's torque in N m at the largest code; a board needs it".into()
+        }
+    };
+    format!(
+        "{}\n[limits]\nencoder_step = {step:?} # rad, {counts_per_turn} counts per turn\n{full_scale}\n",
+        device_table(found)
+    )
+}
+
+/// The table of the device.
+fn device_table(found: &Identification) -> String {
     let range = |e: &Estimate| format!("{} to {}", significant(e.lo, 4), significant(e.hi, 4));
     let less = match found.motion_loss() {
         loss if loss > 0.0 => format!(" less {} by the current loop", significant(loss, 3)),
@@ -460,7 +492,7 @@ fn text(
     rows.extend(origin.map(Origin::row));
     rows.extend(notes.iter().map(|note| ("note", note.clone())));
     let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();
-    format!("{rows}\n{}\n{}", points(found), device_table(found))
+    format!("{rows}\n{}", points(found))
 }
 
 fn current_loop_row(source: &TorqueSource) -> String {

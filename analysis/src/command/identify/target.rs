@@ -82,6 +82,9 @@ impl Origin {
 /// The default of the counts per turn.
 pub const COUNTS_PER_TURN: f64 = TRANSDUCERS.counts_per_turn;
 
+/// The torque in N m at the largest code that the program is built for.
+pub const FULL_SCALE: f64 = TRANSDUCERS.full_scale_torque;
+
 /// Measures the device of a file, or that of the scenes' programs.
 pub fn measure(
     arguments: &Simulated,

@@ -1,5 +1,5 @@
-//! Your device. Its numbers are only here: measure them with `identify`, write them here, and each scene made
-//! by `haptic new` is certified with them.
+//! Your device, for `identify`, which measures it with these transducers, and for the scenes that `haptic new`
+//! copies from a program. A scene file and its program have their device from a device file.
 
 // A program without a scene only uses the transducers; a crate that includes several scenes has this module
 // in each.

@@ -1,38 +1,57 @@
 //! A scene as the constants of a Rust program, as in `firmware/src/bin`.
 
-mod layout;
+pub mod layout;
 
 use std::collections::BTreeSet;
 
-use haptic_model::file::SceneFile;
-use haptic_model::file::profile::Shapes;
 use haptic_servo::environment::{
     Canceller, Coefficients, Damper, Environment, Parts, Profile, Rational, Shape, Side, Wall,
 };
 use haptic_servo::scene::{Latency, TimeRange};
 
-use crate::PageResult;
-use crate::scene_text::read;
+use super::SceneFile;
+use super::profile::Shapes;
 
-/// The constants of a scene: the table of its torque profile, the scene, and its certificate.
-pub fn constant(text: &str, _: &mut Vec<f64>) -> PageResult {
-    let file = read(text).map_err(|error| error.to_string())?;
-    of(&file)
+/// A text of Rust, or the reason why there is none.
+pub type Written = Result<String, String>;
+
+/// The constants of a program.
+pub struct Constants {
+    /// What it imports of the library's environments.
+    pub environment: String,
+    /// What it imports of the library's scenes.
+    pub scene: String,
+    /// The items.
+    pub items: String,
 }
 
-/// The text of the program's constants.
-fn of(file: &SceneFile) -> PageResult {
+/// The constants of a scene: the table of its torque profile, the scene, and its certificate.
+///
+/// # Errors
+/// Where its environment has no constant.
+pub fn constants(file: &SceneFile) -> Written {
+    let Constants { environment, scene, items } = of(file)?;
+    Ok(format!("use haptic_servo::certificate::Certified;\n{environment}\n{scene}\n\n{items}"))
+}
+
+/// The same in parts.
+///
+/// # Errors
+/// As above.
+pub fn of(file: &SceneFile) -> Result<Constants, String> {
     let SceneFile { scene, shapes, .. } = file;
     let shapes = shapes.as_ref();
     let environment = environment(&scene.environment, shapes)?;
-    let is_late = scene.latency != Latency::NONE;
-    let time_range = if is_late { ", TimeRange" } else { "" };
     let knots = match (scene.environment.profile(), shapes) {
         (Some(profile), Some(shapes)) => knots(shapes, profile.outline().knots) + "\n",
         _ => String::new(),
     };
     let names: BTreeSet<_> = types(&knots).chain(types(&environment)).collect();
-    let uses = imports("haptic_servo::environment", &Vec::from_iter(names));
+    let names = Vec::from_iter(names);
+    let mut of_scene = vec!["Coupling", "Device", "Latency", "Scene", "Timing"];
+    if scene.latency != Latency::NONE {
+        of_scene.insert(4, "TimeRange");
+    }
     let constant = format!(
         "Scene {{ device: {:?}, timing: {:?}, coupling: Coupling::{:?}, environment: {environment}, \
          latency: {}, torque_limit: {:?} }}",
@@ -42,17 +61,16 @@ fn of(file: &SceneFile) -> PageResult {
         latency(&scene.latency),
         scene.torque_limit
     );
-    Ok(format!(
-        "use haptic_servo::certificate::Certified;\n\
-         {uses}\n\
-         use haptic_servo::scene::{{Coupling, Device, Latency, Scene{time_range}, Timing}};\n\n\
-         {knots}\
+    let items = format!(
+        "{knots}\
          /// The scene.\n\
          pub const SCENE: Scene = {};\n\n\
          /// Its certificate: a scene that could oscillate in a hand is a compile error here.\n\
          pub const CERTIFIED: Certified<Scene> = SCENE.certified();\n",
         layout::broken(0, &constant)
-    ))
+    );
+    let environment = imports("haptic_servo::environment", &names);
+    Ok(Constants { environment, scene: imports("haptic_servo::scene", &of_scene), items })
 }
 
 /// The types that lines of code name by themselves, and not within another.
@@ -68,7 +86,7 @@ fn types(code: &str) -> impl Iterator<Item = &str> {
 }
 
 /// An item that imports names of a module, in lines as wide as rustfmt makes them.
-fn imports(module: &str, names: &[&str]) -> String {
+pub fn imports(module: &str, names: &[&str]) -> String {
     const WIDTH: usize = 100;
     if let [name] = names {
         return format!("use {module}::{name};");
@@ -120,7 +138,7 @@ fn time(TimeRange { least, most }: TimeRange) -> String {
     format!("TimeRange::between({least:?}, {most:?})")
 }
 
-fn environment(environment: &Environment, shapes: Option<&Shapes>) -> PageResult {
+fn environment(environment: &Environment, shapes: Option<&Shapes>) -> Written {
     let parts = match environment {
         Environment::Parts(parts) => parts,
         Environment::Rational(rational) => return Ok(self::rational(rational)),
@@ -179,7 +197,7 @@ fn rational(rational: &Rational) -> String {
 }
 
 /// A torque profile of the table, with the numbers that are not those of its shapes.
-fn profile(profile: &Profile, shapes: Option<&Shapes>) -> PageResult {
+fn profile(profile: &Profile, shapes: Option<&Shapes>) -> Written {
     let of_shapes = format!("Profile::of(&KNOTS, {})", profile.delay);
     let changed = changes(profile, shapes)?;
     if changed.is_empty() {

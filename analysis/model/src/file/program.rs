@@ -1,0 +1,76 @@
+//! A scene file as a program for boards, as in `firmware/src/bin`.
+
+use haptic_servo::output_timing::OutputTiming;
+use haptic_servo::servo::Transducers;
+
+use super::constant::{self, Constants, Written, imports, layout};
+use super::{SceneFile, excerpt};
+
+/// The program of a scene with these transducers; `source` is the name of its file.
+///
+/// # Errors
+/// Where its environment has no constant.
+pub fn program(file: &SceneFile, transducers: &Transducers, source: &str) -> Written {
+    let Constants { environment, scene, items } = constant::of(file)?;
+    let Transducers { counts_per_turn, full_scale_torque, largest_speed, .. } = transducers;
+    let constant = format!(
+        "Transducers {{ counts_per_turn: {counts_per_turn:?}, counter: CounterWidth::Bits16, \
+         full_scale_torque: {full_scale_torque:?}, largest_speed: {largest_speed:?} }}"
+    );
+    let output = OutputTiming::of_delay(file.scene.latency.output_delay.middle());
+    let (mode, option, servo) = match output {
+        OutputTiming::AtPhase(nanoseconds) => (
+            format!(
+                "/// When the torque of a count is put out, in nanoseconds after it.\n\
+                 pub type Output = AtPhase<{nanoseconds}>;\n\n"
+            ),
+            "    output: Output,\n",
+            ["AtPhase", "Transducers"].as_slice(),
+        ),
+        _ => (String::new(), "", ["Transducers"].as_slice()),
+    };
+    let friction = file.friction.map_or_else(String::new, |it| format!("    friction: {it:?},\n"));
+    Ok(format!(
+        "//! {}, of {}.\n\
+         #![cfg_attr(target_os = \"none\", no_std, no_main)]\n\n\
+         use haptic_servo::certificate::Certified;\n\
+         use haptic_servo::encoder::CounterWidth;\n\
+         {environment}\n{scene}\n{}\n\n\
+         /// The encoder, and the motor with its amplifier, at the handle: torque in N m, speed in rad/s.\n\
+         pub const TRANSDUCERS: Transducers = {};\n\n\
+         {mode}{items}\n\
+         haptic_servo::scene_program! {{\n    \
+         scene: SCENE,\n    certified: CERTIFIED,\n    transducers: TRANSDUCERS,\n{option}{friction}}}\n",
+        excerpt(&file.name),
+        excerpt(source),
+        imports("haptic_servo::servo", servo),
+        layout::broken(0, &constant),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::{Format, example, parse};
+
+    fn text_of(toml: &str) -> String {
+        let file = parse("wall.toml", Format::Toml, toml).unwrap();
+        program(&file, &file.transducers(None, None), "wall.toml").unwrap()
+    }
+
+    #[test]
+    fn friction_and_the_time_of_the_output_are_options_of_the_program() {
+        let wall = example::toml("damper-wall").unwrap();
+        let text = text_of(&wall);
+        assert!(text.starts_with("//! damper-wall example, of wall.toml.\n#![cfg_attr("), "{text}");
+        assert!(text.ends_with("    transducers: TRANSDUCERS,\n}\n"), "{text}");
+        assert!(text.contains("::servo::Transducers;") && !text.contains("Output"), "{text}");
+
+        let phase = wall.replace("[servo]\n", "[servo]\noutput_delay = 1.0e-5\n");
+        let rubbing = phase.replace("[device]\n", "[device]\nfriction = 0.003\n");
+        let text = text_of(&rubbing);
+        assert!(text.contains("::servo::{AtPhase, Transducers};"), "{text}");
+        assert!(text.contains("pub type Output = AtPhase<10000>;\n"), "{text}");
+        assert!(text.ends_with("    output: Output,\n    friction: 0.003,\n}\n"), "{text}");
+    }
+}
