@@ -7,6 +7,7 @@ use std::str::FromStr;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
+use haptic_servo::number::Format;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 use serde::Serialize;
@@ -21,6 +22,7 @@ use super::virtual_board_build::VirtualBoardBuild;
 use crate::bridge_run::{ShaftInput, run_on_bridge};
 use crate::compare_run::{Backend, Input, RunError, RunOutcome, run_with_backend};
 use crate::controller::{Controller, controller};
+use crate::counts_csv;
 use crate::device::Energy;
 use crate::file::SceneFile;
 use crate::hand::HandTrajectory;
@@ -30,7 +32,7 @@ use crate::progress;
 use crate::shaft::{HandHeldShaft, RecordedShaft};
 use crate::tick_gaps::TickGaps;
 use crate::toolchain::{BoardModel, NumberFormat};
-use crate::{counts_csv, verdict};
+use crate::verdict::{self, Verdict, VerdictReport, judge_file};
 
 /// The target of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,6 +119,7 @@ pub struct Arguments {
 /// Set-up of a run, from a program or from a scene file.
 struct RunSetup {
     name: String,
+    report: VerdictReport,
     scene: Scene,
     transducers: Transducers,
     trajectory: HandTrajectory,
@@ -129,6 +132,8 @@ struct RunSetup {
 #[derive(Serialize)]
 struct Summary<'a> {
     scene: &'a str,
+    verdict: Verdict,
+    on_board: Option<Verdict>,
     target: String,
     format: &'a str,
     ticks: usize,
@@ -236,6 +241,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
     let format = arguments.format;
     Ok(RunSetup {
         name: program.name.to_owned(),
+        report: verdict::judge(program.name, &program.scene),
         scene: program.scene,
         transducers,
         trajectory: (program.trajectory)(),
@@ -256,9 +262,9 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
     for note in unused(&file, arguments.replay.is_some()) {
         writeln!(io::stderr(), "note: {note}")?;
     }
-    let trajectory = hand_trajectory(&file);
+    let (report, trajectory) = (judge_file(&file, Format::F64), hand_trajectory(&file));
     let (name, scene) = (file.name, file.scene);
-    Ok(RunSetup { name, scene, transducers, trajectory, controller, program: None })
+    Ok(RunSetup { name, report, scene, transducers, trajectory, controller, program: None })
 }
 
 /// The parts of a scene file that a run does not use, as text: the servo runs on a rigid device in a hand's
@@ -327,12 +333,12 @@ fn print(
     if arguments.csv {
         rows(&mut out, &outcome.run)?;
     } else if arguments.answer.json {
-        json(&mut out, &summary(arguments, &setup.name, outcome, gaps))?;
+        json(&mut out, &summary(arguments, setup, outcome, gaps))?;
     } else if let (Target::Board(_), Some(program)) = (arguments.target, setup.program) {
-        let report = verdict::judge(program.name, &setup.scene);
-        write!(out, "{}", section(program, &report, outcome))?;
+        write!(out, "{}", section(program, &setup.report, outcome))?;
     } else {
-        write!(out, "{}", text(outcome))?;
+        let VerdictReport { summary, .. } = &setup.report;
+        write!(out, "verdict: {}, {summary}\n{}", setup.report.verdict_in_words(), text(outcome))?;
     }
     out.flush()?;
     if let Some(difference) = &outcome.run.difference {
@@ -343,13 +349,15 @@ fn print(
 
 fn summary<'a>(
     arguments: &Arguments,
-    name: &'a str,
+    setup: &'a RunSetup,
     outcome: &RunOutcome,
     gaps: Option<TickGaps>,
 ) -> Summary<'a> {
     let on_board = outcome.board.is_some();
     Summary {
-        scene: name,
+        scene: &setup.name,
+        verdict: setup.report.verdict,
+        on_board: setup.report.on_board,
         target: arguments.target.to_string(),
         format: arguments.format.name(),
         ticks: outcome.run.ticks.len(),
