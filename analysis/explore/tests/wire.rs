@@ -182,6 +182,11 @@ fn the_page_shows_what_runs_on_the_board() {
     let margin = scene(22.0).certify_in(Format::F32).unwrap();
     let margin = margin.assessment().margin(&scene(22.0)).unwrap();
     assert_eq!(bench.board["margin"].as_f64(), Some(margin));
+    let shown: Value = serde_json::from_str(&wire::scene("", &mut Vec::new()).unwrap()).unwrap();
+    assert_eq!(
+        (&shown["name"], &shown["environment"]["stiffness"]),
+        (&json!("wall"), &json!(22.0))
+    );
     let mut curves = Vec::new();
     wire::curves("100", &mut curves).unwrap();
     // The angle at which the device is held, by another computation, and no torque.
