@@ -49,6 +49,11 @@ pub fn check(
     })
 }
 
+/// The sentence for a certified scene that has to pass on a board.
+pub fn rejected(reason: &str) -> String {
+    format!("rejected on a board: {reason}")
+}
+
 /// Whether a scene is certified in a number format, and no board rejects it: one may not have its times.
 pub fn passes(scene: &Scene, format: Format, resolution: &Resolution) -> bool {
     let assessment = assess_in(scene, format);

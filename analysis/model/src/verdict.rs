@@ -272,7 +272,7 @@ fn reported(
     let would_pass = would_pass(matched, &changes);
     let (summary, message) = match (&rejection, &refusal) {
         (None, Some(refusal)) if is_for_a_board => {
-            let summary = format!("rejected on a board: {}", refusal.sentence);
+            let summary = on_board::rejected(&refusal.sentence);
             (summary.clone(), summary + &would_pass)
         }
         (None, _) => {
@@ -348,6 +348,10 @@ impl VerdictReport {
         let Some(supply) = &self.supply else { return self };
         if !supply.sinks {
             self.assumptions.push(regeneration::ASSUMPTION.to_owned());
+        }
+        if let Some(reason) = self.board.as_ref().filter(|_| !self.is_for_a_board) {
+            self.summary = on_board::rejected(reason);
+            self.message.clone_from(&self.summary);
         }
         self.is_for_a_board = true;
         self
