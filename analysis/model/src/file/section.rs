@@ -151,7 +151,8 @@ impl<'t> Section<'t> {
         else {
             return own;
         };
-        match (own?, self.optional(other)?) {
+        let others = self.optional(other);
+        match (own?, others?) {
             (own, None) => Ok(own),
             (None, Some(value)) if key.bound.admits(product / value) => Ok(Some(product / value)),
             (None, Some(_)) => Err(self.out_of_bounds(other)),
