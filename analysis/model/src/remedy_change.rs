@@ -84,7 +84,7 @@ mod tests {
     use super::*;
     use crate::file::{Format, parse};
     use crate::verdict::{Verdict, judge_file};
-    use haptic_servo::number::Format as Coefficients;
+    use haptic_servo::number::Format as NumberFormat;
 
     const DEVICE: &str = "name = \"a\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n";
     const SERVO: &str = "[servo]\nperiod = 0.001\n";
@@ -109,7 +109,7 @@ mod tests {
     /// How many remedies change the file, and how many there are.
     fn each_certifies(text: &str) -> [usize; 2] {
         let file = parse("a.toml", Format::Toml, text).unwrap_or_else(|error| panic!("{error}"));
-        let report = judge_file(&file, Coefficients::F64);
+        let report = judge_file(&file, NumberFormat::F64);
         assert!(!report.passes(), "{text}");
         let found = remedy_changes(&file, &report);
         let sentences: Vec<_> = found.iter().map(|remedy| remedy.sentence.clone()).collect();
@@ -126,7 +126,7 @@ mod tests {
             }
             let changed = parse("a.json", Format::Json, &scene.to_string());
             let changed = changed.unwrap_or_else(|error| panic!("{}: {error}", remedy.sentence));
-            let verdict = judge_file(&changed, Coefficients::F64);
+            let verdict = judge_file(&changed, NumberFormat::F64);
             assert!(verdict.passes(), "{}: {scene}: {}", remedy.sentence, verdict.message);
         }
         [changing, found.len()]
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn every_remedy_of_a_scene_for_a_board_passes_on_a_board() {
         let limits = ["torque = 1.0\n", "encoder_step = 1e-4\n", "full_scale = 2.0\n"];
-        let [mut seen, mut on_a_board] = [0, 0];
+        let (mut seen, mut on_a_board) = (0, 0);
         for index in 0..300 {
             // Evenly spread, and never the same twice.
             let [stiff, damped, coupled, fast] = [0.618_034, 0.414_214, 0.732_051, 0.236_068]
@@ -190,11 +190,11 @@ mod tests {
                 limits[index as usize % limits.len()],
             );
             let file = parse("a.toml", Format::Toml, &text).unwrap();
-            let report = judge_file(&file, Coefficients::F64);
+            let report = judge_file(&file, NumberFormat::F64);
             if report.passes() {
                 continue;
             }
-            on_a_board += u32::from(report.verdict == Verdict::Certified);
+            on_a_board += usize::from(report.verdict == Verdict::Certified);
             seen += each_certifies(&text)[0];
         }
         assert!(seen > 300 && on_a_board > 20, "{seen} {on_a_board}");
