@@ -256,12 +256,7 @@ fn reported(
         _ if !has_remedies => (None, Vec::new()),
         Some(found) if is_for_a_board => {
             let matched = Scene { coupling: Coupling::Matched, ..*scene };
-            let on_board = (found.matched().filter(|_| passes(&matched)), search.behind(&found));
-            match &on_board {
-                // A board has another reason as well, which it states once the scene is certified.
-                (None, changes) if changes.is_empty() => (found.matched(), found.iter().collect()),
-                _ => on_board,
-            }
+            (found.matched().filter(|_| passes(&matched)), search.behind(&found))
         }
         Some(found) => (found.matched(), found.iter().collect()),
         None if is_for_a_board && refusal.as_ref().is_some_and(|it| it.is_rejection) => {

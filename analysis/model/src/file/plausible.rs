@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn numbers_in_other_units_are_named_with_the_value_that_was_meant() {
-        let wall = "[environment]\ntype = \"damper-wall\"\nstiffness = 3\ndamping = 0\n";
+        let wall = "[environment]\ntype = \"damper-wall\"\nstiffness = 3\ndamping = 0\ndelay = 1\n";
         let plain = file_on_paddle(wall);
         assert_eq!(warnings(&plain), Vec::<String>::new());
         let changed = |change: fn(&mut SceneFile)| {
