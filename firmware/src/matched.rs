@@ -141,7 +141,7 @@ impl MatchedCoupling {
 
     /// Sum of the magnitudes of all compliances in rad/(N m): the largest deflection for torques of up to 1 N m
     /// each, which is that of a torque that stays.
-    pub(crate) const fn compliance_at_rest(&self) -> Interval {
+    pub const fn compliance_at_rest(&self) -> Interval {
         let held = Interval::exact(self.held).mul(Interval::exact(self.whole as f64));
         let mut sum = Interval::exact(self.compliance).add(held);
         sum = sum.add(Interval::exact(self.arriving).abs());

@@ -254,12 +254,14 @@ class BoardNumbers {
 }
 
 /** Shows the board's part of the page. */
-function showBoard(engine) {
+function showBoard(engine, store) {
   const part = (name) => document.getElementById(`board-${name}`);
   const section = document.getElementById("board");
   const record = new BoardRecord(engine);
   const numbers = new BoardNumbers(engine, part("numbers"));
   let [shown, wanted] = [undefined, undefined];
+  const begin = store.text();
+  let isOpened = false;
   const say = (sentence) => { part("reply").textContent = sentence; };
   const link = new BoardLink(engine, {
     link: (state, sentence) => {
@@ -276,6 +278,7 @@ function showBoard(engine) {
       shown = board;
       showBoardState(part, section, board);
       numbers.show(board);
+      isOpened ||= openSceneOfBoard(engine, store, begin);
     },
     reply: say,
     rows: (rows) => {
@@ -356,6 +359,13 @@ function showBoard(engine) {
     drawStrips(part("curves"), curvesOf(engine.numbers()), link.facts.window);
   };
   draw();
+}
+
+/** Shows the scene of the board in place of that with which the page began; true once it is known. */
+function openSceneOfBoard(engine, store, begin) {
+  const scene = engine.json("wire_scene");
+  if (scene !== null && store.text() === begin) store.replace(scene);
+  return scene !== null;
 }
 
 /** Shows how a board is, in words. */

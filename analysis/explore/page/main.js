@@ -12,7 +12,7 @@ async function main() {
   showVerdict(store);
   showHandle(engine, store);
   showPictures(engine, store, module, worker);
-  showBoard(engine);
+  showBoard(engine, store);
   store.judge();
   new Fields(store, table).show();
   showActions(store, engine, table);

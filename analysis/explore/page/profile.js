@@ -33,7 +33,8 @@ class ProfilePicture {
       yield* torques;
       for (const branch of profile.branches ?? []) for (const point of branch.points) yield point[1];
     };
-    const x = { name: "angle", unit: "rad", range: rangeAround(angles, 0.02) };
+    const felt = atHandle(profile, angles, torques);
+    const x = { name: "angle", unit: "rad", range: rangeAround([...angles, ...felt], 0.02) };
     const y = { name: "torque", unit: "N m", range: rangeAround(own(), 0.12, 1e-6) };
     this.#picture.draw({
       x,
@@ -44,11 +45,22 @@ class ProfilePicture {
   }
 }
 
+/** The angles of the handle, behind the coupling. */
+function atHandle(profile, angles, torques) {
+  return angles.map((angle, index) => angle + profile.compliance * torques[index]);
+}
+
+/** The line of the torque that is felt. */
+const FELT = { ink: "--plot-4", dash: [6, 3], width: 2 };
+
 function profileLegend(profile) {
   const limit = profile.limit === null
     ? []
     : [{ dash: [2, 4], width: 1, words: `torque limit, ${plotNumber(profile.limit)} N m` }];
-  if (profile.kind === "wall") return [{ ink: "--plot-1", words: profile.words }, ...limit];
+  const felt = profile.felt === null
+    ? []
+    : [{ ...FELT, words: `at the handle, behind the coupling: up to ${plotNumber(profile.felt)} N m/rad` }];
+  if (profile.kind === "wall") return [{ ink: "--plot-1", words: profile.words }, ...felt, ...limit];
   const slope = (value) => `${plotNumber(value)} N m/rad`;
   return [
     {
@@ -66,6 +78,7 @@ function profileLegend(profile) {
     ...(profile.branches.length === 0
       ? []
       : [{ ink: "--plot-1", dash: [2, 4], words: "a detent snaps to the next one, from the dot on" }]),
+    ...felt,
     ...limit,
   ];
 }
@@ -76,6 +89,12 @@ function paintProfile(pen, profile, angles, torques, x, y) {
     for (const level of [-profile.limit, profile.limit]) pen.level(level, { dash: [2, 4], width: 1 });
   }
   const branches = profile.branches ?? [];
+  const lines = branches.length === 0
+    ? [[angles, torques]]
+    : branches.map(({ points }) => [0, 1].map((column) => points.map((point) => point[column])));
+  if (profile.felt !== null) {
+    for (const [angle, torque] of lines) pen.line(atHandle(profile, angle, torque), torque, FELT);
+  }
   if (branches.length === 0) pen.line(angles, torques, { ink: "--plot-1", width: 2 });
   for (const { points, snaps } of branches) {
     pen.line(points.map((point) => point[0]), points.map((point) => point[1]), { ink: "--plot-1", width: 2 });

@@ -29,10 +29,13 @@ function inWords({ report, errors }) {
   return report ? report.message : `not judged: ${errors.map(({ sentence }) => sentence).join("; ")}`;
 }
 
-function showWord({ report, errors }) {
+function showWord({ rows, errors }) {
   const wrong = errors?.length === 1 ? "one value is wrong" : `${errors?.length} values are wrong`;
-  const words = report ? report.verdict.toUpperCase() : `NOT JUDGED: ${wrong}`;
-  say(document.getElementById("verdict-word"), words);
+  const words = rows?.find(([label]) => label === "verdict")[1] ?? `NOT JUDGED: ${wrong}`;
+  const word = document.getElementById("verdict-word");
+  say(word, words);
+  // A certified scene that no board renders is rejected, too.
+  word.classList.toggle("rejected", words.startsWith("REJECTED"));
 }
 
 /** The margin as a bar from the middle on: full to the right where all of the device's passivity is left,

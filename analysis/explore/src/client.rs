@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use haptic_model::board::client::{self, Event};
 use haptic_model::board::history::History;
-use haptic_model::board::request::{Request, names};
+use haptic_model::board::request::{Request, in_words, names};
 use haptic_model::board::sample::{Sample, Scale};
 use haptic_model::board::timing::stream_every;
 use haptic_servo::tuning::RenderError;
@@ -110,7 +110,7 @@ impl Client {
             running.ok_or("the board has not said yet which scene runs there")?;
         match description.explain(names(parameters), changes) {
             Ok(()) | Err(RenderError::OtherMode { .. }) => Ok(()),
-            Err(reason) => Err(reason.to_string()),
+            Err(reason) => Err(in_words(&reason, changes, description, parameters)),
         }
     }
 

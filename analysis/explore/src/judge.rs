@@ -3,7 +3,7 @@
 use haptic_model::file::SceneFile;
 use haptic_model::remedy_change::{RemedyChange, remedy_changes};
 use haptic_model::verdict::{self, VerdictReport, judge_file};
-use haptic_model::verdict_text::rows;
+use haptic_model::verdict_text::{details, rows};
 use haptic_servo::number::Format;
 use serde::Serialize;
 
@@ -40,7 +40,7 @@ pub fn judge(text: &str, _: &mut Vec<f64>) -> PageResult {
 /// The same without remedies, which take long if times are ranges.
 pub fn judge_without_remedies(text: &str, _: &mut Vec<f64>) -> PageResult {
     judged(text, |file| {
-        verdict::judge_without_remedies(&file.name, &file.scene, &file.steps()).with_supply_of(file)
+        verdict::judge_without_remedies(&file.name, &file.scene, &file.steps()).with_facts_of(file)
     })
 }
 
@@ -48,7 +48,8 @@ fn judged(text: &str, report: impl FnOnce(&SceneFile) -> VerdictReport) -> PageR
     match read(text) {
         Ok(file) => {
             let report = report(&file);
-            json(&Judged { rows: rows(&report), remedies: remedy_changes(&file, &report), report })
+            let rows = [rows(&report), details(&report)].concat();
+            json(&Judged { rows, remedies: remedy_changes(&file, &report), report })
         }
         Err(error) => json(&Wrong::of(&error)),
     }

@@ -25,7 +25,7 @@ pub fn keys(_: &str, _: &mut Vec<f64>) -> PageResult {
     });
     let presets =
         presets::ALL.iter().map(|Preset { name, toml }| json!({ "name": name, "toml": toml }));
-    let keys: Vec<_> = key::ALL.iter().map(|key| of(key)).collect();
+    let keys: Vec<_> = shown().map(of).collect();
     Ok(json!({
         "keys": keys,
         "kinds": kinds.collect::<Vec<_>>(),
@@ -33,6 +33,12 @@ pub fn keys(_: &str, _: &mut Vec<f64>) -> PageResult {
         "presets": presets.collect::<Vec<_>>(),
     })
     .to_string())
+}
+
+/// The keys of which the page has fields: scenes of the page are [`file::canonical`].
+fn shown() -> impl Iterator<Item = &'static Key> {
+    let is_other = |key: &Key| key::RECIPROCALS.iter().any(|(other, ..)| *other == key);
+    key::ALL.iter().copied().filter(move |key| !is_other(key))
 }
 
 fn of(key: &Key) -> Value {
@@ -146,6 +152,6 @@ mod tests {
             let is_table = key["form"] == "table" || key["path"] == "environment.shape";
             assert!(is_table || !key["example"].is_null(), "{key}");
         }
-        assert_eq!(answer["keys"].as_array().unwrap().len(), key::ALL.len());
+        assert_eq!(answer["keys"].as_array().unwrap().len(), shown().count());
     }
 }

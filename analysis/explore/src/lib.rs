@@ -94,6 +94,8 @@ functions! {
     wire_judge = wire::judge;
     /// `on` or `off`: rows for a record.
     wire_record = wire::record;
+    /// Nothing: the scene that runs on the board, of the shape of a scene file; null where it is not known.
+    wire_scene = wire::scene;
     /// A number of columns: the curves of the last seconds.
     wire_curves = wire::curves;
 }

@@ -1,6 +1,7 @@
 //! The torque of a scene over the angle, at rest: a torque profile as in `haptic chart profile`, or a wall's
 //! line.
 
+use haptic_model::felt;
 use haptic_model::profile_curve::{Piece, ProfileCurve};
 use haptic_model::quantity::significant;
 use haptic_servo::environment::Wall;
@@ -19,6 +20,8 @@ pub fn profile(text: &str, numbers: &mut Vec<f64>) -> PageResult {
     let file = read(text).map_err(|error| error.to_string())?;
     let scene = &file.scene;
     let limit = scene.torque_limit;
+    let compliance = felt::compliance(scene).unwrap_or(0.0);
+    let felt = felt::stiffness(scene).filter(|_| compliance > 0.0);
     if let Some(curve) = ProfileCurve::of(scene) {
         numbers.extend(curve.points.iter().flat_map(|[angle, torque, _]| [*angle, *torque]));
         let branches: Vec<_> = curve
@@ -33,6 +36,8 @@ pub fn profile(text: &str, numbers: &mut Vec<f64>) -> PageResult {
             "certified": curve.certified,
             "branches": branches,
             "limit": limit,
+            "compliance": compliance,
+            "felt": felt,
         })
         .to_string());
     }
@@ -42,7 +47,14 @@ pub fn profile(text: &str, numbers: &mut Vec<f64>) -> PageResult {
         return Err(format!("{}: {words}", file.name));
     };
     numbers.extend(line(wall, limit));
-    Ok(json!({ "kind": "wall", "limit": limit, "words": wall_words(wall) }).to_string())
+    Ok(json!({
+        "kind": "wall",
+        "limit": limit,
+        "words": wall_words(wall),
+        "compliance": compliance,
+        "felt": felt,
+    })
+    .to_string())
 }
 
 fn piece(piece: &Piece) -> Value {
@@ -100,7 +112,8 @@ mod tests {
     #[test]
     fn a_wall_is_a_line_and_free_mode_nothing() {
         let mut numbers = Vec::new();
-        profile(WALL, &mut numbers).unwrap();
+        let answer: Value = serde_json::from_str(&profile(WALL, &mut numbers).unwrap()).unwrap();
+        assert_eq!(answer["felt"].is_null(), answer["compliance"] == 0.0);
         for pair in numbers.chunks_exact(2) {
             assert!((pair[1] - 22.0 * pair[0]).abs() < 1e-12);
         }

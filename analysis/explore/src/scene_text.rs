@@ -52,9 +52,11 @@ pub fn read(text: &str) -> Result<SceneFile, FileError> {
     file::parse(NAME, format(text)?, text)
 }
 
-/// TOML or JSON: `{"scene": ..}` with all its keys, valid or not, or the error of its grammar.
+/// TOML or JSON: `{"scene": ..}` with all its keys, valid or not, or the error of its grammar. The page has the
+/// period and the encoder's step as fields.
 pub fn parse(text: &str, _: &mut Vec<f64>) -> PageResult {
     let scene = format(text).and_then(|format| file::as_json(NAME, format, text));
+    let scene = scene.map(file::canonical);
     Ok(match scene {
         Ok(Value::Object(scene)) => json!({ "scene": scene }),
         Ok(_) => json!(Wrong::of(&FileError::whole(NAME, 1, 1, Problem::Empty))),
@@ -93,6 +95,8 @@ mod tests {
 
     #[test]
     fn keys_and_values_that_mean_nothing_are_kept_and_what_has_no_grammar_is_named() {
+        let rate = parsed("[servo]\nrate = 500\n");
+        assert_eq!(rate["scene"], json!({ "servo": { "period": 0.002 } }));
         let text = "wrong = 1\n[device]\ninertia = \"heavy\"\n";
         let scene = json!({ "wrong": 1.0, "device": { "inertia": "heavy" } });
         assert_eq!(parsed(text)["scene"], scene);

@@ -4,14 +4,18 @@
 //! the page's, in ms since any beginning.
 
 use std::cell::RefCell;
+use std::f64::consts::TAU;
 use std::time::Duration;
 
 use haptic_model::board::request::{Reply, Request};
 use haptic_model::board::sample::{COLUMNS, Row};
 use haptic_model::board::timing::RETRY;
 use haptic_model::board::{Power, change, formatting};
+use haptic_model::chain::Chain;
+use haptic_model::file::{self, Format, SceneFile, write};
 use haptic_servo::board::BAUD;
 use haptic_servo::certificate::Parameter;
+use haptic_servo::environment::{Environment, Parts};
 use haptic_servo::parameter::Range;
 use haptic_servo::wire::PROTOCOL;
 use serde::{Deserialize, Serialize};
@@ -144,6 +148,33 @@ pub fn judge(changes: &str, _: &mut Vec<f64>) -> PageResult {
         Some(client) => client.judge(&changes).map(|()| String::new()),
         None => Err(Reply::NoLink.line(&Request::Set(changes))),
     })
+}
+
+/// The scene that runs on the board, of the shape of a scene file; null until it is known, and where the board
+/// alone has its table.
+pub fn scene(_: &str, _: &mut Vec<f64>) -> PageResult {
+    WIRE.with_borrow(|wire| crate::judge::json(&wire.client.as_ref().and_then(scene_of)))
+}
+
+fn scene_of(client: &Client) -> Option<Value> {
+    let (connected, running) = (client.connected.as_ref()?, client.wire.description.as_ref()?);
+    let (scene, transducers) = (running.scene, &running.transducers);
+    if !matches!(scene.environment, Environment::Parts(Parts { profile: None, .. })) {
+        return None;
+    }
+    let file = SceneFile {
+        name: connected.program.clone(),
+        scene,
+        chain: Chain::rigid(scene.device.inertia, scene.device.damping).ok()?,
+        simulation: None,
+        hand: None,
+        encoder_step: Some(TAU / transducers.counts_per_turn),
+        full_scale: Some(transducers.full_scale_torque),
+        friction: None,
+        supply: None,
+        shapes: None,
+    };
+    file::as_json(&file.name, Format::Toml, &write::toml(&file)).ok()
 }
 
 /// Returns ticks as rows of a table from now on, `on`, or no more, `off`.

@@ -25,6 +25,7 @@
 //! |---|---|
 //! | a scene in TOML or JSON | [`file::parse`], [`file::load`] |
 //! | is it certified, and by how much | [`verdict::judge`], [`verdict_text`] |
+//! | what the hand feels | [`felt`] |
 //! | how it moves | [`simulation::simulate`] |
 //! | how far one may go | [`design`], [`limits`], [`stability_map`] |
 //! | its curves | [`response`], [`nyquist`], [`stability`] |
@@ -50,13 +51,16 @@ pub mod board;
 // Verdicts, simulations and limits of scenes.
 pub mod closed_form;
 pub mod design;
+pub mod felt;
 pub mod latency_limits;
 pub mod limits;
 pub mod nyquist;
+pub mod on_board;
 pub mod open_loop;
 pub mod profile_curve;
 pub mod regeneration;
 pub mod remedy_change;
+pub mod remedy_search;
 pub mod response;
 pub mod simulation;
 pub mod snap_branches;

@@ -2,12 +2,10 @@
 
 use haptic_servo::certificate::PassivityProblem;
 use haptic_servo::environment::Wall;
-use haptic_servo::matched::MatchedCoupling;
-use haptic_servo::number::Format;
-use haptic_servo::passivity::polynomial::{Polynomial, UnitRoot};
 use haptic_servo::passivity::transfer::Unbuildable;
 use haptic_servo::scene::{Coupling, Scene, Timing};
 
+use crate::felt;
 use crate::response::Response;
 use crate::simulation::closed_loop::transfers;
 
@@ -71,24 +69,6 @@ pub fn standard_coupling(scene: &Scene) -> f64 {
     let worst = scene.timing.worst_period.unwrap_or(period);
     let delta = scene.device.passivity.unwrap_or(scene.device.damping);
     (2.0 * delta / worst) * (1.0 - 1e-12)
-}
-
-/// The stiffness in N m/rad of the coupling at rest; `None` if it is rigid or does not exist. The stiffness
-/// of a matched coupling is about `2 delta / (T + d + tau)`, with all of its delays and lags.
-fn coupling_stiffness(scene: &Scene) -> Option<f64> {
-    match scene.coupling {
-        Coupling::Rigid => None,
-        Coupling::Spring { stiffness } => Some(stiffness),
-        Coupling::Matched => {
-            let Timing { period, worst_period } = scene.timing;
-            let delta = scene.device.passivity();
-            let matched =
-                MatchedCoupling::of(period, worst_period, delta, &scene.latency, Format::F64)?;
-            let (numerator, denominator) = matched.transfer()?;
-            let at_rest = |p: &Polynomial| p.at_unit_root(UnitRoot::Plus).midpoint();
-            Some(at_rest(&denominator) / at_rest(&numerator))
-        }
-    }
 }
 
 /// The largest stiffness of the scene's wall that is certified, everything else as it is.
@@ -181,7 +161,7 @@ impl Curves {
             Limit::Nothing => return None,
             Limit::AtMost(stiffness) => (stiffness, self.used * stiffness),
             Limit::Any => {
-                let stiffness = coupling_stiffness(&timed)?;
+                let stiffness = 1.0 / felt::compliance(&timed).filter(|&it| it > 0.0)?;
                 (stiffness, RIGID * stiffness)
             }
         };

@@ -7,6 +7,7 @@ use haptic_servo::environment::{Ends, FULL_SCALE, Profile};
 use haptic_servo::scene::Scene;
 
 use crate::design::{Choice, DesignLimit, Quantity, Terms, largest};
+use crate::felt;
 use crate::snap_branches::{self, Branch, held, slope};
 
 /// Points of a curve.
@@ -44,6 +45,8 @@ pub struct ProfileCurve {
     /// The steepest rise in N m/rad with which the scene certifies: all torques change in proportion, or only
     /// the end stops if they are steepest. `None` if there is none.
     pub certified: Option<f64>,
+    /// Compliance in rad/(N m) of the coupling in front of it: see [`felt::compliance`].
+    pub compliance: f64,
     /// The branches of a profile with a snap point, of which `points` has those of the nearest detents.
     pub branches: Vec<Branch>,
 }
@@ -89,7 +92,13 @@ impl ProfileCurve {
             (fall.slope, fall.width) = (0.0, 0.0);
         }
         let branches = snap_branches::of(scene, profile, shown);
-        Some(Self { points, rise, fall, certified, branches })
+        let compliance = felt::compliance(scene).unwrap_or(0.0);
+        Some(Self { points, rise, fall, certified, compliance, branches })
+    }
+
+    /// The angle in rad of the handle where the profile is at an angle with a torque in N m.
+    pub fn at_handle(&self, angle: f64, torque: f64) -> f64 {
+        angle + self.compliance * torque
     }
 }
 
@@ -231,6 +240,8 @@ mod tests {
         assert!((curve.rise.slope / slope - 1.0).abs() < 1e-3, "{:?}", curve.rise);
         assert!((curve.fall.slope / slope + 1.0).abs() < 1e-3, "{:?}", curve.fall);
         assert!((curve.certified.unwrap() / 44.0 - 1.0).abs() < 1e-6, "{:?}", curve.certified);
+        let end = curve.rise.torque + 0.5 * curve.rise.width * curve.rise.slope;
+        assert!((curve.at_handle(0.1, end) - 0.1 - end / 44.0).abs() < 1e-12);
         assert!((curve.rise.width / (TAU / 48.0) - 1.0).abs() < 1e-3, "{:?}", curve.rise);
         let height = curve.points.iter().map(|point| point[2]).fold(0.0, f64::max);
         let triangle = 0.5 * (TAU / 48.0) * 0.05;

@@ -38,6 +38,24 @@ pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.precision$e}").parse().unwrap_or(value)
 }
 
+/// The same as [`significant`], not above the value but for the rounding of a double: for a passivity, of which
+/// more than there is must not be stated.
+///
+/// ```
+/// use haptic_model::quantity::rounded_down;
+/// assert_eq!(rounded_down(0.021_98, 3), "0.0219");
+/// assert_eq!(rounded_down(0.022, 3), "0.022");
+/// assert_eq!(rounded_down(-0.021_92, 3), "-0.022");
+/// ```
+pub fn rounded_down(value: f64, digits: usize) -> String {
+    let nearest = rounded(value, digits);
+    if nearest - value <= 4.0 * f64::EPSILON * value.abs() {
+        return significant(nearest, digits);
+    }
+    let last_digit = nearest.abs().log10().floor() as i32 + 1 - digits as i32;
+    significant(nearest - 10.0_f64.powi(last_digit), digits)
+}
+
 /// A name of at most `letters` characters, with dots in place of the rest.
 ///
 /// ```

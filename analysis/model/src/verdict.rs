@@ -3,19 +3,21 @@
 use std::fmt;
 
 use haptic_servo::certificate::{
-    Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Rejection,
-    Remedies, Resolution, Rule, RuleAnswer, assess_in, certify_in,
+    Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Rejection, Remedy,
+    Resolution, Rule, RuleAnswer, assess_in, certify_in,
 };
 use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::{Coupling, Scene};
-use haptic_servo::servo::OutputTiming;
 use serde::{Serialize, Serializer};
 
-use crate::file::SceneFile;
+use crate::felt;
+use crate::file::{self, SceneFile};
 use crate::line_search::minimizing_angle;
+use crate::on_board;
 use crate::quantity::significant;
 use crate::regeneration::{self, SupplyReport};
+use crate::remedy_search::{RemedySearch, would_pass};
 use crate::response::Response;
 
 /// The answer to "is this scene safe".
@@ -135,7 +137,15 @@ pub struct VerdictReport {
     /// Damping in N m s/rad that the device may lose with everything else unchanged; negative: the damping
     /// that it lacks.
     pub margin: Option<f64>,
-    /// The same where the torque is limited as on a board; `None` where no board renders the scene.
+    /// The answer with the limits and the reading time of a board; `None` if no board has the times of a
+    /// certified scene.
+    pub on_board: Option<Verdict>,
+    /// Stiffness in N m/rad at the handle, environment and coupling in series, at its stiffest: see
+    /// [`felt::stiffness`].
+    pub felt_stiffness: Option<f64>,
+    /// Damping in N m s/rad that is felt outside of the wall: see [`felt::free_damping`].
+    pub free_damping: Option<f64>,
+    /// The margin where the torque is limited as on a board; `None` where no board renders the scene.
     #[serde(skip)]
     pub margin_on_board: Option<f64>,
     /// Whether the margin is a result: no loss of damping is known to be allowed, and the margin is 0, where
@@ -162,16 +172,25 @@ pub struct VerdictReport {
     pub supply: Option<SupplyReport>,
     /// The assumptions of the verdict.
     pub assumptions: Vec<String>,
-    /// The assumptions that do not hold.
+    /// The assumptions that do not hold, and numbers that no device has.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// The answer as a sentence.
     pub message: String,
-    /// Changes of one number each that would make a rejected scene pass.
-    pub remedies: Vec<String>,
-    /// The same as numbers; `None` where the scene is certified.
+    /// The same without margin and remedies.
     #[serde(skip)]
-    pub changes: Option<Remedies>,
+    pub summary: String,
+    /// Whether the scene states facts of a board, so that it has to pass on a board.
+    #[serde(skip)]
+    pub is_for_a_board: bool,
+    /// Changes of one number each that would make a rejected scene pass: on a board, if it states facts of one.
+    pub remedies: Vec<String>,
+    /// Those that change a number.
+    #[serde(skip)]
+    pub changes: Vec<Remedy>,
+    /// The first of them in words, if it is the matched coupling.
+    #[serde(skip)]
+    pub matched: Option<&'static str>,
 }
 
 /// Judges a scene as it was written; nothing more is known of the machine.
@@ -188,19 +207,19 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -
         Ok(assessment) => (assessment, None),
         Err(rejection) => (assess_in(scene, format), Some(rejection)),
     };
-    reported(name, scene, format, steps, &assessment, rejection)
+    reported(name, scene, format, steps, &assessment, rejection, true)
 }
 
 /// Judges the scene of a file as a number format rounds its coefficients, and the supply that the file states.
 pub fn judge_file(file: &SceneFile, format: Format) -> VerdictReport {
-    judge_in(&file.name, &file.scene, format, &file.steps()).with_supply_of(file)
+    judge_in(&file.name, &file.scene, format, &file.steps()).with_facts_of(file)
 }
 
 /// The same without the search for remedies, which takes many times as long where times are known to lie in
 /// ranges.
 pub fn judge_without_remedies(name: &str, scene: &Scene, steps: &Resolution) -> VerdictReport {
     let assessment = assess_in(scene, Format::F64);
-    reported(name, scene, Format::F64, steps, &assessment, assessment.outcome.err())
+    reported(name, scene, Format::F64, steps, &assessment, assessment.outcome.err(), false)
 }
 
 fn reported(
@@ -210,6 +229,7 @@ fn reported(
     steps: &Resolution,
     assessment: &Assessment,
     rejection: Option<Rejection>,
+    has_remedies: bool,
 ) -> VerdictReport {
     let verdict = match &rejection {
         None => Verdict::Certified,
@@ -222,12 +242,39 @@ fn reported(
     let is_margin_known = !(lags && assessment.rule == Rule::Nonlinear);
     let is_margin_known_on_board = !lags;
     let margin_on_board = assessment.outcome.ok().and_then(|()| assessment.margin_on_board(scene));
-    let remedies = rejection.map(|rejection| rejection.remedies());
     let assumptions = Assumptions::of(scene, assessment, steps);
     let failing = assumptions.iter().filter(|one| one.standing() == AssumptionStatus::Fails);
-    let message = match rejection {
-        None => passed(margin.filter(|_| is_margin_known), assumptions.rest()),
-        Some(rejection) => rejection.sentence_in(format).as_str().to_owned(),
+    let refusal =
+        assessment.outcome.ok().and_then(|()| on_board::check(scene, assessment, steps).err());
+    let is_for_a_board = scene.torque_limit.or(steps.encoder).or(steps.full_scale).is_some();
+    let passes = |scene: &Scene| on_board::passes(scene, format, steps);
+    let search = RemedySearch {
+        scene,
+        passes: |parameter, value| scene.with(parameter, value).is_some_and(|it| passes(&it)),
+    };
+    let (matched, changes) = match rejection.map(|rejection| rejection.remedies()) {
+        _ if !has_remedies => (None, Vec::new()),
+        Some(found) if is_for_a_board => {
+            let matched = Scene { coupling: Coupling::Matched, ..*scene };
+            (found.matched().filter(|_| passes(&matched)), search.behind(&found))
+        }
+        Some(found) => (found.matched(), found.iter().collect()),
+        None if is_for_a_board && refusal.as_ref().is_some_and(|it| it.is_rejection) => {
+            (None, search.searched())
+        }
+        None => (None, Vec::new()),
+    };
+    let would_pass = would_pass(matched, &changes);
+    let (summary, message) = match (&rejection, &refusal) {
+        (None, Some(refusal)) if is_for_a_board => {
+            let summary = on_board::rejected(&refusal.sentence);
+            (summary.clone(), summary + &would_pass)
+        }
+        (None, _) => {
+            let message = passed(margin.filter(|_| is_margin_known), assumptions.rest());
+            (CERTIFIED.to_owned(), format!("certified: {CERTIFIED}{message}"))
+        }
+        (Some(rejection), _) => of_rejection(rejection, format, is_for_a_board, &would_pass),
     };
     VerdictReport {
         name: name.to_owned(),
@@ -238,6 +285,13 @@ fn reported(
         alpha_coupled: enclosure(assessment.alpha_coupled),
         alpha_port: has_port_index(scene).then(|| enclosure(assessment.alpha_port)),
         bound: assessment.bound.map(|bound| enclosure(Some(bound))),
+        on_board: match (verdict, &refusal) {
+            (Verdict::Certified, None) => Some(Verdict::Certified),
+            (Verdict::Certified, Some(refusal)) if !refusal.is_rejection => None,
+            _ => Some(Verdict::Rejected),
+        },
+        felt_stiffness: felt::stiffness(scene),
+        free_damping: felt::free_damping(scene),
         delta,
         margin,
         margin_on_board,
@@ -246,41 +300,78 @@ fn reported(
         theta: minimum_angle(scene, assessment),
         format: (format != Format::F64).then(|| format.to_string()),
         rest: assumptions.rest().map(AtRest::of),
-        board: assessment
-            .outcome
-            .ok()
-            .and_then(|()| assessment.renders_at(scene, timing_on_a_board(scene)).err())
-            .map(|error| error.to_string()),
+        board: refusal.map(|refusal| refusal.sentence),
         supply: None,
         warnings: failing.map(ToString::to_string).collect(),
         assumptions: assumptions.iter().map(ToString::to_string).collect(),
         message,
-        remedies: remedies.as_ref().map_or_else(Vec::new, in_sentences),
-        changes: remedies,
+        summary,
+        is_for_a_board,
+        remedies: matched
+            .map(ToOwned::to_owned)
+            .into_iter()
+            .chain(changes.iter().map(ToString::to_string))
+            .collect(),
+        changes,
+        matched,
     }
 }
 
-/// One sentence each.
-fn in_sentences(remedies: &Remedies) -> Vec<String> {
-    let matched = remedies.matched().map(ToOwned::to_owned);
-    matched.into_iter().chain(remedies.iter().map(|remedy| remedy.to_string())).collect()
+/// The reason of a rejection, and the same with what would pass: of a scene for a board, on a board.
+fn of_rejection(
+    rejection: &Rejection,
+    format: Format,
+    is_for_a_board: bool,
+    would_pass: &str,
+) -> (String, String) {
+    let reason = rejection.reason_in(format).as_str().to_owned();
+    let sentence = rejection.sentence_in(format).as_str().to_owned();
+    // The remedies do not have those of two numbers.
+    if !is_for_a_board && !sentence.ends_with(would_pass) {
+        return (sentence.clone(), sentence);
+    }
+    (reason.clone(), reason + would_pass)
 }
 
 impl VerdictReport {
-    /// With the answer for the supply that the file states, if it states one.
+    /// With the answer for the supply that the file states, if it states one, and warnings about numbers that no
+    /// device has.
     #[must_use]
-    pub fn with_supply_of(mut self, file: &SceneFile) -> Self {
+    pub fn with_facts_of(mut self, file: &SceneFile) -> Self {
+        self.warnings.extend(file::warnings(file));
         self.supply = regeneration::judge(file);
-        if self.supply.as_ref().is_some_and(|supply| !supply.sinks) {
+        let Some(supply) = &self.supply else { return self };
+        if !supply.sinks {
             self.assumptions.push(regeneration::ASSUMPTION.to_owned());
         }
+        if let Some(reason) = self.board.as_ref().filter(|_| !self.is_for_a_board) {
+            self.summary = on_board::rejected(reason);
+            self.message.clone_from(&self.summary);
+        }
+        self.is_for_a_board = true;
         self
     }
 
-    /// Whether the scene is certified, and the supply, where one is stated, bears its energy.
+    /// Whether the supply, where one is stated, bears the scene's energy.
+    fn is_borne_by_supply(&self) -> bool {
+        self.supply.as_ref().is_none_or(|supply| supply.stays_below == Some(true))
+    }
+
+    /// Whether the scene is certified, on a board if it states facts of one, and its supply bears its energy.
     pub fn passes(&self) -> bool {
-        let bears = self.supply.as_ref().is_none_or(|supply| supply.stays_below == Some(true));
-        self.verdict == Verdict::Certified && bears
+        let is_rendered = !self.is_for_a_board || self.on_board == Some(Verdict::Certified);
+        self.verdict == Verdict::Certified && is_rendered && self.is_borne_by_supply()
+    }
+
+    /// The verdict in a few words.
+    pub fn verdict_in_words(&self) -> &'static str {
+        match self.verdict {
+            Verdict::Certified if self.passes() => "CERTIFIED",
+            Verdict::Certified if self.is_borne_by_supply() => "REJECTED ON A BOARD",
+            Verdict::Certified => "REJECTED WITH THIS SUPPLY",
+            Verdict::Rejected => "REJECTED",
+            Verdict::Undecided => "UNDECIDED",
+        }
     }
 
     /// The margin in words; `None` if it does not exist.
@@ -302,16 +393,15 @@ fn in_words(margin: f64, is_known: bool) -> String {
 const NO_MARGIN: &str = "none is known: where torques lag, and a limit or a face has them judged by a \
                          bound, the coupling is made for this passivity of the device and for no less";
 
-/// The output timing of the scene on a board.
-fn timing_on_a_board(scene: &Scene) -> OutputTiming {
-    OutputTiming::of_delay(scene.latency.code_delay(scene.timing.period))
-}
-
 /// Whether the index at the port differs from that of `E'`.
 fn has_port_index(scene: &Scene) -> bool {
     !scene.latency.is_none() || scene.coupling == Coupling::Matched
 }
 
+/// The meaning of a certificate.
+const CERTIFIED: &str = "no passive hand can make it oscillate";
+
+/// Margin and rest of a certified scene.
 fn passed(margin: Option<f64>, rest: Option<&QuantizationBound>) -> String {
     let to_spare = margin.map_or_else(String::new, |margin| {
         let margin = significant(margin, 4);
@@ -321,7 +411,7 @@ fn passed(margin: Option<f64>, rest: Option<&QuantizationBound>) -> String {
         )
     });
     let rest = rest.map_or_else(String::new, |rest| format!("; at rest {rest}"));
-    format!("certified: no passive hand can make it oscillate{to_spare}{rest}")
+    format!("{to_spare}{rest}")
 }
 
 fn enclosure(interval: Option<Interval>) -> Enclosure {

@@ -1,5 +1,5 @@
-//! A torque profile: torque and potential over angle, the steepest pieces, and the steepest slope that
-//! certifies.
+//! A torque profile: torque and potential over angle, the steepest pieces, the steepest slope that certifies,
+//! and the torque over the angle of the handle.
 
 use super::*;
 use crate::profile_curve::{Piece, ProfileCurve};
@@ -11,12 +11,13 @@ const PANELS: [i32; 2] = [300, 240];
 /// Largest extent of the line of the certified slope, relative to the chart's width and height.
 const REACH: f64 = 0.2;
 /// The lines of torque and potential, of the steepest pieces, of the steepest slope that certifies, of the
-/// torque limit, and of a detent that snaps.
+/// torque limit, of a detent that snaps, and of the torque that is felt.
 const CURVE: Stroke = Stroke::solid(1);
 const STEEPEST: Stroke = Stroke::solid(4);
 const CERTIFIED: Stroke = Stroke::dashed(&[9, 5], 2);
 const LIMIT: Stroke = Stroke::dashed(&[12, 4, 2, 4], 1);
 const SNAP: Stroke = Stroke::dashed(&[2, 4], 1);
+const FELT: Stroke = Stroke::dashed(&[6, 3], 1);
 
 /// Draws a profile. `limit`: the torque limit in N m.
 pub fn profile(
@@ -28,6 +29,12 @@ pub fn profile(
     if !curve.branches.is_empty() {
         let words = "a detent snaps to the next one, from the dot on".to_owned();
         entries.push((Sample::Line(SNAP), words));
+    }
+    if curve.compliance > 0.0 {
+        let felt = curve.rise.slope / (1.0 + curve.compliance * curve.rise.slope);
+        let words =
+            format!("at the handle, behind the coupling: up to {} N m/rad", significant(felt, 4));
+        entries.push((Sample::Line(FELT), words));
     }
     if let Some(limit) = limit {
         let words = format!("torque limit, {} N m", significant(limit, 4));
@@ -59,10 +66,19 @@ fn torque(area: &Area<'_>, curve: &ProfileCurve, limit: Option<f64>) -> Drawn<()
     for limit in limit.into_iter().flat_map(|limit| [-limit, limit]) {
         panel.level(LIMIT, limit)?;
     }
+    let is_felt = curve.compliance > 0.0;
+    let felt = |&[angle, torque]: &[f64; 2]| (curve.at_handle(angle, torque), torque);
     if curve.branches.is_empty() {
         panel.curve(CURVE, curve.points.iter().map(|point| (point[0], point[1])))?;
+        let felt = curve.points.iter().map(|[angle, torque, _]| felt(&[*angle, *torque]));
+        if is_felt {
+            panel.curve(FELT, felt)?;
+        }
     }
     for Branch { points, snaps } in &curve.branches {
+        if is_felt {
+            panel.curve(FELT, points.iter().map(felt))?;
+        }
         panel.curve(CURVE, points.iter().map(|point| (point[0], point[1])))?;
         for &[angle, before, after] in snaps {
             panel.curve(SNAP, [(angle, before), (angle, after)])?;

@@ -10,7 +10,8 @@ use super::shared_arguments::{CoefficientFormat, JsonOption, SceneArgument};
 use super::status::{CommandError, CommandStatus};
 use crate::terminal;
 use crate::text_width;
-use crate::verdict_text::text;
+use crate::verdict::VerdictReport;
+use crate::verdict_text::{detailed_text, text};
 
 /// Arguments of `haptic certify`.
 #[derive(Debug, Args)]
@@ -19,6 +20,9 @@ pub struct Arguments {
     pub scene: SceneArgument,
     #[command(flatten)]
     pub answer: JsonOption,
+    /// Print the numbers of the proof, too: the indices alpha, delta, the angle theta, both rules
+    #[arg(long, short, conflicts_with = "json")]
+    pub verbose: bool,
     #[command(flatten)]
     pub arithmetic: CoefficientFormat,
     /// Read one scene as JSON on each line of FILE, and print one result on each line, in the same
@@ -35,8 +39,14 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         batch::certify(&arguments.scene.file, format, &mut io::stdout().lock())?;
         return Ok(CommandStatus::Success);
     }
-    let report = arguments.arithmetic.judge(&arguments.scene.load()?)?;
+    let mut report = arguments.arithmetic.judge(&arguments.scene.load()?)?;
+    if !arguments.answer.json {
+        // Standard error has those about numbers that no device has.
+        let VerdictReport { warnings, assumptions, .. } = &mut report;
+        warnings.retain(|warning| assumptions.contains(warning));
+    }
     let width = terminal::output_width();
+    let text = if arguments.verbose { detailed_text } else { text };
     arguments.answer.print(&report, |report| text_width::wrapped(&text(report), width, VALUES))?;
     Ok(CommandStatus::of(report.passes()))
 }

@@ -8,7 +8,7 @@ use super::status::{CommandError, CommandStatus};
 use crate::chain::{Chain, ExcessPassivity, NoPassivity, Reached};
 use crate::file::{self, DeviceFile};
 use crate::mu_analysis::Check;
-use crate::quantity::significant;
+use crate::quantity::{rounded_down, significant};
 
 /// Arguments of `haptic device`.
 #[derive(Debug, Args)]
@@ -96,7 +96,7 @@ fn message(chain: &Chain, found: &Result<ExcessPassivity, NoPassivity>) -> Strin
         Ok(found) => found,
         Err(reason) => return format!("no passivity: {reason}{}", without_lag(chain)),
     };
-    let delta = significant(found.value, 12);
+    let delta = rounded_down(found.value, 12);
     let place = match found.reached {
         Reached::Everywhere => "at every frequency".to_owned(),
         Reached::AtRest => "towards frequency 0".to_owned(),
@@ -122,7 +122,7 @@ fn without_lag(chain: &Chain) -> String {
         Ok(found) if chain.actuator_lag() > 0.0 => format!(
             "; without it delta is {} N m s/rad, which a certificate takes, with the lag as a part of \
              the controller",
-            significant(found.value, 12)
+            rounded_down(found.value, 12)
         ),
         _ => String::new(),
     }

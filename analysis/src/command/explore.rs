@@ -50,7 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 /// The page that starts with this scene.
 pub(super) fn page(scene: Option<&str>) -> Result<String, CommandError> {
     let scene = match scene {
-        Some(name) => file::load_json(name)?,
+        Some(name) => file::canonical(file::load_json(name)?),
         None => file::as_json("wall.toml", Format::Toml, START)?,
     };
     Ok(explore::page(&module()?, &scene)?)

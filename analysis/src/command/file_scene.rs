@@ -1,6 +1,7 @@
 //! The scene file of a run, and its hand: the file's or the default.
 
 use super::rebuild_with_scene;
+use super::shared_arguments::warned;
 use super::status::CommandError;
 use crate::file::{self, SceneFile};
 use crate::hand::HandTrajectory;
@@ -18,7 +19,7 @@ pub fn scene_file(name: &str) -> Result<SceneFile, CommandError> {
             programs: rebuild_with_scene::scenes(),
         });
     }
-    Ok(file::load(name)?)
+    Ok(warned(file::load(name)?))
 }
 
 /// The hand's trajectory for a scene file: the file's own, if it has one.

@@ -63,7 +63,9 @@ impl Arguments {
             true => clap::ColorChoice::Always,
             false => clap::ColorChoice::Never,
         };
-        let matches = with_exit_status(Self::command()).color(colour).try_get_matches();
+        let command = with_exit_status(Self::command());
+        let help = help_in_groups(&command);
+        let matches = command.help_template(help).color(colour).try_get_matches();
         let found = matches.and_then(|matches| Self::from_arg_matches(&matches));
         found.unwrap_or_else(|error| refuse(&error))
     }
@@ -96,46 +98,49 @@ fn with_exit_status(command: clap::Command) -> clap::Command {
     command.after_help(after).mut_subcommands(with_exit_status)
 }
 
-/// Declares the commands, each with its module.
+/// Declares the commands in groups, each with its module.
 macro_rules! commands {
-    ($($(#[$attribute:meta])* $name:ident($module:ident),)*) => {
+    ($($group:literal: $($(#[$attribute:meta])* $name:ident($module:ident),)*)*) => {
         /// What to do.
         #[derive(Debug, Subcommand)]
         pub enum Command {
-            $($(#[$attribute])* $name($module::Arguments),)*
+            $($($(#[$attribute])* $name($module::Arguments),)*)*
         }
 
         impl Command {
             fn run(&self) -> Result<CommandStatus, CommandError> {
                 match self {
-                    $(Self::$name(arguments) => $module::run(arguments),)*
+                    $($(Self::$name(arguments) => $module::run(arguments),)*)*
                 }
             }
         }
+
+        /// The groups of the help with the number of their commands.
+        const GROUPS: &[(&str, usize)] = &[$(($group, [$(stringify!($name)),*].len())),*];
     };
 }
 
 commands! {
+    "Design":
     /// Certify a scene: verdict, margin, assumptions and remedies.
     Certify(certify),
+    /// Find the largest stiffness, the smallest device damping, the longest period or the lowest rate
+    /// that certifies.
+    Design(design),
+    /// Find the cheapest number format, or the simplest device model, that is accurate enough.
+    Advise(advise),
+    /// Write a scene into one HTML page: to change it, see what changes, hold it, and send it on.
+    Explore(explore),
+    "Device":
     /// Compute the passivity of a device, rigid or a chain of masses.
     Device(device),
     /// Identify a device from a measurement: inertia, damping, passivity, lag and delay.
     Identify(identify),
-    /// Copy a scene's program, or write that of a scene file, to begin a program of your own.
-    New(new),
-    /// Build the program of a scene or of a scene file for a board and flash it.
-    Flash(flash),
+    "Board":
     /// Run a scene's servo tick by tick: on this machine, the emulated board or a virtual board.
     Run(run),
-    /// Install the tools, certify all scenes, run them on the emulated board, and draw them.
-    Demo(demo),
-    /// Draw charts: Nyquist curves, Bode charts, maps, limits, traces.
-    Chart(chart),
-    /// Write a scene into one HTML page: to change it, see what changes, hold it, and send it on.
-    Explore(explore),
-    /// Measure the cost of a certificate, a simulated step and a tick.
-    Bench(bench),
+    /// Build the program of a scene or of a scene file for a board and flash it.
+    Flash(flash),
     /// Show or change the parameters of a running board, arm it or disarm it.
     Tune(tune),
     /// Show, tune or record a running board.
@@ -151,21 +156,43 @@ commands! {
     /// Simulate a board with device and hand, to try `tune` and `scope` without hardware.
     #[command(name = "board-sim", alias = "twin")]
     BoardSim(board_sim),
+    "Analysis":
     /// Simulate a scene sample by sample, certified or not.
     Simulate(simulate),
     /// Compute the spectral radius of the loop and its critical stiffness.
     Stability(stability),
-    /// Find the largest stiffness, the smallest device damping, the longest period or the lowest rate
-    /// that certifies.
-    Design(design),
-    /// Find the cheapest number format, or the simplest device model, that is accurate enough.
-    Advise(advise),
     /// Search for a passive hand in which a scene oscillates.
     WorstHand(worst_hand),
-    /// Print the JSON schema of scene files, a commented example, or the reference of all keys.
-    Schema(schema),
+    /// Draw charts: Nyquist curves, Bode charts, maps, limits, traces.
+    Chart(chart),
     /// Show loops that other methods judge wrongly, with the verdict of the certificate.
     Failures(failures),
+    "Project":
+    /// Copy a scene's program, or write that of a scene file, to begin a program of your own.
+    New(new),
+    /// Print the JSON schema of scene files, a commented example, or the reference of all keys.
+    Schema(schema),
+    /// Install the tools, certify all scenes, run them on the emulated board, and draw them.
+    Demo(demo),
+    /// Measure the cost of a certificate, a simulated step and a tick.
+    Bench(bench),
+}
+
+/// The template of the program's help, with its commands in groups: clap itself has one list of them.
+fn help_in_groups(command: &clap::Command) -> String {
+    let mut commands = command.get_subcommands();
+    let mut list = String::new();
+    for (group, count) in GROUPS {
+        list += &format!("{group}\n");
+        for command in commands.by_ref().take(*count) {
+            let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+            list += &format!("  {:<11} {about}\n", command.get_name());
+        }
+    }
+    let list = text_width::wrapped(&list, terminal::output_width(), 14);
+    format!(
+        "{{about}}\n\n{{usage-heading}} {{usage}}\n\nCommands:\n{list}\nOptions:\n{{options}}{{after-help}}\n"
+    )
 }
 
 impl Command {

@@ -7,6 +7,7 @@ use std::str::FromStr;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
+use haptic_servo::number::Format;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 use serde::Serialize;
@@ -22,6 +23,7 @@ use super::virtual_board_build::VirtualBoardBuild;
 use crate::bridge_run::{ShaftInput, run_on_bridge};
 use crate::compare_run::{Backend, Input, RunError, RunOutcome, run_with_backend};
 use crate::controller::{Controller, controller};
+use crate::counts_csv;
 use crate::device::Energy;
 use crate::file::SceneFile;
 use crate::hand::HandTrajectory;
@@ -31,7 +33,7 @@ use crate::progress;
 use crate::shaft::{HandHeldShaft, RecordedShaft};
 use crate::tick_gaps::TickGaps;
 use crate::toolchain::{BoardModel, NumberFormat, Tools};
-use crate::{counts_csv, verdict};
+use crate::verdict::{self, Verdict, VerdictReport, judge_file};
 
 /// The target of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,6 +119,7 @@ pub struct Arguments {
 /// Set-up of a run, from a program or from a scene file.
 struct RunSetup {
     name: String,
+    report: VerdictReport,
     scene: Scene,
     transducers: Transducers,
     trajectory: HandTrajectory,
@@ -135,6 +138,8 @@ enum RunProgram {
 #[derive(Serialize)]
 struct Summary<'a> {
     scene: &'a str,
+    verdict: Verdict,
+    on_board: Option<Verdict>,
     target: String,
     format: &'a str,
     ticks: usize,
@@ -242,6 +247,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
     let format = arguments.format;
     Ok(RunSetup {
         name: program.name.to_owned(),
+        report: verdict::judge(program.name, &program.scene),
         scene: program.scene,
         transducers,
         trajectory: (program.trajectory)(),
@@ -267,10 +273,10 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
     for note in unused(&file, arguments.replay.is_some()) {
         writeln!(io::stderr(), "note: {note}")?;
     }
-    let trajectory = hand_trajectory(&file);
+    let (report, trajectory) = (judge_file(&file, Format::F64), hand_trajectory(&file));
     let (name, scene) = (file.name, file.scene);
     let program = RunProgram::OfFile(program);
-    Ok(RunSetup { name, scene, transducers, trajectory, controller, program })
+    Ok(RunSetup { name, report, scene, transducers, trajectory, controller, program })
 }
 
 /// The parts of a scene file that a run does not use, as text: the servo runs on a rigid device in a hand's
@@ -345,14 +351,14 @@ fn print(
     if arguments.csv {
         rows(&mut out, &outcome.run)?;
     } else if arguments.answer.json {
-        json(&mut out, &summary(arguments, &setup.name, outcome, gaps))?;
+        json(&mut out, &summary(arguments, setup, outcome, gaps))?;
     } else if let (Target::Board(_), &RunProgram::Named(program)) =
         (arguments.target, &setup.program)
     {
-        let report = verdict::judge(program.name, &setup.scene);
-        write!(out, "{}", section(program, &report, outcome))?;
+        write!(out, "{}", section(program, &setup.report, outcome))?;
     } else {
-        write!(out, "{}", text(outcome))?;
+        let VerdictReport { summary, .. } = &setup.report;
+        write!(out, "verdict: {}, {summary}\n{}", setup.report.verdict_in_words(), text(outcome))?;
     }
     out.flush()?;
     if let Some(difference) = &outcome.run.difference {
@@ -363,13 +369,15 @@ fn print(
 
 fn summary<'a>(
     arguments: &Arguments,
-    name: &'a str,
+    setup: &'a RunSetup,
     outcome: &RunOutcome,
     gaps: Option<TickGaps>,
 ) -> Summary<'a> {
     let on_board = outcome.board.is_some();
     Summary {
-        scene: name,
+        scene: &setup.name,
+        verdict: setup.report.verdict,
+        on_board: setup.report.on_board,
         target: arguments.target.to_string(),
         format: arguments.format.name(),
         ticks: outcome.run.ticks.len(),

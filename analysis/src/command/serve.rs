@@ -17,8 +17,8 @@ use crate::terminal;
 /// Arguments of `haptic serve`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, TOML or JSON, that the page starts with; `-` is standard input. Without it the page
-    /// starts with the damper wall of the paper
+    /// Scene file, TOML or JSON, that the page starts with; `-` is standard input. As soon as the page knows
+    /// the scene that runs on the board, it shows that, unless its scene was changed before
     #[arg(value_name = "FILE")]
     pub scene: Option<String>,
     /// Address of the board: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH

@@ -26,18 +26,27 @@ pub struct SceneArgument {
 impl SceneArgument {
     /// Reads it for a certificate.
     pub fn load(&self) -> Result<SceneFile, CommandError> {
-        Ok(file::load(&self.file)?)
+        Ok(warned(file::load(&self.file)?))
     }
 
     /// Reads it for a simulation.
     pub fn load_to_simulate(&self) -> Result<SceneFile, CommandError> {
-        Ok(file::load_for(Purpose::Simulate, &self.file)?)
+        Ok(warned(file::load_for(Purpose::Simulate, &self.file)?))
     }
 
     /// The folder of the files that it names.
     pub fn folder(&self) -> &Path {
         folder(&self.file)
     }
+}
+
+/// The scene of a file, whose implausible numbers standard error names.
+pub fn warned(file: SceneFile) -> SceneFile {
+    for warning in file::warnings(&file) {
+        // If the terminal is gone, the warning is lost.
+        let _ = writeln!(io::stderr(), "warning: {warning}");
+    }
+    file
 }
 
 /// The folder of a file; the current folder for standard input.

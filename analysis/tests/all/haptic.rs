@@ -118,7 +118,7 @@ fn json_has_the_fields_of_the_contract_and_nothing_else_is_printed() {
     let mut fields: Vec<&str> = answer.keys().map(String::as_str).collect();
     fields.sort_unstable();
     let fields = fields.join(" ");
-    let wanted = "alpha alpha_coupled assumptions delta margin message name reason remedies rules \
-                  theta verdict";
+    let wanted = "alpha alpha_coupled assumptions delta felt_stiffness free_damping margin message name on_board \
+                  reason remedies rules theta verdict";
     assert_eq!(fields, wanted);
 }

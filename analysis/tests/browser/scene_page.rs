@@ -87,6 +87,12 @@ pub fn a_narrow_page_is_not_cut_off_and_every_field_has_a_label() {
     let (_folder, mut page) = opened(360, WALL);
     let width = page.value("document.documentElement.scrollWidth");
     assert!(width.as_f64().unwrap() <= 360.0, "{width}");
+    let order = page.value(
+        "['summary', 'handle', 'verdict', 'parameters', 'pictures', 'board'].map((id) => \
+         document.getElementById(id).getBoundingClientRect().top)",
+    );
+    let tops: Vec<f64> = serde_json::from_value(order).unwrap();
+    assert!(tops.is_sorted() && tops[0] < 20.0 && tops[1] < 120.0, "{tops:?}");
     let words = page.value("document.body.textContent");
     assert!(!words.as_str().unwrap().contains("[object"), "{words}");
     let unnamed = page.value(

@@ -90,10 +90,15 @@ pub fn a_board_is_watched_tuned_armed_and_recorded() {
     let mut page = connected(&address);
     assert!(text(&mut page, "state").starts_with("damper_wall: "), "{}", text(&mut page, "state"));
 
+    // The page has opened the board's scene.
+    page.wait_for("JSON.parse(window.haptic.scene()).name === 'damper_wall'");
+
     // Refused before it is sent, in the words of the certificate.
-    let sentence = wall(30.0, 0.01).certify_in(Format::F32).unwrap_err().to_string();
+    let rejection = wall(30.0, 0.01).certify_in(Format::F32).unwrap_err();
     type_number(&mut page, "stiffness", "30");
-    assert_eq!(text(&mut page, "judged"), sentence);
+    let judged = text(&mut page, "judged");
+    assert!(judged.starts_with(rejection.reason_in(Format::F64).as_str()), "{judged}");
+    assert!(judged.contains("; it would pass with stiffness <= "), "{judged}");
     assert_eq!(page.value("document.getElementById('board-apply').disabled"), true);
     type_number(&mut page, "stiffness", "soft");
     assert!(text(&mut page, "judged").contains("`soft` is not a finite number"));

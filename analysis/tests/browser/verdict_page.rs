@@ -98,9 +98,9 @@ fn shown(page: &mut Page) -> Vec<[String; 2]> {
     serde_json::from_value(rows).unwrap()
 }
 
-/// Label and value of each row that `haptic certify` prints.
+/// Label and value of each row that `haptic certify -v` prints.
 fn printed(file: &str) -> Vec<[String; 2]> {
-    let text = String::from_utf8(haptic(&["certify", file]).stdout).unwrap();
+    let text = String::from_utf8(haptic(&["certify", "-v", file]).stdout).unwrap();
     let row = |line: &str| {
         let (label, value) = line.split_at(LABEL);
         [label.trim_end(), value.strip_prefix(' ').unwrap()].map(ToOwned::to_owned)

@@ -89,6 +89,8 @@ pub struct QuantizationBound {
     pub crossing: Option<f64>,
     /// Declared friction of the device.
     pub friction: Option<f64>,
+    /// Largest torque of the motor, as far as stated.
+    pub motor: Option<f64>,
     /// Whether the bound holds for any motion. Otherwise it holds at rest, and on one side of a
     /// face.
     pub in_any_motion: bool,
@@ -106,6 +108,10 @@ impl QuantizationBound {
             current: steps.current,
             crossing: steps.crossing,
             friction: steps.friction,
+            motor: match (scene.torque_limit, steps.full_scale) {
+                (Some(limit), Some(full_scale)) => Some(limit.min(full_scale)),
+                (limit, full_scale) => limit.or(full_scale),
+            },
             in_any_motion,
         };
         let is_safe =
@@ -155,23 +161,31 @@ impl QuantizationBound {
 impl fmt::Display for QuantizationBound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let hum = RoundUp3(self.hum());
-        match (self.friction.map(ShortF64), self.comes_to_rest()) {
-            (None, _) => {
+        // A motor does not move a device with more friction than its torque.
+        let weak_motor = self.motor.filter(|&motor| self.hum() > motor).map(ShortF64);
+        match (weak_motor, self.friction.map(ShortF64), self.comes_to_rest()) {
+            (Some(motor), ..) => write!(
+                f,
+                "errors of torque of up to {hum} N m are more than the {motor} N m of the motor, so that no \
+                 friction that it moves prevents a limit cycle: use a finer encoder, or a softer coupling or \
+                 environment"
+            )?,
+            (None, None, _) => {
                 write!(
                     f,
                     "errors of torque of up to {hum} N m make a limit cycle possible unless the device \
                      has {hum} N m of Coulomb friction"
                 )?;
             }
-            (Some(friction), None) => write!(
+            (None, Some(friction), None) => write!(
                 f,
                 "the device's friction of {friction} N m prevents a limit cycle, as far as the \
                  steps are stated"
             )?,
-            (Some(friction), Some(true)) => {
+            (None, Some(friction), Some(true)) => {
                 write!(f, "the device's friction of {friction} N m prevents a limit cycle")?;
             }
-            (Some(friction), Some(false)) => write!(
+            (None, Some(friction), Some(false)) => write!(
                 f,
                 "errors of torque of up to {hum} N m make a limit cycle possible: the device's friction of \
                  {friction} N m is lower"

@@ -172,6 +172,18 @@ impl Rejection {
 
     /// The same, beginning with the rounding of the numbers.
     pub const fn sentence_in(&self, format: Format) -> Sentence {
+        let mut t = self.reason_in(format);
+        let written = self.remedies().write(&mut t);
+        if let Self::UnstablePole { behind_standard: Some((coupling, remedy)), .. } = self {
+            t.push(if written == 0 { "; it would pass" } else { ", or" });
+            push!(t, " behind a coupling of " {*coupling} " N m/rad with ");
+            remedy.write(&mut t);
+        }
+        t
+    }
+
+    /// The same without the remedies.
+    pub const fn reason_in(&self, format: Format) -> Sentence {
         let mut t = Sentence::new();
         if !matches!(format, Format::F64) {
             push!(t, "with its coefficients rounded to " {format.name().as_str()} ": ");
@@ -254,12 +266,6 @@ impl Rejection {
                     push!(t, " (alpha = " {index.hi()} ", delta = " {limit.lo()} " N m s/rad)");
                 }
             }
-        }
-        let written = self.remedies().write(&mut t);
-        if let Self::UnstablePole { behind_standard: Some((coupling, remedy)), .. } = self {
-            t.push(if written == 0 { "; it would pass" } else { ", or" });
-            push!(t, " behind a coupling of " {*coupling} " N m/rad with ");
-            remedy.write(&mut t);
         }
         t
     }

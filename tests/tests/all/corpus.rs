@@ -30,5 +30,9 @@ fn any_bytes_on_the_wire() {
 
 #[test]
 fn any_changes_of_any_scene() {
-    replay("parameters", include_str!("../../../firmware/fuzz/corpus/parameters.hex"), parameters::run);
+    replay(
+        "parameters",
+        include_str!("../../../firmware/fuzz/corpus/parameters.hex"),
+        parameters::run,
+    );
 }

@@ -1,11 +1,14 @@
 //! Requests to a board and their results, in words.
 
+use haptic_servo::number::Format;
+use haptic_servo::parameter::Parameter;
 use haptic_servo::servo::Step;
-use haptic_servo::tuning::{Parameters, RenderError};
+use haptic_servo::tuning::{self, Parameters, RenderError};
 use haptic_servo::wire::description::Description;
 use haptic_servo::wire::message::{ActiveParameters, Changes, Id, Outcome, Refusal, ToBoard};
 
 use super::formatting;
+use crate::remedy_search::{RemedySearch, would_pass};
 
 /// A request to a board.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,12 +117,37 @@ pub fn refusal_in_words(
     if let Err(reason) = description.explain(names(parameters), changes)
         && reason.step() == step
     {
-        return RequestResult::Refused(reason.to_string());
+        return RequestResult::Refused(in_words(&reason, changes, description, parameters));
     }
     if let Some(mode) = description.other_mode(changes) {
         return RequestResult::Refused(RenderError::OtherMode { mode }.to_string());
     }
     Outcome::Refused(Refusal::Set(step)).into()
+}
+
+/// The reason of a refusal, with the changes of one number that the board would take instead.
+pub fn in_words(
+    reason: &RenderError,
+    changes: &Changes,
+    description: &Description,
+    parameters: &ActiveParameters,
+) -> String {
+    let Ok(scene) = tuning::apply(&description.scene, changes) else { return reason.to_string() };
+    let passes = |parameter: Parameter, value: f64| {
+        let others = changes.iter().filter(|(other, _)| *other != parameter).copied();
+        let mut changes: Changes = others.collect();
+        changes.push((parameter, value)).is_ok()
+            && description.explain(names(parameters), &changes).is_ok()
+    };
+    let search = RemedySearch { scene: &scene, passes };
+    match reason {
+        RenderError::Rejected(rejection) => {
+            let found = search.behind(&rejection.remedies());
+            rejection.reason_in(Format::F64).as_str().to_owned() + &would_pass(None, &found)
+        }
+        RenderError::Timing(error) => error.to_string() + &would_pass(None, &search.searched()),
+        other => other.to_string(),
+    }
 }
 
 /// The parameters that can be changed.

@@ -7,6 +7,8 @@
 //! A bound here excludes numbers that have no meaning at all. Whether a scene with these numbers is safe is
 //! decided by the certificate: a negative stiffness is a bad spring, not a bad file.
 
+use std::f64::consts::TAU;
+
 use haptic_servo::parameter::{Parameter, Range};
 
 use Presence::{Default, Needed, Optional};
@@ -254,8 +256,10 @@ keys! {
 
     /// When the servo runs.
     SERVO = other("servo", "", TABLE), Needed, "";
-    /// Time from one update of the torque to the next.
+    /// Time from one update of the torque to the next; `rate` may be there in its place.
     PERIOD = of(Parameter::Period), Needed, "0.001";
+    /// Updates of the torque in a second, in place of the period.
+    RATE = other("servo.rate", "Hz", POSITIVE), Optional("`servo.period` states it"), "1000.0";
     /// Longest tolerated time between two updates, not less than the period.
     WORST_PERIOD = Key { bound: POSITIVE, ..of(Parameter::WorstPeriod) },
         Optional("the period: no update may be missed"), "0.001";
@@ -487,6 +491,9 @@ keys! {
     /// Angle of one encoder count.
     ENCODER_STEP = other("limits.encoder_step", "rad", POSITIVE),
         Optional("not known: nothing is said of rest, and `run` takes 65536 counts a turn"), "1e-4";
+    /// Counts of the encoder in a turn, in place of the angle of one.
+    COUNTS_PER_TURN = other("limits.counts_per_turn", "counts", POSITIVE),
+        Optional("`limits.encoder_step` states it"), "4096.0";
     /// Torque of the motor at the largest code of the DAC.
     FULL_SCALE = other("limits.full_scale", "N m", POSITIVE),
         Optional("not known: `run` takes the torque limit, or 5 N m"), "2.0";
@@ -512,6 +519,11 @@ keys! {
 
 /// The keys of parts that may be beside every type of environment that is a sum of parts.
 pub const BESIDE: &[&Key] = &[&DRAG];
+
+/// Keys that state the number of another key in a unit that data sheets have: the key, the other key, and the
+/// product of their values. A file that is written has the other key.
+pub const RECIPROCALS: [(&Key, &Key, f64); 2] =
+    [(&RATE, &PERIOD, 1.0), (&COUNTS_PER_TURN, &ENCODER_STEP, TAU)];
 
 #[cfg(test)]
 mod tests {

@@ -29,6 +29,7 @@ mod faults;
 mod filter;
 mod json;
 mod named_device;
+mod plausible;
 mod problem;
 mod section;
 mod source;
@@ -36,12 +37,14 @@ mod texts;
 mod toml;
 mod transducers;
 mod tree;
+mod units;
 mod updates;
 
 use std::path::Path;
 
 pub use device::Purpose;
 pub use device_file::DeviceFile;
+pub use plausible::warnings;
 pub use problem::{FileError, Problem, excerpt};
 pub use scene::SceneFile;
 pub use source::{Format, MAX_BYTES, text_of};
@@ -120,6 +123,22 @@ pub fn parse_for(
 /// If the text is not valid in `format`.
 pub fn as_json(file: &str, format: Format, text: &str) -> Result<serde_json::Value, FileError> {
     parse_with(file, 1, format, text, |root, _| Ok(root.value.into_json()))
+}
+
+/// A scene as JSON with the period and the encoder's step in place of the keys that state them otherwise
+/// ([`key::RECIPROCALS`]), where only these are there.
+pub fn canonical(mut scene: serde_json::Value) -> serde_json::Value {
+    for (other, key, product) in key::RECIPROCALS {
+        let Some(table) = scene.get_mut(key.table()).and_then(|table| table.as_object_mut()) else {
+            continue;
+        };
+        let value = table.get(other.name()).and_then(|value| value.as_f64());
+        if let (Some(value), false) = (value, table.contains_key(key.name())) {
+            table.remove(other.name());
+            table.insert(key.name().to_owned(), (product / value).into());
+        }
+    }
+    scene
 }
 
 /// Parses a text that begins at a line of a longer file.

@@ -123,7 +123,7 @@ struct Servo {
 }
 
 fn servo_of(mut section: Section<'_>) -> Read<Servo> {
-    let period = section.number(&key::PERIOD);
+    let period = period(&mut section);
     let worst = section.optional(&key::WORST_PERIOD);
     let output_delay = section.time(&key::OUTPUT_DELAY);
     let jitters = [&key::OUTPUT_JITTER, &key::COUNT_JITTER].map(|key| section.number(key));
@@ -141,6 +141,11 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
         return Err(section.conflict(&key::WORST_PERIOD, reason));
     }
     Ok(Servo { timing: Timing { period, worst_period }, latency })
+}
+
+/// The period in s, or that of the rate.
+fn period(section: &mut Section<'_>) -> Read<f64> {
+    section.or_reciprocal(&key::PERIOD)?.ok_or_else(|| section.missing(&key::PERIOD))
 }
 
 /// Checks the times between count and torque, each with a bound that depends on other keys.
@@ -247,8 +252,9 @@ fn coupling_of(mut section: Section<'_>) -> Read<Coupling> {
 
 /// Reads `[limits]`: the torque limit, the encoder's step, and the motor's full scale.
 pub fn limits_of(mut section: Section<'_>) -> Read<[Option<f64>; 3]> {
-    let [torque, encoder, full_scale] =
-        [&key::TORQUE_LIMIT, &key::ENCODER_STEP, &key::FULL_SCALE].map(|key| section.optional(key));
+    let [torque, full_scale] =
+        [&key::TORQUE_LIMIT, &key::FULL_SCALE].map(|key| section.optional(key));
+    let encoder = section.or_reciprocal(&key::ENCODER_STEP);
     section.finish();
     Ok([torque?, encoder?, full_scale?])
 }

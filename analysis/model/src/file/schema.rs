@@ -59,6 +59,12 @@ fn table(path: &str) -> Value {
             ]);
             schema
         }
+        "servo" => {
+            let mut schema = object(keys, |_| false);
+            let either = [key::PERIOD.name(), key::RATE.name()];
+            schema["oneOf"] = either.map(|key| json!({ "required": [key] })).into_iter().collect();
+            schema
+        }
         _ => object(keys, |key| key.presence == Presence::Needed),
     }
 }

@@ -7,9 +7,11 @@ use haptic_servo::parameter::Range;
 use haptic_servo::scene::TimeRange;
 
 use super::faults::{Faults, Read, Reported, all};
-use super::key::{Key, Presence};
+use super::key::{self, Bound, Form, Key, Presence};
 use super::problem::{Fault, Problem, excerpt};
 use super::tree::{Entry, Node, Span, Value};
+use super::units;
+use crate::quantity::significant;
 
 /// Similarity of two names (0 to 1) from which one counts as a misspelling of the other. Chosen so that one
 /// wrong, missing or swapped letter in a word of six still counts.
@@ -140,6 +142,25 @@ impl<'t> Section<'t> {
     pub fn optional(&mut self, key: &Key) -> Read<Option<f64>> {
         let Some(node) = self.take(key) else { return Ok(None) };
         self.number_of(key, &self.name_of(key), &node, |value| key.bound.admits(value)).map(Some)
+    }
+
+    /// The number of that key, or of the key in its place, of [`key::RECIPROCALS`].
+    pub fn or_reciprocal(&mut self, key: &Key) -> Read<Option<f64>> {
+        let own = self.optional(key);
+        let Some((other, _, product)) = key::RECIPROCALS.iter().find(|(_, of, _)| *of == key)
+        else {
+            return own;
+        };
+        let others = self.optional(other);
+        match (own?, others?) {
+            (own, None) => Ok(own),
+            (None, Some(value)) if key.bound.admits(product / value) => Ok(Some(product / value)),
+            (None, Some(_)) => Err(self.out_of_bounds(other)),
+            (Some(_), Some(_)) => {
+                let reason = format!("stands beside `{}`: leave out one of them", key.name());
+                Err(self.conflict(other, reason))
+            }
+        }
     }
 
     /// The number of that key. Where it is left out, it is the key's default, if that has one.
@@ -295,8 +316,15 @@ impl<'t> Section<'t> {
     }
 
     fn wrong_kind_of(&self, key: &Key, node: &Node) -> Reported {
-        let name = self.name_of(key);
-        self.wrong_kind(&name, &node.span, node.value.kind(), &key.requirement())
+        let mut bound = key.requirement();
+        // A number in a string, mostly with its unit.
+        if let (Bound::Number(_) | Bound::Other(Form::Time, _), Value::Text(text)) =
+            (key.bound, &node.value)
+            && let Some(value) = units::in_unit(text, key.unit)
+        {
+            bound += &format!("; did you mean {}?", significant(value, 6));
+        }
+        self.wrong_kind(&self.name_of(key), &node.span, node.value.kind(), &bound)
     }
 
     fn wrong_kind(&self, name: &str, span: &Span, found: &str, bound: &str) -> Reported {

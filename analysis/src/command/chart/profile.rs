@@ -35,6 +35,12 @@ pub fn of_file(file: &SceneFile) -> Result<Chart, CommandError> {
     let title =
         format!("{}: torque profile of delay {delay}, T = {period} ms", shortened(&file.name, 40));
     let picture = chart::profile::profile(&title, &curve, file.scene.torque_limit)?;
-    let rows = curve.points.into_iter().map(|point| point.map(Into::into).to_vec());
-    Ok(Chart { picture, data: Data::new(&["angle (rad)", "torque (N m)", "potential (J)"], rows) })
+    let compliance = curve.compliance;
+    let rows = curve.points.into_iter().map(move |[angle, torque, potential]| {
+        let handle = angle + compliance * torque;
+        [angle, torque, potential, handle].map(Into::into).to_vec()
+    });
+    const COLUMNS: [&str; 4] =
+        ["angle (rad)", "torque (N m)", "potential (J)", "angle at the handle (rad)"];
+    Ok(Chart { picture, data: Data::new(&COLUMNS, rows) })
 }

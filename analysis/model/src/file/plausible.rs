@@ -1,0 +1,128 @@
+//! Warnings about numbers that no device has: most are right in another unit than that of their key.
+
+use std::f64::consts::TAU;
+
+use super::key::{self, Key};
+use super::scene::SceneFile;
+use crate::quantity::significant;
+
+/// The coarsest step of an encoder in rad: Hall sensors have 100 counts a turn and fewer, which is stated
+/// exactly where it is meant.
+const COARSEST_STEP: f64 = 0.15;
+/// The longest period in s at which a hand feels anything but steps.
+const LONGEST_PERIOD: f64 = 0.1;
+/// The largest inertia in kg m^2 and friction in N m of a device that a hand moves.
+const LARGEST_INERTIA: f64 = 1.0;
+const LARGEST_FRICTION: f64 = 100.0;
+/// The largest damping, in inertias per period: a device stops within a hundredth of a period.
+const LARGEST_DAMPING: f64 = 100.0;
+/// The farthest face in rad, three turns away.
+const FARTHEST_FACE: f64 = 3.0 * TAU;
+
+/// A sentence for each implausible number of a file.
+pub fn warnings(file: &SceneFile) -> Vec<String> {
+    let doubts =
+        [step(file), period(file), inertia(file), damping(file), friction(file), face(file)];
+    doubts.into_iter().flatten().collect()
+}
+
+/// `meant` is the value that was probably meant, and `of` its origin.
+fn doubt(key: &Key, value: f64, why: &str, meant: f64, of: &str) -> String {
+    let [value, meant] = [significant(value, 6), significant(meant, 3)];
+    let Key { path, unit, .. } = key;
+    format!("`{path}` = {value} {unit} {why}: did you mean {meant}, of {value} {of}?")
+}
+
+fn step(file: &SceneFile) -> Option<String> {
+    let step = file.encoder_step.filter(|&step| step > COARSEST_STEP)?;
+    let (meant, of) = match step > TAU {
+        true => (TAU / step, "counts a turn"),
+        false => (step.to_radians(), "degrees"),
+    };
+    let why = format!("gives the encoder {} counts a turn", significant(TAU / step, 2));
+    Some(doubt(&key::ENCODER_STEP, step, &why, meant, of))
+}
+
+fn period(file: &SceneFile) -> Option<String> {
+    let period = Some(file.scene.timing.period).filter(|&period| period > LONGEST_PERIOD)?;
+    let (meant, of) = if period < 100.0 {
+        (1e-3 * period, "ms")
+    } else {
+        (1.0 / period, "Hz, which is `servo.rate`")
+    };
+    let why = format!("is {} updates a second", significant(1.0 / period, 2));
+    Some(doubt(&key::PERIOD, period, &why, meant, of))
+}
+
+fn inertia(file: &SceneFile) -> Option<String> {
+    let inertia = Some(file.scene.device.inertia).filter(|&inertia| inertia > LARGEST_INERTIA)?;
+    let why = "is more than a hand moves";
+    Some(doubt(&key::INERTIA, inertia, why, 1e-7 * inertia, "g cm^2"))
+}
+
+fn damping(file: &SceneFile) -> Option<String> {
+    let (device, period) = (&file.scene.device, file.scene.timing.period);
+    let times = device.damping * period / device.inertia;
+    if times <= LARGEST_DAMPING {
+        return None;
+    }
+    let why = format!(
+        "is {} times inertia over period, so that the device stops within a hundredth of a period",
+        significant(times, 2)
+    );
+    Some(doubt(&key::DEVICE_DAMPING, device.damping, &why, 1e-3 * device.damping, "mN m s/rad"))
+}
+
+fn friction(file: &SceneFile) -> Option<String> {
+    let motor = file.scene.torque_limit.or(file.full_scale);
+    let friction = file.friction.filter(|&it| it > motor.unwrap_or(LARGEST_FRICTION))?;
+    let why = motor.map_or_else(
+        || "is more than a hand moves".to_owned(),
+        |motor| {
+            format!(
+                "is more than the {} N m of the motor, which then moves nothing",
+                significant(motor, 3)
+            )
+        },
+    );
+    Some(doubt(&key::DEVICE_FRICTION, friction, &why, 1e-3 * friction, "mN m"))
+}
+
+fn face(file: &SceneFile) -> Option<String> {
+    let face = file.scene.environment.wall()?.face();
+    let why = "is more than three turns away";
+    let is_far = face.abs() > FARTHEST_FACE;
+    is_far.then(|| doubt(&key::FACE, face, why, face.to_radians(), "degrees"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::file_on_paddle;
+
+    #[test]
+    fn numbers_in_other_units_are_named_with_the_value_that_was_meant() {
+        let wall = "[environment]\ntype = \"damper-wall\"\nstiffness = 3\ndamping = 0\ndelay = 1\n";
+        let plain = file_on_paddle(wall);
+        assert_eq!(warnings(&plain), Vec::<String>::new());
+        let changed = |change: fn(&mut SceneFile)| {
+            let mut file = plain.clone();
+            change(&mut file);
+            let [warning] = &warnings(&file)[..] else { panic!("{:?}", warnings(&file)) };
+            warning.clone()
+        };
+        for (warning, parts) in [
+            (changed(|file| file.encoder_step = Some(4096.0)), ["4096 rad", "mean 0.00153,"]),
+            (changed(|file| file.encoder_step = Some(0.36)), ["17 counts", "mean 0.00628,"]),
+            (changed(|file| file.friction = Some(49_200.0)), ["49200 N m", "mN m"]),
+            (changed(|file| file.scene.device.damping = 22.0), ["1000 times", "mean 0.022,"]),
+            (changed(|file| file.scene.device.inertia = 220.0), ["hand", "mean 0.000022,"]),
+        ] {
+            assert!(parts.iter().all(|part| warning.contains(part)), "{warning}");
+        }
+        let mut slow = plain.clone();
+        slow.scene.timing.period = 1000.0;
+        slow.scene.device.damping = 1e-9;
+        assert!(warnings(&slow)[0].contains("mean 0.001, of 1000 Hz"), "{:?}", warnings(&slow));
+    }
+}
