@@ -50,6 +50,7 @@ pub mod board;
 // Verdicts, simulations and limits of scenes.
 pub mod closed_form;
 pub mod design;
+pub mod felt;
 pub mod latency_limits;
 pub mod limits;
 pub mod nyquist;

@@ -32,7 +32,7 @@ mod assumption;
 mod beside_profile;
 mod between;
 mod deviation;
-mod digits;
+pub(crate) mod digits;
 mod linearity;
 mod loop_intervals;
 mod margin;

@@ -21,6 +21,7 @@ mod current_loop;
 mod design;
 mod drive;
 mod fault;
+mod limits;
 mod modulation;
 mod phase;
 mod power_stage;
@@ -32,7 +33,9 @@ mod supervision;
 pub use alignment::{Alignment, AlignmentStep};
 pub use controller::CurrentController;
 pub use current_loop::CurrentLoop;
-pub use drive::{Drive, DriveError, DutyCurrent, DutyError, Motor, Regeneration, Supply, Winding};
+pub use drive::{
+    Drive, DriveError, DriveLimits, DutyCurrent, DutyError, Motor, Regeneration, Supply, Winding,
+};
 pub use fault::{AlignmentError, PowerFault};
 pub use modulation::{Duties, PwmTiming, Sample, sine_and_cosine};
 pub use phase::{EncoderIndex, IndexOffset, OffsetCheck, PhaseAlignment};
