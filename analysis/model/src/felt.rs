@@ -9,8 +9,8 @@ use haptic_servo::passivity::polynomial::{Polynomial, UnitRoot};
 use haptic_servo::scene::{Coupling, Scene};
 
 /// Compliance in rad/(N m) at rest between handle and environment; 0 if they are rigidly connected, `None` if
-/// the coupling does not exist. That of a matched coupling is about `(T + d + tau)/(2 delta)`, with all of its
-/// delays and lags.
+/// the coupling does not exist. That of a matched coupling is about `(T + d + tau)/(2 delta)`, with all of
+/// its delays and lags.
 pub fn compliance(scene: &Scene) -> Option<f64> {
     match scene.coupling {
         Coupling::Rigid => Some(0.0),

@@ -193,7 +193,13 @@ impl DriveLimits {
                 before = ", or ";
             }
         });
-        if let Some([bandwidth, torque, speed]) = self.together {
+        let alone = self.bandwidth.is_some() as u8
+            + self.torque.is_some() as u8
+            + self.speed.is_some() as u8;
+        // Where one number alone is too large, the others need not be lower.
+        if let Some([bandwidth, torque, speed]) = self.together
+            && alone != 1
+        {
             push!(*text, {before} {bandwidth} " Hz, " {torque} " N m and " {speed} " rad/s together");
         }
     }

@@ -1,5 +1,5 @@
-//! The largest numbers with which a drive passes every check of its design, as the checks themselves judge them,
-//! and the design of a current loop or its refusal with these numbers.
+//! The largest numbers with which a drive passes every check of its design, as the checks themselves judge
+//! them, and the design of a current loop or its refusal with these numbers.
 
 use super::current_loop::CurrentLoop;
 use super::design::Design;

@@ -13,8 +13,8 @@ use super::quantity::Quantity;
 pub enum Judge {
     /// The certificate of the scene as it is written.
     Certificate,
-    /// The certificate of a board, too: with limited torques, its time to read a count, the coefficients as its
-    /// numbers round them, and a period that it can pace, from this shortest one in s.
+    /// The certificate of a board, too: with limited torques, its time to read a count, the coefficients as
+    /// its numbers round them, and a period that it can pace, from this shortest one in s.
     Board(f64),
 }
 

@@ -1,8 +1,8 @@
 //! The design procedure of theory, section 6, in its three directions: the environments that a device can
 //! render, the device that a class of environments needs, and the longest period.
 //!
-//! The certificate itself judges each value, of a board or of the scene alone. The answer is the last value that
-//! passes, exactly or in three digits on the side that passes, and comes with scenes that certify.
+//! The certificate itself judges each value, of a board or of the scene alone. The answer is the last value
+//! that passes, exactly or in three digits on the side that passes, and comes with scenes that certify.
 
 mod edge;
 mod judge;
@@ -118,8 +118,8 @@ impl Terms {
         files.iter().all(|file| self.judge.passes(&file.scene))
     }
 
-    /// The limit at an edge, with all that goes with it as `at` gives it: the exact one, or the nearest of three
-    /// digits with which that passes.
+    /// The limit at an edge, with all that goes with it as `at` gives it: the exact one, or the nearest of
+    /// three digits with which that passes.
     fn rounded<T>(
         &self,
         edge: f64,
@@ -276,8 +276,8 @@ pub fn rate(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>> {
     timed(files, terms, rates.fold(0.0, f64::max), 0.5, f64::recip)
 }
 
-/// The scene at another period in s, with the same number of missed updates, and as many updates of the amplifier
-/// in a period.
+/// The scene at another period in s, with the same number of missed updates, and as many updates of the
+/// amplifier in a period.
 fn at_period(scene: &Scene, period: f64) -> Scene {
     let (mut scene, before) = (*scene, scene.timing.period);
     let worst = scene.timing.worst_period.map(|worst| worst / before);

@@ -31,7 +31,8 @@ enum Kind {
 }
 
 impl Structure {
-    /// All that a board renders, but for a spring at a phase: a board has that coupling for latched torques only.
+    /// All that a board renders, but for a spring at a phase: a board has that coupling for latched torques
+    /// only.
     pub const ALL: [Self; 5] = [
         Self { coupling: Kind::Spring, is_latched: true },
         Self { coupling: Kind::None, is_latched: true },
@@ -183,8 +184,8 @@ impl Search {
         change(&mut changed.scene.latency).then_some(changed)
     }
 
-    /// The tried periods in s, in two digits: from the shortest to the scene's own, or to four times the shortest.
-    /// Those of a bridge are filled by whole periods of its modulation.
+    /// The tried periods in s, in two digits: from the shortest to the scene's own, or to four times the
+    /// shortest. Those of a bridge are filled by whole periods of its modulation.
     fn periods(&self) -> Vec<f64> {
         let own = self.scene.timing.period.max(4.0 * self.shortest_period);
         let steps = ((own / self.shortest_period).ln() / RATE_STEP.ln()).ceil() as i32;

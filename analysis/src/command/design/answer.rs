@@ -154,6 +154,9 @@ fn save(output: &Path, texts: &[String]) -> Result<(), CommandError> {
     if let ([text], true) = (texts, has_extension(output, "toml")) {
         return write_file(output, text);
     }
+    if texts.is_empty() {
+        return Ok(());
+    }
     std::fs::create_dir_all(output)?;
     for (index, text) in texts.iter().enumerate() {
         std::fs::write(output.join(format!("design-{}.toml", index + 1)), text)?;

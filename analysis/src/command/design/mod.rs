@@ -1,5 +1,5 @@
-//! `haptic design`: the largest or smallest value of a quantity that certifies, the stiffest wall, and the numbers
-//! of a motor.
+//! `haptic design`: the largest or smallest value of a quantity that certifies, the stiffest wall, and the
+//! numbers of a motor.
 
 mod answer;
 mod motor;
@@ -46,8 +46,8 @@ pub struct Arguments {
 /// The directions of a design.
 #[derive(Debug, Subcommand)]
 pub enum DesignGoal {
-    /// Find the stiffest wall at the handle that certifies on a board, over coupling, time of the output, rate
-    /// and damper, and what a better device would buy
+    /// Find the stiffest wall at the handle that certifies on a board, over coupling, time of the output,
+    /// rate and damper, and what a better device would buy
     Stiffest(stiffest::Arguments),
     /// Find the largest bandwidth, torque and speed of a motor on a board's bridge
     Motor(motor::Arguments),
@@ -173,8 +173,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     }
 }
 
-/// The answer of a design on a board. Where nothing passes on one, the reason comes with it; if no board has the
-/// times of such a scene, or the scene states no limits of a board, the answer is that of the certificate alone.
+/// The answer of a design on a board. Where nothing passes on one, the reason comes with it; if no board has
+/// the times of such a scene, or the scene states no limits of a board, the answer is that of the certificate
+/// alone.
 fn on_a_board(
     terms: &Terms,
     design: impl Fn(&Terms) -> DesignLimit<Vec<SceneFile>>,

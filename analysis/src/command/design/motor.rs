@@ -41,8 +41,8 @@ pub struct Arguments {
     /// Bandwidth in Hz of the current loop; from a file: by `device.actuator_lag`; otherwise 1000
     #[arg(long, value_name = "HZ", value_parser = positive)]
     pub bandwidth: Option<f64>,
-    /// Full-scale torque in N m; from a file: `limits.full_scale`; otherwise that of the current that the board
-    /// bears for ever
+    /// Full-scale torque in N m; from a file: `limits.full_scale`; otherwise that of the current that the
+    /// board bears for ever
     #[arg(long, value_name = "N m", value_parser = positive)]
     pub torque: Option<f64>,
     /// Largest speed in rad/s; from a file: `supply.largest_speed`; otherwise 25

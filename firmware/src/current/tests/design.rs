@@ -112,7 +112,7 @@ fn a_supply_that_is_too_low_is_told_what_would_be_enough() {
 
 #[test]
 fn a_refusal_names_the_largest_of_each_number_that_passes() {
-    let low = Drive { supply: Supply::sinking(12.0, 26.0), ..DRIVE };
+    let low = Drive { supply: Supply::sinking(15.0, 26.0), ..DRIVE };
     let fast = Drive { bandwidth: 4000.0, ..DRIVE };
     let strong = Transducers { full_scale_torque: 1.8, ..TRANSDUCERS };
     let phases = Drive { supply: low.supply, ..BRUSHLESS_DRIVE };
