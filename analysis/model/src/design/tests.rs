@@ -262,7 +262,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(100) })]
 
     #[test]
-    fn what_a_design_writes_for_a_board_certifies_on_it(scene in any_scene(), exact: bool) {
+    fn what_a_design_writes_for_a_board_certifies_on_it(scene in any_scene(), exact in any::<bool>()) {
         let terms = Terms { judge: Judge::BOARD, exact, ..Terms::default() };
         let asked = [file(scene)];
         let of_quantity = |quantity| largest(&scene, quantity, &terms).map(|scene| vec![file(scene)]);
