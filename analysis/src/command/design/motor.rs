@@ -163,27 +163,22 @@ fn report(board: BoardModel, case: &Case) -> Report {
         let value = *place(&mut case);
         *place(&mut case) = beyond * limit.unwrap_or(value);
         case.drive.supply.highest = case.drive.supply.highest.max(case.drive.supply.lowest);
-        Row {
-            number,
-            unit,
-            value,
-            limit,
-            limited_by: case.design().map_or_else(limited_by, |_| ""),
-        }
+        Row { number, unit, value, limit, limited_by: case.refusal().map_or("", limited_by) }
     };
-    let design = case.design();
+    let refusal = case.refusal();
     Report {
         board: board.name(),
-        possible: design.is_ok(),
-        message: design.map_or_else(reason, |_| "the motor runs".to_owned()),
+        possible: refusal.is_none(),
+        message: refusal.map_or("the motor runs".to_owned(), reason),
         numbers: rows.map(row).into(),
         together: limits.together,
     }
 }
 
 impl Case {
-    fn design(&self) -> Result<CurrentLoop, DriveError> {
-        CurrentLoop::design(&self.drive, &B_G431B_ESC1, &self.transducers, self.period)
+    /// The reason why the motor cannot run.
+    fn refusal(&self) -> Option<DriveError> {
+        CurrentLoop::design(&self.drive, &B_G431B_ESC1, &self.transducers, self.period).err()
     }
 }
 
