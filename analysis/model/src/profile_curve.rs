@@ -6,7 +6,7 @@ use std::ops::Range;
 use haptic_servo::environment::{Ends, FULL_SCALE, Profile};
 use haptic_servo::scene::Scene;
 
-use crate::design::{Choice, DesignLimit, Quantity, Terms, largest};
+use crate::design::{DesignLimit, Quantity, Terms, largest};
 use crate::felt;
 use crate::snap_branches::{self, Branch, held, slope};
 
@@ -175,21 +175,18 @@ fn steepest(profile: &Profile, shown: &Range<f64>, torque: impl Fn(f64) -> f64) 
     [rise, fall]
 }
 
-/// The design's answer with everything else as it is.
-const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };
-
 /// For the table and its end stops, beside the line to a snap point: this line grows with the torque, and
 /// stays unchanged where the end stops grow.
 fn certified_rise(scene: &Scene, profile: &Profile, rise: f64, line: f64) -> Option<f64> {
     let is_of_stops = profile.ends.is_some_and(|ends| ends.stiffness == rise);
     // With a wall beside the profile this quantity is the stiffness of the wall.
     if is_of_stops && scene.environment.wall().is_none() {
-        return match largest(scene, Quantity::Stiffness, &AS_IT_IS) {
+        return match largest(scene, Quantity::Stiffness, &Terms::KEPT) {
             DesignLimit::Limit(stiffness, _) => Some(stiffness),
             _ => None,
         };
     }
-    match largest(scene, Quantity::Torque, &AS_IT_IS) {
+    match largest(scene, Quantity::Torque, &Terms::KEPT) {
         DesignLimit::Limit(torque, _) => Some((rise + line) * torque / profile.torque - line),
         _ => None,
     }
@@ -210,7 +207,7 @@ impl DetentLimits {
         let late = Quantity::Delay.set(scene, delay as f64).unwrap_or(*scene);
         let point = |count: u32| {
             let scene = Quantity::Count.set(&late, f64::from(count))?;
-            match largest(&scene, Quantity::Torque, &AS_IT_IS) {
+            match largest(&scene, Quantity::Torque, &Terms::KEPT) {
                 DesignLimit::Limit(torque, _) => Some((f64::from(count), torque)),
                 _ => None,
             }

@@ -25,6 +25,7 @@ mod palette;
 mod panel;
 pub mod picture;
 pub mod profile;
+pub mod stiffest;
 mod stroke;
 mod strokes;
 pub mod trace;

@@ -8,7 +8,7 @@ const LARGEST_POWER: f64 = 1e22;
 
 /// The side of a value on which a scene passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(crate) enum Side {
     /// It passes with smaller values.
     Below,
     /// It passes with larger values.
@@ -26,7 +26,7 @@ impl Side {
 
 /// A positive number of a few digits, three by default.
 #[derive(Clone, Copy)]
-pub(super) struct Digits {
+pub(crate) struct Digits {
     whole: u64,
     power: f64,
     divisor: f64,

@@ -31,7 +31,7 @@ mod assessment;
 mod assumption;
 mod between;
 mod deviation;
-mod digits;
+pub(crate) mod digits;
 mod linearity;
 mod loop_intervals;
 mod margin;

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use super::current_loop::{CurrentLoop, HeatLimit, Law, Limits, Output};
-use super::drive::{Drive, DriveError, Regeneration, Winding};
+use super::drive::{Drive, DriveError, DriveLimits, Regeneration, Winding};
 use super::modulation::PwmTiming;
 use super::phase::{EncoderIndex, Turn};
 use super::power_stage::{PowerStage, Thermistor};
@@ -51,32 +51,6 @@ const SINE_ERROR: f64 = 2e-4;
 const ROOT_3: f64 = 1.732_050_807_568_877_2;
 
 impl CurrentLoop {
-    /// Designs the loop of a drive on a power stage, for a servo with these transducers and this period in s.
-    ///
-    /// # Errors
-    /// If the drive cannot run there: the value and its bound.
-    pub const fn design(
-        drive: &Drive,
-        stage: &PowerStage,
-        transducers: &Transducers,
-        period: f64,
-    ) -> Result<Self, DriveError> {
-        let design = ok!(Design::of(drive, stage, transducers, period));
-        ok!(design.check());
-        Ok(design.current_loop())
-    }
-
-    /// For constants: a compile error if the drive cannot run.
-    #[track_caller]
-    pub const fn checked(
-        drive: &Drive,
-        stage: &PowerStage,
-        transducers: &Transducers,
-        period: f64,
-    ) -> Self {
-        or_refuse!(Self::design(drive, stage, transducers, period))
-    }
-
     /// The same loop with an index at the motor's encoder.
     ///
     /// # Errors
@@ -108,7 +82,7 @@ impl CurrentLoop {
 }
 
 /// The checked numbers, in SI units.
-struct Design<'a> {
+pub(super) struct Design<'a> {
     drive: &'a Drive,
     stage: &'a PowerStage,
     transducers: &'a Transducers,
@@ -122,7 +96,7 @@ struct Design<'a> {
 }
 
 impl<'a> Design<'a> {
-    const fn of(
+    pub(super) const fn of(
         drive: &'a Drive,
         stage: &'a PowerStage,
         transducers: &'a Transducers,
@@ -136,11 +110,11 @@ impl<'a> Design<'a> {
         Ok(Self { drive, stage, transducers, timing, instant, lag, current, plant })
     }
 
-    const fn check(&self) -> Result<(), DriveError> {
+    pub(super) const fn check(&self) -> Result<(), DriveError> {
         ok!(self.check_winding());
         let (bandwidth, largest) = (self.drive.bandwidth, 1.0 / (2.0 * TAU * self.instant));
         if bandwidth > largest {
-            return Err(DriveError::Bandwidth { bandwidth, largest });
+            return Err(DriveError::Bandwidth { bandwidth, largest, limits: DriveLimits::NONE });
         }
         ok!(self.check_current());
         ok!(self.check_supply());
@@ -172,7 +146,7 @@ impl<'a> Design<'a> {
         let turns = self.electrical_speed() / TAU;
         let largest = 1.0 / (INSTANTS_PER_TURN * self.instant);
         if turns > largest {
-            return Err(DriveError::ElectricalSpeed { turns, largest });
+            return Err(DriveError::ElectricalSpeed { turns, largest, limits: DriveLimits::NONE });
         }
         Ok(())
     }
@@ -195,7 +169,12 @@ impl<'a> Design<'a> {
         let (current, largest) = (self.current * OVER_CURRENT, self.stage.largest_current);
         if current > largest {
             let torque = self.transducers.full_scale_torque;
-            return Err(DriveError::Current { torque, current, largest });
+            return Err(DriveError::Current {
+                torque,
+                current,
+                largest,
+                limits: DriveLimits::NONE,
+            });
         }
         Ok(())
     }
@@ -212,13 +191,19 @@ impl<'a> Design<'a> {
         {
             return Err(DriveError::OpenVoltage { voltage, supply: supply.range() });
         }
-        let (needed, part) = (self.needed_voltage(), self.part_of_supply());
-        let available = supply.lowest * part;
+        let needed = self.needed_voltage();
+        let available = supply.lowest * self.part_of_supply();
         if needed <= available {
             Ok(())
         } else {
-            Err(DriveError::Voltage { needed, available, enough: needed / part })
+            let (enough, limits) = (self.enough_voltage(), DriveLimits::NONE);
+            Err(DriveError::Voltage { needed, available, enough, limits })
         }
+    }
+
+    /// The lowest supply in V with the largest voltage that the motor needs.
+    pub(super) const fn enough_voltage(&self) -> f64 {
+        self.needed_voltage() / self.part_of_supply()
     }
 
     /// Largest voltage in V that the motor needs: the model's step over the whole range of torque, at the
@@ -249,7 +234,7 @@ impl<'a> Design<'a> {
         self.timing.counts - 2 * low
     }
 
-    const fn current_loop(&self) -> CurrentLoop {
+    pub(super) const fn current_loop(&self) -> CurrentLoop {
         let Self { drive, stage, transducers, timing, .. } = *self;
         let resolution =
             CurrentResolution::of(drive, stage, &self.plant, timing.counts, self.instant);

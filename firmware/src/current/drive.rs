@@ -114,6 +114,22 @@ pub struct Drive {
     pub largest_temperature: f64,
 }
 
+/// The bounds of a drive's numbers, everything else as stated, in three digits on the side that passes; `None`
+/// where no value passes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveLimits {
+    /// Largest bandwidth in Hz.
+    pub bandwidth: Option<f64>,
+    /// Largest full-scale torque in N m.
+    pub torque: Option<f64>,
+    /// Largest speed in rad/s.
+    pub speed: Option<f64>,
+    /// Least voltage in V of the lowest supply.
+    pub supply: Option<f64>,
+    /// Bandwidth, torque and speed, all lower or higher than stated by the same factor.
+    pub together: Option<[f64; 3]>,
+}
+
 /// The reason why there is no current loop, with the value and its bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs, reason = "each variant's description and sentence name its fields")]
@@ -131,31 +147,80 @@ pub enum DriveError {
     /// The phase at the index, in counts, is not within an electrical turn.
     IndexOffset { offset: u32, counts: f64 },
     /// The phase of a brushless motor turns too far in an instant: electrical turns per second at the largest speed.
-    ElectricalSpeed { turns: f64, largest: f64 },
+    ElectricalSpeed { turns: f64, largest: f64, limits: DriveLimits },
     /// The bandwidth in Hz is larger than the modulation allows.
-    Bandwidth { bandwidth: f64, largest: f64 },
+    Bandwidth { bandwidth: f64, largest: f64, limits: DriveLimits },
     /// No whole number of periods of the modulation, between two frequencies in Hz, fills a period of the servo in s;
     /// the nearest possible period in s.
     Period { period: f64, lowest: f64, highest: f64, nearest: f64 },
     /// Full-scale torque in N m needs more current in A, with the margin to over-current, than the power stage can
     /// deliver.
-    Current { torque: f64, current: f64, largest: f64 },
+    Current { torque: f64, current: f64, largest: f64, limits: DriveLimits },
     /// The drive's supply is outside the board's range.
     Supply { supply: SupplyRange, board: SupplyRange },
     /// The voltage in V that the supply itself delivers is not within its range.
     OpenVoltage { voltage: f64, supply: SupplyRange },
     /// The voltage in V at the lowest supply is insufficient for the largest step at the largest speed; the lowest
     /// supply that is enough.
-    Voltage { needed: f64, available: f64, enough: f64 },
+    Voltage { needed: f64, available: f64, enough: f64, limits: DriveLimits },
     /// The largest temperature in degrees Celsius cannot be measured.
     Temperature { temperature: f64, lowest: f64, highest: f64 },
     /// The converter's range in A, at the worst offset, ends below the largest current of the board.
     CurrentRange { current: f64, largest: f64 },
 }
 
+/// Longest sentence of an error.
+const SENTENCE: usize = 640;
+
+impl DriveLimits {
+    /// No bounds.
+    pub const NONE: Self =
+        Self { bandwidth: None, torque: None, speed: None, supply: None, together: None };
+
+    /// The bounds in words, after a sentence that refuses the drive.
+    const fn push(&self, text: &mut Text<SENTENCE>) {
+        let each = [
+            ("a bandwidth of at most ", self.bandwidth, " Hz"),
+            ("a full-scale torque of at most ", self.torque, " N m"),
+            ("a largest speed of at most ", self.speed, " rad/s"),
+            ("a lowest supply of at least ", self.supply, " V"),
+        ];
+        let mut before = ": it would pass with ";
+        each!(i in 0..each.len() => {
+            let (name, bound, unit) = each[i];
+            if let Some(bound) = bound {
+                push!(*text, {before} {name} {bound} {unit});
+                before = ", or ";
+            }
+        });
+        let alone = self.bandwidth.is_some() as u8
+            + self.torque.is_some() as u8
+            + self.speed.is_some() as u8;
+        // Where one number alone is too large, the others need not be lower.
+        if let Some([bandwidth, torque, speed]) = self.together
+            && alone != 1
+        {
+            push!(*text, {before} {bandwidth} " Hz, " {torque} " N m and " {speed} " rad/s together");
+        }
+    }
+}
+
 impl DriveError {
+    /// The same error with the bounds of the drive's numbers.
+    #[must_use]
+    pub const fn with_limits(mut self, found: DriveLimits) -> Self {
+        match &mut self {
+            Self::ElectricalSpeed { limits, .. }
+            | Self::Bandwidth { limits, .. }
+            | Self::Current { limits, .. }
+            | Self::Voltage { limits, .. } => *limits = found,
+            _ => {}
+        }
+        self
+    }
+
     /// The error as a sentence, the same at compile time and later.
-    pub const fn sentence(&self) -> Text<320> {
+    pub const fn sentence(&self) -> Text<SENTENCE> {
         let mut t = Text::new();
         match *self {
             Self::NotPositive { name, value } => {
@@ -176,28 +241,40 @@ impl DriveError {
             Self::IndexOffset { offset, counts } => push!(t,
                 "the index offset of " {offset} " counts is not below the counts of an electrical turn, " {counts}
                 ": align the motor, and state the offset that the board tells"),
-            Self::ElectricalSpeed { turns, largest } => push!(t,
-                "at the largest speed the motor makes " {turns} " electrical turns a second, and a 32nd of the \
-                 modulation's frequency is " {largest} ": lower the largest speed"),
-            Self::Bandwidth { bandwidth, largest } => push!(t,
-                "the bandwidth of " {bandwidth} " Hz is above " {largest} " Hz, where the time constant of the \
-                 current is two periods of the modulation: a faster one leaves the feedback no time"),
+            Self::ElectricalSpeed { turns, largest, limits } => {
+                push!(t,
+                    "at the largest speed the motor makes " {turns} " electrical turns a second, and a 32nd of the \
+                     modulation's frequency is " {largest});
+                limits.push(&mut t);
+            }
+            Self::Bandwidth { bandwidth, largest, limits } => {
+                push!(t,
+                    "the bandwidth of " {bandwidth} " Hz is above " {largest} " Hz, where the time constant of the \
+                     current is two periods of the modulation, and a faster one leaves the feedback no time");
+                limits.push(&mut t);
+            }
             Self::Period { period, lowest, highest, nearest } => push!(t,
                 "the period of " {period} " s is not filled by whole periods of a modulation between " {lowest}
                 " and " {highest} " Hz in whole counts of its timer: " {nearest} " s is"),
-            Self::Current { torque, current, largest } => push!(t,
-                "full-scale torque of " {torque} " N m, and the quarter more at which over-current trips, take "
-                {current} " A, and the power stage measures and bears " {largest} " A: lower the full-scale torque"),
+            Self::Current { torque, current, largest, limits } => {
+                push!(t,
+                    "full-scale torque of " {torque} " N m, and the quarter more at which over-current trips, take "
+                    {current} " A, and the power stage measures and bears " {largest} " A");
+                limits.push(&mut t);
+            }
             Self::Supply { supply, board } => push!(t,
                 "a supply from " {supply.lowest} " to " {supply.highest} " V is not in the board's range from "
                 {board.lowest} " to " {board.highest} " V"),
             Self::OpenVoltage { voltage, supply } => push!(t,
                 "the supply itself delivers up to " {voltage} " V, which must be between its lowest and its highest \
                  voltage, " {supply.lowest} " and " {supply.highest} " V"),
-            Self::Voltage { needed, available, enough } => push!(t,
-                "the step from full-scale torque to its opposite at the largest speed needs " {needed} " V at the \
-                 motor, and the lowest supply gives " {available} " V: take " {enough}
-                " V, or lower bandwidth, torque or speed"),
+            Self::Voltage { needed, available, enough, limits } => {
+                push!(t,
+                    "the step from full-scale torque to its opposite at the largest speed needs " {needed} " V at \
+                     the motor, which takes a supply of " {enough} " V, and the lowest supply gives " {available}
+                    " V");
+                limits.push(&mut t);
+            }
             Self::Temperature { temperature, lowest, highest } => push!(t,
                 "the largest temperature of " {temperature} " degrees Celsius is not between " {lowest} " and "
                 {highest}),

@@ -1,22 +1,24 @@
 //! The design procedure of theory, section 6, in its three directions: the environments that a device can
 //! render, the device that a class of environments needs, and the longest period.
 //!
-//! The certificate itself judges each value. The answer is the last value that passes: the next number of
-//! `f64` is refused. So every answer is exact and comes with scenes that certify.
+//! The certificate itself judges each value, of a board or of the scene alone. The answer is the last value
+//! that passes, exactly or in three digits on the side that passes, and comes with scenes that certify.
 
 mod edge;
+mod judge;
 mod quantity;
+pub mod stiffest;
 
-use haptic_servo::certificate::PassivityProblem;
 use haptic_servo::environment::MAX_DELAY;
 use haptic_servo::scene::{Coupling, Scene, TimeRange};
 
 use crate::chain::Chain;
 use crate::file::SceneFile;
 
+pub use judge::{BoardRefusal, Judge, board_refusal};
 pub use quantity::{Quantity, SAMPLES};
 
-use edge::{Edge, edge};
+use edge::{Edge, edge, inward};
 
 /// The conditions of a design.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,11 +27,28 @@ pub struct Terms {
     pub safety: f64,
     /// The coupling of device and environment.
     pub coupling: Choice,
+    /// The judge of each value.
+    pub judge: Judge,
+    /// Whether the answer and the standard coupling have all their digits, or three, on the side that passes.
+    pub exact: bool,
+    /// Torque in N m of the DAC's full scale, which no torque exceeds.
+    pub full_scale: Option<f64>,
+}
+
+impl Terms {
+    /// The certificate alone, of the scene's own coupling.
+    pub const KEPT: Self = Self {
+        safety: 1.0,
+        coupling: Choice::Kept,
+        judge: Judge::Certificate,
+        exact: true,
+        full_scale: None,
+    };
 }
 
 impl Default for Terms {
     fn default() -> Self {
-        Self { safety: 1.0, coupling: Choice::Standard }
+        Self { coupling: Choice::Standard, ..Self::KEPT }
     }
 }
 
@@ -56,6 +75,27 @@ pub enum DesignLimit<T> {
     NoSuchNumber,
 }
 
+impl<T> DesignLimit<T> {
+    /// The limit if there is one, and the scene or the scenes if they certify.
+    pub const fn value_and_result(&self) -> (Option<f64>, Option<&T>) {
+        match self {
+            Self::Limit(value, found) => (Some(*value), Some(found)),
+            Self::Unlimited(found) => (None, Some(found)),
+            Self::Nothing | Self::NoSuchNumber => (None, None),
+        }
+    }
+
+    /// The same limit with another form of its scenes.
+    pub fn map<U>(self, form: impl FnOnce(T) -> U) -> DesignLimit<U> {
+        match self {
+            Self::Limit(value, found) => DesignLimit::Limit(value, form(found)),
+            Self::Unlimited(found) => DesignLimit::Unlimited(form(found)),
+            Self::Nothing => DesignLimit::Nothing,
+            Self::NoSuchNumber => DesignLimit::NoSuchNumber,
+        }
+    }
+}
+
 /// The scene as it is judged: with the used fraction of its passivity, and with the coupling of the design.
 pub fn prepared(scene: &Scene, terms: &Terms) -> Scene {
     let mut scene = *scene;
@@ -66,13 +106,33 @@ pub fn prepared(scene: &Scene, terms: &Terms) -> Scene {
     let has_standard = scene.latency.is_none() && scene.coupling != Coupling::Matched;
     if terms.coupling == Choice::Standard && has_standard {
         let longest = scene.timing.worst_period.unwrap_or(scene.timing.period);
-        scene.coupling = Coupling::Spring { stiffness: 2.0 * delta / longest };
+        let stiffness = 2.0 * delta / longest;
+        let rounded = if terms.exact { None } else { inward(stiffness, 2.0).next() };
+        scene.coupling = Coupling::Spring { stiffness: rounded.unwrap_or(stiffness) };
     }
     scene
 }
 
-fn passes(scene: &Scene) -> bool {
-    PassivityProblem::of(scene).is_ok_and(|posed| posed.is_certified())
+impl Terms {
+    fn all_pass(&self, files: &[SceneFile]) -> bool {
+        files.iter().all(|file| self.judge.passes(&file.scene))
+    }
+
+    /// The limit at an edge, with all that goes with it as `at` gives it: the exact one, or the nearest of
+    /// three digits with which that passes.
+    fn rounded<T>(
+        &self,
+        edge: f64,
+        outward: f64,
+        at: impl Fn(f64) -> T,
+        passes: impl Fn(&T) -> bool,
+    ) -> DesignLimit<T> {
+        let short = if self.exact { None } else { Some(inward(edge, outward)) };
+        let found = short.into_iter().flatten().map(|value| (value, at(value)));
+        let passing = found.into_iter().find(|(_, found)| passes(found));
+        let (value, found) = passing.unwrap_or_else(|| (edge, at(edge)));
+        DesignLimit::Limit(value, found)
+    }
 }
 
 /// The largest value of a quantity that certifies, everything else as in the scene.
@@ -81,7 +141,9 @@ pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> DesignLimit<
     if quantity.set(&scene, 0.0).is_none() {
         return DesignLimit::NoSuchNumber;
     }
-    let at = |value: f64| quantity.set(&scene, value).unwrap_or(scene);
+    let possible = |value| terms.judge.possible(quantity, value);
+    let at = |value: f64| quantity.set(&scene, possible(value)).unwrap_or(scene);
+    let passes = |scene: &Scene| terms.judge.passes(scene);
     if quantity == Quantity::Delay {
         let longest = (0..=MAX_DELAY).rev().map(|delay| delay as f64).find(|&d| passes(&at(d)));
         return longest.map_or(DesignLimit::Nothing, |delay| DesignLimit::Limit(delay, at(delay)));
@@ -92,9 +154,9 @@ pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> DesignLimit<
                 DesignLimit::Limit(f64::from(count), at(f64::from(count)))
             });
     }
-    let longest = quantity.longest(scene.timing.period);
-    if let Some(longest) = longest.filter(|&longest| passes(&at(longest))) {
-        return DesignLimit::Limit(longest, at(longest));
+    let largest = quantity.largest(scene.timing.period, terms.full_scale);
+    if let Some(largest) = largest.filter(|&largest| passes(&at(largest))) {
+        return DesignLimit::Limit(largest, at(largest));
     }
     let damping = scene.device.damping.max(f64::MIN_POSITIVE);
     let start = match quantity {
@@ -102,8 +164,13 @@ pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> DesignLimit<
         Quantity::ActuatorLag | Quantity::OutputDelay => scene.timing.period,
         _ => damping,
     };
-    match edge(|value| passes(&at(value)), start, 2.0) {
-        Edge::At(value) => DesignLimit::Limit(quantity.reached(&at(value), value), at(value)),
+    match edge(|value| passes(&at(value)), start, 2.0, 0.0) {
+        Edge::At(value) => match terms.rounded(value, 2.0, at, passes) {
+            DesignLimit::Limit(value, found) => {
+                DesignLimit::Limit(quantity.reached(&found, possible(value)), found)
+            }
+            other => other,
+        },
         Edge::Always if passes(&scene) => DesignLimit::Unlimited(scene),
         Edge::Always => DesignLimit::Unlimited(at(start)),
         Edge::Never if passes(&at(0.0)) => DesignLimit::Limit(0.0, at(0.0)),
@@ -137,7 +204,7 @@ pub fn border(
     terms: &Terms,
 ) -> Vec<(f64, f64)> {
     let prepared = prepared(scene, terms);
-    let kept = Terms { safety: 1.0, coupling: Choice::Kept };
+    let kept = Terms { safety: 1.0, coupling: Choice::Kept, ..*terms };
     let without = second.set(&prepared, second.least()).unwrap_or(prepared);
     let DesignLimit::Limit(most, _) = largest(&without, first, &kept) else { return Vec::new() };
     let least = first.least();
@@ -172,7 +239,8 @@ pub fn device(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>>
         Some((chain, prepared(&Scene { device, ..file.scene }, &terms)))
     };
     let fits = |damping: f64| {
-        files.iter().all(|file| on(file, damping).is_some_and(|(_, scene)| passes(&scene)))
+        let passes = |(_, scene)| terms.judge.passes(&scene);
+        files.iter().all(|file| on(file, damping).is_some_and(passes))
     };
     let at = |damping: f64| -> Vec<SceneFile> {
         let with = |file: &SceneFile| {
@@ -184,8 +252,8 @@ pub fn device(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>>
     let most = files.iter().map(|file| file.scene.device.damping).fold(0.0, f64::max);
     // No device states a damping: the search starts at 1 N m s/rad.
     let start = if most > 0.0 { most } else { 1.0 };
-    match edge(fits, start, 0.5) {
-        Edge::At(value) => DesignLimit::Limit(value, at(value)),
+    match edge(fits, start, 0.5, 0.0) {
+        Edge::At(value) => terms.rounded(value, 0.5, at, |found| terms.all_pass(found)),
         // The rest of the chain is enough.
         Edge::Always if fits(0.0) => DesignLimit::Limit(0.0, at(0.0)),
         Edge::Always => DesignLimit::Unlimited(at(start)),
@@ -208,6 +276,21 @@ pub fn rate(files: &[SceneFile], terms: &Terms) -> DesignLimit<Vec<SceneFile>> {
     timed(files, terms, rates.fold(0.0, f64::max), 0.5, f64::recip)
 }
 
+/// The scene at another period in s, with the same number of missed updates, and as many updates of the
+/// amplifier in a period.
+fn at_period(scene: &Scene, period: f64) -> Scene {
+    let (mut scene, before) = (*scene, scene.timing.period);
+    let worst = scene.timing.worst_period.map(|worst| worst / before);
+    scene.timing.period = period;
+    scene.timing.worst_period = worst.map(|ratio| (ratio * period).max(period));
+    if scene.latency.actuator_updates > 0 {
+        let update = scene.latency.nearest_update(before);
+        let delay = scene.latency.delay_at_update(update, period);
+        scene.latency.output_delay = TimeRange::exactly(delay);
+    }
+    scene
+}
+
 /// The last number, outward from `start` by factors, whose period certifies all of these scenes.
 fn timed(
     files: &[SceneFile],
@@ -216,19 +299,8 @@ fn timed(
     outward: f64,
     period_of: fn(f64) -> f64,
 ) -> DesignLimit<Vec<SceneFile>> {
-    let with = |scene: &Scene, period: f64| {
-        let (mut scene, before) = (*scene, scene.timing.period);
-        let worst = scene.timing.worst_period.map(|worst| worst / before);
-        scene.timing.period = period;
-        scene.timing.worst_period = worst.map(|ratio| (ratio * period).max(period));
-        if scene.latency.actuator_updates > 0 {
-            // As many updates of the amplifier as before.
-            let update = scene.latency.nearest_update(before);
-            let delay = scene.latency.delay_at_update(update, period);
-            scene.latency.output_delay = TimeRange::exactly(delay);
-        }
-        prepared(&scene, terms)
-    };
+    let with = |scene: &Scene, period: f64| prepared(&at_period(scene, period), terms);
+    let passes = |scene: &Scene| terms.judge.passes(scene);
     let fits = |number: f64| files.iter().all(|file| passes(&with(&file.scene, period_of(number))));
     let at = |number: f64| -> Vec<SceneFile> {
         let period = period_of(number);
@@ -246,11 +318,9 @@ fn timed(
             |file: &SceneFile| SceneFile { scene: prepared(&file.scene, terms), ..file.clone() };
         files.iter().map(kept).collect()
     };
-    match edge(fits, start, outward) {
-        Edge::At(value) => DesignLimit::Limit(value, at(value)),
-        Edge::Always if as_they_were().iter().all(|file| passes(&file.scene)) => {
-            DesignLimit::Unlimited(as_they_were())
-        }
+    match edge(fits, start, outward, 0.0) {
+        Edge::At(value) => terms.rounded(value, outward, at, |found| terms.all_pass(found)),
+        Edge::Always if terms.all_pass(&as_they_were()) => DesignLimit::Unlimited(as_they_were()),
         Edge::Always => DesignLimit::Unlimited(at(start)),
         Edge::Never => DesignLimit::Nothing,
     }

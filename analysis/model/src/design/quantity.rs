@@ -97,10 +97,11 @@ impl Quantity {
         matches!(self, Self::Delay | Self::Count)
     }
 
-    /// The largest value that a scene of this period in s may have, apart from its certificate; `None` where
-    /// there is no such bound.
-    pub(super) fn longest(self, period: f64) -> Option<f64> {
+    /// The largest value that a scene of this period in s, and a DAC of this full scale in N m, may have,
+    /// apart from its certificate; `None` where there is no such bound.
+    pub(super) fn largest(self, period: f64, full_scale: Option<f64>) -> Option<f64> {
         match self {
+            Self::Torque => full_scale,
             Self::ActuatorLag => Some(LONGEST_LAG * period),
             Self::OutputDelay => Some(LONGEST_DELAY * period),
             _ => None,

@@ -4,9 +4,14 @@ use crate::file::{Format, parse, write};
 use crate::fixture::on_paddle;
 use haptic_servo::environment::{Canceller, Environment, Wall};
 use haptic_servo::scene::{Latency, TimeRange};
+use proptest::prelude::*;
 
 fn scene(environment: Environment) -> Scene {
     on_paddle(environment, Coupling::Rigid)
+}
+
+fn passes(scene: &Scene) -> bool {
+    Judge::Certificate.passes(scene)
 }
 
 fn wall(stiffness: f64, damping: f64, delay: usize) -> Environment {
@@ -225,4 +230,82 @@ fn a_device_of_which_nothing_is_known_is_designed_too() {
     let mut unknown = scene(wall(22.0, 0.01, 1));
     unknown.device.damping = 0.0;
     near(limit(device(&[file(unknown)], &Terms::default())).0, 0.021);
+}
+
+/// A scene as people write them: most of them have a limit, some no board renders.
+fn any_scene() -> impl Strategy<Value = Scene> {
+    let numbers = (1e-4..2e-2_f64, 1e-3..0.2_f64, 0.0..1.2_f64, 0usize..3, 0.0..1.0_f64);
+    let kinds = (0..3, any::<bool>(), any::<bool>(), any::<bool>());
+    (numbers, kinds).prop_map(
+        |((period, damping, part, delay, lag), (kind, one, limit, filter))| {
+            let mut wall = Wall::damped(1.0, part * damping, delay);
+            wall = if one { wall.behind(0.1) } else { wall };
+            wall = if filter { wall.filtered(0.5) } else { wall };
+            let mut scene = scene(wall.alone());
+            (scene.timing.period, scene.device.damping) = (period, damping);
+            scene.torque_limit = limit.then_some(1.0);
+            scene.coupling = match kind {
+                0 => Coupling::Rigid,
+                1 => Coupling::Spring { stiffness: 2.0 * damping / period },
+                _ => Coupling::Matched,
+            };
+            if lag > 0.5 {
+                scene.latency = Latency { output_jitter: 1e-6, ..Latency::delayed(5e-6) };
+                scene.latency = scene.latency.with_actuator_lag((lag - 0.5) * period);
+            }
+            scene
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(100) })]
+
+    #[test]
+    fn what_a_design_writes_for_a_board_certifies_on_it(scene in any_scene(), exact in any::<bool>()) {
+        let terms = Terms { judge: Judge::BOARD, exact, ..Terms::default() };
+        let asked = [file(scene)];
+        let of_quantity = |quantity| largest(&scene, quantity, &terms).map(|scene| vec![file(scene)]);
+        for found in [
+            of_quantity(Quantity::Stiffness),
+            of_quantity(Quantity::Damping),
+            of_quantity(Quantity::OutputDelay),
+            device(&asked, &terms),
+            period(&asked, &terms),
+            rate(&asked, &terms),
+        ] {
+            let (value, files) = found.value_and_result();
+            for file in files.into_iter().flatten() {
+                let report = crate::verdict::judge("designed", &read(file));
+                prop_assert_eq!(report.verdict, crate::verdict::Verdict::Certified);
+                prop_assert_eq!(report.board, None);
+            }
+            if let (Some(value), false) = (value, exact) {
+                prop_assert_eq!(value, crate::quantity::rounded(value, 3));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_stiffest_wall_certifies_is_stiffer_and_more_damping_buys_more() {
+    let walls = [
+        "[environment]\ntype = \"damper-wall\"\nstiffness = 22\ndamping = 0.01\ndelay = 1\none_sided = true\n",
+        "[environment]\ntype = \"damper-wall\"\nstiffness = 9\ndamping = 0.001\ndelay = 1\n[coupling]\nstiffness = 44\n",
+    ];
+    for wall in walls {
+        let file = crate::fixture::file_on_paddle(&format!("{wall}[limits]\ntorque = 1.0\n"));
+        let terms = Terms { judge: Judge::BOARD, exact: false, ..Terms::default() };
+        let search = stiffest::Search::new(&file, &terms).unwrap();
+        let found = search.run(|| {}).unwrap();
+        let best = found.best;
+        assert!(best.felt > 10.0 * crate::felt::stiffness(&file.scene).unwrap(), "{best:?}");
+        assert!(found.walls.iter().all(|wall| wall.felt <= best.felt));
+        let report = crate::verdict::judge("a", &read(&SceneFile { scene: best.scene, ..file }));
+        assert_eq!((report.verdict, report.board), (crate::verdict::Verdict::Certified, None));
+        let (_, damped) =
+            search.levers().into_iter().find(|(name, _)| name.contains("damping")).unwrap();
+        let factor = damped.run(|| {}).unwrap().best.felt / best.felt;
+        assert!((1.18..1.22).contains(&factor), "{factor}");
+    }
 }

@@ -10,7 +10,7 @@ use haptic_servo::scene::Scene;
 
 use super::plant::SampledPlant;
 use super::{Family, Kept, MapError, Region, judged, kept};
-use crate::design::{Choice, DesignLimit, Quantity, Terms, largest};
+use crate::design::{DesignLimit, Quantity, Terms, largest};
 use crate::file::SceneFile;
 use crate::simulation::closed_loop::transfers;
 use crate::simulation::plant::Plant;
@@ -260,8 +260,6 @@ fn own_number(scene: &Scene, axis: Parameter) -> f64 {
 
 /// From 0 or a little more to a multiple of the scene's own number, or to a usual number if that is zero.
 fn usual_range(scene: &Scene, axis: Parameter) -> Range<f64> {
-    /// The design's answer with everything else as it is.
-    const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };
     let own = own_number(scene, axis);
     let delta = assess(scene).delta.midpoint();
     let to = |usual: f64| if own > 0.0 { BEYOND * own } else { usual };
@@ -274,7 +272,7 @@ fn usual_range(scene: &Scene, axis: Parameter) -> Range<f64> {
         Parameter::Residual => -0.25 * delta..1.5 * delta,
         Parameter::Filter => 0.0..1.0,
         Parameter::Count => 0.0..(BEYOND * own).max(8.0).ceil(),
-        Parameter::ProfileTorque => match largest(scene, Quantity::Torque, &AS_IT_IS) {
+        Parameter::ProfileTorque => match largest(scene, Quantity::Torque, &Terms::KEPT) {
             // About twice the certified torque.
             DesignLimit::Limit(torque, _) => 0.0..2.0 * torque.max(own),
             _ => 0.0..to(1.0),

@@ -159,6 +159,6 @@ fn refusals_of_a_brushless_motor_name_the_value_and_its_bound() {
     assert_eq!(
         told,
         "at the largest speed the motor makes 1591.549431 electrical turns a second, and a 32nd of the \
-         modulation's frequency is 1250: lower the largest speed"
+         modulation's frequency is 1250: it would pass with a largest speed of at most 78.5 rad/s"
     );
 }

@@ -5,7 +5,7 @@ mod rig;
 mod servos;
 
 use analysis::chain::Chain;
-use analysis::design::{Choice, DesignLimit, Quantity, Terms, largest};
+use analysis::design::{DesignLimit, Quantity, Terms, largest};
 use analysis::worst_hand::{Compliance, HandImpedance, search};
 use haptic_servo::certificate::{Certified, QuantizationBound, Resolution};
 use haptic_servo::current::{CurrentLoop, Drive, Motor, Supply, Winding};
@@ -66,8 +66,7 @@ fn limit(coupling: Coupling, latency: Latency) -> f64 {
 
 /// As `haptic design largest stiffness` finds it.
 fn limit_of(scene: &Scene) -> f64 {
-    let terms = Terms { safety: 1.0, coupling: Choice::Kept };
-    match largest(scene, Quantity::Stiffness, &terms) {
+    match largest(scene, Quantity::Stiffness, &Terms::KEPT) {
         DesignLimit::Limit(limit, _) => limit,
         other => panic!("{other:?}"),
     }

@@ -1,0 +1,222 @@
+//! `haptic design stiffest`: the stiffest wall at the handle that certifies on a board.
+
+use clap::Args;
+use serde::Serialize;
+use std::path::Path;
+
+use super::answer::object;
+use crate::chart::{self, Chart, Data, Picture, has_extension};
+use crate::command::shared_arguments::write;
+use crate::command::status::{CommandError, CommandStatus};
+use crate::design::Judge;
+use crate::design::stiffest::{Found, Search, Wall};
+use crate::felt;
+use crate::file::{self, SceneFile};
+use crate::progress;
+use crate::quantity::{rounded, shortened, significant};
+use crate::text_table::table_of;
+use crate::toolchain::BoardModel;
+use crate::verdict::{VerdictReport, judge_file};
+
+/// Arguments of `haptic design stiffest`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file with a wall
+    pub file: String,
+    /// The board; all render the same scenes, but only one with a bridge those with `device.actuator_updates`
+    #[arg(long, value_parser = BoardModel::find)]
+    pub board: Option<BoardModel>,
+}
+
+/// A change of the device or the board, and what it buys.
+#[derive(Serialize)]
+struct Lever {
+    change: &'static str,
+    /// In N m/rad; null if no wall certifies.
+    felt_stiffness: Option<f64>,
+    /// Of the found stiffness.
+    factor: f64,
+}
+
+/// A point of a structure's curve.
+#[derive(Serialize)]
+struct Point {
+    structure: &'static str,
+    rate: f64,
+    felt_stiffness: f64,
+}
+
+/// The answer as JSON.
+#[derive(Serialize)]
+struct Report {
+    name: String,
+    structure: &'static str,
+    felt_stiffness: f64,
+    /// Of the file as it was.
+    felt_stiffness_before: Option<f64>,
+    certified_before: bool,
+    margin: Option<f64>,
+    /// Whether a stiffer environment would certify and earn nothing.
+    saturates: bool,
+    scene: serde_json::Value,
+    levers: Vec<Lever>,
+    curves: Vec<Point>,
+}
+
+/// Runs the command; the status is negative if no wall certifies.
+pub fn run(all: &super::Arguments, arguments: &Arguments) -> Result<CommandStatus, CommandError> {
+    let file = all.load(&arguments.file)?;
+    let is_bridge = file.scene.latency.actuator_updates > 0;
+    if let Some(board) = arguments.board.filter(|board| is_bridge && !board.has_bridge()) {
+        let error = format!(
+            "{}: `device.actuator_updates` needs a bridge, which {board} has not",
+            file.name
+        );
+        return Err(CommandError::Failed(error.into()));
+    }
+    let Some(search) = Search::new(&file, &all.terms()) else {
+        return Err(CommandError::NoSuchQuantity { scene: file.name, quantity: "wall" });
+    };
+    let levers = search.levers();
+    let rates = search.rates() * (levers.len() + 1);
+    let bar = progress::bar(rates as u64, "stiffest wall");
+    let Some(found) = search.run(|| bar.inc(1)) else {
+        bar.finish_and_clear();
+        let nothing = serde_json::json!({ "name": file.name, "felt_stiffness": null });
+        all.answer.print(&nothing, |_| format!("{}: no wall certifies on a board\n", file.name))?;
+        return Ok(CommandStatus::NegativeVerdict);
+    };
+    let lever = |(change, search): (&'static str, Search)| {
+        let felt_stiffness = search.run(|| bar.inc(1)).map(|found| found.best.felt);
+        let factor = felt_stiffness.unwrap_or(0.0) / found.best.felt;
+        Lever { change, felt_stiffness, factor }
+    };
+    let mut levers: Vec<_> = levers.into_iter().map(lever).collect();
+    bar.finish_and_clear();
+    levers.sort_by(|a, b| b.factor.total_cmp(&a.factor));
+    let stiffest = SceneFile { scene: found.best.scene, ..file.clone() };
+    if let Some(output) = &all.output {
+        save(output, &stiffest, &found)?;
+    }
+    let verdict = judge_file(&stiffest, haptic_servo::number::Format::F64);
+    let report = report(&file, &stiffest, &found, &verdict, levers)?;
+    all.answer.print(&report, |report| text(report, &stiffest, &found.best, &verdict))?;
+    Ok(CommandStatus::Success)
+}
+
+fn report(
+    file: &SceneFile,
+    stiffest: &SceneFile,
+    found: &Found,
+    verdict: &VerdictReport,
+    levers: Vec<Lever>,
+) -> Result<Report, CommandError> {
+    Ok(Report {
+        name: file.name.clone(),
+        structure: found.best.structure.name(),
+        felt_stiffness: found.best.felt,
+        felt_stiffness_before: felt::stiffness(&file.scene),
+        certified_before: Judge::BOARD.passes(&file.scene),
+        margin: verdict.margin_on_board,
+        saturates: found.best.saturates,
+        scene: object(stiffest)?,
+        levers,
+        curves: found.walls.iter().map(point).collect(),
+    })
+}
+
+fn point(wall: &Wall) -> Point {
+    let rate = rounded(wall.scene.timing.period.recip(), 6);
+    Point { structure: wall.structure.name(), rate, felt_stiffness: wall.felt }
+}
+
+fn text(report: &Report, file: &SceneFile, best: &Wall, verdict: &VerdictReport) -> String {
+    let scene = &file.scene;
+    let number = |value: f64, unit: &str| format!("{} {unit}", significant(value, 3));
+    let stiffness = number(best.felt, "N m/rad");
+    let before = report.felt_stiffness_before.map_or_else(String::new, |before| {
+        let refused = if report.certified_before { "" } else { ", which no board certifies" };
+        let factor = significant(best.felt / before, 3);
+        format!(", {factor} x the {} of the file{refused}", number(before, "N m/rad"))
+    });
+    let (period, latency) = (scene.timing.period, &scene.latency);
+    let rate = number(period.recip(), "Hz");
+    let delay = latency.code_delay(period);
+    let output = match delay == 0.0 {
+        true => "latched at the next sample".to_owned(),
+        false => format!("{} after the count", number(delay * 1e6, "us")),
+    };
+    let wall = scene.environment.wall().map_or_else(String::new, |wall| {
+        let filter = wall.filter().map_or_else(String::new, |pole| format!(", filter {pole}"));
+        let stiffness = number(wall.stiffness, "N m/rad");
+        format!("{stiffness}, damping {}{filter}", number(wall.damping(), "N m s/rad"))
+    });
+    let compliance = felt::compliance(scene).filter(|&compliance| compliance > 0.0);
+    let coupling = compliance.map_or("none".to_owned(), |compliance| {
+        let coupling = number(1.0 / compliance, "N m/rad");
+        match best.saturates {
+            true => {
+                format!("{coupling}: a stiffer wall certifies, and earns nothing at the handle")
+            }
+            false => coupling,
+        }
+    });
+    let rest = verdict.rest.map(|rest| {
+        let stated = match (rest.friction, rest.comes_to_rest) {
+            (Some(friction), Some(false)) => format!("; the device has {friction} N m"),
+            _ => String::new(),
+        };
+        number(rest.hum, "N m of friction prevent a limit cycle") + &stated
+    });
+    let rows = [
+        ("felt stiffness", Some(stiffness + &before)),
+        ("structure", Some(report.structure.to_owned())),
+        ("rate", Some(format!("{rate}, period {period:?} s"))),
+        ("output", Some(output)),
+        ("wall", Some(wall)),
+        ("coupling", Some(coupling)),
+        ("margin on a board", verdict.margin_on_board_in_words()),
+        ("at rest", rest),
+    ];
+    let rows =
+        rows.into_iter().filter_map(|(label, value)| Some(format!("{label:<18} {}\n", value?)));
+    let table = table_of(
+        &report.levers,
+        &[
+            ("felt stiffness", true, |lever| match lever.factor > 1.005 {
+                true => format!("{} x", significant(lever.factor, 3)),
+                false => "earns nothing".to_owned(),
+            }),
+            ("with one change", false, |lever| lever.change.to_owned()),
+        ],
+    );
+    rows.collect::<String>() + &format!("{table}\n")
+}
+
+/// Writes the scene, the chart or its numbers, by the extension.
+fn save(output: &Path, file: &SceneFile, found: &Found) -> Result<(), CommandError> {
+    let is_chart = ["svg", "csv"].iter().any(|extension| has_extension(output, extension));
+    if !is_chart {
+        return write(output, file::write::toml(file));
+    }
+    let Chart { picture, data } = chart(file, found)?;
+    match has_extension(output, "csv") {
+        true => Ok(data.write(output)?),
+        false => Ok(picture.write(output)?),
+    }
+}
+
+fn chart(file: &SceneFile, found: &Found) -> Result<Chart, CommandError> {
+    let title = format!("{}: stiffest certified wall at the handle", shortened(&file.name, 32));
+    let picture: Picture = chart::stiffest::stiffest(&title, found)?;
+    let points: Vec<_> = found.walls.iter().map(point).collect();
+    let data = Data::of(
+        points,
+        [
+            ("structure", |point| point.structure.into()),
+            ("rate (Hz)", |point| point.rate.into()),
+            ("felt stiffness (N m/rad)", |point| point.felt_stiffness.into()),
+        ],
+    );
+    Ok(Chart { picture, data })
+}
