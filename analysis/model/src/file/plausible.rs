@@ -116,7 +116,7 @@ mod tests {
             (changed(|file| file.encoder_step = Some(0.36)), ["17 counts", "mean 0.00628,"]),
             (changed(|file| file.friction = Some(49_200.0)), ["49200 N m", "mN m"]),
             (changed(|file| file.scene.device.damping = 22.0), ["1000 times", "mean 0.022,"]),
-            (changed(|file| file.scene.device.inertia = 220.0), ["hand", "mean 0.000022,"]),
+            (changed(|file| file.scene.device.inertia = 220.0), ["hand", "mean 2.2e-5,"]),
         ] {
             assert!(parts.iter().all(|part| warning.contains(part)), "{warning}");
         }
