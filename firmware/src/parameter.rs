@@ -114,13 +114,12 @@ parameters! {
     To: "environment.to", "upper end stop", "rad", Range::Finite;
     Mode: "environment.mode", "mode", "", Range::Finite;
     CountJitter: "servo.count_jitter", "count jitter", "s", Range::NotNegative;
-    Drag: "environment.drag", "drag", "N m s/rad", Range::Finite;
 }
 
 /// The parameters that may be changed while the servo runs, with their names for users.
 ///
 /// No message can change the device; period and delay are fixed at compile time and by the board's set-up.
-pub const TUNABLE: [(&str, Parameter); 12] = [
+pub const TUNABLE: [(&str, Parameter); 11] = [
     ("stiffness", Parameter::Stiffness),
     ("damping", Parameter::Damping),
     ("filter", Parameter::Filter),
@@ -132,7 +131,6 @@ pub const TUNABLE: [(&str, Parameter); 12] = [
     ("count", Parameter::Count),
     ("centre", Parameter::Centre),
     ("mode", Parameter::Mode),
-    ("drag", Parameter::Drag),
 ];
 
 /// A type with named parameters.

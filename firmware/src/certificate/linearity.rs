@@ -1,7 +1,6 @@
 //! Which scenes are judged by a bound in place of the exact rule.
 
-use super::part::is_damped;
-use crate::environment::Environment;
+use crate::environment::{Environment, Parts};
 use crate::scene::{Coupling, Scene};
 
 /// Whether the scene is judged by the nonlinear bound.
@@ -20,10 +19,14 @@ const fn replaces_exact_rule(scene: &Scene) -> bool {
     if latency.is_none() || !matches!(scene.coupling, Coupling::Rigid) {
         return false;
     }
-    let Environment::Parts(parts) = &scene.environment else { return false };
-    if parts.profile.is_some() || matches!(&parts.wall, Some(wall) if wall.stiffness < 0.0) {
+    let Environment::Parts(Parts { canceller, wall, profile: None }) = &scene.environment else {
         return false;
-    }
+    };
+    let (damping, pulls) = match wall {
+        Some(wall) => (wall.damping(), wall.stiffness < 0.0),
+        None => (0.0, false),
+    };
+    let has_damping = damping != 0.0 || canceller.is_some();
     let has_one_jitter = latency.total_jitter() > 0.0 && !latency.jitters_twice();
-    scene.timing.longer_period().is_some() || !is_damped(parts) && has_one_jitter
+    !pulls && (scene.timing.longer_period().is_some() || !has_damping && has_one_jitter)
 }

@@ -29,6 +29,7 @@
 
 mod assessment;
 mod assumption;
+mod beside_profile;
 mod between;
 mod deviation;
 pub(crate) mod digits;
@@ -37,7 +38,6 @@ mod loop_intervals;
 mod margin;
 mod model;
 mod modes;
-mod part;
 mod port;
 mod problem;
 mod profile;

@@ -15,10 +15,10 @@
 use core::f64::consts::TAU;
 use core::fmt;
 
+use super::beside_profile::{jump_at_face, peak_gain_beside};
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
-use super::model::LoopTransfers;
-use super::part::{Washout, canceller, damper, jump_at_face, peak_gain_beside};
+use super::model::{LoopTransfers, Washout, canceller, damper};
 use super::profile::{peak_gain, step_of_part};
 use crate::current::CurrentResolution;
 use crate::dac::DacCode;
@@ -247,19 +247,12 @@ fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     if !is_nonlinear(scene) {
         return Some(Peak { norm: linear, in_any_motion: true });
     }
-    let parts = scene.environment.parts();
-    let alone = match parts.others() {
-        0 => l1_norm(&environment)?,
-        // The response out of contact is not a part of that in contact.
-        _ => peak_gain_beside(parts, &LoopIntervals::of(scene, format)),
-    };
+    let alone = l1_norm(&environment)?;
     let fed_back = alone * compliance(scene, format);
     Some(if fed_back < 1.0 {
         Peak { norm: linear.max(alone / (1.0 - fed_back)), in_any_motion: !switched }
-    } else if parts.others() == 0 {
-        Peak { norm: linear, in_any_motion: false }
     } else {
-        return None;
+        Peak { norm: linear, in_any_motion: false }
     })
 }
 
@@ -315,10 +308,6 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
         None => (at_torque, at_position),
     };
     let parts = scene.environment.parts();
-    // Another part is a product, a sum, and a difference of positions.
-    let others = parts.others() as f64;
-    let at_torque = at_torque + others * torque * roundings(format, 1.0, 1.0);
-    let at_position = at_position + others * angle * roundings(format, 0.0, 1.0);
     let at_torque = if parts.profile.is_some() && parts.count() > 1 {
         // A product of the table and a sum for each part; the face of a wall that is solved in the tick
         // changes the other parts.

@@ -1,7 +1,7 @@
 //! The valid range of each number of a scene.
 
 use crate::environment::{
-    Canceller, Environment, MOST_KNOTS, Parts, Profile, ProfileUse, StatedModel, Wall,
+    Canceller, Environment, MOST_KNOTS, Parts, Profile, ProfileUse, StatedModel,
 };
 use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
 use crate::parameter::{Parameter, Range};
@@ -176,27 +176,19 @@ const fn profile_of(environment: &Environment, parameter: Parameter) -> Option<&
 
 /// Whether the numbers of a sum agree, also those that have no name there.
 const fn check_sum(parts: &Parts, has: ProfileUse) -> Checked {
+    let Parts { canceller, wall, profile } = parts;
     if parts.count() < 2 {
         return Ok(());
     }
-    if let Some(Canceller { delay, .. }) = parts.canceller
-        && delay > 0
+    if let Some(Canceller { delay, .. }) = canceller
+        && *delay > 0
     {
         let bound = "0 for a canceller beside another part";
-        return must_be(Parameter::Delay, delay as f64, bound, None);
+        return must_be(Parameter::Delay, *delay as f64, bound, None);
     }
-    if let Some(profile) = &parts.profile
-        && has.is_composed
-    {
-        ok!(check_beside(profile, parts.wall.as_ref()));
-    }
-    check_range(Parameter::Delay, parts.longest_delay() as f64)
-}
-
-/// Whether the numbers of a torque profile agree with other parts, and with a wall.
-const fn check_beside(profile: &Profile, wall: Option<&Wall>) -> Checked {
+    let (Some(profile), true) = (profile, has.is_composed) else { return Ok(()) };
     if profile.delay == 0 {
-        let bound = "at least 1 where another part is beside the torque profile";
+        let bound = "at least 1 where a wall or a canceller is beside the torque profile";
         return must_be(Parameter::Delay, 0.0, bound, None);
     }
     let Some(wall) = wall else { return Ok(()) };

@@ -11,7 +11,7 @@
 
 use super::any::Environment;
 use super::law::LawContext;
-use super::parts::{PartSet, Parts};
+use super::parts::Parts;
 use super::stated::StatedModel;
 use crate::coupling::Coupling;
 use crate::parameter::NamedParameters;
@@ -122,8 +122,9 @@ impl ProfileUse {
 
 /// An environment for the certificate: one of this crate, or a [`StatedEnvironment`].
 pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
-    /// The parts that it may have.
-    const PARTS: PartSet;
+    /// Whether it may cancel the device's damping. If not, the program of the environment omits the
+    /// code that certifies cancelled damping.
+    const CANCELS_DAMPING: bool;
 
     /// Its possible use of a torque profile.
     const PROFILE: ProfileUse;
@@ -138,7 +139,7 @@ pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
 impl<E: StatedEnvironment> sealed::Sealed for E {}
 
 impl<E: StatedEnvironment> EnvironmentModel for E {
-    const PARTS: PartSet = PartSet::NONE;
+    const CANCELS_DAMPING: bool = false;
     const PROFILE: ProfileUse = ProfileUse::NONE;
     const MEMORY: Memory = Memory::None;
 
@@ -150,7 +151,7 @@ impl<E: StatedEnvironment> EnvironmentModel for E {
 impl sealed::Sealed for Environment {}
 
 impl EnvironmentModel for Environment {
-    const PARTS: PartSet = PartSet::ALL;
+    const CANCELS_DAMPING: bool = true;
     const PROFILE: ProfileUse = ProfileUse::ANY;
     const MEMORY: Memory = Memory::Any;
 

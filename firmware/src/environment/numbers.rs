@@ -2,7 +2,6 @@
 
 use super::any::Environment;
 use super::canceller::Canceller;
-use super::drag::Drag;
 use super::parts::Parts;
 use super::profile::{Ends, ModeSelection, Profile};
 use super::stated::{StatedBound, StatedModel};
@@ -50,9 +49,6 @@ impl Environment {
                     Some(selected) => *profile = selected,
                     None => return None,
                 }
-            }
-            (Parameter::Drag, Self::Parts(parts)) if parts.drag.is_none() => {
-                *parts = parts.with_drag(value);
             }
             _ => match changed.number_mut(parameter) {
                 Some(place) => *place = value,
@@ -121,7 +117,6 @@ impl Environment {
             Self::Parts(Parts {
                 profile: Some(Profile { modes: Some(ModeSelection { mode: value, .. }), .. }), ..
             }),
-        Drag: Self::Parts(Parts { drag: Some(Drag { damping: value, .. }), .. }),
         StatedGain: Self::Stated(StatedModel::Bounded { bound: StatedBound { gain: value, .. }, .. }),
     }
 }

@@ -151,13 +151,6 @@ impl Transfer {
     /// `self + other`; `None` if the result has too high a degree.
     #[inline(never)]
     pub const fn plus(&self, other: &Self) -> Option<Self> {
-        let later = if self.shift > other.shift { self.shift } else { other.shift };
-        if later < 0 {
-            // Their common delay would raise the degree twice.
-            let before = Self { shift: self.shift - later, ..*self };
-            let sum = before.plus(&Self { shift: other.shift - later, ..*other });
-            return Some(Self { shift: later, ..some!(sum) });
-        }
         let ones = positive(if self.ones < other.ones { self.ones } else { other.ones });
         let (Some(left), Some(right)) = (self.summand(other, ones), other.summand(self, ones))
         else {

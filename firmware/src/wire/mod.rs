@@ -22,7 +22,7 @@ pub use session::{BoardInfo, Session};
 /// Version of the messages. Board and host must have the same; [`message::ToBoard::Hello`] and
 /// [`message::ToHost::Welcome`] have the same beginning in all versions, so that each side can report its
 /// version.
-pub const PROTOCOL: u16 = 10;
+pub const PROTOCOL: u16 = 9;
 
 #[cfg(test)]
 mod tests;

@@ -16,8 +16,7 @@ use crate::current::IndexOffset;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::environment::{
-    Canceller, Damper, Drag, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side,
-    Wall,
+    Canceller, Damper, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side, Wall,
 };
 use crate::fault::Fault;
 use crate::number::Format;
@@ -283,8 +282,7 @@ fn largest_description() -> Description {
         delay: usize::MAX,
     };
     let canceller = Some(Canceller::to(1.0));
-    let drag = Some(Drag { damping: 1.0, delay: 8 });
-    let environment = Parts { canceller, wall: Some(wall), profile: Some(profile), drag }.sum();
+    let environment = Parts { canceller, wall: Some(wall), profile: Some(profile) }.sum();
     Description {
         scene: Scene {
             device: Device { passivity: Some(1.0), ..SCENE.device },

@@ -1,7 +1,7 @@
 //! `[environment]` of a torque profile: its shapes as they were read, and the numbers that differ from
 //! theirs.
 
-use haptic_servo::environment::{Ends, Environment, Profile, Shape, Wall};
+use haptic_servo::environment::{Canceller, Ends, Profile, Shape, Wall};
 
 use super::{number, quoted};
 use crate::file::key::{self, Bound, Key};
@@ -10,17 +10,15 @@ use crate::file::profile::Shapes;
 use crate::file::shape;
 use crate::file::shape::span;
 
-/// A torque profile, with the parts beside it but the wall.
+/// A torque profile, with the canceller beside it.
 pub fn profile(
     lines: &mut Vec<String>,
-    environment: &Environment,
+    canceller: Option<&Canceller>,
     profile: &Profile,
     shapes: &Shapes,
 ) {
     lines.push(format!("type = {}\ndelay = {}", quoted(PROFILE), profile.delay));
-    for key in [&key::RESIDUAL].into_iter().chain(key::BESIDE.iter().copied()) {
-        number(lines, key.name(), key.parameter.and_then(|parameter| environment.get(parameter)));
-    }
+    number(lines, key::RESIDUAL.name(), canceller.map(|canceller| canceller.residual));
     // By its bits: -0.0 is another number than 0.0.
     number(lines, "damping", profile.damping);
     let own = shapes.sampled(profile.delay).ok();
