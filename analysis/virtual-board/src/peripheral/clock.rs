@@ -42,7 +42,7 @@ pub struct Pll {
     register: u32,
     /// The mask of the source, and its values of the internal oscillator and of the crystal.
     source: [u32; 3],
-    /// The input's divider, and what is added to it.
+    /// The input's divider, and the number added to it.
     input: (u32, u32, u64),
     times: (u32, u32),
     /// The output's divider: twice the field plus one.
