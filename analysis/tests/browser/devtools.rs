@@ -36,11 +36,14 @@ impl Page {
 /// Waits for a file that the browser saves; returns its bytes.
 pub fn saved(file: &Path) -> Vec<u8> {
     let start = Instant::now();
-    while !file.exists() {
-        assert!(start.elapsed() < Duration::from_secs(60), "no {}", file.display());
+    loop {
+        // A browser reserves the name with an empty file, and replaces it by the whole one.
+        match std::fs::read(file) {
+            Ok(bytes) if !bytes.is_empty() => return bytes,
+            _ => assert!(start.elapsed() < Duration::from_secs(60), "no {}", file.display()),
+        }
         std::thread::sleep(Duration::from_millis(20));
     }
-    std::fs::read(file).unwrap()
 }
 
 /// The value of a successful operation.
