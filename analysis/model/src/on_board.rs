@@ -35,9 +35,16 @@ pub fn check(
         Format::F64 => Format::F32,
         format => format,
     };
+    renders(scene, &Assessment { format, ..*assessment })
+}
+
+/// Checks an assessed scene in its assessment's number format, with the output timing of a board for it.
+///
+/// # Errors
+/// The reason why no board renders it.
+pub fn renders(scene: &Scene, assessment: &Assessment) -> Result<(), Refusal> {
     let timing = OutputTiming::of_delay(scene.latency.code_delay(scene.timing.period));
-    let checked = Assessment { format, ..*assessment }.renders_at(scene, timing);
-    checked.map_err(|error| Refusal {
+    assessment.renders_at(scene, timing).map_err(|error| Refusal {
         sentence: error.to_string(),
         is_rejection: !matches!(
             error,

@@ -1,12 +1,12 @@
 //! The judge of a design.
 
-use haptic_servo::certificate::{PassivityProblem, TimingError, assess_in};
+use haptic_servo::certificate::{PassivityProblem, assess_in};
 use haptic_servo::number::Format;
 use haptic_servo::period;
 use haptic_servo::scene::Scene;
-use haptic_servo::servo::OutputTiming;
 
 use super::quantity::Quantity;
+use crate::on_board::{self, Refusal};
 
 /// The judge of each value of a design.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,37 +46,15 @@ impl Judge {
 fn renders(scene: &Scene) -> bool {
     let passes_in = |format| {
         let assessment = assess_in(scene, format);
-        assessment.outcome.is_ok() && assessment.renders_at(scene, board_timing(scene)).is_ok()
+        assessment.outcome.is_ok() && on_board::renders(scene, &assessment).is_ok()
     };
     [Format::F64, Format::F32].into_iter().all(passes_in)
 }
 
-/// The output timing of a board that renders the scene.
-fn board_timing(scene: &Scene) -> OutputTiming {
-    OutputTiming::of_delay(scene.latency.code_delay(scene.timing.period))
-}
-
-/// The reason why no board renders a certified scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BoardRefusal {
-    /// The reason as a sentence.
-    pub sentence: String,
-    /// Whether a board has the times of the scene, and rejects its numbers.
-    pub is_rejection: bool,
-}
-
 /// The reason why no board renders a certified scene; `None` where one does.
-pub fn board_refusal(scene: &Scene) -> Option<BoardRefusal> {
+pub fn board_refusal(scene: &Scene) -> Option<Refusal> {
     if let Err(error) = period::check(scene.timing.period) {
-        return Some(BoardRefusal { sentence: error.to_string(), is_rejection: false });
+        return Some(Refusal { sentence: error.to_string(), is_rejection: false });
     }
-    let error = assess_in(scene, Format::F64).renders_at(scene, board_timing(scene)).err()?;
-    let is_rejection = !matches!(
-        error,
-        TimingError::NotLate
-            | TimingError::Phase { .. }
-            | TimingError::DelayRange { .. }
-            | TimingError::PhaseRange { .. }
-    );
-    Some(BoardRefusal { sentence: error.to_string(), is_rejection })
+    on_board::renders(scene, &assess_in(scene, Format::F64)).err()
 }

@@ -15,7 +15,7 @@ use haptic_servo::scene::{Coupling, Scene, TimeRange};
 use crate::chain::Chain;
 use crate::file::SceneFile;
 
-pub use judge::{BoardRefusal, Judge, board_refusal};
+pub use judge::{Judge, board_refusal};
 pub use quantity::{Quantity, SAMPLES};
 
 use edge::{Edge, edge, inward};
