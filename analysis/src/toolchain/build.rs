@@ -298,7 +298,9 @@ impl Toolchain {
         for name in INHERITED {
             cargo.env_remove(name);
         }
-        cargo.env("CARGO_TARGET_DIR", target).args(["build", "--package", NAME]);
+        // With the features that this program's package wants of the crates of both, which are built for it.
+        let build = ["build", "--package", NAME, "--package", "analysis", "--bin", NAME];
+        cargo.env("CARGO_TARGET_DIR", target).args(build);
         output_of(NAME, &mut cargo)?;
         Ok(target.join("debug").join(NAME))
     }
