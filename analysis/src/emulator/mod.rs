@@ -23,7 +23,7 @@ use haptic_servo::servo_loop::State;
 use haptic_servo::wire::message::ToBoard;
 use tempfile::TempDir;
 
-pub use client::{BenchClient, CertifyClient, Client, ServoClient};
+pub use client::Client;
 pub use report::{Calibration, CertificateBits, EmulatorReport, InstructionStats};
 
 use crate::toolchain::{QEMU, emulator};
