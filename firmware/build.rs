@@ -45,7 +45,7 @@ pub fn main() {
         ]);
     }
     arguments.push("-Tlink.x".into());
-    if any(&["LOG", "STM32", "EMULATED"]) {
+    if any(&["STM32"]) {
         arguments.push("-Tdefmt.x".into());
     }
     // A package of tests has only tests.

@@ -32,9 +32,6 @@ pub mod shaft;
 pub mod toolchain;
 pub mod virtual_board;
 
-// A page in a browser of this machine.
-pub mod browser;
-
 // A board that runs, at the other end of a wire, and the view of it.
 pub mod link;
 pub mod scope;

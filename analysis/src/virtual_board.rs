@@ -15,7 +15,6 @@ use haptic_servo::servo::RenderingOptions;
 use haptic_servo::wire::message::ToBoard;
 
 use crate::emulator::InstructionStats;
-use crate::emulator::log::LogDecoder;
 use crate::lockstep::RemoteServo;
 use crate::shaft::{Shaft, ShaftMotion};
 use crate::simulation::SimulationError;
@@ -118,7 +117,6 @@ pub struct VirtualBoard {
     process: Child,
     input: Option<BufWriter<ChildStdin>>,
     output: BufReader<ChildStdout>,
-    decoder: LogDecoder,
     /// The encoder's position in counts, as the simulated world has it.
     count: i32,
 }
@@ -132,8 +130,6 @@ impl VirtualBoard {
         elf: &Path,
         drive: Option<&Drive>,
     ) -> Result<Self, VirtualBoardError> {
-        let decoder =
-            LogDecoder::of_program(&std::fs::read(elf).map_err(VirtualBoardError::Start)?);
         let mut process = Command::new(program)
             .arg(board.name())
             .arg(elf)
@@ -147,7 +143,7 @@ impl VirtualBoard {
         let input = process.stdin.take().ok_or_else(missing)?;
         let output = process.stdout.take().ok_or_else(missing)?;
         let (input, output) = (Some(BufWriter::new(input)), BufReader::new(output));
-        Ok(Self { process, input, output, decoder, count: 0 })
+        Ok(Self { process, input, output, count: 0 })
     }
 
     /// Waits for the end of the sample that runs.
@@ -270,9 +266,8 @@ impl VirtualBoard {
         let compute = Some(self.stats()?).filter(|stats| stats.count > 0);
         let interrupt = self.stats()?;
         let resets = u32::from_le_bytes(self.bytes()?);
-        let mut log = Vec::new();
-        self.output.read_to_end(&mut log)?;
-        Ok(VirtualBoardReport { compute, interrupt, resets, log: self.decoder.decode(&log) })
+        let log = io::BufRead::lines(&mut self.output).collect::<io::Result<_>>()?;
+        Ok(VirtualBoardReport { compute, interrupt, resets, log })
     }
 
     fn stats(&mut self) -> io::Result<InstructionStats> {

@@ -30,16 +30,7 @@ fn main() -> ExitCode {
 fn launch() -> io::Result<ExitCode> {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut build = Command::new(cargo);
-    build.args([
-        "build",
-        "--profile",
-        "host",
-        "--quiet",
-        "--package",
-        "analysis",
-        "--bin",
-        "haptic",
-    ]);
+    build.args(["build", "--quiet", "--package", "analysis", "--bin", "haptic"]);
     // Standard input is for `haptic`.
     if !wait(build.stdin(Stdio::null()).spawn()?)?.success() {
         return Ok(ExitCode::from(2));

@@ -285,7 +285,7 @@ fn compile_time(latency: &str, rounds: Rounds) -> io::Result<f64> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(&cargo)
         .current_dir(&workspace)
-        .args(["build", "--profile", "host", "--package", "haptic-servo", "--lib"])
+        .args(["build", "--package", "haptic-servo", "--lib"])
         .arg("--message-format=json")
         .output()?;
     let library = library(&output.stdout)

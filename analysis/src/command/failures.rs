@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::shared_arguments::JsonOption;
 use super::status::{CommandError, CommandStatus};
-use crate::emulator::ServoClient;
+use crate::emulator::Client;
 use crate::progress;
 use crate::studies::failures::loop_run::BoardResult;
 use crate::studies::failures::method_result::{Failure, MethodResult};
@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let mut player = match arguments.emulate {
         true => {
             let toolchain = prepare(Tools::CompilerAndEmulator)?;
-            Some(ServoClient::boot(&toolchain.build_harness("servo_server")?)?)
+            Some(Client::boot(&toolchain.build_harness("servo_server")?)?)
         }
         false => None,
     };

@@ -12,19 +12,14 @@ use serde::de::DeserializeOwned;
 use super::{EmulatorError, Guest};
 use crate::lockstep::RemoteServo;
 
-/// The client of a program of the harness, which answers one kind of requests.
+/// The client of a program of the harness, which answers one kind of requests: `certify_server` certificates,
+/// `servo_server` the servos of several scenes, one after the other; `bench_programs` and `bench_all` torques
+/// and sines, with the instructions of each.
 pub struct Client {
     board: Guest,
     /// Ticks of a servo that have been requested and not run.
     ticks_left: u32,
 }
-
-/// The client of `certify_server`: certificates by the board.
-pub type CertifyClient = Client;
-/// The client of `servo_server`: the servos of several scenes, one after the other.
-pub type ServoClient = Client;
-/// The client of `bench_programs` and `bench_all`: torques and sines, with the instructions of each.
-pub type BenchClient = Client;
 
 impl Client {
     /// Starts the program, built by [`build_harness`](crate::toolchain::Toolchain::build_harness).

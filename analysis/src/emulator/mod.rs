@@ -5,13 +5,12 @@
 //! [`TIMEOUT`] is an error, and the emulator is always ended.
 
 mod client;
-pub mod log;
 mod pipes;
 pub mod plant_thread;
 mod report;
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -24,11 +23,10 @@ use haptic_servo::servo_loop::State;
 use haptic_servo::wire::message::ToBoard;
 use tempfile::TempDir;
 
-pub use client::{BenchClient, CertifyClient, Client, ServoClient};
+pub use client::Client;
 pub use report::{Calibration, CertificateBits, EmulatorReport, InstructionStats};
 
 use crate::toolchain::{QEMU, emulator};
-use log::LogDecoder;
 use pipes::Pipes;
 
 /// The arguments of the emulated board. With `icount` each instruction takes 32 ns of the board's time,
@@ -189,7 +187,6 @@ impl Guest {
     fn boot(elf: &Path) -> Result<Self, EmulatorError> {
         let program = |source| EmulatorError::Program { path: elf.into(), source };
         let path = elf.canonicalize().map_err(program)?;
-        let decoder = LogDecoder::of_program(&std::fs::read(&path).map_err(program)?);
         let folder = TempDir::with_prefix("haptic-").map_err(EmulatorError::Pipe)?;
         let pipes = Pipes::make(folder.path()).map_err(EmulatorError::Pipe)?;
         let errors = File::create(folder.path().join(ERRORS)).map_err(EmulatorError::Pipe)?;
@@ -203,7 +200,7 @@ impl Guest {
             .stderr(errors)
             .spawn()
             .map_err(EmulatorError::Start)?;
-        let log = process.stdout.take().map(|output| decoder.follow(output));
+        let log = process.stdout.take().map(follow);
         Ok(Self { process, pipes: Some(pipes), log, folder, timeout: TIMEOUT })
     }
 
@@ -261,8 +258,8 @@ impl Guest {
     }
 
     fn take_log(&mut self) -> Vec<String> {
-        let undecoded = |_| vec!["the log could not be decoded".into()];
-        self.log.take().map_or(Vec::new(), |log| log.join().unwrap_or_else(undecoded))
+        let unread = |_| vec!["the log could not be read".into()];
+        self.log.take().map_or(Vec::new(), |log| log.join().unwrap_or_else(unread))
     }
 
     /// The output of board and emulator for an error's text.
@@ -273,6 +270,17 @@ impl Guest {
         words.extend(errors.lines().take(2).map(str::to_owned));
         if words.is_empty() { "empty".into() } else { words.join(" | ") }
     }
+}
+
+/// Reads a log until the program ends: it must be read while the program runs, because a full pipe would stop
+/// the board.
+fn follow(mut output: impl Read + Send + 'static) -> JoinHandle<Vec<String>> {
+    std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        // Bytes before an error of the pipe are still a log.
+        let _ = output.read_to_end(&mut bytes);
+        String::from_utf8_lossy(&bytes).lines().map(str::to_owned).collect()
+    })
 }
 
 /// File of the emulator's own messages, in its folder.

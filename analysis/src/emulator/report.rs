@@ -166,15 +166,15 @@ mod tests {
     use super::*;
 
     fn log() -> Vec<String> {
-        let lines = "info per_instruction=32 overhead=7
-info enclosure=alpha by=compiler lo=1 hi=2
-info enclosure=alpha by=board lo=1 hi=3
-info enclosure=alpha_coupled by=board lo=18446744073709551615 hi=5
-info certify_time=3200 stack_used=900 stack_size=1000
-info ticks=4 dropped=1 overruns=2
-info spread=contact count=1 min=50 max=50 sum=50
-info spread=free count=3 min=40 max=42 sum=122
-info spread=interrupt count=2 min=100 max=102 sum=202";
+        let lines = "per_instruction=32 overhead=7
+enclosure=alpha by=compiler lo=1 hi=2
+enclosure=alpha by=board lo=1 hi=3
+enclosure=alpha_coupled by=board lo=18446744073709551615 hi=5
+certify_time=3200 stack_used=900 stack_size=1000
+ticks=4 dropped=1 overruns=2
+spread=contact count=1 min=50 max=50 sum=50
+spread=free count=3 min=40 max=42 sum=122
+spread=interrupt count=2 min=100 max=102 sum=202";
         lines.lines().map(str::to_owned).collect()
     }
 

@@ -298,7 +298,9 @@ impl Toolchain {
         for name in INHERITED {
             cargo.env_remove(name);
         }
-        cargo.env("CARGO_TARGET_DIR", target).args(["build", "--package", NAME]);
+        // With the features that this program's package wants of the crates of both, which are built for it.
+        let build = ["build", "--package", NAME, "--package", "analysis", "--bin", NAME];
+        cargo.env("CARGO_TARGET_DIR", target).args(build);
         output_of(NAME, &mut cargo)?;
         Ok(target.join("debug").join(NAME))
     }
@@ -386,13 +388,10 @@ pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
     let workspace = Workspace::find()?;
     let _lock = workspace.lock("scene")?;
     let mut cargo = own_cargo(&workspace.root);
-    // Cargo's folder of the profile `dev` has a different name.
-    let (profile, folder) =
-        if cfg!(debug_assertions) { ("dev", "debug") } else { ("host", "host") };
-    cargo.args(["build", "--package", SCENE_PACKAGE, "--profile", profile]);
+    cargo.args(["build", "--package", SCENE_PACKAGE]);
     cargo.env("CARGO_TARGET_DIR", &workspace.target).env(SCENE_VARIABLE, scene);
     output_of(scene, &mut cargo)?;
-    workspace.keep(&workspace.target.join(folder).join(SCENE_PACKAGE), &format!("haptic-{scene}"))
+    workspace.keep(&workspace.target.join("debug").join(SCENE_PACKAGE), &format!("haptic-{scene}"))
 }
 
 /// The file of a test, if a line of cargo's messages reports that it was built.

@@ -18,8 +18,9 @@ mod verdict_page;
 
 use std::process::ExitCode;
 
-use analysis::browser::NAME;
 use analysis::toolchain::set_up_tool;
+
+use devtools::NAME;
 
 macro_rules! tests {
     ($($module:ident::$test:ident)*) => {

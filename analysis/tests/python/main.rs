@@ -54,8 +54,8 @@ fn main() -> ExitCode {
     })
 }
 
-/// Installs the package from this checkout as a user does, but compiled as tests are. The build tools are
-/// in the environment, so that pip does not fetch them.
+/// Installs the package from this checkout as a user does. The build tools are in the environment, so that
+/// pip does not fetch them.
 ///
 /// # Panics
 /// Where it cannot be installed.
@@ -63,7 +63,6 @@ fn install(environment: &PythonEnvironment) {
     let package = root().join("analysis/python");
     let mut pip = environment.pip_install();
     pip.args(["--no-build-isolation", "--no-deps", "--force-reinstall"]).arg(&package);
-    pip.env("MATURIN_PEP517_ARGS", "--profile dev --locked");
     pip.env("CARGO_TARGET_DIR", target_folder().unwrap());
     finished(&mut pip).unwrap_or_else(|why| panic!("{}: {why}", package.display()));
 }

@@ -30,6 +30,7 @@ mod frame;
 mod hooks;
 pub mod image;
 mod it_block;
+mod log;
 pub mod machine;
 pub mod meter;
 pub mod motor;

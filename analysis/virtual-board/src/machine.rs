@@ -15,6 +15,7 @@ use crate::error::{BoardError, BootError};
 use crate::frame::THUMB;
 use crate::hooks::Halt;
 use crate::image::Image;
+use crate::log;
 use crate::peripheral::clock::Cause;
 use crate::processor::Processor;
 use crate::rtt;
@@ -29,6 +30,7 @@ pub struct Machine {
     /// An exception that is served at an address other than its vector.
     diverted: Option<(Number, u32)>,
     resets: Vec<(u64, Cause)>,
+    /// The log, in defmt's encoding.
     log: Vec<u8>,
     /// Whether a debugger is connected, which gets the program's breakpoints.
     pub debugged: bool,
@@ -153,10 +155,10 @@ impl Machine {
         Ok(())
     }
 
-    /// The program's log so far, in defmt's encoding.
-    pub fn log(&mut self) -> &[u8] {
+    /// The lines of the program's log so far.
+    pub fn log(&mut self) -> Vec<String> {
         self.drain_log();
-        &self.log
+        log::lines(&self.image.file, &self.log)
     }
 
     /// From one event to the next, at most up to a time.

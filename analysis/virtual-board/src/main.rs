@@ -30,7 +30,7 @@
 //!
 //! Once the input ends, the board writes a 0, then how many there were and the least, the most and
 //! the sum of the instructions from count to code and of the servo's whole interrupt (8 bytes each),
-//! then the number of resets (4), and the rest is the log as defmt has encoded it. A bridge's code is in
+//! then the number of resets (4), and the rest is the log, line by line. A bridge's code is in
 //! memory, and nothing is counted up to it.
 //!
 //! A board that cannot continue writes the reason to standard error, and ends with a failure.
@@ -154,7 +154,9 @@ fn report(machine: &mut Machine) -> io::Result<()> {
     }
     let resets = u32::try_from(machine.resets().len()).unwrap_or(u32::MAX);
     output.write_all(&resets.to_le_bytes())?;
-    output.write_all(machine.log())?;
+    for line in machine.log() {
+        writeln!(output, "{line}")?;
+    }
     output.flush()
 }
 

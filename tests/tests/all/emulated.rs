@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use analysis::emulator::{CertifyClient, Emulator, EmulatorError, EmulatorReport};
+use analysis::emulator::{Client, Emulator, EmulatorError, EmulatorReport};
 use analysis::program::{damper_wall, delayed_spring, free_mode, knob, undelayed_wall};
 use analysis::studies::bench;
 use analysis::studies::bench::on_target::{contact_instructions, live_set, profiles};
@@ -117,7 +117,7 @@ fn check<E>(report: &EmulatorReport, certified: &Certified<Scene<E>>) {
 }
 
 /// The board's judgement of a scene, which is that of the host, bit for bit.
-fn judged_alike(board: &mut CertifyClient, scene: &Scene, name: &str) -> CertifyReply {
+fn judged_alike(board: &mut Client, scene: &Scene, name: &str) -> CertifyReply {
     let reply = board.certify(scene).unwrap_or_else(|error| panic!("{name}: {error}"));
     let found = assess(scene);
     let expected = CertifyReply {
@@ -138,7 +138,7 @@ fn judged_alike(board: &mut CertifyClient, scene: &Scene, name: &str) -> Certify
 #[test]
 #[ignore = "builds for minutes"]
 fn the_board_judges_as_the_host_does() {
-    let mut board = CertifyClient::boot(&harness("certify_server")).unwrap();
+    let mut board = Client::boot(&harness("certify_server")).unwrap();
     for case in vectors::all() {
         assert!(judged_alike(&mut board, &case.scene(), &case.name).instructions > 0);
     }

@@ -6,7 +6,7 @@
 use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
-use analysis::emulator::ServoClient;
+use analysis::emulator::Client;
 use analysis::studies::failures::loop_run::BoardResult;
 use analysis::studies::failures::method_result::Failure;
 use analysis::studies::failures::motion::Outcome;
@@ -23,8 +23,8 @@ use tests::remainders::is_schur;
 
 use crate::toolchain::harness;
 
-fn board() -> ServoClient {
-    ServoClient::boot(&harness("servo_server")).unwrap()
+fn board() -> Client {
+    Client::boot(&harness("servo_server")).unwrap()
 }
 
 /// The verdicts of each case that are wrong: those that say safe, and those that say unsafe.

@@ -84,7 +84,7 @@ fn guess(environment: &Environment) -> f64 {
     said.map_or(0.0, |(lo, hi)| 0.5 * (lo + hi))
 }
 
-/// `INDICES=overwrite` finds all of them again, and takes its time.
+/// `ANSWERS=overwrite` finds all of them again, and takes its time.
 #[test]
 fn the_answers_that_ways_to_the_certificate_are_compared_by_are_exact() {
     let all = || Kind::ALL.into_iter().flat_map(|kind| (0..EACH).map(move |n| (kind, n)));

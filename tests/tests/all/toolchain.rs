@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-use analysis::emulator::BenchClient;
+use analysis::emulator::Client;
 use analysis::toolchain::{NumberFormat, Toolchain, Tools, prepare};
 
 pub static TOOLCHAIN: LazyLock<Toolchain> =
@@ -21,6 +21,6 @@ pub fn harness(name: &str) -> PathBuf {
 }
 
 /// The board that runs whatever program it is asked for.
-pub fn bench_board() -> BenchClient {
-    BenchClient::boot(&harness("bench_programs")).unwrap()
+pub fn bench_board() -> Client {
+    Client::boot(&harness("bench_programs")).unwrap()
 }

@@ -13,7 +13,7 @@ use haptic_servo::scene::{Coupling, Latency, Scene};
 
 use super::CORE_CLOCK;
 use crate::emulator::plant_thread::{FixedCount, PlantThread};
-use crate::emulator::{BenchClient, CertifyClient, Emulator, EmulatorError};
+use crate::emulator::{Client, Emulator, EmulatorError};
 use crate::latency_limits::lag_of;
 use crate::link::{Address, Link, RequestResult};
 use crate::program::{damper_wall, knob};
@@ -31,7 +31,7 @@ const TICKS: u32 = 2048;
 /// Largest number of instructions of an instant of a bridge's current loop, from a sample to compare values,
 /// of a brushed and of a brushless motor.
 pub fn instant_instructions(elf: &Path) -> Result<[u32; 2], EmulatorError> {
-    let mut board = BenchClient::boot(elf)?;
+    let mut board = Client::boot(elf)?;
     let inputs: Vec<_> = (1..=INSTANTS).map(|instant| Input::of_steps(instant).0).collect();
     let mut most = [0; 2];
     for (most, bench) in most.iter_mut().zip(CurrentBench::ALL) {
@@ -51,7 +51,7 @@ pub fn share_of_core(instant: f64, servo: f64) -> f64 {
 /// `f32`: for the damper wall without delay whose torques come 10 us after their counts, and for the same
 /// with a current loop of 3 kHz.
 pub fn contact_instructions(elf: &Path) -> Result<[u32; 2], EmulatorError> {
-    let mut board = BenchClient::boot(elf)?;
+    let mut board = Client::boot(elf)?;
     let prompt = Latency::delayed(1e-5);
     let most = [
         most_in_contact(&mut board, prompt)?,
@@ -61,7 +61,7 @@ pub fn contact_instructions(elf: &Path) -> Result<[u32; 2], EmulatorError> {
     Ok(most)
 }
 
-fn most_in_contact(board: &mut BenchClient, latency: Latency) -> Result<u32, EmulatorError> {
+fn most_in_contact(board: &mut Client, latency: Latency) -> Result<u32, EmulatorError> {
     let scene = damper_wall::SCENE;
     let environment = Wall::damped(22.0, 0.01, 0).behind(0.0).alone();
     let request = BenchRequest::Servo {
@@ -98,7 +98,7 @@ pub fn profiles() -> Vec<Scene> {
 
 /// Largest number of instructions of a verdict on these profiles, and of the whole assessment with remedies.
 pub fn verdict_instructions(elf: &Path) -> Result<[u64; 2], EmulatorError> {
-    let mut board = CertifyClient::boot(elf)?;
+    let mut board = Client::boot(elf)?;
     let mut most = [0; 2];
     for scene in profiles() {
         let reply = board.certify(&scene)?;

@@ -13,7 +13,7 @@ use super::loaded::LoadedDevice;
 use super::method_result::{MOVES, MethodResult};
 use super::motion::{Motion, Outcome};
 use crate::controller::controller;
-use crate::emulator::ServoClient;
+use crate::emulator::Client;
 use crate::lockstep::run;
 use crate::simulation::{Experiment, Integration, simulate};
 use crate::studies::error::StudyError;
@@ -63,7 +63,7 @@ impl LoopRun {
 
     /// The motion of the loop with the emulated board as the servo. The board is compared with the servo on
     /// this machine in every tick.
-    pub fn emulated(&self, player: &mut ServoClient) -> Result<BoardResult, StudyError> {
+    pub fn emulated(&self, player: &mut Client) -> Result<BoardResult, StudyError> {
         let request = self.request();
         let (reply, here) = (player.start(&request)?, self.certified());
         let certified = match (reply, here) {

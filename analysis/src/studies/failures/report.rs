@@ -6,7 +6,7 @@ use super::case::Case;
 use super::loop_run::{BoardResult, LoopRun};
 use super::method_result::{Failure, MethodResult};
 use super::motion::{Motion, Outcome};
-use crate::emulator::ServoClient;
+use crate::emulator::Client;
 use crate::studies::error::StudyError;
 
 /// A case with all its results.
@@ -53,7 +53,7 @@ pub struct RunResult {
 
 impl Case {
     /// Evaluates all methods, and runs the loops, also on the emulated board if there is one.
-    pub fn report(&self, player: &mut Option<ServoClient>) -> Result<CaseReport, StudyError> {
+    pub fn report(&self, player: &mut Option<Client>) -> Result<CaseReport, StudyError> {
         let result = self.evaluate()?;
         let truth = result.truth.verdict;
         let judged = |result: MethodResult| JudgedMethod { failure: result.failure(truth), result };
@@ -68,10 +68,7 @@ impl Case {
     }
 }
 
-fn run_all(
-    runs: &[LoopRun],
-    player: &mut Option<ServoClient>,
-) -> Result<Vec<RunResult>, StudyError> {
+fn run_all(runs: &[LoopRun], player: &mut Option<Client>) -> Result<Vec<RunResult>, StudyError> {
     let run = |loop_run: &LoopRun| {
         let player = player.as_mut().filter(|_| loop_run.goes_to_a_board());
         let emulated = player.map(|player| loop_run.emulated(player)).transpose()?;

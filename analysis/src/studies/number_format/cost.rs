@@ -4,7 +4,7 @@ use firmware_harness::bench_request::{BenchRequest, Output};
 use haptic_servo::number::Arithmetic;
 
 use super::Motion;
-use crate::emulator::BenchClient;
+use crate::emulator::Client;
 use crate::studies::error::StudyError;
 
 /// Instructions of a tick from count to code, on the emulated board.
@@ -31,7 +31,7 @@ impl Cost {
 
 /// Runs a motion on the board and on this machine.
 pub fn cost(
-    board: &mut BenchClient,
+    board: &mut Client,
     motion: &Motion,
     arithmetic: Arithmetic,
 ) -> Result<Cost, StudyError> {

@@ -16,7 +16,7 @@ use std::time::Instant;
 
 pub use comparison::{Axis, Comparison, Direction};
 
-use crate::emulator::BenchClient;
+use crate::emulator::Client;
 use crate::progress;
 use crate::quantity::significant;
 use crate::studies::error::StudyError;
@@ -169,21 +169,21 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
 }
 
 /// An emulated board that computes the scenes that have a program, and sines.
-pub fn board() -> Result<BenchClient, StudyError> {
+pub fn board() -> Result<Client, StudyError> {
     boot("building the trial of the formats", "bench_programs")
 }
 
 /// The same for any scene; its program takes longer to build.
-pub fn any_board() -> Result<BenchClient, StudyError> {
+pub fn any_board() -> Result<Client, StudyError> {
     boot("building all types of scenes in all formats", "bench_all")
 }
 
-fn boot(what: &str, program: &str) -> Result<BenchClient, StudyError> {
+fn boot(what: &str, program: &str) -> Result<Client, StudyError> {
     let toolchain = toolchain::prepare(Tools::CompilerAndEmulator)?;
     let spinner = progress::spinner(what);
     let elf = toolchain.build_harness(program)?;
     spinner.finish_and_clear();
-    Ok(BenchClient::boot(&elf)?)
+    Ok(Client::boot(&elf)?)
 }
 
 fn written(value: f64) -> String {

@@ -8,7 +8,7 @@ use haptic_servo::number::Arithmetic;
 use haptic_servo::servo::Transducers;
 
 use super::{Axis, Comparison, Method, Tradeoff};
-use crate::emulator::BenchClient;
+use crate::emulator::Client;
 use crate::hand::HandTrajectory;
 use crate::program::{self, Program};
 use crate::studies::error::StudyError;
@@ -99,7 +99,7 @@ pub fn measure() -> Result<Tradeoff, StudyError> {
 fn row(
     case: &Case,
     motion: &Motion,
-    board: &mut BenchClient,
+    board: &mut Client,
     arithmetic: Arithmetic,
 ) -> Result<Method, StudyError> {
     let cost = cost(board, motion, arithmetic)?;

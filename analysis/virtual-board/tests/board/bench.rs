@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use std::thread;
 
-use analysis::emulator::log::LogDecoder;
 use analysis::link::{Message, frame};
 use analysis::program::Program;
 use analysis::toolchain::{BoardModel, NumberFormat, Tools, TorqueOutput, prepare};
@@ -320,7 +319,6 @@ impl Bench {
 
     /// The log so far, as lines.
     pub fn log(&mut self) -> Vec<String> {
-        let decoder = LogDecoder::of_program(&self.machine.image().file);
-        decoder.decode(self.machine.log())
+        self.machine.log()
     }
 }

@@ -4,6 +4,7 @@
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use heapless::spsc::{Consumer, Producer, Queue};
+use semihosting::println;
 use static_cell::StaticCell;
 
 use super::meter::{Scale, now};
@@ -11,9 +12,6 @@ use super::stop::EXIT_DONE;
 use crate::board::isr_cell::IsrCell;
 use crate::certificate::Assessment;
 use crate::encoder::RawCount;
-
-// The logger that carries the bytes; it registers itself.
-use defmt_semihosting as _;
 
 /// Length of the queue: it holds one tick less, and the log may lag behind by that number.
 const LENGTH: usize = 17;
@@ -65,7 +63,7 @@ impl InstructionStats {
     pub fn log(&self, name: &str) {
         let Self { count, min, max, sum } = *self;
         if count > 0 {
-            defmt::info!("spread={=str} count={} min={} max={} sum={}", name, count, min, max, sum);
+            println!("spread={name} count={count} min={min} max={max} sum={sum}");
         }
     }
 }
@@ -127,7 +125,7 @@ pub fn certificate(by: &str, assessment: &Assessment) {
     for (name, interval) in indices {
         if let Some(interval) = interval {
             let (lo, hi) = (interval.lo().to_bits(), interval.hi().to_bits());
-            defmt::info!("enclosure={=str} by={=str} lo={=u64} hi={=u64}", name, by, lo, hi);
+            println!("enclosure={name} by={by} lo={lo} hi={hi}");
         }
     }
 }
@@ -188,7 +186,7 @@ impl<P: Parts> Log<P> {
         }
         self.total += 1;
         if self.total.is_multiple_of(EVERY) {
-            defmt::info!("progress={}", self.total);
+            println!("progress={}", self.total);
         }
     }
 
@@ -196,7 +194,7 @@ impl<P: Parts> Log<P> {
         let dropped = DROPPED.load(Ordering::Relaxed);
         let overruns = super::tick_timer::missed();
         let ticks = self.interrupt.count();
-        defmt::info!("ticks={} dropped={} overruns={}", ticks, dropped, overruns);
+        println!("ticks={ticks} dropped={dropped} overruns={overruns}");
         self.parts.log();
         self.interrupt.log("interrupt");
         self.below.log("below");

@@ -1,6 +1,8 @@
 //! The start of a program: from reset to a running servo.
 
 use cortex_m::peripheral::SYST;
+#[cfg(feature = "log")]
+use semihosting::println;
 use static_cell::StaticCell;
 
 use super::lockstep;
@@ -147,17 +149,11 @@ where
     let Booted { servo_loop, margin, reset, previous_fault, .. } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|step| halt_with(step.as_str()));
     #[cfg(feature = "log")]
-    defmt::info!("reset={=str}", reset.as_str());
+    println!("reset={}", reset.as_str());
     #[cfg(feature = "log")]
     if let Some(previous_fault) = previous_fault {
         let (code, [a, b]) = previous_fault.fault.encode();
-        defmt::warn!(
-            "left={=str} code={} numbers={},{}",
-            previous_fault.fault.as_str(),
-            code,
-            a,
-            b
-        );
+        println!("left={} code={code} numbers={a},{b}", previous_fault.fault.as_str());
     }
     hardware.start();
     // SAFETY: the interrupt that uses the cell is not enabled yet.
@@ -204,7 +200,7 @@ pub(super) fn open_pipes() {
 pub(super) fn calibrate() -> Scale {
     let scale = Scale::calibrate();
     let Scale { per_instruction, overhead, around } = scale;
-    defmt::info!("per_instruction={} overhead={} around={}", per_instruction, overhead, around);
+    println!("per_instruction={per_instruction} overhead={overhead} around={around}");
     scale
 }
 
@@ -223,5 +219,5 @@ fn judge<E: Tunable<N>, N: Number>(program: &Program<E>, compiler: &Assessment) 
     log::certificate("compiler", compiler);
     log::certificate("board", assessment);
     let (size, unused) = (stack::size(), stack::unused());
-    defmt::info!("certify_time={} stack_used={} stack_size={}", time, size - unused, size);
+    println!("certify_time={time} stack_used={} stack_size={size}", size - unused);
 }

@@ -27,7 +27,7 @@ pub const EXIT_REFUSED: i32 = 1;
 pub(super) fn halt_with(reason: &'static str) -> ! {
     lines::stop();
     #[cfg(feature = "log")]
-    defmt::error!("refused by {=str}", reason);
+    semihosting::println!("refused by {reason}");
     #[cfg(not(feature = "log"))]
     let _ = reason;
     semihosting::process::exit(EXIT_REFUSED)
