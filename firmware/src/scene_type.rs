@@ -312,11 +312,12 @@ macro_rules! scene_type {
         const _: () = {
             use $crate::scene_type::names::*;
 
-            const OF: Structure = Structure::of($certified.scene());
-            const ENVIRONMENT: Environment = $certified.scene().environment;
+            const GIVEN: Certified<Scene> = $crate::reported_once!($certified);
+            const OF: Structure = Structure::of(GIVEN.scene());
+            const ENVIRONMENT: Environment = GIVEN.scene().environment;
 
             impl SceneType for $name {
-                const CERTIFIED: Certified<Scene> = $certified;
+                const CERTIFIED: Certified<Scene> = GIVEN;
                 const NUMBERS: Self::Numbers = numbers(ENVIRONMENT);
                 type Numbers = [f64; count(ENVIRONMENT)];
                 type Law<N: Number> = SumLaw<
@@ -359,6 +360,19 @@ macro_rules! scene_type {
                 >;
             }
         };
+    };
+}
+
+/// A constant, for constants that need it: if it does not compile, its own error is the only one. The compiler
+/// repeats the error of a constant in each body that uses it, but not in a pattern.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! reported_once {
+    ($constant:path) => {
+        match $constant {
+            given @ $constant => given,
+            _ => unreachable!(),
+        }
     };
 }
 

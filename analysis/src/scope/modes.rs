@@ -14,7 +14,7 @@ pub fn modes(program: &str, parameters: &ActiveParameters) -> Option<String> {
     let modes = Program::find(program)?.scene.environment.profile()?.modes?.modes();
     let line = |(number, mode): (usize, &ProfileMode)| {
         let mark = if number as f64 == *selected { '*' } else { ' ' };
-        format!("\n{mark} {number:2}  {}", mode.name)
+        format!("\n{mark} {number:2}  {}", mode.name())
     };
     let lines: String = modes.iter().enumerate().map(line).collect();
     Some(format!("modes, of which mode=NUMBER selects one:{lines}"))

@@ -113,9 +113,12 @@ macro_rules! scene_program {
         $(, options: $options:expr)?
         $(,)?
     ) => {
+        const GIVEN: $crate::certificate::Certified<$crate::scene::Scene<$environment>> =
+            $crate::reported_once!($certified);
+
         /// The flashed program: scene, transducers and options.
         pub const PROGRAM: $crate::boot::Program<$environment> = $crate::boot::Program {
-            scene: *$certified.scene(),
+            scene: *GIVEN.scene(),
             transducers: $transducers,
             rendering: $crate::servo::RenderingOptions {
                 $(returned: $current_loop.returned(),)?
@@ -137,7 +140,7 @@ macro_rules! scene_program {
         /// certify with them, this does not compile.
         pub const CERTIFIED_AS_IT_RUNS: $crate::certificate::Certified<
             $crate::scene::Scene<$environment>,
-        > = $certified.certified_in(
+        > = GIVEN.certified_in(
             <$crate::chosen_number!($float, $fixed) as $crate::number::Number>::FORMAT,
         );
 
@@ -145,7 +148,7 @@ macro_rules! scene_program {
         $(const _: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
             CERTIFIED_AS_IT_RUNS.timing_checked::<$mode>();)?
 
-        $crate::bridge_checked!([$($current_loop)?] [$($mode)?] $scene, $certified, $transducers);
+        $crate::bridge_checked!([$($current_loop)?] [$($mode)?] $scene, GIVEN, $transducers);
 
         /// The current loop of the board's bridge; `None` with a DAC and an external amplifier.
         #[cfg(not(target_os = "none"))]
@@ -155,8 +158,8 @@ macro_rules! scene_program {
         // The host judges both formats, because the board's format is unknown here.
         #[cfg(not(target_os = "none"))]
         const _: () = {
-            let _ = $certified.certified_in(<$float as $crate::number::Number>::FORMAT);
-            let _ = $certified.certified_in(<$fixed as $crate::number::Number>::FORMAT);
+            let _ = GIVEN.certified_in(<$float as $crate::number::Number>::FORMAT);
+            let _ = GIVEN.certified_in(<$fixed as $crate::number::Number>::FORMAT);
         };
 
         /// Prints the certificate.

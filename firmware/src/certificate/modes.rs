@@ -93,7 +93,7 @@ const fn nth(scene: &Scene, mode: usize) -> Option<(&'static str, Scene)> {
         return None;
     }
     let selecting = some!(scene.with(Parameter::Mode, mode as f64));
-    Some((modes.modes()[mode].name, selecting))
+    Some((modes.modes()[mode].name(), selecting))
 }
 
 const fn modes(scene: &Scene) -> Option<&ModeSelection> {

@@ -24,7 +24,8 @@ pub(crate) mod sealed {
 
 /// An environment of another crate.
 ///
-/// To run on a board it must also be [`Delayed`](super::Delayed).
+/// To run on a board it must also be [`Delayed`](super::Delayed). In [`scene_program!`](crate::scene_program)
+/// its value is in a pattern: it derives `PartialEq`, and has no string, function pointer or NaN.
 pub trait StatedEnvironment: NamedParameters + Copy + 'static {
     /// Its model for the certificate, in a scene with this period, damping and coupling. These may be any
     /// numbers; they are checked later.

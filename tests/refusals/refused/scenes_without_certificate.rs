@@ -2,7 +2,7 @@
 use haptic_servo::certificate::Certified;
 use haptic_servo::environment::{Canceller, ModeTable, Profile, ProfileMode, Shape, Wall};
 use haptic_servo::scene::Scene;
-use refusals::scene;
+use refusals::{TRANSDUCERS, scene};
 
 /// Rejected: a spring of twice what a delay of one sample allows, alpha = K T / 2.
 const _: Certified<Scene> = scene(Wall::spring(88.0, 1).alone()).certified();
@@ -18,6 +18,12 @@ static STEEP: ModeTable<16> = ModeTable::of(&[Shape::detents(24, 5.0)]);
 static MODES: [ProfileMode; 2] = [LIGHT.named("light"), STEEP.named("steep")];
 
 /// A knob with a mode that is not selected and that is rejected.
-const _: Certified<Scene> = scene(Profile::of_modes(&MODES, 1).alone()).certified();
+const SCENE: Scene = scene(Profile::of_modes(&MODES, 1).alone());
+const CERTIFIED: Certified<Scene> = SCENE.certified();
 
-fn main() {}
+// Its program adds nothing to the refusal.
+haptic_servo::scene_program! {
+    scene: SCENE,
+    certified: CERTIFIED,
+    transducers: TRANSDUCERS,
+}

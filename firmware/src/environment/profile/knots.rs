@@ -118,7 +118,7 @@ impl Cell {
 }
 
 /// The table of a torque profile.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Table {
     #[cfg_attr(feature = "wire", serde(skip))]
@@ -127,13 +127,6 @@ pub struct Table {
     #[cfg_attr(feature = "wire", serde(skip))]
     cells: &'static [Cell],
     outline: Outline,
-}
-
-/// The cells follow from the units.
-impl PartialEq for Table {
-    fn eq(&self, other: &Self) -> bool {
-        self.units == other.units && self.outline == other.outline
-    }
 }
 
 impl Table {

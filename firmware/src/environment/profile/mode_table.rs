@@ -18,12 +18,22 @@ pub struct ModeTable<const KNOTS: usize> {
 /// A torque profile with a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileMode {
-    /// Its name.
-    pub name: &'static str,
+    /// In bytes, which a constant can compare.
+    name: &'static [u8],
     /// Its table, not delayed.
     pub(super) units: &'static [i16],
     pub(super) outline: Outline,
     pub(super) layout: Layout,
+}
+
+impl ProfileMode {
+    /// Its name.
+    pub const fn name(&self) -> &'static str {
+        match core::str::from_utf8(self.name) {
+            Ok(name) => name,
+            Err(_) => "",
+        }
+    }
 }
 
 impl<const KNOTS: usize> ModeTable<KNOTS> {
@@ -58,6 +68,11 @@ impl<const KNOTS: usize> ModeTable<KNOTS> {
 
     /// The table as a mode of this name.
     pub const fn named(&'static self, name: &'static str) -> ProfileMode {
-        ProfileMode { name, units: &self.units, outline: self.outline, layout: self.layout }
+        ProfileMode {
+            name: name.as_bytes(),
+            units: &self.units,
+            outline: self.outline,
+            layout: self.layout,
+        }
     }
 }

@@ -38,7 +38,7 @@ fn numbers() -> impl Iterator<Item = usize> {
 #[test]
 fn each_mode_is_certified_and_rendered_in_the_boards_number_formats() {
     for mode in numbers() {
-        let name = KNOB_MODES[mode].name;
+        let name = KNOB_MODES[mode].name();
         let data = selected(mode);
         assert_eq!(data.environment.profile().unwrap().units(), KNOB_MODES[mode].units);
         for format in [Format::F64, Format::F32, I8F24::FORMAT] {
@@ -55,7 +55,7 @@ fn renders<N: Number>(mode: usize) {
     let timed = certify_scene(selected(mode), N::FORMAT).unwrap().time::<Latched>().unwrap();
     let options = RenderingOptions::DEFAULT;
     let built = PreparedServo::<_, N, Latched>::new(&timed, &TRANSDUCERS, &options);
-    assert!(built.is_ok(), "{}: {:?}", KNOB_MODES[mode].name, built.map(|_| ()));
+    assert!(built.is_ok(), "{}: {:?}", KNOB_MODES[mode].name(), built.map(|_| ()));
 }
 
 /// The torque of a mode is that of its shapes, but for corners that are cut where no knot lies on them.
@@ -63,7 +63,7 @@ fn renders<N: Number>(mode: usize) {
 fn each_mode_has_the_torque_of_its_shapes() {
     for mode in numbers() {
         let shapes = MODES[mode].shapes;
-        assert_eq!(KNOB_MODES[mode].name, MODES[mode].name);
+        assert_eq!(KNOB_MODES[mode].name(), MODES[mode].name);
         let (scene, profile) = (selected(mode), of(&KNOB_MODES).selecting(mode as f64).unwrap());
         let mut undelayed = profile;
         undelayed.delay = 0;
