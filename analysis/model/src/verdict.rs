@@ -191,6 +191,9 @@ pub struct VerdictReport {
     /// The first of them in words, if it is the matched coupling.
     #[serde(skip)]
     pub matched: Option<&'static str>,
+    /// The sentence in place of remedies, if a number is too large or too small and no other is enough alone.
+    #[serde(skip)]
+    pub no_remedy: Option<&'static str>,
 }
 
 /// Judges a scene as it was written; nothing more is known of the machine.
@@ -264,7 +267,16 @@ fn reported(
         }
         None => (None, Vec::new()),
     };
-    let would_pass = would_pass(matched, &changes);
+    let is_judged = match &rejection {
+        Some(rejection) => is_shortage(rejection),
+        None => is_for_a_board && refusal.as_ref().is_some_and(|it| it.is_rejection),
+    };
+    let has_none = has_remedies && matched.is_none() && changes.is_empty();
+    let no_remedy = (is_judged && has_none).then(|| no_remedy(scene));
+    let would_pass = match no_remedy {
+        Some(no_remedy) => format!("; {no_remedy}"),
+        None => would_pass(matched, &changes),
+    };
     let (summary, message) = match (&rejection, &refusal) {
         (None, Some(refusal)) if is_for_a_board => {
             let summary = on_board::rejected(&refusal.sentence);
@@ -274,7 +286,10 @@ fn reported(
             let message = passed(margin.filter(|_| is_margin_known), assumptions.rest());
             (CERTIFIED.to_owned(), format!("certified: {CERTIFIED}{message}"))
         }
-        (Some(rejection), _) => of_rejection(rejection, format, is_for_a_board, &would_pass),
+        (Some(rejection), _) => {
+            let has_own = is_for_a_board || no_remedy.is_some();
+            of_rejection(rejection, format, has_own, &would_pass)
+        }
     };
     VerdictReport {
         name: name.to_owned(),
@@ -314,20 +329,44 @@ fn reported(
             .collect(),
         changes,
         matched,
+        no_remedy,
     }
 }
 
-/// The reason of a rejection, and the same with what would pass: of a scene for a board, on a board.
+/// Whether a rejection is of a number that is too large or too small.
+fn is_shortage(rejection: &Rejection) -> bool {
+    matches!(
+        rejection,
+        Rejection::Shortage { .. }
+            | Rejection::Missed { .. }
+            | Rejection::Coupling { .. }
+            | Rejection::Steep { .. }
+            | Rejection::UnstablePole { behind_standard: None, .. }
+    )
+}
+
+/// In place of remedies where two numbers or more have to change.
+fn no_remedy(scene: &Scene) -> &'static str {
+    match scene.environment.wall() {
+        Some(_) => {
+            "no change of one number is enough; `haptic design stiffest` searches coupling, rate and wall together"
+        }
+        None => "no change of one number is enough",
+    }
+}
+
+/// The reason of a rejection, and the same with what would pass: as `would_pass` says if it is not that of the
+/// certificate itself, such as on a board.
 fn of_rejection(
     rejection: &Rejection,
     format: Format,
-    is_for_a_board: bool,
+    has_own: bool,
     would_pass: &str,
 ) -> (String, String) {
     let reason = rejection.reason_in(format).as_str().to_owned();
     let sentence = rejection.sentence_in(format).as_str().to_owned();
     // The remedies do not have those of two numbers.
-    if !is_for_a_board && !sentence.ends_with(would_pass) {
+    if !has_own && !sentence.ends_with(would_pass) {
         return (sentence.clone(), sentence);
     }
     (reason.clone(), reason + would_pass)

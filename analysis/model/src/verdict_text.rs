@@ -40,6 +40,7 @@ pub fn rows(report: &VerdictReport) -> Vec<(&'static str, String)> {
     let not_on_a_board = report.board.clone().filter(|_| !report.is_for_a_board);
     rows.extend(not_on_a_board.map(|why| ("not on a board", why)));
     list(&mut rows, "remedies", &report.remedies);
+    rows.extend(report.no_remedy.map(|sentence| ("remedies", sentence.to_owned())));
     rows.extend(report.supply.iter().map(|supply| ("supply", supply.message.clone())));
     list(&mut rows, "WARNING", &report.warnings);
     let holding = report.assumptions.iter().filter(|one| !report.warnings.contains(one));

@@ -1,11 +1,14 @@
-//! The program of a scene file.
+//! The program of a scene file, or of the examples' paddle for the device of a file.
 
 use std::path::Path;
 
+use haptic_servo::scene::Scene;
+
 use super::building::building;
 use super::status::CommandError;
-use crate::file::{SceneFile, program};
-use crate::toolchain::{self, BoardModel, NumberFormat, Toolchain};
+use crate::file::{DeviceFile, SceneFile, program};
+use crate::program::Program;
+use crate::toolchain::{self, BoardModel, NumberFormat, Sources, Toolchain};
 
 /// The longest name that a board tells its host, in bytes.
 const LONGEST: usize = 32;
@@ -34,6 +37,15 @@ impl FileProgram {
         Ok(Self { source: source.to_owned(), text, is_certified })
     }
 
+    /// A program of the examples with the device of a file in place of the paddle.
+    pub fn on_device(name: &str, source: &str, file: &DeviceFile) -> Result<Self, CommandError> {
+        let text = Sources::find()?.on_device(name, &device_module(source, file)?)?;
+        let scene = Program::find(name).map(|program| program.scene);
+        let is_certified =
+            scene.is_none_or(|scene| Scene { device: file.device, ..scene }.certify().is_ok());
+        Ok(Self { source: name.to_owned(), text, is_certified })
+    }
+
     /// Writes it out, and builds it for a board or the emulated board.
     pub fn build(
         &self,
@@ -60,4 +72,15 @@ impl FileProgram {
             _ => "scene",
         }
     }
+}
+
+/// The module of a program with the device of a file.
+pub fn device_module(source: &str, file: &DeviceFile) -> Result<String, CommandError> {
+    let failed = |why| CommandError::NoBoardProgram { file: source.to_owned(), why };
+    let transducers = file.transducers.of_board().map_err(failed)?;
+    if file.device.passivity.is_some_and(f64::is_nan) {
+        let why = "the device has no passivity in a hand, so no scene is certified on it";
+        return Err(failed(why.to_owned()));
+    }
+    Ok(program::device_module(&file.device, &transducers, source))
 }

@@ -4,13 +4,14 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
+use haptic_servo::scene::Device;
 
 use super::building::{building, set_up};
 use super::file_program::FileProgram;
 use super::file_scene::{is_file, scene_file};
 use super::status::{CommandError, CommandStatus};
-use crate::file::SceneFile;
-use crate::program::{self, Program};
+use crate::file;
+use crate::program::{self, Program, damper_wall};
 use crate::toolchain::{BoardModel, Memory, NumberFormat, Tools, TorqueOutput, probe};
 
 /// Arguments of `haptic flash`.
@@ -23,13 +24,16 @@ pub struct Arguments {
     #[arg(long, value_parser = BoardModel::find)]
     pub board: BoardModel,
     /// What makes the torque: the board's DAC, for an amplifier outside, or its own bridge; by default what
-    /// the program's scene is certified with, and the DAC for a file
+    /// the program is for, and the DAC for a file
     #[arg(long, value_enum)]
     pub output: Option<TorqueOutput>,
     /// Number format of the servo
     #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
     pub format: NumberFormat,
-    /// Flash a scene that is certified for a device of the examples, not for yours
+    /// With a program of the examples: the device, encoder and motor of this file in place of the paddle
+    #[arg(long, value_name = "FILE.toml", conflicts_with = "example_device")]
+    pub device: Option<String>,
+    /// Flash a program or a scene for a device of the examples, not for yours
     #[arg(long)]
     pub example_device: bool,
     /// Build only: print sizes and path of the program, and flash nothing
@@ -43,9 +47,7 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let (board, name) = (arguments.board, arguments.scene.as_str());
-    let file = is_file(name).then(|| scene_file(name)).transpose()?;
-    check_device(arguments, file.as_ref())?;
-    let file = file.map(|file| program_of(arguments, &file)).transpose()?;
+    let file = written(arguments)?;
     let toolchain = set_up(Tools::Compiler)?;
     let output = match (arguments.output, &file) {
         (Some(output), _) => output,
@@ -77,30 +79,49 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(CommandStatus::Success)
 }
 
-/// Refuses a scene for a device of the examples, or only says so if nothing is flashed. A program without a
-/// scene has no device.
-fn check_device(arguments: &Arguments, file: Option<&SceneFile>) -> Result<(), CommandError> {
+/// The program that is written for a file, or none for a program as it is in `firmware/src/bin`.
+fn written(arguments: &Arguments) -> Result<Option<FileProgram>, CommandError> {
     let name = &arguments.scene;
-    let device = match file {
-        Some(file) => Some(file.scene.device),
-        None => Program::find(name).map(|program| program.scene.device),
-    };
+    let is_written = arguments.device.is_some() || is_file(name);
+    if is_written && arguments.output == Some(TorqueOutput::Bridge) {
+        return Err(CommandError::FileOnBridge { file: name.clone() });
+    }
+    match &arguments.device {
+        Some(file) if is_file(name) => {
+            let error =
+                format!("{name} is a file with its own device: --device {file} is for a program");
+            Err(CommandError::Failed(error.into()))
+        }
+        Some(file) => {
+            let device = file::load_device(file)?;
+            check_device(arguments, Some(device.device))?;
+            FileProgram::on_device(name, file, &device).map(Some)
+        }
+        None if is_file(name) => {
+            let file = scene_file(name)?;
+            check_device(arguments, Some(file.scene.device))?;
+            FileProgram::of(&file, name, None, None).map(Some)
+        }
+        None => {
+            // The program that measures a device has no scene, but the paddle's encoder and motor.
+            let paddle = (name == "identify").then_some(damper_wall::SCENE.device);
+            let device = Program::find(name).map(|program| program.scene.device);
+            check_device(arguments, device.or(paddle))?;
+            Ok(None)
+        }
+    }
+}
+
+/// Refuses the device of an example, or only says so if nothing is flashed.
+fn check_device(arguments: &Arguments, device: Option<Device>) -> Result<(), CommandError> {
     if arguments.example_device || !device.is_some_and(|device| program::is_example(&device)) {
         return Ok(());
     }
-    let example = CommandError::ExampleDevice { scene: name.clone() };
+    let example = CommandError::ExampleDevice { scene: arguments.scene.clone() };
     if !arguments.build_only {
         return Err(example);
     }
     Ok(writeln!(io::stderr(), "note: {example}")?)
-}
-
-fn program_of(arguments: &Arguments, file: &SceneFile) -> Result<FileProgram, CommandError> {
-    let name = &arguments.scene;
-    match arguments.output {
-        Some(TorqueOutput::Bridge) => Err(CommandError::FileOnBridge { file: name.clone() }),
-        _ => FileProgram::of(file, name, None, None),
-    }
 }
 
 /// The part of a board's flash that the linker's map does not use, because one map fits every board.

@@ -4,9 +4,10 @@ use std::io::{self, Write};
 
 use clap::Args;
 
-use super::file_program::FileProgram;
+use super::file_program::{FileProgram, device_module};
 use super::file_scene::{is_file, scene_file};
 use super::status::{CommandError, CommandStatus};
+use crate::file;
 use crate::toolchain::Sources;
 
 /// Arguments of `haptic new`.
@@ -19,13 +20,20 @@ pub struct Arguments {
     /// environment become constants
     #[arg(long, value_name = "SCENE", default_value = "damper_wall")]
     pub from: String,
+    /// With a program: the device of this file in place of the paddle of the examples
+    #[arg(long, value_name = "FILE.toml")]
+    pub device: Option<String>,
 }
 
 /// Writes the scene's file, and prints its path and the next steps.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let Arguments { name, from } = arguments;
+    let Arguments { name, from, device } = arguments;
     let sources = Sources::find()?;
     let (text, begun) = if is_file(from) {
+        if device.is_some() {
+            let error = format!("{from} is a file with its own device: --device is for a program");
+            return Err(CommandError::Failed(error.into()));
+        }
         let file = scene_file(from)?;
         let program = FileProgram::of(&file, from, None, None)?;
         file.scene.certify().map_err(|rejection| CommandError::FileNotBuilt {
@@ -35,8 +43,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         })?;
         (program.text, format!("is the program of {from}, with its numbers as constants:"))
     } else {
+        let device = device.as_ref().map(|file| device_module(file, &file::load_device(file)?));
         (
-            sources.copied(name, from)?,
+            sources.copied(name, from, device.transpose()?.as_deref())?,
             format!("is a copy of {from}: change its environment, and then"),
         )
     };

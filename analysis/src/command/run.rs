@@ -104,7 +104,7 @@ pub struct Arguments {
     /// Number format of the servo
     #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
     pub format: NumberFormat,
-    /// Number of ticks; a recording ends with its last row
+    /// Number of ticks; default: 5000, or those of 5 s; a recording ends with its last row
     #[arg(long, value_name = "N",
           value_parser = RangedU64ValueParser::<usize>::new().range(1..=MAX_TICKS))]
     pub ticks: Option<usize>,
@@ -178,13 +178,20 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let built = build(&setup, arguments)?;
     let ticks = match &counts {
         Some(counts) => arguments.ticks.map_or(counts.len(), |ticks| ticks.min(counts.len())),
-        None => arguments.ticks.unwrap_or(DEFAULT_TICKS),
+        None => arguments.ticks.unwrap_or_else(|| ticks_of_hand(period)),
     };
     let bar = progress::bar(ticks as u64, &setup.name);
     let outcome = ran(&mut setup, &built, counts.as_deref(), ticks, progress::stepper(&bar))?;
     bar.finish_and_clear();
     print(arguments, &setup, &outcome, gaps)?;
     Ok(CommandStatus::of(outcome.run.difference.is_none()))
+}
+
+/// As many ticks as a hand's trajectory takes, and as a program's demonstration has at least; a run keeps all.
+fn ticks_of_hand(period: f64) -> usize {
+    const LENGTH: f64 = 5.0;
+    const MOST: usize = 1_000_000;
+    ((LENGTH / period).ceil() as usize).clamp(DEFAULT_TICKS, MOST)
 }
 
 /// Runs it: with a hand, or with recorded counts.

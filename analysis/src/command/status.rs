@@ -46,13 +46,16 @@ pub enum CommandError {
     #[error("{file}: {why}")]
     NoBoardProgram { file: String, why: String },
     #[error(
-        "{file}: a scene file has no motor for a board's own bridge; \
-         `cargo haptic new NAME --from bridge_wall` begins a program that has"
+        "{file}: the motor of a board's own bridge is in the DRIVE of a program, which `cargo haptic new NAME \
+         --from bridge_wall` begins: resistance, inductance and torque constant of its winding, and its supply \
+         (docs/power-stage.md). `cargo haptic design motor` computes the bandwidth, torque and speed that they \
+         allow"
     )]
     FileOnBridge { file: String },
     #[error(
-        "{scene} is certified for a device of the examples, by its inertia and damping, not for yours: on \
-         another device it may oscillate. Measure yours (docs/measure.md), or state --example-device"
+        "{scene} is for a device of the examples, by its inertia and damping, not for yours: on another device \
+         it may oscillate. Write yours into the scene file, or name its file with --device FILE.toml beside a \
+         program; measure it (docs/measure.md). Or state --example-device"
     )]
     ExampleDevice { scene: String },
     /// The program of a scene file. Exit status 1 if the file's scene is not certified.

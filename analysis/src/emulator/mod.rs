@@ -78,7 +78,8 @@ pub enum EmulatorError {
     Ended { status: ExitStatus, what: &'static str, log: String },
     #[error(
         "the servo of the emulated board was told to arm, but is not running after \
-         {LONGEST_FADING} ticks"
+         {LONGEST_FADING} ticks; at a high rate it may have no time for its serial port: \
+         `--target board:NAME` runs the flashed program at each rate"
     )]
     NotArmed,
     #[error("the emulated board's serial port: {0}")]

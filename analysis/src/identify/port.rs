@@ -60,7 +60,7 @@ pub enum PortError {
     Link(#[from] LinkError),
     #[error(
         "no board with the program `identify` answers on {address} within {} s: flash it (cargo \
-         haptic flash --board BOARD identify), and check the port and its speed",
+         haptic flash identify --device FILE.toml --board BOARD), and check the port and its speed",
         TIMEOUT.as_secs()
     )]
     Silent { address: Address },

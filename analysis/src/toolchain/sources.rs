@@ -26,6 +26,10 @@ pub enum SourcesError {
     File { path: PathBuf, source: io::Error },
     #[error("there is no scene {name}; there are {}", .scenes.join(", "))]
     NoScene { name: String, scenes: Vec<String> },
+    #[error("there is no program {name}; there are {}", .programs.join(", "))]
+    NoProgram { name: String, programs: Vec<String> },
+    #[error("{name} has its device in its own file, {}: only programs for the paddle take another", .path.display())]
+    OwnDevice { name: String, path: PathBuf },
     #[error("`{name}` is not a valid name of a scene: {why}")]
     Name { name: String, why: String },
     #[error("{} exists already; nothing was changed", .0.display())]
@@ -105,23 +109,50 @@ impl Sources {
         Ok(programs)
     }
 
-    /// The text of a scene that begins as a copy of another, without the comment at the top of that file.
+    /// The text of a scene that begins as a copy of another, without the comment at the top of that file, and
+    /// perhaps [with another device](Self::on_device).
     ///
     /// # Errors
-    /// If the scene to copy does not exist.
-    pub fn copied(&self, name: &str, from: &str) -> Result<String, SourcesError> {
+    /// If the scene to copy does not exist, or is for another device than the paddle.
+    pub fn copied(
+        &self,
+        name: &str,
+        from: &str,
+        device: Option<&str>,
+    ) -> Result<String, SourcesError> {
         let scenes = self.scenes()?;
         if !scenes.iter().any(|scene| scene == from) {
             return Err(SourcesError::NoScene { name: from.into(), scenes });
         }
-        let path = self.file(from);
-        let text =
-            fs::read_to_string(&path).map_err(|source| SourcesError::File { path, source })?;
+        let text = match device {
+            Some(device) => self.on_device(from, device)?,
+            None => self.text(from)?,
+        };
         let rest = text.lines().skip_while(|line| line.starts_with("//!"));
         let head = format!("//! The scene {name}, begun as a copy of {from}.");
-        let text: String =
-            std::iter::once(head.as_str()).chain(rest).flat_map(|line| [line, "\n"]).collect();
-        Ok(on_own_device(&text))
+        Ok(std::iter::once(head.as_str()).chain(rest).flat_map(|line| [line, "\n"]).collect())
+    }
+
+    /// The text of a program for the paddle of the examples, with another module of a device in its place.
+    ///
+    /// # Errors
+    /// If there is no such program, or if it is for another device.
+    pub fn on_device(&self, name: &str, device: &str) -> Result<String, SourcesError> {
+        const PADDLE: &str = "mod paddle;";
+        let programs = self.programs()?;
+        if !programs.iter().any(|program| program == name) {
+            return Err(SourcesError::NoProgram { name: name.into(), programs });
+        }
+        let text = self.text(name)?;
+        if !text.contains(PADDLE) {
+            return Err(SourcesError::OwnDevice { name: name.into(), path: self.file(name) });
+        }
+        Ok(text.replace(PADDLE, device.trim_end()).replace("paddle::", "device::"))
+    }
+
+    fn text(&self, name: &str) -> Result<String, SourcesError> {
+        let path = self.file(name);
+        fs::read_to_string(&path).map_err(|source| SourcesError::File { path, source })
     }
 
     /// Creates a scene with this text, and returns its file.
@@ -140,29 +171,6 @@ impl Sources {
             Err(source) => Err(SourcesError::File { path, source }),
         }
     }
-}
-
-/// The text of a scene of the project, with the user's device in place of the paddle: the new scene is
-/// certified against that device. Scenes of other devices keep them.
-fn on_own_device(text: &str) -> String {
-    const PADDLE: &str = "mod paddle;";
-    if !text.contains(PADDLE) {
-        return text.to_owned();
-    }
-    let text = text.replace(PADDLE, "mod device;").replace("paddle::", "device::");
-    let (mut sorted, mut imports) = (String::new(), Vec::new());
-    for line in text.lines() {
-        // With its new name the module is imported in another place: in the order of rustfmt, where it is
-        // imported for users, too.
-        let is_import = line.starts_with("use ") || line.starts_with("pub use ");
-        if is_import && line.ends_with(';') {
-            imports.push(line);
-            continue;
-        }
-        imports.sort_by_key(|line| line.trim_start_matches("pub "));
-        sorted.extend(imports.drain(..).chain([line]).flat_map(|line| [line, "\n"]));
-    }
-    sorted
 }
 
 /// Checks the name of a new scene; the error is the reason why it is invalid.
@@ -187,12 +195,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_the_paddle_without_a_bridge_is_replaced_by_the_user_s_device() {
-        let paddle = "mod paddle;\n\nuse haptic::Wall;\npub use paddle::PERIOD;\n\n";
-        let sorted = "mod device;\n\npub use device::PERIOD;\nuse haptic::Wall;\n\n";
-        assert_eq!(on_own_device(paddle), sorted);
-        let bridge = "mod bridge_paddle;\nuse bridge_paddle::PERIOD;";
-        assert_eq!(on_own_device(bridge), bridge);
+    fn a_program_for_the_paddle_takes_another_device() {
+        let root = tempfile::tempdir().unwrap();
+        let sources = Sources::of(root.path());
+        fs::create_dir_all(&sources.folder).unwrap();
+        fs::write(sources.file("wall"), "mod paddle;\nuse paddle::DEVICE;\n").unwrap();
+        fs::write(sources.file("bridge"), "mod bridge_paddle;\n").unwrap();
+        let on = |name| sources.on_device(name, "mod device {}").map_err(|error| error.to_string());
+        assert_eq!(on("wall").unwrap(), "mod device {}\nuse device::DEVICE;\n");
+        assert!(on("bridge").unwrap_err().contains("has its device in its own file"));
+        assert!(on("wrist").unwrap_err().contains("there is no program wrist"));
     }
 
     #[test]
@@ -220,7 +232,7 @@ mod tests {
         fs::write(sources.file("wall"), other).unwrap();
         fs::write(sources.file("identify"), "haptic_servo::sweep_program!(SWEEP);\n").unwrap();
 
-        let path = sources.begin("soft", &sources.copied("soft", "wall").unwrap()).unwrap();
+        let path = sources.begin("soft", &sources.copied("soft", "wall", None).unwrap()).unwrap();
         let text = fs::read_to_string(&path).unwrap();
         let head = "//! The scene soft, begun as a copy of wall.\n";
         assert_eq!(text, format!("{head}#![no_std]\n\nhaptic_servo::scene_program! {{}}\n"));
@@ -233,7 +245,7 @@ mod tests {
         assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
         assert!(said("match").starts_with("`match` is not a valid name of a scene: "));
         assert!(!sources.file("match").exists());
-        let copied = sources.copied("x", "identify").unwrap_err().to_string();
+        let copied = sources.copied("x", "identify", None).unwrap_err().to_string();
         // The other file is no program of a scene any more.
         assert_eq!(copied, "there is no scene identify; there are wall");
     }

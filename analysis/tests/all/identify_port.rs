@@ -181,7 +181,10 @@ fn a_torque_that_is_cut_off_is_refused() {
 #[test]
 fn a_port_without_a_sweep_says_what_to_flash() {
     for (board, words) in [
-        (Board { says: Some(""), ..Board::default() }, "cargo haptic flash --board BOARD identify"),
+        (
+            Board { says: Some(""), ..Board::default() },
+            "cargo haptic flash identify --device FILE.toml",
+        ),
         (Board { says: Some("identify,9,1\n"), ..Board::default() }, "flash `identify` again"),
         (
             Board { dies_at: Some(5000), ..Board::default() },

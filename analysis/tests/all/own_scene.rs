@@ -112,6 +112,11 @@ fn a_scene_file_runs_on_boards_and_becomes_a_program() {
     assert!(built.status.success() && !said.contains("note"), "{built:?}");
     assert!(String::from_utf8_lossy(&built.stdout).contains("scene-own wall-f32-nucleo"));
 
+    let knob = folder.path().join("knob.toml");
+    let measure = ["flash", "identify", "--board", "nucleo-g474re", "--build-only", "--device"];
+    let built = haptic(&[&measure[..], &[knob.to_str().unwrap()]].concat());
+    assert!(built.status.success() && built.stderr.is_empty(), "{built:?}");
+
     let run = |scene: &str| haptic(&["run", scene, "--csv", "--ticks", "1000"]);
     let scene = Scene::begin(file);
     let (own, of_file) = (run(NAME), run(file));

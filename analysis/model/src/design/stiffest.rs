@@ -82,8 +82,10 @@ pub struct Search {
     scene: Scene,
     terms: Terms,
     shortest_period: f64,
-    /// The steps of a scene that comes to rest; it has to stay so.
-    rests: Option<Resolution>,
+    /// The steps of the device, with its friction.
+    steps: Resolution,
+    /// Whether the friction has to prevent a limit cycle at rest, as in the scene of the file.
+    rests: bool,
 }
 
 /// A change of the device or the board, which cannot be made in the scene.
@@ -107,9 +109,9 @@ const LEVERS: [Lever; 6] = [
         Some(more)
     }),
     ("an encoder with four times the counts", |search| {
-        let steps = search.rests?;
-        let encoder = steps.encoder.map(|step| 0.25 * step);
-        Some(Search { rests: Some(Resolution { encoder, ..steps }), ..search.clone() })
+        let encoder = search.steps.encoder.filter(|_| search.rests).map(|step| 0.25 * step)?;
+        let steps = Resolution { encoder: Some(encoder), ..search.steps };
+        Some(Search { steps, ..search.clone() })
     }),
     ("no missed updates", |search| {
         let mut punctual = search.clone();
@@ -146,14 +148,20 @@ impl Search {
     pub fn new(file: &SceneFile, terms: &Terms) -> Option<Self> {
         file.scene.environment.wall()?;
         let steps = file.steps();
-        let rest = QuantizationBound::of(&file.scene, Format::F64, &steps);
-        let rests = rest.and_then(|bound| bound.comes_to_rest()) == Some(true);
         Some(Self {
             scene: prepared(&file.scene, &Terms { coupling: Choice::Kept, ..*terms }),
             terms: *terms,
             shortest_period: period::SHORTEST,
-            rests: rests.then_some(steps),
+            steps,
+            rests: comes_to_rest(&file.scene, &steps) == Some(true),
         })
+    }
+
+    /// The search for the stiffest wall that the stated friction keeps silent at rest; `None` if no friction is
+    /// stated, or if this is that search.
+    pub fn silent(&self) -> Option<Self> {
+        let is_known = !self.rests && comes_to_rest(&self.scene, &self.steps).is_some();
+        is_known.then(|| Self { rests: true, ..self.clone() })
     }
 
     /// Searches; `None` if no wall certifies. `progress` is called for each rate.
@@ -304,13 +312,14 @@ impl Search {
     }
 
     fn passes(&self, scene: &Scene) -> bool {
-        let comes_to_rest = |steps| {
-            let bound = QuantizationBound::of(scene, Format::F64, steps);
-            bound.and_then(|bound| bound.comes_to_rest()) == Some(true)
-        };
         Judge::Board(self.shortest_period).passes(scene)
-            && self.rests.as_ref().is_none_or(comes_to_rest)
+            && (!self.rests || comes_to_rest(scene, &self.steps) == Some(true))
     }
+}
+
+/// Whether the stated friction prevents a limit cycle; `None` where that is not known.
+fn comes_to_rest(scene: &Scene, steps: &Resolution) -> Option<bool> {
+    QuantizationBound::of(scene, Format::F64, steps)?.comes_to_rest()
 }
 
 /// The period of whole counts that the modulation of a bridge fills; the longest up to `period` in s.

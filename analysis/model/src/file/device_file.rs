@@ -1,6 +1,6 @@
 //! A file of a device, or the device of a scene's file.
 
-use haptic_servo::scene::TimeRange;
+use haptic_servo::scene::{Device, TimeRange};
 
 use super::device::{Purpose, device};
 use super::faults::{Faults, Read};
@@ -9,6 +9,7 @@ use super::problem::{Fault, Problem};
 use super::scene;
 use super::section::Section;
 use super::supply::supply;
+use super::transducers::StatedTransducers;
 use super::tree::Node;
 use crate::chain::Chain;
 
@@ -19,6 +20,10 @@ pub struct DeviceFile {
     pub name: Option<String>,
     /// The device behind its amplifier; for a lag that lies in a range, with the middle of it.
     pub chain: Chain,
+    /// The rigid body that stands for it in a certificate.
+    pub device: Device,
+    /// Its encoder and its motor.
+    pub transducers: StatedTransducers,
 }
 
 /// A file of a device is a table, like that of a scene.
@@ -29,8 +34,14 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
     let mut top = Section::new(source, "a device's file", &ROOT, root.clone())?;
     if [key::SERVO, key::ENVIRONMENT].iter().any(|key| top.has(key)) {
         let scene = scene::read(source, root, Purpose::Simulate)?;
-        let chain = lagging(source.1, scene.chain, scene.scene.latency.actuator_lag)?;
-        return Ok(DeviceFile { name: Some(scene.name), chain });
+        let chain = lagging(source.1, scene.chain.clone(), scene.scene.latency.actuator_lag)?;
+        let transducers = scene.stated(None, None);
+        return Ok(DeviceFile {
+            name: Some(scene.name),
+            chain,
+            device: scene.scene.device,
+            transducers,
+        });
     }
     let name = top.text(&key::NAME);
     let table = top.needed_table(&key::DEVICE);
@@ -38,11 +49,13 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
     top.finish();
     let limits = limits.and_then(|table| table.map_or(Ok([None; 3]), scene::limits_of));
     // The torque limit may be that of a scene.
-    supplied.and_then(|table| table.map(|it| supply(it, Some(f64::INFINITY))).transpose())?;
-    limits?;
+    let supply =
+        supplied.and_then(|table| table.map(|it| supply(it, Some(f64::INFINITY))).transpose())?;
+    let [torque_limit, encoder_step, full_scale] = limits?;
     let table = table.and_then(|table| device(table, Purpose::Simulate))?;
     let chain = lagging(source.1, table.chain, table.latency.actuator_lag)?;
-    Ok(DeviceFile { name: name?, chain })
+    let transducers = StatedTransducers { encoder_step, full_scale, torque_limit, supply };
+    Ok(DeviceFile { name: name?, chain, device: table.device, transducers })
 }
 
 /// The chain behind its amplifier. Every lag that was read is valid for it.

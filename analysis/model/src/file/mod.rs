@@ -48,6 +48,7 @@ pub use plausible::warnings;
 pub use problem::{FileError, Problem, excerpt};
 pub use scene::SceneFile;
 pub use source::{Format, MAX_BYTES, text_of};
+pub use transducers::StatedTransducers;
 
 use faults::{Faults, Read};
 use texts::Texts;

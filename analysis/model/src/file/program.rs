@@ -1,6 +1,7 @@
 //! A scene file as a program for boards, as in `firmware/src/bin`.
 
 use haptic_servo::output_timing::OutputTiming;
+use haptic_servo::scene::Device;
 use haptic_servo::servo::Transducers;
 
 use super::constant::{self, Constants, Written, imports, layout};
@@ -12,11 +13,6 @@ use super::{SceneFile, excerpt};
 /// Where its environment has no constant.
 pub fn program(file: &SceneFile, transducers: &Transducers, source: &str) -> Written {
     let Constants { environment, scene, items } = constant::of(file)?;
-    let Transducers { counts_per_turn, full_scale_torque, largest_speed, .. } = transducers;
-    let constant = format!(
-        "Transducers {{ counts_per_turn: {counts_per_turn:?}, counter: CounterWidth::Bits16, \
-         full_scale_torque: {full_scale_torque:?}, largest_speed: {largest_speed:?} }}"
-    );
     let output = OutputTiming::of_delay(file.scene.latency.output_delay.middle());
     let (mode, option, servo) = match output {
         OutputTiming::AtPhase(nanoseconds) => (
@@ -36,16 +32,47 @@ pub fn program(file: &SceneFile, transducers: &Transducers, source: &str) -> Wri
          use haptic_servo::certificate::Certified;\n\
          use haptic_servo::encoder::CounterWidth;\n\
          {environment}\n{scene}\n{}\n\n\
-         /// The encoder, and the motor with its amplifier, at the handle: torque in N m, speed in rad/s.\n\
-         pub const TRANSDUCERS: Transducers = {};\n\n\
+         {}\n\
          {mode}{items}\n\
          haptic_servo::scene_program! {{\n    \
          scene: SCENE,\n    certified: CERTIFIED,\n    transducers: TRANSDUCERS,\n{option}{friction}}}\n",
         excerpt(&file.name),
         excerpt(source),
         imports("haptic_servo::servo", servo),
-        layout::broken(0, &constant),
+        constant_of(transducers),
     ))
+}
+
+/// The constant of encoder and motor.
+fn constant_of(transducers: &Transducers) -> String {
+    let Transducers { counts_per_turn, full_scale_torque, largest_speed, .. } = transducers;
+    let constant = format!(
+        "Transducers {{ counts_per_turn: {counts_per_turn:?}, counter: CounterWidth::Bits16, \
+         full_scale_torque: {full_scale_torque:?}, largest_speed: {largest_speed:?} }}"
+    );
+    format!(
+        "/// The encoder, and the motor with its amplifier, at the handle: torque in N m, speed in rad/s.\n\
+         pub const TRANSDUCERS: Transducers = {};\n",
+        layout::broken(0, &constant)
+    )
+}
+
+/// A module with the device of a file of this name, as the examples have one of the paddle.
+pub fn device_module(device: &Device, transducers: &Transducers, source: &str) -> String {
+    let items = format!(
+        "use haptic_servo::encoder::CounterWidth;\n\
+         use haptic_servo::scene::Device;\n\
+         use haptic_servo::servo::Transducers;\n\n\
+         /// The part that the hand holds: inertia in kg m^2, damping in N m s/rad.\n\
+         pub const DEVICE: Device = {device:?};\n\n\
+         {}",
+        constant_of(transducers)
+    );
+    let indented = |line: &str| if line.is_empty() { "\n".into() } else { format!("    {line}\n") };
+    let items: String = items.lines().map(indented).collect();
+    // A program that renders no scene has no use for the device itself.
+    let source = excerpt(source);
+    format!("/// The device of {source}.\n#[allow(dead_code)]\nmod device {{\n{items}}}\n")
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use crate::progress;
 use crate::quantity::{rounded, shortened, significant};
 use crate::text_table::table_of;
 use crate::toolchain::BoardModel;
-use crate::verdict::{VerdictReport, judge_file};
+use crate::verdict::{AtRest, VerdictReport, judge_file};
 
 /// Arguments of `haptic design stiffest`.
 #[derive(Debug, Args)]
@@ -56,6 +56,9 @@ struct Report {
     felt_stiffness_before: Option<f64>,
     certified_before: bool,
     margin: Option<f64>,
+    /// Of the stiffest wall that the stated friction keeps silent at rest; null if no friction is stated, or if
+    /// no wall is silent.
+    silent_stiffness: Option<f64>,
     /// Whether a stiffer environment would certify and earn nothing.
     saturates: bool,
     scene: serde_json::Value,
@@ -99,8 +102,18 @@ pub fn run(all: &super::Arguments, arguments: &Arguments) -> Result<CommandStatu
         save(output, &stiffest, &found)?;
     }
     let verdict = judge_file(&stiffest, haptic_servo::number::Format::F64);
-    let report = report(&file, &stiffest, &found, &verdict, levers)?;
-    all.answer.print(&report, |report| text(report, &stiffest, &found.best, &verdict))?;
+    let silent = search.silent().map(|search| search.run(|| ()).map(|found| found.best));
+    let silent_stiffness = match &silent {
+        None if verdict.rest.is_some_and(|rest| rest.comes_to_rest == Some(true)) => {
+            Some(found.best.felt)
+        }
+        silent => silent.flatten().map(|wall| wall.felt),
+    };
+    let report = Report { silent_stiffness, ..report(&file, &stiffest, &found, &verdict, levers)? };
+    all.answer.print(&report, |report| {
+        let silent = silent.map(|wall| silent_in_words(wall.as_ref()));
+        text(report, &stiffest, &found.best, &verdict, silent)
+    })?;
     Ok(CommandStatus::Success)
 }
 
@@ -118,6 +131,7 @@ fn report(
         felt_stiffness_before: felt::stiffness(&file.scene),
         certified_before: Judge::BOARD.passes(&file.scene),
         margin: verdict.margin_on_board,
+        silent_stiffness: None,
         saturates: found.best.saturates,
         scene: object(stiffest)?,
         levers,
@@ -130,7 +144,45 @@ fn point(wall: &Wall) -> Point {
     Point { structure: wall.structure.name(), rate, felt_stiffness: wall.felt }
 }
 
-fn text(report: &Report, file: &SceneFile, best: &Wall, verdict: &VerdictReport) -> String {
+/// The stiffest wall that is silent at rest, or none.
+fn silent_in_words(wall: Option<&Wall>) -> String {
+    wall.map_or("no wall is, with the stated friction".to_owned(), |wall| {
+        format!(
+            "up to {} N m/rad at the handle, with the stated friction: {} at {} Hz",
+            significant(wall.felt, 3),
+            wall.structure.name(),
+            significant(wall.scene.timing.period.recip(), 3)
+        )
+    })
+}
+
+/// The friction that a wall needs to be silent at rest.
+fn rest_in_words(rest: &AtRest, full_scale: Option<f64>) -> String {
+    let needed = significant(rest.hum, 3);
+    let motor = full_scale.filter(|&full_scale| rest.hum > full_scale);
+    let needed = match motor {
+        Some(motor) => format!(
+            "a limit cycle of up to {needed} N m is possible, more than the {} N m of the motor",
+            significant(motor, 3)
+        ),
+        None => format!("{needed} N m of friction prevent a limit cycle"),
+    };
+    let of_device = match (rest.friction, rest.comes_to_rest) {
+        (None, _) => "; with `device.friction` in the file, the stiffest silent wall is named, too"
+            .to_owned(),
+        (Some(friction), Some(false)) => format!("; the device has {friction} N m"),
+        (Some(friction), _) => format!(", and the device has {friction} N m"),
+    };
+    needed + &of_device
+}
+
+fn text(
+    report: &Report,
+    file: &SceneFile,
+    best: &Wall,
+    verdict: &VerdictReport,
+    silent: Option<String>,
+) -> String {
     let scene = &file.scene;
     let number = |value: f64, unit: &str| format!("{} {unit}", significant(value, 3));
     let stiffness = number(best.felt, "N m/rad");
@@ -161,13 +213,7 @@ fn text(report: &Report, file: &SceneFile, best: &Wall, verdict: &VerdictReport)
             false => coupling,
         }
     });
-    let rest = verdict.rest.map(|rest| {
-        let stated = match (rest.friction, rest.comes_to_rest) {
-            (Some(friction), Some(false)) => format!("; the device has {friction} N m"),
-            _ => String::new(),
-        };
-        number(rest.hum, "N m of friction prevent a limit cycle") + &stated
-    });
+    let rest = verdict.rest.map(|rest| rest_in_words(&rest, file.full_scale));
     let rows = [
         ("felt stiffness", Some(stiffness + &before)),
         ("structure", Some(report.structure.to_owned())),
@@ -177,6 +223,7 @@ fn text(report: &Report, file: &SceneFile, best: &Wall, verdict: &VerdictReport)
         ("coupling", Some(coupling)),
         ("margin on a board", verdict.margin_on_board_in_words()),
         ("at rest", rest),
+        ("silent at rest", silent),
     ];
     let rows =
         rows.into_iter().filter_map(|(label, value)| Some(format!("{label:<18} {}\n", value?)));

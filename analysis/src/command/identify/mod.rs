@@ -1,6 +1,7 @@
 //! `haptic identify`: a device's inertia, damping and passivity, and the lag and the delay of its torque,
 //! from a measurement.
 
+mod device_file;
 mod port;
 pub mod target;
 
@@ -9,15 +10,18 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haptic_servo::current::TorqueSource;
+use haptic_servo::servo::Transducers;
 use serde::Serialize;
 
 use super::shared_arguments::{JsonOption, write};
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::{bounded, not_negative, positive};
+use crate::file::{self, StatedTransducers};
 use crate::identify::{
     self, Correction, Disk, Estimate, Identification, Latency, Record, torque_source,
 };
 use crate::link::Address;
+use crate::program::identify::TRANSDUCERS;
 use crate::quantity::significant;
 use target::Origin;
 
@@ -30,11 +34,11 @@ pub struct Arguments {
     /// with a table `device` alone
     #[arg(value_name = "FILE", required_unless_present_any = ["target", "port"])]
     pub file: Option<PathBuf>,
-    /// Encoder counts per turn; default with --target: 61440, with --port: those of the board
+    /// Encoder counts per turn; default with --target: those of FILE or 61440, with --port: those of the board
     #[arg(long, value_name = "N", value_parser = positive,
           required_unless_present_any = ["target", "port"], allow_negative_numbers = true)]
     pub counts_per_rev: Option<f64>,
-    /// Measure with the board at this address, which runs the program `identify`: /dev/ttyACM0
+    /// Measure with the board at this address, which runs the program `identify` (`haptic flash identify --device FILE`): /dev/ttyACM0
     /// (@BAUD), tcp://HOST:PORT, unix:PATH. The motor moves the device; nobody may hold it
     #[arg(long, value_name = "PORT", group = "measured", conflicts_with = "file")]
     pub port: Option<Address>,
@@ -46,7 +50,8 @@ pub struct Arguments {
     #[command(flatten)]
     pub answer: JsonOption,
     /// Write the device to this file, which a scene file names: `device = "FILE.toml"` at its top; the delay
-    /// for the scene's table `servo` is a comment in it
+    /// for the scene's table `servo` is a comment in it. Of a file that exists only the table `device` is
+    /// replaced
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -184,7 +189,10 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let correction = Correction { source: stated.source.or(torque_source), ..stated };
     let found = identify::identify(&record, &correction)?;
     let notes = notes(&found);
-    let table = device_file(&found, counts_per_turn, full_scale);
+    let table = match arguments.output.as_deref().filter(|path| path.exists()) {
+        Some(path) => device_file::replaced(path, &device_table(&found), counts_per_turn)?,
+        None => device_file(&found, counts_per_turn, full_scale),
+    };
     if let Some(path) = &arguments.output {
         write(path, &table)?;
     }
@@ -215,30 +223,40 @@ struct Measured {
 /// The record of a file, or a new record.
 fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
     let (file, stated) = (arguments.file.as_deref(), arguments.counts_per_rev);
-    let counts_per_turn = stated.unwrap_or(target::COUNTS_PER_TURN);
     let keep = arguments.record.as_deref();
     if let Some(address) = &arguments.port {
         let (record, board) = port::measure(address, keep)?;
-        let is_same = board.counts_per_turn == target::COUNTS_PER_TURN && board.source.is_none();
+        let is_paddle =
+            board.counts_per_turn == TRANSDUCERS.counts_per_turn && board.source.is_none();
         return Ok(Measured {
             record,
             origin: None,
             counts_per_turn: stated.unwrap_or(board.counts_per_turn),
-            full_scale: is_same.then_some(target::FULL_SCALE),
+            full_scale: is_paddle.then_some(TRANSDUCERS.full_scale_torque),
             torque_source: board.source,
         });
     }
     if let Some(target) = arguments.target.target {
+        let device = file.map(|file| file::load_device(&file.to_string_lossy())).transpose()?;
+        let device = device.as_ref();
+        let of_file = device.map_or(StatedTransducers::default(), |device| device.transducers);
+        let encoder = of_file.encoder_step.map(|_| of_file.or_defaults().counts_per_turn);
+        let transducers = Transducers {
+            counts_per_turn: stated.or(encoder).unwrap_or(TRANSDUCERS.counts_per_turn),
+            full_scale_torque: of_file.full_scale.unwrap_or(TRANSDUCERS.full_scale_torque),
+            ..TRANSDUCERS
+        };
         let simulated = &arguments.target;
-        let (measured, origin) = target::measure(simulated, target, file, keep, counts_per_turn)?;
+        let (measured, origin) = target::measure(simulated, target, device, keep, &transducers)?;
         return Ok(Measured {
             record: measured.record,
             origin: Some(origin),
-            counts_per_turn,
-            full_scale: Some(target::FULL_SCALE),
+            counts_per_turn: transducers.counts_per_turn,
+            full_scale: Some(transducers.full_scale_torque),
             torque_source: None,
         });
     }
+    let counts_per_turn = stated.unwrap_or(TRANSDUCERS.counts_per_turn);
     let record = load(file.unwrap_or(Path::new("-")), counts_per_turn)?;
     Ok(Measured { record, origin: None, counts_per_turn, full_scale: None, torque_source: None })
 }
@@ -436,9 +454,18 @@ fn device_table(found: &Identification) -> String {
         None => "# passivity: none; do not certify with this device\n".to_owned(),
     };
     let latency = latency_lines(found);
+    let at_least = 0.5 * found.friction.lo;
+    let friction = match found.tells_friction && at_least > 0.0 {
+        // Rounded down.
+        true => format!(
+            "friction = {} # N m, half of the least of",
+            significant(at_least * (1.0 - 5e-3), 3)
+        ),
+        false => "# Coulomb friction:".to_owned(),
+    };
     format!(
         "[device]\ninertia = {} # kg m^2, {} at 95 %\ndamping = {} # N m s/rad, {} at 95 %\n\
-         {passivity}# Coulomb friction: {} N m at 95 %\n{latency}",
+         {passivity}{friction} {} N m at 95 %\n{latency}",
         significant(found.inertia.value, 5),
         range(&found.inertia),
         significant(found.damping.value.max(0.0), 5),

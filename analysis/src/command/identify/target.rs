@@ -5,17 +5,18 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
+use haptic_servo::servo::Transducers;
 use serde::Serialize;
 
 use crate::command::building::emulated;
 use crate::command::status::CommandError;
 use crate::command::value_parsers::not_negative;
-use crate::file;
+use crate::file::DeviceFile;
 use crate::identify::measurement::{self, Measurement};
 use crate::identify::rig::{MeasuredDevice, Sensing};
 use crate::lockstep::Difference;
 use crate::program::damper_wall;
-use crate::program::identify::{SWEEP, TRANSDUCERS};
+use crate::program::identify::{self, PERIOD};
 use crate::progress;
 use crate::simulation::plant::Plant;
 use crate::toolchain::NumberFormat;
@@ -79,36 +80,32 @@ impl Origin {
     }
 }
 
-/// The default of the counts per turn.
-pub const COUNTS_PER_TURN: f64 = TRANSDUCERS.counts_per_turn;
-
-/// The torque in N m at the largest code that the program is built for.
-pub const FULL_SCALE: f64 = TRANSDUCERS.full_scale_torque;
-
-/// Measures the device of a file, or that of the scenes' programs.
+/// Measures the device of a file with its encoder and its motor, or those of the paddle.
 pub fn measure(
     arguments: &Simulated,
     target: Target,
-    file: Option<&Path>,
+    file: Option<&DeviceFile>,
     keep: Option<&Path>,
-    counts_per_turn: f64,
+    transducers: &Transducers,
 ) -> Result<(Measurement, Origin), CommandError> {
     let plant = match file {
-        Some(file) => Plant::of(&file::load_device(&file.to_string_lossy())?.chain),
+        Some(file) => Plant::of(&file.chain),
         None => Plant::rigid(damper_wall::SCENE.device),
     };
     let &Simulated { torque_noise, skew, output_delay, seed, .. } = arguments;
-    let period = SWEEP.period();
+    let (period, counts_per_turn) = (PERIOD, transducers.counts_per_turn);
+    let sweep = identify::sweep(transducers);
     let sensing = Sensing { period, counts_per_turn, torque_noise, skew, output_delay, seed };
     let elf = match target {
         Target::Host => None,
-        // The program computes its codes in `f32` for every format of the scenes.
+        // The program computes its codes in `f32` for every format of the scenes. They are parts of full scale, of
+        // any motor.
         Target::Qemu => Some(emulated("identify", NumberFormat::F32)?),
     };
     let mut device = MeasuredDevice::new(&plant, &sensing)?;
-    let bar = progress::bar(SWEEP.ticks(), "identify");
+    let bar = progress::bar(sweep.ticks(), "identify");
     let stepper = progress::stepper(&bar);
-    let measured = measurement::measure(&SWEEP, &mut device, elf.as_deref(), stepper)?;
+    let measured = measurement::measure(&sweep, &mut device, elf.as_deref(), stepper)?;
     bar.finish_and_clear();
     if let Some(path) = keep {
         let unwritable = |source| CommandError::Unwritable { path: path.to_owned(), source };
@@ -125,13 +122,13 @@ pub fn measure(
 }
 
 fn output_delay(text: &str) -> Result<f64, String> {
-    let longest = haptic_servo::latency::LONGEST_DELAY * SWEEP.period();
+    let longest = haptic_servo::latency::LONGEST_DELAY * PERIOD;
     let value = not_negative(text)?;
     if value <= longest { Ok(value) } else { Err(format!("it must be at most {longest} s")) }
 }
 
 fn skew(text: &str) -> Result<f64, String> {
-    let period = SWEEP.period();
+    let period = PERIOD;
     let value = not_negative(text)?;
     if value < period { Ok(value) } else { Err(format!("it must be less than {period} s")) }
 }

@@ -1,5 +1,5 @@
 //! The device of this project's scenes: the paddle of the paper's examples. Your own scenes use *your*
-//! device, in `device`.
+//! device, from a file: `cargo haptic new NAME --from PROGRAM --device knob.toml`.
 
 // A crate that includes several scenes has this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]
