@@ -17,7 +17,7 @@ pub fn program(file: &SceneFile, transducers: &Transducers, source: &str) -> Wri
         "Transducers {{ counts_per_turn: {counts_per_turn:?}, counter: CounterWidth::Bits16, \
          full_scale_torque: {full_scale_torque:?}, largest_speed: {largest_speed:?} }}"
     );
-    let output = OutputTiming::of_delay(file.scene.latency.output_delay.middle());
+    let output = OutputTiming::of_delay(file.scene.latency.stated_delay());
     let (mode, option, servo) = match output {
         OutputTiming::AtPhase(nanoseconds) => (
             format!(
