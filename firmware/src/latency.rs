@@ -6,8 +6,11 @@
 //! controller's side of the device's port: the device's passivity is that from the motor's torque to the
 //! velocity at the encoder (theory, section 13).
 
+use crate::encoder_reading::EncoderReading;
 use crate::passivity::interval::Interval;
 use crate::passivity::lagged::delay_of_updates;
+pub use crate::time_range::TimeRange;
+use crate::time_range::is_zero;
 
 /// Longest delay of the output, in periods.
 pub const LONGEST_DELAY: f64 = 8.0;
@@ -20,66 +23,6 @@ pub const TRAILS: usize = 4;
 
 /// Relative tolerance of a whole number of updates, because decimals of a third are rounded.
 const NEARLY_WHOLE: f64 = 1e-9;
-
-/// A time in s that is constant, and known to lie in a range.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub struct TimeRange {
-    /// The shortest time.
-    pub least: f64,
-    /// The longest time.
-    pub most: f64,
-}
-
-impl TimeRange {
-    /// No time.
-    pub const ZERO: Self = Self::exactly(0.0);
-
-    /// An exactly known time.
-    pub const fn exactly(time: f64) -> Self {
-        Self { least: time, most: time }
-    }
-
-    /// A time that is known to lie between two others.
-    pub const fn between(least: f64, most: f64) -> Self {
-        Self { least, most }
-    }
-
-    /// The sum of this time and a following time of another range.
-    pub const fn followed_by(self, next: Self) -> Self {
-        if next.is_zero() {
-            return self;
-        }
-        Self { least: self.least + next.least, most: self.most + next.most }
-    }
-
-    /// Whether the time is certainly zero.
-    pub const fn is_zero(self) -> bool {
-        is_zero(self.least) && is_zero(self.most)
-    }
-
-    /// Whether the time is exactly known.
-    pub const fn is_exact(self) -> bool {
-        self.least == self.most
-    }
-
-    /// The series of [`Latency::trails`] for a lag.
-    const fn trails(self) -> usize {
-        let lasts = [!is_zero(self.most), !self.is_exact() && !is_zero(self.least)];
-        lasts[0] as usize + lasts[1] as usize
-    }
-
-    /// The time in the middle of the range.
-    pub const fn middle(self) -> f64 {
-        if self.is_exact() { self.least } else { 0.5 * (self.least + self.most) }
-    }
-}
-
-/// Whether a number is zero, by its bits: a board compares doubles in software, and tests this for every
-/// scene.
-const fn is_zero(number: f64) -> bool {
-    number.to_bits() << 1 == 0
-}
 
 /// Delays and lags between the instant of a count and that of its torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,6 +49,11 @@ pub struct Latency {
     /// torque is that of the lag, and between two updates it changes linearly. The output delay must be a
     /// whole number of update intervals, and there must be no sensor lag.
     pub actuator_updates: u16,
+    /// The readings of the encoder, whose times are parts of the times above: set by [`Latency::read_by`].
+    ///
+    /// No message has them: a board certifies with those of its program.
+    #[cfg_attr(feature = "wire", serde(skip, default = "EncoderReading::ideal"))]
+    pub encoder: &'static EncoderReading,
 }
 
 impl Latency {
@@ -119,6 +67,7 @@ impl Latency {
         sensor_lag: TimeRange::ZERO,
         actuator_response: TimeRange::ZERO,
         actuator_updates: 0,
+        encoder: EncoderReading::ideal(),
     };
 
     /// A known and constant delay of the output in s.
@@ -136,6 +85,24 @@ impl Latency {
         Self { actuator_response: TimeRange::between(begin, end), ..self }
     }
 
+    /// The same with the readings of an encoder: an age is a delay of the output, and a varying age a jitter of
+    /// the counts, because only the time from a position to its torque counts (theory, section 18.1). The window
+    /// of a mean is that of an amplifier's response, which the two sides of the loop may exchange (section 13.7).
+    pub const fn read_by(self, encoder: &'static EncoderReading) -> Self {
+        let (middle, deviation) = (encoder.age.middle(), encoder.deviation_of_age());
+        let TimeRange { least, most } = self.output_delay;
+        Self {
+            output_delay: TimeRange::between(least + middle, most + middle),
+            count_jitter: self.count_jitter + deviation,
+            actuator_response: TimeRange {
+                most: self.actuator_response.most + encoder.window,
+                ..self.actuator_response
+            },
+            encoder,
+            ..self
+        }
+    }
+
     /// A current loop with `updates` updates, at least one, in each `period`, and with the time constant
     /// `lag`, both in s: its torque begins one update after the update that takes the code over.
     pub const fn sampled(updates: u16, lag: f64, period: f64) -> Self {
@@ -148,11 +115,17 @@ impl Latency {
     /// as in an [`OutputTiming`](crate::output_timing::OutputTiming). A current loop's torque begins an
     /// update later.
     pub const fn code_delay(&self, period: f64) -> f64 {
-        let delay = self.output_delay.middle();
+        let delay = self.stated_delay();
         match self.actuator_updates {
             0 => delay,
             _ => self.delay_at_update(self.nearest_update(period).saturating_sub(1), period),
         }
+    }
+
+    /// The middle of the output delay in s without the age of a reading.
+    pub const fn stated_delay(&self) -> f64 {
+        let delay = self.output_delay.middle();
+        if self.encoder.age.is_zero() { delay } else { delay - self.encoder.age.middle() }
     }
 
     /// The whole number of updates nearest to the output delay, at this period in s.
@@ -211,9 +184,16 @@ impl Latency {
         Some(0.5 * (period - (delay.most - delay.least)))
     }
 
-    /// The most in s by which a count of a board, whose timer puts the torques out, deviates from its time.
+    /// The most in s by which a count of a board, whose timer puts the torques out, deviates from its time,
+    /// without the encoder's age.
     pub const fn deviation_of_counts(&self) -> f64 {
-        if is_zero(self.count_jitter) { self.output_jitter } else { self.count_jitter }
+        if is_zero(self.count_jitter) {
+            self.output_jitter
+        } else if self.encoder.age.is_zero() {
+            self.count_jitter
+        } else {
+            self.count_jitter - self.encoder.deviation_of_age()
+        }
     }
 
     /// The whole samples that the latest torque takes at this period in s, jitters included: as many past

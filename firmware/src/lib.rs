@@ -119,6 +119,7 @@ macro_rules! each {
 }
 
 pub mod encoder;
+pub mod encoder_reading;
 
 pub mod coupling;
 pub mod coupling_memory;
@@ -164,6 +165,7 @@ pub mod period;
 mod response_window;
 pub mod step;
 pub mod text;
+pub mod time_range;
 
 // The protocol between a board and its host.
 #[cfg(feature = "wire")]

@@ -114,6 +114,12 @@ parameters! {
     To: "environment.to", "upper end stop", "rad", Range::Finite;
     Mode: "environment.mode", "mode", "", Range::Finite;
     CountJitter: "servo.count_jitter", "count jitter", "s", Range::NotNegative;
+    Age: "encoder.age", "age of a reading", "s", Range::NotNegative;
+    Window: "encoder.window", "window of the encoder", "s", Range::NotNegative;
+    Linearity: "encoder.linearity", "linearity of the encoder", "", Range::Fraction;
+    Noise: "encoder.noise", "noise of the encoder", "counts", Range::NotNegative;
+    Hysteresis: "encoder.hysteresis", "hysteresis of the encoder", "counts", Range::NotNegative;
+    Dropped: "encoder.dropped", "number of readings that may be dropped", "", Range::Whole(0, MAX_DELAY as u32);
 }
 
 /// The parameters that may be changed while the servo runs, with their names for users.

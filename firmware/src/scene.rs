@@ -7,6 +7,7 @@ use crate::build_error::BuildError;
 use crate::environment::{Environment, LawContext};
 
 pub use crate::coupling::Coupling;
+pub use crate::encoder_reading::EncoderReading;
 pub use crate::latency::{Latency, TimeRange};
 use crate::parameter::{NamedParameters, Parameter, numbers};
 

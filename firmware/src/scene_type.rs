@@ -103,6 +103,7 @@ impl<S: SceneType> EnvironmentModel for Typed<S> {
     const CANCELS_DAMPING: bool = Self::LIKE.canceller.is_some();
     const PROFILE: ProfileUse = ProfileUse::of(&Self::LIKE);
     const MEMORY: Memory = Memory::of(S::CERTIFIED.scene());
+    const MAY_MISREAD: bool = !S::CERTIFIED.scene().latency.encoder.is_ideal();
 
     fn as_data(&self, _: &LawContext) -> Environment {
         Environment::Parts(self.parts())

@@ -5,7 +5,9 @@
 const RARE = new Set([
   "device.passivity", "device.friction", "device.sensor_lag", "device.actuator_response",
   "device.actuator_updates", "servo.worst_period", "servo.output_jitter", "servo.count_jitter",
-  "environment.filter", "environment.wall.filter",
+  "environment.filter", "environment.wall.filter", "encoder.counts_per_turn", "encoder.age",
+  "encoder.window", "encoder.lag", "encoder.prediction", "encoder.linearity", "encoder.noise",
+  "encoder.hysteresis", "encoder.dropped",
 ]);
 
 /** Most tables of a list that have fields: more shapes than that are refused. */

@@ -29,7 +29,7 @@ macro_rules! kept {
 
 kept! {
     delayed_spring damper_wall free_mode knob undelayed_wall
-    bridge composed damped filtered placed rational response rigid snap table
+    bridge composed damped encoder filtered placed rational response rigid snap table
     program
 }
 

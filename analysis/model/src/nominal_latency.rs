@@ -13,6 +13,7 @@ pub fn left_out(latency: &Latency) -> Option<&'static str> {
         sensor_lag,
         actuator_response,
         actuator_updates: _,
+        encoder: _,
     } = latency;
     let times = [output_delay, actuator_lag, sensor_lag, actuator_response];
     let exact = times.into_iter().all(|time| time.is_exact());

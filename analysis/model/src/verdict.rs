@@ -241,7 +241,7 @@ fn reported(
     };
     let delta = assessment.delta.midpoint();
     let margin = assessment.margin(scene);
-    let lags = has_port_index(scene);
+    let lags = lags(scene);
     let is_margin_known = !(lags && assessment.rule == Rule::Nonlinear);
     let is_margin_known_on_board = !lags;
     let margin_on_board = assessment.outcome.ok().and_then(|()| assessment.margin_on_board(scene));
@@ -434,6 +434,11 @@ const NO_MARGIN: &str = "none is known: where torques lag, and a limit or a face
 
 /// Whether the index at the port differs from that of `E'`.
 fn has_port_index(scene: &Scene) -> bool {
+    lags(scene) || !scene.latency.encoder.is_ideal()
+}
+
+/// Whether torques lag, or the coupling has memory.
+fn lags(scene: &Scene) -> bool {
     !scene.latency.is_none() || scene.coupling == Coupling::Matched
 }
 

@@ -112,4 +112,4 @@ macro_rules! sessions {
     )*};
 }
 
-sessions! { boards certify charts design files filters identify profiles programs simulate }
+sessions! { boards certify charts design encoder files filters identify profiles programs simulate }

@@ -139,7 +139,15 @@ const fn judge(
         out.exact = RuleAnswer::Undecided;
         return nonlinear_outcome(n, &alone, out);
     }
-    let coupled = if n.latency.is_some() && matches!(extent, Extent::BothRules) {
+    let coupled = if !n.linearity.is_zero() && matches!(extent, Extent::BothRules) {
+        match posed.through_inl(&Precision::TIGHT, true) {
+            Ok((found, needed)) => {
+                out.alpha_port = Some(needed);
+                Ok(found)
+            }
+            Err(error) => Err(error),
+        }
+    } else if n.latency.is_some() && matches!(extent, Extent::BothRules) {
         out.alpha_coupled = posed.coupled_without_latency();
         match posed.over_cells(&Precision::TIGHT, true) {
             Ok((found, needed)) => {
@@ -162,6 +170,11 @@ const fn judge(
         }
     }
     out.exact = posed.exact(&coupled);
+    if is_limited && n.is_at_port && posed.misreads {
+        // The index without what the encoder does to it is of no use.
+        out.alpha_port = posed.bound;
+        out.exact = RuleAnswer::Undecided;
+    }
     match out.rule {
         Rule::Exact => exact_outcome(posed, &alone, &coupled, out),
         Rule::Nonlinear => nonlinear_outcome(n, &alone, out),
@@ -178,7 +191,9 @@ const fn exact_outcome(
     let limit = exact_limit(n);
     // If the environment would pass at the standard coupling, the coupling fails, unless torques lag.
     let blames_coupling = match alone {
-        Ok(found) => n.latency.is_none() && found.minimum.is_below(n.delta),
+        Ok(found) => {
+            n.latency.is_none() && n.linearity.is_zero() && found.minimum.is_below(n.delta)
+        }
         Err(_) => false,
     };
     match (coupled, alone) {
@@ -196,10 +211,12 @@ const fn exact_outcome(
                 // With lagging torques, the passivity that the device lacks, not the obstacle of this device.
                 let alpha = match out.alpha_port {
                     Some(needed) => needed,
-                    None if n.latency.is_some() => match posed.port_needed() {
-                        Ok(needed) => needed,
-                        Err(_) => found.minimum,
-                    },
+                    None if n.latency.is_some() && n.linearity.is_zero() => {
+                        match posed.port_needed() {
+                            Ok(needed) => needed,
+                            Err(_) => found.minimum,
+                        }
+                    }
                     None => found.minimum,
                 };
                 Err(Rejection::shortage(alpha, limit, found.cos_theta))
@@ -242,6 +259,7 @@ const fn nonlinear_outcome(
     };
     let Some(bound) = out.bound else {
         let doubt = match n.is_at_port {
+            _ if !n.linearity.is_zero() && !n.is_at_port => UndecidedReason::NoProofWithInl,
             true => UndecidedReason::NoBoundAtPort,
             false => UndecidedReason::NoNonlinearBound,
         };

@@ -4,12 +4,14 @@
 use core::fmt;
 
 use super::assessment::Assessment;
+use super::endless::mean_torque;
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
 use super::margin::Limited;
 use super::model::LoopTransfers;
 use super::quantization::{QuantizationBound, Resolution};
 use super::timed::{is_uneven, limited_bound};
+use crate::encoder_reading::EncoderReading;
 use crate::environment::{Environment, StatedModel, Wall};
 use crate::passivity::discrete::index;
 use crate::passivity::interval::Interval;
@@ -34,6 +36,14 @@ pub enum Assumption {
     },
     /// The delays and lags of the device are those of the scene.
     Latency(Latency),
+    /// The readings of the encoder are those of the scene.
+    Encoder(EncoderReading),
+    /// An endless torque profile is no motor.
+    Endless {
+        /// Bound on the mean torque in N m through a nonlinear encoder, which friction must hold; `None` with a
+        /// linear one.
+        mean: Option<f64>,
+    },
     /// Updates may be missed.
     WorstPeriod {
         /// Longest time in s between two updates.
@@ -113,6 +123,8 @@ impl Assumption {
             Self::DevicePassivity { .. }
             | Self::Hold { .. }
             | Self::Latency(_)
+            | Self::Encoder(_)
+            | Self::Endless { .. }
             | Self::Delay { .. }
             | Self::StatedModel { .. }
             | Self::CancelledDamping { .. }
@@ -162,6 +174,18 @@ impl fmt::Display for Assumption {
                 }
             }
             Self::Latency(latency) => write_latency(f, latency),
+            Self::Encoder(encoder) => write_encoder(f, encoder),
+            Self::Endless { mean: None } => f.write_str(
+                "the encoder reads the angle without an error that depends on the angle: otherwise an endless \
+                 torque profile turns the device as a motor does, and the friction has to hold it (state \
+                 `encoder.linearity`)",
+            ),
+            Self::Endless { mean: Some(mean) } => write!(
+                f,
+                "the device has {} N m of Coulomb friction or more, which the mean torque of the endless profile \
+                 through the nonlinear encoder does not exceed",
+                RoundUp3(*mean)
+            ),
             Self::WorstPeriod { longest, delta, .. } => write!(
                 f,
                 "no two counts are more than {longest} s apart: the servo stops otherwise; judged \
@@ -273,6 +297,7 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
         sensor_lag,
         actuator_response,
         actuator_updates,
+        encoder,
     } = latency;
     f.write_str("a torque begins ")?;
     if output_delay.is_zero() {
@@ -301,7 +326,9 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
              updates"
         )?;
     }
-    if !actuator_response.is_zero() {
+    if encoder.window > 0.0 {
+        write!(f, "; a reading is a mean of positions over {} s", ShortF64(encoder.window))?;
+    } else if !actuator_response.is_zero() {
         let TimeRange { least, most } = *actuator_response;
         let (least, most) = (ShortF64(least), ShortF64(most));
         write!(
@@ -312,6 +339,27 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
     Ok(())
 }
 
+/// Writes the conditions on the encoder's readings.
+fn write_encoder(f: &mut fmt::Formatter<'_>, encoder: &EncoderReading) -> fmt::Result {
+    f.write_str(
+        "the encoder does not predict the position (of an AS5047P read 0x3FFE, or set DAECDIS); each reading is ",
+    )?;
+    let TimeRange { least, most } = encoder.age;
+    if encoder.age.is_exact() {
+        write!(f, "{} s old", ShortF64(most))?;
+    } else {
+        write!(f, "between {} and {} s old", ShortF64(least), ShortF64(most))?;
+    }
+    if encoder.linearity > 0.0 {
+        let linearity = ShortF64(encoder.linearity);
+        write!(f, "; the slope of its error over the angle is at most {linearity} (INL)")?;
+    }
+    match encoder.dropped {
+        0 => f.write_str("; no reading is dropped"),
+        dropped => write!(f, "; at most {dropped} in a row are dropped"),
+    }
+}
+
 fn write_time(f: &mut fmt::Formatter<'_>, time: TimeRange) -> fmt::Result {
     if time.is_exact() {
         return write!(f, "{} s", ShortF64(time.most));
@@ -319,7 +367,7 @@ fn write_time(f: &mut fmt::Formatter<'_>, time: TimeRange) -> fmt::Result {
     write!(f, "a constant {} to {} s", ShortF64(time.least), ShortF64(time.most))
 }
 
-const MOST: usize = 11;
+const MOST: usize = 13;
 
 /// The assumptions of a scene's verdict.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -338,6 +386,9 @@ impl Assumptions {
         let latency = scene.latency;
         list.push(Some(Assumption::Hold { period, at_once: latency.is_none() }));
         list.push((!latency.is_none()).then_some(Assumption::Latency(latency)));
+        let encoder = latency.encoder;
+        list.push((*encoder != EncoderReading::IDEAL).then_some(Assumption::Encoder(*encoder)));
+        list.push(endless(scene, assessment));
         list.push(worst.map(|longest| Assumption::WorstPeriod {
             longest,
             delta: assessment.delta.midpoint(),
@@ -375,6 +426,14 @@ impl Assumptions {
             _ => None,
         })
     }
+}
+
+/// Of an endless profile, the friction that a nonlinear encoder makes it need.
+fn endless(scene: &Scene, assessment: &Assessment) -> Option<Assumption> {
+    let _ = scene.environment.profile().filter(|profile| profile.ends.is_none())?;
+    let numbers = LoopIntervals::of(scene, assessment.format);
+    let mean = mean_torque::<Environment>(scene, &numbers).map(Interval::hi);
+    Some(Assumption::Endless { mean })
 }
 
 fn stated(environment: &Environment) -> Option<Assumption> {

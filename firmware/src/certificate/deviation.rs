@@ -2,7 +2,7 @@
 
 use super::loop_intervals::{Lagging, LoopIntervals};
 use crate::passivity::interval::Interval;
-use crate::passivity::lagged::SampledResponse;
+use crate::passivity::lagged::{SampledResponse, ripple_of_mixture};
 use crate::response_window::ResponseWindow;
 use crate::scene::Timing;
 
@@ -29,7 +29,8 @@ impl Deviation {
         let latency = &lagging.latency;
         if latency.total_jitter() == 0.0 && !n.misses_updates {
             return match proof {
-                0 => Some(Self::NONE),
+                0 if n.linearity.is_zero() => Some(Self::NONE),
+                0 => Some(Self::through_inl(lagging, n)),
                 // The ripple of an amplifier of no known shape is that of the worst, and the window may be
                 // better.
                 1 if !latency.actuator_response.is_zero() => Self::within_window(lagging, n),
@@ -47,6 +48,12 @@ impl Deviation {
             2 if is_of_pulses && h.hi() <= 1.0 => Some(Self::of_work(h)),
             _ => None,
         }
+    }
+
+    /// Through a nonlinear encoder the ripple is `1 + eta` times that of the delay (equation 66).
+    const fn through_inl(lagging: &Lagging, n: &LoopIntervals) -> Self {
+        let delay = Interval::decimal(lagging.latency.output_delay.most).div(n.period);
+        Self { ripple: n.linearity.mul(ripple_of_mixture(delay, delay)), ..Self::NONE }
     }
 
     /// All torques lie in a window (theory, equation 57).

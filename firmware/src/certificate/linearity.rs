@@ -1,6 +1,7 @@
 //! Which scenes are judged by a bound in place of the exact rule.
 
-use crate::environment::{Environment, Parts};
+use crate::environment::{Environment, Parts, Wall};
+use crate::latency::Latency;
 use crate::scene::{Coupling, Scene};
 
 /// Whether the scene is judged by the nonlinear bound.
@@ -13,10 +14,11 @@ pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
 
 /// Whether a scene without a coupling is judged by its index at the port although it is linear: the exact
 /// rule has no proof for missed updates beside latency, and none for jitter that costs a spring nothing. For
-/// torques and counts that deviate at the same time the exact rule alone has a proof.
+/// torques and counts that deviate at the same time the exact rule alone has a proof. Of an encoder's age, window,
+/// nonlinearity and dropped readings the index of a spring takes no more than the exact rule does.
 const fn replaces_exact_rule(scene: &Scene) -> bool {
-    let latency = &scene.latency;
-    if latency.is_none() || !matches!(scene.coupling, Coupling::Rigid) {
+    let (latency, encoder) = (&scene.latency, scene.latency.encoder);
+    if latency.is_none() && encoder.is_ideal() || !matches!(scene.coupling, Coupling::Rigid) {
         return false;
     }
     let Environment::Parts(Parts { canceller, wall, profile: None }) = &scene.environment else {
@@ -28,5 +30,68 @@ const fn replaces_exact_rule(scene: &Scene) -> bool {
     };
     let has_damping = damping != 0.0 || canceller.is_some();
     let has_one_jitter = latency.total_jitter() > 0.0 && !latency.jitters_twice();
-    !pulls && (scene.timing.longer_period().is_some() || !has_damping && has_one_jitter)
+    let misses_updates = scene.timing.longer_period().is_some();
+    let is_late_or_missed =
+        !latency.is_none() && (misses_updates || !has_damping && has_one_jitter);
+    let is_beyond_exact_rule = match has_damping {
+        true => encoder.linearity != 0.0 && (misses_updates || !is_delay_alone(latency)),
+        false => {
+            let is_of_times = encoder.linearity == 0.0 && encoder.dropped == 0;
+            !encoder.is_ideal() && !(is_of_times && latency.jitters_twice())
+        }
+    };
+    !pulls && (is_late_or_missed || is_beyond_exact_rule)
+}
+
+/// Whether all of a latency is one known delay, for which the exact rule covers a nonlinear encoder.
+pub(super) const fn is_delay_alone(latency: &Latency) -> bool {
+    latency.total_jitter() == 0.0
+        && latency.output_delay.is_exact()
+        && latency.actuator_lag.is_zero()
+        && latency.sensor_lag.is_zero()
+        && latency.actuator_response.is_zero()
+        && latency.actuator_updates == 0
+}
+
+/// Whether a nonlinear encoder reads the device behind whose coupling spring a static and undelayed
+/// environment is: the whole controller is then a static law (theory, section 18.3).
+pub(super) const fn is_behind_spring(scene: &Scene) -> bool {
+    matches!(scene.coupling, Coupling::Spring { .. })
+        && scene.latency.encoder.linearity != 0.0
+        && is_nonlinear(scene)
+        && !scene.environment.is_late()
+        && is_static(&scene.environment)
+}
+
+/// Whether a dropped reading costs a scene no more than its age: the torque depends on one position.
+pub const fn is_static_at_port(scene: &Scene) -> bool {
+    matches!(scene.coupling, Coupling::Rigid) && is_static(&scene.environment)
+}
+
+/// Whether the torque depends on one position, without dampers, and pushes back.
+const fn is_static(environment: &Environment) -> bool {
+    let Environment::Parts(Parts { canceller: None, wall, profile }) = environment else {
+        return false;
+    };
+    let is_wall_static = match wall {
+        Some(wall) => wall.damping() == 0.0 && wall.stiffness >= 0.0,
+        None => true,
+    };
+    let is_profile_static = match profile {
+        Some(profile) => profile.damping() == 0.0 && profile.snap.is_none(),
+        None => true,
+    };
+    is_wall_static && is_profile_static
+}
+
+/// The wall that is all of an environment, late and without a damper.
+pub(super) const fn late_spring(environment: &Environment) -> Option<&Wall> {
+    match environment {
+        Environment::Parts(Parts { canceller: None, wall: Some(wall), profile: None })
+            if wall.delay > 0 && wall.damping() == 0.0 && wall.stiffness >= 0.0 =>
+        {
+            Some(wall)
+        }
+        _ => None,
+    }
 }

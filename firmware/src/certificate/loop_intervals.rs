@@ -1,10 +1,11 @@
 //! The numbers of a scene as the certificate computes with them: enclosed, and rounded to a number format.
 
-use super::linearity::is_nonlinear;
-use crate::environment::{Environment, EnvironmentModel};
+use super::linearity::{is_behind_spring, is_nonlinear, late_spring};
+use crate::environment::{Environment, EnvironmentModel, Wall};
 use crate::latency::Latency;
 use crate::matched::{MatchedCoupling, limit_behind_spring};
 use crate::number::{Format, Rounding};
+use crate::output_timing::READ_WITHIN;
 use crate::passivity::interval::Interval;
 use crate::passivity::transfer::{Transfer, Unbuildable};
 use crate::scene::{Coupling, Scene, Timing};
@@ -15,7 +16,8 @@ pub(super) struct LoopIntervals {
     /// Nominal period `T`.
     pub period: Interval,
     /// Device passivity, scaled to the worst period: all indices are per tick, so a longest
-    /// period of `k T` leaves `delta / k` (theory, section 8).
+    /// period of `k T` leaves `delta / k` (theory, section 8). Of a limited late spring behind a coupling, what
+    /// a nonlinear encoder leaves of it.
     pub delta: Interval,
     /// Missed updates, if a torque may be latched a period after its count.
     pub missed: Option<Missed>,
@@ -38,6 +40,8 @@ pub(super) struct LoopIntervals {
     pub is_at_port: bool,
     /// Whether the coupling is the matched one.
     pub is_matched: bool,
+    /// `eta` of the encoder, if the passivity does not include it.
+    pub linearity: Interval,
     /// Delays and lags; `None`: none at all, and a coupling without memory.
     pub latency: Option<Lagging>,
 }
@@ -106,7 +110,14 @@ impl Missed {
 impl LoopIntervals {
     pub const fn of(scene: &Scene, format: Format) -> Self {
         let mut out = Self::of_late::<Environment>(scene, scene.environment.is_late(), format);
-        out.is_at_port = matches!(scene.coupling, Coupling::Rigid) && is_nonlinear(scene);
+        out.is_at_port = matches!(scene.coupling, Coupling::Rigid) && is_nonlinear(scene)
+            || is_behind_spring(scene);
+        let linearity = scene.latency.encoder.linearity;
+        if linearity != 0.0 && out.linearity.is_zero() && !is_nonlinear(scene) {
+            // The exact rule has its own proof.
+            out.linearity = Interval::decimal(linearity);
+            out.delta = Interval::decimal(scene.device.passivity());
+        }
         if let (Some(stiffness), None) = (out.coupling, &out.latency) {
             let unrounded = Interval::ONE.div(stiffness);
             out.is_standard = unrounded.sub(standard(out.period, out.delta)).contains(0.0);
@@ -170,8 +181,12 @@ impl LoopIntervals {
             },
             is_at_port: false,
             is_matched: matches!(scene.coupling, Coupling::Matched),
+            linearity: Interval::ZERO,
             latency: None,
         };
+        if E::MAY_MISREAD && scene.latency.encoder.linearity != 0.0 {
+            out.read_through_inl(scene);
+        }
         if E::MEMORY.is_stored() && has_latency(scene) {
             if E::MEMORY.has_updates() {
                 out.add_latency::<true>(scene);
@@ -180,6 +195,38 @@ impl LoopIntervals {
             }
         }
         out
+    }
+
+    #[inline(never)]
+    const fn read_through_inl(&mut self, scene: &Scene) {
+        self.linearity = Interval::decimal(scene.latency.encoder.linearity);
+        let is_plain = scene.latency.is_none() && !self.misses_updates && !self.is_matched;
+        if let Some(wall) = late_spring(&scene.environment)
+            && is_plain
+            && self.coupling.is_some()
+            && let Some(left) = self.left_by_inl(wall)
+        {
+            (self.delta, self.linearity) = (left, Interval::ZERO);
+        }
+    }
+
+    /// The passivity that a nonlinear encoder leaves of that of a device, for a late spring on one side or on
+    /// both that is behind a coupling spring (equation 67); `None` if none is left, or no bound is known.
+    const fn left_by_inl(&self, wall: &Wall) -> Option<Interval> {
+        let spring = self.coefficient(Interval::decimal(wall.stiffness));
+        let fed_back = spring.mul(self.compliance);
+        let settles = Interval::ONE.sub(fed_back);
+        if !settles.is_positive() {
+            return None;
+        }
+        let slope = spring.div(Interval::ONE.add(fed_back));
+        let memory = slope.mul(Interval::exact(wall.delay as f64)).div(settles);
+        let factor = Interval::ONE.add(self.linearity);
+        // A board may read a count late.
+        let longest = self.period.add(Interval::exact(2.0 * READ_WITHIN));
+        let taken = self.linearity.mul(factor).mul(longest).mul(slope.half().add(memory));
+        let left = self.delta.sub(taken).div(factor.mul(factor));
+        if left.is_positive() { Some(left) } else { None }
     }
 
     // Not inlined: scenes without latency do not need its frame.

@@ -337,7 +337,8 @@ impl PassivityProblem {
         let is_same = |lagging: &Lagging| {
             lagging.latency == kept.latency && self.numbers.period == kept.period
         };
-        if !self.numbers.latency.as_ref().is_some_and(is_same) {
+        let reads_linearly = self.numbers.linearity.is_zero();
+        if !reads_linearly || !self.numbers.latency.as_ref().is_some_and(is_same) {
             return self.answer();
         }
         self.answer_by(|closeness| {

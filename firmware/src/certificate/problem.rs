@@ -1,5 +1,6 @@
 //! A scene that can be judged, and the answers of the two rules without their numbers.
 
+use super::endless::{mean_torque, turns_by_inl};
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
 use super::model::{solved_bound, transfer};
@@ -9,6 +10,7 @@ use super::remedy::Remedies;
 use super::rules::{Rule, RuleAnswer, compare, exact_limit, paper_limit};
 use super::static_law::{IndexAtPort, index_at_port};
 use super::validity::check;
+use crate::encoder_reading::EncoderReading;
 use crate::environment::{Environment, FULL_SCALE, Parts, Profile, Wall};
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
@@ -58,6 +60,8 @@ pub struct PassivityProblem {
     /// Whether a scene whose bound fails is rejected. At the port it is undecided, unless less passivity than
     /// the bound is known to be too little.
     is_necessary: bool,
+    /// Whether the encoder's readings are other than those of an ideal encoder with the same times.
+    pub(super) misreads: bool,
 }
 
 impl PassivityProblem {
@@ -96,6 +100,7 @@ impl PassivityProblem {
             rule: Rule::Exact,
             bound: None,
             is_necessary: true,
+            misreads: false,
         }
     }
 
@@ -111,6 +116,12 @@ impl PassivityProblem {
             && let Some(rejection) = profile_rejection(profile, scene, numbers)
         {
             return Err(rejection);
+        }
+        if turns_by_inl::<Environment>(scene, numbers)
+            && let Some(mean) = mean_torque::<Environment>(scene, numbers)
+        {
+            let EncoderReading { linearity, friction, .. } = *scene.latency.encoder;
+            return Err(Rejection::MotorByInl { linearity, mean, friction });
         }
         // Its bound in a sum with a profile does not detect this.
         if let Parts { wall: Some(Wall { stiffness, .. }), profile: Some(_), .. } =
@@ -134,7 +145,7 @@ impl PassivityProblem {
         let (rule, bound, solvable) = if is_nonlinear(scene) {
             let bound = match at_port {
                 Some(IndexAtPort { sufficient, .. }) => Some(sufficient),
-                None if numbers.is_at_port => None,
+                None if numbers.is_at_port || !numbers.linearity.is_zero() => None,
                 None => solved_bound(&scene.environment, numbers),
             };
             // A clipped or one-sided law has one solution with the coupling only if both slopes
@@ -155,9 +166,10 @@ impl PassivityProblem {
         };
         self.is_necessary = match at_port {
             Some(index) => index.is_necessary,
-            None => !numbers.is_at_port,
+            None => !numbers.is_at_port && numbers.linearity.is_zero(),
         };
         (self.rule, self.bound) = (rule, bound);
+        self.misreads = !scene.latency.encoder.is_ideal();
         Ok(())
     }
 
@@ -281,7 +293,7 @@ impl PassivityProblem {
             Some(lagging) => lagging.latency.total_jitter() == 0.0,
             None => true,
         };
-        if !self.numbers.is_at_port || self.no_transfer.is_some() || !is_constant {
+        if !self.numbers.is_at_port || self.misreads || self.no_transfer.is_some() || !is_constant {
             return None;
         }
         match self.at_port(&Precision::TIGHT) {
@@ -350,9 +362,21 @@ impl PassivityProblem {
     /// Index at the device's port, independent of `delta`: that of the whole controller, a sample late. The
     /// loop is passive while `delta + Re(T C / (z - 1)) > 0` (equation 30).
     pub(super) const fn at_port(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
+        if !self.numbers.linearity.is_zero() {
+            let (_, needed) = ok!(self.through_inl(closeness, true));
+            return Ok(RealPart::everywhere(needed));
+        }
         if self.numbers.latency.is_some() {
             return Ok(RealPart::everywhere(ok!(self.port_needed())));
         }
+        self.without_delay(closeness)
+    }
+
+    /// The same for torques at the instants of their counts, through a linear encoder.
+    pub(super) const fn without_delay(
+        &self,
+        closeness: &Precision,
+    ) -> Result<RealPart, IndexError> {
         reduced_index(&self.behind_reduced(self.numbers.compliance, true), closeness)
     }
 
@@ -387,6 +411,10 @@ impl PassivityProblem {
     ) -> Result<RealPart, IndexError> {
         if let Some(doubt) = self.no_transfer {
             return Err(IndexError::Undecided(doubt));
+        }
+        if !self.numbers.linearity.is_zero() {
+            let (found, _) = ok!(self.through_inl(closeness, false));
+            return Ok(found);
         }
         if self.numbers.latency.is_some() {
             return self.port_index(closeness);

@@ -22,6 +22,7 @@ use super::model::{LoopTransfers, Washout, canceller, damper};
 use super::profile::{peak_gain, step_of_part};
 use crate::current::CurrentResolution;
 use crate::dac::DacCode;
+use crate::encoder_reading::EncoderReading;
 use crate::environment::Rational;
 use crate::matched::{MatchedCoupling, Trail};
 use crate::number::Format;
@@ -67,6 +68,12 @@ impl Resolution {
         Self { current: Some(deviation + 0.5 * ripple), crossing: Some(zero_crossing), ..self }
     }
 
+    /// The same with the error of a reading in place of half a count: noise and hysteresis are further steps
+    /// (theory, section 18.5).
+    fn read_by(&self, encoder: &EncoderReading) -> Self {
+        Self { encoder: self.encoder.map(|step| step * encoder.steps()), ..*self }
+    }
+
     /// Torque of one DAC code in N m.
     fn converter(&self) -> Option<f64> {
         self.full_scale.map(|torque| torque / f64::from(DacCode::CODES_TO_FULL_SCALE))
@@ -101,6 +108,7 @@ impl QuantizationBound {
     /// per position: if it is unstable, or so near to instability that its response does not end.
     pub fn of(scene: &Scene, format: Format, steps: &Resolution) -> Option<Self> {
         let Peak { norm: peak, in_any_motion } = peak(scene, format)?;
+        let steps = &steps.read_by(scene.latency.encoder);
         let found = Self {
             encoder: steps.encoder.map(|step| 0.5 * step * peak),
             numbers: numbers(scene, format, steps, peak)?,

@@ -29,6 +29,15 @@ pub enum Rejection {
         /// Its mean torque in N m.
         mean: f64,
     },
+    /// A nonlinear encoder makes an endless torque profile a motor, and the stated friction does not hold it.
+    MotorByInl {
+        /// The encoder's linearity.
+        linearity: f64,
+        /// Bound on the mean torque, and so the friction that is needed, in N m.
+        mean: Interval,
+        /// The stated friction in N m.
+        friction: f64,
+    },
     /// A torque limit would make the torque profile a motor.
     Uneven,
     /// A torque profile without delay is steeper than its coupling.
@@ -141,7 +150,10 @@ impl Rejection {
             Self::UnstablePole { .. } => "unstable_pole",
             Self::RepeatedUnitPole { .. } => "repeated_unit_pole",
             Self::ResidueAngle { .. } | Self::HiddenMode { .. } => "residue_angle",
-            Self::NegativeResidue { .. } | Self::Motor { .. } | Self::Uneven => "negative_residue",
+            Self::NegativeResidue { .. }
+            | Self::Motor { .. }
+            | Self::MotorByInl { .. }
+            | Self::Uneven => "negative_residue",
             Self::Coupling { .. } => "coupling",
             Self::Undecided { .. } => "undecided",
         }
@@ -209,6 +221,11 @@ impl Rejection {
             Self::Motor { mean } => push!(t,
                 "the torque profile repeats for ever, and its mean is " {*mean}
                 " N m instead of 0: it would turn the device as a motor does"),
+            Self::MotorByInl { linearity, mean, friction } => push!(t,
+                "the torque profile repeats for ever, and read by an encoder with a linearity of " {*linearity}
+                " its mean is up to " {mean.hi()} " N m, by which it would turn the device as a motor does: the device \
+                 needs that much Coulomb friction, and states " {*friction}
+                " N m; correct the angle, or give the profile end stops"),
             Self::Uneven => push!(
                 t,
                 "a torque limit would clip this torque profile on one side more than on the other, and the rest \
@@ -313,6 +330,10 @@ const fn sentence_of(doubt: UndecidedReason) -> &'static str {
             "no proof is known for a snap point whose torque comes more than one sample late, without a coupling, or \
              beside a wall or a canceller: the jump of each snap would add energy in every late tick; give it a \
              delay of 0 or 1, a coupling spring or, where torques lag, the matched coupling, and nothing beside it"
+        }
+        UndecidedReason::NoProofWithInl => {
+            "no proof is known for a nonlinear encoder with this coupling and these times: leave the coupling out, or \
+             store a correction of the angle and state what is left as the linearity"
         }
         UndecidedReason::NoTransferFunction => {
             "the environment is stated by a bound, without a transfer function"

@@ -59,6 +59,8 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
         };
         let varied = Varied { scene, format, parameter };
         let remedy = match ORDER[i] {
+            // It includes the age of a reading, which is the encoder's.
+            Parameter::OutputDelay if !scene.latency.encoder.age.is_zero() => None,
             // If only this number changes, the delay is no longer a whole number of updates.
             Parameter::Period | Parameter::OutputDelay if scene.latency.actuator_updates != 0 => {
                 None

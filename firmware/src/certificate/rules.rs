@@ -47,10 +47,15 @@ pub const fn gamma(stiffness: Interval, period: Interval, delta: Interval) -> Op
 ///
 /// If updates may be missed and torques are latched, [`Missed::limit`] must also hold.
 ///
+/// Through a nonlinear encoder there is none, except where [`LoopIntervals::delta`] has what it leaves.
+///
 /// If torques lag, condition 18 applies to the coupling's excess over the matched one ([`crate::matched`]).
 pub(super) const fn paper_limit(n: &LoopIntervals) -> Option<Interval> {
     if n.is_at_port {
         return Some(n.delta);
+    }
+    if !n.linearity.is_zero() {
+        return None;
     }
     if let Some(lagging) = &n.latency {
         return lagging.limit;

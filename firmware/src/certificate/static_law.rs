@@ -4,9 +4,13 @@
 //! Each torque depends on positions of the past, and only their largest age counts. All times in this module
 //! are in periods.
 
+use super::linearity::is_behind_spring;
 use super::loop_intervals::LoopIntervals;
 use super::model::{canceller_bound, switched_damping};
 use super::profile::{ExtremeSlopes, damper, is_motor};
+use super::window::Moments;
+use crate::coupling::Coupling;
+use crate::encoder_reading::EncoderReading;
 use crate::environment::{Environment, EnvironmentModel, Parts, Profile, Wall};
 use crate::latency::Latency;
 use crate::passivity::interval::Interval;
@@ -32,9 +36,9 @@ pub(super) const fn index_at_port(
     n: &LoopIntervals,
     reading: f64,
 ) -> Option<IndexAtPort> {
-    let law = some!(Law::of::<Environment>(&scene.environment, n));
-    let lowest = some!(law.needed(scene, n, reading, End::Lower));
-    let highest = some!(law.needed(scene, n, reading, End::Upper));
+    let law = some!(Law::in_scene::<Environment>(scene, n));
+    let lowest = some!(law.needed::<Environment>(scene, n, reading, End::Lower));
+    let highest = some!(law.needed::<Environment>(scene, n, reading, End::Upper));
     Some(IndexAtPort {
         sufficient: Interval::new(lowest, highest),
         is_necessary: law.is_spring_somewhere && is_exact(&scene.latency, n),
@@ -51,7 +55,7 @@ pub(super) enum End {
 impl End {
     /// The index grows with every time and slope, so that each end of its enclosure is computed from the same
     /// end of every time.
-    const fn of(self, enclosed: Interval) -> f64 {
+    pub const fn of(self, enclosed: Interval) -> f64 {
         match self {
             Self::Lower => enclosed.lo(),
             Self::Upper => enclosed.hi(),
@@ -75,8 +79,8 @@ pub(super) const fn needed_at_port<E: EnvironmentModel>(
     reading: f64,
     end: End,
 ) -> Option<f64> {
-    let law = some!(Law::of::<E>(&scene.environment, n));
-    law.needed(scene, n, reading, end)
+    let law = some!(Law::in_scene::<E>(scene, n));
+    law.needed::<E>(scene, n, reading, end)
 }
 
 /// The passivity that a switched damper takes at most beside a static law, over the damper: the geometric mean
@@ -92,7 +96,8 @@ pub(super) const fn share_of_damper(scene: &Scene, n: &LoopIntervals, reading: f
 /// Whether the index is known to be the least one for a spring.
 const fn is_exact(latency: &Latency, n: &LoopIntervals) -> bool {
     let is_in_updates = latency.actuator_updates == 0 || latency.total_jitter() == 0.0;
-    is_in_updates && !latency.jitters_twice() && (!n.misses_updates || latency.is_none())
+    let drops = latency.encoder.dropped > 0;
+    is_in_updates && !latency.jitters_twice() && !drops && (!n.misses_updates || latency.is_none())
 }
 
 /// A torque that depends on positions, limited at any level, plus parts that depend on steps of positions.
@@ -120,6 +125,44 @@ impl Law {
         damping: Interval::ZERO,
         is_spring_somewhere: true,
     };
+
+    /// The law in a scene: that of the environment, or of the coupling where that is all that the device feels
+    /// of a static environment ([`is_behind_spring`]). Through a nonlinear encoder all slopes over the
+    /// device's angle are up to `1 + eta` times as steep (theory, section 18.2).
+    const fn in_scene<E: EnvironmentModel>(scene: &Scene, n: &LoopIntervals) -> Option<Self> {
+        let law = match scene.coupling {
+            Coupling::Rigid => some!(Self::of::<E>(&scene.environment, n)),
+            _ if E::MEMORY.may_be_coupled() && is_behind_spring(scene) => {
+                // A profile that is not late is solved in front of the coupling.
+                match scene.environment.profile() {
+                    Some(_) => some!(Self::of::<E>(&scene.environment, n)),
+                    None => Self::of_coupling(n),
+                }
+            }
+            _ => return None,
+        };
+        Some(if E::MAY_MISREAD { law.steepened(scene.latency.encoder) } else { law })
+    }
+
+    /// The slope of a static environment behind a coupling spring is below that of the spring.
+    const fn of_coupling(n: &LoopIntervals) -> Self {
+        let spring = Interval::ONE.div(n.compliance);
+        Self { rise: spring, steepest: spring, is_spring_somewhere: false, ..Self::NONE }
+    }
+
+    const fn steepened(self, encoder: &EncoderReading) -> Self {
+        if encoder.linearity == 0.0 {
+            return self;
+        }
+        let factor = Interval::ONE.add(Interval::decimal(encoder.linearity));
+        Self {
+            rise: self.rise.mul(factor),
+            steepest: self.steepest.mul(factor),
+            late: self.late.mul(factor),
+            damping: self.damping.mul(factor),
+            ..self
+        }
+    }
 
     /// `None` if no bound is known: for rational and stated environments, negative springs, motors and snap
     /// points.
@@ -152,14 +195,21 @@ impl Law {
     }
 
     /// [`needed_at_port`] of the law in a scene.
-    const fn needed(
+    const fn needed<E: EnvironmentModel>(
         &self,
         scene: &Scene,
         n: &LoopIntervals,
         reading: f64,
         end: End,
     ) -> Option<f64> {
-        let age = some!(Age::of(&scene.latency, n, end));
+        let encoder = match E::MAY_MISREAD {
+            true => scene.latency.encoder,
+            false => EncoderReading::ideal(),
+        };
+        // With a damper a dropped reading is a missed update.
+        let dropped = if self.damping.is_zero() { encoder.dropped } else { 0 };
+        let times = Times { latency: &scene.latency, window: encoder.window, dropped };
+        let age = some!(Age::of(&times, n, end));
         let steepest = self.steepest;
         let moved = self.rise.half().add(self.late).add(steepest.mul(age.mean));
         let spread = steepest.mul(steepest).mul(age.variance);
@@ -237,13 +287,15 @@ impl Age {
 
     /// `None` if no bound is known: for updates that are missed beside two lags, or beside jitter and a lag,
     /// and for two jitters beside a lag.
-    const fn of(latency: &Latency, n: &LoopIntervals, end: End) -> Option<Self> {
-        if latency.is_none() {
+    const fn of(times: &Times<'_>, n: &LoopIntervals, end: End) -> Option<Self> {
+        let latency = times.latency;
+        if latency.is_none() && times.dropped == 0 {
             return Some(Self::NONE);
         }
         let has_lag = !latency.actuator_lag.is_zero();
         let has_filter = !latency.sensor_lag.is_zero();
-        let Some(oldest) = oldest(latency, n, end) else { return None };
+        let window = times.shape_counts(n);
+        let Some(oldest) = oldest(times, window, n, end) else { return None };
         if latency.jitters_twice() {
             return if has_lag || has_filter {
                 None
@@ -254,6 +306,17 @@ impl Age {
         let whole = oldest as u32 as f64;
         // Exact, as a difference of doubles of the same order.
         let part = Interval::exact(oldest - whole);
+        if window {
+            let length = Interval::exact(end.time(times.window, n));
+            let last = end.of(part.add(length)).max(part.lo());
+            let Moments { mean, square } = Moments::of_window(part.lo(), last);
+            let mean_age = Interval::exact(whole).add(mean);
+            return Some(Self {
+                mean: mean_age,
+                variance: variance(square, mean),
+                tick: Interval::ONE,
+            });
+        }
         let lag = Tail::of(latency.actuator_lag.most, latency, n, part, end);
         let filter = Tail::of(latency.sensor_lag.most, &Latency::NONE, n, part, end);
         let mean = part.add(lag.lag.held).add(filter.lag.held);
@@ -309,16 +372,38 @@ const fn variance(square: Interval, mean: Interval) -> Interval {
     square.sub(mean.mul(mean)).max(Interval::ZERO)
 }
 
-/// The largest time from a count to its torque, without lags.
-const fn oldest(latency: &Latency, n: &LoopIntervals, end: End) -> Option<f64> {
+/// The times of a static law.
+#[derive(Clone, Copy)]
+struct Times<'s> {
+    latency: &'s Latency,
+    /// The encoder's window in s.
+    window: f64,
+    /// Readings in a row that may be older ones.
+    dropped: u16,
+}
+
+impl Times<'_> {
+    /// Whether the ages within the encoder's window count by their shape. Where ticks are not a period long,
+    /// the window counts as the delay of its end.
+    const fn shape_counts(&self, n: &LoopIntervals) -> bool {
+        self.window > 0.0 && !self.latency.jitters_twice() && !n.misses_updates
+    }
+}
+
+/// The largest time from a count to its torque, without lags, and without a window whose shape counts.
+const fn oldest(times: &Times<'_>, window: bool, n: &LoopIntervals, end: End) -> Option<f64> {
+    let latency = times.latency;
     let delay = match latency.actuator_updates {
         0 => end.time(latency.output_delay.most, n),
         _ => end.of(some!(latency.delay_in_updates(n.period.midpoint()))),
     };
-    let response = end.time(latency.actuator_response.most, n);
+    let response = if window { 0.0 } else { end.time(latency.actuator_response.most, n) };
     let jitter = end.time(latency.total_jitter(), n);
     let sum = Interval::exact(delay).add(Interval::exact(response)).add(Interval::exact(jitter));
-    Some(end.of(sum))
+    if times.dropped == 0 {
+        return Some(end.of(sum));
+    }
+    Some(end.of(sum.add(Interval::exact(times.dropped as f64))))
 }
 
 /// What a lag leaves of an age after the delay: `u(t)` with `u(0) = 1`.

@@ -1,5 +1,6 @@
 //! The valid range of each number of a scene.
 
+use super::linearity::is_static_at_port;
 use crate::environment::{
     Canceller, Environment, MOST_KNOTS, Parts, Profile, ProfileUse, StatedModel,
 };
@@ -80,6 +81,7 @@ pub(super) const fn check(scene: &Scene) -> Checked {
     if scene.latency.actuator_updates != 0 {
         ok!(check_updates(scene));
     }
+    ok!(check_encoder(scene));
     let Some(rational) = scene.environment.rational() else { return Ok(()) };
     ok!(check_coefficients(Parameter::Numerator, rational.numerator.as_slice()));
     check_coefficients(Parameter::Denominator, rational.denominator.as_slice())
@@ -370,6 +372,56 @@ const fn check_updates(scene: &Scene) -> Checked {
     };
     must_be(parameter, value, bound, limit)
 }
+
+/// Whether the readings of the encoder have a meaning, and the scene's times include them. A board has the
+/// encoder of its program.
+const fn check_encoder(scene: &Scene) -> Checked {
+    let (latency, encoder) = (&scene.latency, scene.latency.encoder);
+    let dropped = encoder.dropped as f64;
+    let numbers = [
+        (Parameter::Age, encoder.age.least),
+        (Parameter::Age, encoder.age.most),
+        (Parameter::Window, encoder.window),
+        (Parameter::Linearity, encoder.linearity),
+        (Parameter::Noise, encoder.noise),
+        (Parameter::Hysteresis, encoder.hysteresis),
+        (Parameter::Dropped, dropped),
+    ];
+    each!(i in 0..numbers.len() => {
+        ok!(check_range(numbers[i].0, numbers[i].1));
+    });
+    let TimeRange { least, most } = encoder.age;
+    if least > most {
+        return must_be(Parameter::Age, least, "at most the other end of its range:", Some(most));
+    }
+    let is_included = latency.output_delay.least >= encoder.age.middle()
+        && latency.count_jitter >= encoder.deviation_of_age();
+    if !is_included {
+        let (bound, limit) = (
+            "a part of the output delay and the count jitter, of which the first is",
+            latency.output_delay.least,
+        );
+        return must_be(Parameter::Age, most, bound, Some(limit));
+    }
+    if encoder.age.most > 0.0 && latency.actuator_updates != 0 {
+        return must_be(Parameter::Age, most, BESIDE_UPDATES[2], None);
+    }
+    let response = latency.actuator_response;
+    if encoder.window > 0.0 && (response.least != 0.0 || response.most != encoder.window) {
+        return must_be(Parameter::Window, encoder.window, NO_RESPONSE_BESIDE, None);
+    }
+    let period = scene.timing.period;
+    let worst = or!(scene.timing.worst_period, period);
+    let held = (dropped + 1.0) * period;
+    if encoder.dropped > 0 && !is_static_at_port(scene) && worst < held {
+        return must_be(Parameter::WorstPeriod, worst, HELD_WHILE_DROPPED, Some(held));
+    }
+    Ok(())
+}
+
+const NO_RESPONSE_BESIDE: &str = "0 beside a response or a lag of the amplifier";
+const HELD_WHILE_DROPPED: &str = "as long as the torque is held while readings are dropped, because only a torque \
+                                  of one position may come from an older reading: at least";
 
 const BESIDE_UPDATES: [&str; 4] = [
     "that of the servo where the amplifier is updated in each period:",

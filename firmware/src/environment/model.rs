@@ -70,6 +70,11 @@ impl Memory {
         matches!(self, Self::Any | Self::Uncoupled)
     }
 
+    /// Whether it may have a coupling.
+    pub const fn may_be_coupled(self) -> bool {
+        !matches!(self, Self::Uncoupled)
+    }
+
     /// Whether the amplifier may be updated several times in a period. If not, the program omits the code for
     /// such a coupling.
     pub const fn has_updates(self) -> bool {
@@ -132,6 +137,10 @@ pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
 
     /// The past torques that its law stores for a coupling.
     const MEMORY: Memory;
+
+    /// Whether the encoder's readings may be other than those of an ideal encoder with the same times. If not,
+    /// the program omits the certificate's code for them.
+    const MAY_MISREAD: bool = true;
 
     /// As data, for the certificate.
     fn as_data(&self, context: &LawContext) -> Environment;

@@ -80,6 +80,8 @@ pub enum UndecidedReason {
     NotBelowBound,
     /// No bound is known for snap points with this delay or without a coupling.
     NoSnapBound,
+    /// No proof is known for this scene with a nonlinear encoder.
+    NoProofWithInl,
 }
 
 /// Separates the circle poles of `G`, cancels exact common factors, and proves the other poles inside.
@@ -150,7 +152,7 @@ const fn constant_zero() -> Reduced {
     }
 }
 
-pub(super) const fn zeros_multiplied(g: &Transfer) -> Option<Polynomial> {
+pub(crate) const fn zeros_multiplied(g: &Transfer) -> Option<Polynomial> {
     let ones = if g.ones > 0 { g.ones as usize } else { 0 };
     let minus = if g.minus_ones > 0 { g.minus_ones as usize } else { 0 };
     let mut p = g.numerator;

@@ -13,6 +13,7 @@ mod current;
 mod decision;
 mod documents;
 mod emulated;
+mod encoder;
 mod every_float;
 mod exact;
 mod examples;

@@ -103,7 +103,8 @@ pub fn prepared(scene: &Scene, terms: &Terms) -> Scene {
     if terms.safety != 1.0 {
         scene.device.passivity = Some(delta);
     }
-    let has_standard = scene.latency.is_none() && scene.coupling != Coupling::Matched;
+    let is_prompt = scene.latency.is_none() && scene.latency.encoder.is_ideal();
+    let has_standard = is_prompt && scene.coupling != Coupling::Matched;
     if terms.coupling == Choice::Standard && has_standard {
         let longest = scene.timing.worst_period.unwrap_or(scene.timing.period);
         let stiffness = 2.0 * delta / longest;

@@ -59,7 +59,7 @@ impl Quantity {
             // A profile that does not repeat has no number of repetitions.
             Self::Count if !scene.environment.profile()?.outline().wraps => None,
             Self::OutputDelay => {
-                let value = last_update(scene, value);
+                let value = last_update(scene, value) + scene.latency.encoder.age.middle();
                 let mut delayed = scene.with(Parameter::OutputDelay, value)?;
                 let largest = delayed.largest_jitter();
                 let latency = &mut delayed.latency;

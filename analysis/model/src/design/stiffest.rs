@@ -262,6 +262,10 @@ impl Search {
             canceller.delay = delay;
         }
         let latency = &mut scene.latency;
+        let encoder = latency.encoder;
+        if encoder.window > 0.0 {
+            latency.actuator_response = TimeRange::ZERO;
+        }
         (latency.output_jitter, latency.count_jitter) = (0.0, 0.0);
         if latency.actuator_updates > 0 {
             latency.actuator_updates = PwmTiming::of(period, B_G431B_ESC1.clock).ok()?.updates;
@@ -270,10 +274,18 @@ impl Search {
         } else {
             let delay = if is_latched { 0.0 } else { SHORTEST_PHASE };
             latency.output_delay = TimeRange::exactly(delay);
-            if !latency.is_none() {
-                latency.output_jitter = self.scene.latency.total_jitter().max(READ_WITHIN);
+            if !latency.is_none() || !encoder.age.is_zero() {
+                let jitter = self.scene.latency.total_jitter() - encoder.deviation_of_age();
+                // Beside a varying age it is that of the counts, too.
+                let of_counts = encoder.deviation_of_age() > 0.0;
+                let place = match of_counts {
+                    true => &mut latency.count_jitter,
+                    false => &mut latency.output_jitter,
+                };
+                *place = jitter.max(READ_WITHIN);
             }
         }
+        *latency = latency.read_by(encoder);
         scene.coupling = match coupling {
             Kind::None => Coupling::Rigid,
             Kind::Matched => Coupling::Matched,

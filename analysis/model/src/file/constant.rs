@@ -5,7 +5,7 @@ pub mod layout;
 use haptic_servo::environment::{
     Canceller, Coefficients, Damper, Environment, Profile, Rational, Shape, Side, Wall,
 };
-use haptic_servo::scene::{Latency, TimeRange};
+use haptic_servo::scene::{EncoderReading, Latency, TimeRange};
 
 use super::SceneFile;
 use super::profile::Shapes;
@@ -64,6 +64,9 @@ pub fn of(file: &SceneFile) -> Result<Constants, String> {
     if scene.latency != Latency::NONE {
         of_scene.insert(4, "TimeRange");
     }
+    if *scene.latency.encoder != EncoderReading::IDEAL {
+        of_scene.insert(2, "EncoderReading");
+    }
     let constant = format!(
         "Scene {{ device: {:?}, timing: {:?}, coupling: Coupling::{:?}, environment: {environment}, \
          latency: {}, torque_limit: {:?} }}",
@@ -120,15 +123,38 @@ fn latency(latency: &Latency) -> String {
         [("output_jitter", latency.output_jitter), ("count_jitter", latency.count_jitter)];
     let jitters = jitters.into_iter().filter(|(_, jitter)| *jitter != 0.0);
     let updates = Some(latency.actuator_updates).filter(|updates| *updates != 0);
+    let encoder = Some(latency.encoder).filter(|encoder| **encoder != EncoderReading::IDEAL);
     let fields: Vec<_> = times
         .map(|(name, it)| format!("{name}: {}", time(it)))
         .chain(jitters.map(|(name, jitter)| format!("{name}: {jitter:?}")))
         .chain(updates.map(|updates| format!("actuator_updates: {updates}")))
+        .chain(encoder.map(|encoder| format!("encoder: {}", reading(encoder))))
         .collect();
     match fields[..] {
         [] => "Latency::NONE".to_owned(),
         _ => format!("Latency {{ {}, ..Latency::NONE }}", fields.join(", ")),
     }
+}
+
+/// Only the nonzero parts.
+fn reading(encoder: &EncoderReading) -> String {
+    let EncoderReading { age, window, linearity, noise, hysteresis, friction, dropped } = *encoder;
+    let numbers = [
+        ("window", window),
+        ("linearity", linearity),
+        ("noise", noise),
+        ("hysteresis", hysteresis),
+        ("friction", friction),
+    ];
+    let numbers = numbers.into_iter().filter(|(_, number)| *number != 0.0);
+    let fields: Vec<_> = Some(age)
+        .filter(|age| !age.is_zero())
+        .map(|age| format!("age: {}", time(age)))
+        .into_iter()
+        .chain(numbers.map(|(name, number)| format!("{name}: {number:?}")))
+        .chain((dropped > 0).then(|| format!("dropped: {dropped}")))
+        .collect();
+    format!("&EncoderReading {{ {}, ..EncoderReading::IDEAL }}", fields.join(", "))
 }
 
 fn time(TimeRange { least, most }: TimeRange) -> String {

@@ -254,6 +254,33 @@ keys! {
     ACTUATOR_UPDATES = other("device.actuator_updates", "", whole(0, u16::MAX as u32)),
         Default(0.0), "4";
 
+    /// The encoder's readings, where they are not those of a quadrature encoder with a perfect disk; a device
+    /// file may have this table, too. A magnetic encoder reads an older position, and its error over the angle
+    /// has a slope.
+    READING = other("encoder", "", TABLE), Optional("a quadrature encoder with a perfect disk: all is 0"), "";
+    /// Counts of the encoder in a turn, in place of `limits.counts_per_turn`.
+    READING_COUNTS = other("encoder.counts_per_turn", "counts", POSITIVE),
+        Optional("`[limits]` states them"), "16384.0";
+    /// Age of a reading at the instant of its count: the delay of the chip and the time from its last
+    /// conversion. With two numbers it is anywhere between them in each tick.
+    AGE = Key { bound: TIME, ..of(Parameter::Age) }, Default(0.0), "[0.0, 1.0e-5]";
+    /// Length of the window before that age over whose positions a reading is the mean, at most a period.
+    WINDOW = of(Parameter::Window), Default(0.0), "4.0e-5";
+    /// Time constant of a first-order filter in the encoder, in place of `device.sensor_lag`.
+    READING_LAG = other("encoder.lag", "s", TIME), Default(0.0), "6.4e-5";
+    /// Whether the encoder predicts the position from the velocity. Nothing certifies with one that does.
+    PREDICTION = other("encoder.prediction", "", BOOLEAN), Optional("false"), "false";
+    /// Largest slope of the angle's error over the angle, `eta`: with an integral nonlinearity (INL) of up to
+    /// E rad to either side and mostly of one or two periods a turn, about 2 E.
+    LINEARITY = of(Parameter::Linearity), Default(0.0), "0.028";
+    /// Peak of the noise of a reading.
+    NOISE = of(Parameter::Noise), Default(0.0), "2.0";
+    /// Hysteresis of the encoder.
+    HYSTERESIS = of(Parameter::Hysteresis), Default(0.0), "0.0";
+    /// Readings in a row that may fail their check. The reading before takes their place, and more are a fault.
+    /// With a damper or a coupling the torque is held meanwhile: `servo.worst_period` is then as much longer.
+    DROPPED = of(Parameter::Dropped), Default(0.0), "1";
+
     /// When the servo runs.
     SERVO = other("servo", "", TABLE), Needed, "";
     /// Time from one update of the torque to the next; `rate` may be there in its place.

@@ -12,6 +12,7 @@ mod any_text;
 pub mod constant;
 pub mod device;
 mod device_file;
+mod encoder;
 pub mod example;
 pub mod key;
 pub mod kind;

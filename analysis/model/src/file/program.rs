@@ -13,7 +13,7 @@ use super::{SceneFile, excerpt};
 /// Where its environment has no constant.
 pub fn program(file: &SceneFile, transducers: &Transducers, source: &str) -> Written {
     let Constants { environment, scene, items } = constant::of(file)?;
-    let output = OutputTiming::of_delay(file.scene.latency.output_delay.middle());
+    let output = OutputTiming::of_delay(file.scene.latency.stated_delay());
     let (mode, option, servo) = match output {
         OutputTiming::AtPhase(nanoseconds) => (
             format!(

@@ -1,11 +1,14 @@
 //! A scene file's tables turned into a [`Scene`].
 
+use std::f64::consts::TAU;
+
 use haptic_servo::certificate::Resolution;
 use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
 use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
 use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange, Timing};
 
 use super::device::{self, DeviceTable, Purpose};
+use super::encoder;
 use super::faults::{Faults, Read, all};
 use super::filter;
 use super::key::{self, Key};
@@ -59,11 +62,12 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let name = top.needed_text(&key::NAME);
     let [device, servo, environment] =
         [&key::DEVICE, &key::SERVO, &key::ENVIRONMENT].map(|key| top.needed_table(key));
-    let [coupling, simulation, human, limits, supplied] =
-        [&key::COUPLING, &key::SIMULATION, &key::HUMAN, &key::LIMITS, &key::SUPPLY]
+    let [reading, coupling, simulation, human, limits, supplied] =
+        [&key::READING, &key::COUPLING, &key::SIMULATION, &key::HUMAN, &key::LIMITS, &key::SUPPLY]
             .map(|key| top.table(key));
     top.finish();
     let device = device.and_then(|table| device::device(table, purpose));
+    let reading = reading.and_then(|table| table.map(encoder::encoder).transpose());
     let servo = servo.and_then(servo_of);
     let coupling = coupling.and_then(|table| table.map_or(Ok(Coupling::Rigid), coupling_of));
     let environment = environment.and_then(environment_of);
@@ -77,7 +81,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     // If the limits could not be read, there may be a torque limit.
     let largest = limits.as_ref().map_or(Some(f64::INFINITY), |[torque, _, full]| torque.or(*full));
     let supply = supplied.and_then(|table| table.map(|it| supply(it, largest)).transpose());
-    let (name, table) = (name?, device?);
+    let (name, table, reading) = (name?, device?, reading?);
     let [torque_limit, encoder_step, full_scale] = limits?;
     let (servo, coupling, environment) = (servo?, coupling?, environment?);
     let (environment, shapes) = match environment {
@@ -96,7 +100,18 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     };
     let timing = servo.timing;
     check_latency(&top, &timing, &latency, environment.is_late())?;
-    let scene = Scene { device, timing, coupling, environment, latency, torque_limit };
+    let mut scene = Scene { device, timing, coupling, environment, latency, torque_limit };
+    let mut encoder_step = encoder_step;
+    if let Some(reading) = reading {
+        scene = reading.read(&top, scene, friction)?;
+        if let Some(counts) = reading.counts_per_turn {
+            if encoder_step.is_some() {
+                let reason = format!("stands beside `{}`: leave out one of them", key::LIMITS.path);
+                return Err(top.conflict(&key::READING_COUNTS, reason));
+            }
+            encoder_step = Some(TAU / counts);
+        }
+    }
     let (simulation, hand, supply) = (simulation?, hand?, supply?);
     Ok(SceneFile {
         name,

@@ -8,7 +8,7 @@ use std::fmt::Write;
 use haptic_servo::current::Bus;
 use haptic_servo::environment::{Coefficients, Environment, Wall};
 use haptic_servo::parameter::{Parameter, Range};
-use haptic_servo::scene::{Coupling, Scene, TimeRange};
+use haptic_servo::scene::{Coupling, EncoderReading, Scene, TimeRange};
 
 use super::key::{self, Bound, Key, Presence};
 use super::kind::Kind;
@@ -34,9 +34,14 @@ pub fn toml(file: &SceneFile) -> String {
     device(&mut lines, chain, scene, *friction);
     lines.push(format!("[servo]\nperiod = {:?}", scene.timing.period));
     number(&mut lines, "worst_period", scene.timing.worst_period);
-    time(&mut lines, "output_delay", scene.latency.output_delay);
+    let EncoderReading { age, .. } = *scene.latency.encoder;
+    let TimeRange { least, most } = scene.latency.output_delay;
+    let delay = TimeRange::between(less(least, age.middle()), less(most, age.middle()));
+    time(&mut lines, "output_delay", delay);
     time(&mut lines, "output_jitter", TimeRange::exactly(scene.latency.output_jitter));
-    time(&mut lines, "count_jitter", TimeRange::exactly(scene.latency.count_jitter));
+    let jitter = less(scene.latency.count_jitter, scene.latency.encoder.deviation_of_age());
+    time(&mut lines, "count_jitter", TimeRange::exactly(jitter));
+    encoder(&mut lines, scene.latency.encoder);
     match scene.coupling {
         Coupling::Rigid => {}
         Coupling::Spring { stiffness } => {
@@ -110,6 +115,38 @@ fn time(lines: &mut Vec<String>, key: &str, TimeRange { least, most }: TimeRange
     }
 }
 
+/// The number in fewest digits to which adding `part` gives `sum`.
+fn less(sum: f64, part: f64) -> f64 {
+    if part == 0.0 {
+        return sum;
+    }
+    let difference = (sum - part).max(0.0);
+    let in_digits = |digits: usize| format!("{difference:.digits$e}").parse().unwrap_or(difference);
+    (0..17).map(in_digits).find(|rest| rest + part == sum).unwrap_or(difference)
+}
+
+/// Writes the encoder's table, if it is not that of a quadrature encoder.
+fn encoder(lines: &mut Vec<String>, reading: &EncoderReading) {
+    let EncoderReading { age, window, linearity, noise, hysteresis, dropped, .. } = *reading;
+    if *reading == EncoderReading::IDEAL {
+        return;
+    }
+    lines.push("[encoder]".to_owned());
+    time(lines, "age", age);
+    let numbers = [
+        ("window", window),
+        ("linearity", linearity),
+        ("noise", noise),
+        ("hysteresis", hysteresis),
+    ];
+    for (key, value) in numbers {
+        number(lines, key, Some(value).filter(|value| *value != 0.0));
+    }
+    if dropped > 0 {
+        lines.push(format!("dropped = {dropped}"));
+    }
+}
+
 /// Writes the passivity only if it was declared and differs from the chain's own.
 fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Option<f64>) {
     let own = chain.as_rigid().ok().and_then(|own| own.passivity);
@@ -125,7 +162,9 @@ fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Optio
     }
     time(lines, "actuator_lag", scene.latency.actuator_lag);
     time(lines, "sensor_lag", scene.latency.sensor_lag);
-    time(lines, "actuator_response", scene.latency.actuator_response);
+    if scene.latency.encoder.window == 0.0 {
+        time(lines, "actuator_response", scene.latency.actuator_response);
+    }
     if scene.latency.actuator_updates > 0 {
         lines.push(format!("actuator_updates = {}", scene.latency.actuator_updates));
     }
@@ -252,6 +291,16 @@ mod tests {
             ),
             ("", "output_delay = 5e-6\noutput_jitter = 1e-6\ncount_jitter = 3e-6\n", ""),
             ("actuator_lag = -0.0\n", "output_delay = [1e-6, 1e-6]\noutput_jitter = 1e-6\n", ""),
+            (
+                "[encoder]\nage = [1e-5, 3.1e-5]\nlinearity = 0.03\nnoise = 2\nhysteresis = 0.5\n",
+                "output_delay = 5e-6\ncount_jitter = 1e-6\n",
+                "",
+            ),
+            (
+                "[encoder]\nage = 1e-4\nwindow = 9e-5\ndropped = 2\n",
+                "output_delay = [1e-6, 7e-6]\n",
+                "",
+            ),
         ];
         let latencies = latencies.map(|(device, servo, coupling)| {
             let table = if coupling.is_empty() { "" } else { "[coupling]\n" };

@@ -103,7 +103,12 @@ impl Experiment {
         let wall = self.scene.environment.wall();
         let centred = wall.is_none_or(|wall| !wall.is_one_sided() && wall.face() == 0.0);
         let unlimited = self.scene.torque_limit.is_none() && self.encoder_step.is_none();
-        centred && unlimited && self.friction == 0.0 && self.missed == Missed::None
+        let reads_linearly = self.scene.latency.encoder.linearity == 0.0;
+        centred
+            && unlimited
+            && reads_linearly
+            && self.friction == 0.0
+            && self.missed == Missed::None
     }
 
     /// The machine with the scene's lags at its two ends.

@@ -39,6 +39,7 @@ mod trajectory;
 pub mod unquantized_servo;
 
 mod nonlinear_loop;
+mod reading;
 
 pub use error::SimulationError;
 pub(crate) use error::unbuildable;

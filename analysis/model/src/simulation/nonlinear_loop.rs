@@ -2,7 +2,6 @@
 
 use std::collections::VecDeque;
 
-use haptic_servo::torque::LimitReason;
 use nalgebra::DVector;
 
 use super::discrete_plant::DiscretePlant;
@@ -11,6 +10,7 @@ use super::experiment::{Experiment, Integration};
 use super::friction::FrictionPlant;
 use super::kernel::{DEAD, LOOK};
 use super::plant::{POSITION, VELOCITY};
+use super::reading::Reading;
 use super::tick_status::TickStatus;
 use super::torque_signal::TorqueSignal;
 use super::trajectory::Columns;
@@ -22,7 +22,7 @@ use crate::missed::Ticks;
 pub struct NonlinearLoop {
     servo: UnquantizedServo,
     machine: Machine,
-    encoder_step: Option<f64>,
+    reading: Reading,
     missed: Ticks,
     torque: f64,
     k: usize,
@@ -65,7 +65,7 @@ impl NonlinearLoop {
         Ok(Self {
             servo: UnquantizedServo::new(&experiment.scene)?,
             machine: Machine::new(experiment, integration),
-            encoder_step: experiment.encoder_step,
+            reading: Reading::new(experiment.scene.latency.encoder, experiment.encoder_step),
             missed: experiment.missed.ticks(),
             torque: 0.0,
             k: 0,
@@ -97,23 +97,11 @@ impl NonlinearLoop {
         if self.missed.next().unwrap_or(false) {
             return TickStatus::Missed;
         }
-        let (angle, standing_still) = match self.encoder_step {
-            Some(step) => read(position, step),
-            None => (position, LimitReason::None),
-        };
+        let (angle, standing_still) = self.reading.of(position);
         let (torque, limit) = self.servo.tick(angle, standing_still);
         self.torque = torque;
         TickStatus::Ran(limit)
     }
-}
-
-/// The angle in rad that an encoder with this step shows, and the limit if its count is too large for the
-/// servo's 32 bits: the angle then saturates.
-fn read(position: f64, step: f64) -> (f64, LimitReason) {
-    let count = (position / step).floor();
-    let nearest = count.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
-    let reason = if nearest == count { LimitReason::None } else { LimitReason::Angle };
-    (nearest * step, reason)
 }
 
 impl Machine {

@@ -38,7 +38,8 @@ fn law(rise: f64, steepest: f64, delay: f64) -> Law {
 fn needed(law: Law, period: f64, latency: Latency) -> f64 {
     let scene = scene(period, 1.0, one_sided(0.0, 0.0, 0), latency);
     let n = LoopIntervals::of(&scene, Format::F64);
-    let [low, high] = [End::Lower, End::Upper].map(|end| law.needed(&scene, &n, 0.0, end).unwrap());
+    let [low, high] = [End::Lower, End::Upper]
+        .map(|end| law.needed::<Environment>(&scene, &n, 0.0, end).unwrap());
     assert!(low <= high && high - low <= 1e-11 * high, "{low} {high}");
     high
 }
@@ -70,6 +71,31 @@ fn the_steepest_laws_are_those_of_an_independent_computation() {
         let same = needed(law(rise * steepest, steepest, delay), period, amplifier);
         assert!((same / found - 1.0).abs() < 1e-12, "{same} {found}");
     }
+}
+
+/// Readings that are means over a window, dropped, or read through a nonlinear encoder, in the same way.
+#[test]
+fn the_steepest_laws_through_an_encoder_are_those_of_an_independent_computation() {
+    let read = |reading: EncoderReading| Latency::NONE.read_by(Box::leak(Box::new(reading)));
+    let window = EncoderReading {
+        age: TimeRange::between(1e-5, 2.5e-5),
+        window: 9e-5,
+        ..EncoderReading::IDEAL
+    };
+    let found = needed(law(0.6 * 9.947_432_066_25, 9.947_432_066_25, 1.0), 1e-4, read(window));
+    assert!((found / 0.002 - 1.0).abs() < 1e-10, "{found}");
+    // A drop is an older reading: as many more whole samples.
+    let drops = EncoderReading { dropped: 2, ..window };
+    let [dropped, late] =
+        [(1.0, drops), (3.0, window)].map(|(late, it)| needed(law(3.0, 5.0, late), 1e-4, read(it)));
+    assert!((dropped / late - 1.0).abs() < 1e-13, "{dropped} {late}");
+    // The steepest slope of a law that is less steep where it rises, two samples late.
+    let inl = |slope: f64| {
+        law(0.7 * slope, slope, 2.0)
+            .steepened(&EncoderReading { linearity: 0.1, ..EncoderReading::IDEAL })
+    };
+    let found = needed(inl(8.510_638_297_87), 1e-3, Latency::NONE);
+    assert!((found / 0.022 - 1.0).abs() < 1e-10, "{found}");
 }
 
 /// A profile of `A sin(N x)` that opposes a motor's cogging, and such a profile beside a static law, computed
@@ -360,4 +386,40 @@ fn a_board_renders_a_wall_without_a_coupling() {
     assert_eq!(timed.margin(), judged.margin());
     assert!(phase.certify().unwrap().time::<AtPhase<50_000>>().is_err());
     assert!(timing_checked::<_, AtPhase<50_000>>(phase, Format::F64).is_err());
+}
+
+/// A program contains the code for its encoder, and refuses another one.
+#[test]
+fn a_board_renders_a_wall_that_a_nonlinear_encoder_reads() {
+    const fn scene(stiffness: f64, encoder: &'static EncoderReading) -> Scene {
+        Scene {
+            device: Device { inertia: 1e-4, damping: 0.022, passivity: None },
+            timing: Timing { period: 1e-3, worst_period: None },
+            coupling: Coupling::Rigid,
+            environment: Wall::spring(stiffness, 1).behind(0.1).alone(),
+            latency: Latency::NONE.read_by(encoder),
+            torque_limit: None,
+        }
+    }
+    const MAGNETIC: EncoderReading = EncoderReading {
+        age: TimeRange::between(0.0, 1e-5),
+        linearity: 0.1,
+        dropped: 1,
+        ..EncoderReading::IDEAL
+    };
+    const CERTIFIED: Certified<Scene> = scene(5.0, &MAGNETIC).certified();
+    const PLAIN: Certified<Scene> = scene(5.0, EncoderReading::ideal()).certified();
+    crate::scene_type!(Magnetic: CERTIFIED);
+    crate::scene_type!(Plain: PLAIN);
+    let limit = needed(law(1.1, 1.1, 2.0), 1e-3, Latency::delayed(1e-5));
+    for (part, passes) in [(0.999, true), (1.001, false)] {
+        let stiffness = part * 0.022 / limit;
+        let data = scene(stiffness, &MAGNETIC);
+        let typed = Typed::<Magnetic>::of(&data).unwrap();
+        assert_eq!(timing_checked::<_, Latched>(typed, Format::F64).is_ok(), passes);
+        assert_eq!(timing_checked::<_, Latched>(data, Format::F64).is_ok(), passes);
+        assert_eq!(certify(&data).is_ok(), passes);
+        let other = Typed::<Plain>::of(&data).unwrap();
+        assert!(timing_checked::<_, Latched>(other, Format::F64).is_err());
+    }
 }

@@ -6,6 +6,7 @@ use core::marker::PhantomData;
 #[cfg(doc)]
 use super::Certified;
 use super::assessment::Assessment;
+use super::endless::turns_by_inl;
 use super::loop_intervals::{LoopIntervals, Missed, has_latency};
 use super::margin::Limited;
 use super::model::{largest_solved, nonlinear_bound, solved_bound};
@@ -130,6 +131,8 @@ pub enum TimingError {
     },
     /// The torque lags, and the coupling does not absorb the lag.
     Unmatched,
+    /// The encoder is nonlinear, and no proof is known for a board behind this coupling.
+    Nonlinear,
     /// The scene has no coupling, and its program has one.
     Coupled,
     /// A board reads counts later than the scene allows.
@@ -171,6 +174,11 @@ impl TimingError {
                 t,
                 "where torques lag, a servo renders only environments behind the matched coupling: give the scene \
                  that"
+            ),
+            Self::Nonlinear => push!(
+                t,
+                "no proof is known for a limited torque behind this coupling and a nonlinear encoder: leave the \
+                 coupling out, or correct the angle"
             ),
             Self::Coupled => push!(
                 t,
@@ -266,7 +274,9 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     is_late: bool,
     format: Format,
 ) -> Result<Limited, Step> {
-    if check_numbers(scene, E::PROFILE).is_ok()
+    let is_covered = E::MAY_MISREAD || scene.latency.encoder.is_ideal();
+    if is_covered
+        && check_numbers(scene, E::PROFILE).is_ok()
         && let Some(limited) = limited::<E>(M::TIMING, scene, is_late, format)
     {
         return Ok(limited);
@@ -289,6 +299,9 @@ const fn limited<E: EnvironmentModel>(
     if E::PROFILE.exists && is_uneven::<E>(&scene.environment) {
         return None;
     }
+    if E::PROFILE.exists && E::MAY_MISREAD && is_turned_by_inl::<E>(scene, is_late, format) {
+        return None;
+    }
     if E::MEMORY.may_be_uncoupled() && matches!(scene.coupling, Coupling::Rigid) {
         return limited_at_port::<E>(timing, scene, is_late, format);
     }
@@ -307,6 +320,15 @@ const fn limited<E: EnvironmentModel>(
     let bound = some!(nonlinear_bound::<E>(&scene.environment, solved, n));
     let limited = some!(Limited::of_solved::<E>(scene, n, bound, solved));
     if stands_counts_read_late(timing, &limited, scene, n) { Some(limited) } else { None }
+}
+
+#[inline(never)]
+const fn is_turned_by_inl<E: EnvironmentModel>(
+    scene: &Scene,
+    is_late: bool,
+    format: Format,
+) -> bool {
+    turns_by_inl::<E>(scene, &LoopIntervals::of_late::<E>(scene, is_late, format))
 }
 
 /// The same of a scene without a coupling (theory, section 16).
@@ -351,12 +373,15 @@ const fn disagreement(timing: OutputTiming, scene: &Scene, format: Format) -> Ti
         let board = board_delay(timing, scene);
         let TimeRange { least, most } = scene.latency.output_delay;
         return if least == most {
-            TimingError::Phase { scene: scene.latency.output_delay.middle(), board }
+            TimingError::Phase { scene: scene.latency.stated_delay(), board }
         } else {
             TimingError::DelayRange { least, most }
         };
     }
     let n = &LoopIntervals::of(scene, format);
+    if scene.latency.encoder.linearity != 0.0 && !matches!(scene.coupling, Coupling::Rigid) {
+        return TimingError::Nonlinear;
+    }
     if matches!(scene.coupling, Coupling::Rigid) {
         let needed = needed_at_port::<Environment>(scene, n, reading_time(timing), End::Upper);
         return TimingError::Limited { bound: needed, limit: Some(n.delta.lo()) };
@@ -403,7 +428,11 @@ const fn reading_time(timing: OutputTiming) -> f64 {
 /// jitter. A simulation always uses the scene's time.
 const fn is_at_its_phase(timing: OutputTiming, scene: &Scene) -> bool {
     let delay = scene.latency.output_delay;
-    let board = board_delay(timing, scene);
+    let age = &scene.latency.encoder.age;
+    let board = match age.is_zero() {
+        true => board_delay(timing, scene),
+        false => board_delay(timing, scene) + age.middle(),
+    };
     match timing {
         OutputTiming::Simultaneous => true,
         OutputTiming::Latched | OutputTiming::AtPhase(_) => {
@@ -446,7 +475,9 @@ const fn stands_counts_read_late(
 /// Whether a scene with a latency includes the time in which a board reads a count. With an updated current
 /// loop, its timer captures the count exactly at the update that begins the period.
 const fn has_enough_jitter(scene: &Scene) -> bool {
-    scene.latency.actuator_updates > 0 || scene.latency.deviation_of_counts() >= READ_WITHIN
+    /// The age of a reading is added to the stated jitter, and taken out again, each with a rounding.
+    const ROUNDED: f64 = READ_WITHIN * (1.0 - 1e-9);
+    scene.latency.actuator_updates > 0 || scene.latency.deviation_of_counts() >= ROUNDED
 }
 
 /// Upper limit of the bound for counts read late.

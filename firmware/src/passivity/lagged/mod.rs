@@ -440,7 +440,7 @@ const PORT_TOLERANCE: f64 = 2e-10;
 
 /// The controller without exact common factors, if all its poles are inside the circle.
 #[inline(never)]
-const fn stable(controller: &Transfer) -> Result<Transfer, IndexError> {
+pub(crate) const fn stable(controller: &Transfer) -> Result<Transfer, IndexError> {
     match reduce(controller, false) {
         Ok(Reduced { at_one: false, at_minus_one: false, pair: None, .. }) => {
             Ok(cancelled_exactly(controller))

@@ -1,0 +1,115 @@
+//! The table of an encoder's readings.
+
+use haptic_servo::certificate::is_static_at_port;
+use haptic_servo::latency::LONGEST_DELAY;
+use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
+
+use super::faults::Read;
+use super::key;
+use super::section::Section;
+
+/// The contents of `[encoder]`.
+pub struct EncoderTable {
+    reading: EncoderReading,
+    /// Time constant of its filter.
+    lag: TimeRange,
+    /// Counts in a turn.
+    pub counts_per_turn: Option<f64>,
+}
+
+/// Why an encoder that predicts is refused.
+const PREDICTS: &str = "is true: no certificate exists for an encoder that predicts, because its reading is no mean \
+                        of past positions; of an AS5047 read the angle without it, register 0x3FFE, or set DAECDIS, \
+                        of a TLE5012B clear PREDICT, and state the age then";
+
+/// Reads `[encoder]`.
+pub fn encoder(mut section: Section<'_>) -> Read<EncoderTable> {
+    let counts_per_turn = section.optional(&key::READING_COUNTS);
+    let [age, lag] = [&key::AGE, &key::READING_LAG].map(|key| section.time(key));
+    let predicts = section.boolean(&key::PREDICTION);
+    let [window, linearity, noise, hysteresis, dropped] =
+        [&key::WINDOW, &key::LINEARITY, &key::NOISE, &key::HYSTERESIS, &key::DROPPED]
+            .map(|key| section.number(key));
+    section.finish();
+    if predicts? == Some(true) {
+        return Err(section.conflict(&key::PREDICTION, PREDICTS));
+    }
+    let reading = EncoderReading {
+        age: age?,
+        window: window?,
+        linearity: linearity?,
+        noise: noise?,
+        hysteresis: hysteresis?,
+        friction: 0.0,
+        dropped: dropped? as u16,
+    };
+    Ok(EncoderTable { reading, lag: lag?, counts_per_turn: counts_per_turn? })
+}
+
+impl EncoderTable {
+    /// The scene read by this encoder, with the device's friction.
+    pub fn read(&self, top: &Section<'_>, scene: Scene, friction: Option<f64>) -> Read<Scene> {
+        let latency = self.within(top, &scene)?;
+        let is_endless = scene.environment.profile().is_some_and(|it| it.ends.is_none());
+        let relies_on_friction = is_endless && self.reading.linearity > 0.0;
+        let friction = friction.filter(|_| relies_on_friction).unwrap_or(0.0);
+        let reading = EncoderReading { friction, ..self.reading };
+        // A scene refers to it, as to the table of a torque profile.
+        let read = latency.read_by(Box::leak(Box::new(reading)));
+        let mut scene = Scene { latency: read, ..scene };
+        if reading.dropped > 0 && !is_static_at_port(&scene) {
+            let held = (f64::from(reading.dropped) + 1.0) * scene.timing.period;
+            let worst = scene.timing.worst_period.unwrap_or(scene.timing.period);
+            scene.timing.worst_period = Some(worst.max(held));
+        }
+        Ok(scene)
+    }
+
+    /// The times of the scene with the encoder's filter, beside which the age may stand.
+    fn within(&self, top: &Section<'_>, scene: &Scene) -> Read<Latency> {
+        let (mut latency, period) = (scene.latency, scene.timing.period);
+        let EncoderReading { age, window, .. } = self.reading;
+        let beside = |key: &key::Key, other: &key::Key| {
+            Err(top.conflict(key, format!("stands beside `{}`", other.path)))
+        };
+        if !self.lag.is_zero() {
+            if !latency.sensor_lag.is_zero() {
+                return beside(&key::READING_LAG, &key::SENSOR_LAG);
+            }
+            latency.sensor_lag = self.lag;
+        }
+        let in_the_way = [
+            (&key::ACTUATOR_LAG, latency.actuator_lag),
+            (&key::READING_LAG, latency.sensor_lag),
+            (&key::ACTUATOR_RESPONSE, latency.actuator_response),
+        ];
+        if let Some((other, _)) = in_the_way.iter().find(|(_, time)| !time.is_zero())
+            && window > 0.0
+        {
+            return beside(&key::WINDOW, other);
+        }
+        if !self.lag.is_zero() && !latency.actuator_response.is_zero() {
+            return beside(&key::READING_LAG, &key::ACTUATOR_RESPONSE);
+        }
+        if window > period {
+            let reason = format!("is more than `{}` = {period} s", key::PERIOD.path);
+            return Err(top.conflict(&key::WINDOW, reason));
+        }
+        let is_read_late = !age.is_zero() || window > 0.0 || !self.lag.is_zero();
+        if is_read_late && latency.actuator_updates > 0 {
+            return beside(&key::READING, &key::ACTUATOR_UPDATES);
+        }
+        if latency.output_delay.most + age.most > LONGEST_DELAY * period {
+            let reason = format!(
+                "and `{}` are together more than {LONGEST_DELAY} times `{}` = {period} s",
+                key::OUTPUT_DELAY.path,
+                key::PERIOD.path
+            );
+            return Err(top.conflict(&key::AGE, reason));
+        }
+        Ok(latency)
+    }
+}
+
+#[cfg(test)]
+mod tests;
