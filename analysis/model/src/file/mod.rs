@@ -13,6 +13,7 @@ pub mod constant;
 pub mod device;
 mod device_file;
 pub mod example;
+pub mod host;
 pub mod key;
 pub mod kind;
 pub mod profile;
