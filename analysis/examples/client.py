@@ -23,7 +23,7 @@ BAUD = 460800
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
           "window-watchdog", "low-power", "option-bytes"]
 STATES = ["disarmed", "fading-in", "running", "fading-out", "settling", "faulted", "aligning"]
-LIMITS = ["none", "torque", "converter", "angle", "not-a-number", "ramp", "heat"]
+LIMITS = ["none", "torque", "converter", "angle", "not-a-number", "ramp", "heat", "energy"]
 FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 5: "link-lost",
           6: "watchdog", 7: "panic", 8: "hard-fault", 9: "late-tick", 10: "clock-lost",
           11: "flash-ecc", 12: "ram-parity", 13: "non-maskable", 14: "over-current",

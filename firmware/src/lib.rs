@@ -140,6 +140,9 @@ pub mod transducers;
 // Measurement of a device, before certification.
 pub mod excitation;
 
+// A torque from a host beside the scene.
+pub mod host;
+
 // The servo on a board: one interrupt per period, from reset to fault.
 pub mod boot;
 pub mod fault;

@@ -28,11 +28,13 @@ pub enum LimitReason {
     Ramp = 5,
     /// The continuous current of the board's bridge, after more current for a time.
     Heat = 6,
+    /// The energy that the budget of a host leaves: the torque is the host's, not the scene's.
+    Energy = 7,
 }
 
 words! { LimitReason {
     None "none", Torque "torque", DacRange "converter", Angle "angle", NotANumber "not-a-number",
-    Ramp "ramp", Heat "heat",
+    Ramp "ramp", Heat "heat", Energy "energy",
 } }
 
 impl fmt::Display for LimitReason {
@@ -231,7 +233,8 @@ mod tests {
 
     #[test]
     fn has_a_word_for_every_reason() {
-        let words = ["none", "torque", "converter", "angle", "not-a-number", "ramp", "heat"];
+        let words =
+            ["none", "torque", "converter", "angle", "not-a-number", "ramp", "heat", "energy"];
         assert_eq!(LimitReason::ALL.map(LimitReason::as_str), words);
         for (number, reason) in LimitReason::ALL.into_iter().enumerate() {
             assert_eq!((reason as usize, reason.to_string()), (number, words[number].to_owned()));

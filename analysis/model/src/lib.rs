@@ -49,6 +49,7 @@
 pub mod board;
 
 // Verdicts, simulations and limits of scenes.
+mod beside_host;
 pub mod closed_form;
 pub mod design;
 pub mod felt;

@@ -11,6 +11,7 @@ use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::{Coupling, Scene};
 use serde::{Serialize, Serializer};
 
+use crate::beside_host;
 use crate::felt;
 use crate::file::{self, SceneFile};
 use crate::line_search::minimizing_angle;
@@ -167,6 +168,9 @@ pub struct VerdictReport {
     /// Why no board renders a scene that is certified; `None` where one does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub board: Option<String>,
+    /// What a host may do; only of a file that has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub host: Option<String>,
     /// Whether the bridge's supply stays below its fault level; only of a file that states a supply.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub supply: Option<SupplyReport>,
@@ -316,6 +320,7 @@ fn reported(
         format: (format != Format::F64).then(|| format.to_string()),
         rest: assumptions.rest().map(AtRest::of),
         board: refusal.map(|refusal| refusal.sentence),
+        host: None,
         supply: None,
         warnings: failing.map(ToString::to_string).collect(),
         assumptions: assumptions.iter().map(ToString::to_string).collect(),
@@ -378,6 +383,9 @@ impl VerdictReport {
     #[must_use]
     pub fn with_facts_of(mut self, file: &SceneFile) -> Self {
         self.warnings.extend(file::warnings(file));
+        if let Some(host) = &file.host {
+            beside_host::add(&mut self, file, host);
+        }
         self.supply = regeneration::judge(file);
         let Some(supply) = &self.supply else { return self };
         if !supply.sinks {

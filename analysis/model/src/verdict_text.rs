@@ -39,6 +39,7 @@ pub fn rows(report: &VerdictReport) -> Vec<(&'static str, String)> {
     rows.extend(on_board.map(|margin| ("margin on a board", margin)));
     let not_on_a_board = report.board.clone().filter(|_| !report.is_for_a_board);
     rows.extend(not_on_a_board.map(|why| ("not on a board", why)));
+    rows.extend(report.host.clone().map(|host| ("host", host)));
     list(&mut rows, "remedies", &report.remedies);
     rows.extend(report.no_remedy.map(|sentence| ("remedies", sentence.to_owned())));
     rows.extend(report.supply.iter().map(|supply| ("supply", supply.message.clone())));

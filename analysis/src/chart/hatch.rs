@@ -30,6 +30,8 @@ pub enum Fill {
     Upright,
     /// Level and upright lines.
     Squared,
+    /// Rising and upright lines.
+    Barred,
 }
 
 impl Fill {
@@ -43,6 +45,7 @@ impl Fill {
             TickStatus::Ran(LimitReason::Angle) => Some((Self::Falling, "angle out of range")),
             TickStatus::Ran(LimitReason::NotANumber) => Some((Self::Crossed, "not a number")),
             TickStatus::Ran(LimitReason::Ramp) => Some((Self::Upright, "fading in or out")),
+            TickStatus::Ran(LimitReason::Energy) => Some((Self::Barred, "host's energy spent")),
             TickStatus::Ran(LimitReason::Heat) => Some((Self::Squared, "heat limit")),
             TickStatus::Missed => Some((Self::Level, "tick missed")),
         }
@@ -61,6 +64,7 @@ impl Fill {
             Self::Level => level(x, y),
             Self::Upright => upright(x, y),
             Self::Squared => [level(x, y), upright(x, y)].concat(),
+            Self::Barred => [rising(x, y), upright(x, y)].concat(),
         };
         for line in lines {
             area.draw(&PathElement::new(line.to_vec(), FAINT.stroke_width(UNITS)))?;

@@ -24,7 +24,7 @@ pub struct Arguments {
     #[command(flatten)]
     pub steps: IntegrationArguments,
     /// Print one row for each sample: time (s), position (rad), velocity (rad/s), torque (N m),
-    /// limit reason
+    /// limit reason; with a host, its torque at the motor (N m) and its tank's level (J)
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]
@@ -39,6 +39,10 @@ struct Row {
     velocity: f64,
     torque: f64,
     limit: TickStatus,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    host_torque: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    host_energy: Option<f64>,
 }
 
 /// The motion as JSON.
@@ -107,7 +111,11 @@ fn rows(
             // Without the last digits, which come from the product's rounding.
             let time = rounded((done + i) as f64 * experiment.scene.timing.period, 15);
             let (velocity, torque, limit) = (chunk.velocity[i], chunk.torque[i], chunk.limit[i]);
-            writer.serialize(Row { time, position, velocity, torque, limit })?;
+            let of_host = |column: &Option<Vec<f64>>| column.as_ref().map(|column| column[i]);
+            let (host_torque, host_energy) =
+                (of_host(&chunk.host_torque), of_host(&chunk.host_energy));
+            let row = Row { time, position, velocity, torque, limit, host_torque, host_energy };
+            writer.serialize(row)?;
         }
         ran_away = ran_away.or(far(&chunk).map(|sample| done + sample));
         done += chunk.samples();
@@ -137,8 +145,17 @@ fn text(name: &str, scene: &Scene, trajectory: &Trajectory) -> String {
             time(largest)
         )
     };
+    let host = match (&trajectory.host_torque, &trajectory.host_energy) {
+        (Some(torque), Some(energy)) => {
+            let least = energy.iter().copied().fold(f64::INFINITY, f64::min);
+            let energy = [energy[last], least].map(|energy| significant(energy, 6));
+            row("host", torque, "N m")
+                + &format!("tank       {} J at the end; least {} J\n", energy[0], energy[1])
+        }
+        _ => String::new(),
+    };
     format!(
-        "scene      {name}\n{simplified}samples    {} over {} s\n{}{}{}",
+        "scene      {name}\n{simplified}samples    {} over {} s\n{}{}{}{host}",
         last + 1,
         time(last),
         row("position", &trajectory.position, "rad"),

@@ -20,6 +20,7 @@ fn wall(stiffness: f64, damping: f64, delay: usize) -> Environment {
 
 fn file(scene: Scene) -> SceneFile {
     SceneFile {
+        host: None,
         name: "designed".to_owned(),
         scene,
         chain: Chain::rigid(scene.device.inertia, scene.device.damping).unwrap(),

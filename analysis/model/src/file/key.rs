@@ -479,6 +479,10 @@ keys! {
     PULSE_LENGTH = other("simulation.torque_pulses.length", "samples", whole(1, 100_000_000)),
         Needed, "250";
 
+    /// Torque that a host wants from the motor, a value a sample; none after the last. Positive in the direction
+    /// of the angle. It needs `[host]`, whose budget limits it.
+    HOST_TORQUES = other("simulation.host", "", Bound::Other(Form::Numbers, "a list of finite numbers in N m")),
+        Optional("the host wants no torque"), "[0.1, 0.2]";
     /// Dry friction in the simulation, where it is not that of the device.
     FRICTION = other("simulation.friction", "N m", NOT_NEGATIVE),
         Optional("`device.friction`, or none"), "0.002";
@@ -521,6 +525,20 @@ keys! {
     /// Torque of the motor at the largest code of the DAC.
     FULL_SCALE = other("limits.full_scale", "N m", POSITIVE),
         Optional("not known: `run` takes the torque limit, or 5 N m"), "2.0";
+
+    /// A host that adds any torque to the scene's, within a budget: whatever it sends, the hand gets from it at
+    /// most the energy at once and the power on average. `certify` and `simulate` read it.
+    HOST = other("host", "", TABLE), Optional("no torque but the scene's"), "";
+    /// Energy that the hand can get at once.
+    HOST_ENERGY = other("host.energy", "J", POSITIVE), Needed, "0.05";
+    /// Power that the hand can get on average; with 0 the device comes to rest.
+    HOST_POWER = other("host.power", "W", NOT_NEGATIVE), Needed, "0.5";
+    /// The part of the device's damping that pays for the host's torque; below the scene's margin.
+    HOST_DAMPING = other("host.damping", "N m s/rad", POSITIVE), Needed, "0.001";
+    /// Largest torque of the host. With the torque limit it is at most the full scale.
+    HOST_TORQUE = other("host.torque", "N m", POSITIVE), Needed, "0.5";
+    /// Time after which a torque without a successor has faded to zero.
+    HOST_TIMEOUT = other("host.timeout", "s", POSITIVE), Default(0.1), "0.1";
 
     /// The supply of a bridge that drives the motor. A hand that pushes into a wall and lets go returns energy
     /// to it.

@@ -14,6 +14,7 @@ pub mod device;
 mod device_file;
 mod encoder;
 pub mod example;
+pub mod host;
 pub mod key;
 pub mod kind;
 pub mod profile;

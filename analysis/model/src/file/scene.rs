@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use haptic_servo::certificate::Resolution;
 use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
+use haptic_servo::host::HostTorque;
 use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
 use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange, Timing};
 
@@ -11,6 +12,7 @@ use super::device::{self, DeviceTable, Purpose};
 use super::encoder;
 use super::faults::{Faults, Read, all};
 use super::filter;
+use super::host;
 use super::key::{self, Key};
 use super::kind::{self, Kind};
 use super::profile::{self, ProfileTable, Shapes};
@@ -44,6 +46,8 @@ pub struct SceneFile {
     pub friction: Option<f64>,
     /// The supply of the bridge that drives the motor.
     pub supply: Option<FileSupply>,
+    /// The budget of a host that adds torques.
+    pub host: Option<HostTorque>,
     /// The shapes that the scene's torque profile was sampled from.
     pub shapes: Option<Shapes>,
 }
@@ -62,9 +66,16 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let name = top.needed_text(&key::NAME);
     let [device, servo, environment] =
         [&key::DEVICE, &key::SERVO, &key::ENVIRONMENT].map(|key| top.needed_table(key));
-    let [reading, coupling, simulation, human, limits, supplied] =
-        [&key::READING, &key::COUPLING, &key::SIMULATION, &key::HUMAN, &key::LIMITS, &key::SUPPLY]
-            .map(|key| top.table(key));
+    let [reading, coupling, simulation, human, limits, host, supplied] = [
+        &key::READING,
+        &key::COUPLING,
+        &key::SIMULATION,
+        &key::HUMAN,
+        &key::LIMITS,
+        &key::HOST,
+        &key::SUPPLY,
+    ]
+    .map(|key| top.table(key));
     top.finish();
     let device = device.and_then(|table| device::device(table, purpose));
     let reading = reading.and_then(|table| table.map(encoder::encoder).transpose());
@@ -81,6 +92,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     // If the limits could not be read, there may be a torque limit.
     let largest = limits.as_ref().map_or(Some(f64::INFINITY), |[torque, _, full]| torque.or(*full));
     let supply = supplied.and_then(|table| table.map(|it| supply(it, largest)).transpose());
+    let host = host.and_then(|table| table.map(host::host).transpose());
     let (name, table, reading) = (name?, device?, reading?);
     let [torque_limit, encoder_step, full_scale] = limits?;
     let (servo, coupling, environment) = (servo?, coupling?, environment?);
@@ -112,7 +124,8 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
             encoder_step = Some(TAU / counts);
         }
     }
-    let (simulation, hand, supply) = (simulation?, hand?, supply?);
+    let (simulation, hand, host, supply) = (simulation?, hand?, host?, supply?);
+    host::check(&top, host.as_ref(), [torque_limit, full_scale], simulation.as_ref())?;
     Ok(SceneFile {
         name,
         scene,
@@ -122,6 +135,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         encoder_step,
         full_scale,
         friction,
+        host,
         supply,
         shapes,
     })

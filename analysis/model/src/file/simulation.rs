@@ -27,6 +27,8 @@ pub struct Simulation {
     pub latency: f64,
     /// Ticks in which the servo does not run.
     pub missed: Missed,
+    /// Torques in N m that a host wants, one a sample.
+    pub host: Option<Vec<f64>>,
 }
 
 /// Torque in N m that the hand puts on the device, positive in the direction of the angle.
@@ -65,6 +67,7 @@ pub fn simulation(mut section: Section<'_>, period: f64, friction: f64) -> Read<
     let samples = section.whole(&key::SAMPLES);
     let [position, velocity] = [&key::POSITION, &key::VELOCITY].map(|key| section.number(key));
     let torque = torque(&mut section);
+    let host = section.list(&key::HOST_TORQUES);
     let own_friction = section.optional(&key::FRICTION);
     let latency = latency(&mut section, period);
     let missed = section.table(&key::MISSED);
@@ -78,6 +81,7 @@ pub fn simulation(mut section: Section<'_>, period: f64, friction: f64) -> Read<
         friction: own_friction?.unwrap_or(friction),
         latency: latency?,
         missed: missed?,
+        host: host?,
     })
 }
 

@@ -7,6 +7,7 @@ use std::fmt::Write;
 
 use haptic_servo::current::Bus;
 use haptic_servo::environment::{Coefficients, Environment, Wall};
+use haptic_servo::host::HostTorque;
 use haptic_servo::parameter::{Parameter, Range};
 use haptic_servo::scene::{Coupling, EncoderReading, Scene, TimeRange};
 
@@ -27,6 +28,7 @@ pub fn toml(file: &SceneFile) -> String {
         encoder_step,
         full_scale,
         friction,
+        host,
         supply,
         shapes,
     } = file;
@@ -76,11 +78,28 @@ pub fn toml(file: &SceneFile) -> String {
     for (key, value) in limits {
         number(&mut lines, key, value);
     }
+    if let Some(host) = host {
+        lines.push("[host]".to_owned());
+        budget(&mut lines, host);
+    }
     if let Some(supply) = supply {
         lines.push("[supply]".to_owned());
         supplied(&mut lines, supply);
     }
     lines.join("\n") + "\n"
+}
+
+fn budget(lines: &mut Vec<String>, host: &HostTorque) {
+    let HostTorque { energy, power, damping, torque, timeout } = *host;
+    for (key, value) in [
+        ("energy", energy),
+        ("power", power),
+        ("damping", damping),
+        ("torque", torque),
+        ("timeout", timeout),
+    ] {
+        number(lines, key, Some(value));
+    }
 }
 
 fn supplied(lines: &mut Vec<String>, supply: &FileSupply) {

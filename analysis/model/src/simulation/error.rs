@@ -1,5 +1,6 @@
 //! Why there is no motion.
 
+use haptic_servo::host::HostError;
 use haptic_servo::passivity::transfer::Unbuildable;
 use haptic_servo::servo::BuildError;
 use thiserror::Error;
@@ -18,6 +19,9 @@ pub enum SimulationError {
     /// The scene has no law that could run.
     #[error("the scene cannot run: {0}")]
     Servo(#[from] BuildError),
+    /// The scene cannot have this host.
+    #[error("{0}")]
+    Host(#[from] HostError),
     /// The scene has no linear loop.
     #[error("the scene has no closed loop: {}", unbuildable(*.0))]
     LoopTransfers(Unbuildable),

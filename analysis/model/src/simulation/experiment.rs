@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use haptic_servo::host::HostTorque;
 use haptic_servo::scene::Scene;
 
 use super::discrete_plant::{DiscretePlant, Discretization};
@@ -34,6 +35,17 @@ pub struct Experiment {
     pub latency: f64,
     /// Ticks in which the servo does not run.
     pub missed: Missed,
+    /// A host that adds torques.
+    pub host: Option<HostSignal>,
+}
+
+/// A host with its budget, and the torques in N m that it wants, one a sample; none after the last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HostSignal {
+    /// What it may do.
+    pub budget: HostTorque,
+    /// What it wants.
+    pub wanted: Vec<f64>,
 }
 
 impl Experiment {
@@ -58,6 +70,10 @@ impl Experiment {
             latency: simulation.latency,
             missed: simulation.missed,
             encoder_step: file.encoder_step,
+            host: file.host.map(|budget| HostSignal {
+                budget,
+                wanted: simulation.host.clone().unwrap_or_default(),
+            }),
             ..Self::at_rest(file)
         })
     }
@@ -83,6 +99,7 @@ impl Experiment {
             friction: 0.0,
             latency: 0.0,
             missed: Missed::None,
+            host: None,
         }
     }
 
@@ -102,7 +119,8 @@ impl Experiment {
     pub(super) fn is_linear(&self) -> bool {
         let wall = self.scene.environment.wall();
         let centred = wall.is_none_or(|wall| !wall.is_one_sided() && wall.face() == 0.0);
-        let unlimited = self.scene.torque_limit.is_none() && self.encoder_step.is_none();
+        let unlimited =
+            self.host.is_none() && self.scene.torque_limit.is_none() && self.encoder_step.is_none();
         let reads_linearly = self.scene.latency.encoder.linearity == 0.0;
         centred
             && unlimited

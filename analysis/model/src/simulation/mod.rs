@@ -38,12 +38,13 @@ pub mod torque_signal;
 mod trajectory;
 pub mod unquantized_servo;
 
+mod hosted;
 mod nonlinear_loop;
 mod reading;
 
 pub use error::SimulationError;
 pub(crate) use error::unbuildable;
-pub use experiment::{Experiment, Integration};
+pub use experiment::{Experiment, HostSignal, Integration};
 pub use nonlinear_loop::Machine;
 pub use trajectory::{Columns, Trajectory};
 
@@ -88,14 +89,21 @@ impl Simulator {
     /// The next samples, as many as `trajectory` has room for; it is cut off where the motion
     /// leaves the range of numbers, and nothing comes after that.
     pub fn fill(&mut self, trajectory: &mut Trajectory) {
-        let (columns, limit) = trajectory.columns();
+        if let Engine::NonlinearLoop(nonlinear) = &self.engine
+            && nonlinear.has_host()
+        {
+            trajectory.add_host();
+        }
+        let (columns, limit, host) = trajectory.columns();
         match &mut self.engine {
             Engine::Linear(linear) => {
                 // Nothing limits a linear loop.
                 limit.fill(TickStatus::UNLIMITED);
                 linear.fill(&self.hand_torque, columns);
             }
-            Engine::NonlinearLoop(nonlinear) => nonlinear.fill(&self.hand_torque, columns, limit),
+            Engine::NonlinearLoop(nonlinear) => {
+                nonlinear.fill(&self.hand_torque, columns, limit, host);
+            }
         }
         trajectory.end_in_range();
     }

@@ -8,12 +8,13 @@ use super::discrete_plant::DiscretePlant;
 use super::error::SimulationError;
 use super::experiment::{Experiment, Integration};
 use super::friction::FrictionPlant;
+use super::hosted::Hosted;
 use super::kernel::{DEAD, LOOK};
 use super::plant::{POSITION, VELOCITY};
 use super::reading::Reading;
 use super::tick_status::TickStatus;
 use super::torque_signal::TorqueSignal;
-use super::trajectory::Columns;
+use super::trajectory::{Columns, HostColumns};
 use super::unquantized_servo::UnquantizedServo;
 use crate::missed::Ticks;
 
@@ -25,6 +26,7 @@ pub struct NonlinearLoop {
     reading: Reading,
     missed: Ticks,
     torque: f64,
+    host: Option<Hosted>,
     k: usize,
 }
 
@@ -68,26 +70,43 @@ impl NonlinearLoop {
             reading: Reading::new(experiment.scene.latency.encoder, experiment.encoder_step),
             missed: experiment.missed.ticks(),
             torque: 0.0,
+            host: Hosted::new(experiment)?,
             k: 0,
         })
     }
 
-    /// Computes the next samples, and the status of the servo at each.
+    /// Whether a host adds torques.
+    pub fn has_host(&self) -> bool {
+        self.host.is_some()
+    }
+
+    /// Computes the next samples, and the status of the servo at each; with a host, its columns, too.
     pub fn fill(
         &mut self,
         hand_torque: &TorqueSignal,
         columns: Columns<'_>,
         limit: &mut [TickStatus],
+        mut hosts: Option<HostColumns<'_>>,
     ) {
         let Columns { position, velocity, torque } = columns;
-        let samples = position.iter_mut().zip(velocity).zip(torque).zip(limit);
-        for (((position, velocity), torque), status) in samples {
+        let samples = position.iter_mut().zip(velocity).zip(torque).zip(limit).enumerate();
+        for (sample, (((position, velocity), torque), status)) in samples {
             let state = self.machine.state();
             (*position, *velocity) = (state[POSITION], state[VELOCITY]);
             let measured = self.machine.measured();
             *status = self.run_servo(measured);
             *torque = self.torque;
-            self.machine.tick(self.k, hand_torque, -self.torque);
+            let mut added = 0.0;
+            if let (Some(host), Some(columns)) = (&mut self.host, &mut hosts) {
+                let measured = self.encoder_step.map_or(measured, |step| read(measured, step).0);
+                let given = host.tick(self.k, measured);
+                added = given.command;
+                (columns.torque[sample], columns.energy[sample]) = (given.torque, given.energy);
+                if *status == TickStatus::UNLIMITED {
+                    *status = TickStatus::Ran(given.limit);
+                }
+            }
+            self.machine.tick(self.k, hand_torque, added - self.torque);
             self.k += 1;
         }
     }

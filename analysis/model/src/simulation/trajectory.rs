@@ -16,6 +16,13 @@ pub struct Trajectory {
     pub torque: Vec<f64>,
     /// The reason if that torque was limited.
     pub limit: Vec<TickStatus>,
+    /// With a host, the mean in N m of its torque at the motor over the time from this sample to the next,
+    /// positive in the direction of the angle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub host_torque: Option<Vec<f64>>,
+    /// With a host, the level of its tank in J at this sample, before the sample's torque is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub host_energy: Option<Vec<f64>>,
 }
 
 impl Trajectory {
@@ -23,7 +30,13 @@ impl Trajectory {
     pub fn of_length(samples: usize) -> Self {
         let zeros = || vec![0.0; samples];
         let limit = vec![TickStatus::UNLIMITED; samples];
-        Self { position: zeros(), velocity: zeros(), torque: zeros(), limit }
+        Self { position: zeros(), velocity: zeros(), torque: zeros(), limit, ..Self::default() }
+    }
+
+    /// Makes room for what a host does.
+    pub(super) fn add_host(&mut self) {
+        let zeros = || Some(vec![0.0; self.position.len()]);
+        (self.host_torque, self.host_energy) = (zeros(), zeros());
     }
 
     /// Number of samples.
@@ -46,13 +59,20 @@ impl Trajectory {
         for column in [&mut self.position, &mut self.velocity, &mut self.torque] {
             column.truncate(kept);
         }
+        for column in [&mut self.host_torque, &mut self.host_energy].into_iter().flatten() {
+            column.truncate(kept);
+        }
         self.limit.truncate(kept);
     }
 
     /// Where its samples are written.
-    pub(super) fn columns(&mut self) -> (Columns<'_>, &mut [TickStatus]) {
-        let Self { position, velocity, torque, limit } = self;
-        (Columns { position, velocity, torque }, limit)
+    pub(super) fn columns(&mut self) -> (Columns<'_>, &mut [TickStatus], Option<HostColumns<'_>>) {
+        let Self { position, velocity, torque, limit, host_torque, host_energy } = self;
+        let host = match (host_torque, host_energy) {
+            (Some(torque), Some(energy)) => Some(HostColumns { torque, energy }),
+            _ => None,
+        };
+        (Columns { position, velocity, torque }, limit, host)
     }
 }
 
@@ -65,4 +85,13 @@ pub struct Columns<'t> {
     pub velocity: &'t mut [f64],
     /// As [`Trajectory::torque`].
     pub torque: &'t mut [f64],
+}
+
+/// Where the samples of a host are written, of the same length.
+#[derive(Debug)]
+pub struct HostColumns<'t> {
+    /// As [`Trajectory::host_torque`].
+    pub torque: &'t mut [f64],
+    /// As [`Trajectory::host_energy`].
+    pub energy: &'t mut [f64],
 }

@@ -7,10 +7,12 @@ use crate::missed::Missed;
 
 /// `[simulation]`.
 pub fn simulation(lines: &mut Vec<String>, simulation: &Simulation) {
-    let Simulation { samples, position, velocity, torque, friction, latency, missed } = simulation;
+    let Simulation { samples, position, velocity, torque, friction, latency, missed, host } =
+        simulation;
     lines.push(format!("[simulation]\nsamples = {samples}"));
     lines.push(format!("position = {position:?}\nvelocity = {velocity:?}"));
     lines.extend(hand_torque(torque));
+    lines.extend(host.as_ref().map(|torques| format!("host = {torques:?}")));
     lines.push(format!("friction = {friction:?}\nlatency = {latency:?}"));
     lines.extend(match missed {
         Missed::None => None,

@@ -1,0 +1,67 @@
+//! The host of a scene file, whose torques an energy budget limits.
+
+use haptic_servo::host::HostTorque;
+
+use super::faults::Read;
+use super::key;
+use super::section::Section;
+use super::simulation::Simulation;
+use crate::missed::Missed;
+
+/// Reads `[host]`.
+pub fn host(mut section: Section<'_>) -> Read<HostTorque> {
+    let keys = [
+        &key::HOST_ENERGY,
+        &key::HOST_POWER,
+        &key::HOST_DAMPING,
+        &key::HOST_TORQUE,
+        &key::HOST_TIMEOUT,
+    ];
+    let [energy, power, damping, torque, timeout] = keys.map(|key| section.number(key));
+    section.finish();
+    Ok(HostTorque {
+        energy: energy?,
+        power: power?,
+        damping: damping?,
+        torque: torque?,
+        timeout: timeout?,
+    })
+}
+
+/// Checks a host against the scene's torque limit and the motor's full scale, both in N m, and a simulation.
+pub fn check(
+    top: &Section<'_>,
+    host: Option<&HostTorque>,
+    limits: [Option<f64>; 2],
+    simulation: Option<&Simulation>,
+) -> Read<()> {
+    let [limit, full_scale] = limits;
+    let torques = simulation.and_then(|simulation| Some((simulation, simulation.host.as_ref()?)));
+    let Some(host) = host else {
+        return match torques {
+            Some(_) => {
+                Err(top.conflict(&key::HOST_TORQUES, "needs the table `host` with a budget"))
+            }
+            None => Ok(()),
+        };
+    };
+    if let Some(full_scale) = full_scale
+        && host.check_range(limit, full_scale).is_err()
+    {
+        let (limit_key, full_key) = (key::TORQUE_LIMIT.path, key::FULL_SCALE.path);
+        let reason = match limit {
+            Some(limit) => format!(
+                "and `{limit_key}` = {limit} N m are together above `{full_key}` = {full_scale} N m"
+            ),
+            None => format!("needs `{limit_key}`, or the scene takes all of `{full_key}`"),
+        };
+        return Err(top.conflict(&key::HOST_TORQUE, reason));
+    }
+    match torques {
+        Some((simulation, _)) if simulation.missed != Missed::None => {
+            let reason = format!("stands beside `{}`, in which nothing pays", key::MISSED.path);
+            Err(top.conflict(&key::HOST_TORQUES, reason))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,212 @@
+//! The response of the motor to a host's torque, and what it costs, as numbers for a [`Tank`](super::Tank).
+//!
+//! A *command* is the host's torque of one tick. It begins to act some whole ticks and a part of a tick
+//! later, and the amplifier follows with a lag. With `f` the motor's torque at the moment at which a command
+//! `h` takes over, `a` what the lag leaves of a step over a period, and all later commands zero, the energy
+//! `integral F^2` that is still to come changes by
+//!
+//! ```text
+//! T h ( (1 - lambda) h + lambda f ),    lambda = tau (1 - a) / T          (a continuous lag),
+//! ```
+//!
+//! because `integral F^2 = h integral F - tau (f'^2 - f^2) / 2` over a period. A current loop that is updated
+//! several times in a period has another `lambda`, with the same derivation. Errors of the model cost in the
+//! same form, bilinear in `h` and in `f` or the last command:
+//!
+//! - a lag known to within `r`: `r^2 / (4 delta2)` times `integral F'^2`, which changes by
+//!   `(1 - a) h (h - f) / tau`;
+//! - instants that deviate by up to `j`: `j / (4 delta3)` times the squared steps of the commands, whose sum
+//!   up to a later zero changes by `2 h (h - before)`.
+//!
+//! The parts of the share are chosen to make the coefficient of `h^2` least.
+
+use super::{HostError, HostTorque};
+use crate::latency::Latency;
+use crate::passivity::interval::Interval;
+use crate::passivity::lagged::Decay;
+use crate::scene::Timing;
+
+/// How the servo reads positions and puts torques out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Period in s.
+    pub period: f64,
+    /// Longest time in s between two updates, if updates may be missed.
+    pub worst_period: Option<f64>,
+    /// Width of a count in rad; 0 for a position without steps.
+    pub count: f64,
+    /// Whole ticks from a count to the output of its torque, in addition to the latency: 1 if it is latched.
+    pub ticks: usize,
+    /// The most in s by which a count is read late, in addition to the latency's jitter.
+    pub reading: f64,
+}
+
+impl Sampling {
+    /// Each torque is put out at the instant of its count, apart from the latency.
+    pub const fn simultaneous(timing: &Timing, count: f64) -> Self {
+        let Timing { period, worst_period } = *timing;
+        Self { period, worst_period, count, ticks: 0, reading: 0.0 }
+    }
+}
+
+/// The numbers of a tank in SI units, before rounding to its number format. Torques are divided by the root of
+/// [`HostResponse::price`], so that a command without memory costs its square.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HostResponse {
+    /// Period in s.
+    pub period: f64,
+    /// Whole ticks from a command to the tick in which it acts.
+    pub whole: usize,
+    /// Whether a command only acts in one tick, without errors of the model.
+    pub is_plain: bool,
+    /// Cost of the square of a command, in periods over four times the main share.
+    pub price: f64,
+    /// Torque in N m at a speed of one rad per period that is worth as much: twice the main share over the
+    /// period.
+    pub speed: f64,
+    /// Energy in J of 1 N^2 m^2 at a price of 1.
+    pub joules: f64,
+    /// What the lag leaves of a step over a period.
+    pub decay: f64,
+    /// Half the coefficients of a command times the torque at its begin, and times the command before.
+    pub pull: [f64; 2],
+    /// Coefficients of the squares of these two in the energy still to come.
+    pub tail: [f64; 2],
+    /// Weights of a command and of the torque at its begin in the mean torque of the tick in which it begins.
+    pub first: [f64; 2],
+    /// The same for the tick after that.
+    pub second: [f64; 2],
+    /// Whether a command acts in two ticks.
+    pub is_late: bool,
+    /// The energy of a command in the second of these: the coefficients of its square, of its product with the
+    /// torque at its begin less it, and of the square of that.
+    pub unfinished: [f64; 3],
+    /// Energy in J that counts can cost once all later commands are zero.
+    pub reserve: f64,
+}
+
+/// Largest deviation of counts in periods: from a quarter on nothing is left of the share.
+const MOST_DEVIATION: f64 = 0.2;
+
+impl HostResponse {
+    /// The response of a motor with this latency.
+    ///
+    /// # Errors
+    /// If a time of the scene is not covered, or the energy is less than counts can cost.
+    pub fn of(
+        host: &HostTorque,
+        latency: &Latency,
+        sampling: &Sampling,
+    ) -> Result<Self, HostError> {
+        host.check()?;
+        covered(latency, sampling)?;
+        let period = sampling.period;
+        let delay = in_periods(latency, period);
+        let whole = delay.midpoint() as usize;
+        let part = delay.sub(Interval::exact(whole as f64)).midpoint();
+        let lag = decay(latency, period, part);
+        let [held, unspread] = [lag.held.midpoint(), lag.unspread.midpoint()];
+        let (a, rest) = (lag.tick.midpoint(), lag.rest.midpoint());
+        let lambda = 2.0 * unspread * (1.0 - a);
+
+        let tau = lag.tau.midpoint();
+        let spread = 0.5 * (latency.actuator_lag.most - latency.actuator_lag.least) / period;
+        let of_lag = if spread == 0.0 { 0.0 } else { spread * spread * (1.0 - a) / tau };
+        let (deviation, of_counts) = deviations(latency, sampling);
+        if of_counts > MOST_DEVIATION {
+            return Err(HostError::NotCovered {
+                time: "a jitter of more than a fifth of the period",
+            });
+        }
+        // Cauchy-Schwarz: the least sum of costs over shares that add up to one.
+        let own = 1.0 - lambda;
+        let lag_share = root(of_lag / own);
+        let step_share = root(2.0 * deviation / own);
+        let of_lag = if of_lag == 0.0 { 0.0 } else { of_lag / lag_share };
+        let of_steps = if deviation == 0.0 { 0.0 } else { deviation / step_share };
+        // Counts that deviate: a step d is off by e, and d^2 >= (1 - eta) d'^2 - e^2/eta; the second part
+        // takes 4 j/(eta T) of the main share.
+        let eta = 2.0 * root(of_counts);
+        let main = host.damping / ((1.0 + eta) / (1.0 - eta) + lag_share + step_share);
+
+        let squared = if of_lag == 0.0 { 0.0 } else { 0.5 * of_lag / (1.0 - a) };
+        let last = if of_lag == 0.0 { 0.0 } else { of_lag };
+        let over = 1.0 - part;
+        let first = [over - held * (1.0 - rest), held * (1.0 - rest)];
+        let total = [1.0 - held * (1.0 - a), held * (1.0 - a)];
+        let ticks = 1.0 + whole as f64 + sampling.ticks as f64 + part + held;
+        let reserve = sampling.count * host.torque * (2.0 * ticks + 0.5);
+        if reserve >= host.energy {
+            return Err(HostError::Energy { energy: host.energy, least: reserve });
+        }
+        Ok(Self {
+            period,
+            whole: whole + sampling.ticks,
+            is_plain: part == 0.0 && tau == 0.0 && deviation == 0.0,
+            price: own + last + 2.0 * of_steps,
+            speed: 2.0 * main / period,
+            joules: 0.25 * period / main,
+            decay: a,
+            pull: [0.5 * (lambda - last), -of_steps],
+            tail: [held - unspread + squared, of_steps],
+            first,
+            second: [total[0] - first[0], total[1] - first[1]],
+            is_late: part > 0.0,
+            unfinished: [part, 2.0 * held * (rest - a), (held - unspread) * (rest * rest - a * a)],
+            reserve,
+        })
+    }
+}
+
+fn covered(latency: &Latency, sampling: &Sampling) -> Result<(), HostError> {
+    let time = if sampling.worst_period.is_some_and(|worst| worst != sampling.period) {
+        "updates that may be missed"
+    } else if !latency.sensor_lag.is_zero() {
+        "a filter of the encoder"
+    } else if !latency.actuator_response.is_zero() {
+        "an amplifier whose step response is only known to rise between two times"
+    } else if latency.actuator_updates > 0 && latency.delay_in_updates(sampling.period).is_none() {
+        "an output delay that is no whole number of the amplifier's updates"
+    } else if latency.actuator_updates > 0 && !latency.actuator_lag.is_exact() {
+        "an amplifier that is updated several times in a period and whose lag is known in a range only"
+    } else {
+        return Ok(());
+    };
+    Err(HostError::NotCovered { time })
+}
+
+/// The output delay in periods.
+fn in_periods(latency: &Latency, period: f64) -> Interval {
+    match latency.actuator_updates {
+        0 => Interval::exact(latency.output_delay.middle() / period),
+        _ => latency.delay_in_updates(period).unwrap_or(Interval::ZERO),
+    }
+}
+
+fn decay(latency: &Latency, period: f64, part: f64) -> Decay {
+    let tau = Interval::exact(latency.actuator_lag.middle() / period);
+    let over = Interval::exact(1.0 - part);
+    match latency.actuator_updates {
+        0 => Decay::of(tau, over),
+        updates => Decay::sampled(tau, over, updates),
+    }
+}
+
+/// The most in periods by which torques deviate from their times, and counts from theirs.
+///
+/// A count that deviates changes the work of a step of the mean torque as a torque that deviates does, and the
+/// steps of the means are no larger than those of the commands in the sum of their squares. If both deviate,
+/// the roots of their energies add.
+fn deviations(latency: &Latency, sampling: &Sampling) -> (f64, f64) {
+    let range = 0.5 * (latency.output_delay.most - latency.output_delay.least);
+    // With one jitter alone it is of the counts or of the torques, not of both.
+    let counts = latency.deviation_of_counts().max(sampling.reading);
+    let torques = range + if latency.jitters_twice() { latency.output_jitter } else { 0.0 };
+    let sum = torques + counts + 2.0 * root(torques * counts);
+    (sum / sampling.period, counts / sampling.period)
+}
+
+/// The root of a number that is not negative.
+fn root(square: f64) -> f64 {
+    if square > 0.0 { Interval::exact(square).sqrt().midpoint() } else { 0.0 }
+}
