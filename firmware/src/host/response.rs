@@ -161,8 +161,12 @@ impl HostResponse {
 fn covered(latency: &Latency, sampling: &Sampling) -> Result<(), HostError> {
     let time = if sampling.worst_period.is_some_and(|worst| worst != sampling.period) {
         "updates that may be missed"
-    } else if !latency.sensor_lag.is_zero() {
+    } else if !latency.sensor_lag.is_zero() || latency.encoder.window > 0.0 {
         "a filter of the encoder"
+    } else if latency.encoder.linearity > 0.0 || latency.encoder.steps() > 1.0 {
+        "an encoder with nonlinearity, noise or hysteresis"
+    } else if latency.encoder.dropped > 0 {
+        "readings that may be dropped"
     } else if !latency.actuator_response.is_zero() {
         "an amplifier whose step response is only known to rise between two times"
     } else if latency.actuator_updates > 0 && latency.delay_in_updates(sampling.period).is_none() {

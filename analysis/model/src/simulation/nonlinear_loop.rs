@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use haptic_servo::torque::LimitReason;
 use nalgebra::DVector;
 
 use super::discrete_plant::DiscretePlant;
@@ -93,13 +94,12 @@ impl NonlinearLoop {
         for (sample, (((position, velocity), torque), status)) in samples {
             let state = self.machine.state();
             (*position, *velocity) = (state[POSITION], state[VELOCITY]);
-            let measured = self.machine.measured();
-            *status = self.run_servo(measured);
+            let (angle, saturated) = self.reading.of(self.machine.measured());
+            *status = self.run_servo(angle, saturated);
             *torque = self.torque;
             let mut added = 0.0;
             if let (Some(host), Some(columns)) = (&mut self.host, &mut hosts) {
-                let measured = self.encoder_step.map_or(measured, |step| read(measured, step).0);
-                let given = host.tick(self.k, measured);
+                let given = host.tick(self.k, angle);
                 added = given.command;
                 (columns.torque[sample], columns.energy[sample]) = (given.torque, given.energy);
                 if *status == TickStatus::UNLIMITED {
@@ -111,13 +111,12 @@ impl NonlinearLoop {
         }
     }
 
-    /// The servo's part in a tick that starts with the encoder at `position` rad.
-    fn run_servo(&mut self, position: f64) -> TickStatus {
+    /// The servo's part in a tick that starts with a reading of `angle` rad.
+    fn run_servo(&mut self, angle: f64, saturated: LimitReason) -> TickStatus {
         if self.missed.next().unwrap_or(false) {
             return TickStatus::Missed;
         }
-        let (angle, standing_still) = self.reading.of(position);
-        let (torque, limit) = self.servo.tick(angle, standing_still);
+        let (torque, limit) = self.servo.tick(angle, saturated);
         self.torque = torque;
         TickStatus::Ran(limit)
     }

@@ -63,8 +63,8 @@ fn both_ways_of_running_a_linear_loop_agree() {
             let fast = simulate(&experiment, Integration::default()).unwrap();
             let mut slow = Trajectory::of_length(500);
             let mut nonlinear = NonlinearLoop::new(&experiment, Integration::default()).unwrap();
-            let (columns, limit) = slow.columns();
-            nonlinear.fill(&experiment.hand_torque, columns, limit);
+            let (columns, limit, host) = slow.columns();
+            nonlinear.fill(&experiment.hand_torque, columns, limit, host);
             assert!(
                 linear(&experiment, &experiment.tick(Integration::default()).unwrap()).is_some()
             );
