@@ -168,6 +168,7 @@ fn scene_of(client: &Client) -> Option<Value> {
         chain: Chain::rigid(scene.device.inertia, scene.device.damping).ok()?,
         simulation: None,
         hand: None,
+        host: None,
         encoder_step: Some(TAU / transducers.counts_per_turn),
         full_scale: Some(transducers.full_scale_torque),
         friction: None,

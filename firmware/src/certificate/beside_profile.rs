@@ -1,4 +1,4 @@
-//! Errors of the torque of a wall and a canceller beside a torque profile (theory, section 14.4).
+//! Errors of the torque of a wall and a canceller, alone or beside a torque profile (theory, section 14.4).
 
 use super::loop_intervals::LoopIntervals;
 use super::model::{Washout, canceller, damper, free_mode};

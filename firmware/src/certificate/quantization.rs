@@ -23,7 +23,7 @@ use super::profile::{peak_gain, step_of_part};
 use crate::current::CurrentResolution;
 use crate::dac::DacCode;
 use crate::encoder_reading::EncoderReading;
-use crate::environment::Rational;
+use crate::environment::{Parts, Rational};
 use crate::matched::{MatchedCoupling, Trail};
 use crate::number::Format;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
@@ -237,7 +237,8 @@ struct Peak {
 /// A wall in and out of contact and a torque limit make the response vary. Then, for an environment of norm
 /// `e` behind a coupling whose compliances add up to `V`, no torque is more than `e` times a position plus
 /// `V e` times the largest earlier torque; for `V e < 1` the sum is `e / (1 - V e)`. Otherwise the norm is
-/// that in contact.
+/// the larger of those in contact and out of it. A wall may cancel a part of a canceller's response in contact,
+/// so that there `e` is the sum of both, and the norm out of contact may be the larger.
 ///
 /// A torque profile has no impulse response and is bounded by its steepest slope; the other parts are bounded
 /// by the norm of their impulse response.
@@ -251,17 +252,34 @@ fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     }
     let LoopTransfers { controller, environment, .. } =
         LoopTransfers::in_format(scene, format).ok()?;
-    let linear = l1_norm(&controller)?;
+    let mut linear = l1_norm(&controller)?;
     if !is_nonlinear(scene) {
         return Some(Peak { norm: linear, in_any_motion: true });
     }
-    let alone = l1_norm(&environment)?;
+    let alone = match out_of_contact(scene) {
+        None => l1_norm(&environment)?,
+        Some(free) => {
+            let free = LoopTransfers::in_format(&free, format).ok()?;
+            linear = linear.max(l1_norm(&free.controller)?);
+            peak_gain_beside(scene.environment.parts(), &LoopIntervals::of(scene, format))
+        }
+    };
     let fed_back = alone * compliance(scene, format);
     Some(if fed_back < 1.0 {
         Peak { norm: linear.max(alone / (1.0 - fed_back)), in_any_motion: !switched }
     } else {
         Peak { norm: linear, in_any_motion: false }
     })
+}
+
+/// The scene out of contact with its wall, if a canceller acts there.
+fn out_of_contact(scene: &Scene) -> Option<Scene> {
+    match scene.environment.parts() {
+        Parts { canceller: Some(canceller), wall: Some(wall), .. } if wall.is_one_sided() => {
+            Some(Scene { environment: canceller.alone(), ..*scene })
+        }
+        _ => None,
+    }
 }
 
 /// Largest deflection of the coupling in rad for torques of up to 1 N m each.
@@ -413,7 +431,7 @@ fn l1_norm(g: &Transfer) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::environment::{Profile, Shape};
+    use crate::environment::{Canceller, Profile, Shape, Wall};
     use crate::test_scene::{self, largest_error};
     use fixed::types::I8F24;
 
@@ -449,6 +467,22 @@ mod tests {
         assert!((at_once.encoder.unwrap() / (half_a_count * 20.0) - 1.0).abs() < 1e-3);
         assert!(late.in_any_motion && at_once.in_any_motion);
         assert_eq!(bound(&scene(2.3 * torque, 1), Format::F64), None);
+    }
+
+    /// In contact the wall's damper cancels a part of the canceller's response: the norm there is 5 N m/rad, and
+    /// 43 N m/rad out of contact.
+    #[test]
+    fn the_torque_out_of_contact_is_not_farther_off_than_the_bound() {
+        for damping in [0.0, 0.01] {
+            let canceller = Some(Canceller::to(0.0005));
+            let wall = Some(Wall::damped(5.0, damping, 0).behind(4.0));
+            let scene = test_scene::scene(Parts { canceller, wall, ..Parts::NONE }.sum());
+            let most = bound(&scene, Format::F64).unwrap().encoder.unwrap();
+            let found = largest_error::<f64>(&scene, COUNTS_PER_TURN, MOTION);
+            // The finer of the two encoders is not exact, either.
+            assert!(found <= most * (1.0 + 1.0 / 1024.0), "{damping}: {found} {most}");
+            assert!(found > 0.9 * 43.0 * 0.5 * TAU / COUNTS_PER_TURN, "{damping}: {found}");
+        }
     }
 
     #[test]
