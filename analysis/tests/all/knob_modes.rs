@@ -38,7 +38,7 @@ fn tune_selects_a_mode_and_lists_them_by_name() {
     // The guide shows the list.
     assert!(printed.contains(&block("docs/knob-modes.md", "modes")), "{printed}");
     for (number, mode) in KNOB_MODES.iter().enumerate() {
-        assert!(printed.contains(&format!("{number:2}  {}\n", mode.name)), "{printed}");
+        assert!(printed.contains(&format!("{number:2}  {}\n", mode.name())), "{printed}");
     }
 }
 
