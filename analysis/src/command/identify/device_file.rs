@@ -39,7 +39,7 @@ fn with_table(text: &str, table: &str) -> Option<String> {
         is_table(line) && rest.is_some_and(|rest| rest.starts_with([']', '.']))
     };
     let lines: Vec<&str> = text.lines().collect();
-    let first = lines.iter().position(|line| is_device(&line))?;
+    let first = lines.iter().position(is_device)?;
     let (before, old) = lines.split_at(first);
     let end = old.iter().position(|line| is_table(line) && !is_device(line)).unwrap_or(old.len());
     let (old, behind) = old.split_at(end);
