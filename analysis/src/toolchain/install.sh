@@ -13,6 +13,7 @@ fi
 get() { apt-get -qq -o DPkg::Lock::Timeout=600 "$@"; }
 # A new machine has no lists, and a mirror may have dropped the versions that old lists name. Without a
 # network the old lists may be enough.
+echo "set-up: apt-get update"
 get update || true
 changes=$(get install --simulate --no-install-recommends "$@")
 new=$(echo "$changes" | sed -n 's/^Inst \([^ ]*\).*/\1/p')

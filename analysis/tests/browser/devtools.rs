@@ -1,5 +1,5 @@
-//! A page in a headless browser that a test drives over a socket, with the protocol of the browser's developer
-//! tools. Every error fails the test.
+//! A page in a headless browser that a test drives over a socket, with the protocol of the browser's
+//! developer tools. Every error fails the test.
 
 use std::net::TcpStream;
 use std::path::Path;
