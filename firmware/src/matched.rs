@@ -132,11 +132,9 @@ impl MatchedCoupling {
             let Trail { gain, decay } = self.trails[i];
             trails[i] = (Interval::exact(gain), Interval::exact(decay));
         });
-        let Some((numerator, lag)) = with_trails(&Polynomial::ascending(&taps), &trails) else {
-            return None;
-        };
-        let denominator = some!(lag.shifted_up(last));
-        Some((numerator, denominator))
+        let mut out = with_trails(&Polynomial::ascending(&taps), &trails);
+        let (_, denominator) = some!(&mut out);
+        if denominator.shift_up(last) { out } else { None }
     }
 
     /// Sum of the magnitudes of all compliances in rad/(N m): the largest deflection for torques of up to 1 N m

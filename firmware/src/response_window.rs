@@ -273,12 +273,18 @@ pub(crate) const fn with_trails(
         let (gain, decay) = trails[i];
         if !gain.is_zero() {
             let pole = Polynomial::ascending(&[decay.neg(), Interval::ONE]);
-            let (Some(before), Some(product)) = (after.times(&pole), lag.times(&pole)) else {
+            let mut trail = lag;
+            trail.scale(gain);
+            if !after.multiply(&pole) || !lag.multiply(&pole) {
                 return None;
-            };
-            (after, lag) = (before.plus(&lag.scaled(gain)), product);
+            }
+            after.add(&trail);
         }
     });
-    let taps = some!(taps.times(&lag));
-    Some((taps.plus(&after), lag))
+    let mut all = *taps;
+    if !all.multiply(&lag) {
+        return None;
+    }
+    all.add(&after);
+    Some((all, lag))
 }

@@ -97,12 +97,11 @@ pub(super) const fn assessed(scene: &Scene, format: Format, extent: Extent) -> A
         out.outcome = Err(Rejection::Invalid(invalid));
         return out;
     }
-    let numbers = LoopIntervals::of(scene, format);
-    out.delta = numbers.delta;
-    // By reference: if the scene were moved out of the result, a small board's stack would hold it twice.
-    out.outcome = match &PassivityProblem::with(scene, numbers) {
-        Ok(posed) => judge(posed, extent, &mut out),
-        Err(rejection) => Err(*rejection),
+    let mut posed = PassivityProblem::unposed(scene, format);
+    out.delta = posed.numbers.delta;
+    out.outcome = match posed.pose(scene) {
+        Ok(()) => judge(&posed, extent, &mut out),
+        Err(rejection) => Err(rejection),
     };
     out
 }

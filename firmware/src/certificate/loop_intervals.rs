@@ -271,9 +271,9 @@ impl LoopIntervals {
     pub const fn behind_coupling(&self, environment: &Transfer) -> Result<Transfer, Unbuildable> {
         let Some(lagging) = &self.latency else { return environment.behind(self.compliance) };
         match &lagging.matched {
-            Some(matched) => match matched.transfer() {
+            Some(matched) => match &matched.transfer() {
                 Some((numerator, denominator)) => {
-                    environment.behind_rational(&numerator, &denominator)
+                    environment.behind_rational(numerator, denominator)
                 }
                 None => Err(Unbuildable::OutOfRange),
             },

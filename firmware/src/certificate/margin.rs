@@ -54,7 +54,7 @@ impl Assessment {
         if n.missed.is_some() && n.latency.is_none() {
             return searched(scene, self);
         }
-        let Ok(posed) = PassivityProblem::in_format(scene, self.format) else { return None };
+        let Ok(posed) = &PassivityProblem::in_format(scene, self.format) else { return None };
         let Ok(found) = posed.at_port(&Precision::TIGHT) else { return None };
         Some(n.delta.sub(found.minimum).lo())
     }
@@ -72,7 +72,7 @@ const fn searched(scene: &Scene, assessment: &Assessment) -> Option<f64> {
         let loss = 0.5 * (passes + fails);
         let device = Device { passivity: Some(declared - loss), ..scene.device };
         let scene = Scene { device, ..*scene };
-        match PassivityProblem::in_format(&scene, assessment.format) {
+        match &PassivityProblem::in_format(&scene, assessment.format) {
             Ok(posed) if posed.is_certified() => passes = loss,
             _ => fails = loss,
         }

@@ -17,32 +17,44 @@ use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::{Transfer, Unbuildable};
 use crate::scene::Scene;
 
-/// `E(z)`, causal and with a proper denominator.
+/// Writes `E(z)` into `out`, causal and with a proper denominator.
 #[inline(never)]
 pub(super) const fn transfer(
+    out: &mut Transfer,
     environment: &Environment,
     n: &LoopIntervals,
-) -> Result<Transfer, Unbuildable> {
-    let built = match (environment.rational(), environment.canceller(), environment.wall()) {
-        (Some(r), ..) => rational(r, n),
-        (None, Some(canceller), None) => Some(free_mode(canceller, n)),
-        (None, Some(canceller), Some(w)) => free_mode(canceller, n).plus(&wall(w, n)),
-        (None, None, Some(w)) => Some(wall(w, n)),
-        // A late torque profile, or stated only by its bound and late: without feedthrough.
-        (None, None, None) => {
-            Some(Transfer::new(Polynomial::ascending(&[]), Polynomial::ascending(&[Interval::ONE])))
-        }
-    };
-    match built {
-        None => Err(Unbuildable::OutOfRange),
-        Some(mut transfer) => {
-            transfer.scale = n.solved(transfer.feedthrough());
-            match transfer.check() {
-                Ok(()) => Ok(transfer),
-                Err(error) => Err(error),
+) -> Result<(), Unbuildable> {
+    let is_built = match environment.rational() {
+        Some(r) => match rational(r, n) {
+            Some(rational) => {
+                *out = rational;
+                true
             }
-        }
+            None => false,
+        },
+        None => sum(out, environment.parts(), n),
+    };
+    if !is_built {
+        return Err(Unbuildable::OutOfRange);
     }
+    out.scale = n.solved(out.feedthrough());
+    out.check()
+}
+
+/// The sum over the parts with a transfer function; `false` if its degree is too high. A late torque profile, or
+/// an environment that is stated only by its bound and late, is without feedthrough.
+#[inline(never)]
+const fn sum(out: &mut Transfer, parts: &Parts, n: &LoopIntervals) -> bool {
+    match (&parts.canceller, &parts.wall) {
+        (Some(canceller), None) => *out = free_mode(canceller, n),
+        (Some(canceller), Some(w)) => {
+            *out = free_mode(canceller, n);
+            return out.add(&wall(w, n));
+        }
+        (None, Some(w)) => *out = wall(w, n),
+        (None, None) => *out = Transfer::ZERO,
+    }
+    true
 }
 
 /// `z^-n (K + B (1 - a)(z - 1) / (T (z - a)))`, `a = 0` without a filter (equation 24).
@@ -130,6 +142,7 @@ pub(super) const fn canceller(n: &LoopIntervals) -> Washout {
     }
 }
 
+#[inline(never)]
 const fn rational(written: &Rational, n: &LoopIntervals) -> Option<Transfer> {
     let r = written.cancelled();
     let numerator = Polynomial::descending(r.numerator.as_slice(), false);
@@ -402,7 +415,8 @@ const fn valid_environment(
         return Err(Unbuildable::Unstated);
     }
     let n = LoopIntervals::of(scene, format);
-    let environment = ok!(transfer(&scene.environment, &n));
+    let mut environment = Transfer::ZERO;
+    ok!(transfer(&mut environment, &scene.environment, &n));
     Ok((n, environment))
 }
 

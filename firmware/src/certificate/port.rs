@@ -246,19 +246,23 @@ impl PassivityProblem {
         closeness: &Precision,
         and_needed: bool,
     ) -> Found {
-        let (h, lagging) = ok!(self.at_the_port());
+        let at_the_port = self.at_the_port();
+        let (h, lagging) = match &at_the_port {
+            Ok((h, lagging)) => (h, *lagging),
+            Err(error) => return Err(*error),
+        };
         let mut best = Err(UNKNOWN);
         each!(proof in 0..Deviation::COUNT => {
-            if let Some(deviation) = Deviation::of(proof, &lagging, &self.numbers) {
+            if let Some(deviation) = &Deviation::of(proof, lagging, &self.numbers) {
                 let found = match (&deviation.response, kept) {
                     (Some(response), _) => {
-                        self.piece(&h, response, &deviation, closeness, and_needed)
+                        self.piece(h, response, deviation, closeness, and_needed)
                     }
                     (None, Some(kept)) => {
-                        self.over_kept(kept, &h, &deviation, closeness, and_needed)
+                        self.over_kept(kept, h, deviation, closeness, and_needed)
                     }
                     (None, None) => {
-                        self.over_ranges(&h, &lagging, &deviation, closeness, and_needed)
+                        self.over_ranges(h, lagging, deviation, closeness, and_needed)
                     }
                 };
                 best = better(best, found);
@@ -275,6 +279,7 @@ impl PassivityProblem {
     }
 
     /// The largest of both over all times in their ranges.
+    #[inline(never)]
     const fn over_ranges(
         &self,
         h: &Transfer,
@@ -289,8 +294,8 @@ impl PassivityProblem {
         each!(index in 0..times.count() => {
             let part = times.part(index, period);
             each!(piece in 0..part.pieces() => {
-                let Some(response) = times.response(&part, piece) else { return Err(UNKNOWN) };
-                let one = ok!(self.piece(h, &response, deviation, closeness, and_needed));
+                let Some(response) = &times.response(&part, piece) else { return Err(UNKNOWN) };
+                let one = ok!(self.piece(h, response, deviation, closeness, and_needed));
                 all = larger(one, all);
             });
         });
@@ -379,17 +384,16 @@ impl PassivityProblem {
 
     /// The whole controller.
     #[inline(never)]
-    const fn at_the_port(&self) -> Result<(Transfer, Lagging), IndexError> {
-        let Some(lagging) = self.numbers.latency else { return Err(UNKNOWN) };
+    const fn at_the_port(&self) -> Result<(Transfer, &Lagging), IndexError> {
+        let Some(lagging) = &self.numbers.latency else { return Err(UNKNOWN) };
         if self.has_no_transfer() {
             return Err(IndexError::Undecided(UndecidedReason::NoTransferFunction));
         }
         if self.numbers.misses_updates && lagging.matched.is_none() {
             return Err(IndexError::Undecided(UndecidedReason::MissedWithLatency));
         }
-        let controller = self.numbers.behind_coupling(&cancelled(&self.environment));
-        match controller {
-            Ok(controller) => Ok((controller, lagging)),
+        match &self.numbers.behind_coupling(&cancelled(&self.environment)) {
+            Ok(controller) => Ok((*controller, lagging)),
             Err(_) => Err(UNKNOWN),
         }
     }

@@ -14,9 +14,11 @@ use crate::encoder_reading::EncoderReading;
 use crate::environment::{Environment, FULL_SCALE, Parts, Profile, Wall};
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
-use crate::passivity::discrete::{RealPart, index_looked_at, reduced_index, velocity_reduced};
+use crate::passivity::discrete::{RealPart, index_looked_at, reduced_index};
 use crate::passivity::interval::Interval;
-use crate::passivity::poles::{IndexError, Reduced, UndecidedReason, cancelled, hidden_mode};
+use crate::passivity::poles::{
+    IndexError, Reduced, UndecidedReason, cancelled, hidden_mode, reduce_velocity,
+};
 use crate::passivity::transfer::{Transfer, Unbuildable};
 use crate::scene::Scene;
 
@@ -79,22 +81,44 @@ impl PassivityProblem {
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Rejection> {
         match check(scene) {
             Err(invalid) => Err(Rejection::Invalid(invalid)),
-            Ok(()) => Self::with(scene, LoopIntervals::of(scene, format)),
+            Ok(()) => {
+                let mut posed = Self::unposed(scene, format);
+                ok!(posed.pose(scene));
+                Ok(posed)
+            }
         }
     }
 
-    /// Poses a scene whose numbers are valid.
-    pub(super) const fn with(scene: &Scene, numbers: LoopIntervals) -> Result<Self, Rejection> {
+    /// The numbers of a scene that are valid, for [`PassivityProblem::pose`].
+    #[inline(always)]
+    pub(super) const fn unposed(scene: &Scene, format: Format) -> Self {
+        Self {
+            numbers: LoopIntervals::of(scene, format),
+            environment: Transfer::ZERO,
+            stated: None,
+            no_transfer: None,
+            rule: Rule::Exact,
+            bound: None,
+            is_necessary: true,
+            misreads: false,
+        }
+    }
+
+    /// Poses a scene with its numbers. In place, because a small board's stack has no room for a second
+    /// problem.
+    #[inline(never)]
+    pub(super) const fn pose(&mut self, scene: &Scene) -> Result<(), Rejection> {
+        let numbers = &self.numbers;
         if !numbers.delta.is_positive() {
             return Err(Rejection::NoPassivity { delta: numbers.delta });
         }
         if let Some(profile) = scene.environment.profile()
-            && let Some(rejection) = profile_rejection(profile, scene, &numbers)
+            && let Some(rejection) = profile_rejection(profile, scene, numbers)
         {
             return Err(rejection);
         }
-        if turns_by_inl::<Environment>(scene, &numbers)
-            && let Some(mean) = mean_torque::<Environment>(scene, &numbers)
+        if turns_by_inl::<Environment>(scene, numbers)
+            && let Some(mean) = mean_torque::<Environment>(scene, numbers)
         {
             let EncoderReading { linearity, friction, .. } = *scene.latency.encoder;
             return Err(Rejection::MotorByInl { linearity, mean, friction });
@@ -107,22 +131,22 @@ impl PassivityProblem {
             let residue = Interval::decimal(*stiffness).mul(numbers.period);
             return Err(Rejection::NegativeResidue { residue });
         }
-        let environment = match transfer(&scene.environment, &numbers) {
-            Ok(environment) => environment,
-            Err(error) => return Err(unbuildable(error)),
-        };
+        if let Err(error) = transfer(&mut self.environment, &scene.environment, numbers) {
+            return Err(unbuildable(error));
+        }
+        let environment = &self.environment;
         if scene.environment.rational().is_some()
-            && let Some(cos_theta) = hidden_mode(&environment)
+            && let Some(cos_theta) = hidden_mode(environment)
         {
             return Err(Rejection::HiddenMode { cos_theta });
         }
         let loop_gain = Interval::ONE.add(environment.feedthrough().mul(numbers.compliance));
-        let at_port = if numbers.is_at_port { index_at_port(scene, &numbers, 0.0) } else { None };
+        let at_port = if numbers.is_at_port { index_at_port(scene, numbers, 0.0) } else { None };
         let (rule, bound, solvable) = if is_nonlinear(scene) {
             let bound = match at_port {
                 Some(IndexAtPort { sufficient, .. }) => Some(sufficient),
                 None if numbers.is_at_port || !numbers.linearity.is_zero() => None,
-                None => solved_bound(&scene.environment, &numbers),
+                None => solved_bound(&scene.environment, numbers),
             };
             // A clipped or one-sided law has one solution with the coupling only if both slopes
             // agree.
@@ -133,19 +157,20 @@ impl PassivityProblem {
         if !solvable {
             return Err(Rejection::IllPosed { loop_gain });
         }
-        let stated = if scene.environment.has_transfer() { None } else { bound };
-        let no_transfer = match &scene.environment {
+        self.stated = if scene.environment.has_transfer() { None } else { bound };
+        self.no_transfer = match &scene.environment {
             environment if environment.snaps() => Some(UndecidedReason::NoSnapBound),
             environment if environment.profile().is_some() => Some(UndecidedReason::NoBoundAtPort),
             environment if environment.has_transfer() => None,
             _ => Some(UndecidedReason::NoTransferFunction),
         };
-        let is_necessary = match at_port {
+        self.is_necessary = match at_port {
             Some(index) => index.is_necessary,
             None => !numbers.is_at_port && numbers.linearity.is_zero(),
         };
-        let misreads = !scene.latency.encoder.is_ideal();
-        Ok(Self { numbers, environment, stated, no_transfer, rule, bound, is_necessary, misreads })
+        self.misreads = !scene.latency.encoder.is_ideal();
+        (self.rule, self.bound) = (rule, bound);
+        Ok(())
     }
 
     /// The verdict: whether the deciding rule proves the scene, that is, whether the outcome of
@@ -352,7 +377,7 @@ impl PassivityProblem {
         &self,
         closeness: &Precision,
     ) -> Result<RealPart, IndexError> {
-        reduced_index(&ok!(self.behind_reduced(self.numbers.compliance, true)), closeness)
+        reduced_index(&self.behind_reduced(self.numbers.compliance, true), closeness)
     }
 
     /// Whether the coupling is the standard one within the precision of its digits, so that `E'` is the
@@ -425,7 +450,7 @@ impl PassivityProblem {
         excess: Interval,
         closeness: &Precision,
     ) -> Result<RealPart, IndexError> {
-        reduced_index(&ok!(self.behind_reduced(excess, false)), closeness)
+        reduced_index(&self.behind_reduced(excess, false), closeness)
     }
 
     /// The velocity-to-torque function of the environment behind a coupling of this compliance, with or
@@ -440,12 +465,12 @@ impl PassivityProblem {
         if let Some(doubt) = self.no_transfer {
             return Err(IndexError::Undecided(doubt));
         }
-        let mut controller = match self.controller(compliance) {
-            Ok(controller) => controller,
-            Err(_) => return Err(IndexError::Undecided(UndecidedReason::OutOfRange)),
+        let mut controller = self.controller(compliance);
+        let Ok(controller) = &mut controller else {
+            return Err(IndexError::Undecided(UndecidedReason::OutOfRange));
         };
         controller.shift -= a_sample_late as i32;
-        velocity_reduced(&controller, self.numbers.period, false)
+        reduce_velocity(controller, self.numbers.period, false)
     }
 
     /// The environment behind a coupling of this compliance, without their common factors.

@@ -82,7 +82,7 @@ const fn passes_behind_matched(scene: &Scene, format: Format) -> bool {
         return false;
     }
     let matched = Scene { coupling: Coupling::Matched, ..*scene };
-    match PassivityProblem::in_format(&matched, format) {
+    match &PassivityProblem::in_format(&matched, format) {
         Ok(posed) => posed.is_certified(),
         Err(_) => false,
     }
@@ -108,7 +108,7 @@ const fn softer_behind_standard(scene: &Scene, format: Format) -> Option<(f64, R
 /// The scene's own shortage.
 #[inline(never)]
 const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
-    let Ok(posed) = PassivityProblem::in_format(scene, format) else { return None };
+    let Ok(posed) = &PassivityProblem::in_format(scene, format) else { return None };
     posed.shortage()
 }
 
@@ -169,7 +169,7 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
 /// Not inlined, like the function that it calls.
 #[inline(never)]
 const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
-    let Ok(posed) = PassivityProblem::in_format(scene, format) else { return None };
+    let Ok(posed) = &PassivityProblem::in_format(scene, format) else { return None };
     posed.needed_passivity()
 }
 

@@ -129,13 +129,12 @@ pub const fn minimum(
     minimum_in(&mut root, false, closeness)
 }
 
-/// The same from Bernstein coefficients on `[-1, 1]`.
-#[inline(never)]
-pub(super) const fn minimum_of(function: &Bernstein, closeness: &Precision) -> Minimum {
-    let mut root = *function;
-    minimum_in(&mut root, true, closeness)
+/// The same from Bernstein coefficients on `[-1, 1]`, whose memory the search uses.
+pub(super) const fn minimum_of(function: &mut Bernstein, closeness: &Precision) -> Minimum {
+    minimum_in(function, true, closeness)
 }
 
+#[inline(never)]
 const fn minimum_in(root: &mut Bernstein, is_rounded: bool, closeness: &Precision) -> Minimum {
     let border = closeness.border;
     let mut search = Search {

@@ -4,7 +4,7 @@
 use super::bernstein::{Minimum, Precision, minimum, minimum_of};
 use super::chebyshev::{Kernel, Series, at_cosine};
 use super::interval::Interval;
-use super::poles::{IndexError, Reduced, UndecidedReason, reduce};
+use super::poles::{IndexError, Reduced, UndecidedReason, reduce, reduce_velocity};
 use super::polynomial::UnitRoot;
 use super::tangent;
 use super::transfer::Transfer;
@@ -93,27 +93,19 @@ pub const fn index_looked_at(
     widen: bool,
     closeness: &Precision,
 ) -> Result<RealPart, IndexError> {
-    let reduced = ok!(velocity_reduced(environment, period, widen));
-    reduced_index(&reduced, closeness)
+    reduced_index(&reduce_velocity(environment, period, widen), closeness)
 }
 
-/// `(T z / (z - 1)) E` with its poles separated: the first half of [`index_looked_at`]. Not inlined: a small
-/// board's stack has no room for both the function and its result.
-#[inline(never)]
-pub(crate) const fn velocity_reduced(
-    environment: &Transfer,
-    period: Interval,
-    widen: bool,
-) -> Result<Reduced, IndexError> {
-    reduce(&environment.from_velocity(period), widen)
-}
-
-/// The index of an environment whose `(T z / (z - 1)) E` this is: the second half of [`index_looked_at`].
+/// The index of an environment whose `(T z / (z - 1)) E` this is. By reference, because a small board's
+/// stack has no room for a second copy.
 pub(crate) const fn reduced_index(
-    velocity: &Reduced,
+    velocity: &Result<Reduced, IndexError>,
     closeness: &Precision,
 ) -> Result<RealPart, IndexError> {
-    let found = ok!(real_part(velocity, closeness));
+    let found = match velocity {
+        Ok(velocity) => ok!(real_part(velocity, closeness)),
+        Err(error) => return Err(*error),
+    };
     Ok(RealPart { minimum: found.minimum.neg(), cos_theta: found.cos_theta })
 }
 
@@ -125,7 +117,7 @@ const fn real_part(g: &Reduced, closeness: &Precision) -> Result<RealPart, Index
         return Err(IndexError::Undecided(UndecidedReason::OutOfRange));
     };
     if let Some(sum) = g.pair {
-        p = ok!(without_pair(g, p, sum.half()));
+        p = ok!(without_pair(g, &p, sum.half()));
     }
     let r = Series::squared_magnitude(&g.denominator);
     // If the scale's sign exchanges the sides, the enclosure is tight everywhere.
@@ -151,10 +143,9 @@ const fn real_part(g: &Reduced, closeness: &Precision) -> Result<RealPart, Index
 #[inline(never)]
 const fn among_crowded_poles(g: &Reduced, found: Minimum, closeness: &Precision) -> Minimum {
     let (kernel, shift) = kernel_of(g);
-    let Some(function) = tangent::real_part(kernel, shift, &g.numerator, &g.denominator) else {
-        return found;
-    };
-    let Minimum { value, at } = minimum_of(&function, closeness);
+    let mut function = tangent::real_part(kernel, shift, &g.numerator, &g.denominator);
+    let Some(function) = &mut function else { return found };
+    let Minimum { value, at } = minimum_of(function, closeness);
     let is_better = value.hi() - value.lo() < found.value.hi() - found.value.lo();
     Minimum { value: value.and(found.value), at: if is_better { at } else { found.at } }
 }
@@ -224,7 +215,8 @@ const fn residue_at(g: &Reduced, root: UnitRoot) -> Interval {
 
 /// Divides the real part by `2 (c - c0)`. The remainder is the imaginary part of the residue over
 /// the pole: it must vanish exactly, and the residue's real part must be positive.
-const fn without_pair(g: &Reduced, p: Series, c0: Interval) -> Result<Series, IndexError> {
+#[inline(never)]
+const fn without_pair(g: &Reduced, p: &Series, c0: Interval) -> Result<Series, IndexError> {
     let (quotient, remainder) = p.over_linear(c0);
     if !remainder.contains(0.0) {
         return Err(IndexError::ResidueAngle { cos_theta: c0 });

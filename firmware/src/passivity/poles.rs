@@ -93,29 +93,27 @@ pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, IndexError> {
     if g.numerator.is_zero() {
         return Ok(constant_zero());
     }
-    let mut work = Work::new(g, widen);
-    if work.exact.ones < -1 {
-        return Err(IndexError::RepeatedUnitPole { cos_theta: Interval::ONE });
+    let mut work = Work::of(g);
+    work.separate(widen);
+    work.reduced()
+}
+
+/// The same for `(T z / (z - 1)) G`, without a copy of it on the stack of a small board.
+#[inline(never)]
+pub(crate) const fn reduce_velocity(
+    g: &Transfer,
+    period: Interval,
+    widen: bool,
+) -> Result<Reduced, IndexError> {
+    if g.numerator.is_zero() {
+        return Ok(constant_zero());
     }
-    if work.exact.minus_ones < -1 {
-        return Err(IndexError::RepeatedUnitPole { cos_theta: Interval::ONE.neg() });
-    }
-    let pair = ok!(work.strip_pairs());
-    let exactly = pair.is_some() || work.exact.minus_ones < 0;
-    let kept = if exactly { &work.exact } else { &work.wide };
-    ok!(strictly_schur(&kept.denominator));
-    let Some(numerator) = zeros_multiplied(kept) else {
-        return Err(IndexError::Undecided(UndecidedReason::OutOfRange));
-    };
-    Ok(Reduced {
-        scale: kept.scale,
-        shift: kept.shift,
-        at_one: kept.ones < 0,
-        at_minus_one: kept.minus_ones < 0,
-        pair,
-        numerator,
-        denominator: kept.denominator,
-    })
+    let mut work = Work::of(g);
+    let (scale, shift, ones) = g.velocity_factors(period);
+    (work.exact.scale, work.exact.shift, work.exact.ones) = (scale, shift, ones);
+    (work.wide.scale, work.wide.shift, work.wide.ones) = (scale, shift, ones);
+    work.separate(widen);
+    work.reduced()
 }
 
 /// `G` with its exact common factors at 0, 1 and -1 cancelled and other such factors moved to the exponents,
@@ -125,7 +123,8 @@ pub const fn cancelled(g: &Transfer) -> Transfer {
     if g.numerator.is_zero() {
         return *g;
     }
-    let mut work = Work::new(g, true);
+    let mut work = Work::of(g);
+    work.separate(true);
     work.strip_unit_root(UnitRoot::Plus, true);
     work.wide
 }
@@ -133,7 +132,12 @@ pub const fn cancelled(g: &Transfer) -> Transfer {
 /// The same with the exact coefficients.
 #[inline(never)]
 pub const fn cancelled_exactly(g: &Transfer) -> Transfer {
-    if g.numerator.is_zero() { *g } else { Work::new(g, false).exact }
+    if g.numerator.is_zero() {
+        return *g;
+    }
+    let mut work = Work::of(g);
+    work.separate(false);
+    work.exact
 }
 
 const fn constant_zero() -> Reduced {
@@ -151,17 +155,10 @@ const fn constant_zero() -> Reduced {
 pub(crate) const fn zeros_multiplied(g: &Transfer) -> Option<Polynomial> {
     let ones = if g.ones > 0 { g.ones as usize } else { 0 };
     let minus = if g.minus_ones > 0 { g.minus_ones as usize } else { 0 };
-    let Some(p) = g.numerator.times_unit_root(UnitRoot::Plus, ones) else { return None };
-    p.times_unit_root(UnitRoot::Minus, minus)
-}
-
-const fn widened(p: &Polynomial) -> Polynomial {
-    let mut values = [Interval::ZERO; super::polynomial::MAX_DEGREE + 1];
-    each!(i in 0..p.len() => {
-        let c = p.coefficient(i);
-        values[i] = if c.is_exact() { Interval::decimal(c.lo()) } else { c };
-    });
-    Polynomial::ascending(values.split_at(p.len()).0)
+    let mut p = g.numerator;
+    let is_in_range = p.multiply_by_unit_root(UnitRoot::Plus, ones)
+        && p.multiply_by_unit_root(UnitRoot::Minus, minus);
+    if is_in_range { Some(p) } else { None }
 }
 
 /// The same transfer function twice: with exact doubles, and with decimals.
@@ -171,16 +168,50 @@ struct Work {
 }
 
 impl Work {
-    const fn new(g: &Transfer, widen: bool) -> Self {
-        let mut work = Self { wide: *g, exact: *g };
+    #[inline(always)]
+    const fn of(g: &Transfer) -> Self {
+        Self { wide: *g, exact: *g }
+    }
+
+    /// Moves the exact factors at 0, 1 and -1 into the exponents; with `widen`, the other function becomes that
+    /// of decimals. In place: it is the largest value on a small board's stack.
+    #[inline(never)]
+    const fn separate(&mut self, widen: bool) {
         if widen {
-            work.wide.numerator = widened(&g.numerator);
-            work.wide.denominator = widened(&g.denominator);
+            self.wide.numerator.widen();
+            self.wide.denominator.widen();
         }
-        work.strip_origin();
-        work.strip_unit_root(UnitRoot::Plus, g.ones < 0);
-        work.strip_unit_root(UnitRoot::Minus, g.minus_ones < 0);
-        work
+        let (at_one, at_minus_one) = (self.exact.ones < 0, self.exact.minus_ones < 0);
+        self.strip_origin();
+        self.strip_unit_root(UnitRoot::Plus, at_one);
+        self.strip_unit_root(UnitRoot::Minus, at_minus_one);
+    }
+
+    /// [`reduce`], with the factors moved.
+    #[inline(never)]
+    const fn reduced(&mut self) -> Result<Reduced, IndexError> {
+        if self.exact.ones < -1 {
+            return Err(IndexError::RepeatedUnitPole { cos_theta: Interval::ONE });
+        }
+        if self.exact.minus_ones < -1 {
+            return Err(IndexError::RepeatedUnitPole { cos_theta: Interval::ONE.neg() });
+        }
+        let pair = ok!(self.strip_pairs());
+        let exactly = pair.is_some() || self.exact.minus_ones < 0;
+        let kept = if exactly { &self.exact } else { &self.wide };
+        ok!(strictly_schur(&kept.denominator));
+        let Some(numerator) = zeros_multiplied(kept) else {
+            return Err(IndexError::Undecided(UndecidedReason::OutOfRange));
+        };
+        Ok(Reduced {
+            scale: kept.scale,
+            shift: kept.shift,
+            at_one: kept.ones < 0,
+            at_minus_one: kept.minus_ones < 0,
+            pair,
+            numerator,
+            denominator: kept.denominator,
+        })
     }
 
     /// Powers of `z` do not change magnitudes on the circle: they become part of the shift.

@@ -46,10 +46,14 @@ impl Polynomial {
     }
 
     const fn trimmed(mut self) -> Self {
+        self.trim();
+        self
+    }
+
+    const fn trim(&mut self) {
         while self.len > 0 && self.coefficients[self.len - 1].is_zero() {
             self.len -= 1;
         }
-        self
     }
 
     /// Whether this is the zero polynomial.
@@ -102,81 +106,130 @@ impl Polynomial {
     }
 
     /// Multiplies by `z^power`; `None` past [`MAX_DEGREE`].
+    #[inline(never)]
     pub const fn shifted_up(&self, power: usize) -> Option<Self> {
-        if self.len == 0 {
-            return Some(*self);
+        let mut out = *self;
+        if out.shift_up(power) { Some(out) } else { None }
+    }
+
+    /// The same in place, so that a small board's stack holds it once; `false` past [`MAX_DEGREE`].
+    pub(crate) const fn shift_up(&mut self, power: usize) -> bool {
+        if self.len == 0 || power == 0 {
+            return true;
         }
         if self.len + power > CAPACITY {
-            return None;
+            return false;
         }
-        let mut out = Self::ZERO;
-        each!(i in 0..self.len => {
-            out.coefficients[i + power] = self.coefficients[i];
-        });
-        out.len = self.len + power;
-        Some(out)
+        let mut i = self.len + power;
+        while i > 0 {
+            i -= 1;
+            self.coefficients[i] =
+                if i < power { Interval::ZERO } else { self.coefficients[i - power] };
+        }
+        self.len += power;
+        true
     }
 
     /// `self * factor`.
+    #[inline(never)]
     pub const fn scaled(&self, factor: Interval) -> Self {
         let mut out = *self;
-        each!(i in 0..out.len => {
-            out.coefficients[i] = out.coefficients[i].mul(factor);
+        out.scale(factor);
+        out
+    }
+
+    /// The same in place.
+    #[inline(never)]
+    pub(crate) const fn scale(&mut self, factor: Interval) {
+        each!(i in 0..self.len => {
+            self.coefficients[i] = self.coefficients[i].mul(factor);
         });
-        out.trimmed()
+        self.trim();
     }
 
     /// `self + other`.
+    #[inline(never)]
     pub const fn plus(&self, other: &Self) -> Self {
-        let mut out = Self::ZERO;
+        let mut out = *self;
+        out.add(other);
+        out
+    }
+
+    /// The same in place.
+    #[inline(never)]
+    pub(crate) const fn add(&mut self, other: &Self) {
         let len = if self.len > other.len { self.len } else { other.len };
         each!(i in 0..len => {
-            out.coefficients[i] = self.coefficient(i).add(other.coefficient(i));
+            self.coefficients[i] = self.coefficient(i).add(other.coefficient(i));
         });
-        out.len = len;
-        out.trimmed()
+        self.len = len;
+        self.trim();
     }
 
     /// `self * other`; `None` past [`MAX_DEGREE`].
+    #[inline(never)]
     pub const fn times(&self, other: &Self) -> Option<Self> {
+        let mut out = *self;
+        if out.multiply(other) { Some(out) } else { None }
+    }
+
+    /// The same in place; `false` past [`MAX_DEGREE`].
+    #[inline(never)]
+    pub(crate) const fn multiply(&mut self, other: &Self) -> bool {
         if self.len == 0 || other.len == 0 {
-            return Some(Self::ZERO);
+            *self = Self::ZERO;
+            return true;
         }
-        if self.len + other.len - 1 > CAPACITY {
-            return None;
+        let len = self.len + other.len - 1;
+        if len > CAPACITY {
+            return false;
         }
-        let mut out = Self::ZERO;
-        each!(i in 0..self.len => {
-            each!(j in 0..other.len => {
-                let product = self.coefficients[i].mul(other.coefficients[j]);
-                out.coefficients[i + j] = out.coefficients[i + j].add(product);
-            });
-        });
-        out.len = self.len + other.len - 1;
-        Some(out.trimmed())
+        // From the top: each sum is of coefficients from its own place downwards.
+        let mut k = len;
+        while k > 0 {
+            k -= 1;
+            let mut sum = Interval::ZERO;
+            let mut i = if k < other.len { 0 } else { k + 1 - other.len };
+            while i <= k && i < self.len {
+                sum = sum.add(self.coefficients[i].mul(other.coefficients[k - i]));
+                i += 1;
+            }
+            self.coefficients[k] = sum;
+        }
+        self.len = len;
+        self.trim();
+        true
     }
 
     /// `self * (z - root)^power`, `root` being 1 or -1; `None` past [`MAX_DEGREE`].
+    #[inline(never)]
     pub const fn times_unit_root(&self, root: UnitRoot, power: usize) -> Option<Self> {
-        if self.len > 0 && self.len + power > CAPACITY {
-            return None;
-        }
         let mut out = *self;
-        let mut n = 0;
-        while n < power && out.len > 0 {
-            let lowest = root.times(out.coefficients[0]).neg();
+        if out.multiply_by_unit_root(root, power) { Some(out) } else { None }
+    }
+
+    /// The same in place; `false` past [`MAX_DEGREE`].
+    #[inline(never)]
+    pub(super) const fn multiply_by_unit_root(&mut self, root: UnitRoot, power: usize) -> bool {
+        if self.len == 0 {
+            return true;
+        }
+        if self.len + power > CAPACITY {
+            return false;
+        }
+        each!(_factor in 0..power => {
+            let lowest = root.times(self.coefficients[0]).neg();
             // Coefficient i of the product is c[i - 1] - root c[i]; from the top, in place.
-            let mut i = out.len;
+            let mut i = self.len;
             while i > 0 {
-                let upper = if i < out.len { out.coefficients[i] } else { Interval::ZERO };
-                out.coefficients[i] = out.coefficients[i - 1].sub(root.times(upper));
+                let upper = if i < self.len { self.coefficients[i] } else { Interval::ZERO };
+                self.coefficients[i] = self.coefficients[i - 1].sub(root.times(upper));
                 i -= 1;
             }
-            out.coefficients[0] = lowest;
-            out.len += 1;
-            n += 1;
-        }
-        Some(out)
+            self.coefficients[0] = lowest;
+            self.len += 1;
+        });
+        true
     }
 
     /// Quotient by `(z - root)`; the remainder is dropped.
@@ -225,6 +278,15 @@ impl Polynomial {
             sum = self.coefficients[i].add(root.times(sum));
         }
         sum
+    }
+
+    /// Single numbers become all decimals that round to them.
+    pub(super) const fn widen(&mut self) {
+        each!(i in 0..self.len => {
+            let c = self.coefficients[i];
+            self.coefficients[i] = if c.is_exact() { Interval::decimal(c.lo()) } else { c };
+        });
+        self.trim();
     }
 
     /// Whether every coefficient is a single number.

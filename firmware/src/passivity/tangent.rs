@@ -96,13 +96,13 @@ const fn is_hurwitz(p: &Polynomial) -> bool {
 const fn is_larger_on_circle(p: &Polynomial, change: Interval) -> bool {
     let degree = p.degree();
     let square = change.mul(change);
-    let squared = Bernstein {
+    let mut squared = Bernstein {
         p: Parts::of(p, 0, degree).squared_magnitude().in_bernstein(degree),
         // That of (1 + t^2)^degree.
         r: [Interval::ONE; SIZE],
         degree,
     };
-    minimum_of(&squared, &Precision::around(square)).value.lo() > square.hi()
+    minimum_of(&mut squared, &Precision::around(square)).value.lo() > square.hi()
 }
 
 /// A polynomial at `s = jt`: `even(t^2) + jt odd(t^2)`.
@@ -152,6 +152,7 @@ impl Squared {
     }
 
     /// The product, whose degree is below the capacity.
+    #[inline(never)]
     const fn times(&self, other: &Self) -> Self {
         let mut out = Self([Interval::ZERO; SIZE]);
         each!(i in 0..SIZE => {

@@ -38,6 +38,10 @@ pub enum Unbuildable {
 }
 
 impl Transfer {
+    /// No torque.
+    pub(crate) const ZERO: Self =
+        Self::new(Polynomial::ZERO, Polynomial::ascending(&[Interval::ONE]));
+
     /// `numerator / denominator` without further factors.
     pub const fn new(numerator: Polynomial, denominator: Polynomial) -> Self {
         Self { scale: Interval::ONE, shift: 0, ones: 0, minus_ones: 0, numerator, denominator }
@@ -76,7 +80,13 @@ impl Transfer {
     /// `(T z / (z - 1)) G`: from backward-difference velocity instead of position (theory,
     /// section 2).
     pub const fn from_velocity(&self, period: Interval) -> Self {
-        Self { scale: self.scale.mul(period), shift: self.shift + 1, ones: self.ones - 1, ..*self }
+        let (scale, shift, ones) = self.velocity_factors(period);
+        Self { scale, shift, ones, ..*self }
+    }
+
+    /// The factor, and the powers of `z` and `z - 1`, of [`Transfer::from_velocity`].
+    pub(super) const fn velocity_factors(&self, period: Interval) -> (Interval, i32, i32) {
+        (self.scale.mul(period), self.shift + 1, self.ones - 1)
     }
 
     /// `1 / G`.
@@ -95,17 +105,15 @@ impl Transfer {
     /// `V - T/(2 delta)` as compliance it is `E'` of theory, section 4.1.
     #[inline(never)]
     pub const fn behind(&self, compliance: Interval) -> Result<Self, Unbuildable> {
-        let Some(mut numerator) = self.numerator_with_roots(self.shift, self.ones, self.minus_ones)
-        else {
+        let (mut numerator, mut sum) = (self.numerator, self.denominator);
+        if !self.multiply_zeros(&mut numerator, self.ones) || !self.multiply_poles(&mut sum) {
             return Err(Unbuildable::OutOfRange);
-        };
-        let Some(denominator) = self.denominator_with_roots() else {
-            return Err(Unbuildable::OutOfRange);
-        };
-        numerator = numerator.scaled(self.scale.mul(compliance));
-        let sum = denominator.plus(&numerator);
+        }
+        numerator.scale(self.scale.mul(compliance));
+        let degree = sum.degree();
+        sum.add(&numerator);
         // The leading coefficient is 1 + compliance G(inf), times the denominator's.
-        if self.denominator.is_zero() || sum.coefficient(denominator.degree()).contains(0.0) {
+        if self.denominator.is_zero() || sum.coefficient(degree).contains(0.0) {
             return Err(Unbuildable::IllPosed);
         }
         Ok(Self {
@@ -126,18 +134,24 @@ impl Transfer {
         denominator: &Polynomial,
     ) -> Result<Self, Unbuildable> {
         let out_of_range = Unbuildable::OutOfRange;
-        let own = self.numerator_with_roots(self.shift, self.ones, self.minus_ones);
-        let (Some(own), Some(poles)) = (own, self.denominator_with_roots()) else {
+        let (mut own, mut sum) = (self.numerator, self.denominator);
+        if !self.multiply_zeros(&mut own, self.ones)
+            || !self.multiply_poles(&mut sum)
+            || !own.multiply(numerator)
+            || !sum.multiply(denominator)
+        {
             return Err(out_of_range);
-        };
-        let (Some(own), Some(poles)) = (own.times(numerator), poles.times(denominator)) else {
-            return Err(out_of_range);
-        };
-        let sum = poles.plus(&own.scaled(self.scale));
-        if self.denominator.is_zero() || sum.coefficient(poles.degree()).contains(0.0) {
+        }
+        let degree = sum.degree();
+        own.scale(self.scale);
+        sum.add(&own);
+        if self.denominator.is_zero() || sum.coefficient(degree).contains(0.0) {
             return Err(Unbuildable::IllPosed);
         }
-        let Some(zeros) = self.numerator.times(denominator) else { return Err(out_of_range) };
+        let mut zeros = self.numerator;
+        if !zeros.multiply(denominator) {
+            return Err(out_of_range);
+        }
         Ok(Self {
             scale: self.scale,
             shift: positive(self.shift),
@@ -151,42 +165,60 @@ impl Transfer {
     /// `self + other`; `None` if the result has too high a degree.
     #[inline(never)]
     pub const fn plus(&self, other: &Self) -> Option<Self> {
+        let mut sum = *self;
+        if sum.add(other) { Some(sum) } else { None }
+    }
+
+    /// The same in place; `false` if the result has too high a degree. Not inlined, like the next functions: a
+    /// small board's stack has no room for the polynomials of all of them.
+    #[inline(never)]
+    pub(crate) const fn add(&mut self, other: &Self) -> bool {
         let ones = positive(if self.ones < other.ones { self.ones } else { other.ones });
-        let (Some(left), Some(right)) = (self.summand(other, ones), other.summand(self, ones))
-        else {
-            return None;
-        };
-        let Some(denominator) = self.common_denominator(other) else { return None };
-        Some(Self { ones, ..Self::new(left.plus(&right), denominator) })
+        let mut numerator = self.numerator;
+        let mut of_other = other.numerator;
+        if !self.become_summand(&mut numerator, other, ones)
+            || !other.become_summand(&mut of_other, self, ones)
+        {
+            return false;
+        }
+        numerator.add(&of_other);
+        // Their memory is used twice.
+        of_other = other.denominator;
+        let mut denominator = self.denominator;
+        if !self.multiply_poles(&mut denominator)
+            || !other.multiply_poles(&mut of_other)
+            || !denominator.multiply(&of_other)
+        {
+            return false;
+        }
+        let one = Interval::ONE;
+        *self = Self { scale: one, shift: 0, ones, minus_ones: 0, numerator, denominator };
+        true
     }
 
-    /// Its share of the numerator of a sum over the common denominator, without the common zeros
-    /// at 1.
+    /// Its numerator becomes its share of the numerator of a sum over the common denominator, without the
+    /// common zeros at 1.
     #[inline(never)]
-    const fn summand(&self, other: &Self, ones: i32) -> Option<Polynomial> {
-        let own = self.numerator_with_roots(self.shift, self.ones - ones, self.minus_ones);
-        let (Some(own), Some(others)) = (own, other.denominator_with_roots()) else { return None };
-        own.scaled(self.scale).times(&others)
+    const fn become_summand(&self, numerator: &mut Polynomial, other: &Self, ones: i32) -> bool {
+        if !self.multiply_zeros(numerator, self.ones - ones) {
+            return false;
+        }
+        let mut others = other.denominator;
+        if !other.multiply_poles(&mut others) {
+            return false;
+        }
+        numerator.scale(self.scale);
+        numerator.multiply(&others)
     }
 
-    #[inline(never)]
-    const fn common_denominator(&self, other: &Self) -> Option<Polynomial> {
-        let (own, others) = (self.denominator_with_roots(), other.denominator_with_roots());
-        let (Some(own), Some(others)) = (own, others) else { return None };
-        own.times(&others)
+    /// Multiplies a polynomial by the zeros of the exponents, with these at 1.
+    const fn multiply_zeros(&self, p: &mut Polynomial, ones: i32) -> bool {
+        multiply_roots(p, self.shift, ones, self.minus_ones)
     }
 
-    const fn numerator_with_roots(&self, shift: i32, ones: i32, minus: i32) -> Option<Polynomial> {
-        with_roots(&self.numerator, positive(shift), positive(ones), positive(minus))
-    }
-
-    const fn denominator_with_roots(&self) -> Option<Polynomial> {
-        with_roots(
-            &self.denominator,
-            positive(-self.shift),
-            positive(-self.ones),
-            positive(-self.minus_ones),
-        )
+    /// Multiplies a polynomial by the poles of the exponents.
+    const fn multiply_poles(&self, p: &mut Polynomial) -> bool {
+        multiply_roots(p, -self.shift, -self.ones, -self.minus_ones)
     }
 }
 
@@ -194,8 +226,10 @@ const fn positive(value: i32) -> i32 {
     if value > 0 { value } else { 0 }
 }
 
-const fn with_roots(p: &Polynomial, zero: i32, plus: i32, minus: i32) -> Option<Polynomial> {
-    let Some(p) = p.shifted_up(zero as usize) else { return None };
-    let Some(p) = p.times_unit_root(UnitRoot::Plus, plus as usize) else { return None };
-    p.times_unit_root(UnitRoot::Minus, minus as usize)
+/// Multiplies by the roots at 0, 1 and -1 whose number is positive.
+#[inline(never)]
+const fn multiply_roots(p: &mut Polynomial, zero: i32, plus: i32, minus: i32) -> bool {
+    p.shift_up(positive(zero) as usize)
+        && p.multiply_by_unit_root(UnitRoot::Plus, positive(plus) as usize)
+        && p.multiply_by_unit_root(UnitRoot::Minus, positive(minus) as usize)
 }

@@ -76,14 +76,44 @@ where
     let log = {
         let scale = calibrate();
         judge::<E, N>(&program, compiler);
-        // SAFETY: the interrupt is not enabled yet.
-        statics.log.init_with(|| unsafe { Log::open(scale, CycleParts::new(&program)) })
+        open_log(scale, &program, statics)
     };
     #[cfg(not(feature = "log"))]
     let _ = compiler;
     let link = prepare(name, program, period, statics);
     open_pipes();
     tick_timer::start(timer, period);
+    serve(
+        link,
+        #[cfg(feature = "log")]
+        log,
+    )
+}
+
+/// Begins the log. Not inlined, like the next functions, so that its frame is not on the stack afterwards.
+#[cfg(feature = "log")]
+#[inline(never)]
+#[expect(clippy::mut_from_ref, reason = "the reference is to a static that is initialised once")]
+fn open_log<E: Tunable<N>, N: Number, M: OutputMode>(
+    scale: Scale,
+    program: &Program<E>,
+    statics: &'static Statics<E, N, M>,
+) -> &'static mut Log<CycleParts<E, N, M>> {
+    // SAFETY: the interrupt is not enabled yet.
+    statics.log.init_with(|| unsafe { Log::open(scale, CycleParts::new(program)) })
+}
+
+/// The work below the interrupt.
+#[inline(never)]
+fn serve<E, N, M>(
+    link: &mut Link<Serial, E, N, M>,
+    #[cfg(feature = "log")] log: &mut Log<CycleParts<E, N, M>>,
+) -> !
+where
+    E: Tunable<N> + SupportsTiming<M>,
+    N: Number,
+    M: OutputMode,
+{
     // Does not sleep: with WFI the emulator's time advances by two periods of SysTick at a time.
     loop {
         #[cfg(not(feature = "log"))]
@@ -185,13 +215,13 @@ pub(super) fn calibrate() -> Scale {
 #[inline(never)]
 fn judge<E: Tunable<N>, N: Number>(program: &Program<E>, compiler: &Assessment) {
     // Hidden from the optimiser, which would otherwise certify a constant scene at compile time.
-    let scene = core::hint::black_box(scene_data(&program.scene));
+    let scene = scene_data(&program.scene);
     let start = meter::now();
-    let judged = certify_in(&scene, N::FORMAT);
+    let judged = certify_in(core::hint::black_box(&scene), N::FORMAT);
     let time = meter::now().wrapping_sub(start);
-    let assessment = judged.unwrap_or_else(|_| halt_with(Step::Certificate.as_str()));
+    let Ok(assessment) = &judged else { halt_with(Step::Certificate.as_str()) };
     log::certificate("compiler", compiler);
-    log::certificate("board", &assessment);
+    log::certificate("board", assessment);
     let (size, unused) = (stack::size(), stack::unused());
     defmt::info!("certify_time={} stack_used={} stack_size={}", time, size - unused, size);
 }
