@@ -6,6 +6,7 @@ use haptic_servo::certificate::{
     Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Rejection, Remedy,
     Resolution, Rule, RuleAnswer, assess_in, certify_in,
 };
+use haptic_servo::host::{HostError, HostTorque};
 use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::{Coupling, Scene};
@@ -384,7 +385,7 @@ impl VerdictReport {
     pub fn with_facts_of(mut self, file: &SceneFile) -> Self {
         self.warnings.extend(file::warnings(file));
         if let Some(host) = &file.host {
-            beside_host::add(&mut self, file, host);
+            self.add_host(file, host);
         }
         self.supply = regeneration::judge(file);
         let Some(supply) = &self.supply else { return self };
@@ -397,6 +398,44 @@ impl VerdictReport {
         }
         self.is_for_a_board = true;
         self
+    }
+
+    /// Takes a host's share from the margins of a certified scene, or rejects the scene.
+    fn add_host(&mut self, file: &SceneFile, host: &HostTorque) {
+        if self.verdict != Verdict::Certified {
+            return;
+        }
+        let known = |margin: Option<f64>, is_known| margin.filter(|_| is_known);
+        let own = known(self.margin, self.is_margin_known);
+        let on_board = known(self.margin_on_board, self.is_margin_known_on_board);
+        let is_on_board = self.is_for_a_board && self.margin_on_board.is_some();
+        let margins = [own].into_iter().chain(is_on_board.then_some(on_board));
+        if let Err(error) = beside_host::check(file, host, margins) {
+            return self.reject_host(&error);
+        }
+        let left = |margin: f64| (margin - host.damping).next_down();
+        self.margin = self.margin.map(left);
+        self.margin_on_board = self.margin_on_board.map(|margin| left(margin).max(0.0));
+        self.delta -= host.damping;
+        let budget = beside_host::budget(host);
+        self.message += &format!(
+            "; a host may give {budget}, for which it has {} N m s/rad of that damping",
+            host.damping
+        );
+        self.assumptions.push(beside_host::assumption(host, self.delta));
+        self.host = Some(format!("may give {budget}"));
+    }
+
+    fn reject_host(&mut self, error: &HostError) {
+        self.verdict = Verdict::Rejected;
+        self.reason = "host";
+        self.on_board = Some(Verdict::Rejected);
+        self.summary = error.to_string();
+        self.message = format!("rejected: {error}");
+        if let HostError::Share { margin, .. } = error {
+            let bound = significant(*margin, 3);
+            self.remedies = vec![format!("host damping below {bound} N m s/rad")];
+        }
     }
 
     /// Whether the supply, where one is stated, bears the scene's energy.

@@ -36,7 +36,10 @@ pub(super) const fn mean_torque<E: EnvironmentModel>(
 /// Whether the stated friction is less than that.
 pub(super) const fn turns_by_inl<E: EnvironmentModel>(scene: &Scene, n: &LoopIntervals) -> bool {
     match mean_torque::<E>(scene, n) {
-        Some(needed) => !(scene.latency.encoder.friction >= needed.hi()),
+        Some(needed) => {
+            let friction = scene.latency.encoder.friction;
+            friction.is_nan() || friction < needed.hi()
+        }
         None => false,
     }
 }

@@ -36,8 +36,8 @@ const fn replaces_exact_rule(scene: &Scene) -> bool {
     let is_beyond_exact_rule = match has_damping {
         true => encoder.linearity != 0.0 && (misses_updates || !is_delay_alone(latency)),
         false => {
-            let is_of_times = encoder.linearity == 0.0 && encoder.dropped == 0;
-            !encoder.is_ideal() && !(is_of_times && latency.jitters_twice())
+            let is_beyond_times = encoder.linearity != 0.0 || encoder.dropped > 0;
+            is_beyond_times || !encoder.is_ideal() && !latency.jitters_twice()
         }
     };
     !pulls && (is_late_or_missed || is_beyond_exact_rule)

@@ -168,8 +168,8 @@ impl PassivityProblem {
             Some(index) => index.is_necessary,
             None => !numbers.is_at_port && numbers.linearity.is_zero(),
         };
-        (self.rule, self.bound) = (rule, bound);
         self.misreads = !scene.latency.encoder.is_ideal();
+        (self.rule, self.bound) = (rule, bound);
         Ok(())
     }
 

@@ -333,7 +333,7 @@ const fn sentence_of(doubt: UndecidedReason) -> &'static str {
         }
         UndecidedReason::NoProofWithInl => {
             "no proof is known for a nonlinear encoder with this coupling and these times: leave the coupling out, or \
-             store a correction of the angle and state what is left as the linearity"
+             correct the angle and state the linearity of the rest"
         }
         UndecidedReason::NoTransferFunction => {
             "the environment is stated by a bound, without a transfer function"

@@ -4,7 +4,7 @@
 //! Each torque depends on positions of the past, and only their largest age counts. All times in this module
 //! are in periods.
 
-use super::linearity::is_behind_spring;
+use super::linearity::{is_behind_spring, is_static_at_port};
 use super::loop_intervals::LoopIntervals;
 use super::model::{canceller_bound, switched_damping};
 use super::profile::{ExtremeSlopes, damper, is_motor};
@@ -206,8 +206,8 @@ impl Law {
             true => scene.latency.encoder,
             false => EncoderReading::ideal(),
         };
-        // With a damper a dropped reading is a missed update.
-        let dropped = if self.damping.is_zero() { encoder.dropped } else { 0 };
+        // Otherwise a dropped reading is a missed update.
+        let dropped = if is_static_at_port(scene) { encoder.dropped } else { 0 };
         let times = Times { latency: &scene.latency, window: encoder.window, dropped };
         let age = some!(Age::of(&times, n, end));
         let steepest = self.steepest;
@@ -310,10 +310,10 @@ impl Age {
             let length = Interval::exact(end.time(times.window, n));
             let last = end.of(part.add(length)).max(part.lo());
             let Moments { mean, square } = Moments::of_window(part.lo(), last);
-            let mean_age = Interval::exact(whole).add(mean);
+            let variance = variance(square, mean);
             return Some(Self {
-                mean: mean_age,
-                variance: variance(square, mean),
+                mean: Interval::exact(whole).add(mean),
+                variance,
                 tick: Interval::ONE,
             });
         }

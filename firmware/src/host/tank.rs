@@ -19,7 +19,7 @@
 //!
 //! - `y = d s - m` is off by `2u |d s| + u |y| <= 3u |y| + 2u |m|`, so `y^2` by at most `8u y^2 + 2u m^2`. The
 //!   square, the sums and the products between it and the end of the next tick add less than `7u` of each
-//!   summand; the factor `1 - 16u` in [`Tank::book`] takes more than that from the sum.
+//!   summand; [`Tank::book`] takes `16u` of the sum away, which is more than that.
 //! - The coefficients of all that is given back are rounded down, those of costs up, by more than an ulp.
 //! - The modelled torque is off by rounding in each tick, at most `16u/(1 - a)` of the commands in the sum of
 //!   their squares, with the lag's decay `a`. That, the `2u m^2` above and the rounding of a cost are paid
@@ -94,9 +94,8 @@ pub struct Tank<R: TankNumber, D, const PLAIN: bool> {
     unfinished: D,
     /// The level above the reserve, in squares of torques.
     level: R,
-    /// The mean torque of the present tick, and of the one before.
+    /// The mean torque of the present tick.
     mean: R,
-    mean_before: R,
     means: D,
     /// The energies of the commands that have not begun.
     energies: D,
@@ -172,14 +171,13 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
             count_step: R::nearest(speed * count * more),
             power: R::nearest(host.power * response.period / joules * less),
             cap,
-            leak: R::nearest(1.0 - 16.0 * R::ROUNDOFF),
+            leak: R::nearest(16.0 * R::ROUNDOFF),
             below_root: R::nearest(1.0 - 64.0 * R::ROUNDOFF),
             torque: R::bound_from_f64(host.torque / torque).unwrap_or(R::ZERO),
             memory,
             unfinished: line()?,
             level: cap,
             mean: R::ZERO,
-            mean_before: R::ZERO,
             means: line()?,
             energies: line()?,
             joules,
@@ -193,8 +191,9 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
         let y = moved.times(self.speed).minus(self.mean);
         let earned = y.times(y).plus(self.power);
         let lost = magnitude(moved).times(self.count_error);
-        let step = magnitude(self.mean.minus(self.mean_before)).times(self.count_step);
-        let level = self.level.plus(earned).minus(lost).minus(step).times(self.leak);
+        let level = self.level.plus(earned).minus(lost);
+        // Of a negative level, too, it takes something away.
+        let level = level.minus(magnitude(level).times(self.leak));
         self.level = level.smaller(self.cap.minus(self.to_come()));
     }
 
@@ -209,10 +208,9 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
         energy
     }
 
-    /// The torque that the motor gets of the torque that is wanted; zero if that is no finite number.
+    /// The torque that the motor gets of a wanted torque in [range](Self::in_range).
     #[inline(always)]
     pub fn allowed(&self, wanted: R) -> R {
-        let wanted = if wanted.within(self.torque) { wanted } else { self.in_range(wanted) };
         if self.cost(wanted) <= self.level { wanted } else { self.affordable(wanted) }
     }
 
@@ -229,11 +227,12 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
         self.memory.lagging.times(lagging).plus(self.memory.before.times(before))
     }
 
-    #[cold]
-    #[inline(never)]
-    fn in_range(&self, wanted: R) -> R {
-        // A finite number times zero is zero.
-        if wanted.times(R::ZERO) != R::ZERO {
+    /// The wanted torque within the host's largest; zero if it is no finite number. A torque passes here once,
+    /// where it arrives, and not in each tick.
+    pub fn in_range(&self, wanted: R) -> R {
+        if wanted.within(self.torque) {
+            wanted
+        } else if wanted.times(R::ZERO) != R::ZERO {
             R::ZERO
         } else if wanted > R::ZERO {
             self.torque
@@ -261,14 +260,17 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
     /// tick is [booked](Self::book).
     #[inline(always)]
     pub fn give(&mut self, command: R) {
-        self.level = self.level.minus(self.cost(command));
+        let paid = self.level.minus(self.cost(command));
         let (mean, energy) = if PLAIN {
             (command.times(self.memory.first[0]), command.times(command))
         } else {
             self.spread(command)
         };
-        self.mean_before = self.mean;
-        self.mean = self.means.due().unwrap_or(mean);
+        let begins = self.means.due().unwrap_or(mean);
+        // The reserve covers this, so that the level may become negative.
+        let step = magnitude(begins.minus(self.mean)).times(self.count_step);
+        self.level = paid.minus(step);
+        self.mean = begins;
         self.means.push(mean);
         self.energies.push(energy);
     }

@@ -115,7 +115,8 @@ impl Attack<'_> {
         let reserve = response.unwrap().reserve;
         self.motor.commands.resize(latched, 0.0);
         for tick in 0..ticks {
-            let command = tank.allowed(R::nearest((self.wanted)(tick, moved)));
+            let wanted = tank.in_range(R::nearest((self.wanted)(tick, moved)));
+            let command = tank.allowed(wanted);
             tank.give(command);
             self.motor.commands.push(command.to_f64());
             let jitter = (self.jitter)();
@@ -368,8 +369,10 @@ fn rounding_only_books_more() {
 fn what_is_no_number_counts_as_zero() {
     let mut tank = tank::<f32>(&HOST, &Latency::NONE, &sampling());
     for wanted in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        assert_eq!(tank.allowed(wanted), 0.0);
+        assert_eq!(tank.in_range(wanted), 0.0);
     }
+    assert_eq!(tank.allowed(f32::NAN), 0.0);
+    assert_eq!([tank.in_range(-9.0), tank.in_range(1.5)], [-2.0, 1.5]);
     assert_eq!(tank.allowed(1.0), 1.0);
     assert!((1.41..1.4143).contains(&tank.allowed(9.0)), "2 sqrt(delta E / T)");
     assert_eq!(tank.allowed(-9.0), -tank.allowed(9.0));

@@ -268,7 +268,7 @@ keys! {
     WINDOW = of(Parameter::Window), Default(0.0), "4.0e-5";
     /// Time constant of a first-order filter in the encoder, in place of `device.sensor_lag`.
     READING_LAG = other("encoder.lag", "s", TIME), Default(0.0), "6.4e-5";
-    /// Whether the encoder predicts the position from the velocity. Nothing certifies with one that does.
+    /// Whether the encoder predicts the position from the velocity: then nothing certifies.
     PREDICTION = other("encoder.prediction", "", BOOLEAN), Optional("false"), "false";
     /// Largest slope of the angle's error over the angle, `eta`: with an integral nonlinearity (INL) of up to
     /// E rad to either side and mostly of one or two periods a turn, about 2 E.

@@ -56,7 +56,7 @@ impl Hosted {
         }
         let energy = self.tank.energy();
         let wanted = self.wanted.get(k).copied().unwrap_or(0.0);
-        let command = self.tank.allowed(wanted);
+        let command = self.tank.allowed(self.tank.in_range(wanted));
         self.tank.give(command);
         let limit = if command == wanted {
             LimitReason::None
