@@ -128,7 +128,7 @@ mod tests {
             bad("3,0,0,none\n3,0,0,none\n")
                 .contains("x.csv:3: column 1, `tick`: `3` is out of bounds; it must be more")
         );
-        assert!(bad("0,0,0,slewed\n").ends_with("angle, not-a-number, ramp, heat, missed"));
+        assert!(bad("0,0,0,slewed\n").ends_with("angle, not-a-number, ramp, heat, energy, missed"));
         assert!(bad("0,0,0\n").starts_with("x.csv:2: 3 fields"));
         let headless = trace("tick,angle\n", None).unwrap_err();
         assert_eq!(headless, "x.csv:1: there is no column `torque`; the columns are tick, angle");

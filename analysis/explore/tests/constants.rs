@@ -62,7 +62,9 @@ fn the_constants_of_scenes_are_the_scenes() {
             continue;
         }
         assert_eq!(text, std::fs::read_to_string(&path).unwrap(), "{name}");
-        assert_eq!(*kept, file.scene, "{name}");
+        // As on the wire: without the cells of a table, which follow from its units and stand in programs alone.
+        let sent = |scene: &Scene| serde_json::to_value(scene).unwrap();
+        assert_eq!(sent(kept), sent(&file.scene), "{name}");
     }
 }
 

@@ -162,21 +162,17 @@ delay = 1
 #[test]
 fn a_device_is_written_once() {
     let folder = root().join("firmware/src/bin");
-    for device in ["device", "paddle"] {
-        let text = read(folder.join(device).join("mod.rs"));
-        assert!(text.contains("DEVICE: Device = Device {"), "{device}");
-    }
-    for (name, device) in [
-        ("damper_wall", "paddle"),
-        ("delayed_spring", "paddle"),
-        ("supervised_spring", "paddle"),
-        ("undelayed_spring", "paddle"),
-        ("undelayed_wall", "paddle"),
-        ("free_mode", "paddle"),
-        ("identify", "device"),
+    assert!(read(folder.join("paddle/mod.rs")).contains("DEVICE: Device = Device {"));
+    for name in [
+        "damper_wall",
+        "delayed_spring",
+        "supervised_spring",
+        "undelayed_spring",
+        "undelayed_wall",
+        "free_mode",
     ] {
         let text = read(folder.join(name).with_extension("rs"));
-        let from_there = [format!("mod {device};"), format!("{device}::TRANSDUCERS")];
+        let from_there = ["mod paddle;", "paddle::TRANSDUCERS"];
         assert!(from_there.iter().all(|part| text.contains(part)), "{name}");
         assert!(!text.contains("inertia:") && !text.contains("counts_per_turn"), "{name}");
     }

@@ -93,7 +93,8 @@ proptest! {
     }
 
     /// Three wrong bits are within what CRC-32 finds for certain at these lengths; a zero that
-    /// comes of one splits the frame, and neither piece passes.
+    /// comes of one splits the frame, and neither piece is another message. The message itself is
+    /// heard where the zero takes the place of an end that says nothing.
     #[test]
     fn wrong_bits_are_never_another_message(
         message in message(),
@@ -107,7 +108,7 @@ proptest! {
         }
         let mut decoder = FrameDecoder::new();
         let heard = decode(&mut decoder, &wrong);
-        prop_assert!(heard.is_empty() || (wrong == right && heard == [message]));
+        prop_assert!(heard.is_empty() || heard == [message]);
         prop_assert!(!heard.is_empty() || decoder.discarded().total() > 0);
     }
 
