@@ -41,8 +41,8 @@ pub(super) const fn transfer(
     out.check()
 }
 
-/// The sum over the parts with a transfer function; `false` if its degree is too high. A late torque profile, or
-/// an environment that is stated only by its bound and late, is without feedthrough.
+/// The sum over the parts with a transfer function; `false` if its degree is too high. A late torque profile,
+/// or an environment that is stated only by its bound and late, is without feedthrough.
 #[inline(never)]
 const fn sum(out: &mut Transfer, parts: &Parts, n: &LoopIntervals) -> bool {
     match (&parts.canceller, &parts.wall) {

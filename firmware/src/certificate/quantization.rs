@@ -237,8 +237,8 @@ struct Peak {
 /// A wall in and out of contact and a torque limit make the response vary. Then, for an environment of norm
 /// `e` behind a coupling whose compliances add up to `V`, no torque is more than `e` times a position plus
 /// `V e` times the largest earlier torque; for `V e < 1` the sum is `e / (1 - V e)`. Otherwise the norm is
-/// the larger of those in contact and out of it. A wall may cancel a part of a canceller's response in contact,
-/// so that there `e` is the sum of both, and the norm out of contact may be the larger.
+/// the larger of those in contact and out of it. A wall may cancel a part of a canceller's response in
+/// contact, so that there `e` is the sum of both, and the norm out of contact may be the larger.
 ///
 /// A torque profile has no impulse response and is bounded by its steepest slope; the other parts are bounded
 /// by the norm of their impulse response.
@@ -469,8 +469,8 @@ mod tests {
         assert_eq!(bound(&scene(2.3 * torque, 1), Format::F64), None);
     }
 
-    /// In contact the wall's damper cancels a part of the canceller's response: the norm there is 5 N m/rad, and
-    /// 43 N m/rad out of contact.
+    /// In contact the wall's damper cancels a part of the canceller's response: the norm there is 5 N m/rad,
+    /// and 43 N m/rad out of contact.
     #[test]
     fn the_torque_out_of_contact_is_not_farther_off_than_the_bound() {
         for damping in [0.0, 0.01] {

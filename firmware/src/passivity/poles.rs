@@ -173,8 +173,8 @@ impl Work {
         Self { wide: *g, exact: *g }
     }
 
-    /// Moves the exact factors at 0, 1 and -1 into the exponents; with `widen`, the other function becomes that
-    /// of decimals. In place: it is the largest value on a small board's stack.
+    /// Moves the exact factors at 0, 1 and -1 into the exponents; with `widen`, the other function becomes
+    /// that of decimals. In place: it is the largest value on a small board's stack.
     #[inline(never)]
     const fn separate(&mut self, widen: bool) {
         if widen {

@@ -169,8 +169,8 @@ impl Transfer {
         if sum.add(other) { Some(sum) } else { None }
     }
 
-    /// The same in place; `false` if the result has too high a degree. Not inlined, like the next functions: a
-    /// small board's stack has no room for the polynomials of all of them.
+    /// The same in place; `false` if the result has too high a degree. Not inlined, like the next functions:
+    /// a small board's stack has no room for the polynomials of all of them.
     #[inline(never)]
     pub(crate) const fn add(&mut self, other: &Self) -> bool {
         let ones = positive(if self.ones < other.ones { self.ones } else { other.ones });
