@@ -308,6 +308,13 @@ fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
         };
         notes.push(format!("[simulation] is not used: {instead}; `haptic simulate` uses it"));
     }
+    let encoder = file.scene.latency.encoder;
+    let misreads = !encoder.is_ideal() || encoder.steps() > 1.0;
+    for (table, is_there) in [("host", file.host.is_some()), ("encoder", misreads)] {
+        if is_there {
+            notes.push(format!("[{table}] is not used; `haptic simulate` uses it"));
+        }
+    }
     notes
 }
 

@@ -128,7 +128,7 @@ impl Law {
 
     /// The law in a scene: that of the environment, or of the coupling where that is all that the device feels
     /// of a static environment ([`is_behind_spring`]). Through a nonlinear encoder all slopes over the
-    /// device's angle are up to `1 + eta` times as steep (theory, section 18.2).
+    /// device's angle are up to `1 + eta` times as steep (equation 65).
     const fn in_scene<E: EnvironmentModel>(scene: &Scene, n: &LoopIntervals) -> Option<Self> {
         let law = match scene.coupling {
             Coupling::Rigid => some!(Self::of::<E>(&scene.environment, n)),

@@ -217,7 +217,7 @@ keys! {
         Optional("the device's damping; of a chain, its computed passivity"), "0.0219";
     /// Dry (Coulomb) friction at the motor.
     DEVICE_FRICTION = other("device.friction", "N m", NOT_NEGATIVE),
-        Optional("none that is counted on: the verdict does not say whether the device comes to rest"), "0.003";
+        Optional("not counted on: the verdict does not say whether the device comes to rest"), "0.003";
     /// Masses of a chain, in place of inertia and damping: the motor's first, the hand's last.
     MASS = other("device.mass", "", Bound::Other(Form::Tables, "a list of 1 to 10 tables")),
         Optional("one rigid body, of `device.inertia` and `device.damping`"), "";

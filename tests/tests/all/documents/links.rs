@@ -87,7 +87,7 @@ fn a_link_that_leads_nowhere_is_found() {
     let documents = documents();
     let dead = |link| fault(&documents, Path::new("docs/build.md"), link).is_some();
     assert!(dead("boards.md") && dead("../firmware/boards.md#nowhere") && dead("#nowhere"));
-    assert!(!dead("../firmware/boards.md#parts") && !dead("#flash-it") && !dead("../tests"));
+    assert!(!dead("../firmware/boards.md#parts") && !dead("#a-program") && !dead("../tests"));
 }
 
 /// Tables and links cannot be broken.
