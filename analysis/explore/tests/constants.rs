@@ -62,9 +62,16 @@ fn the_constants_of_scenes_are_the_scenes() {
             continue;
         }
         assert_eq!(text, std::fs::read_to_string(&path).unwrap(), "{name}");
-        // As on the wire: without the cells of a table, which follow from its units and stand in programs alone.
-        let sent = |scene: &Scene| serde_json::to_value(scene).unwrap();
-        assert_eq!(sent(kept), sent(&file.scene), "{name}");
+        assert_eq!(without_cells(kept), without_cells(&file.scene), "{name}");
+    }
+}
+
+/// A scene as text without the cells of its table: they follow from the units, and programs alone have them.
+fn without_cells(scene: &Scene) -> String {
+    let text = format!("{scene:?}");
+    match text.split_once("cells: [") {
+        Some((start, rest)) => start.to_owned() + rest.split_once(']').expect("an end").1,
+        None => text,
     }
 }
 

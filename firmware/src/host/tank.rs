@@ -246,14 +246,16 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
     #[inline(never)]
     fn affordable(&self, wanted: R) -> R {
         cold_path();
+        // The root below is of a positive number, and the interval between both roots has zero.
+        if self.level <= R::ZERO {
+            return R::ZERO;
+        }
         let pull = if PLAIN { R::ZERO } else { self.pull() };
         let square = self.level.plus(pull.times(pull));
         let root = square.times(square.reciprocal_root()).times(self.below_root);
         let (least, most) = (root.negated().minus(pull), root.minus(pull));
         let command = wanted.smaller(most).larger(least);
-        // Without a level the interval between them does not have zero.
-        let is_paid = self.level > R::ZERO && self.cost(command) <= self.level;
-        if is_paid { command } else { R::ZERO }
+        if self.cost(command) <= self.level { command } else { R::ZERO }
     }
 
     /// Gives this command to the motor. It must be [allowed](Self::allowed), or between zero and that, and the

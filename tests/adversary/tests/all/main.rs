@@ -2,6 +2,7 @@
 //! `cargo test -p adversary --test all NAME::` runs those of one file.
 
 mod device;
+mod host;
 mod periodic_motion;
 mod planted;
 mod refuted_scenes;

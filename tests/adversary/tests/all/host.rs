@@ -1,0 +1,206 @@
+//! A host that wants to take more energy out than its budget, beside a certified spring, in passive hands.
+//!
+//! Device, hand and amplifier are linear and have no damping but the device's, so that each tick is exact; the
+//! energy in mass and spring of the hand is counted, and so is all that the spring of the scene could give. With
+//! a debit of the tank switched off the same search finds a run above the budget.
+
+use haptic_servo::environment::VariableDelay;
+use haptic_servo::host::{HostResponse, HostTorque, Sampling, Tank};
+use haptic_servo::scene::{Latency, Timing};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const PERIOD: f64 = 1e-3;
+const DELTA: f64 = 0.022;
+const TICKS: usize = 1500;
+
+/// A debit of the tank.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Debit {
+    Lag,
+    Counts,
+    Tail,
+}
+
+/// Position, speed, torque of the amplifier; then its command, and the torque of the scene.
+type State = [f64; 5];
+
+/// The transition over a tick, by the series of the exponential over a small part of it, squared.
+fn transition(inertia: f64, stiffness: f64, lag: f64) -> [State; 5] {
+    let mut rates = [[0.0; 5]; 5];
+    rates[0][1] = 1.0;
+    rates[1] = [-stiffness / inertia, -DELTA / inertia, 1.0 / inertia, 0.0, 1.0 / inertia];
+    if lag > 0.0 {
+        rates[2] = [0.0, 0.0, -1.0 / lag, 1.0 / lag, 0.0];
+    } else {
+        (rates[1][2], rates[1][3]) = (0.0, 1.0 / inertia);
+    }
+    let part = PERIOD / f64::from(1 << 16);
+    let mut sum = product(&[[0.0; 5]; 5], &rates);
+    for (i, row) in sum.iter_mut().enumerate() {
+        row[i] = 1.0;
+    }
+    let mut term = sum;
+    for power in 1..8 {
+        term = product(&term, &rates).map(|row| row.map(|it| it * part / f64::from(power)));
+        for (row, more) in sum.iter_mut().zip(&term) {
+            row.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        }
+    }
+    for _ in 0..16 {
+        sum = product(&sum, &sum);
+    }
+    sum
+}
+
+fn product(a: &[State; 5], b: &[State; 5]) -> [State; 5] {
+    let entry = |i: usize, j: usize| (0..5).map(|k| a[i][k] * b[k][j]).sum();
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+}
+
+/// A host beside a device in a hand.
+struct Case {
+    host: HostTorque,
+    /// Time constant of the amplifier in s, and width of a count in rad; 0: none.
+    lag: f64,
+    count: f64,
+    /// Stiffness of the scene's spring.
+    spring: f64,
+    /// Of device and hand together.
+    inertia: f64,
+    stiffness: f64,
+}
+
+impl Case {
+    fn draw(random: &mut ChaCha8Rng, without: Option<Debit>) -> Self {
+        let share = DELTA * random.random_range(0.1..0.9);
+        let lags = match without {
+            None => random.random(),
+            Some(debit) => debit != Debit::Counts,
+        };
+        let counts = without.is_none() && random.random();
+        let lag = if lags { PERIOD * 10_f64.powf(random.random_range(-1.5..0.5)) } else { 0.0 };
+        let count = match without {
+            Some(Debit::Counts) => 10_f64.powf(random.random_range(-4.0..-2.5)),
+            _ if counts => 10_f64.powf(random.random_range(-6.0..-4.0)),
+            _ => 0.0,
+        };
+        // The torque of the spring does not lag, so beside a lag there is none.
+        let spring = if lags { 0.0 } else { 0.999 * (DELTA - share) / (1.5 * PERIOD) };
+        let is_held: bool = random.random();
+        let has_power: bool = random.random();
+        Self {
+            host: HostTorque {
+                energy: 10_f64.powf(random.random_range(-2.5..0.0)),
+                power: if has_power { random.random_range(0.0..1.0) } else { 0.0 },
+                damping: share,
+                torque: if count > 0.0 { 0.5 } else { 1e3 },
+                timeout: 0.1,
+            },
+            lag,
+            count,
+            spring,
+            inertia: 2.2e-5 * 10_f64.powf(random.random_range(0.0..2.5)),
+            stiffness: if is_held { 10_f64.powf(random.random_range(-1.0..2.5)) } else { 0.0 },
+        }
+    }
+
+    /// The tank, without a debit; `None` if the energy is less than the counts can cost.
+    fn tank(&self, without: Option<Debit>) -> Option<Tank<f64, VariableDelay<f64>, false>> {
+        let lag = if without == Some(Debit::Lag) { 0.0 } else { self.lag };
+        let count = if without == Some(Debit::Counts) { 0.0 } else { self.count };
+        let timing = Timing { period: PERIOD, worst_period: None };
+        let latency = Latency::NONE.with_actuator_lag(lag);
+        let sampling = Sampling::simultaneous(&timing, count);
+        let mut response = HostResponse::of(&self.host, &latency, &sampling).ok()?;
+        if without == Some(Debit::Tail) {
+            // Of the cost of a command only the part within its own period.
+            let (left, gone) = (response.decay, 1.0 - response.decay);
+            response.price -= response.tail[0] * gone * gone;
+            response.pull[0] -= response.tail[0] * gone * left;
+        }
+        Tank::new(&self.host, &response, count, [1.0, 1.0]).ok()
+    }
+
+    fn counted(&self, x: f64) -> f64 {
+        if self.count > 0.0 { (x / self.count).floor() * self.count } else { x }
+    }
+}
+
+/// What a host wants.
+struct Wish {
+    kind: u32,
+    size: f64,
+    length: usize,
+    /// Resonance in rad per period.
+    omega: f64,
+}
+
+impl Wish {
+    fn torque(&self, random: &mut ChaCha8Rng, tick: usize, before: f64, moved: f64) -> f64 {
+        let up = |is_up: bool| if is_up { self.size } else { -self.size };
+        match self.kind {
+            0 => up(moved >= 0.0),
+            1 => self.size * random.random_range(-1.0..1.0),
+            2 => self.size * (self.omega * tick as f64).sin(),
+            // A stiff spring that is late, and a damper below zero.
+            3 => -30.0 * self.size * before,
+            4 => 0.03 * self.size * moved / PERIOD,
+            5 => up((tick / self.length).is_multiple_of(2)),
+            _ => up(tick.is_multiple_of(2)),
+        }
+    }
+}
+
+/// The largest energy that a run gives, over its budget.
+fn run(random: &mut ChaCha8Rng, without: Option<Debit>) -> f64 {
+    let case = Case::draw(random, without);
+    let Some(mut tank) = case.tank(without) else { return 0.0 };
+    let Case { inertia, stiffness, .. } = case;
+    let motion = transition(inertia, stiffness, case.lag);
+    let wish = Wish {
+        kind: random.random_range(0..7),
+        size: 10_f64.powf(random.random_range(-1.0..2.0)),
+        length: random.random_range(1..40),
+        omega: (stiffness / inertia).sqrt() * PERIOD,
+    };
+    let (mut state, mut before, mut most) = ([0.0; 5], 0.0, 0.0_f64);
+    for tick in 0..TICKS {
+        let x = case.counted(state[0]);
+        let moved = x - before;
+        if tick > 0 {
+            tank.book(moved);
+        }
+        let command = tank.allowed(tank.in_range(wish.torque(random, tick, before, moved)));
+        tank.give(command);
+        (before, state[3]) = (x, command);
+        let next: State = std::array::from_fn(|i| (0..5).map(|j| motion[i][j] * state[j]).sum());
+        state = [next[0], next[1], next[2], 0.0, -case.spring * state[0]];
+        let stored = 0.5 * (inertia * state[1] * state[1] + stiffness * state[0] * state[0]);
+        let budget = case.host.energy + case.host.power * PERIOD * (tick + 1) as f64;
+        most = most.max(stored / budget);
+    }
+    most
+}
+
+fn most(runs: u64, without: Option<Debit>) -> f64 {
+    let one = |seed| run(&mut ChaCha8Rng::seed_from_u64(seed), without);
+    (0..runs).map(one).fold(0.0, f64::max)
+}
+
+#[test]
+fn no_host_gives_more_than_its_budget() {
+    let most = most(super::FEW, None);
+    println!("most of the budget: {most}");
+    assert!(most <= 1.0, "{most}");
+    assert!(most > 0.3, "the search is weak: {most}");
+}
+
+#[test]
+fn a_debit_that_is_switched_off_is_found() {
+    for debit in [Debit::Lag, Debit::Counts, Debit::Tail] {
+        let most = most(super::FEW, Some(debit));
+        println!("without {debit:?}: {most}");
+        assert!(most > 1.0, "without {debit:?}: {most}");
+    }
+}
