@@ -13,6 +13,8 @@ use crate::link::{Address, LinkError, Transport, open, read_within};
 
 /// Timeout for a board's description, and between rows.
 const TIMEOUT: Duration = Duration::from_secs(2);
+/// Timeout for the first row of a board's own bridge, which first aligns a brushless motor.
+const ALIGNMENT: Duration = Duration::from_secs(12);
 /// Time between two keep-alives of the host; the board waits five times as long.
 const LISTENING: Duration = Duration::from_millis((SILENCE * 200.0) as u64);
 /// Time in which a board whose sweep still ran falls silent.
@@ -72,9 +74,9 @@ pub enum PortError {
     #[error(
         "the board on {address} has sent nothing for {} s after {rows} of {ticks} rows: check its \
          cable and its power; its watchdog or its own limit of {SILENCE} s has stopped the motor",
-        TIMEOUT.as_secs()
+        .timeout.as_secs()
     )]
-    Lost { address: Address, rows: u64, ticks: u64 },
+    Lost { address: Address, rows: u64, ticks: u64, timeout: Duration },
     #[error(
         "the board on {address} has sent more than the {ticks} rows of its sweep: check that no \
          other program has the port open, and flash `identify` again"
@@ -118,9 +120,10 @@ fn remedy(end: SweepEnd, travel: &f64, speed: &f64) -> String {
                            its supply and counts_per_turn"
             .to_owned(),
         SweepEnd::OutputFault => {
-            "the board's own bridge took the torque away: wrong current, supply or temperature. \
-             Flash a scene's program with the same motor and arm it: `haptic tune` then says which \
-             fault it was, and firmware/TROUBLESHOOTING.md what to do"
+            "the board's own bridge took the torque away: wrong current, supply or temperature, or \
+             a brushless motor that was not aligned. Flash a scene's program with the same motor, \
+             align it and arm it: `haptic tune` then says which fault it was, and \
+             firmware/TROUBLESHOOTING.md what to do"
                 .to_owned()
         }
     }
@@ -196,8 +199,10 @@ impl SweepPort {
         let (mut text, mut rows) = (String::new(), 0);
         let ticks = self.description.ticks;
         loop {
-            let Some(line) = self.line(Instant::now() + TIMEOUT)? else {
-                return Err(PortError::Lost { address: self.address, rows, ticks });
+            let aligns = rows == 0 && self.description.source.is_some();
+            let timeout = if aligns { ALIGNMENT } else { TIMEOUT };
+            let Some(line) = self.line(Instant::now() + timeout)? else {
+                return Err(PortError::Lost { address: self.address, rows, ticks, timeout });
             };
             if let Some(fields) = line.strip_prefix("end,") {
                 let word = fields.split(',').next().unwrap_or_default();

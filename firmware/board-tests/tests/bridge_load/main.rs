@@ -1,7 +1,7 @@
 //! Tests of a B-G431B-ESC1's bridge before a motor is connected: without a supply, and with a resistor and a coil
-//! between two outputs. They are steps of the first power-on in `boards.md`, which has the instructions. Each begins
-//! with a reset, refuses a supply other than that of its step, ends with the gates low, and drives for less than
-//! 200 ms.
+//! between two outputs. They are steps of the first power-on in `boards.md`, which has the instructions; those of a
+//! brushless motor switch the third output, too. Each begins with a reset, refuses a supply other than that of its
+//! step, ends with the gates low, and drives for less than 200 ms.
 //!
 //! First adapt the numbers below to the load and its supply.
 #![no_std]
@@ -30,10 +30,21 @@ const LOAD: Drive = Drive {
     largest_temperature: 60.0,
 };
 
-/// The load of step 10 and its supply: half of the resistance, between any two outputs. The resistance of a phase is
-/// half of that.
+/// The same load with three outputs switched, between any two of them. Resistance and inductance of a phase are half
+/// of those between two outputs.
+const BETWEEN_ANY: Drive = Drive {
+    motor: Motor {
+        winding: Winding::Brushless { pole_pairs: 1 },
+        resistance: LOAD.motor.resistance / 2.0,
+        inductance: LOAD.motor.inductance / 2.0,
+        ..LOAD.motor
+    },
+    ..LOAD
+};
+
+/// The load of step 10 and its supply: half of the resistance, between any two outputs.
 const TRIPPED: Drive = Drive {
-    motor: Motor { winding: Winding::Brushless { pole_pairs: 1 }, resistance: 0.28, ..LOAD.motor },
+    motor: Motor { resistance: 0.28, inductance: LOAD.motor.inductance, ..BETWEEN_ANY.motor },
     supply: Supply::sinking(14.2, 15.8),
     ..LOAD
 };
@@ -76,7 +87,9 @@ const INSTANT: f64 = PERIOD / 40.0;
 /// The modulation, the limits and the scales of the current loops with two and with three outputs. The loops
 /// themselves do not run.
 static TWO: CurrentLoop = CurrentLoop::checked(&LOAD, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);
-static THREE: CurrentLoop = CurrentLoop::checked(&TRIPPED, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);
+static THREE: CurrentLoop = CurrentLoop::checked(&BETWEEN_ANY, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);
+static THREE_TRIPPED: CurrentLoop =
+    CurrentLoop::checked(&TRIPPED, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);
 
 /// The least and the largest current in A at a duty. In each period of the modulation the dead time takes away
 /// twice its part of the supply, up to half more or less.
@@ -117,18 +130,23 @@ const NONE: f32 = 0.06;
 const MISSED: Failure = "no sample has come: the modulation does not run";
 
 const PHASES: [&str; 3] = ["U", "V", "W"];
+
+/// The outputs that a load is between, and whose voltage and current are counted from the first to the second.
+type Pair = [usize; 2];
+const U_V: Pair = [0, 1];
 const SIDES: [&str; 2] = ["high", "low"];
 
 /// A board with its gates low, and the means of the phases without a current.
 struct Bench {
     load: Load,
     current_loop: &'static CurrentLoop,
+    pair: Pair,
     offsets: [f32; 2],
 }
 
 impl Bench {
     /// Checks that the gates are low, the amplifiers' offsets valid, and the supply as stated.
-    fn new(current_loop: &'static CurrentLoop) -> Result<Self, Failure> {
+    fn new(current_loop: &'static CurrentLoop, pair: Pair) -> Result<Self, Failure> {
         let mut load = set_up(current_loop)?;
         let (offsets, last) = means(&mut load)?;
         defmt::info!(
@@ -151,7 +169,7 @@ impl Bench {
         if last.bus > highest {
             return Err("the supply is above the stated voltage");
         }
-        Ok(Self { load, current_loop, offsets })
+        Ok(Self { load, current_loop, pair, offsets })
     }
 
     /// Switches the gates on, with no voltage; returns the codes at which the comparators trip.
@@ -161,17 +179,32 @@ impl Bench {
         Ok(trips)
     }
 
+    /// Sets the part of the supply that is between the outputs; the third output is at half.
+    fn set(&mut self, duty: f64) {
+        let Duties([high, low, half]) = self.current_loop.duties_at(duty);
+        let mut duties = [half; 3];
+        (duties[self.pair[0]], duties[self.pair[1]]) = (high, low);
+        self.load.set(Duties(duties));
+    }
+
     /// The current in A at a duty, once it has settled.
     fn current_at(&mut self, duty: f64) -> Result<f32, Failure> {
-        self.load.set(self.current_loop.duties_at(duty));
+        self.set(duty);
         skip(&mut self.load, SETTLING)?;
         self.current()
     }
 
     /// The mean of the current in A.
     fn current(&mut self) -> Result<f32, Failure> {
-        let ([u, v], _) = means(&mut self.load)?;
-        Ok(self.current_loop.current_between_two((u - v) - (self.offsets[0] - self.offsets[1])))
+        let (counts, _) = means(&mut self.load)?;
+        Ok(self.current_of(counts))
+    }
+
+    /// The current in A from one output to the other: half the difference of their currents. W's makes the sum zero.
+    fn current_of(&self, counts: [f32; 2]) -> f32 {
+        let [u, v] = [counts[0] - self.offsets[0], counts[1] - self.offsets[1]];
+        let currents = [u, v, -(u + v)];
+        self.current_loop.current_between_two(currents[self.pair[0]] - currents[self.pair[1]])
     }
 
     /// The current at a duty in both directions, in A without its sign, checked against the load's.
@@ -234,7 +267,7 @@ fn set_up(current_loop: &'static CurrentLoop) -> Result<Load, Failure> {
 
 /// The same without a supply at the bridge.
 fn without_bus() -> Result<Load, Failure> {
-    let mut load = set_up(&THREE)?;
+    let mut load = set_up(&THREE_TRIPPED)?;
     check_no_bus(&sample(&mut load)?)?;
     Ok(load)
 }
@@ -302,20 +335,51 @@ fn check_low(load: &Load) -> Result<(), Failure> {
     }
 }
 
-/// A growing current out of one output into another, until the comparator of that one takes the gates away. U and V
-/// are sampled, so that it comes out of one of them.
+/// A sweep of the duty: each step adds the same current, by the supply that is measured.
+fn sweep(current_loop: &'static CurrentLoop, pair: Pair) -> Result<(), Failure> {
+    let mut bench = Bench::new(current_loop, pair)?;
+    bench.on()?;
+    let part = f64::from(SWEEP_STEP) / 100.0;
+    let mut last: Option<[f32; 2]> = None;
+    for percent in SWEEP.step_by(SWEEP_STEP.into()) {
+        let currents = bench.checked_at(f64::from(percent) / 100.0)?;
+        let volts = f64::from(sample(&mut bench.load)?.bus) * B_G431B_ESC1.volts_per_count;
+        let step = (volts * part / LOAD.motor.resistance) as f32;
+        let is_off = |(now, before): (f32, f32)| {
+            (now - before - step).abs() > TOLERANCE as f32 * step + COUNT
+        };
+        if last.is_some_and(|last| currents.into_iter().zip(last).any(is_off)) {
+            return Err(
+                "a step of the duty adds another current: resistance or gain is not as stated",
+            );
+        }
+        last = Some(currents);
+    }
+    bench.load.off();
+    bench.check_off()
+}
+
+/// All switched outputs are at half, so that no current flows.
+fn no_current_at_half(current_loop: &'static CurrentLoop) -> Result<(), Failure> {
+    let mut bench = Bench::new(current_loop, U_V)?;
+    bench.on()?;
+    if bench.current_at(0.0)?.abs() > NONE {
+        return Err("a current flows without a voltage: is something connected to an output?");
+    }
+    bench.load.off();
+    bench.check_off()
+}
+
+/// A growing current out of one output into another, until the comparator of that one takes the gates away.
 fn comparator_trips(from: usize, into: usize) -> Result<(), Failure> {
-    let mut bench = Bench::new(&THREE)?;
+    let mut bench = Bench::new(&THREE_TRIPPED, [from, into])?;
     let [u, v, w] = bench.on()?;
     let (own, shared) = [(u, [u, u]), (v, [v, w]), (w, [v, w])][into];
-    let above = THREE.trip_threshold(shared) - own;
-    let expected = f32::from(above) * THREE.trip_range().amps_per_code as f32;
+    let above = THREE_TRIPPED.trip_threshold(shared) - own;
+    let expected = f32::from(above) * THREE_TRIPPED.trip_range().amps_per_code as f32;
     let mut current = 0.0;
     for step in 0..=TRIP_STEPS {
-        let Duties([high, low, half]) = THREE.duties_at(f64::from(step) * TRIP_STEP);
-        let mut duties = [half; 3];
-        (duties[from], duties[into]) = (high, low);
-        bench.load.set(Duties(duties));
+        bench.set(f64::from(step) * TRIP_STEP);
         let sample = bench.load.next().ok_or(MISSED)?;
         if bench.load.broke() {
             check_low(&bench.load)?;
@@ -330,8 +394,7 @@ fn comparator_trips(from: usize, into: usize) -> Result<(), Failure> {
                 false => Err("the comparator trips at another current than its threshold's"),
             };
         }
-        let count = f32::from(sample.currents[from]) - bench.offsets[from];
-        current = THREE.current_between_two(2.0 * count);
+        current = bench.current_of(sample.currents.map(f32::from));
     }
     Err("no comparator has taken the gates away: is the load between these outputs?")
 }
@@ -372,24 +435,23 @@ mod tests {
         check_low(&load)
     }
 
-    /// Both outputs are switched at half, so that no current flows.
     #[test]
     #[timeout(5)]
     fn step_7_outputs_at_half_give_no_current() -> Result<(), Failure> {
-        let mut bench = Bench::new(&TWO)?;
-        bench.on()?;
-        if bench.current_at(0.0)?.abs() > NONE {
-            return Err("a current flows without a voltage: is something connected to output 3?");
-        }
-        bench.load.off();
-        bench.check_off()
+        no_current_at_half(&TWO)
+    }
+
+    #[test]
+    #[timeout(5)]
+    fn brushless_7_outputs_at_half_give_no_current() -> Result<(), Failure> {
+        no_current_at_half(&THREE)
     }
 
     /// That part of the supply in both directions, and off again.
     #[test]
     #[timeout(5)]
     fn step_8_a_part_of_the_supply_gives_the_current_of_the_load() -> Result<(), Failure> {
-        let mut bench = Bench::new(&TWO)?;
+        let mut bench = Bench::new(&TWO, U_V)?;
         bench.on()?;
         bench.checked_at(DUTY)?;
         bench.load.off();
@@ -400,7 +462,7 @@ mod tests {
     #[test]
     #[timeout(5)]
     fn step_8_a_break_takes_the_gates_away() -> Result<(), Failure> {
-        let mut bench = Bench::new(&TWO)?;
+        let mut bench = Bench::new(&TWO, U_V)?;
         bench.on()?;
         if bench.current_at(DUTY)? < bounds(DUTY)[0] - NONE {
             return Err("no current flows before the break");
@@ -421,30 +483,22 @@ mod tests {
         Ok(())
     }
 
-    /// Duties in steps: each step adds the same current, by the supply that is measured.
     #[test]
     #[timeout(5)]
     fn step_9_a_sweep_of_the_duty_gives_equal_steps() -> Result<(), Failure> {
-        let mut bench = Bench::new(&TWO)?;
-        bench.on()?;
-        let part = f64::from(SWEEP_STEP) / 100.0;
-        let mut last: Option<[f32; 2]> = None;
-        for percent in SWEEP.step_by(SWEEP_STEP.into()) {
-            let currents = bench.checked_at(f64::from(percent) / 100.0)?;
-            let volts = f64::from(sample(&mut bench.load)?.bus) * B_G431B_ESC1.volts_per_count;
-            let step = (volts * part / LOAD.motor.resistance) as f32;
-            let is_off = |(now, before): (f32, f32)| {
-                (now - before - step).abs() > TOLERANCE as f32 * step + COUNT
-            };
-            if last.is_some_and(|last| currents.into_iter().zip(last).any(is_off)) {
-                return Err(
-                    "a step of the duty adds another current: resistance or gain is not as stated",
-                );
-            }
-            last = Some(currents);
-        }
-        bench.load.off();
-        bench.check_off()
+        sweep(&TWO, U_V)
+    }
+
+    #[test]
+    #[timeout(5)]
+    fn brushless_9_a_sweep_from_v_into_w_gives_equal_steps() -> Result<(), Failure> {
+        sweep(&THREE, [1, 2])
+    }
+
+    #[test]
+    #[timeout(5)]
+    fn brushless_9_a_sweep_from_w_into_u_gives_equal_steps() -> Result<(), Failure> {
+        sweep(&THREE, [2, 0])
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! A shaft with a brushless motor on a motor board, whose encoder has an index, for `brushless_wall` and
-//! `brushless_index`. For your own device, change these numbers, or copy this module.
+//! A shaft with a brushless motor on a motor board, whose encoder has an index, for `brushless_wall`,
+//! `brushless_index` and `brushless_identify`. For your own device, change these numbers, or copy this module.
 
 // A crate that includes several programs has this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]

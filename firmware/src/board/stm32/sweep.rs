@@ -71,7 +71,7 @@ pub struct SweepIsr {
     /// Samples of the sweep, and the remaining samples.
     samples: u64,
     left: u64,
-    /// Ticks until the torque output follows the code.
+    /// Ticks until the torque output follows the code, without those of the alignment of a brushless motor.
     starting: u32,
     guard: Guard,
     tick: u32,
@@ -104,8 +104,13 @@ impl SweepIsr {
         let playing = is_on && self.starting == 0;
         let code = if playing { self.exciter.next().code } else { DacCode::MID_SCALE };
         self.hardware.write(code);
+        // Before the amplifier, which can only be switched on after the alignment.
+        let is_aligning = is_on && !playing && self.hardware.is_aligning();
         self.hardware.amplifier(is_on);
-        if is_on && !playing {
+        if is_aligning {
+            // Its field moves the device.
+            self.start = count;
+        } else if is_on && !playing {
             self.starting -= 1;
         } else if playing {
             self.tell(count);
@@ -117,6 +122,8 @@ impl SweepIsr {
             (self.exciter, self.left, self.tick) = (self.beginning.clone(), self.samples, 0);
             (self.start, self.dropped) = (count, self.rows.dropped());
             self.starting = self.hardware.start_up_ticks();
+            // An error: the motor is brushed, and needs none.
+            let _ = self.hardware.align();
         }
         self.held = code;
         self.hardware.feed_watchdog();

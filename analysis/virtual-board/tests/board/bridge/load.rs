@@ -24,11 +24,18 @@ const NO_DUTY: &str = "step_7_outputs_at_half_give_no_current";
 const PART: &str = "step_8_a_part_of_the_supply_gives_the_current_of_the_load";
 const BREAK: &str = "step_8_a_break_takes_the_gates_away";
 const SWEEP: &str = "step_9_a_sweep_of_the_duty_gives_equal_steps";
+const NO_DUTY_OF_THREE: &str = "brushless_7_outputs_at_half_give_no_current";
+const SWEEP_V_W: &str = "brushless_9_a_sweep_from_v_into_w_gives_equal_steps";
+const SWEEP_W_U: &str = "brushless_9_a_sweep_from_w_into_u_gives_equal_steps";
 const TRIP_U: &str = "step_10_a_current_from_v_into_u_trips";
 const TRIP_V: &str = "step_10_a_current_from_u_into_v_trips";
 const TRIP_W: &str = "step_10_a_current_from_v_into_w_trips";
 const WITHOUT_BUS: [&str; 2] = [GATES, COMPARATORS];
-const WITH_LOAD: [&str; 7] = [NO_DUTY, PART, BREAK, SWEEP, TRIP_U, TRIP_V, TRIP_W];
+const WITH_LOAD: [&str; 10] =
+    [NO_DUTY, PART, BREAK, SWEEP, NO_DUTY_OF_THREE, SWEEP_V_W, SWEEP_W_U, TRIP_U, TRIP_V, TRIP_W];
+/// The wires of a load between the outputs 2 and 3, and between 3 and 1.
+const V_W: [usize; 3] = [2, 0, 1];
+const W_U: [usize; 3] = [1, 2, 0];
 
 /// Core clocks that a test may take: a quarter of a second.
 const LONGEST: u64 = 170_000_000 / 4;
@@ -53,8 +60,9 @@ fn as_stated(test: &str, circuit: &mut Circuit) {
     let (wires, resistance, volts) = match test {
         GATES | COMPARATORS => return circuit.supply = Supply::stiff(0.0),
         TRIP_U | TRIP_V => ([0, 1, 2], 0.55, 15.0),
-        // Between the outputs 2 and 3.
-        TRIP_W => ([2, 0, 1], 0.55, 15.0),
+        TRIP_W => (V_W, 0.55, 15.0),
+        SWEEP_V_W => (V_W, 1.05, 12.0),
+        SWEEP_W_U => (W_U, 1.05, 12.0),
         _ => ([0, 1, 2], 1.05, 12.0),
     };
     let mut load = load(resistance);
@@ -163,7 +171,7 @@ fn short(circuit: &mut Circuit) {
 
 #[test]
 fn each_finds_what_is_wrong_with_load_and_supply() {
-    let causes: [Cause; 11] = [
+    let causes: [Cause; 14] = [
         (PART, |circuit| circuit.motor = None),
         (SWEEP, |circuit| circuit.motor = Some(load(2.5))),
         (PART, |circuit| circuit.motor = Some(load(0.4))),
@@ -175,6 +183,10 @@ fn each_finds_what_is_wrong_with_load_and_supply() {
         // Beyond a tenth, which the bounds of a single duty allow beside their dead time.
         (SWEEP, |circuit| circuit.motor = Some(load(1.3))),
         (SWEEP, short),
+        // Of a brushless motor: the load has the resistance of a phase, or a wire is at another output.
+        (SWEEP_V_W, |circuit| circuit.motor.as_mut().unwrap().resistance /= 2.0),
+        (SWEEP_V_W, |circuit| circuit.motor.as_mut().unwrap().wires = W_U),
+        (SWEEP_W_U, |circuit| circuit.motor.as_mut().unwrap().wires = [0, 1, 2]),
         (TRIP_U, |circuit| circuit.motor = Some(load(2.0))),
         (TRIP_V, short),
         (TRIP_W, |circuit| circuit.motor.as_mut().unwrap().wires = [0, 1, 2]),

@@ -21,6 +21,9 @@ mod bridge_identify;
 #[path = "../../../../../firmware/src/bin/bridge_wall.rs"]
 mod bridge_wall;
 #[allow(dead_code)]
+#[path = "../../../../../firmware/src/bin/brushless_identify.rs"]
+mod brushless_identify;
+#[allow(dead_code)]
 #[path = "../../../../../firmware/src/bin/brushless_index.rs"]
 mod brushless_index;
 #[allow(dead_code)]
