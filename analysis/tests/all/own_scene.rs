@@ -115,7 +115,8 @@ fn a_scene_file_runs_on_boards_and_becomes_a_program() {
     let knob = folder.path().join("knob.toml");
     let measure = ["flash", "identify", "--board", "nucleo-g474re", "--build-only", "--device"];
     let built = haptic(&[&measure[..], &[knob.to_str().unwrap()]].concat());
-    assert!(built.status.success() && built.stderr.is_empty(), "{built:?}");
+    let said = String::from_utf8_lossy(&built.stderr);
+    assert!(built.status.success() && !said.contains("note"), "{built:?}");
 
     let run = |scene: &str| haptic(&["run", scene, "--csv", "--ticks", "1000"]);
     let scene = Scene::begin(file);
