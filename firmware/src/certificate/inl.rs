@@ -1,4 +1,5 @@
-//! Scenes whose encoder has an integral nonlinearity (INL), `eta`: linear ones by the exact rule, and the friction that an endless torque profile needs (theory, section 18).
+//! Linear scenes whose encoder has an integral nonlinearity (INL), `eta`, by the exact rule (theory, section
+//! 18.3).
 
 use super::linearity::is_delay_alone;
 use super::problem::PassivityProblem;
