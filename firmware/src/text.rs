@@ -22,7 +22,7 @@ macro_rules! push {
         $text.push($piece)
     };
     ($text:expr, $($piece:tt)+) => {{
-        $(push!(@ $text, $piece);)+
+        $($crate::text::push!(@ $text, $piece);)+
     }};
 }
 pub(crate) use push;
@@ -48,6 +48,35 @@ macro_rules! error_with_sentence {
     };
 }
 pub(crate) use error_with_sentence;
+
+/// An error as a table: a row for each variant, with its numbers and its sentence in the pieces of [`push`]. A row has
+/// a description where its sentence leaves a unit or a meaning open.
+macro_rules! sentences {
+    ($(#[$about:meta])* $error:ident: $text:ty {
+        $($(#[$doc:meta])* $variant:ident $({ $($field:ident: $type:ty),+ })? => ($($piece:tt)+),)+
+    }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(missing_docs, reason = "each row's sentence describes it")]
+        pub enum $error {
+            $($(#[$doc])* $variant $({ $($field: $type),+ })?,)+
+        }
+
+        impl $error {
+            /// The error as a sentence, the same at compile time, on the host and on the board.
+            pub const fn sentence(&self) -> $text {
+                let mut t = <$text>::new();
+                match *self {
+                    $(Self::$variant $({ $($field),+ })? => $crate::text::push!(t, $($piece)+),)+
+                }
+                t
+            }
+        }
+
+        $crate::text::error_with_sentence!($error);
+    };
+}
+pub(crate) use sentences;
 
 /// The value of a result, or the refusal of its error with the sentence.
 macro_rules! or_refuse {
@@ -162,7 +191,6 @@ type Number = Text<24>;
 
 /// Numbers are written into a text of one fixed length, so that there is one copy of this code.
 impl Number {
-    /// Appends a number.
     const fn number(&mut self, value: f64) {
         if value.is_nan() {
             return self.push("NaN");

@@ -67,10 +67,8 @@ pub const fn assess_in(scene: &Scene, format: Format) -> Assessment {
     assessed(scene, format, Extent::BothRules)
 }
 
-/// The extent of an assessment.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Extent {
-    /// The answers of both rules.
     BothRules,
     /// For a rejected scene, and for one with lagging and limited torques, only the result of its own rule;
     /// for one with lagging torques, the index only as precisely as the proof needs.

@@ -19,88 +19,48 @@ use crate::passivity::transfer::Transfer;
 use crate::scene::{Coupling, Latency, Scene, TimeRange};
 use crate::text::{RoundUp3, ShortF64};
 
-/// An assumption of a verdict, or a condition that was checked.
+/// An assumption of a verdict, or a condition that was checked. Times in s, torques in N m, passivity, damping and bounds
+/// on an index in N m s/rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "each variant's description and sentence name its fields")]
 pub enum Assumption {
     /// A1 of theory, section 4.
-    DevicePassivity {
-        /// Declared passivity in N m s/rad.
-        delta: f64,
-    },
-    /// A2 of theory, section 4.
-    Hold {
-        /// Time in s between two updates, if none may be missed.
-        period: Option<f64>,
-        /// Whether a torque begins with its count; otherwise see [`Assumption::Latency`].
-        at_once: bool,
-    },
+    DevicePassivity { delta: f64 },
+    /// A2 of theory, section 4: the period, if no update may be missed, and whether a torque begins with its count;
+    /// otherwise see [`Assumption::Latency`].
+    Hold { period: Option<f64>, at_once: bool },
     /// The delays and lags of the device are those of the scene.
     Latency(Latency),
     /// The readings of the encoder are those of the scene.
     Encoder(EncoderReading),
-    /// An endless torque profile is no motor.
-    Endless {
-        /// Bound on the mean torque in N m through a nonlinear encoder, which friction must hold; `None` with a
-        /// linear one.
-        mean: Option<f64>,
-    },
-    /// Updates may be missed.
-    WorstPeriod {
-        /// Longest time in s between two updates.
-        longest: f64,
-        /// The remaining passivity of the device, in N m s/rad.
-        delta: f64,
-        /// Whether the scene passes with this passivity.
-        passes: bool,
-    },
-    /// The delay of the device is that of the scene.
-    Delay {
-        /// Whole samples.
-        samples: usize,
-    },
-    /// The environment is of another crate, and its statement is certified.
-    StatedModel {
-        /// The stated bound on its index in N m s/rad, if there is one.
-        index: Option<f64>,
-    },
-    /// The wall acts on one side only.
-    OneSided {
-        /// The deciding bound in N m s/rad.
-        bound: Option<f64>,
-    },
-    /// The torque is limited between environment and coupling.
-    Limited {
-        /// Largest torque in N m.
-        torque: f64,
-        /// Torque in N m at the DAC's largest code, if stated.
-        full_scale: Option<f64>,
-    },
-    /// The scene has no torque limit, and the DAC has one.
-    Saturates {
-        /// The bound in N m s/rad with which it would pass with a limit; `None` if it would not pass.
-        bound: Option<f64>,
-        /// The damping in N m s/rad that the device may then lose.
-        margin: f64,
-    },
+    /// An endless torque profile is no motor: the bound on the mean torque through a nonlinear encoder, which friction
+    /// must hold; `None` with a linear one.
+    Endless { mean: Option<f64> },
+    /// Updates may be missed: the longest time between two of them, the device's remaining passivity, and whether the
+    /// scene passes with it.
+    WorstPeriod { longest: f64, delta: f64, passes: bool },
+    /// The delay of the device is that of the scene, in whole samples.
+    Delay { samples: usize },
+    /// The environment is of another crate, and its statement is certified: the stated bound, if there is one.
+    StatedModel { index: Option<f64> },
+    /// The wall acts on one side only, and this bound decides.
+    OneSided { bound: Option<f64> },
+    /// The torque is limited between environment and coupling, and the DAC's full scale, if stated, is not below that.
+    Limited { torque: f64, full_scale: Option<f64> },
+    /// The scene has no torque limit, and the DAC has one: the bound with which it would pass with a limit, `None` if it
+    /// would not pass, and the damping that the device may then lose.
+    Saturates { bound: Option<f64>, margin: f64 },
     /// The canceller removes damping, which the device must have.
-    CancelledDamping {
-        /// Declared device damping in N m s/rad.
-        damping: f64,
-    },
+    CancelledDamping { damping: f64 },
     /// Quantisation by encoder, numbers and DAC is outside the linear verdict.
     Quantisation(QuantizationBound),
     /// The same with unknown encoder and DAC.
     StepsNotStated,
     /// The same if the controller's response does not end.
     StepsUnbounded,
-    /// Without a certificate, the effect of the device's friction.
-    FrictionOnly {
-        /// Declared friction in N m.
-        friction: f64,
-        /// Mean speed in rad/s over a tick up to which friction and damping dissipate at least what the
-        /// controller adds (equation 33).
-        speed: f64,
-    },
+    /// Without a certificate, the effect of the device's friction: the mean speed in rad/s over a tick up to which
+    /// friction and damping dissipate at least what the controller adds (equation 33).
+    FrictionOnly { friction: f64, speed: f64 },
 }
 
 /// Whether an assumption holds.

@@ -387,7 +387,6 @@ impl PassivityProblem {
         self.numbers.is_standard
     }
 
-    /// Index of the environment alone.
     pub(super) const fn alone(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
         if let Some(minimum) = self.stated {
             return Ok(RealPart::everywhere(minimum));

@@ -7,123 +7,69 @@ use crate::passivity::interval::Interval;
 use crate::passivity::poles::UndecidedReason;
 use crate::text::{Piece, Sentence, error_with_sentence, push};
 
-/// The reason why a scene is not certified. Indices in N m s/rad.
+/// The reason why a scene is not certified. Indices in N m s/rad, stiffnesses in N m/rad, torques in N m. Remedies are
+/// changes of one number with which the scene would pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "each variant's description and sentence name its fields")]
 pub enum Rejection {
     /// A number that is invalid in any scene.
     Invalid(InvalidParameter),
     /// The environment has more zeros than poles: it would need future positions.
     Improper,
-    /// Coupling and undelayed environment have no unique solution within a tick.
-    IllPosed {
-        /// `1 + E(inf) V`; 0 where the environment's own denominator degenerates.
-        loop_gain: Interval,
-    },
+    /// Coupling and undelayed environment have no unique solution within a tick: `1 + E(inf) V`, and 0 where the
+    /// environment's own denominator degenerates.
+    IllPosed { loop_gain: Interval },
     /// The device has no passivity.
-    NoPassivity {
-        /// Its output strict passivity.
-        delta: Interval,
-    },
+    NoPassivity { delta: Interval },
     /// The mean of a torque profile is not zero, or no springs keep the device within its ends.
-    Motor {
-        /// Its mean torque in N m.
-        mean: f64,
-    },
-    /// A nonlinear encoder makes an endless torque profile a motor, and the stated friction does not hold it.
-    MotorByInl {
-        /// The encoder's linearity.
-        linearity: f64,
-        /// Bound on the mean torque, and so the friction that is needed, in N m.
-        mean: Interval,
-        /// The stated friction in N m.
-        friction: f64,
-    },
+    Motor { mean: f64 },
+    /// A nonlinear encoder makes an endless torque profile a motor, and the stated friction does not hold the bound on
+    /// its mean torque.
+    MotorByInl { linearity: f64, mean: Interval, friction: f64 },
     /// A torque limit would make the torque profile a motor.
     Uneven,
-    /// A torque profile without delay is steeper than its coupling.
-    Steep {
-        /// Stiffness of the coupling in N m/rad, for the torque of the same tick.
-        coupling: Interval,
-        /// Changes of one number with which the scene would pass.
-        remedies: Remedies,
-    },
-    /// A pole outside the unit circle.
+    /// A torque profile without delay is steeper than its coupling for the torque of the same tick.
+    Steep { coupling: Interval, remedies: Remedies },
+    /// A pole outside the unit circle, shown by a Schur-Cohn reflection coefficient of at least 1: of the environment
+    /// alone, or caused by the coupling. Then there are remedies, and the standard coupling with the passing change of
+    /// the stiffness behind it, if that coupling alone is not sufficient.
     UnstablePole {
-        /// Schur-Cohn reflection coefficient that shows it: at least 1.
         reflection: Interval,
-        /// Whether the environment alone does not have the pole: then the coupling causes it.
         of_coupling: bool,
-        /// Changes of one number with which the scene would pass, if the coupling causes the pole.
         remedies: Remedies,
-        /// The standard coupling in N m/rad with the passing change of the stiffness behind it, if the
-        /// standard coupling alone is not sufficient.
         behind_standard: Option<(f64, Remedy)>,
     },
     /// A repeated pole on the unit circle, counting the integrator from velocity to position.
-    RepeatedUnitPole {
-        /// Cosine of its angle.
-        cos_theta: Interval,
-    },
+    RepeatedUnitPole { cos_theta: Interval },
     /// A pole on the unit circle whose residue does not have the pole's direction (equation 4).
-    ResidueAngle {
-        /// Cosine of its angle.
-        cos_theta: Interval,
-    },
+    ResidueAngle { cos_theta: Interval },
     /// A common mode of numerator and denominator on the unit circle: it cancels in the transfer function,
     /// but not in the running law, where rounding excites it.
-    HiddenMode {
-        /// Cosine of its angle.
-        cos_theta: Interval,
-    },
-    /// The environment pulls away at rest: a negative spring.
-    NegativeResidue {
-        /// Residue at `z = 1`.
-        residue: Interval,
-    },
-    /// The environment needs more damping than the device has (equation 17).
-    Shortage {
-        /// The index that was compared: of `E'` for linear scenes, the bound otherwise.
-        alpha: Interval,
-        /// Its upper bound.
-        delta: Interval,
-        /// Cosine of the angle at which the linear index is reached.
-        cos_theta: Interval,
-        /// Changes of one number with which the scene would pass.
-        remedies: Remedies,
-    },
-    /// The environment would pass without missed updates, or without latched torques.
-    Missed {
-        /// The index that was compared: of `E'` for linear scenes, the bound otherwise.
-        alpha: Interval,
-        /// Its upper bound with this coupling.
-        limit: Interval,
-        /// Changes of one number with which the scene would pass.
-        remedies: Remedies,
-    },
-    /// The environment would pass behind the standard coupling, but not behind this coupling (equation 18).
+    HiddenMode { cos_theta: Interval },
+    /// The environment pulls away at rest, a negative spring: the residue at `z = 1`.
+    NegativeResidue { residue: Interval },
+    /// The environment needs more damping than the device has (equation 17): the index of `E'` for linear scenes, the
+    /// bound otherwise, its upper bound, and where the linear index is reached.
+    Shortage { alpha: Interval, delta: Interval, cos_theta: Interval, remedies: Remedies },
+    /// The environment would pass without missed updates, or without latched torques: the same index, and its upper
+    /// bound with this coupling.
+    Missed { alpha: Interval, limit: Interval, remedies: Remedies },
+    /// The environment would pass behind the standard coupling, but not behind this coupling (equation 18): its index
+    /// or bound alone, the index including this coupling if it was compared, and the stiffnesses of this coupling,
+    /// `None` if it is rigid, and of the standard one, `2 delta / T`.
     Coupling {
-        /// Index of the environment alone (its bound, for one-sided and limited scenes).
         alpha: Option<Interval>,
-        /// Index including this coupling, if it exists and was compared.
         alpha_coupled: Option<Interval>,
-        /// Passivity of the device.
         delta: Interval,
-        /// Stiffness of this coupling in N m/rad; `None`: rigid.
         stiffness: Option<Interval>,
-        /// Stiffness of the standard coupling, `2 delta / T`, in N m/rad.
         standard: Interval,
-        /// Changes of one number with which the scene would pass.
         remedies: Remedies,
     },
-    /// Neither proved nor disproved; never counts as certified.
+    /// Neither proved nor disproved; never counts as certified. The index, if it was enclosed, and its upper bound.
     Undecided {
-        /// The reason.
         doubt: UndecidedReason,
-        /// The index, if it was enclosed.
         index: Option<Interval>,
-        /// Its upper bound.
         limit: Option<Interval>,
-        /// Changes of one number with which the scene would pass.
         remedies: Remedies,
     },
 }

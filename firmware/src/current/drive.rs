@@ -2,7 +2,7 @@
 //! cannot run on a power stage.
 
 use super::power_stage::SupplyRange;
-use crate::text::{Text, error_with_sentence, push};
+use crate::text::{Piece, Text, push, sentences};
 
 /// The kind of a motor's winding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,60 +130,72 @@ pub struct DriveLimits {
     pub together: Option<[f64; 3]>,
 }
 
-/// The reason why there is no current loop, with the value and its bound.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs, reason = "each variant's description and sentence name its fields")]
-pub enum DriveError {
-    /// A number is zero, negative or not finite.
-    NotPositive { name: &'static str, value: f64 },
-    /// An electrical turn has too few counts of the encoder, or none.
-    PolePairs { pole_pairs: u16, largest: u16 },
-    /// A brushless motor needs a whole number of counts per turn, up to the largest.
-    Counts { counts: f64, largest: f64 },
-    /// An index was given for a brushed motor, which has no phase.
-    IndexNotNeeded,
-    /// An electrical turn has too few counts for its phase to come from the index.
-    IndexCounts { counts: f64, least: f64 },
-    /// The phase at the index, in counts, is not within an electrical turn.
-    IndexOffset { offset: u32, counts: f64 },
-    /// The phase of a brushless motor turns too far in an instant: electrical turns per second at the largest speed.
-    ElectricalSpeed { turns: f64, largest: f64, limits: DriveLimits },
-    /// The bandwidth in Hz is larger than the modulation allows.
-    Bandwidth { bandwidth: f64, largest: f64, limits: DriveLimits },
-    /// No whole number of periods of the modulation, between two frequencies in Hz, fills a period of the servo in s;
-    /// the nearest possible period in s.
-    Period { period: f64, lowest: f64, highest: f64, nearest: f64 },
-    /// Full-scale torque in N m needs more current in A, with the margin to over-current, than the power stage can
-    /// deliver.
-    Current { torque: f64, current: f64, largest: f64, limits: DriveLimits },
-    /// The drive's supply is outside the board's range.
-    Supply { supply: SupplyRange, board: SupplyRange },
-    /// The voltage in V that the supply itself delivers is not within its range.
-    OpenVoltage { voltage: f64, supply: SupplyRange },
-    /// The voltage in V at the lowest supply is insufficient for the largest step at the largest speed; the lowest
-    /// supply that is enough.
-    Voltage { needed: f64, available: f64, enough: f64, limits: DriveLimits },
-    /// The largest temperature in degrees Celsius cannot be measured.
-    Temperature { temperature: f64, lowest: f64, highest: f64 },
-    /// The converter's range in A, at the worst offset, ends below the largest current of the board.
-    CurrentRange { current: f64, largest: f64 },
-}
-
 /// Longest sentence of an error.
 const SENTENCE: usize = 640;
+
+sentences! {
+    /// The reason why there is no current loop, with the value and its bound.
+    DriveError: Text<SENTENCE> {
+    NotPositive { name: &'static str, value: f64 } => (
+        "the " {name} " must be positive and finite, and is " {value}),
+    PolePairs { pole_pairs: u16, largest: u16 } => (
+        "the motor's " {pole_pairs} " pole pairs must be at least 1, and at most as many as leave an \
+         electrical turn 64 encoder counts, so that no torque is lost between two of them: " {largest}),
+    Counts { counts: f64, largest: f64 } => (
+        "a turn has " {counts} " encoder counts, and the phase of a brushless motor needs a whole number of \
+         them, up to " {largest} ": count at the shaft that the motor is on"),
+    IndexNotNeeded => (
+        "a brushed motor needs no index of its encoder: state none, or the winding of a brushless one"),
+    IndexCounts { counts: f64, least: f64 } => (
+        "an electrical turn has " {counts} " encoder counts, and a phase that comes from the index needs at \
+         least " {least} ", since its pulse is some counts wide: take a finer encoder, or state no offset"),
+    IndexOffset { offset: u32, counts: f64 } => (
+        "the index offset of " {offset} " counts is not below the counts of an electrical turn, " {counts}
+        ": align the motor, and state the offset that the board tells"),
+    ElectricalSpeed { turns: f64, largest: f64, limits: DriveLimits } => (
+        "at the largest speed the motor makes " {turns} " electrical turns a second, and a 32nd of the \
+         modulation's frequency is " {largest} {limits}),
+    Bandwidth { bandwidth: f64, largest: f64, limits: DriveLimits } => (
+        "the bandwidth of " {bandwidth} " Hz is above " {largest} " Hz, where the time constant of the \
+         current is two periods of the modulation, and a faster one leaves the feedback no time" {limits}),
+    Period { period: f64, lowest: f64, highest: f64, nearest: f64 } => (
+        "the period of " {period} " s is not filled by whole periods of a modulation between " {lowest}
+        " and " {highest} " Hz in whole counts of its timer: " {nearest} " s is"),
+    Current { torque: f64, current: f64, largest: f64, limits: DriveLimits } => (
+        "full-scale torque of " {torque} " N m, and the quarter more at which over-current trips, take "
+        {current} " A, and the power stage measures and bears " {largest} " A" {limits}),
+    Supply { supply: SupplyRange, board: SupplyRange } => (
+        "a supply from " {supply.lowest} " to " {supply.highest} " V is not in the board's range from "
+        {board.lowest} " to " {board.highest} " V"),
+    OpenVoltage { voltage: f64, supply: SupplyRange } => (
+        "the supply itself delivers up to " {voltage} " V, which must be between its lowest and its highest \
+         voltage, " {supply.lowest} " and " {supply.highest} " V"),
+    Voltage { needed: f64, available: f64, enough: f64, limits: DriveLimits } => (
+        "the step from full-scale torque to its opposite at the largest speed needs " {needed} " V at \
+         the motor, which takes a supply of " {enough} " V, and the lowest supply gives " {available} " V" {limits}),
+    Temperature { temperature: f64, lowest: f64, highest: f64 } => (
+        "the largest temperature of " {temperature} " degrees Celsius is not between " {lowest} " and " {highest}),
+    /// The range ends at the worst offset.
+    CurrentRange { current: f64, largest: f64 } => (
+        "the board's largest current of " {current} " A is above the " {largest} " A that its converter can measure"),
+    }
+}
 
 impl DriveLimits {
     /// No bounds.
     pub const NONE: Self =
         Self { bandwidth: None, torque: None, speed: None, supply: None, together: None };
+}
 
-    /// The bounds in words, after a sentence that refuses the drive.
-    const fn push(&self, text: &mut Text<SENTENCE>) {
+/// The bounds in words, after a sentence that refuses the drive.
+impl Piece<DriveLimits> {
+    const fn push_to(self, text: &mut Text<SENTENCE>) {
+        let DriveLimits { bandwidth, torque, speed, supply, together } = self.0;
         let each = [
-            ("a bandwidth of at most ", self.bandwidth, " Hz"),
-            ("a full-scale torque of at most ", self.torque, " N m"),
-            ("a largest speed of at most ", self.speed, " rad/s"),
-            ("a lowest supply of at least ", self.supply, " V"),
+            ("a bandwidth of at most ", bandwidth, " Hz"),
+            ("a full-scale torque of at most ", torque, " N m"),
+            ("a largest speed of at most ", speed, " rad/s"),
+            ("a lowest supply of at least ", supply, " V"),
         ];
         let mut before = ": it would pass with ";
         each!(i in 0..each.len() => {
@@ -193,11 +205,9 @@ impl DriveLimits {
                 before = ", or ";
             }
         });
-        let alone = self.bandwidth.is_some() as u8
-            + self.torque.is_some() as u8
-            + self.speed.is_some() as u8;
+        let alone = bandwidth.is_some() as u8 + torque.is_some() as u8 + speed.is_some() as u8;
         // Where one number alone is too large, the others need not be lower.
-        if let Some([bandwidth, torque, speed]) = self.together
+        if let Some([bandwidth, torque, speed]) = together
             && alone != 1
         {
             push!(*text, {before} {bandwidth} " Hz, " {torque} " N m and " {speed} " rad/s together");
@@ -219,72 +229,6 @@ impl DriveError {
         self
     }
 
-    /// The error as a sentence, the same at compile time and later.
-    pub const fn sentence(&self) -> Text<SENTENCE> {
-        let mut t = Text::new();
-        match *self {
-            Self::NotPositive { name, value } => {
-                push!(t, "the " {name} " must be positive and finite, and is " {value});
-            }
-            Self::PolePairs { pole_pairs, largest } => push!(t,
-                "the motor's " {pole_pairs} " pole pairs must be at least 1, and at most as many as leave an \
-                 electrical turn 64 encoder counts, so that no torque is lost between two of them: " {largest}),
-            Self::Counts { counts, largest } => push!(t,
-                "a turn has " {counts} " encoder counts, and the phase of a brushless motor needs a whole number of \
-                 them, up to " {largest} ": count at the shaft that the motor is on"),
-            Self::IndexNotNeeded => t.push(
-                "a brushed motor needs no index of its encoder: state none, or the winding of a brushless one",
-            ),
-            Self::IndexCounts { counts, least } => push!(t,
-                "an electrical turn has " {counts} " encoder counts, and a phase that comes from the index needs at \
-                 least " {least} ", since its pulse is some counts wide: take a finer encoder, or state no offset"),
-            Self::IndexOffset { offset, counts } => push!(t,
-                "the index offset of " {offset} " counts is not below the counts of an electrical turn, " {counts}
-                ": align the motor, and state the offset that the board tells"),
-            Self::ElectricalSpeed { turns, largest, limits } => {
-                push!(t,
-                    "at the largest speed the motor makes " {turns} " electrical turns a second, and a 32nd of the \
-                     modulation's frequency is " {largest});
-                limits.push(&mut t);
-            }
-            Self::Bandwidth { bandwidth, largest, limits } => {
-                push!(t,
-                    "the bandwidth of " {bandwidth} " Hz is above " {largest} " Hz, where the time constant of the \
-                     current is two periods of the modulation, and a faster one leaves the feedback no time");
-                limits.push(&mut t);
-            }
-            Self::Period { period, lowest, highest, nearest } => push!(t,
-                "the period of " {period} " s is not filled by whole periods of a modulation between " {lowest}
-                " and " {highest} " Hz in whole counts of its timer: " {nearest} " s is"),
-            Self::Current { torque, current, largest, limits } => {
-                push!(t,
-                    "full-scale torque of " {torque} " N m, and the quarter more at which over-current trips, take "
-                    {current} " A, and the power stage measures and bears " {largest} " A");
-                limits.push(&mut t);
-            }
-            Self::Supply { supply, board } => push!(t,
-                "a supply from " {supply.lowest} " to " {supply.highest} " V is not in the board's range from "
-                {board.lowest} " to " {board.highest} " V"),
-            Self::OpenVoltage { voltage, supply } => push!(t,
-                "the supply itself delivers up to " {voltage} " V, which must be between its lowest and its highest \
-                 voltage, " {supply.lowest} " and " {supply.highest} " V"),
-            Self::Voltage { needed, available, enough, limits } => {
-                push!(t,
-                    "the step from full-scale torque to its opposite at the largest speed needs " {needed} " V at \
-                     the motor, which takes a supply of " {enough} " V, and the lowest supply gives " {available}
-                    " V");
-                limits.push(&mut t);
-            }
-            Self::Temperature { temperature, lowest, highest } => push!(t,
-                "the largest temperature of " {temperature} " degrees Celsius is not between " {lowest} " and "
-                {highest}),
-            Self::CurrentRange { current, largest } => push!(t,
-                "the board's largest current of " {current} " A is above the " {largest}
-                " A that its converter can measure"),
-        }
-        t
-    }
-
     /// Rejects the first of these numbers that is not positive and finite.
     pub(super) const fn unless_positive(numbers: &[(&'static str, f64)]) -> Result<(), Self> {
         let mut i = 0;
@@ -298,5 +242,3 @@ impl DriveError {
         Ok(())
     }
 }
-
-error_with_sentence!(DriveError);

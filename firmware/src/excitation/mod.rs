@@ -40,7 +40,7 @@ use core::fmt;
 pub use playing::{Excitation, Exciter, Guard, MotionLimits, SILENCE, SWEEP_PROTOCOL, SweepEnd};
 
 use crate::dac::DacCode;
-use crate::text::{Text, error_with_sentence, or_refuse, push};
+use crate::text::{Text, or_refuse, sentences};
 use crate::transducers::Transducers;
 
 /// The smallest number of measured periods of a tone.
@@ -102,7 +102,6 @@ pub struct Sweep<const N: usize> {
 struct Step {
     /// Samples in which the device settles.
     settle: u32,
-    /// Samples that are measured.
     measured: u32,
     /// Periods in the measured samples: the sine turns by `cycles / measured` per sample.
     cycles: u32,
@@ -224,48 +223,24 @@ impl<const N: usize> fmt::Display for Sweep<N> {
     }
 }
 
-/// An error of a sweep. Tones are counted from 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs, reason = "each variant's description and sentence name its fields")]
-pub enum SweepError {
-    /// The period or the motor's torque is zero, negative or not finite.
-    NotPositive { name: &'static str, value: f64 },
-    /// A frequency in Hz that is too high to sample as a sine: not below half the sampling rate.
-    Frequency { tone: usize, frequency: f64, largest: f64 },
-    /// An amplitude in N m outside the DAC's range, from the torque of one code to full scale.
-    Amplitude { tone: usize, amplitude: f64, least: f64, largest: f64 },
-    /// Too few periods to measure.
-    Periods { tone: usize, measured: u32 },
-    /// Periods that do not take a whole number of samples, or take too many.
-    Samples { tone: usize, periods: u32, samples: f64, most: f64 },
-}
-
-impl SweepError {
-    /// The error as a sentence, the same at compile time and later.
-    pub const fn sentence(&self) -> Text<240> {
-        let mut t = Text::new();
-        match *self {
-            Self::NotPositive { name, value } => {
-                push!(t, "the " {name} " is " {value} "; it must be positive and finite");
-            }
-            Self::Frequency { tone, frequency, largest } => push!(t,
-                "tone " {tone} " has a frequency of " {frequency} " Hz; it must be above 0 and below half the \
-                 sampling rate, " {largest} " Hz"),
-            Self::Amplitude { tone, amplitude, least, largest } => push!(t,
-                "tone " {tone} " has an amplitude of " {amplitude} " N m; the DAC gives " {least} " to " {largest}
-                " N m"),
-            Self::Periods { tone, measured } => push!(t,
-                "tone " {tone} " has a measured part of " {measured} " periods; it must be at least "
-                {LEAST_PERIODS}),
-            Self::Samples { tone, periods, samples, most } => push!(t,
-                "tone " {tone} " has a part of " {periods} " periods, which take " {samples} " samples; they must \
-                 take a whole number of samples, and at most " {most}),
-        }
-        t
+sentences! {
+    /// An error of a sweep. Tones are counted from 0.
+    SweepError: Text<240> {
+    NotPositive { name: &'static str, value: f64 } => (
+        "the " {name} " is " {value} "; it must be positive and finite"),
+    Frequency { tone: usize, frequency: f64, largest: f64 } => (
+        "tone " {tone} " has a frequency of " {frequency} " Hz; it must be above 0 and below half the \
+         sampling rate, " {largest} " Hz"),
+    /// The bounds are the torque of one code, and full scale.
+    Amplitude { tone: usize, amplitude: f64, least: f64, largest: f64 } => (
+        "tone " {tone} " has an amplitude of " {amplitude} " N m; the DAC gives " {least} " to " {largest} " N m"),
+    Periods { tone: usize, measured: u32 } => (
+        "tone " {tone} " has a measured part of " {measured} " periods; it must be at least " {LEAST_PERIODS}),
+    Samples { tone: usize, periods: u32, samples: f64, most: f64 } => (
+        "tone " {tone} " has a part of " {periods} " periods, which take " {samples} " samples; they must \
+         take a whole number of samples, and at most " {most}),
     }
 }
-
-error_with_sentence!(SweepError);
 
 #[cfg(test)]
 mod tests;

@@ -98,7 +98,8 @@ impl HostTorque {
         let torque = self.torque;
         match limit {
             Some(limit) if torque + limit <= full_scale => Ok(()),
-            _ => Err(HostError::Range { torque, limit, full_scale }),
+            Some(limit) => Err(HostError::Range { torque, limit, full_scale }),
+            None => Err(HostError::Unlimited { torque, full_scale }),
         }
     }
 }

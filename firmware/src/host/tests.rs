@@ -148,7 +148,6 @@ impl Attack<'_> {
     }
 }
 
-/// All responses that are covered, with their motors.
 fn responses() -> Vec<(&'static str, Latency, usize, Motor)> {
     let delayed = |latency: Latency, parts: f64| Latency {
         output_delay: TimeRange::exactly(parts / PARTS as f64 * PERIOD),

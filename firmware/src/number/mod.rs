@@ -23,7 +23,7 @@ pub use truncated::Truncated;
 
 use core::fmt;
 
-use crate::text::{Text, push};
+use crate::text::{Piece, Text, push};
 
 /// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`], rounded or [`Truncated`].
 pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
@@ -150,18 +150,18 @@ pub struct OutOfRange {
     pub format: Format,
 }
 
-impl OutOfRange {
-    /// Appends the error as a sentence.
-    pub(crate) const fn write<const N: usize>(&self, t: &mut Text<N>) {
+impl Piece<OutOfRange> {
+    pub(crate) const fn push_to<const N: usize>(self, t: &mut Text<N>) {
+        let OutOfRange { value, bound, format } = self.0;
         push!(*t,
-            {self.value} " does not fit " {self.format.name().as_str()} ": its magnitude may be at most " {self.bound});
+            {value} " does not fit " {format.name().as_str()} ": its magnitude may be at most " {bound});
     }
 }
 
 impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut sentence = Text::<128>::new();
-        self.write(&mut sentence);
+        push!(sentence, { *self });
         f.write_str(sentence.as_str())
     }
 }

@@ -30,57 +30,35 @@ pub struct Reduced {
 /// An obstacle to a passivity index other than the real part (conditions of equation 4), or an undecided
 /// condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "each variant's description names its field")]
 pub enum IndexError {
-    /// A pole outside the unit circle; the reflection coefficient that shows it is at least 1.
-    UnstablePole {
-        /// Magnitude of the reflection coefficient of the Schur-Cohn recursion.
-        reflection: Interval,
-    },
+    /// A pole outside the unit circle; the reflection coefficient that shows it is at least 1 (Schur-Cohn recursion).
+    UnstablePole { reflection: Interval },
     /// A repeated pole on the unit circle, at this cosine of its angle.
-    RepeatedUnitPole {
-        /// Cosine of the pole's angle.
-        cos_theta: Interval,
-    },
-    /// A simple circle pole at `z != 1` whose residue does not have the pole's angle.
-    ResidueAngle {
-        /// Cosine of the pole's angle.
-        cos_theta: Interval,
-    },
-    /// The residue at `z = 1` is negative.
-    NegativeResidue {
-        /// The residue, N m s/rad for a velocity-to-torque function.
-        residue: Interval,
-    },
+    RepeatedUnitPole { cos_theta: Interval },
+    /// A simple circle pole at `z != 1`, at this cosine of its angle, whose residue does not have that angle.
+    ResidueAngle { cos_theta: Interval },
+    /// The residue at `z = 1` is negative; in N m s/rad for a velocity-to-torque function.
+    NegativeResidue { residue: Interval },
     /// Not decided; never counts as passive.
     Undecided(UndecidedReason),
 }
 
-/// The reason why a condition could not be decided.
+/// The reason why a condition could not be decided. A rejection's sentence has each in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum UndecidedReason {
-    /// The side of a pole is lost in rounding: it is near the unit circle, or close to other poles.
     PoleNearCircle,
-    /// Several complex pole pairs on the unit circle.
     SeveralPolePairs,
-    /// The sign of a residue on the unit circle is lost in rounding.
     ResidueSign,
-    /// A number overflowed or a degree is out of range.
     OutOfRange,
-    /// The enclosures of index and limit overlap.
     TooClose,
-    /// No bound is known for this environment with one-sidedness or a torque limit.
     NoNonlinearBound,
-    /// The environment is stated by a bound, without a transfer function.
     NoTransferFunction,
-    /// Updates may be missed and the torque lags.
     MissedWithLatency,
-    /// No bound is known for this scene without a coupling.
     NoBoundAtPort,
-    /// A bound that is sufficient, and not known to be necessary, is not below the passivity.
     NotBelowBound,
-    /// No bound is known for snap points with this delay or without a coupling.
     NoSnapBound,
-    /// No proof is known for this scene with a nonlinear encoder.
     NoProofWithInl,
 }
 

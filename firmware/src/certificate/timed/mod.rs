@@ -22,7 +22,7 @@ use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, SHORTEST_PHASE
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 use crate::step::Step;
-use crate::text::{Sentence, error_with_sentence, push};
+use crate::text::{Piece, Sentence, push, sentences};
 
 /// A certified scene that agrees with the output mode `M` of a board.
 ///
@@ -92,136 +92,71 @@ impl<S, M> TimingChecked<S, M> {
     }
 }
 
-/// The reason why a board cannot render a certified scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum TimingError {
-    /// The torque takes a sample to reach the motor, and the environment is not late.
-    NotLate,
-    /// The scene is linear and would not pass with a torque limit, which every board has: the DAC range,
-    /// and a lower limit while the torque is faded in and out.
-    Limited {
-        /// Bound on the index with a torque limit in N m s/rad; `None` if none is known.
-        bound: Option<f64>,
-        /// Its upper bound; `None`: unknown behind a rigid coupling, or one stiffer than the standard
-        /// coupling.
-        limit: Option<f64>,
-    },
-    /// The board puts torques out at a time other than the scene's.
-    Phase {
-        /// The scene's output delay in s; the middle of its range.
-        scene: f64,
-        /// That of the board in s.
-        board: f64,
-    },
-    /// The scene's output delay is a range, and a board puts torques out at one time.
-    DelayRange {
-        /// The shortest delay in s.
-        least: f64,
-        /// The longest in s.
-        most: f64,
-    },
-    /// No board puts torques out so early or so late in a period.
-    PhaseRange {
-        /// The mode's phase in s.
-        phase: f64,
-        /// The shortest in s.
-        shortest: f64,
-        /// The longest in s, for the scene's period.
-        longest: f64,
-    },
-    /// The torque lags, and the coupling does not absorb the lag.
-    Unmatched,
-    /// The encoder is nonlinear, and no proof is known for a board behind this coupling.
-    Nonlinear,
-    /// The scene has no coupling, and its program has one.
-    Coupled,
-    /// A board reads counts later than the scene allows.
-    Jitter {
-        /// The most by which a count may deviate in the scene, in s.
-        jitter: f64,
-    },
-    /// The scene would pass if each count were read at the very beginning of its period.
-    ReadLate {
-        /// Its period in s.
-        period: f64,
-        /// Bound on the index in N m s/rad.
-        bound: f64,
-        /// Its upper bound.
-        limit: f64,
-    },
-}
-
-impl TimingError {
-    /// The error as a sentence, the same at compile time, on the host and on the board.
-    pub const fn sentence(&self) -> Sentence {
-        let mut t = Sentence::new();
-        match *self {
-            Self::ReadLate { period, bound, limit } => push!(t,
-                "a board reads a count up to " {READ_WITHIN} " s after the beginning of its period of " {period}
-                " s, and needs alpha = " {bound} " N m s/rad below " {limit}
-                " N m s/rad for that: make the environment a little softer"),
-            Self::Phase { scene, board } => push!(t,
-                "the scene has an output delay of " {scene} " s, and this board puts its torques out " {board}
-                " s after the beginning of a period"),
-            Self::DelayRange { least, most } => push!(t,
-                "a board puts its torques out at one time in the period, and the scene's output delay is between "
-                {least} " s and " {most} " s: give it the period of the board"),
-            Self::PhaseRange { phase, shortest, longest } => push!(t,
-                "this board would put its torques out " {phase}
-                " s after the beginning of a period, but a code takes time to compute and has to be out before the \
-                 next one is there: the phase must be between " {shortest} " s and " {longest} " s"),
-            Self::Unmatched => push!(
-                t,
-                "where torques lag, a servo renders only environments behind the matched coupling: give the scene \
-                 that"
-            ),
-            Self::Nonlinear => push!(
-                t,
-                "no proof is known for a limited torque behind this coupling and a nonlinear encoder: leave the \
-                 coupling out, or correct the angle"
-            ),
-            Self::Coupled => push!(
-                t,
-                "the scene has no coupling, and its program is that of a coupled scene: give the scene a coupling"
-            ),
-            Self::Jitter { jitter } => push!(t,
-                "a board reads a count up to " {READ_WITHIN}
-                " s after the beginning of its period, which is jitter where torques lag: the scene's count jitter, \
-                 or the output jitter if it states no other, has to be that at least, and is " {jitter} " s"),
-            Self::NotLate => push!(
-                t,
-                "the environment is not late by a whole sample, but on this board a torque takes one: give all of \
-                 it a delay of at least 1"
-            ),
-            Self::Limited { bound, limit } => {
-                push!(
-                    t,
-                    "the scene passes only as long as its torque is never limited, and a board limits it while it \
-                     fades in and out and at the DAC's full scale"
-                );
-                match (bound, limit) {
-                    (None, _) => push!(
-                        t,
-                        "; no bound is known then for a rational environment, or without a coupling for torques and \
-                         counts that both jitter beside a lag"
-                    ),
-                    (_, None) => push!(
-                        t,
-                        "; behind a coupling stiffer than the standard one, 2 delta/T, or a rigid one, it is not \
-                         known to be passive then: soften the coupling"
-                    ),
-                    (Some(bound), Some(limit)) => push!(t,
-                        ": then the environment needs up to " {bound} " N m s/rad of damping, not below the " {limit}
-                        " N m s/rad that device and coupling allow; a softer environment, or a coupling nearer to \
-                         the standard one, passes"),
-                }
-            }
-        }
-        t
+sentences! {
+    /// The reason why a board cannot render a certified scene.
+    TimingError: Sentence {
+    /// The torque takes a sample to reach the motor.
+    NotLate => (
+        "the environment is not late by a whole sample, but on this board a torque takes one: give all of \
+         it a delay of at least 1"),
+    /// The bound on the index with a torque limit, which every board has; `None` if none is known. Its upper bound is
+    /// unknown behind a rigid coupling, or one stiffer than the standard coupling.
+    Limited { bound: Option<f64>, limit: Option<f64> } => (
+        "the scene passes only as long as its torque is never limited, and a board limits it while it \
+         fades in and out and at the DAC's full scale" {WhereLimited { bound, limit }}),
+    /// The middle of the scene's range.
+    Phase { scene: f64, board: f64 } => (
+        "the scene has an output delay of " {scene} " s, and this board puts its torques out " {board}
+        " s after the beginning of a period"),
+    DelayRange { least: f64, most: f64 } => (
+        "a board puts its torques out at one time in the period, and the scene's output delay is between "
+        {least} " s and " {most} " s: give it the period of the board"),
+    PhaseRange { phase: f64, shortest: f64, longest: f64 } => (
+        "this board would put its torques out " {phase}
+        " s after the beginning of a period, but a code takes time to compute and has to be out before the \
+         next one is there: the phase must be between " {shortest} " s and " {longest} " s"),
+    Unmatched => (
+        "where torques lag, a servo renders only environments behind the matched coupling: give the scene that"),
+    Nonlinear => (
+        "no proof is known for a limited torque behind this coupling and a nonlinear encoder: leave the \
+         coupling out, or correct the angle"),
+    Coupled => (
+        "the scene has no coupling, and its program is that of a coupled scene: give the scene a coupling"),
+    Jitter { jitter: f64 } => (
+        "a board reads a count up to " {READ_WITHIN}
+        " s after the beginning of its period, which is jitter where torques lag: the scene's count jitter, \
+         or the output jitter if it states no other, has to be that at least, and is " {jitter} " s"),
+    ReadLate { period: f64, bound: f64, limit: f64 } => (
+        "a board reads a count up to " {READ_WITHIN} " s after the beginning of its period of " {period}
+        " s, and needs alpha = " {bound} " N m s/rad below " {limit}
+        " N m s/rad for that: make the environment a little softer"),
     }
 }
 
-error_with_sentence!(TimingError);
+/// The numbers of [`TimingError::Limited`], as the end of its sentence.
+struct WhereLimited {
+    bound: Option<f64>,
+    limit: Option<f64>,
+}
+
+impl Piece<WhereLimited> {
+    const fn push_to(self, t: &mut Sentence) {
+        match (self.0.bound, self.0.limit) {
+            (None, _) => t.push(
+                "; no bound is known then for a rational environment, or without a coupling for torques and \
+                 counts that both jitter beside a lag",
+            ),
+            (_, None) => t.push(
+                "; behind a coupling stiffer than the standard one, 2 delta/T, or a rigid one, it is not \
+                 known to be passive then: soften the coupling",
+            ),
+            (Some(bound), Some(limit)) => push!(*t,
+                ": then the environment needs up to " {bound} " N m s/rad of damping, not below the " {limit}
+                " N m s/rad that device and coupling allow; a softer environment, or a coupling nearer to \
+                 the standard one, passes"),
+        }
+    }
+}
 
 impl Assessment {
     /// [`TimingChecked::margin`] of the assessed and certified scene; `None` if its numbers do not allow a

@@ -19,14 +19,17 @@ const DOCUMENT: &str = "firmware/PROTOCOL.md";
 const MESSAGES: &str = "firmware/src/wire/message.rs";
 const WALL: &str = "firmware/src/environment/wall.rs";
 
-/// The text in the braces of a type in a source file.
+/// The text in the braces of a type in a source file, or of the table of its values.
 fn body(path: &str, kind: &str, name: &str) -> String {
     let source = read(path);
     let of = regex(&format!(
         r"(?s)\n(?:pub(?:\(\w+\))? )?{kind} {name}(?:<\w+(?: = \w+)?>)? \{{\n(.*?)\n\}}"
     ));
-    let found = of.captures(&source).unwrap_or_else(|| panic!("{path} has no {kind} {name}"));
-    found[1].to_owned()
+    let table = regex(&format!(
+        r"(?s)\n\w+! \{{\n(?:    [/#][^\n]*\n)+    {name}(?:: \w+)? \{{\n(.*?)\n    \}}"
+    ));
+    let found = of.captures(&source).or_else(|| table.captures(&source));
+    found.unwrap_or_else(|| panic!("{path} has no {kind} {name}"))[1].to_owned()
 }
 
 /// The fields of a struct in a source file that go over the wire, in order, each with its type.
@@ -39,7 +42,8 @@ fn fields(path: &str, name: &str) -> Vec<(String, String)> {
 
 /// The variants of an enumeration in order, each with its fields as one text.
 pub fn variants(path: &str, name: &str) -> Vec<(String, String)> {
-    let variant = regex(r"(?ms)^    (\w+)(?: = \d+)?(?:\((.*?)\)| \{(.*?)(?:^    | )\})?,$");
+    let variant =
+        regex(r#"(?ms)^    (\w+)(?: = \d+)?(?:\((.*?)\)| \{(.*?)(?:^    | )\})?(?:,$| => | ")"#);
     let body = body(path, "enum", name);
     let fields = |variant: &regex::Captures<'_>| match (variant.get(2), variant.get(3)) {
         (Some(tuple), _) => tuple.as_str().to_owned(),
