@@ -274,4 +274,4 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> Endpoints<E, N, M> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

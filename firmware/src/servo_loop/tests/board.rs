@@ -63,6 +63,16 @@ impl Board {
         switched.unwrap_or(false)
     }
 
+    /// The last written code; out of reset the DAC holds mid-scale.
+    #[cfg(feature = "wire")]
+    pub fn code(&self) -> DacCode {
+        let written = self.events.iter().rev().find_map(|event| match event {
+            Event::Write(code) => DacCode::new(*code).ok(),
+            _ => None,
+        });
+        written.unwrap_or(DacCode::MID_SCALE)
+    }
+
     /// The codes that were written, in order.
     pub fn codes(&self) -> Vec<i32> {
         let code = |event: &Event| match event {
@@ -95,7 +105,7 @@ impl Hardware for Board {
     }
     fn is_aligning(&mut self) -> bool {
         self.alignment = self.alignment.map(|ticks| ticks.saturating_sub(1));
-        self.alignment != Some(0)
+        self.alignment.is_some_and(|ticks| ticks > 0)
     }
     fn periods_since_last(&mut self) -> u32 {
         core::mem::replace(&mut self.passed, 1)

@@ -1,7 +1,7 @@
 //! The cycle on a board that exists in memory only.
 
 mod alignment;
-mod board;
+pub(crate) mod board;
 mod faults;
 mod frames;
 mod mailbox;

@@ -14,7 +14,6 @@ use super::*;
 use crate::certificate::Parameter;
 use crate::current::IndexOffset;
 use crate::dac::DacCode;
-use crate::encoder::RawCount;
 use crate::environment::{
     Canceller, Damper, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side, Wall,
 };
@@ -22,9 +21,8 @@ use crate::fault::Fault;
 use crate::number::Format;
 use crate::scene::{Device, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
-use crate::servo_loop::{
-    Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, OutputEvent, ServoLoop, State,
-};
+use crate::servo_loop::tests::board::Board;
+use crate::servo_loop::{Frame, FrameQueue, Frames, Inbox, Mailbox, OutputEvent, ServoLoop, State};
 use crate::test_scene;
 use crate::tuning::RenderError;
 use crate::wire::message::LONGEST_TO_HOST;
@@ -47,51 +45,6 @@ fn program() -> Program<Environment> {
     }
 }
 
-/// A device that is held still, 100 counts inside the wall.
-struct Still {
-    code: DacCode,
-    /// What the next tick finds.
-    output_event: Option<OutputEvent>,
-    /// Ticks that an alignment still takes; `None`: there is no motor for one.
-    alignment: Option<u32>,
-}
-
-impl Hardware for Still {
-    fn count(&mut self) -> RawCount {
-        RawCount::from(100_u16)
-    }
-    fn write(&mut self, code: DacCode) {
-        self.code = code;
-    }
-    fn amplifier(&mut self, _: bool) {}
-    fn output_event(&mut self) -> Option<OutputEvent> {
-        self.output_event.take()
-    }
-    fn align(&mut self) -> Result<(), Fault> {
-        self.alignment.map(|_| ()).ok_or(Fault::ClockLost)
-    }
-    fn is_aligning(&mut self) -> bool {
-        let left = self.alignment.as_mut();
-        left.is_some_and(|left| {
-            *left = left.saturating_sub(1);
-            *left > 0
-        })
-    }
-    fn periods_since_last(&mut self) -> u32 {
-        1
-    }
-    fn time_in_period(&mut self) -> u32 {
-        250
-    }
-    fn feed_watchdog(&mut self) {}
-}
-
-impl Still {
-    const fn new() -> Self {
-        Self { code: DacCode::MID_SCALE, output_event: None, alignment: None }
-    }
-}
-
 type Said = ToHost<String>;
 
 /// Of a board with a bridge; the numbers are as long as they get.
@@ -103,14 +56,17 @@ const READING: PowerReading = PowerReading {
     index: Some(IndexOffset { counts: u32::MAX, is_reversed: true }),
 };
 
-/// Frames that wait.
+/// Counts inside the wall.
+const INSIDE: i32 = 100;
+
 const FRAMES: usize = 32;
 
 /// A session, the servo behind it, and the host's ear.
 struct Bench {
     session: Served,
     servo_loop: ServoLoop<Environment, f32, Latched>,
-    hardware: Still,
+    /// A device that is held still, [`INSIDE`] the wall.
+    hardware: Board,
     inbox: Inbox<'static, PreparedServo<Environment, f32, Latched>>,
     frames: Frames<'static, FRAMES>,
     ear: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
@@ -137,7 +93,7 @@ impl Bench {
         };
         requests.arm();
         let session = Session::new(program, prepared.margin, info, requests, queue);
-        let hardware = Still::new();
+        let hardware = Board { count: INSIDE, ..Board::new() };
         Self { session, servo_loop, hardware, inbox, frames, ear: Decoder::new() }
     }
 
@@ -228,7 +184,6 @@ fn set(id: Id, changes: &[(Parameter, f64)]) -> ToBoard {
     ToBoard::Set { id, changes: Changes::from_slice(changes).unwrap() }
 }
 
-/// A set of this stiffness.
 fn stiffness(id: Id, stiffness: f64) -> ToBoard {
     set(id, &[(Parameter::Stiffness, stiffness)])
 }
@@ -301,9 +256,9 @@ fn done(id: Id) -> Said {
     ToHost::Answer { id, outcome: Outcome::Done }
 }
 
-/// Torque in codes of a wall of that stiffness behind the coupling, at rest at [`Still`]'s count.
+/// Torque in codes of a wall of that stiffness behind the coupling, [`INSIDE`] the wall.
 fn codes(stiffness: f64) -> f64 {
-    let angle = 100.0 * core::f64::consts::TAU / 61_440.0;
+    let angle = f64::from(INSIDE) * core::f64::consts::TAU / 61_440.0;
     -angle * stiffness / (1.0 + stiffness / 44.0) * 1791.0 / 2.0
 }
 
@@ -347,7 +302,7 @@ fn a_certified_set_runs_whole() {
     }
     assert!(running.values.contains(&(Parameter::CouplingStiffness, 44.0)));
     assert_eq!(bench.status().state, State::Running);
-    let offset = f64::from(bench.hardware.code.offset());
+    let offset = f64::from(bench.hardware.code().offset());
     assert!((offset - codes(12.0)).abs() <= 1.0, "{offset} is not {}", codes(12.0));
 }
 
@@ -355,7 +310,7 @@ fn a_certified_set_runs_whole() {
 fn a_refused_set_changes_nothing_and_its_host_has_the_compilers_sentence() {
     let mut bench = Bench::new(None);
     bench.run(500);
-    let (before, code) = (bench.running(), bench.hardware.code);
+    let (before, code) = (bench.running(), bench.hardware.code());
     let mut scene = SCENE;
     scene.environment.wall_mut().unwrap().stiffness = 30.0;
     let sentence = scene.certify_in(Format::F32).unwrap_err().to_string();
@@ -373,7 +328,7 @@ fn a_refused_set_changes_nothing_and_its_host_has_the_compilers_sentence() {
         let sentence = bench.why(&changes);
         assert!(sentence.contains(part), "{sentence}");
     }
-    assert_eq!((bench.running(), bench.hardware.code), (before, code));
+    assert_eq!((bench.running(), bench.hardware.code()), (before, code));
     assert_eq!(bench.status().sets, 0);
 }
 
@@ -405,7 +360,7 @@ fn disarming_goes_before_arming() {
     bench.run(500);
     assert_eq!(bench.ask(&ToBoard::Disarm { id: 1 }), [done(1)]);
     assert_eq!(bench.status().state, State::Disarmed);
-    assert_eq!(bench.hardware.code, DacCode::MID_SCALE);
+    assert_eq!(bench.hardware.code(), DacCode::MID_SCALE);
     assert_eq!(bench.ask(&ToBoard::Arm { id: 2 }), [done(2)]);
     assert_eq!(bench.status().state, State::Running);
     for (first, second) in [
@@ -429,8 +384,8 @@ fn streams_what_it_is_asked_for_and_leaves_out_what_the_wire_does_not_take() {
     let said = bench.ask(&ToBoard::Stream(every));
     let ticks: Vec<Frame> = said.iter().flat_map(ticks).collect();
     assert!(ticks.len() > 40 && ticks.windows(2).all(|two| two[1].tick == two[0].tick + 10));
-    assert!(ticks.iter().all(|tick| tick.count == 100 && tick.slack == 750));
-    assert_eq!(ticks.last().unwrap().code, bench.hardware.code);
+    assert!(ticks.iter().all(|tick| tick.count == INSIDE && tick.slack == 700));
+    assert_eq!(ticks.last().unwrap().code, bench.hardware.code());
     assert_eq!(bench.status().thinned, 0);
     bench.tell(&ToBoard::Stream(core::num::NonZeroU32::new(1)));
     // Nothing is sent for a while: the servo's queue does not overflow for that.
@@ -536,7 +491,7 @@ proptest! {
             bench.session.receive(now);
             bench.run(1);
             silent.run(1);
-            prop_assert_eq!(bench.hardware.code, silent.hardware.code);
+            prop_assert_eq!(bench.hardware.code(), silent.hardware.code());
             prop_assert_eq!(bench.servo_loop.state(), silent.servo_loop.state());
         }
         bench.tell(&ToBoard::Stream(None));
@@ -582,9 +537,9 @@ proptest! {
             if wall.stiffness * 0.001 / 2.0 + wall.damping().abs() > 0.9 * 0.022 {
                 continue;
             }
-            let depth = 100.0 * core::f64::consts::TAU / 61_440.0 - wall.face();
+            let depth = f64::from(INSIDE) * core::f64::consts::TAU / 61_440.0 - wall.face();
             let torque = (wall.stiffness * depth / (1.0 + wall.stiffness / 44.0)).clamp(0.0, 1.0);
-            let offset = f64::from(bench.hardware.code.offset());
+            let offset = f64::from(bench.hardware.code().offset());
             prop_assert!((offset + torque * 1791.0 / 2.0).abs() <= 1.0, "{offset}, {torque}");
         }
     }

@@ -287,7 +287,7 @@ fn after_a_flood_every_accepted_set_is_answered_and_the_last_one_runs() {
         // The motor has the torque of the set that is read back.
         bench.tell(&ToBoard::Arm { id: 60_000 });
         assert!(bench.run(200).contains(&done(60_000)), "{seed}");
-        let offset = f64::from(bench.hardware.code.offset());
+        let offset = f64::from(bench.hardware.code().offset());
         assert!((offset - codes(stiffness)).abs() <= 1.0, "{seed}: {offset}, {stiffness}");
         assert_eq!(bench.set(60_001, &[(Parameter::Stiffness, 3.0)]), Outcome::Done, "{seed}");
     }

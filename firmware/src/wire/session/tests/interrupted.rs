@@ -20,7 +20,7 @@ const SWAP: u32 = 60;
 /// The interrupt with what it owns.
 struct Interrupt {
     servo_loop: ServoLoop<Environment, f32, Latched>,
-    hardware: Still,
+    hardware: Board,
     inbox: Inbox<'static, PreparedServo<Environment, f32, Latched>>,
     frames: Frames<'static, FRAMES>,
     /// Ticks in each of the next instants; after the last none.
@@ -39,7 +39,7 @@ impl Interrupt {
     fn ticks(&mut self, ticks: u32) {
         for _ in 0..ticks {
             self.servo_loop.run(&mut self.hardware, &mut self.inbox, &mut self.frames);
-            let code = self.hardware.code.get();
+            let code = self.hardware.code().get();
             let goes_on = self.servo_loop.state() == State::Running && code == self.steady.0;
             self.steady = (code, if goes_on { self.steady.1 + 1 } else { 0 });
             if self.steady.1 == STEADY && !self.is_whole() {
@@ -50,7 +50,7 @@ impl Interrupt {
 
     /// Whether the code is that of one of the sets.
     fn is_whole(&self) -> bool {
-        let code = f64::from(self.hardware.code.offset());
+        let code = f64::from(self.hardware.code().offset());
         let sets = SETS.iter().map(|(_, stiffness)| *stiffness).chain([FIRST]);
         sets.into_iter().any(|stiffness| (codes(stiffness) - code).abs() <= 1.0)
     }
@@ -87,7 +87,6 @@ fn messages() -> Vec<Vec<ToBoard>> {
     ]
 }
 
-/// The answers to a request.
 fn answers(said: &[Said], asked: Id) -> Vec<Outcome> {
     let answer = |said: &Said| match said {
         ToHost::Answer { id, outcome } if *id == asked => Some(*outcome),
