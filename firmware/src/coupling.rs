@@ -189,7 +189,6 @@ impl<N: Number> Solver<N> {
         both.times(self.contact_gain).smaller(depth.times(self.stiffness))
     }
 
-    /// Whether the coupling has no compliance.
     #[inline(always)]
     pub(crate) const fn is_rigid(&self) -> bool {
         self.is_rigid

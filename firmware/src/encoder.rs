@@ -114,7 +114,6 @@ impl Position {
         }
     }
 
-    /// The last reading.
     #[inline(always)]
     pub(crate) const fn reading(&self) -> Reading {
         if self.laps == 0 {

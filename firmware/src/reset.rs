@@ -36,7 +36,6 @@ words! { ResetCause {
     LowPower "low-power", OptionBytes "option-bytes",
 } }
 
-/// The cause in words.
 impl fmt::Display for ResetCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

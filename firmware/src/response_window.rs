@@ -34,7 +34,6 @@ pub(crate) struct ResponseWindow {
     late: End,
 }
 
-/// The response at one end of the window.
 #[derive(Clone, Copy)]
 struct End {
     delay: Interval,
@@ -46,7 +45,6 @@ struct End {
     updates: u16,
 }
 
-/// A quantity of a response.
 #[derive(Clone, Copy)]
 enum Quantity {
     /// `u`, the rest of a step.
@@ -239,7 +237,6 @@ impl End {
         self.by(0, quantity, time).add(self.by(1, quantity, time))
     }
 
-    /// The part of one lag in it.
     const fn by(&self, lag: usize, quantity: Quantity, time: Interval) -> Interval {
         let tau = self.lags[lag];
         if tau.is_zero() {

@@ -55,7 +55,6 @@ pub struct Limiter<N> {
     level: N,
     bound: N,
     step: N,
-    /// The reason for the bound.
     reason: LimitReason,
     /// The reason for the level: the bound, or the ramp.
     because: LimitReason,
@@ -122,7 +121,6 @@ impl<N: Number> Limiter<N> {
         self.set(N::ZERO);
     }
 
-    /// Whether the limiter is shut.
     pub(crate) fn is_shut(&self) -> bool {
         self.level <= N::ZERO
     }

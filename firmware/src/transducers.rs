@@ -55,10 +55,8 @@ impl Transducers {
         Ok(DacCode::CODES_TO_FULL_SCALE as f64 / full_scale)
     }
 
-    /// The largest number of counts that the encoder can move in `time` s, plus one for its edges.
-    ///
-    /// # Errors
-    /// If the counter could wrap undetected in that time.
+    /// The largest number of counts that the encoder can move in `time` s, plus one for its edges; an error if the
+    /// counter could wrap undetected in that time.
     pub(crate) const fn largest_step(&self, time: f64) -> Result<u32, BuildError> {
         let speed = self.largest_speed;
         ok!(BuildError::unless_positive("largest speed", speed));

@@ -7,7 +7,6 @@ use crate::environment::EnvironmentModel;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 
-/// `pi / 4`.
 const QUARTER_OF_PI: Interval = Interval::decimal(core::f64::consts::FRAC_PI_4);
 
 /// Largest mean torque in N m of an endless torque profile that a nonlinear encoder reads, and so the friction

@@ -261,7 +261,6 @@ impl LoopIntervals {
         self.latency = Some(lagging);
     }
 
-    /// The servo's coefficient for a value.
     pub(super) const fn coefficient(&self, value: Interval) -> Interval {
         rounded(value, self.format, Rounding::Nearest)
     }

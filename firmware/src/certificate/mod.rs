@@ -87,7 +87,6 @@ use modes::tightest_mode;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certified<S> {
     scene: S,
-    /// The scene as data.
     data: Scene,
     assessment: Assessment,
 }

@@ -23,7 +23,6 @@ pub struct RefusedMode<R> {
 }
 
 impl<R: Copy> RefusedMode<R> {
-    /// The name of the mode, and the reason.
     const fn sentence_of(&self, reason: &Sentence) -> Sentence {
         let mut t = Sentence::new();
         push!(t, "mode " {self.mode} ", `" {self.name} "`: " {reason.as_str()});
@@ -59,10 +58,7 @@ pub const fn first_refused_mode(scene: &Scene, format: Format) -> Option<Refused
 }
 
 /// The limits of a certified scene's modes on a board, the tightest of each kind, because any mode may be
-/// selected. `None` if there are no other modes.
-///
-/// # Errors
-/// The first mode that a board cannot render.
+/// selected; or the first mode that a board cannot render. `None` if there are no other modes.
 pub(super) const fn tightest_mode(
     scene: &Scene,
     format: Format,

@@ -111,7 +111,6 @@ impl Corners {
     }
 }
 
-/// All times of a scene.
 #[derive(Clone, Copy)]
 enum Times {
     Cells(Cells),
@@ -142,7 +141,6 @@ impl Times {
         }
     }
 
-    /// The response of a piece of a part.
     const fn response(&self, part: &LagIntervals, piece: usize) -> Option<SampledResponse> {
         let response = some!(part.response(piece));
         Some(match self {

@@ -228,7 +228,6 @@ fn hysteresis(scene: &Scene) -> Option<f64> {
 struct Peak {
     /// Largest torque error in N m for errors of up to 1 rad in each position.
     norm: f64,
-    /// Whether it holds for any motion.
     in_any_motion: bool,
 }
 

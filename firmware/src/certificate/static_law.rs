@@ -372,7 +372,6 @@ const fn variance(square: Interval, mean: Interval) -> Interval {
     square.sub(mean.mul(mean)).max(Interval::ZERO)
 }
 
-/// The times of a static law.
 #[derive(Clone, Copy)]
 struct Times<'s> {
     latency: &'s Latency,

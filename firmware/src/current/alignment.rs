@@ -153,10 +153,7 @@ impl Alignment {
         (self.state, self.time) = (next, 0);
     }
 
-    /// The result, after the end.
-    ///
-    /// # Errors
-    /// If the handle did not follow the field like the magnets of such a motor.
+    /// The result, after the end: an error if the handle did not follow the field like the magnets of such a motor.
     pub(super) fn result(&self) -> Result<PhaseAlignment, AlignmentError> {
         if self.is_brushed {
             return Err(AlignmentError::NotNeeded);

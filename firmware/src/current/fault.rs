@@ -92,7 +92,6 @@ fault_table! {
     }
 }
 
-/// The name of a phase.
 const fn name(phase: u32) -> &'static str {
     match phase {
         0 => "U",

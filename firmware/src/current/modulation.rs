@@ -168,7 +168,6 @@ impl Vector {
         }
     }
 
-    /// The vector turned by that angle.
     #[inline(always)]
     pub(super) const fn turned(self, rotation: Rotation) -> Self {
         let Rotation { cosine, sine } = rotation;

@@ -35,7 +35,6 @@ impl Turn {
         Self { count: 0, counts: counts.cast_signed(), scale, pole_pairs }
     }
 
-    /// Moves by a step.
     #[inline(always)]
     pub(super) const fn move_by(&mut self, step: i32) {
         let mut count = self.count.wrapping_add(step);
@@ -76,7 +75,6 @@ impl Turn {
         if is_whole_turn { 0 } else { nearest }
     }
 
-    /// Counts in an electrical turn.
     pub(super) const fn counts_per_electrical_turn(&self) -> f32 {
         self.counts as f32 / self.pole_pairs as f32
     }
@@ -197,9 +195,6 @@ impl IndexOffset {
 }
 
 /// Checks that an index is where the first one was, from the handle's positions in its turn.
-///
-/// # Errors
-/// If it is at another count.
 pub(super) const fn check_index(first: Turn, at: Turn) -> Result<(), PowerFault> {
     let (count, aligned) = (at.count.cast_unsigned(), first.count.cast_unsigned());
     let apart = count.abs_diff(aligned);
@@ -243,7 +238,6 @@ impl OffsetCheck {
         Self { stretch: Self::instants(instant) / ALL_STRETCHES, time: 0, across: 0, along: 0 }
     }
 
-    /// Instants of a check.
     pub(super) const fn instants(instant: f64) -> u32 {
         ALL_STRETCHES * (PULSE_TIME / instant) as u32
     }
@@ -271,10 +265,7 @@ impl OffsetCheck {
         }
     }
 
-    /// The result, after the end.
-    ///
-    /// # Errors
-    /// If the handle did not move as with the right phase.
+    /// The result, after the end: an error if the handle did not move as with the right phase.
     pub(super) const fn result(&self) -> Result<(), PowerFault> {
         let (across, along) = (self.across, self.along);
         if across >= LEAST_MOTION && along.unsigned_abs() < across.unsigned_abs() {

@@ -99,7 +99,6 @@ struct CurrentSense {
     to_supply: f64,
     /// Relative tolerance of these three resistors.
     resistor_tolerance: f64,
-    /// Gain of the amplifier.
     gain: f64,
     /// Relative tolerance of the gain.
     gain_tolerance: f64,

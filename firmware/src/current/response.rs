@@ -44,7 +44,6 @@ impl Plant {
     }
 }
 
-/// `exp(-x)`.
 const fn exp_of_negative(x: f64) -> f64 {
     Interval::exact(x).exp_of_negative().midpoint()
 }

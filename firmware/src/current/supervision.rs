@@ -41,10 +41,8 @@ impl Supervision {
     pub(super) const NONE: Self = Self { limited: 0, deviating: 0, sum: 0.0, by_speed: 0.0 };
 
     /// Takes an instant's deviation in A, the counts that the motor moved since the last instant in the direction
-    /// of its torque, and whether the voltage was limited.
-    ///
-    /// # Errors
-    /// If a deviation that no motion explains, or a limited voltage, has lasted too long.
+    /// of its torque, and whether the voltage was limited. An error if a deviation that no motion explains, or a
+    /// limited voltage, has lasted too long.
     #[inline(always)]
     pub(super) fn observe(
         &mut self,
@@ -104,10 +102,8 @@ impl Surroundings {
         Self { bus, outside: 0 }
     }
 
-    /// Takes a sample; returns the count of a supply in range, which is never 0.
-    ///
-    /// # Errors
-    /// If one of the two was out of range in [`SAMPLES`] consecutive samples.
+    /// Takes a sample; returns the count of a supply in range, which is never 0. An error if one of the two was out
+    /// of range in [`SAMPLES`] consecutive samples.
     #[inline(always)]
     pub(super) fn observe(&mut self, limits: &Limits, sample: &Sample) -> Result<f32, PowerFault> {
         match limits.check_surroundings(sample) {
@@ -228,10 +224,8 @@ pub(super) struct Offsets {
 }
 
 impl Offsets {
-    /// No block yet.
     pub(super) const NONE: Self = Self { sums: [0; 2], samples: 0, blocks: None };
 
-    /// Takes a sample.
     pub(super) const fn measure(&mut self, sample: &Sample) {
         let [u, v] = self.sums;
         // No sum is above 2^24.
@@ -242,10 +236,8 @@ impl Offsets {
         }
     }
 
-    /// The means in counts, which `f32` holds exactly.
-    ///
-    /// # Errors
-    /// If one is not that of a working amplifier, or no block is complete.
+    /// The means in counts, which `f32` holds exactly; an error if one is not that of a working amplifier, or no block
+    /// is complete.
     pub(super) fn checked(&self, limits: &Limits) -> Result<[f32; 2], PowerFault> {
         let sums = self.blocks.unwrap_or_default();
         let (lowest, highest) = (u32::from(limits.offsets.0), u32::from(limits.offsets.1));

@@ -164,7 +164,6 @@ impl<N: Number> Injector<N> {
         (self.last, self.movement) = (x_e, N::ZERO);
     }
 
-    /// Switches the damper.
     pub(crate) fn switch(&mut self, on: bool) {
         self.on = on;
     }

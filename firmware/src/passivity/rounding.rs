@@ -64,7 +64,6 @@ pub(super) const fn half_down(value: f64) -> f64 {
     if is_normal(half.to_bits()) || half + half == value { half } else { below(half) }
 }
 
-/// `value == 0.0`.
 pub(super) const fn is_zero(value: f64) -> bool {
     let bits = value.to_bits();
     // In one piece, the compiler would replace it by a comparison of doubles, which is a call on a board.
@@ -75,7 +74,6 @@ const fn is_zero_by_halves(bits: u64) -> bool {
     ((bits >> 32) as u32 & (u32::MAX >> 1)) | bits as u32 == 0
 }
 
-/// `value >= 0.0`.
 pub(super) const fn is_not_negative(value: f64) -> bool {
     value.to_bits() <= 1 << 63
 }

@@ -38,7 +38,6 @@ pub enum Unbuildable {
 }
 
 impl Transfer {
-    /// No torque.
     pub(crate) const ZERO: Self =
         Self::new(Polynomial::ZERO, Polynomial::ascending(&[Interval::ONE]));
 

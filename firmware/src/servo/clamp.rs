@@ -10,10 +10,8 @@ use crate::rendering::Rendering;
 use crate::torque::Limiter;
 
 impl<E: Rendering<N>, N: Number> Servo<E, N> {
-    /// The same servo with a clamp that opens and closes within `ticks`.
-    ///
-    /// # Errors
-    /// If the step of one tick rounds to zero in the servo's number format.
+    /// The same servo with a clamp that opens and closes within `ticks`; an error if the step of one tick rounds to zero
+    /// in the servo's number format.
     pub(crate) fn fading(self, bound: f64, ticks: f64) -> Result<Self, BuildError> {
         let name = "clamp's step in the servo's number format";
         let step = BuildError::number::<N>(name, bound / ticks)?;
@@ -21,7 +19,6 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
         Ok(Self { limiter: self.limiter.stepping(step), ..self })
     }
 
-    /// Its clamp.
     pub(crate) fn clamp(&mut self) -> &mut Limiter<N> {
         &mut self.limiter
     }

@@ -159,7 +159,6 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
         &self.servo
     }
 
-    /// The servo, for its clamp.
     pub(crate) const fn servo_mut(&mut self) -> &mut Servo<E, N> {
         &mut self.servo
     }

@@ -33,7 +33,6 @@ pub trait FrameSink {
     fn dropped(&self) -> u32;
 }
 
-/// A frame as words of the queue.
 type Words = [u32; 4];
 
 impl Frame {

@@ -80,7 +80,6 @@ pub trait Hardware {
 /// ```
 #[derive(Clone, Debug)]
 pub struct PeriodClock {
-    /// Clock counts in a period.
     counts: NonZeroU32,
     /// Clock counts after the beginning of a period within which its tick is in time.
     in_time: u32,

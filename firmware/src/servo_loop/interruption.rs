@@ -24,7 +24,6 @@ mod by_tests {
         INTERRUPT.set(Some(Box::new(interrupt)));
     }
 
-    /// Ends that.
     pub(crate) fn clear() {
         INTERRUPT.set(None);
     }

@@ -256,7 +256,6 @@ impl<R> Inbox<'_, R> {
         requests
     }
 
-    /// Whether a set waits.
     pub(super) fn has_set(&self) -> bool {
         self.sets.ready()
     }
@@ -277,19 +276,16 @@ impl<R> Inbox<'_, R> {
         self.shared.off.store(self.disarm, Ordering::Release);
     }
 
-    /// Publishes the reply to a request to arm.
     pub(super) fn reply_to_arm(&self, number: u32, reply: Reply) {
         let [kind, code, a, b] = reply.to_words();
         self.shared.arming.publish([number, kind, code, a, b]);
     }
 
-    /// Publishes the reply to a request for an alignment.
     pub(super) fn reply_to_align(&self, number: u32, reply: Reply) {
         let [kind, code, a, b] = reply.to_words();
         self.shared.alignment.publish([number, kind, code, a, b]);
     }
 
-    /// Publishes the status.
     pub(super) fn reply_with_status(&self, number: u32, status: &Status) {
         let mut words = [number; 1 + Status::WORDS];
         let [_, rest @ ..] = &mut words;
@@ -314,7 +310,6 @@ impl<const WORDS: usize> Published<WORDS> {
         Self { version: AtomicU32::new(0), words: [const { AtomicU32::new(0) }; WORDS] }
     }
 
-    /// Replaces the words.
     pub(super) fn publish(&self, words: [u32; WORDS]) {
         let version = self.version.load(Ordering::Relaxed);
         self.version.store(version.wrapping_add(1), Ordering::Relaxed);

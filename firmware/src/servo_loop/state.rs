@@ -74,7 +74,6 @@ pub struct Status {
 }
 
 impl Status {
-    /// Words of a status in the mailbox.
     pub(super) const WORDS: usize = 15;
 
     pub(super) fn to_words(self) -> [u32; Self::WORDS] {
@@ -154,7 +153,6 @@ pub enum Reply {
 }
 
 impl Reply {
-    /// Words of a reply in the mailbox.
     pub(super) const WORDS: usize = 4;
 
     pub(super) fn to_words(self) -> [u32; Self::WORDS] {

@@ -17,7 +17,6 @@ use crate::scene_codec::{FRAME, decode, encode};
 #[derive(Debug)]
 pub struct HostClosed;
 
-/// The pipes to the host.
 struct Host {
     counts: File,
     codes: File,

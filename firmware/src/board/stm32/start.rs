@@ -150,7 +150,6 @@ fn log_banner(name: &str) {
     defmt::info!("{=str} on {=str}, stack: {} of {} bytes left", name, wiring::NAME, free, size);
 }
 
-/// The reason of the reset, and its consequence.
 fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_because: Option<Reason>) {
     defmt::info!("last reset: {=str}", reset.as_str());
     if let Some(FaultRecord { fault, tick, .. }) = previous_fault {

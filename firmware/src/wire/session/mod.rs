@@ -89,7 +89,6 @@ pub struct Session<'a, E: Rendering<N>, N: Number, M, const LENGTH: usize> {
     stream: Stream,
     /// The kind of reply that is sent next, if there is one.
     turn: Turn,
-    /// The set that the servo renders.
     active: Set<E>,
     /// The number of the active set: sets swapped in since the start; wraps.
     revision: u32,

@@ -149,7 +149,6 @@ impl Stream {
         self.due = self.batch.is_full() || (!self.batch.is_empty() && waited >= self.patience);
     }
 
-    /// The batch that is due.
     pub(super) fn batch(&mut self) -> Option<Batch> {
         if !core::mem::take(&mut self.due) {
             return None;

@@ -64,18 +64,14 @@ impl PendingReplies {
 
     /// Takes a request to arm, or refuses it while a request to disarm is pending or another one to arm.
     pub(super) fn arm(&mut self, id: Id, request: impl FnOnce() -> u32) {
-        let is_overruled = self.disarming.is_open();
-        if let Err(refusal) = self.arming.open(id, is_overruled, request) {
-            self.refuse(id, refusal);
-        }
+        let opened = self.arming.open(id, self.disarming.is_open(), request);
+        opened.unwrap_or_else(|refusal| self.refuse(id, refusal));
     }
 
     /// Takes a request to align the motor, with the same exceptions.
     pub(super) fn align(&mut self, id: Id, request: impl FnOnce() -> u32) {
-        let is_overruled = self.disarming.is_open();
-        if let Err(refusal) = self.alignment.open(id, is_overruled, request) {
-            self.refuse(id, refusal);
-        }
+        let opened = self.alignment.open(id, self.disarming.is_open(), request);
+        opened.unwrap_or_else(|refusal| self.refuse(id, refusal));
     }
 
     /// Takes a request to disarm, which is never refused and overrules the others. `number` is its number.
@@ -85,7 +81,6 @@ impl PendingReplies {
         self.disarming.open(id, number);
     }
 
-    /// A request is refused.
     pub(super) fn refuse(&mut self, id: Id, refusal: Refusal) {
         if self.refusals.is_full() {
             let _ = self.refusals.pop_front();
@@ -93,7 +88,6 @@ impl PendingReplies {
         let _ = self.refusals.push_back((id, Outcome::Refused(refusal)));
     }
 
-    /// Whether no reply is pending.
     #[cfg(test)]
     pub(super) fn is_empty(&self) -> bool {
         let Self { greeting, parameters, description, status_number, status, .. } = self;
@@ -104,7 +98,6 @@ impl PendingReplies {
         greeting.is_none() && !has_question && !has_request && !has_answer
     }
 
-    /// The next refusal.
     pub(super) fn refusal(&mut self) -> Option<(Id, Outcome)> {
         self.refusals.pop_front()
     }
@@ -116,7 +109,6 @@ pub(super) struct Switching(Option<Open>);
 
 struct Open {
     id: Id,
-    /// Its number in the mailbox.
     number: u32,
     outcome: Option<Outcome>,
 }

@@ -38,12 +38,10 @@ const TIMER: pac::timer::TimBasic = pac::TIM6;
 /// The timer of a phase, on all boards.
 const PHASE_TIMER: pac::timer::TimBasic = pac::TIM7;
 
-/// A period in counts of the timer.
 #[derive(Clone, Copy, Debug)]
 struct Period {
     /// Clock counts for one count of the timer.
     prescale: u32,
-    /// Counts of the timer for one period.
     counts: u32,
     /// Clock counts per second.
     clock: f64,
@@ -82,7 +80,6 @@ impl Period {
         (f64::from(self.prescale * self.counts) - wanted).abs()
     }
 
-    /// Clock counts in a period.
     fn clock_counts(&self) -> NonZeroU32 {
         // Both factors are at least one.
         NonZeroU32::new(self.prescale * self.counts).unwrap_or(NonZeroU32::MIN)

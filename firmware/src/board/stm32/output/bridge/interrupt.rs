@@ -46,7 +46,6 @@ pub struct CurrentIsr<const BRUSHLESS: bool> {
     last: u32,
     start_up: StartUp,
     heating: Heating,
-    /// The running alignment.
     alignment: Option<Alignment>,
     /// The code's torque that the current follows, as [`DacCode::offset`].
     reference: i16,

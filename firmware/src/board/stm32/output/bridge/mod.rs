@@ -78,7 +78,6 @@ const RAISE: u32 = u32::MAX - 1;
 static FAULT: AtomicU32 = AtomicU32::new(0);
 static FAULT_NUMBERS: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
 
-/// State of the gates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum State {
@@ -197,7 +196,6 @@ impl Output {
     }
 }
 
-/// Takes the pending event.
 #[cold]
 #[inline(never)]
 fn take_event() -> Option<OutputEvent> {

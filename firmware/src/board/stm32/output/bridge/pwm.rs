@@ -22,7 +22,6 @@ use embassy_stm32::rcc;
 use crate::board::stm32::wiring::POWER_STAGE;
 use crate::current::{CurrentLoop, Duties};
 
-/// The timer.
 const TIMER: pac::timer::TimAdv = pac::TIM1;
 
 /// The comparators of the three phases, as TIM1_AF1 counts them: COMP1, COMP2 and COMP4.
