@@ -47,6 +47,9 @@ pub mod stm32;
 /// boards reach within a quarter of a per cent.
 pub const BAUD: u32 = 460_800;
 
+/// The output mode of a program, by default latched.
+pub type ProgramMode<M = crate::servo::Latched> = M;
+
 /// Makes a program of a certified scene.
 ///
 /// Takes the scene, its certificate (a constant, so that an unsafe scene does not compile), for an environment
@@ -228,18 +231,13 @@ macro_rules! scene_program {
 #[macro_export]
 macro_rules! bridge_checked {
     ([] $mode:tt $scene:ident, $certified:ident, $transducers:ident) => {};
-    ([$current_loop:ident] [] $scene:ident, $certified:ident, $transducers:ident) => {
-        $crate::bridge_checked!(
-            [$current_loop] [$crate::servo::Latched] $scene, $certified, $transducers
-        );
-    };
-    ([$current_loop:ident] [$mode:ty] $scene:ident, $certified:ident, $transducers:ident) => {
+    ([$current_loop:ident] [$($mode:ty)?] $scene:ident, $certified:ident, $transducers:ident) => {
         const _: () = $current_loop.check_serves(
             &$scene.latency,
             $scene.timing.period,
             &$transducers,
             &$scene.device,
-            <$mode as $crate::servo::OutputMode>::TIMING,
+            <$crate::board::ProgramMode<$($mode)?> as $crate::servo::OutputMode>::TIMING,
         );
 
         const _: () = $current_loop.check_regeneration(

@@ -41,23 +41,15 @@ unsafe fn DefaultHandler(number: i16) {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
-    ($environment:ty, $program:ident, $certified:ident, $number:ty, [], $bridge:tt) => {
-        $crate::board_program!(
-            $environment,
-            $program,
-            $certified,
-            $number,
-            [$crate::board::qemu::Mode],
-            $bridge
-        );
-    };
     // The emulator has no bridge.
-    ($environment:ty, $program:ident, $certified:ident, $number:ty, [$mode:ty], $bridge:tt) => {
-        /// The scene, with its delay checked.
-        const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
-            $certified.timing_checked::<$mode>();
+    ($environment:ty, $program:ident, $certified:ident, $number:ty, [$($mode:ty)?], $bridge:tt) => {
+        type ProgramMode = $crate::board::qemu::Mode<$($mode)?>;
 
-        static STATICS: $crate::board::qemu::Statics<$environment, $number, $mode> =
+        /// The scene, with its delay checked.
+        const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, ProgramMode> =
+            $certified.timing_checked();
+
+        static STATICS: $crate::board::qemu::Statics<$environment, $number, ProgramMode> =
             $crate::board::qemu::Statics::empty();
 
         /// The counterpart of other boards' timer interrupt.

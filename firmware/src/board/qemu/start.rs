@@ -32,8 +32,8 @@ use super::{
     parts::CycleParts,
 };
 
-/// The default output mode of a program: at the instant of the count, as in the simulation.
-pub type Mode = crate::servo::Simultaneous;
+/// The output mode of a program, by default at the instant of the count, as in the simulation.
+pub type Mode<M = crate::servo::Simultaneous> = M;
 
 /// The statics of a program, with its scene's types. The interrupt's state is first, within the reach of a
 /// floating-point load (1020 bytes), so that no address is computed for it.

@@ -44,6 +44,3 @@ pub use start::{
     with_board_counter,
 };
 pub use sweep::{Setup, SweepCell, measure};
-
-/// The default output mode of a program.
-pub type Mode = crate::servo::Latched;

@@ -211,17 +211,9 @@ async fn yield_now() {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
-    ($environment:ty, $program:ident, $certified:ident, $number:ty, [], $bridge:tt) => {
-        $crate::board_program!(
-            $environment,
-            $program,
-            $certified,
-            $number,
-            [$crate::board::stm32::Mode],
-            $bridge
-        );
-    };
-    ($environment:ty, $program:ident, $certified:ident, $number:ty, [$mode:ty], $bridge:tt) => {
+    ($environment:ty, $program:ident, $certified:ident, $number:ty, [$($mode:ty)?], $bridge:tt) => {
+        type ProgramMode = $crate::board::ProgramMode<$($mode)?>;
+
         $crate::board_chip!();
 
         $crate::board_output!($bridge);
@@ -229,19 +221,19 @@ macro_rules! board_program {
         $crate::board_filter!($program.transducers);
 
         /// The scene, whose delay must be that of the board's DAC; otherwise this does not compile.
-        const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
-            $certified.timing_checked::<$mode>();
+        const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, ProgramMode> =
+            $certified.timing_checked();
 
         /// The program with this board's counter.
         const BOARD_PROGRAM: $crate::boot::Program<$environment> =
             $crate::board::stm32::with_board_counter($program);
 
-        static ISR_STATE: $crate::board::stm32::ServoCell<$environment, $number, $mode> =
+        static ISR_STATE: $crate::board::stm32::ServoCell<$environment, $number, ProgramMode> =
             $crate::board::isr_cell::IsrCell::empty();
-        static MAILBOX: $crate::board::isr_cell::MailboxCell<$environment, $number, $mode> =
+        static MAILBOX: $crate::board::isr_cell::MailboxCell<$environment, $number, ProgramMode> =
             $crate::__private::static_cell::StaticCell::new();
 
-        static LINK: $crate::board::stm32::LinkCell<$environment, $number, $mode> =
+        static LINK: $crate::board::stm32::LinkCell<$environment, $number, ProgramMode> =
             $crate::__private::static_cell::StaticCell::new();
 
         $crate::board_tick!();
@@ -249,7 +241,7 @@ macro_rules! board_program {
         /// The task below the servo. A task may not be generic, so each program has its own.
         #[$crate::__private::task(embassy_executor = $crate::__private::embassy_executor)]
         async fn serve(
-            link: &'static mut $crate::board::stm32::HostLink<$environment, $number, $mode>,
+            link: &'static mut $crate::board::stm32::HostLink<$environment, $number, ProgramMode>,
         ) -> ! {
             link.serve().await
         }

@@ -12,12 +12,12 @@ use embassy_stm32::interrupt::InterruptExt;
 use heapless::String;
 use static_cell::StaticCell;
 
-use super::Mode;
 use super::output;
 use super::registers::Registers;
 use super::serial::Serial;
 use super::start::{init_chip, registers, width};
 use super::wiring::ENCODER;
+use crate::board::ProgramMode;
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::IsrCell;
 use crate::boot::Startup;
@@ -170,14 +170,14 @@ pub fn measure<const N: usize>(
     cell: &'static SweepCell,
 ) -> ! {
     let mut serial = init_chip(setup.filter);
-    let mut hardware = registers(setup.output, sweep.period(), Mode::TIMING);
+    let mut hardware = registers(setup.output, sweep.period(), <ProgramMode>::TIMING);
     hardware.zero_encoder();
     defmt::info!("last reset: {=str}", hardware.reset_cause().as_str());
     static QUEUE: StaticCell<FrameQueue<ROWS>> = StaticCell::new();
     let (rows, mut told) = QUEUE.init_with(FrameQueue::new).split();
     let exciter = Exciter::new(sweep);
     hardware.start_watchdog();
-    hardware.start(Mode::TIMING);
+    hardware.start(<ProgramMode>::TIMING);
     let player = SweepIsr {
         beginning: exciter.clone(),
         exciter,
