@@ -80,21 +80,9 @@ impl Assumption {
     /// The status of the assumption.
     pub fn standing(&self) -> AssumptionStatus {
         match self {
-            Self::DevicePassivity { .. }
-            | Self::Hold { .. }
-            | Self::Latency(_)
-            | Self::Encoder(_)
-            | Self::Endless { .. }
-            | Self::Delay { .. }
-            | Self::StatedModel { .. }
-            | Self::CancelledDamping { .. }
-            | Self::StepsUnbounded
-            | Self::WorstPeriod { passes: false, .. }
-            | Self::Saturates { bound: None, .. } => AssumptionStatus::Assumed,
-            Self::WorstPeriod { passes: true, .. } | Self::Saturates { bound: Some(_), .. } => {
-                AssumptionStatus::Holds
-            }
-            Self::OneSided { bound } if bound.is_some() => AssumptionStatus::Holds,
+            Self::WorstPeriod { passes: true, .. }
+            | Self::Saturates { bound: Some(_), .. }
+            | Self::OneSided { bound: Some(_) } => AssumptionStatus::Holds,
             Self::Limited { full_scale: None, .. } | Self::StepsNotStated => {
                 AssumptionStatus::NotStated
             }
@@ -109,6 +97,8 @@ impl Assumption {
                 Some(true) => AssumptionStatus::Holds,
                 Some(false) => AssumptionStatus::Fails,
             },
+            // The others are about the machine.
+            _ => AssumptionStatus::Assumed,
         }
     }
 }

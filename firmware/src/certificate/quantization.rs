@@ -177,28 +177,22 @@ impl fmt::Display for QuantizationBound {
                 "errors of torque of up to {hum} N m are more than the {motor} N m of the motor, so that no \
                  friction that it moves prevents a limit cycle: use a finer encoder, or a softer coupling or \
                  environment"
-            )?,
-            (None, None, _) => {
-                write!(
-                    f,
-                    "errors of torque of up to {hum} N m make a limit cycle possible unless the device \
-                     has {hum} N m of Coulomb friction"
-                )?;
-            }
-            (None, Some(friction), None) => write!(
+            ),
+            (None, None, _) => write!(
                 f,
-                "the device's friction of {friction} N m prevents a limit cycle, as far as the \
-                 steps are stated"
-            )?,
-            (None, Some(friction), Some(true)) => {
-                write!(f, "the device's friction of {friction} N m prevents a limit cycle")?;
-            }
+                "errors of torque of up to {hum} N m make a limit cycle possible unless the device has {hum} N m \
+                 of Coulomb friction"
+            ),
             (None, Some(friction), Some(false)) => write!(
                 f,
                 "errors of torque of up to {hum} N m make a limit cycle possible: the device's friction of \
                  {friction} N m is lower"
-            )?,
-        }
+            ),
+            (None, Some(friction), rests) => {
+                let as_far = if rests.is_none() { ", as far as the steps are stated" } else { "" };
+                write!(f, "the device's friction of {friction} N m prevents a limit cycle{as_far}")
+            }
+        }?;
         if let Some(crossing) = self.crossing.map(RoundUp3) {
             write!(
                 f,
@@ -209,10 +203,7 @@ impl fmt::Display for QuantizationBound {
         if self.in_any_motion {
             return Ok(());
         }
-        f.write_str(
-            "; while the device moves through a face the error is larger, in proportion to \
-                     its speed",
-        )
+        f.write_str("; while the device moves through a face the error is larger, in proportion to its speed")
     }
 }
 
