@@ -4,37 +4,33 @@ use core::fmt;
 
 use crate::text::words;
 
-/// The cause of a board's last reset, from its chip's reset flags.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[repr(u8)]
-pub enum ResetCause {
+words! {
+    /// The cause of a board's last reset, from its chip's reset flags.
+    #[derive(Default)]
+    #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+    #[repr(u8)]
+    ResetCause {
     /// Not reported by the chip.
     #[default]
-    Unknown = 0,
+    Unknown = 0 "unknown",
     /// The supply was switched on.
-    PowerOn = 1,
+    PowerOn = 1 "power-on",
     /// The supply was too low for a while, but not long enough for RAM to lose its contents.
-    BrownOut = 2,
+    BrownOut = 2 "brown-out",
     /// The reset pin: a button, or a debug probe.
-    Pin = 3,
+    Pin = 3 "pin",
     /// Requested by the program, or by a debug probe through a register.
-    Software = 4,
+    Software = 4 "software",
     /// The independent watchdog: the servo's interrupt stopped.
-    IndependentWatchdog = 5,
+    IndependentWatchdog = 5 "independent-watchdog",
     /// The window watchdog, which no program here starts.
-    WindowWatchdog = 6,
+    WindowWatchdog = 6 "window-watchdog",
     /// A low-power mode that the option bytes forbid.
-    LowPower = 7,
+    LowPower = 7 "low-power",
     /// The option bytes were reloaded.
-    OptionBytes = 8,
+    OptionBytes = 8 "option-bytes",
+    }
 }
-
-words! { ResetCause {
-    Unknown "unknown", PowerOn "power-on", BrownOut "brown-out", Pin "pin", Software "software",
-    IndependentWatchdog "independent-watchdog", WindowWatchdog "window-watchdog",
-    LowPower "low-power", OptionBytes "option-bytes",
-} }
 
 impl fmt::Display for ResetCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

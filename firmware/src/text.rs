@@ -89,14 +89,22 @@ macro_rules! or_refuse {
 }
 pub(crate) use or_refuse;
 
-/// All values of an enumeration, and each of them in one word.
+/// An enumeration as a table: a row for each value, with its text.
 macro_rules! words {
-    ($name:ident { $($value:ident $word:literal,)+ }) => {
+    ($(#[$about:meta])* $name:ident {
+        $($(#[$doc:meta])* $value:ident $(= $number:literal)? $word:literal,)+
+    }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $name {
+            $($(#[$doc])* $value $(= $number)?,)+
+        }
+
         impl $name {
             /// All values, in their order.
             pub const ALL: [Self; [$($word),+].len()] = [$(Self::$value),+];
 
-            /// The value in one word, for tables.
+            /// The value as text, for tables and sentences.
             pub const fn as_str(self) -> &'static str {
                 match self {
                     $(Self::$value => $word,)+

@@ -8,34 +8,31 @@ use crate::current::HeatStep;
 use crate::number::Number;
 use crate::text::words;
 
-/// The reason why a tick's output is below the environment's torque. This is telemetry, not a fault.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[repr(u8)]
-pub enum LimitReason {
+words! {
+    /// The reason why a tick's output is below the environment's torque. This is telemetry, not a fault.
+    #[derive(Default)]
+    #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+    #[repr(u8)]
+    LimitReason {
     /// Nothing was limited.
     #[default]
-    None = 0,
+    None = 0 "none",
     /// The scene's torque limit.
-    Torque = 1,
+    Torque = 1 "torque",
     /// The DAC's full scale; the scene has no limit of its own.
-    DacRange = 2,
+    DacRange = 2 "converter",
     /// The position left the range of the number format; the angle stays at its end.
-    Angle = 3,
+    Angle = 3 "angle",
     /// The torque was not a number; the output was zero.
-    NotANumber = 4,
+    NotANumber = 4 "not-a-number",
     /// The clamp is opening, closing or shut.
-    Ramp = 5,
+    Ramp = 5 "ramp",
     /// The continuous current of the board's bridge, after more current for a time.
-    Heat = 6,
+    Heat = 6 "heat",
     /// The energy that the budget of a host leaves: the torque is the host's, not the scene's.
-    Energy = 7,
+    Energy = 7 "energy",
+    }
 }
-
-words! { LimitReason {
-    None "none", Torque "torque", DacRange "converter", Angle "angle", NotANumber "not-a-number",
-    Ramp "ramp", Heat "heat", Energy "energy",
-} }
 
 impl fmt::Display for LimitReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

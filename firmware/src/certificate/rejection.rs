@@ -224,7 +224,7 @@ impl Rejection {
                     " N m/rad");
             }
             Self::Undecided { doubt, index, limit, .. } => {
-                t.push(sentence_of(*doubt));
+                t.push(doubt.as_str());
                 if let (Some(index), Some(limit)) = (index, limit) {
                     push!(t, " (alpha = " {index.hi()} ", delta = " {limit.lo()} " N m s/rad)");
                 }
@@ -240,50 +240,6 @@ struct Angle(Interval);
 impl Piece<Angle> {
     const fn push_to(self, text: &mut Sentence) {
         push!(*text, " (at cos(theta) = " {self.0.0.midpoint()} ")");
-    }
-}
-
-const fn sentence_of(doubt: UndecidedReason) -> &'static str {
-    match doubt {
-        UndecidedReason::PoleNearCircle => {
-            "rounding hides whether all poles are inside the unit circle: one is near it, or several are close \
-             together"
-        }
-        UndecidedReason::SeveralPolePairs => {
-            "the environment has several pole pairs on the unit circle"
-        }
-        UndecidedReason::ResidueSign => {
-            "rounding hides the sign of a residue on the unit circle; declare exact zeros at z = 1 as unit_zeros"
-        }
-        UndecidedReason::OutOfRange => "numbers or degrees are out of the range of the computation",
-        UndecidedReason::TooClose => "the index is too close to its limit to tell",
-        UndecidedReason::NoNonlinearBound => {
-            "no bound is known for a general rational environment with a torque limit"
-        }
-        UndecidedReason::MissedWithLatency => {
-            "no proof is known for updates that are missed where torques lag: leave out the worst period"
-        }
-        UndecidedReason::NoBoundAtPort => {
-            "without a coupling no bound is known for this environment with this limit, or with these times: updates \
-             that are missed beside two lags, or beside a lag and jitter, or torques and counts that both jitter beside a \
-             lag; couple it by a spring or, where torques lag, by the matched coupling"
-        }
-        UndecidedReason::NotBelowBound => {
-            "without a coupling the bound on what the scene needs is not below delta, and it is not known whether it \
-             needs as much"
-        }
-        UndecidedReason::NoSnapBound => {
-            "no proof is known for a snap point whose torque comes more than one sample late, without a coupling, or \
-             beside a wall or a canceller: the jump of each snap would add energy in every late tick; give it a \
-             delay of 0 or 1, a coupling spring or, where torques lag, the matched coupling, and nothing beside it"
-        }
-        UndecidedReason::NoProofWithInl => {
-            "no proof is known for a nonlinear encoder with this coupling and these times: leave the coupling out, or \
-             correct the angle and state the linearity of the rest"
-        }
-        UndecidedReason::NoTransferFunction => {
-            "the environment is stated by a bound, without a transfer function"
-        }
     }
 }
 

@@ -140,33 +140,29 @@ pub const SWEEP_PROTOCOL: u32 = 3;
 /// Time in s without a request of the host after which an unsupervised sweep ends.
 pub const SILENCE: f64 = 0.5;
 
-/// The end of a sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SweepEnd {
+words! {
+    /// The end of a sweep.
+    SweepEnd {
     /// The sweep is complete.
-    Done,
+    Done "done",
     /// The host stopped it.
-    Stopped,
+    Stopped "stopped",
     /// The host has sent no request for [`SILENCE`].
-    Silent,
+    Silent "silent",
     /// A tick came late or not at all, so that a torque was held for too long.
-    MissedTick,
+    MissedTick "missed-tick",
     /// A row was lost because the queue to the host was full.
-    LostRow,
+    LostRow "lost-row",
     /// The device left the limits of its travel.
-    Travel,
+    Travel "travel",
     /// The device was faster than its limit.
-    Speed,
+    Speed "speed",
     /// The encoder moved further than a device can.
-    Jump,
+    Jump "jump",
     /// The board's bridge removed the torque.
-    OutputFault,
+    OutputFault "output-fault",
+    }
 }
-
-words! { SweepEnd {
-    Done "done", Stopped "stopped", Silent "silent", MissedTick "missed-tick", LostRow "lost-row",
-    Travel "travel", Speed "speed", Jump "jump", OutputFault "output-fault",
-} }
 
 impl SweepEnd {
     /// The end with this word.

@@ -4,6 +4,7 @@ use super::interval::Interval;
 use super::polynomial::{Polynomial, UnitRoot};
 use super::tangent;
 use super::transfer::Transfer;
+use crate::text::words;
 
 /// A transfer function with separated circle poles, whose other poles are proved inside:
 ///
@@ -44,22 +45,34 @@ pub enum IndexError {
     Undecided(UndecidedReason),
 }
 
-/// The reason why a condition could not be decided. A rejection's sentence has each in words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the sentences describe the variants")]
-pub enum UndecidedReason {
-    PoleNearCircle,
-    SeveralPolePairs,
-    ResidueSign,
-    OutOfRange,
-    TooClose,
-    NoNonlinearBound,
-    NoTransferFunction,
-    MissedWithLatency,
-    NoBoundAtPort,
-    NotBelowBound,
-    NoSnapBound,
-    NoProofWithInl,
+words! {
+    /// The reason why a condition could not be decided.
+    #[allow(missing_docs, reason = "the sentences describe the variants")]
+    UndecidedReason {
+    PoleNearCircle "rounding hides whether all poles are inside the unit circle: one is near it, or \
+        several are close together",
+    SeveralPolePairs "the environment has several pole pairs on the unit circle",
+    ResidueSign "rounding hides the sign of a residue on the unit circle; declare exact zeros at z = 1 \
+        as unit_zeros",
+    OutOfRange "numbers or degrees are out of the range of the computation",
+    TooClose "the index is too close to its limit to tell",
+    NoNonlinearBound "no bound is known for a general rational environment with a torque limit",
+    NoTransferFunction "the environment is stated by a bound, without a transfer function",
+    MissedWithLatency "no proof is known for updates that are missed where torques lag: leave out the \
+        worst period",
+    NoBoundAtPort "without a coupling no bound is known for this environment with this limit, or with \
+        these times: updates that are missed beside two lags, or beside a lag and jitter, or torques \
+        and counts that both jitter beside a lag; couple it by a spring or, where torques lag, by the \
+        matched coupling",
+    NotBelowBound "without a coupling the bound on what the scene needs is not below delta, and it is \
+        not known whether it needs as much",
+    NoSnapBound "no proof is known for a snap point whose torque comes more than one sample late, \
+        without a coupling, or beside a wall or a canceller: the jump of each snap would add energy in \
+        every late tick; give it a delay of 0 or 1, a coupling spring or, where torques lag, the \
+        matched coupling, and nothing beside it",
+    NoProofWithInl "no proof is known for a nonlinear encoder with this coupling and these times: leave \
+        the coupling out, or correct the angle and state the linearity of the rest",
+    }
 }
 
 /// Separates the circle poles of `G`, cancels exact common factors, and proves the other poles inside.

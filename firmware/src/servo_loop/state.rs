@@ -5,32 +5,29 @@ use core::fmt;
 use crate::fault::Fault;
 use crate::text::words;
 
-/// The servo's state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[repr(u8)]
-pub enum State {
+words! {
+    /// The servo's state.
+    #[derive(Default)]
+    #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+    #[repr(u8)]
+    State {
     /// The amplifier is off.
     #[default]
-    Disarmed = 0,
+    Disarmed = 0 "disarmed",
     /// The clamp is opening.
-    FadingIn = 1,
+    FadingIn = 1 "fading-in",
     /// The servo renders the scene.
-    Running = 2,
+    Running = 2 "running",
     /// The clamp is closing, to disarm or to swap a set of parameters in.
-    FadingOut = 3,
+    FadingOut = 3 "fading-out",
     /// The clamp is shut while samples fill the memory of a new set, or the torque output starts up.
-    Settling = 4,
+    Settling = 4 "settling",
     /// A fault stopped it; the amplifier is off.
-    Faulted = 5,
+    Faulted = 5 "faulted",
     /// A brushless motor is being aligned: its field turns the handle, and no scene is rendered.
-    Aligning = 6,
+    Aligning = 6 "aligning",
+    }
 }
-
-words! { State {
-    Disarmed "disarmed", FadingIn "fading-in", Running "running", FadingOut "fading-out",
-    Settling "settling", Faulted "faulted", Aligning "aligning",
-} }
 
 impl State {
     /// Whether the amplifier is on.
