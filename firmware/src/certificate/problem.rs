@@ -30,22 +30,6 @@ const ROUGHLY: f64 = 1e-4;
 ///
 /// It gives the same verdict as [`super::assess`] at a fraction of the cost: an index is only enclosed until
 /// it is clear on which side of its limit it is. For searches and maps with thousands of scenes.
-///
-/// ```
-/// use haptic_servo::certificate::PassivityProblem;
-/// use haptic_servo::environment::Wall;
-/// use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
-///
-/// let scene = |stiffness| Scene {
-///     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-///     timing: Timing { period: 0.001, worst_period: None },
-///     coupling: Coupling::Spring { stiffness: 44.0 },
-///     environment: Wall::damped(stiffness, 0.01, 1).alone(),
-///     latency: Latency::NONE, torque_limit: None,
-/// };
-/// let passes = |stiffness| PassivityProblem::of(&scene(stiffness)).is_ok_and(|posed| posed.is_certified());
-/// assert!(passes(23.9) && !passes(24.1));
-/// ```
 #[derive(Clone, Copy)]
 pub struct PassivityProblem {
     pub(super) numbers: LoopIntervals,

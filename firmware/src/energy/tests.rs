@@ -6,26 +6,20 @@ use core::f64::consts::TAU;
 use proptest::prelude::*;
 
 use super::*;
-use crate::encoder::{CounterWidth, RawCount};
+use crate::encoder::RawCount;
 use crate::environment::{Discretize, Environment, Law, LawContext, Wall};
 use crate::scene::{Coupling, Latency, Scene};
 use crate::servo::{
     AtPhase, Latched, PreparedServo, RenderingOptions, Servo, Simultaneous, Transducers,
 };
+use crate::test_scene;
 
 const PERIOD: f64 = 1e-3;
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 1e6,
-    counter: CounterWidth::Bits32,
-    full_scale_torque: 2.0,
-    largest_speed: 100.0,
-};
+const TRANSDUCERS: Transducers =
+    Transducers { counts_per_turn: 1e6, full_scale_torque: 2.0, ..test_scene::TRANSDUCERS };
 
 const fn spring(stiffness: f64) -> Scene {
-    Scene {
-        torque_limit: Some(1.5),
-        ..crate::test_scene::scene(Wall::spring(stiffness, 1).alone())
-    }
+    Scene { torque_limit: Some(1.5), ..test_scene::scene(Wall::spring(stiffness, 1).alone()) }
 }
 
 /// Ticks in which the encoder moved by `step` and a code was written.

@@ -174,14 +174,12 @@ impl SweepEnd {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::encoder::CounterWidth;
+    use crate::test_scene::PADDLE;
 
     const TRANSDUCERS: Transducers = Transducers {
         // A thousand counts in a rad, and a little more, so that no limit is a whole number of them.
         counts_per_turn: 1000.5 * TAU,
-        counter: CounterWidth::Bits16,
-        full_scale_torque: 2.0,
-        largest_speed: 100.0,
+        ..PADDLE
     };
 
     #[test]

@@ -12,7 +12,7 @@ use crate::scene::{Device, TimeRange, Timing};
 use crate::scene_type::Typed;
 use crate::servo::{AtPhase, Latched};
 
-fn scene(period: f64, delta: f64, wall: Wall, latency: Latency) -> Scene {
+const fn scene(period: f64, delta: f64, wall: Wall, latency: Latency) -> Scene {
     Scene {
         device: Device { inertia: 1e-4, damping: delta, passivity: None },
         timing: Timing { period, worst_period: None },
@@ -23,7 +23,7 @@ fn scene(period: f64, delta: f64, wall: Wall, latency: Latency) -> Scene {
     }
 }
 
-fn one_sided(stiffness: f64, damping: f64, delay: usize) -> Wall {
+const fn one_sided(stiffness: f64, damping: f64, delay: usize) -> Wall {
     Wall::damped(stiffness, damping, delay).behind(0.0)
 }
 
@@ -346,18 +346,8 @@ fn the_margin_is_the_damping_that_may_be_lost() {
 /// A board limits the torque and reads counts late; without a coupling a wall passes there as well.
 #[test]
 fn a_board_renders_a_wall_without_a_coupling() {
-    const fn scene(wall: Wall, latency: Latency) -> Scene {
-        Scene {
-            device: Device { inertia: 1e-4, damping: 0.022, passivity: None },
-            timing: Timing { period: 1e-3, worst_period: None },
-            coupling: Coupling::Rigid,
-            environment: wall.behind(0.1).alone(),
-            latency,
-            torque_limit: None,
-        }
-    }
     const fn rigid(stiffness: f64) -> Scene {
-        scene(Wall::damped(stiffness, 0.004, 1), Latency::NONE)
+        scene(1e-3, 0.022, one_sided(stiffness, 0.004, 1), Latency::NONE)
     }
     let latched = |stiffness| timing_checked::<_, Latched>(rigid(stiffness), Format::F32);
     // 1.5 K T + B, with B in counts up to 1 us late.
@@ -380,7 +370,7 @@ fn a_board_renders_a_wall_without_a_coupling() {
     assert_eq!(certified.time::<Latched>().unwrap_err(), TimingError::Coupled);
     assert!(timing_checked::<_, Latched>(plain, Format::F64).is_err());
     // At a phase an undelayed wall is late by the phase.
-    let phase = scene(Wall::damped(30.0, 0.0, 0), Latency::delayed(1e-4));
+    let phase = scene(1e-3, 0.022, one_sided(30.0, 0.0, 0), Latency::delayed(1e-4));
     let timed = phase.certify().unwrap().time::<AtPhase<100_000>>().unwrap();
     let judged = timing_checked::<_, AtPhase<100_000>>(phase, Format::F64).unwrap();
     assert_eq!(timed.margin(), judged.margin());
@@ -391,15 +381,9 @@ fn a_board_renders_a_wall_without_a_coupling() {
 /// A program contains the code for its encoder, and refuses another one.
 #[test]
 fn a_board_renders_a_wall_that_a_nonlinear_encoder_reads() {
-    const fn scene(stiffness: f64, encoder: &'static EncoderReading) -> Scene {
-        Scene {
-            device: Device { inertia: 1e-4, damping: 0.022, passivity: None },
-            timing: Timing { period: 1e-3, worst_period: None },
-            coupling: Coupling::Rigid,
-            environment: Wall::spring(stiffness, 1).behind(0.1).alone(),
-            latency: Latency::NONE.read_by(encoder),
-            torque_limit: None,
-        }
+    const fn read(stiffness: f64, encoder: &'static EncoderReading) -> Scene {
+        let wall = Wall::spring(stiffness, 1).behind(0.1);
+        scene(1e-3, 0.022, wall, Latency::NONE.read_by(encoder))
     }
     const MAGNETIC: EncoderReading = EncoderReading {
         age: TimeRange::between(0.0, 1e-5),
@@ -407,14 +391,14 @@ fn a_board_renders_a_wall_that_a_nonlinear_encoder_reads() {
         dropped: 1,
         ..EncoderReading::IDEAL
     };
-    const CERTIFIED: Certified<Scene> = scene(5.0, &MAGNETIC).certified();
-    const PLAIN: Certified<Scene> = scene(5.0, EncoderReading::ideal()).certified();
+    const CERTIFIED: Certified<Scene> = read(5.0, &MAGNETIC).certified();
+    const PLAIN: Certified<Scene> = read(5.0, EncoderReading::ideal()).certified();
     crate::scene_type!(Magnetic: CERTIFIED);
     crate::scene_type!(Plain: PLAIN);
     let limit = needed(law(1.1, 1.1, 2.0), 1e-3, Latency::delayed(1e-5));
     for (part, passes) in [(0.999, true), (1.001, false)] {
         let stiffness = part * 0.022 / limit;
-        let data = scene(stiffness, &MAGNETIC);
+        let data = read(stiffness, &MAGNETIC);
         let typed = Typed::<Magnetic>::of(&data).unwrap();
         assert_eq!(timing_checked::<_, Latched>(typed, Format::F64).is_ok(), passes);
         assert_eq!(timing_checked::<_, Latched>(data, Format::F64).is_ok(), passes);

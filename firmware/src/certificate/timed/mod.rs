@@ -27,25 +27,6 @@ use crate::text::{Piece, Sentence, push, sentences};
 /// A certified scene that agrees with the output mode `M` of a board.
 ///
 /// Only [`Certified::time`](Certified) makes one, and a servo loop is only built from one.
-///
-/// ```
-/// use haptic_servo::certificate::{Certified, TimingChecked};
-/// use haptic_servo::environment::Wall;
-/// use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
-/// use haptic_servo::servo::Latched;
-///
-/// const SPRING: Scene = Scene {
-///     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-///     timing: Timing { period: 0.001, worst_period: None },
-///     coupling: Coupling::Spring { stiffness: 44.0 },
-///     environment: Wall::spring(22.0, 1).alone(),
-///     latency: Latency::NONE, torque_limit: None,
-/// };
-/// const CERTIFIED: Certified<Scene> = SPRING.certified();
-/// // Late by one sample, which is what the latch takes: this compiles.
-/// const TIMED: TimingChecked<Scene, Latched> = CERTIFIED.timing_checked::<Latched>();
-/// # let _ = TIMED;
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimingChecked<S, M> {
     scene: S,

@@ -9,7 +9,6 @@ mod faults;
 mod rig;
 
 use super::*;
-use crate::encoder::CounterWidth;
 use crate::transducers::Transducers;
 
 /// A stage with the numbers of a small one: shunts of 3 milliohm, and amplifiers with a gain of 9.
@@ -45,12 +44,8 @@ const DRIVE: Drive = Drive {
 };
 
 /// Full scale is 4 A.
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 0.2,
-    largest_speed: 100.0,
-};
+const TRANSDUCERS: Transducers =
+    Transducers { full_scale_torque: 0.2, ..crate::test_scene::PADDLE };
 
 /// Forty instants, of 25 microseconds.
 const PERIOD: f64 = 1e-3;
