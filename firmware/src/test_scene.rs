@@ -1,4 +1,4 @@
-//! The scenes and the motors of the tests.
+//! The scenes, the motors and the random numbers of the tests.
 
 use crate::encoder::{CounterWidth, RawCount};
 use crate::number::Number;
@@ -52,4 +52,21 @@ pub(crate) fn largest_error<N: Number>(
         largest = largest.max((coarse.torque_nm() - exact.torque_nm()).abs());
     }
     largest
+}
+
+/// Random numbers, the same in each run.
+pub(crate) struct Random(pub u64);
+
+impl Random {
+    /// 53 bits.
+    pub(crate) fn bits(&mut self) -> u64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 >> 11
+    }
+
+    /// A number from -1 to 1.
+    pub(crate) fn next(&mut self) -> f64 {
+        self.bits() as f64 / (1_u64 << 52) as f64 - 1.0
+    }
 }

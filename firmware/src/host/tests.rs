@@ -3,6 +3,7 @@
 use crate::environment::{FixedDelay, VariableDelay};
 use crate::host::{HostError, HostResponse, HostTorque, Sampling, Tank, TankNumber};
 use crate::scene::{Latency, TimeRange};
+use crate::test_scene::Random;
 
 const PERIOD: f64 = 1e-3;
 const HOST: HostTorque =
@@ -23,16 +24,6 @@ fn lagging(lag: f64) -> Latency {
 fn tank<R: TankNumber>(host: &HostTorque, latency: &Latency, sampling: &Sampling) -> AnyTank<R> {
     let response = HostResponse::of(host, latency, sampling).unwrap();
     Tank::new(host, &response, sampling.count, [1.0, 1.0]).unwrap()
-}
-
-/// A generator of numbers in -1..1.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
 }
 
 /// A motor whose torque follows its commands late.

@@ -11,6 +11,7 @@ use crate::output_timing::OutputTiming;
 use crate::scene::{Device, TimeRange, Timing};
 use crate::scene_type::Typed;
 use crate::servo::{AtPhase, Latched};
+use crate::test_scene::Random;
 
 const fn scene(period: f64, delta: f64, wall: Wall, latency: Latency) -> Scene {
     Scene {
@@ -287,11 +288,7 @@ const CELL: f64 = 1.0 / 40.0;
 #[test]
 fn no_motion_needs_more_than_the_bound_for_two_jitters() {
     let cells = |periods: f64| (periods / CELL).round() as usize;
-    let mut draw = 1_u64;
-    let mut random = |most: usize| {
-        draw = draw.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (draw >> 33) as usize % (most + 1)
-    };
+    let mut random = Random(1);
     for (delay, torque, count, late) in [
         (0.2, 0.0, 0.0, 1),
         (0.2, 0.1, 0.05, 0),
@@ -308,7 +305,7 @@ fn no_motion_needs_more_than_the_bound_for_two_jitters() {
                     0 => k % 2 * cells(2.0 * most),
                     1 => (k + 1) % 2 * cells(2.0 * most),
                     2 => k / 2 % 2 * cells(2.0 * most),
-                    _ => random(cells(2.0 * most)),
+                    _ => (random.bits() >> 22) as usize % (cells(2.0 * most) + 1),
                 };
                 let early = |most: f64| 10 * cells(1.0) - cells(most);
                 let counts: Vec<_> =

@@ -4,6 +4,7 @@
 use super::super::controller::Follower;
 use super::rig::Rig;
 use super::*;
+use crate::test_scene::Random;
 
 /// Largest deviation from the certified current in A over instants.
 fn deviation(rig: &mut Rig, steps: &[(usize, i16)], instants: std::ops::Range<usize>) -> f64 {
@@ -151,9 +152,9 @@ fn a_settled_current_stays_within_its_resolution() {
     let (mut random, mut most) = (Random(1), 0.0_f64);
     for _ in 0..60 {
         let mut rig = Rig::started(&BRUSHED);
-        rig.offsets = [2550.0 + random.next(), 2541.0 + random.next()];
+        rig.offsets = [2550.0, 2541.0].map(|middle| middle + 0.5 * random.next());
         rig = rig.restarted();
-        let code = (random.next() * 3582.0) as i16;
+        let code = (random.next() * 1791.0) as i16;
         for instant in 0..700 {
             let current = rig.instant(code).unwrap();
             if instant > 300 {
@@ -178,17 +179,6 @@ fn the_ripple_is_that_of_the_formula() {
     let ripple = rig.extremes.1 - rig.extremes.0;
     let bound = BRUSHED.resolution().ripple / BRUSHED.torque_per_amp();
     assert!(ripple < bound && ripple > 0.7 * bound, "{ripple} of {bound}");
-}
-
-/// Numbers from -0.5 to 0.5, the same in each run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    }
 }
 
 /// A winding between instants: `i(k+1) = a i(k) + b v(k-1)`, by the rate of its decay.

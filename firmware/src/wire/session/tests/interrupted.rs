@@ -9,6 +9,7 @@ use std::rc::Rc;
 
 use super::*;
 use crate::servo_loop::interruption;
+use crate::test_scene::Random;
 
 /// The servo of the first set, and what the list sets.
 const FIRST: f64 = 22.0;
@@ -225,13 +226,9 @@ fn interrupts_at_every_instant_lose_nothing() {
 
 #[test]
 fn interrupts_by_chance_lose_nothing() {
-    let mut state = 1_u64;
-    let mut next = move || {
-        state =
-            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 40) as u32
-    };
+    let mut random = Random(1);
     judge((0..300).map(move |_| {
+        let mut next = || (random.bits() >> 29) as u32;
         let share = 1 + next() % 8;
         let often = |ticks: u32| if ticks % 16 < share { ticks / 16 % 4 } else { 0 };
         (0..4096).map(|_| often(next())).collect()
