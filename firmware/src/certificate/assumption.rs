@@ -131,9 +131,9 @@ impl Assumption {
             | Self::StepsUnbounded
             | Self::WorstPeriod { passes: false, .. }
             | Self::Saturates { bound: None, .. } => AssumptionStatus::Assumed,
-            Self::WorstPeriod { passes: true, .. } | Self::Saturates { bound: Some(_), .. } => {
-                AssumptionStatus::Holds
-            }
+            Self::WorstPeriod { passes: true, .. }
+            | Self::Saturates { bound: Some(_), .. }
+            | Self::FrictionOnly { .. } => AssumptionStatus::Holds,
             Self::OneSided { bound } if bound.is_some() => AssumptionStatus::Holds,
             Self::Limited { full_scale: None, .. } | Self::StepsNotStated => {
                 AssumptionStatus::NotStated
@@ -141,9 +141,7 @@ impl Assumption {
             Self::Limited { torque, full_scale: Some(full_scale) } if torque <= full_scale => {
                 AssumptionStatus::Holds
             }
-            Self::OneSided { .. } | Self::Limited { .. } | Self::FrictionOnly { .. } => {
-                AssumptionStatus::Fails
-            }
+            Self::OneSided { .. } | Self::Limited { .. } => AssumptionStatus::Fails,
             Self::Quantisation(rest) => match rest.comes_to_rest() {
                 None => AssumptionStatus::NotStated,
                 Some(true) => AssumptionStatus::Holds,
