@@ -42,7 +42,7 @@ const PROGRAM: &[&str] = &[
     source!("hand_settings.js"),
     source!("handle.js"),
     source!("serial.js"),
-    source!("socket.js"),
+    source!("served.js"),
     source!("strips.js"),
     source!("board.js"),
     source!("main.js"),

@@ -324,11 +324,11 @@ function showBoard(engine, store) {
 
   part("serial").hidden = !SerialLine.isThere();
   part("no-serial").hidden = SerialLine.isThere();
-  part("address").value = SocketLine.own() ?? "";
+  part("address").value = ServedLine.own() ?? "";
   part("serial").onclick = () => connect(() => SerialLine.choose());
   part("socket").onsubmit = (event) => {
     event.preventDefault();
-    connect(() => new SocketLine(part("address").value));
+    connect(() => new ServedLine(part("address").value));
   };
   part("disconnect").onclick = () => link.disconnect();
   part("disarm").onclick = disarm;

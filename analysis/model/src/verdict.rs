@@ -3,8 +3,8 @@
 use std::fmt;
 
 use haptic_servo::certificate::{
-    Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Rejection, Remedy,
-    Resolution, Rule, RuleAnswer, assess_in, certify_in,
+    Assessment, Assumption, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound,
+    Rejection, Remedy, Resolution, Rule, RuleAnswer, assess_in, certify_in,
 };
 use haptic_servo::host::{HostError, HostTorque};
 use haptic_servo::number::Format;
@@ -180,6 +180,9 @@ pub struct VerdictReport {
     /// The assumptions that do not hold, and numbers that no device has.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+    /// The one of the assumptions about a device with friction, where the scene is not certified.
+    #[serde(skip)]
+    pub friction: Option<String>,
     /// The answer as a sentence.
     pub message: String,
     /// The same without margin and remedies.
@@ -325,6 +328,10 @@ fn reported(
         supply: None,
         warnings: failing.map(ToString::to_string).collect(),
         assumptions: assumptions.iter().map(ToString::to_string).collect(),
+        friction: assumptions
+            .iter()
+            .find(|one| matches!(one, Assumption::FrictionOnly { .. }))
+            .map(ToString::to_string),
         message,
         summary,
         is_for_a_board,

@@ -44,7 +44,10 @@ pub fn rows(report: &VerdictReport) -> Vec<(&'static str, String)> {
     rows.extend(report.no_remedy.map(|sentence| ("remedies", sentence.to_owned())));
     rows.extend(report.supply.iter().map(|supply| ("supply", supply.message.clone())));
     list(&mut rows, "WARNING", &report.warnings);
-    let holding = report.assumptions.iter().filter(|one| !report.warnings.contains(one));
+    rows.extend(report.friction.clone().map(|friction| ("friction", friction)));
+    let named =
+        |one: &&String| report.warnings.contains(one) || report.friction.as_ref() == Some(one);
+    let holding = report.assumptions.iter().filter(|one| !named(one));
     list(&mut rows, "assumes", &holding.cloned().collect::<Vec<_>>());
     rows
 }

@@ -12,7 +12,7 @@ use super::file_scene::{is_file, scene_file};
 use super::status::{CommandError, CommandStatus};
 use crate::file;
 use crate::program::{self, Program, damper_wall};
-use crate::toolchain::{BoardModel, Memory, NumberFormat, Tools, TorqueOutput, probe};
+use crate::toolchain::{BoardModel, Memory, NumberFormat, Sources, Tools, TorqueOutput, probe};
 
 /// Arguments of `haptic flash`.
 #[derive(Debug, Args)]
@@ -117,7 +117,15 @@ fn check_device(arguments: &Arguments, device: Option<Device>) -> Result<(), Com
     if arguments.example_device || !device.is_some_and(|device| program::is_example(&device)) {
         return Ok(());
     }
-    let example = CommandError::ExampleDevice { scene: arguments.scene.clone() };
+    let scene = arguments.scene.clone();
+    let way = if is_file(&scene) {
+        "Write yours into it"
+    } else if Sources::find()?.takes_device(&scene) {
+        "Name the file of yours with --device FILE.toml"
+    } else {
+        "Write yours, with its motor, into the module that the program takes it from, in firmware/src/bin"
+    };
+    let example = CommandError::ExampleDevice { scene, way };
     if !arguments.build_only {
         return Err(example);
     }

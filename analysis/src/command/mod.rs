@@ -200,7 +200,8 @@ impl Command {
     fn program(&self) -> Option<&str> {
         match self {
             Self::Run(arguments) => Some(&arguments.scene),
-            Self::Flash(arguments) => Some(&arguments.scene),
+            // It would only be asked for its device.
+            Self::Flash(arguments) if !arguments.example_device => Some(&arguments.scene),
             Self::BoardSim(arguments) => Some(&arguments.scene),
             Self::Advise(arguments) if arguments.format.is_some() => Some(&arguments.scene),
             _ => None,

@@ -54,10 +54,9 @@ pub enum CommandError {
     FileOnBridge { file: String },
     #[error(
         "{scene} is for a device of the examples, by its inertia and damping, not for yours: on another device \
-         it may oscillate. Write yours into the scene file, or name its file with --device FILE.toml beside a \
-         program; measure it (docs/measure.md). Or state --example-device"
+         it may oscillate. {way}; measure it (docs/measure.md). Or state --example-device"
     )]
-    ExampleDevice { scene: String },
+    ExampleDevice { scene: String, way: &'static str },
     /// The program of a scene file. Exit status 1 if the file's scene is not certified.
     #[error("{file}: {why}")]
     FileNotBuilt { file: String, why: Box<CommandError>, is_certified: bool },

@@ -4,9 +4,7 @@ use std::fmt;
 use std::hint::black_box;
 use std::net::SocketAddr;
 
-use tungstenite::http::{StatusCode, header};
-
-use super::http::{Head, HttpResponse};
+use super::http::{HttpResponse, Request};
 use super::refusal::PageRefusal;
 
 /// Bytes of a token: 128 bits cannot be guessed.
@@ -25,7 +23,7 @@ impl Token {
     }
 
     /// Whether it equals this token, in a time that does not depend on the number of equal bytes.
-    fn is(&self, given: &str) -> bool {
+    pub fn is(&self, given: &str) -> bool {
         let (ours, given) = (self.0.as_bytes(), given.as_bytes());
         let differences = ours.iter().zip(given).fold(0, |all, (a, b)| black_box(all | (a ^ b)));
         differences == 0 && ours.len() == given.len()
@@ -53,8 +51,8 @@ impl Access {
     }
 
     /// Checks that the request names this machine by its own address: a foreign name may point here.
-    pub fn check_host(&self, head: &Head) -> Result<(), HttpResponse> {
-        let host = head.header(header::HOST)?.unwrap_or_default();
+    pub fn check_host(&self, request: &Request<'_>) -> Result<(), HttpResponse> {
+        let host = request.header("host")?.unwrap_or_default();
         if self.hosts.iter().any(|own| own.eq_ignore_ascii_case(host)) {
             return Ok(());
         }
@@ -62,19 +60,22 @@ impl Access {
         Err(PageRefusal::Host { host, own }.into())
     }
 
-    /// Checks that the requesting page, if it is a page, is of this server or from a file.
-    pub fn check_origin(&self, head: &Head) -> Result<(), HttpResponse> {
+    /// The origin of the requesting page, if it is a page: of this server, or from a file.
+    ///
+    /// # Errors
+    /// The response to another page.
+    pub fn origin<'r>(&self, request: &'r Request<'_>) -> Result<Option<&'r str>, HttpResponse> {
         let is_own = |origin: &str| {
             origin
                 .strip_prefix("http://")
                 .is_some_and(|host| self.hosts.iter().any(|own| own.eq_ignore_ascii_case(host)))
         };
-        match head.header(header::ORIGIN)? {
+        match request.header("origin")? {
             // The origin that browsers send for a page from a file.
-            Some("null") => Ok(()),
-            Some(origin) if is_own(origin) => Ok(()),
-            // A browser always sends the origin of a page that opens a socket.
-            None if head.request.uri().path() != "/wire" => Ok(()),
+            Some("null") => Ok(Some("null")),
+            Some(origin) if is_own(origin) => Ok(Some(origin)),
+            // A browser always sends the origin of a page that sends anything.
+            None if request.path() != "/wire" => Ok(None),
             origin => {
                 let origin = origin.unwrap_or("nobody").to_owned();
                 Err(PageRefusal::Origin { origin }.into())
@@ -83,16 +84,10 @@ impl Access {
     }
 
     /// Checks that the client has sent the token.
-    pub fn check_token(&self, head: &Head) -> Result<(), HttpResponse> {
-        if head.query("token").is_some_and(|given| self.token.is(given)) {
+    pub fn check_token(&self, request: &Request<'_>) -> Result<(), HttpResponse> {
+        if request.query("token").is_some_and(|given| self.token.is(given)) {
             return Ok(());
         }
         Err(PageRefusal::Token.into())
-    }
-}
-
-impl From<PageRefusal> for HttpResponse {
-    fn from(refusal: PageRefusal) -> Self {
-        Self::refusal(StatusCode::FORBIDDEN, refusal.to_string())
     }
 }

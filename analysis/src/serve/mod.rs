@@ -21,19 +21,18 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use thiserror::Error;
-use tungstenite::http::StatusCode;
 
 use self::access::{Access, Token};
 use self::connections::{CONNECTIONS, Connection, Connections};
-use self::http::{Head, HttpResponse};
+use self::http::{HttpResponse, Request};
 pub use self::port::{Port, Report};
 pub use self::refusal::PageRefusal;
 use self::shared::Shared;
 
-/// Time after the end of the server in which a page may confirm that its socket is closed.
+/// Time after the end of the server in which a page may read the reason.
 const GOODBYE: Duration = Duration::from_secs(2);
 /// Longest time between two checks whether the server ends.
-const POLL_INTERVAL: Duration = Duration::from_millis(10);
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 /// The reason why there is no server.
 #[derive(Debug, Error)]
@@ -79,7 +78,7 @@ impl Server {
         }
     }
 
-    /// Listens at an address of this machine, for a page and its socket to this port.
+    /// Listens at an address of this machine, for a page and its wire to this port.
     ///
     /// # Errors
     /// If the address is reachable from other machines, or taken, or if there are no random numbers.
@@ -178,7 +177,7 @@ fn connection(stream: TcpStream, shared: &Arc<Shared>) -> Option<JoinHandle<()>>
             let busy = format!(
                 "there are {CONNECTIONS} connections already: close other pages of this server"
             );
-            HttpResponse::refusal(StatusCode::SERVICE_UNAVAILABLE, busy).send(&stream);
+            HttpResponse::refusal("503 Service Unavailable", busy).send(&stream);
             None
         }
     }
@@ -186,8 +185,15 @@ fn connection(stream: TcpStream, shared: &Arc<Shared>) -> Option<JoinHandle<()>>
 
 /// Answers one request, or carries the wire of one page.
 fn serve(connection: &Connection, shared: &Shared) {
-    let head = Head::read(&connection.stream, &shared.over);
-    match head.and_then(|head| answer(connection, head, shared)) {
+    let answered = Request::read(&connection.stream, &shared.over).and_then(|mut request| {
+        shared.access.check_host(&request)?;
+        let origin = shared.access.origin(&request)?.map(ToOwned::to_owned);
+        let origin = origin.as_deref();
+        let answer = answer(connection, &mut request, origin, shared);
+        let readable = |response: HttpResponse| response.readable_by(origin);
+        answer.map(|response| response.map(readable)).map_err(readable)
+    });
+    match answered {
         Ok(None) => {}
         Ok(Some(answer)) | Err(answer) => answer.send(&connection.stream),
     }
@@ -196,32 +202,29 @@ fn serve(connection: &Connection, shared: &Shared) {
 /// The answer, unless the wire was carried.
 fn answer(
     connection: &Connection,
-    head: Head,
+    request: &mut Request<'_>,
+    origin: Option<&str>,
     shared: &Shared,
 ) -> Result<Option<HttpResponse>, HttpResponse> {
-    let access = &shared.access;
-    access.check_host(&head)?;
-    access.check_origin(&head)?;
-    match head.request.uri().path() {
+    match request.path() {
         "/" => {
-            access.check_token(&head)?;
+            shared.access.check_token(request)?;
             connection.trust();
             Ok(Some(HttpResponse::page(&shared.page)))
         }
         "/wire" => {
-            access.check_token(&head)?;
-            let accepted = client::check_upgrade(&head)?;
+            shared.access.check_token(request)?;
             connection.trust();
-            client::carry(&connection.stream, head.rest, &accepted, shared);
-            Ok(None)
+            match request.query("page").map(ToOwned::to_owned) {
+                Some(page) => client::send(request, &page, shared).map(Some),
+                None => client::carry(&connection.stream, origin, shared).map(|()| None),
+            }
         }
         // Browsers request this icon from every server.
-        "/favicon.ico" => {
-            Ok(Some(HttpResponse::new(StatusCode::NO_CONTENT, "text/plain", String::new())))
-        }
+        "/favicon.ico" => Ok(Some(HttpResponse::empty())),
         path => {
             let why = format!("there is no {path} here: / is the page");
-            Err(HttpResponse::refusal(StatusCode::NOT_FOUND, why))
+            Err(HttpResponse::refusal("404 Not Found", why))
         }
     }
 }

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use haptic_model::board::timing::RETRY;
 
+use super::access::Token;
 use crate::link::{Address, LinkError, Transport, open, read_within};
 
 /// Longest time that bytes to the board wait.
@@ -51,17 +52,25 @@ pub struct Seats {
 }
 
 struct State {
-    /// Whether the page is still there, and the channel to it.
-    client: Option<(Weak<()>, SyncSender<News>)>,
+    /// The page's name while it is there, and the channel to it.
+    client: Option<(Weak<Token>, SyncSender<News>)>,
     /// The reason if the port is not open.
     lost: Option<String>,
 }
 
 /// The page that uses the port; releases it when dropped.
 pub struct Seat {
-    to_board: SyncSender<Vec<u8>>,
+    /// The name that only this page knows.
+    pub id: Arc<Token>,
     news: Receiver<News>,
-    _taken: Arc<()>,
+}
+
+/// Why bytes of a page were not sent.
+pub enum Unsent {
+    /// The bytes: too many are waiting.
+    Full(Vec<u8>),
+    /// The page has not the port.
+    NoPage,
 }
 
 /// Seats, and the bytes from their pages to the board.
@@ -72,8 +81,8 @@ pub fn seats() -> (Seats, Receiver<Vec<u8>>) {
 }
 
 impl Seats {
-    /// Takes the port, if no page has it.
-    pub fn take(&self) -> Option<Seat> {
+    /// Takes the port for a page of this name, if no page has it.
+    pub fn take(&self, id: &Token) -> Option<Seat> {
         self.with(|state| {
             if state.client.as_ref().is_some_and(|(page, _)| page.strong_count() > 0) {
                 return None;
@@ -82,10 +91,26 @@ impl Seats {
             let first = state.lost.clone().map_or(News::Open, News::Lost);
             // There is room for one.
             let _ = client.try_send(first);
-            let taken = Arc::new(());
-            state.client = Some((Arc::downgrade(&taken), client));
-            Some(Seat { to_board: self.to_board.clone(), news, _taken: taken })
+            let id = Arc::new(id.clone());
+            state.client = Some((Arc::downgrade(&id), client));
+            Some(Seat { id, news })
         })
+    }
+
+    /// Sends bytes of the page of this name to the board.
+    ///
+    /// # Errors
+    /// If too many bytes are waiting, or if that page has not the port.
+    pub fn send(&self, page: &str, bytes: Vec<u8>) -> Result<(), Unsent> {
+        let own = self.with(|state| state.client.as_ref().and_then(|(id, _)| id.upgrade()));
+        if !own.is_some_and(|own| own.is(page)) {
+            return Err(Unsent::NoPage);
+        }
+        match self.to_board.try_send(bytes) {
+            Err(TrySendError::Full(bytes)) => Err(Unsent::Full(bytes)),
+            // Without the port's thread the server ends.
+            Ok(()) | Err(TrySendError::Disconnected(_)) => Ok(()),
+        }
     }
 
     /// Sends to the page that uses the port. A page that is too slow loses the port; the port does not wait.
@@ -112,18 +137,6 @@ impl Seat {
     /// If there is no news.
     pub fn news(&self) -> Result<News, TryRecvError> {
         self.news.try_recv()
-    }
-
-    /// Sends to the board.
-    ///
-    /// # Errors
-    /// The bytes, if too many are waiting.
-    pub fn send(&self, bytes: Vec<u8>) -> Result<(), Vec<u8>> {
-        match self.to_board.try_send(bytes) {
-            Err(TrySendError::Full(bytes)) => Err(bytes),
-            // Without the port's thread the server ends.
-            Ok(()) | Err(TrySendError::Disconnected(_)) => Ok(()),
-        }
     }
 }
 

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::http::HttpResponse;
+
 /// The reason why a page does not get the wire.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum PageRefusal {
@@ -30,11 +32,15 @@ pub enum PageRefusal {
     /// The page has read too slowly.
     #[error("the page has taken less than the board has sent: connect again")]
     TooSlow,
+    /// The page sends, and has not the board, or no longer.
+    #[error("this page has not the board: connect again")]
+    Gone,
 }
 
-impl PageRefusal {
-    /// The code with which a socket is closed, from those for private use.
-    pub const fn close_code(&self) -> u16 {
-        if matches!(self, Self::TooSlow) { 4001 } else { 4000 }
+impl From<PageRefusal> for HttpResponse {
+    fn from(refusal: PageRefusal) -> Self {
+        let is_conflict = matches!(refusal, PageRefusal::InUse | PageRefusal::Gone);
+        let status = if is_conflict { "409 Conflict" } else { "403 Forbidden" };
+        Self::refusal(status, refusal.to_string())
     }
 }

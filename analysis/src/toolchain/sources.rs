@@ -4,6 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+/// The module of the examples' paddle, in the file of a program for it.
+const PADDLE: &str = "mod paddle;";
 /// The call in the file of a scene's program; a file without it is another kind of program.
 const SCENE: &str = "scene_program!";
 /// The call in the file of a sweep's program.
@@ -138,16 +140,20 @@ impl Sources {
     /// # Errors
     /// If there is no such program, or if it is for another device.
     pub fn on_device(&self, name: &str, device: &str) -> Result<String, SourcesError> {
-        const PADDLE: &str = "mod paddle;";
         let programs = self.programs()?;
         if !programs.iter().any(|program| program == name) {
             return Err(SourcesError::NoProgram { name: name.into(), programs });
         }
         let text = self.text(name)?;
-        if !text.contains(PADDLE) {
+        if !self.takes_device(name) {
             return Err(SourcesError::OwnDevice { name: name.into(), path: self.file(name) });
         }
         Ok(text.replace(PADDLE, device.trim_end()).replace("paddle::", "device::"))
+    }
+
+    /// Whether [another device](Self::on_device) may take the place of a program's.
+    pub fn takes_device(&self, name: &str) -> bool {
+        self.text(name).is_ok_and(|text| text.contains(PADDLE))
     }
 
     fn text(&self, name: &str) -> Result<String, SourcesError> {

@@ -1,6 +1,6 @@
-//! `haptic serve` and its clients: raw requests, sockets, and a board that comes and goes.
+//! `haptic serve` and its clients: raw requests, pages, and a board that comes and goes.
 
-use std::io::{ErrorKind, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
@@ -10,29 +10,19 @@ use analysis::serve::{Port, ServeError, Server};
 use haptic_servo::wire::message::{LONGEST_TO_HOST, ToBoard, ToHost};
 use haptic_servo::wire::{CHECKSUM, Decoder, PROTOCOL, encode};
 use serde_json::{Value, json};
-use tungstenite::client::IntoClientRequest;
-use tungstenite::protocol::CloseFrame;
-use tungstenite::stream::MaybeTlsStream;
-use tungstenite::{Error, Message, WebSocket};
 
 use crate::wire::off;
 
-type Socket = WebSocket<MaybeTlsStream<TcpStream>>;
-
-const PAGE: &str = "<!DOCTYPE html><title>the page</title>";
+const TEXT: &str = "<!DOCTYPE html><title>the page</title>";
 /// Timeout of all operations, on a slow machine.
 const TIMEOUT: Duration = Duration::from_secs(60);
-/// Close code of a second page.
-const IN_USE: u16 = 4000;
-/// Close code of a page that does not read.
-const TOO_SLOW: u16 = 4001;
 
 fn loopback() -> SocketAddr {
     "127.0.0.1:0".parse().unwrap()
 }
 
 fn serve(port: &Address) -> Server {
-    Server::start(Port::open(port).unwrap(), loopback(), PAGE.into(), Box::new(|_| {})).unwrap()
+    Server::start(Port::open(port).unwrap(), loopback(), TEXT.into(), Box::new(|_| {})).unwrap()
 }
 
 /// A port whose other end the test has.
@@ -58,60 +48,116 @@ fn accept(listener: &TcpListener) -> TcpStream {
     stream
 }
 
-/// Asks for the wire with an origin and a token.
-fn ask(server: &Server, origin: Option<&str>, token: &str) -> Result<Socket, tungstenite::Error> {
-    let url = format!("ws://{}/wire?token={token}", server.address());
-    let mut request = url.into_client_request().unwrap();
-    if let Some(origin) = origin {
-        request.headers_mut().insert("Origin", origin.parse().unwrap());
-    }
-    let (socket, _) = tungstenite::connect(request)?;
-    let MaybeTlsStream::Plain(stream) = socket.get_ref() else { unreachable!() };
-    stream.set_read_timeout(Some(TIMEOUT)).unwrap();
-    Ok(socket)
+/// A page that has the wire.
+struct Page {
+    lines: BufReader<TcpStream>,
+    /// Where it sends bytes.
+    up: Up,
 }
 
-fn connect(server: &Server) -> Socket {
+/// The address for the bytes of a page.
+#[derive(Clone)]
+struct Up {
+    server: SocketAddr,
+    target: String,
+}
+
+impl Up {
+    /// Sends bytes; the status of the answer.
+    fn send(&self, bytes: &[u8]) -> u16 {
+        let more = format!("Origin: null\r\nContent-Length: {}\r\n", bytes.len());
+        let head = request("POST", &self.target, &self.server.to_string(), &more);
+        let mut stream = TcpStream::connect(self.server).unwrap();
+        stream.set_read_timeout(Some(TIMEOUT)).unwrap();
+        // The server may refuse it before all of it is sent.
+        let sent = stream.write_all(&[head.as_bytes(), bytes].concat());
+        let mut answer = String::new();
+        match sent.and_then(|()| stream.read_to_string(&mut answer)) {
+            Ok(_) => status(&answer),
+            Err(_) => 0,
+        }
+    }
+}
+
+impl Page {
+    /// The next line; none at the end.
+    fn line(&mut self) -> Option<Value> {
+        let mut line = String::new();
+        let is_whole = self.lines.read_line(&mut line).is_ok() && line.ends_with('\n');
+        is_whole.then(|| serde_json::from_str(&line).unwrap())
+    }
+
+    /// The next news of the port.
+    fn port(&mut self) -> Value {
+        loop {
+            let line = self.line().unwrap();
+            if !line["port"].is_null() {
+                return line;
+            }
+        }
+    }
+
+    /// The next bytes of the board; none at the end.
+    fn some_bytes(&mut self) -> Option<Vec<u8>> {
+        loop {
+            if let Some(bytes) = self.line()?["bytes"].as_str() {
+                return Some(data_encoding::HEXLOWER.decode(bytes.as_bytes()).unwrap());
+            }
+        }
+    }
+
+    /// This many bytes of the board.
+    fn bytes(&mut self, count: usize) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        while bytes.len() < count {
+            bytes.extend(self.some_bytes().unwrap());
+        }
+        bytes
+    }
+
+    /// Why the server ends it; none if the line with the reason is cut off.
+    fn end(&mut self) -> Option<String> {
+        loop {
+            if let Some(why) = self.line()?["end"].as_str() {
+                return Some(why.to_owned());
+            }
+        }
+    }
+}
+
+/// Asks for the wire with an origin and a token; the status and the whole answer to a refused request.
+fn ask(server: &Server, origin: Option<&str>, token: &str) -> Result<Page, (u16, String)> {
+    let more = origin.map_or_else(String::new, |origin| format!("Origin: {origin}\r\n"));
+    let (target, host) = (format!("/wire?token={token}"), server.address().to_string());
+    let mut stream = TcpStream::connect(server.address()).unwrap();
+    stream.set_read_timeout(Some(TIMEOUT)).unwrap();
+    stream.write_all(request("POST", &target, &host, &more).as_bytes()).unwrap();
+    let mut lines = BufReader::new(stream);
+    let mut head = String::new();
+    while !head.ends_with("\r\n\r\n") {
+        assert!(lines.read_line(&mut head).unwrap() > 0, "{head}");
+    }
+    if status(&head) != 200 {
+        lines.read_to_string(&mut head).unwrap();
+        return Err((status(&head), head));
+    }
+    assert_eq!(head.contains("access-control-allow-origin: null\r\n"), origin == Some("null"));
+    let mut page = Page { lines, up: Up { server: server.address(), target } };
+    let first = page.line().unwrap();
+    page.up.target += &format!("&page={}", first["page"].as_str().unwrap());
+    Ok(page)
+}
+
+fn connect(server: &Server) -> Page {
     ask(server, Some("null"), &server.token()).unwrap()
 }
 
 /// A board, and a page that has heard that its port is open.
-fn connected() -> (FakeBoard, Socket) {
+fn connected() -> (FakeBoard, Page) {
     let board = FakeBoard::new();
-    let mut socket = connect(&board.server);
-    assert_eq!(text(&mut socket), json!({ "port": "open" }));
-    (board, socket)
-}
-
-/// The next text, as JSON.
-fn text(socket: &mut Socket) -> Value {
-    loop {
-        match socket.read().unwrap() {
-            Message::Text(text) => return serde_json::from_str(&text).unwrap(),
-            Message::Binary(_) => {}
-            other => panic!("{other:?}"),
-        }
-    }
-}
-
-/// This many bytes of the board.
-fn bytes(socket: &mut Socket, count: usize) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    while bytes.len() < count {
-        if let Message::Binary(more) = socket.read().unwrap() {
-            bytes.extend_from_slice(&more);
-        }
-    }
-    bytes
-}
-
-/// Why the server closes.
-fn close(socket: &mut Socket) -> CloseFrame {
-    loop {
-        if let Message::Close(frame) = socket.read().unwrap() {
-            return frame.unwrap();
-        }
-    }
+    let mut page = connect(&board.server);
+    assert_eq!(page.port(), json!({ "port": "open" }));
+    (board, page)
 }
 
 /// The answer to bytes that may be a request.
@@ -125,11 +171,18 @@ fn raw(server: &Server, request: &[u8]) -> String {
     String::from_utf8(answer).unwrap()
 }
 
+fn request(method: &str, target: &str, host: &str, more: &str) -> String {
+    format!("{method} {target} HTTP/1.1\r\nHost: {host}\r\n{more}\r\n")
+}
+
+fn status(answer: &str) -> u16 {
+    answer.split(' ').nth(1).unwrap().parse().unwrap()
+}
+
 /// The status and the whole answer to a request for a page.
 fn get(server: &Server, target: &str, host: &str, more: &str) -> (u16, String) {
-    let answer =
-        raw(server, format!("GET {target} HTTP/1.1\r\nHost: {host}\r\n{more}\r\n").as_bytes());
-    (answer.split(' ').nth(1).unwrap().parse().unwrap(), answer)
+    let answer = raw(server, request("GET", target, host, more).as_bytes());
+    (status(&answer), answer)
 }
 
 #[test]
@@ -145,9 +198,9 @@ fn the_page_is_for_those_who_know_the_token_and_the_address() {
     let longer = format!("{with}0");
     let own_origin = format!("Origin: http://{own}\r\n");
     for (target, host, more, wanted, part) in [
-        (&*with, &*own, "", 200, PAGE),
-        (&with, &local, &*own_origin, 200, PAGE),
-        (&format!("/?scene=1&token={token}"), &own, "", 200, PAGE),
+        (&*with, &*own, "", 200, TEXT),
+        (&with, &local, &*own_origin, 200, TEXT),
+        (&format!("/?scene=1&token={token}"), &own, "", 200, TEXT),
         ("/", &own, "", 403, "the token is missing or wrong"),
         (&wrong, &own, "", 403, "the token is missing or wrong"),
         (&longer, &own, "", 403, "the token is missing or wrong"),
@@ -164,12 +217,12 @@ fn the_page_is_for_those_who_know_the_token_and_the_address() {
         ),
         ("/other", &own, "", 404, "there is no /other"),
         ("/favicon.ico", &own, "", 204, ""),
-        (&format!("/wire?token={token}"), &own, &own_origin, 426, "is a WebSocket"),
+        (&format!("/wire?token={token}"), &own, &own_origin, 405, "allow: POST"),
     ] {
         let (status, answer) = get(server, target, host, more);
         assert_eq!(status, wanted, "{target} {host} {more}: {answer}");
         assert!(answer.contains(part), "{target} {host} {more}: {answer}");
-        assert_eq!(answer.contains(PAGE), wanted == 200, "{target} {host} {more}: {answer}");
+        assert_eq!(answer.contains(TEXT), wanted == 200, "{target} {host} {more}: {answer}");
     }
     let (_, page) = get(server, &with, &own, "");
     for header in
@@ -184,7 +237,6 @@ fn the_page_is_for_those_who_know_the_token_and_the_address() {
 fn what_is_no_request_is_answered() {
     let board = FakeBoard::new();
     let long = format!("GET / HTTP/1.1\r\nX: {}\r\n", "x".repeat(100_000));
-    let many = format!("GET / HTTP/1.1\r\n{}\r\n", "X: x\r\n".repeat(500));
     for (request, status) in [
         (&b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03"[..], 400),
         (b"hello\r\n\r\n", 400),
@@ -193,7 +245,9 @@ fn what_is_no_request_is_answered() {
         (b"GET / HTTP/1.1\r\n\r\n", 403),
         (b"POST / HTTP/1.1\r\nHost: x\r\n\r\n", 405),
         (long.as_bytes(), 431),
-        (many.as_bytes(), 431),
+        (b"GET /\r\n\r\n", 400),
+        (b"GET http://x/ HTTP/1.1\r\n\r\n", 400),
+        (b"GET / HTTP/1.1\r\nX: \xff\r\n\r\n", 400),
     ] {
         let answer = raw(&board.server, request);
         assert!(answer.starts_with(&format!("HTTP/1.1 {status} ")), "{answer}");
@@ -209,7 +263,7 @@ fn the_wire_is_for_the_own_page_and_a_file_alone() {
     let own = format!("http://{}", server.address());
     let other_port = format!("http://127.0.0.1:{}", server.address().port() ^ 1);
     for origin in [own.as_str(), "null"] {
-        ask(server, Some(origin), &token).unwrap().close(None).unwrap();
+        drop(ask(server, Some(origin), &token).unwrap());
     }
     let secure = own.replace("http", "https");
     for (origin, token) in [
@@ -220,41 +274,38 @@ fn the_wire_is_for_the_own_page_and_a_file_alone() {
         (Some(&secure), &token),
         (None, &token),
     ] {
-        match ask(server, origin, token) {
-            Err(tungstenite::Error::Http(answer)) => assert_eq!(answer.status(), 403, "{origin:?}"),
-            other => panic!("{origin:?} {token}: {:?}", other.err()),
-        }
+        let answer = ask(server, origin, token).err().map(|(status, _)| status);
+        assert_eq!(answer, Some(403), "{origin:?} {token}");
     }
 }
 
 #[test]
 fn bytes_are_unchanged_both_ways() {
-    let (mut board, mut socket) = connected();
+    let (mut board, mut page) = connected();
     let mut random = fastrand::Rng::with_seed(5);
     for length in [1, 2, 255, 256, 4096] {
         let all: Vec<u8> =
             (0..length).map(|i| if length == 256 { i as u8 } else { random.u8(..) }).collect();
-        socket.send(Message::binary(all.clone())).unwrap();
+        assert_eq!(page.up.send(&all), 204);
         let mut read = vec![0; length];
         board.stream.read_exact(&mut read).unwrap();
         assert_eq!(read, all);
         board.stream.write_all(&all).unwrap();
-        assert_eq!(bytes(&mut socket, length), all);
+        assert_eq!(page.bytes(length), all);
     }
 }
 
 #[test]
-fn a_simulated_board_answers_through_the_socket() {
+fn a_simulated_board_answers_a_page() {
     let (_, rig) = off(Pacing::RealTime);
     let server = serve(&rig.port().parse().unwrap());
-    let mut socket = connect(&server);
+    let mut page = connect(&server);
     let mut buffer = [0; 64];
-    let hello = encode(&ToBoard::Hello, &mut buffer).unwrap().to_vec();
-    socket.send(Message::binary(hello)).unwrap();
+    page.up.send(encode(&ToBoard::Hello, &mut buffer).unwrap());
     let mut decoder = Decoder::<{ LONGEST_TO_HOST + CHECKSUM }>::new();
     let said = loop {
         let message =
-            bytes(&mut socket, 1).into_iter().find_map(|byte| decoder.push::<ToHost<String>>(byte));
+            page.bytes(1).into_iter().find_map(|byte| decoder.push::<ToHost<String>>(byte));
         if let Some(said) = message {
             break said;
         }
@@ -266,41 +317,42 @@ fn a_simulated_board_answers_through_the_socket() {
 #[test]
 fn a_second_page_is_refused_and_the_first_goes_on() {
     let (mut board, mut first) = connected();
-    let refused = close(&mut connect(&board.server));
-    assert_eq!(u16::from(refused.code), IN_USE);
-    assert!(refused.reason.contains("another page has the board"), "{refused:?}");
+    let (status, refused) = ask(&board.server, Some("null"), &board.server.token()).err().unwrap();
+    assert_eq!(status, 409);
+    assert!(refused.contains("another page has the board"), "{refused}");
     board.stream.write_all(b"still").unwrap();
-    assert_eq!(bytes(&mut first, 5), b"still");
+    assert_eq!(first.bytes(5), b"still");
     // A page that leaves makes room, and the port stays open.
-    first.close(None).unwrap();
+    let left = first.up.clone();
     drop(first);
     let mut next = connect(&board.server);
-    assert_eq!(text(&mut next), json!({ "port": "open" }));
+    assert_eq!(next.port(), json!({ "port": "open" }));
     board.stream.write_all(b"next").unwrap();
-    assert_eq!(bytes(&mut next, 4), b"next");
+    assert_eq!(next.bytes(4), b"next");
+    // What the page that left sends is not for the board.
+    assert_eq!(left.send(b"late"), 409);
+    assert_eq!(next.up.send(b"own"), 204);
+    let mut read = [0; 3];
+    board.stream.read_exact(&mut read).unwrap();
+    assert_eq!(&read, b"own");
 }
 
 #[test]
 fn a_port_that_is_lost_is_said_and_opened_again() {
-    let (mut board, mut socket) = connected();
+    let (mut board, mut page) = connected();
     drop(board.stream);
-    let lost = text(&mut socket);
+    let lost = page.port();
     assert_eq!(lost["port"], "lost");
     assert!(lost["why"].as_str().unwrap().contains("is lost"), "{lost}");
     board.stream = accept(&board.listener);
     // Earlier attempts may have failed, and each is reported.
-    while text(&mut socket) != json!({ "port": "open" }) {}
+    while page.port() != json!({ "port": "open" }) {}
     board.stream.write_all(b"back").unwrap();
-    assert_eq!(bytes(&mut socket, 4), b"back");
+    assert_eq!(page.bytes(4), b"back");
     // A page that comes while the port is away gets a message at once.
-    socket.close(None).unwrap();
-    drop((socket, board.stream, board.listener));
+    drop((page, board.stream, board.listener));
     let start = Instant::now();
-    loop {
-        let mut socket = connect(&board.server);
-        if text(&mut socket)["port"] == "lost" {
-            break;
-        }
+    while connect(&board.server).port()["port"] != "lost" {
         assert!(start.elapsed() < TIMEOUT);
     }
 }
@@ -315,56 +367,43 @@ fn a_page_that_does_not_read_does_not_stop_the_port() {
     }
     // The port is free for the next page, which gets the next bytes; a page that comes while the rest of the
     // flood is still read may be too slow for it, too.
-    let gets_nine = |socket: &mut Socket| loop {
-        match socket.read() {
-            Ok(Message::Binary(bytes)) if bytes.last() == Some(&9) => return true,
-            Ok(Message::Close(_)) | Err(_) => return false,
-            Ok(_) => {}
-        }
-    };
     loop {
         let mut next = connect(&board.server);
         board.stream.write_all(&[9]).unwrap();
-        if gets_nine(&mut next) {
+        if std::iter::from_fn(|| next.some_bytes()).any(|bytes| bytes.last() == Some(&9)) {
             break;
         }
     }
-    let end = loop {
-        match slow.read() {
-            Ok(Message::Close(frame)) => break frame.map(|frame| u16::from(frame.code)),
-            Ok(_) => {}
-            // Its message was cut off in the middle.
-            Err(_) => break None,
-        }
-    };
-    assert!(end.is_none_or(|code| code == TOO_SLOW), "{end:?}");
+    let end = slow.end();
+    assert!(end.as_ref().is_none_or(|why| why.contains("has taken less")), "{end:?}");
 }
 
 #[test]
-fn a_page_that_says_text_or_too_much_at_once_is_sent_away() {
-    let board = FakeBoard::new();
-    let mut socket = connect(&board.server);
-    socket.send(Message::text("hello")).unwrap();
-    assert!(close(&mut socket).reason.contains("binary messages"));
-    drop(socket);
-    let mut socket = connect(&board.server);
-    text(&mut socket);
-    // The server may close the socket before all of that is sent.
-    let sent = socket.send(Message::binary(vec![0; 1 << 20]));
-    let hung_up = [ErrorKind::BrokenPipe, ErrorKind::ConnectionReset];
-    let is_sent_away = matches!(&sent, Err(Error::Io(error)) if hung_up.contains(&error.kind()));
-    assert!(sent.is_ok() || is_sent_away, "{sent:?}");
-    while socket.read().is_ok() {}
-    drop(socket);
-    connect(&board.server);
+fn bytes_of_no_page_and_too_many_are_refused() {
+    let (board, page) = connected();
+    assert_eq!(page.up.send(&[0; 4096]), 204);
+    // The server may close the connection before all of that is sent.
+    assert!([413, 0].contains(&page.up.send(&[0; 1 << 20])));
+    let own = format!("http://{}", board.server.address());
+    let host = board.server.address().to_string();
+    let bare = request("POST", &page.up.target, &host, &format!("Origin: {own}\r\n"));
+    assert_eq!(status(&raw(&board.server, bare.as_bytes())), 411);
+    let short = bare.replace("\r\n\r\n", "\r\nContent-Length: 9\r\n\r\nshort");
+    assert_eq!(status(&raw(&board.server, short.as_bytes())), 400);
+    let foreign = short.replace(&own, "https://evil.example");
+    assert_eq!(status(&raw(&board.server, foreign.as_bytes())), 403);
+    let target = page.up.target.split_once("&page").unwrap().0.to_owned() + "&page=0123";
+    assert_eq!(Up { target, ..page.up.clone() }.send(b"x"), 409);
+    // The page goes on.
+    assert_eq!(page.up.send(b"x"), 204);
 }
 
 #[test]
 fn a_server_that_ends_says_so() {
-    let (mut board, mut socket) = connected();
+    let (mut board, mut page) = connected();
     let server = std::thread::spawn(move || drop(board.server));
-    assert!(close(&mut socket).reason.contains("haptic serve was ended"));
-    drop(socket);
+    assert_eq!(page.end().unwrap(), "haptic serve was ended");
+    drop(page);
     server.join().unwrap();
     // And the port is closed.
     let mut rest = Vec::new();
@@ -380,7 +419,7 @@ fn other_machines_are_not_served() {
     let address = Address::Tcp(listener.local_addr().unwrap().to_string());
     for listen in ["0.0.0.0:0", "[::]:0", "192.0.2.1:80"] {
         let (port, listen) = (Port::open(&address).unwrap(), listen.parse().unwrap());
-        let refused = Server::start(port, listen, PAGE.into(), Box::new(|_| {})).err().unwrap();
+        let refused = Server::start(port, listen, TEXT.into(), Box::new(|_| {})).err().unwrap();
         assert!(
             matches!(refused, ServeError::NotLoopback { address } if address == listen),
             "{refused}"
@@ -397,7 +436,7 @@ fn half_open(server: &Server) -> TcpStream {
 
 #[test]
 fn clients_without_the_token_do_not_lock_the_page_out() {
-    let (mut board, mut socket) = connected();
+    let (mut board, mut page) = connected();
     let (host, target) =
         (board.server.address().to_string(), format!("/?token={}", board.server.token()));
     // On a machine with other work one try may be slow.
@@ -423,7 +462,7 @@ fn clients_without_the_token_do_not_lock_the_page_out() {
     assert_eq!(get(&board.server, &target, &host, "").0, 200);
     // A page that has sent the token keeps its place.
     board.stream.write_all(b"still").unwrap();
-    assert_eq!(bytes(&mut socket, 5), b"still");
+    assert_eq!(page.bytes(5), b"still");
 }
 
 /// Waits for the end of a server, on a slow machine.
@@ -443,8 +482,7 @@ fn a_page_that_reads_slowly_does_not_keep_the_server_from_its_end() {
     for _ in 0..16 {
         board.stream.write_all(&chunk).unwrap();
     }
-    let MaybeTlsStream::Plain(stream) = slow.get_ref() else { unreachable!() };
-    let mut stream = stream.try_clone().unwrap();
+    let mut stream = slow.lines.into_inner();
     std::thread::spawn(move || {
         while matches!(stream.read(&mut [0; 4096]), Ok(1..)) {
             std::thread::sleep(Duration::from_millis(500));
@@ -455,14 +493,9 @@ fn a_page_that_reads_slowly_does_not_keep_the_server_from_its_end() {
 
 #[test]
 fn a_page_that_sends_without_pause_still_gets_the_bytes_of_the_board() {
-    let (mut board, mut socket) = connected();
-    let MaybeTlsStream::Plain(stream) = socket.get_ref() else { unreachable!() };
-    let sending = stream.try_clone().unwrap();
-    std::thread::spawn(move || {
-        let role = tungstenite::protocol::Role::Client;
-        let mut socket = WebSocket::from_raw_socket(sending, role, None);
-        while socket.send(Message::binary(vec![1; 4096])).is_ok() {}
-    });
+    let (mut board, mut page) = connected();
+    let up = page.up.clone();
+    std::thread::spawn(move || while up.send(&[1; 4096]) == 204 {});
     // The board takes bytes at the rate of a slow line, and no buffer is ever empty.
     let mut slow = board.stream.try_clone().unwrap();
     std::thread::spawn(move || {
@@ -472,6 +505,6 @@ fn a_page_that_sends_without_pause_still_gets_the_bytes_of_the_board() {
     });
     std::thread::sleep(Duration::from_millis(500));
     board.stream.write_all(b"answer").unwrap();
-    assert_eq!(bytes(&mut socket, 6), b"answer");
+    assert_eq!(page.bytes(6), b"answer");
     assert_ends(board.server);
 }

@@ -209,8 +209,8 @@ pub fn a_foreign_page_does_not_reach_the_board() {
     let other = Server::start(port, any, page.into(), Box::new(|_| {})).unwrap();
     let outcome = |page: &mut Page| -> Value {
         page.value(&format!(
-            "new Promise((done) => {{ const s = new WebSocket('ws://{}/wire?token={}'); \
-             s.onopen = () => {{ s.close(); done('open'); }}; s.onerror = () => done('refused'); }})",
+            "fetch('http://{}/wire?token={}', {{ method: 'POST' }}) \
+             .then(({{ ok }}) => ok ? 'open' : 'refused', () => 'refused')",
             server.address(),
             server.token()
         ))

@@ -82,16 +82,15 @@ impl Assumption {
         match self {
             Self::WorstPeriod { passes: true, .. }
             | Self::Saturates { bound: Some(_), .. }
-            | Self::OneSided { bound: Some(_) } => AssumptionStatus::Holds,
+            | Self::OneSided { bound: Some(_) }
+            | Self::FrictionOnly { .. } => AssumptionStatus::Holds,
             Self::Limited { full_scale: None, .. } | Self::StepsNotStated => {
                 AssumptionStatus::NotStated
             }
             Self::Limited { torque, full_scale: Some(full_scale) } if torque <= full_scale => {
                 AssumptionStatus::Holds
             }
-            Self::OneSided { .. } | Self::Limited { .. } | Self::FrictionOnly { .. } => {
-                AssumptionStatus::Fails
-            }
+            Self::OneSided { .. } | Self::Limited { .. } => AssumptionStatus::Fails,
             Self::Quantisation(rest) => match rest.comes_to_rest() {
                 None => AssumptionStatus::NotStated,
                 Some(true) => AssumptionStatus::Holds,

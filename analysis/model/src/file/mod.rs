@@ -46,6 +46,7 @@ use std::path::Path;
 
 pub use device::Purpose;
 pub use device_file::DeviceFile;
+pub use named_device::naming;
 pub use plausible::warnings;
 pub use problem::{FileError, Problem, excerpt};
 pub use scene::SceneFile;
@@ -163,6 +164,19 @@ fn parse_with<T>(
     read: impl FnOnce(Node, Source<'_>) -> Read<T>,
 ) -> Result<T, FileError> {
     parsed(Texts::new(file, first_line, text), None, format, read)
+}
+
+/// The keys of a scene file of its own, without those of a device file that it names.
+fn unmerged(file: &Path, bytes: &[u8]) -> Option<serde_json::Value> {
+    let text = text_of("", 1, bytes).ok()?;
+    let root = source::root(Format::of(file.to_str()?, text), text, &Faults::default());
+    Some(root.ok()?.value.into_json())
+}
+
+/// Parses the text of a scene file in a folder.
+fn parse_in(folder: &Path, text: &str) -> Result<SceneFile, FileError> {
+    let read = |root: Node, source: Source<'_>| scene::read(source, root, Purpose::Simulate);
+    parsed(Texts::new("", 1, text), Some(folder), Format::Toml, read)
 }
 
 /// Reads a text, and the device file that it names, relative to a folder or the working folder.

@@ -63,6 +63,43 @@ fn read(
     }
 }
 
+/// The text of a scene file for the path `to` that names the device file of the scene file `from` in place of its
+/// keys; none if that names no file, or if the device or its limits were changed.
+pub fn naming(text: &str, from: &str, to: &Path) -> Option<String> {
+    let from = Path::new(from);
+    let bytes = source::bytes(from).ok()?;
+    let own = super::unmerged(from, &bytes)?;
+    let device = from.parent()?.join(own.get(key::DEVICE.name())?.as_str()?);
+    let keys = super::canonical(super::load_json(device.to_str()?).ok()?);
+    let folder = std::path::absolute(to).ok()?.parent()?.canonicalize().ok()?;
+    let device = device.canonicalize().ok()?;
+    let name = device.strip_prefix(&folder).unwrap_or(&device).to_str()?;
+    let named = without(text, &keys, &format!("{} = {name:?}", key::DEVICE.name()));
+    let read = |text| super::parse_in(&folder, text).map(|file| super::write::toml(&file)).ok();
+    (read(text)? == read(&named)?).then_some(named)
+}
+
+/// The lines of a scene file without those keys of another file, and with its device in one line below the name.
+fn without(text: &str, keys: &serde_json::Value, device: &str) -> String {
+    let mut table = "";
+    let mut lines: Vec<&str> = Vec::new();
+    for line in text.lines() {
+        if let Some(name) = line.strip_prefix('[') {
+            table = name.trim_matches(['[', ']']).split('.').next().unwrap_or_default();
+        }
+        let key = line.split_once(" = ").map_or("", |(key, _)| key);
+        let is_of_device = table == self::key::DEVICE.name() || !keys[table][key].is_null();
+        // A table of which no key is left.
+        if line.starts_with('[') && lines.last().is_some_and(|last| last.starts_with('[')) {
+            lines.pop();
+        }
+        lines.extend((!is_of_device).then_some(line));
+        lines.extend((table.is_empty() && key == self::key::NAME.name()).then_some(device));
+    }
+    lines.pop_if(|last| last.starts_with('['));
+    lines.join("\n") + "\n"
+}
+
 /// Merges the keys of a device file into those of a scene.
 struct Merging<'m, 't> {
     texts: &'m Texts<'t>,

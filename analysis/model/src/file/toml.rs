@@ -4,8 +4,11 @@ use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 
 use super::faults::{Faults, Read};
+use super::key;
 use super::problem::{Fault, Problem};
 use super::tree::{Entry, Node, Value};
+use super::units;
+use crate::quantity::significant;
 
 /// Parses a TOML document; its top is always a table. All syntax errors are reported.
 pub fn parse(text: &str, faults: &Faults) -> Read<Node> {
@@ -14,7 +17,9 @@ pub fn parse(text: &str, faults: &Faults) -> Read<Node> {
         let span = error.span().unwrap_or(0..0);
         let problem = match error.message() {
             "duplicate key" => Problem::duplicate(text.get(span.clone()).unwrap_or_default()),
-            message => Problem::syntax("TOML", message),
+            message => {
+                with_unit(text, span.start).unwrap_or_else(|| Problem::syntax("TOML", message))
+            }
         };
         faults.report(Fault { span, problem })
     });
@@ -22,6 +27,22 @@ pub fn parse(text: &str, faults: &Faults) -> Read<Node> {
         Some(reported) => Err(reported),
         None => Ok(Node { span: 0..0, value: table(document.into_inner()) }),
     }
+}
+
+/// The problem of a number with a unit behind it, which is not valid TOML, on the line of a byte.
+fn with_unit(text: &str, at: usize) -> Option<Problem> {
+    let bare = |line: &'_ str| line.split('#').next().unwrap_or_default().trim().to_owned();
+    let (before, _) = text.split_at_checked(at)?;
+    let start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let line = bare(text[start..].lines().next()?);
+    let (name, value) = line.split_once('=')?;
+    let header = |line| Some(bare(line).strip_prefix('[')?.strip_suffix(']')?.to_owned() + ".");
+    let table = text[..start].lines().rev().find_map(header).unwrap_or_default();
+    let path = table + name.trim();
+    let key = key::ALL.iter().find(|key| key.path == path)?;
+    let meant = significant(units::in_unit(value, key.unit)?, 6);
+    let wrong = format!("has a unit; it must be {}; did you mean {meant}?", key.requirement());
+    Some(Problem::value(key.path, value, wrong))
 }
 
 fn table(table: DeTable<'_>) -> Value {

@@ -99,7 +99,7 @@ pub fn run(all: &super::Arguments, arguments: &Arguments) -> Result<CommandStatu
     levers.sort_by(|a, b| b.factor.total_cmp(&a.factor));
     let stiffest = SceneFile { scene: found.best.scene, ..file.clone() };
     if let Some(output) = &all.output {
-        save(output, &stiffest, &found)?;
+        save(output, &arguments.file, &stiffest, &found)?;
     }
     let verdict = judge_file(&stiffest, haptic_servo::number::Format::F64);
     let silent = search.silent().map(|search| search.run(|| ()).map(|found| found.best));
@@ -241,10 +241,11 @@ fn text(
 }
 
 /// Writes the scene, the chart or its numbers, by the extension.
-fn save(output: &Path, file: &SceneFile, found: &Found) -> Result<(), CommandError> {
+fn save(output: &Path, from: &str, file: &SceneFile, found: &Found) -> Result<(), CommandError> {
     let is_chart = ["svg", "csv"].iter().any(|extension| has_extension(output, extension));
     if !is_chart {
-        return write(output, file::write::toml(file));
+        let text = file::write::toml(file);
+        return write(output, file::naming(&text, from, output).unwrap_or(text));
     }
     let Chart { picture, data } = chart(file, found)?;
     match has_extension(output, "csv") {
