@@ -13,7 +13,6 @@ use crate::virtual_board::VirtualBoardError;
 pub enum ShaftInput<'a> {
     /// A hand that holds the scene's device. It waits until the servo runs.
     Hand(Box<HandHeldShaft>),
-    /// Recorded counts.
     Recording(RecordedShaft<'a>),
 }
 

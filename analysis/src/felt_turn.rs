@@ -17,9 +17,7 @@ use crate::lockstep::{NoRemote, SimulatedDevice, run};
 use crate::profile_curve::ProfileCurve;
 use crate::simulation::SimulationError;
 
-/// Why there is no turn.
 #[derive(Debug, Error)]
-#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum FeltTurnError {
     #[error("the scene has no torque profile")]
     NoProfile,
@@ -43,7 +41,6 @@ const BEYOND: f64 = 1.05;
 /// A turn, a sample a tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FeltTurn {
-    /// Time in s.
     pub time: Vec<f64>,
     /// Angle in rad, as the encoder counts it.
     pub angle: Vec<f64>,

@@ -8,29 +8,29 @@
 pub mod command;
 
 // Output: charts, and pages with charts.
-pub mod chart;
-pub mod explore;
+mod chart;
+mod explore;
 
 // Measured once and kept: comparisons of methods, formats and models.
 pub mod studies;
 
 // Runs of a program's scene in a servo, with a simulated device, a recording or a board around it; and the
 // device that such a run measures.
-pub mod bridge_run;
+mod bridge_run;
 pub mod compare_run;
-pub mod counts_csv;
-pub mod felt_turn;
+mod counts_csv;
+mod felt_turn;
 pub mod identify;
 pub mod program;
 
 // The board, emulated or virtual, its toolchain, and a board without hardware.
 pub mod board_sim;
-pub mod bridge_board;
+mod bridge_board;
 pub mod emulator;
 pub mod lockstep;
-pub mod shaft;
+mod shaft;
 pub mod toolchain;
-pub mod virtual_board;
+mod virtual_board;
 
 // A board that runs, at the other end of a wire, and the view of it.
 pub mod link;
@@ -47,15 +47,15 @@ pub use haptic_model::{
 };
 
 // The same with threads, files and studies.
-pub mod mu_analysis;
-pub mod run_csv;
-pub mod table;
+mod mu_analysis;
+mod run_csv;
+mod table;
 
 // Numbers and words.
-pub mod progress;
-pub mod terminal;
-pub mod text_table;
-pub mod tick_gaps;
+mod progress;
+mod terminal;
+mod text_table;
+mod tick_gaps;
 
 /// The scene file of the guide to certifying a wall, as this library reads it.
 ///

@@ -182,19 +182,6 @@ mod tests {
     }
 
     #[test]
-    fn closing_the_plant_with_a_hand_gives_the_wish() {
-        let chain = Chain::rigid(0.05, 0.5).unwrap();
-        let (delta, omega) = (0.3, 7.0);
-        let g = GeneralizedPlant::at(&chain, delta, omega).matrix;
-        for hand in [Complex::new(0.0, 3.0), Complex::new(2.0, -1.0)] {
-            let d = (1.0 - hand) / (1.0 + hand);
-            let closed = g[(1, 1)] + g[(1, 0)] * d * g[(0, 1)] / (1.0 - g[(0, 0)] * d);
-            let wanted = 2.0 * delta / (Complex::new(0.5, 0.05 * omega) + hand) - 1.0;
-            assert!((closed - wanted).norm() < 1e-14);
-        }
-    }
-
-    #[test]
     fn mu_of_a_rigid_device_is_one_up_to_its_damping_and_greater_beyond() {
         for (m, b) in [(0.05, 0.5), (2.2e-5, 0.022), (1.0, 20.0)] {
             let chain = Chain::rigid(m, b).unwrap();

@@ -11,7 +11,6 @@ use crate::trace::{TimeUnit, Trace};
 
 /// Why a recorded run cannot be read.
 #[derive(Debug, Error)]
-#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum RunCsvError {
     #[error(transparent)]
     Table(#[from] TableError),
@@ -112,25 +111,16 @@ mod tests {
         let simulated = "time,position,velocity,torque,limit\n0,1,2,3,missed\n0.5,1,2,3,none\n";
         let found = trace(simulated, None).unwrap();
         assert_eq!((found.time_unit, found.limit[0]), (TimeUnit::Seconds, TickStatus::Missed));
-        assert!(trace(simulated, Some(0.25)).unwrap_err().contains("has times in seconds"));
     }
 
     #[test]
-    fn errors_name_line_column_and_value() {
+    fn times_that_stand_still_and_other_reasons_are_refused() {
         let bad =
             |rows: &str| trace(&format!("tick,angle,torque,limit\n{rows}"), None).unwrap_err();
-        assert_eq!(
-            bad("0,0,0,none\n1,x,0,none\n"),
-            "x.csv:3: column 2, `angle`: `x` is out of bounds; it must be a finite number"
-        );
-        assert!(bad("0,0,inf,none\n").contains("column 3, `torque`: `inf`"));
         assert!(
             bad("3,0,0,none\n3,0,0,none\n")
                 .contains("x.csv:3: column 1, `tick`: `3` is out of bounds; it must be more")
         );
         assert!(bad("0,0,0,slewed\n").ends_with("angle, not-a-number, ramp, heat, energy, missed"));
-        assert!(bad("0,0,0\n").starts_with("x.csv:2: 3 fields"));
-        let headless = trace("tick,angle\n", None).unwrap_err();
-        assert_eq!(headless, "x.csv:1: there is no column `torque`; the columns are tick, angle");
     }
 }

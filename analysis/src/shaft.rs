@@ -20,10 +20,8 @@ use crate::simulation::SimulationError;
 /// Largest deviation of a time from a whole number of steps, in steps, that counts as rounding.
 const WHOLE: f64 = 1e-6;
 
-/// Position and speed of a shaft.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShaftMotion {
-    /// The encoder's count.
     pub count: i32,
     /// Angle in rad.
     pub angle: f64,
@@ -31,7 +29,6 @@ pub struct ShaftMotion {
     pub speed: f64,
 }
 
-/// A shaft.
 pub trait Shaft {
     /// A period of the servo begins; false if there are no more, as at the end of a recording.
     fn begin(&mut self) -> bool {
@@ -136,7 +133,6 @@ pub struct HandHeldShaft {
 }
 
 impl HandHeldShaft {
-    /// At rest at zero.
     pub fn new(
         scene: &Scene,
         trajectory: HandTrajectory,
@@ -158,7 +154,6 @@ impl HandHeldShaft {
         self.device.energy()
     }
 
-    /// The present motion of the device.
     pub fn motion(&mut self) -> ShaftMotion {
         let motion = self.device.motion();
         // A device always has a count.

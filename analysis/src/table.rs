@@ -52,7 +52,6 @@ pub struct Column {
 /// A unit by the ways to write it, and its size in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// Ways to write it.
     pub names: &'static [&'static str],
     /// SI units in one of it.
     pub factor: f64,
@@ -74,7 +73,6 @@ pub struct FoundColumn {
 /// A file after its first line was examined.
 type Source<R> = Chain<Cursor<Vec<u8>>, BufReader<R>>;
 
-/// Longest first line in bytes.
 const LONGEST_HEADER: u64 = 1 << 16;
 
 /// A table of which the header has been read.
@@ -109,7 +107,6 @@ impl DecimalMark {
     }
 }
 
-/// A row of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'t> {
     file: &'t str,
@@ -119,7 +116,6 @@ pub struct Row<'t> {
 }
 
 impl Table<File> {
-    /// Opens a file.
     pub fn open(path: &Path) -> Result<Self, TableError> {
         let file = path.display().to_string();
         let source = File::open(path).map_err(|error| TableError::unreadable(&file, &error))?;
@@ -204,7 +200,6 @@ impl<R: Read> Table<R> {
         self.find_in(column, units)?.ok_or_else(|| self.missing(column))
     }
 
-    /// Where a column is.
     pub fn column(&self, column: Column) -> Result<FoundColumn, TableError> {
         self.find(column).ok_or_else(|| self.missing(column))
     }
@@ -282,7 +277,6 @@ impl Row<'_> {
         TableError::in_line(self.file, self.line, message)
     }
 
-    /// The field in a column.
     pub fn text(&self, place: FoundColumn) -> &str {
         self.fields.get(place.index).unwrap_or_default()
     }

@@ -7,7 +7,6 @@ use serde::Serialize;
 /// Ticks that are missing between those of a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct TickGaps {
-    /// Ticks that are missing.
     pub missing: u64,
     /// Places at which they are missing.
     pub gaps: u64,
@@ -38,7 +37,6 @@ impl TickGaps {
         self.first_after.get_or_insert(last);
     }
 
-    /// Whether no tick is missing.
     pub fn is_none(&self) -> bool {
         self.first_after.is_none()
     }

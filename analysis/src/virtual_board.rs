@@ -35,9 +35,7 @@ const NO_CODE: u16 = u16::MAX;
 /// frame and of the board's other work.
 pub const LONGEST_ARMING: usize = 10_000;
 
-/// Errors of a virtual board.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum VirtualBoardError {
     #[error("the virtual board could not be started: {0}")]
     Start(#[source] io::Error),
@@ -77,16 +75,13 @@ impl Sample {
     }
 }
 
-/// The result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VirtualBoardReport {
     /// Instructions from reading the count to writing the code; none where that is to memory, for a bridge.
     pub compute: Option<InstructionStats>,
     /// Instructions of the servo's whole interrupt.
     pub interrupt: InstructionStats,
-    /// Times that the board was reset.
     pub resets: u32,
-    /// Lines of the log.
     pub log: Vec<String>,
 }
 
@@ -112,7 +107,6 @@ fn words(drive: &Drive) -> [String; 6] {
     [winding, resistance, inductance, torque_constant, supply, capacitance]
 }
 
-/// A running board.
 pub struct VirtualBoard {
     process: Child,
     input: Option<BufWriter<ChildStdin>>,

@@ -57,19 +57,13 @@ pub struct SimulatedBoard {
 
 /// Why a simulated board has ended before it was asked to.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum SimulatedBoardError {
-    /// Its program could not start, and why.
     #[error("refused by its {}: {reason}", .step.as_str())]
-    Render {
-        /// The step that refused it.
-        step: Step,
-        /// The reason.
-        reason: Box<RenderError>,
-    },
+    Render { step: Step, reason: Box<RenderError> },
     /// Its program could not start, though nothing is wrong with its scene.
     #[error("refused by its {}", .0.as_str())]
     Start(Step),
-    /// The virtual board has stopped.
     #[error(transparent)]
     VirtualBoard(#[from] VirtualBoardError),
 }

@@ -33,7 +33,6 @@ impl Axis {
         Self { range, is_logarithmic: false, digits, zero: 1e-9 * width, is_plain }
     }
 
-    /// A logarithmic axis.
     pub fn logarithmic(range: Range<f64>) -> Self {
         let is_plain = range.start >= 1e-4 && range.end < LONG;
         Self { range, is_logarithmic: true, digits: 4, zero: 0.0, is_plain }

@@ -10,7 +10,6 @@ const PANELS: [i32; 2] = [270, 280];
 const LONGEST_NAME: usize = 40;
 /// Decades above and below a gain of 1 by default.
 const DECADES: f64 = 3.0;
-/// A margin's line.
 const MARGIN: Stroke = Stroke::dashed(&[3, 3], 2);
 /// The level from which margins are measured.
 const LEVEL: Stroke = Stroke::solid(1).faint();
@@ -113,7 +112,6 @@ pub fn words(loops: &[(String, OpenLoop)]) -> Vec<String> {
     loops.iter().map(of).collect()
 }
 
-/// The numbers of the chart.
 pub fn data(loops: Vec<(String, OpenLoop)>) -> Data {
     let rows = loops.into_iter().flat_map(|(name, found)| {
         found.points.into_iter().map(move |point| {

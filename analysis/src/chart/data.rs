@@ -11,7 +11,6 @@ use super::picture::Picture;
 pub enum Cell {
     /// A number with all its digits; empty if it is not finite.
     Number(f64),
-    /// A word.
     Word(String),
 }
 
@@ -45,12 +44,9 @@ impl Cell {
 
 /// The rows of a table, which are computed as they are written: a map has millions.
 pub struct Data {
-    header: Vec<&'static str>,
+    header: &'static [&'static str],
     rows: Box<dyn Iterator<Item = Vec<Cell>>>,
 }
-
-/// A column: its name, unit included, and its value in a row.
-pub type Column<R> = (&'static str, fn(&R) -> Cell);
 
 impl Data {
     /// A table with these names of its columns, units included.
@@ -58,20 +54,9 @@ impl Data {
         header: &'static [&'static str],
         rows: impl IntoIterator<Item = Vec<Cell>> + 'static,
     ) -> Self {
-        Self { header: header.to_vec(), rows: Box::new(rows.into_iter()) }
+        Self { header, rows: Box::new(rows.into_iter()) }
     }
 
-    /// A table of such rows.
-    pub fn of<R: 'static, const N: usize>(
-        rows: impl IntoIterator<Item = R> + 'static,
-        columns: [Column<R>; N],
-    ) -> Self {
-        let row = move |row: R| columns.iter().map(|(_, value)| value(&row)).collect();
-        let rows = Box::new(rows.into_iter().map(row));
-        Self { header: columns.map(|(name, _)| name).to_vec(), rows }
-    }
-
-    /// Writes it to a file.
     pub fn write(self, path: &Path) -> Result<(), ChartError> {
         let unwritable =
             |source| ChartError::Output { path: path.to_owned(), what: "numbers", source };
@@ -81,7 +66,7 @@ impl Data {
 
     fn write_to(self, to: impl Write) -> std::io::Result<()> {
         let mut table = csv::Writer::from_writer(to);
-        table.write_record(&self.header)?;
+        table.write_record(self.header)?;
         for row in self.rows {
             table.write_record(row.iter().map(Cell::text))?;
         }
@@ -89,11 +74,8 @@ impl Data {
     }
 }
 
-/// A picture with its numbers.
 pub struct Chart {
-    /// The picture.
     pub picture: Picture,
-    /// The numbers.
     pub data: Data,
 }
 

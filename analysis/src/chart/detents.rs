@@ -6,14 +6,10 @@ use crate::profile_curve::DetentLimits;
 /// The line of the scene's own limit.
 const OWN: Stroke = Stroke::solid(2);
 
-/// The data of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DetentMap {
-    /// Its title.
     pub title: String,
-    /// The scene's own limit.
     pub own: DetentLimits,
-    /// The limits of other delays.
     pub others: Vec<DetentLimits>,
     /// Number of repetitions and torque of the scene itself.
     pub scene: (f64, f64),

@@ -9,7 +9,6 @@ use crate::nyquist::NoTransfer;
 use crate::quantity::significant;
 
 /// The reason why a chart could not be drawn, as its sentence says.
-#[allow(missing_docs)]
 #[derive(Debug, Error)]
 pub enum ChartError {
     /// `what` is the content of the file.

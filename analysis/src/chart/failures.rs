@@ -48,7 +48,6 @@ fn paint(area: &Area<'_>, region: &Region) -> Drawn<()> {
     Ok(())
 }
 
-/// The line of a method.
 fn stroke(method: Method) -> Stroke {
     let pattern: &[i32] = match method {
         Method::Exact => &[],

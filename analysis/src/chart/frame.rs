@@ -3,7 +3,6 @@
 /// A point in units of the drawing, from the upper left corner of a panel.
 pub type Place = (f64, f64);
 
-/// A place in whole units.
 pub fn whole(place: &Place) -> (i32, i32) {
     (place.0.round() as i32, place.1.round() as i32)
 }
@@ -65,19 +64,5 @@ impl Frame {
             open = inside;
         }
         parts
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const FRAME: Frame = Frame { left: 1.0, top: 2.0, right: 9.0, bottom: 8.0 };
-
-    #[test]
-    fn lines_end_on_the_border() {
-        let line = [(5.0, -4.0), (5.0, 5.0), (7.0, 5.0), (11.0, 7.0), (f64::NAN, f64::INFINITY)];
-        let parts = FRAME.clip(&line);
-        assert_eq!(parts, [[(5.0, 2.0), (5.0, 5.0), (7.0, 5.0), (9.0, 6.0)]]);
     }
 }

@@ -13,20 +13,14 @@ use crate::simulation::tick_status::TickStatus;
 /// also show it.
 const SPACING: i32 = units(7);
 
-/// A fill pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fill {
-    /// One colour.
     Solid(RGBColor),
-    /// Lines that rise to the right.
     Rising,
-    /// Lines that fall to the right.
     Falling,
-    /// Both.
+    /// Rising and falling lines.
     Crossed,
-    /// Level lines.
     Level,
-    /// Upright lines.
     Upright,
     /// Level and upright lines.
     Squared,

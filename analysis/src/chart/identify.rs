@@ -11,7 +11,6 @@ use crate::quantity::significant;
 const SIZE: (i32, i32) = (1060, 530);
 /// Width in pixels of the left part, with the same scale in both directions, so that the disk is round.
 const LEFT: i32 = 590;
-/// Points of a curve.
 const POINTS: usize = 400;
 /// Half-length of a bar in standard deviations: a 95 % interval.
 const BAR: f64 = 1.96;

@@ -82,7 +82,6 @@ struct Spot {
 }
 
 impl Labels {
-    /// An empty panel.
     pub fn within(panel: Block) -> Self {
         Self { panel, taken: Vec::new(), names: Vec::new(), points: Vec::new() }
     }

@@ -7,7 +7,6 @@ use crate::quantity::significant;
 
 /// Height of a row of panels in pixels.
 const PANEL: i32 = 330;
-/// Panels beside each other.
 const COLUMNS: usize = 2;
 
 /// A curve: its name, and its stiffness in N m/rad at a rate.

@@ -22,11 +22,8 @@ const LETTER: f64 = 6.0;
 /// A part of the picture that a legend explains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sample {
-    /// A line.
     Line(Stroke),
-    /// A region.
     Region(Fill),
-    /// A point.
     Point(Mark),
     /// Nothing: the words are a remark.
     Nothing,
@@ -78,7 +75,6 @@ impl Legend {
         self.rows(width).iter().map(|row| ROW * lines(row)).sum()
     }
 
-    /// Draws it.
     pub(super) fn draw(&self, area: &Area<'_>, width: i32) -> Drawn<()> {
         let mut top = 0;
         for row in self.rows(width) {

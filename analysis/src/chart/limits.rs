@@ -11,10 +11,8 @@ const ROOM: f64 = 1.6;
 /// The line at the scene's own rate.
 const OWN: Stroke = Stroke::dashed(&[3, 3], 1);
 
-/// A curve for one delay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DelayCurve {
-    /// Delay in samples.
     pub delay: usize,
     /// Whether any stiffness is certified; the coupling is then drawn instead.
     pub is_coupling: bool,

@@ -12,10 +12,8 @@ const BELOW: Stroke = Stroke::solid(4).ink(WHITE);
 /// The line without damping.
 const UNDAMPED: Stroke = Stroke::solid(1);
 
-/// The additions to a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
-    /// Its title.
     pub title: String,
     /// The border by a closed form, if there is one.
     pub border: Option<Border>,

@@ -5,7 +5,6 @@ use plotters::prelude::*;
 use super::base::{Area, Drawn, UNITS, units};
 use super::palette::{FAINT, FAMILIES};
 
-/// The mark of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
     form: Form,
@@ -51,9 +50,7 @@ impl Mark {
     pub const FAINT: Self = Self { form: Form::Disk, half: 2, width: 0, ink: FAINT };
     /// A point at which something goes wrong.
     pub const CROSS: Self = Self { form: Form::Cross, half: 4, width: 1, ink: BLACK };
-    /// A minimum.
     pub const RING: Self = Self { form: Form::Ring, half: 5, width: 2, ink: BLACK };
-    /// A margin.
     pub const FRAME: Self = Self { form: Form::Frame, half: 6, width: 2, ink: BLACK };
 
     /// The mark of the family with this number; the marks repeat.
@@ -62,7 +59,6 @@ impl Mark {
         Self { form: FORMS[family], half: Self::FAMILY, width: 2, ink: FAMILIES[family] }
     }
 
-    /// Its colour.
     pub const fn ink(self) -> RGBColor {
         self.ink
     }

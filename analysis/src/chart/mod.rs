@@ -53,9 +53,7 @@ use stroke::Stroke;
 /// Ranges of the axes, in place of the default ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Window {
-    /// Along the horizontal axis.
     pub x: Option<Range<f64>>,
-    /// Along the vertical axis.
     pub y: Option<Range<f64>>,
 }
 

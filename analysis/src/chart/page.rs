@@ -13,7 +13,6 @@ use crate::quantity::shortened;
 pub const WIDTH: i32 = 820;
 pub const HEIGHT: i32 = 524;
 
-/// Size of a title.
 const TITLE: i32 = units(19);
 /// Width of a letter of a title in pixels: more than that of most letters.
 const LETTER: i32 = 11;
@@ -23,15 +22,12 @@ const TITLE_ROOM: i32 = TOP + 26;
 /// Room above the legends and below, in pixels.
 const APART: i32 = 8;
 
-/// The parts of a picture.
 pub struct Page<'p> {
-    /// Its title.
     pub title: &'p str,
     /// Its width in pixels.
     pub width: i32,
     /// Heights of the parts that are painted, in pixels.
     pub heights: &'p [i32],
-    /// The legends below.
     pub legends: Vec<Legend>,
 }
 
@@ -56,7 +52,7 @@ impl Page<'_> {
         let drawing =
             format!("width=\"{}\" height=\"{}\" viewBox", size[0] * UNITS, size[1] * UNITS);
         let page = format!("width=\"{}\" height=\"{}\" viewBox", size[0], size[1]);
-        Ok(Picture::new(join_strokes(&svg.replacen(&drawing, &page, 1))))
+        Ok(Picture { svg: join_strokes(&svg.replacen(&drawing, &page, 1)) })
     }
 
     fn paint(

@@ -2,7 +2,6 @@
 
 use plotters::style::RGBColor;
 
-/// Grid lines.
 pub const GRID: RGBColor = RGBColor(235, 235, 235);
 /// Forbidden regions, and samples whose torque is limited.
 pub const FORBIDDEN: RGBColor = RGBColor(225, 225, 225);

@@ -9,7 +9,6 @@ use super::mark::Mark;
 use super::palette::GRID;
 use super::stroke::Stroke;
 
-/// Room around a panel.
 const MARGIN: i32 = units(14);
 /// Room on the right, for the last number of the horizontal axis.
 const MARGIN_RIGHT: i32 = units(24);
@@ -25,9 +24,7 @@ const MOST_TICKS: usize = 11;
 /// The axes of a panel, with their names and a heading.
 #[derive(Clone, Debug)]
 pub struct Axes<'n> {
-    /// The horizontal axis.
     pub x: Axis,
-    /// The vertical axis.
     pub y: Axis,
     /// Name of the horizontal axis with its unit; empty if it shares the axis of the panel below.
     pub x_name: &'n str,
@@ -44,7 +41,6 @@ impl<'n> Axes<'n> {
     }
 }
 
-/// A panel.
 pub struct Panel<'a, 'b> {
     chart: ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>,
     axes: Axes<'a>,
@@ -79,7 +75,6 @@ impl<'a, 'b> Panel<'a, 'b> {
         Ok(Self { chart, axes, area, frame })
     }
 
-    /// Draws axes, grid, names and numbers.
     pub fn grid(&mut self) -> Drawn<()> {
         let ticks = |size: f64, apart: i32| {
             ((size / f64::from(units(apart))) as usize).clamp(2, MOST_TICKS)

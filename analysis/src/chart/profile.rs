@@ -114,7 +114,6 @@ fn certified(rise: &Piece, slope: f64, x: &Range<f64>, y: &Range<f64>) -> [(f64,
     [-half, half].map(|by| (rise.angle + by, rise.torque + by * slope))
 }
 
-/// The legend of the slopes.
 pub(super) fn slopes(curve: &ProfileCurve) -> Vec<(Sample, String)> {
     let slope = |value: f64| significant(value, 4);
     let steepest = format!(

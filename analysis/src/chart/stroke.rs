@@ -5,7 +5,6 @@ use plotters::prelude::*;
 use super::base::{Area, Drawn, UNITS, units};
 use super::palette::FAINT;
 
-/// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stroke {
     /// Ink and gap in pixels, alternately; empty for a solid line.
@@ -35,17 +34,14 @@ impl Stroke {
         Self::dashed(PATTERNS[index % PATTERNS.len()], width)
     }
 
-    /// The same in another colour.
     pub const fn ink(self, ink: RGBColor) -> Self {
         Self { ink, ..self }
     }
 
-    /// The same in grey.
     pub const fn faint(self) -> Self {
         self.ink(FAINT)
     }
 
-    /// The same with another width.
     pub const fn wide(self, width: u32) -> Self {
         Self { width, ..self }
     }
@@ -96,19 +92,5 @@ impl Stroke {
         self.split(points)
             .into_iter()
             .try_for_each(|part| area.draw(&PathElement::new(part, style)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ink_and_gap_have_their_lengths_around_corners() {
-        let line = [(0, 0), (units(8), 0), (units(8), units(20))];
-        let parts = Stroke::of(1, 1).split(&line);
-        assert_eq!(parts[0], [(0, 0), (units(8), 0), (units(8), units(3))]);
-        assert_eq!(parts[1], [(units(8), units(8)), (units(8), units(19))]);
-        assert_eq!(Stroke::solid(1).split(&line), [line.to_vec()]);
     }
 }

@@ -31,22 +31,3 @@ fn stroke(line: &str) -> Option<(&str, &str)> {
     let (style, points) = line.strip_prefix(OPAQUE)?.split_once(" points=\"")?;
     Some((style, points.strip_suffix("\"/>")?.trim_end()))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn strokes_of_one_style_are_one_path() {
-        let line = |style: &str, points: &str| format!("{OPAQUE}{style} points=\"{points} \"/>\n");
-        let faint = "<polyline fill=\"none\" opacity=\"0.5\" points=\"1,1 2,2 \"/>\n";
-        let [a, b, c] =
-            [("k", "1,2 3,4"), ("k", "5,6 7,8"), ("r", "0,0 9,9")].map(|(s, p)| line(s, p));
-        let path = |style: &str, d: &str| format!("<path fill=\"none\" {style} d=\"{d}\"/>\n");
-        let (both, red) = (path("k", "M1,2 3,4M5,6 7,8"), path("r", "M0,0 9,9"));
-        assert_eq!(join_strokes(&[&*a, &b, &c].concat()), [both, red].concat());
-        // Not across another element, and nothing transparent.
-        let (first, second) = (path("k", "M1,2 3,4"), path("k", "M5,6 7,8"));
-        assert_eq!(join_strokes(&[&*a, faint, &b].concat()), [&*first, faint, &second].concat());
-    }
-}

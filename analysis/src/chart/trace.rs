@@ -10,7 +10,6 @@ pub fn drawable(trace: Trace) -> Trace {
     trace.until(is_drawable)
 }
 
-/// The numbers of the chart.
 pub fn data(trace: Trace) -> Data {
     let (velocity, time_unit) = (trace.velocities(), trace.time_unit);
     let rows = (0..trace.time.len()).map(move |i| {
@@ -98,7 +97,6 @@ fn velocity(area: &Area<'_>, trace: &Trace, times: &Range<f64>) -> Drawn<()> {
     release(&panel, trace)
 }
 
-/// A panel over time.
 fn panel<'a, 'b>(
     area: &'a Area<'b>,
     times: &Range<f64>,
@@ -124,7 +122,6 @@ fn seen<'v>(
     both.filter(|(time, _)| times.contains(*time)).map(|(_, value)| *value)
 }
 
-/// The legend of the lines.
 fn lines(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<(Sample, String)> {
     let mut lines = vec![(Sample::Line(DEVICE), "device".to_owned())];
     // A level, which may be outside of its panel.
@@ -154,7 +151,6 @@ fn lines(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<(Sample,
     lines
 }
 
-/// Remarks below the legend.
 fn notes(trace: &Trace) -> Vec<String> {
     let velocity = trace.velocity.is_empty().then(|| match trace.window() {
         1 => "velocity from two ticks' angles".to_owned(),

@@ -1,4 +1,4 @@
-//! Speed against accuracy: for each case and each error a panel with all methods, families
+//! Speed against accuracy: for each case a panel with all methods, families
 //! distinguished by mark and colour, and the Pareto front with the names of its methods.
 
 use super::labels::{Block, Labels};
@@ -18,13 +18,11 @@ const LEVEL: Stroke = Stroke::dashed(&[2, 4], 1);
 /// Largest number of readable columns of panels at the width of a page.
 const COLUMNS: usize = 2;
 
-/// Draws a panel for each case of a table and each of these errors: a row for each case, or for two cases if
-/// there is only one error.
-pub fn tradeoff(table: &Tradeoff, errors: &[usize]) -> Result<Picture, ChartError> {
+/// Draws a panel for each case of a table, by the error with this index.
+pub fn tradeoff(table: &Tradeoff, error: usize) -> Result<Picture, ChartError> {
     let cases = table.cases();
-    let columns = if errors.len() == 1 { cases.len().clamp(1, COLUMNS) } else { errors.len() };
-    let panels = cases.iter().flat_map(|&case| errors.iter().map(move |&error| (case, error)));
-    let rows = panels.clone().count().div_ceil(columns);
+    let columns = cases.len().clamp(1, COLUMNS);
+    let rows = cases.len().div_ceil(columns);
     let cost = &table.comparison.cost;
     let costs = range(table, cost, Method::cost).ok_or(ChartError::TooFewPoints)?;
     let width = (PANEL.0 * columns as i32).max(WIDTH);
@@ -38,9 +36,10 @@ pub fn tradeoff(table: &Tradeoff, errors: &[usize]) -> Result<Picture, ChartErro
     let heights = [PANEL.1 * rows as i32];
     Page { title: table.comparison.title, width, heights: &heights, legends }.draw(|areas| {
         let areas = areas[0].split_evenly((rows, columns));
-        areas.iter().zip(panels).try_for_each(|(area, (case, error))| {
-            Methods { table, case, error }.paint(area, costs.clone())
-        })
+        areas
+            .iter()
+            .zip(cases)
+            .try_for_each(|(area, case)| Methods { table, case, error }.paint(area, costs.clone()))
     })
 }
 

@@ -13,7 +13,6 @@ const PROFILE: Stroke = Stroke::solid(1);
 const MOTION: Stroke = Stroke::solid(2);
 const HAND: Stroke = Stroke::dashed(&[6, 4], 1);
 
-/// Draws a turn.
 pub fn turn(title: &str, turn: &FeltTurn) -> Result<Picture, ChartError> {
     let dots = "torque of the servo's codes, a dot each tick".to_owned();
     let hand = (Sample::Line(HAND), "set-point of the hand".to_owned());
@@ -51,7 +50,6 @@ fn over_angle(area: &Area<'_>, turn: &FeltTurn) -> Drawn<()> {
     draw_slopes(&panel, curve, &x, &y)
 }
 
-/// Quantities over time.
 fn over_time(
     area: &Area<'_>,
     time: &[f64],

@@ -23,7 +23,6 @@ const BUFFER: usize = 1 << 20;
 /// Longest line in bytes; a scene has a few hundred.
 const MAX_LINE: u64 = 1 << 16;
 
-/// A line as it was read.
 enum Line {
     /// Its bytes, without the newline.
     Bytes(Vec<u8>),

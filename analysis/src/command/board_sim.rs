@@ -21,7 +21,6 @@ use crate::shaft::HandHeldShaft;
 use crate::terminal;
 use crate::toolchain::{BoardModel, NumberFormat};
 
-/// Arguments of `haptic board-sim`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Name of a scene's program in firmware/src/bin, for example damper_wall

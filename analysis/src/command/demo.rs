@@ -28,7 +28,6 @@ use crate::toolchain::{NumberFormat, Tools};
 use crate::verdict::{self, Verdict};
 use crate::worst_hand::{self, HandCase};
 
-/// Arguments of `haptic demo`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Folder for the charts

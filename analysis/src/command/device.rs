@@ -10,7 +10,6 @@ use crate::file::{self, DeviceFile};
 use crate::mu_analysis::Check;
 use crate::quantity::{rounded_down, significant};
 
-/// Arguments of `haptic device`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file, or a file with a table `device` alone; TOML or JSON; `-` is standard input
@@ -20,16 +19,12 @@ pub struct Arguments {
     pub answer: JsonOption,
 }
 
-/// The data of a device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// The name in the file.
     pub name: Option<String>,
     /// Output strict passivity in N m s/rad, to the last digit; `None` if the device is not passive.
     pub delta: Option<f64>,
-    /// Lower end of the enclosure.
     pub delta_lo: Option<f64>,
-    /// Upper end of the enclosure.
     pub delta_hi: Option<f64>,
     /// Angular frequency in rad/s at which it is reached; 0 in the limit at rest, or if it does not depend on
     /// the frequency; `None` in the limit of infinite frequency.
@@ -38,7 +33,6 @@ pub struct Report {
     pub reached: Option<&'static str>,
     /// Whether encoder and motor are on the same mass.
     pub collocated: bool,
-    /// Number of masses.
     pub masses: usize,
     /// Inertia in kg m^2 of all masses together.
     pub inertia: f64,
@@ -48,7 +42,6 @@ pub struct Report {
     pub actuator_lag: f64,
     /// The paper's construction compared with `delta`; `None` without a `delta` above 0.
     pub mu: Option<Check>,
-    /// The result as text.
     pub message: String,
 }
 
@@ -128,7 +121,6 @@ fn without_lag(chain: &Chain) -> String {
     }
 }
 
-/// The report as text.
 pub fn text(report: &Report) -> String {
     let mut rows = Vec::new();
     if let Some(name) = &report.name {

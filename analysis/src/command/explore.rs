@@ -13,7 +13,6 @@ use crate::explore;
 use crate::file::{self, Format};
 use crate::toolchain::Tools;
 
-/// Arguments of `haptic explore`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file, TOML or JSON, that the page starts with; `-` is standard input. Without it the page
@@ -31,7 +30,6 @@ pub struct Arguments {
 /// The scene of a page without a file.
 const START: &str = include_str!("../../pictures/wall.toml");
 
-/// Writes the page.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let extension = arguments.output.extension().map(|e| e.to_string_lossy().to_lowercase());
     if !matches!(extension.as_deref(), Some("html" | "htm")) {

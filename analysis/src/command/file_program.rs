@@ -15,9 +15,7 @@ const LONGEST: usize = 32;
 
 /// A program for boards whose constants are those of a scene file.
 pub struct FileProgram {
-    /// The file, as it was named.
     source: String,
-    /// Its text.
     pub text: String,
     is_certified: bool,
 }

@@ -50,7 +50,6 @@ pub struct Arguments {
     pub command: Command,
 }
 
-/// The end of every help text.
 const EXIT_STATUS: &str = "\
 Exit status: 0 success; 1 negative verdict: rejected, undecided, unstable, different, or not possible; \
 2 invalid input or failure";

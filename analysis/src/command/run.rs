@@ -35,7 +35,6 @@ use crate::tick_gaps::TickGaps;
 use crate::toolchain::{BoardModel, NumberFormat, Tools};
 use crate::verdict::{self, Verdict, VerdictReport, judge_file};
 
-/// The target of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// On this machine.
@@ -77,7 +76,6 @@ impl fmt::Display for Target {
     }
 }
 
-/// Arguments of `haptic run`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Name of a program in firmware/src/bin, for example damper_wall, or a scene file. Its table `human` is
@@ -134,7 +132,6 @@ enum RunProgram {
     OfFile(Option<FileProgram>),
 }
 
-/// The result as JSON.
 #[derive(Serialize)]
 struct Summary<'a> {
     scene: &'a str,
@@ -152,7 +149,6 @@ struct Summary<'a> {
     instructions: Option<Instructions>,
 }
 
-/// Instructions per tick on the board.
 #[derive(Serialize)]
 struct Instructions {
     compute_mean: Option<f64>,

@@ -7,7 +7,6 @@ use clap::Args;
 use super::status::{CommandError, CommandStatus};
 use crate::file::{example, reference, schema};
 
-/// Arguments of `haptic schema`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Print a commented scene file that certifies

@@ -22,7 +22,6 @@ use crate::scope::screen::Screen;
 use crate::scope::{Scope, tui};
 use crate::terminal;
 
-/// Arguments of `haptic scope`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Address of the board: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
@@ -43,7 +42,6 @@ pub struct Arguments {
     pub window: Duration,
 }
 
-/// Time between two frames.
 const PICTURE: Duration = Duration::from_millis(33);
 
 /// Shows or records a board's telemetry until the time is up or the user quits.

@@ -14,7 +14,6 @@ use crate::link::Address;
 use crate::serve::{Port, Server};
 use crate::terminal;
 
-/// Arguments of `haptic serve`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file, TOML or JSON, that the page starts with; `-` is standard input. As soon as the page knows

@@ -15,7 +15,6 @@ use crate::simulation::Integration;
 use crate::simulation::method::Method;
 use crate::verdict::{VerdictReport, judge_file};
 
-/// The scene of a command.
 #[derive(Debug, Args)]
 pub struct SceneArgument {
     /// Scene file, TOML or JSON; `-` is standard input
@@ -67,7 +66,6 @@ pub struct IntegrationArguments {
 }
 
 impl IntegrationArguments {
-    /// Method and steps.
     pub fn integration(&self) -> Integration {
         Integration { method: self.method, substeps: self.substeps }
     }
@@ -90,7 +88,6 @@ impl CoefficientFormat {
     }
 }
 
-/// Writes a file.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CommandError> {
     let written = std::fs::write(path, content);
     written.map_err(|source| CommandError::Unwritable { path: path.to_owned(), source })

@@ -45,7 +45,6 @@ struct Row {
     host_energy: Option<f64>,
 }
 
-/// The motion as JSON.
 #[derive(Serialize)]
 struct Answer<'t> {
     #[serde(flatten)]

@@ -22,7 +22,6 @@ pub enum CommandStatus {
 }
 
 impl CommandStatus {
-    /// Success, or a negative verdict.
     pub fn of(is_positive: bool) -> Self {
         if is_positive { Self::Success } else { Self::NegativeVerdict }
     }

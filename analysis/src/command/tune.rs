@@ -16,7 +16,6 @@ use crate::link::change::{change, collect};
 use crate::link::{self, Address, Link};
 use crate::scope::{Power, formatting, modes};
 
-/// Arguments of `haptic tune`.
 #[derive(Debug, Args)]
 #[command(after_help = "An armed board takes the torque away while it swaps a set in: the torque \
                         fades out, the new set starts at rest where the device is, and the torque \
@@ -42,18 +41,15 @@ pub struct Arguments {
     #[arg(long)]
     pub align: bool,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub answer: JsonOption,
 }
 
 /// Time between two polls for the end of an alignment.
 const POLL: Duration = Duration::from_millis(200);
 
-/// The result as JSON.
 #[derive(Serialize)]
 struct Report<'a> {
     program: &'a str,
-    /// The reason if the board refused.
     refused: Option<&'a str>,
     sets: u32,
     margin: Option<f64>,

@@ -5,23 +5,19 @@ use std::time::Duration;
 
 use crate::chart::is_range;
 
-/// A finite number within a bound.
 pub fn bounded(text: &str, bound: &str, admits: impl Fn(f64) -> bool) -> Result<f64, String> {
     let value = text.parse().ok().filter(|&value: &f64| value.is_finite() && admits(value));
     value.ok_or_else(|| format!("it must be {bound}"))
 }
 
-/// A number greater than 0.
 pub fn positive(text: &str) -> Result<f64, String> {
     bounded(text, "a number greater than 0", |value| value > 0.0)
 }
 
-/// A number, 0 or more.
 pub fn not_negative(text: &str) -> Result<f64, String> {
     bounded(text, "a number, 0 or more", |value| value >= 0.0)
 }
 
-/// A time on the command line.
 pub fn seconds(text: &str) -> Result<Duration, String> {
     let seconds =
         text.parse().map_err(|_| format!("`{text}` is not a valid duration in seconds"))?;
@@ -31,7 +27,6 @@ pub fn seconds(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// A finite number.
 pub fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not finite")) }

@@ -7,7 +7,6 @@ use super::status::{CommandError, CommandStatus};
 use crate::quantity::significant;
 use crate::worst_hand::{SearchResult, search};
 
-/// Arguments of `haptic worst-hand`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]

@@ -3,28 +3,23 @@
 use std::path::Path;
 
 use firmware_harness::bench_request::{BLOCK, BenchRequest, Output, Outputs};
-use firmware_harness::loop_request::{LoopRequest, StartReply};
 use firmware_harness::scene_codec::{CertifyReply, CertifyRequest, FRAME, decode, encode};
 use haptic_servo::scene::Scene;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::{EmulatorError, Guest};
-use crate::lockstep::RemoteServo;
 
 /// The client of a program of the harness, which answers one kind of requests: `certify_server` certificates,
-/// `servo_server` the servos of several scenes, one after the other; `bench_programs` and `bench_all` torques
-/// and sines, with the instructions of each.
+/// `bench_programs` and `bench_all` torques and sines, with the instructions of each.
 pub struct Client {
     board: Guest,
-    /// Ticks of a servo that have been requested and not run.
-    ticks_left: u32,
 }
 
 impl Client {
     /// Starts the program, built by [`build_harness`](crate::toolchain::Toolchain::build_harness).
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self { board: Guest::boot(elf)?, ticks_left: 0 })
+        Ok(Self { board: Guest::boot(elf)? })
     }
 
     /// Sends a request to the board, and returns its reply.
@@ -37,25 +32,6 @@ impl Client {
     /// Lets the board certify a scene.
     pub fn certify(&mut self, scene: &Scene) -> Result<CertifyReply, EmulatorError> {
         self.ask(&CertifyRequest(*scene))
-    }
-
-    /// Lets the board certify a scene and, if it passes, run its servo from rest. The remaining ticks of the
-    /// previous request run first, with the device at zero.
-    pub fn start(&mut self, request: &LoopRequest) -> Result<StartReply, EmulatorError> {
-        self.run_ticks_left()?;
-        let reply = self.ask(request)?;
-        if reply == StartReply::Ready {
-            self.ticks_left = request.ticks;
-        }
-        Ok(reply)
-    }
-
-    /// Runs the remaining ticks of a servo, with the device at zero.
-    fn run_ticks_left(&mut self) -> Result<(), EmulatorError> {
-        while self.ticks_left > 0 {
-            self.exchange(0)?;
-        }
-        Ok(())
     }
 
     /// Lets the board compute the results of all inputs: counts of an encoder, or the bits of parts of a
@@ -89,20 +65,7 @@ impl Client {
     }
 
     /// Ends the board.
-    pub fn finish(mut self) -> Result<(), EmulatorError> {
-        self.run_ticks_left()?;
+    pub fn finish(self) -> Result<(), EmulatorError> {
         self.board.finish().map(drop)
-    }
-}
-
-impl RemoteServo for Client {
-    type Error = EmulatorError;
-
-    /// The code of a servo for a count: one tick of the current request.
-    fn exchange(&mut self, raw: i32) -> Result<u16, EmulatorError> {
-        let mut code = [0; 2];
-        self.board.exchange(&raw.to_le_bytes(), &mut code)?;
-        self.ticks_left = self.ticks_left.saturating_sub(1);
-        Ok(u16::from_le_bytes(code))
     }
 }

@@ -197,7 +197,6 @@ fn friction(profile: &Profile, is_told: bool, speed: f64) -> Estimate {
     }
 }
 
-/// A response that is not used.
 fn without(response: &FrequencyPoint, reason: Reason) -> LeftOut {
     LeftOut::new(response.omega, response.row, reason)
 }

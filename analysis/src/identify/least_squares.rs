@@ -34,7 +34,6 @@ const FRICTION: usize = 3;
 /// Responses as they were measured, with the images of the torque that is held for a period.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<'a> {
-    /// The responses.
     pub responses: &'a [FrequencyPoint],
     /// Sampling period in s.
     pub period: f64,
@@ -53,10 +52,8 @@ struct Free {
     friction: bool,
 }
 
-/// The nearest device.
 #[derive(Clone, Copy, Debug)]
 pub struct Fit {
-    /// The device.
     pub model: Model,
     /// Sum of the squared residuals in squared deviations.
     pub squares: f64,
@@ -66,7 +63,6 @@ pub struct Fit {
     pub is_delay_free: bool,
 }
 
-/// Knowledge of the delay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Delay {
     /// The initial value in s.

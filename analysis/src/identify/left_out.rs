@@ -10,7 +10,7 @@ pub const LEAST_PERIODS: usize = 4;
 /// A tone that is not used, and why.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeftOut {
-    /// Its frequency in Hz.
+    /// In Hz.
     pub frequency: f64,
     /// Its first row, counted from 1.
     pub row: usize,
@@ -22,10 +22,7 @@ pub struct LeftOut {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reason {
     /// Its frequency is above half the sampling rate.
-    Aliased {
-        /// Half the sampling rate in Hz.
-        half_rate: f64,
-    },
+    Aliased { half_rate: f64 },
     /// It has only so many periods.
     FewPeriods(f64),
     /// Its frequency changes by this factor from its first half to its second.
@@ -46,7 +43,6 @@ impl LeftOut {
         Self { frequency: omega / TAU, row: row + 1, reason }
     }
 
-    /// The number of its reason.
     fn number(&self) -> f64 {
         match self.reason {
             Reason::Aliased { half_rate } => half_rate,

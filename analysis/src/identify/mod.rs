@@ -14,22 +14,22 @@
 //! the device. [`port`] records a board's measurement; [`rig`] simulates a measured device, with the errors
 //! of a real measurement, and [`measurement`] has the emulated board measure it.
 
-pub mod clipping;
+mod clipping;
 mod error;
 mod estimate;
-pub mod fit;
+mod fit;
 mod input_check;
-pub mod latency;
-pub mod least_squares;
-pub mod left_out;
-pub mod measurement;
-pub mod model;
-pub mod port;
-pub mod profile;
+mod latency;
+mod least_squares;
+pub(crate) mod left_out;
+pub(crate) mod measurement;
+mod model;
+pub(crate) mod port;
+mod profile;
 pub mod record;
-pub mod response;
+mod response;
 pub mod rig;
-pub mod step;
+mod step;
 pub mod torque_source;
 
 pub use error::IdentifyError;

@@ -21,10 +21,8 @@ const LISTENING: Duration = Duration::from_millis((SILENCE * 200.0) as u64);
 const SETTLE: Duration = Duration::from_millis(200);
 /// Longest line in bytes: the description of a bridge has less than half of it.
 const LONGEST_LINE: usize = 512;
-/// The record's first line.
 const HEADING: &str = "time,torque,counts";
 
-/// Description of a sweep.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Description {
     /// Sampling period in s.
@@ -44,13 +42,9 @@ pub struct Description {
 /// The record that a board has sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// Its sweep's description.
     pub description: Description,
-    /// The record as CSV.
     pub text: String,
-    /// Its rows.
     pub rows: u64,
-    /// How the sweep ended.
     pub end: SweepEnd,
 }
 
@@ -168,7 +162,6 @@ impl SweepPort {
         Ok(player)
     }
 
-    /// The description of the board's sweep.
     pub fn description(&self) -> &Description {
         &self.description
     }

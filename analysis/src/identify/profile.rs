@@ -35,7 +35,6 @@ const EARLIER: f64 = 2.0;
 /// All devices that the responses allow.
 #[derive(Clone, Debug)]
 pub struct Profile {
-    /// The best fit of them.
     pub best: Fit,
     /// Fits at lags from the shortest to the longest that is allowed.
     fits: Vec<Fit>,
@@ -117,7 +116,6 @@ impl Profile {
         })
     }
 
-    /// Damping in N m s/rad.
     pub fn damping(&self) -> Estimate {
         self.estimate(|model| model.damping, |fit| fit.deviations[0], |_| f64::NEG_INFINITY)
     }
@@ -134,14 +132,12 @@ impl Profile {
         }
     }
 
-    /// Coulomb friction in N m.
     pub fn friction(&self) -> Estimate {
         let found =
             self.estimate(|model| model.friction, |fit| fit.deviations[3], |_| f64::NEG_INFINITY);
         Estimate { lo: found.lo.max(0.0), ..found }
     }
 
-    /// Delay in s.
     pub fn delay(&self) -> Estimate {
         self.estimate(|model| model.delay, |fit| fit.deviations[2], |_| 0.0)
     }

@@ -154,7 +154,6 @@ pub(super) fn fitted_sines(
     Some((parts.map(|part| Complex::new(part[0], part[1])).collect(), residual))
 }
 
-/// A sine fitted to samples.
 struct FittedSine {
     phasor: Complex<f64>,
     /// Standard deviation of its real and imaginary parts.

@@ -15,7 +15,6 @@ const SHORT: f64 = 4.0;
 /// A stretch in which the torque is a sine of one frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// Rows of the record.
     pub rows: Range<usize>,
     /// Angular frequency in rad/s.
     pub omega: f64,

@@ -12,57 +12,28 @@ use super::holder::holders;
 
 /// Errors of the link to a board.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum LinkError {
-    /// No such port, or it is in use.
     #[error("cannot open {address}: {source}{}", why_not(.address))]
-    Open {
-        /// The address.
-        address: Address,
-        /// The cause.
-        source: io::Error,
-    },
-    /// The port opened; no board answers.
+    Open { address: Address, source: io::Error },
     #[error(
         "no board answers on {address} within {} s{}",
         .after.as_secs_f64(),
         why_silent(.address)
     )]
-    Silent {
-        /// The address.
-        address: Address,
-        /// The time for which it was asked.
-        after: Duration,
-    },
+    Silent { address: Address, after: Duration },
     /// The other end has closed the socket before it identified itself.
     #[error(
         "{address} is in use by another program: a board serves one at a time. If it is `haptic \
          scope`, press t there to tune, A to arm, d to disarm; or end it first"
     )]
-    InUse {
-        /// The address.
-        address: Address,
-    },
-    /// A board of another version.
+    InUse { address: Address },
     #[error(transparent)]
     Protocol(#[from] OtherProtocol),
-    /// The board has stopped answering.
     #[error("the board on {address} has not answered {what} within {} s", .after.as_secs_f64())]
-    Unanswered {
-        /// The address.
-        address: Address,
-        /// The request.
-        what: &'static str,
-        /// The time waited.
-        after: Duration,
-    },
-    /// The port is gone.
+    Unanswered { address: Address, what: &'static str, after: Duration },
     #[error("the link to {address} is lost: {source}")]
-    Lost {
-        /// The address.
-        address: Address,
-        /// The cause.
-        source: io::Error,
-    },
+    Lost { address: Address, source: io::Error },
 }
 
 /// The other programs that have a serial port open; empty for a socket.

@@ -14,7 +14,6 @@ pub const DOTS: (usize, usize) = (2, 4);
 const BRAILLE: u32 = 0x2800;
 const BITS: [[u32; DOTS.0]; DOTS.1] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 
-/// A rectangle of characters.
 #[derive(Debug)]
 pub struct Area {
     /// Columns.
@@ -31,12 +30,10 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// An empty canvas.
     pub fn new(width: usize, height: usize) -> Self {
         Self { width, cells: vec![(' ', Style::new()); width * height] }
     }
 
-    /// Its columns.
     pub fn width(&self) -> usize {
         self.width
     }
@@ -112,7 +109,6 @@ impl Canvas {
     }
 }
 
-/// Its text.
 impl fmt::Display for Canvas {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.cells.chunks(self.width.max(1)).try_for_each(|row| {

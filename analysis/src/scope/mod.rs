@@ -1,15 +1,15 @@
 //! A live view of a board: its messages, their history, and the screen.
 
-pub mod canvas;
+mod canvas;
 pub mod control;
 pub mod keys;
-pub mod modes;
+pub(crate) mod modes;
 pub mod poller;
-pub mod record;
-pub mod screen;
+pub(crate) mod record;
+pub(crate) mod screen;
 #[cfg(test)]
 mod tests;
-pub mod tui;
+pub(crate) mod tui;
 
 use haptic_servo::wire::Discarded;
 use haptic_servo::wire::message::{ActiveParameters, BoardUnits, PreviousFault, Status};

@@ -22,7 +22,6 @@ impl Recorder {
         Self { rows, count: 0, every, gaps: TickGaps::default() }
     }
 
-    /// Adds a tick.
     pub fn add(&mut self, sample: &Sample) -> io::Result<()> {
         if self.count == 0 {
             writeln!(self.rows, "{COLUMNS}")?;
@@ -32,7 +31,6 @@ impl Recorder {
         writeln!(self.rows, "{}", Row::from(sample))
     }
 
-    /// Writes everything that was added.
     pub fn flush(&mut self) -> io::Result<()> {
         self.rows.flush()
     }
@@ -42,7 +40,6 @@ impl Recorder {
         &self.gaps
     }
 
-    /// Ticks that were added.
     pub fn count(&self) -> u64 {
         self.count
     }

@@ -54,9 +54,6 @@ pub enum StudyError {
          cannot be distinguished from it: give the device more damping, or the scene more margin"
     )]
     NoRest { seconds: f64 },
-    /// Also where another code comes out.
-    #[error("host and board disagree on whether this scene may run: {0}")]
-    Disagreement(String),
     /// Ticks are counted from 0.
     #[error(
         "in {format} the torque of the emulated board differs from that of this machine at tick \

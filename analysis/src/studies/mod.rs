@@ -3,7 +3,7 @@
 //! charts and the commands show the results.
 
 pub mod bench;
-pub mod error;
+pub(crate) mod error;
 pub mod failures;
 pub(crate) mod model;
 pub mod number_format;

@@ -70,19 +70,3 @@ impl fmt::Display for BoardModel {
         f.pad(self.name())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn finds_boards_and_names_them_where_it_does_not() {
-        for board in BoardModel::ALL {
-            assert_eq!(BoardModel::find(board.name()), Ok(board));
-        }
-        assert_eq!(
-            BoardModel::find("arduino").unwrap_err().to_string(),
-            "there is no board arduino; there are nucleo-g474re, b-g431b-esc1, feather-stm32f405"
-        );
-    }
-}

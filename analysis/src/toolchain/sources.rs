@@ -48,7 +48,7 @@ const TAKEN: &str = "\
     bridge_load build certify_server clap const continue core corpus crate deps device do dyn else enum \
     examples extern false final fixed fn for gen haptic haptic_servo harness if impl in incremental let \
     loop macro main match mod move mut on_target override paddle priv program pub raw ref refusals \
-    return safe self servo_server static std struct super test tests trait try type typeof union unsafe \
+    return safe self static std struct super test tests trait try type typeof union unsafe \
     unsized use virtual where while yield";
 
 /// The root of the workspace that this program was built from.

@@ -29,9 +29,6 @@ fn an_answer_that_cannot_be_written_is_a_failure() {
     let path = folder.path().join("wall.json");
     std::fs::write(&path, WALL).unwrap();
     let wall = path.to_str().unwrap();
-    let kept = concat!(env!("CARGO_MANIFEST_DIR"), "/pictures/tradeoff/simulation.csv");
-    std::fs::copy(kept, folder.path().join("simulation.csv")).unwrap();
-    let output = folder.path().to_str().unwrap();
     for arguments in [
         &["--help"][..],
         &["--version"],
@@ -43,7 +40,6 @@ fn an_answer_that_cannot_be_written_is_a_failure() {
         &["schema", "--reference"],
         &["schema", "--example", "damper-wall"],
         &["run", "damper_wall", "--csv"],
-        &["chart", "tradeoff", "simulation", "--draw-only", "-o", output],
     ] {
         for (output, status) in [(">/dev/full", 2), (">/dev/null", 0)] {
             assert_eq!(status_into(output, arguments), Some(status), "{arguments:?} {output}");

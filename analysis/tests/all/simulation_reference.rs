@@ -245,12 +245,12 @@ fn chain_with_lag_and_sine() {
 fn motions_that_methods_are_compared_on() {
     let zero = || r(0.0);
     let spring = |x: &Real| r(300.0) * x.clone();
-    let [rigid, chain] = analysis::studies::tradeoff::simulation::cases();
+    let [rigid, chain] = analysis::studies::failures::region::devices();
     let per = |x: f64| r(x) / r(0.05);
     let rates =
         vec![vec![zero(), r(1.0), zero(), zero()], vec![zero(), per(-0.5), per(1.0), per(1.0)]];
     let reference = run(&rates, &[0.001, 0.0], spring, |_| 0.0);
-    compare(rigid.name, &rigid.experiment, &reference);
+    compare(rigid.0, &rigid.1, &reference);
 
     // The motor's mass and damper, and the other mass with the hand's.
     let (k, c) = (20e3, 0.27);
@@ -272,7 +272,7 @@ fn motions_that_methods_are_compared_on() {
         ],
     ];
     let reference = run(&rates, &[0.001, 0.0, 0.001, 0.0], spring, |_| 0.0);
-    compare(chain.name, &chain.experiment, &reference);
+    compare(chain.0, &chain.1, &reference);
 }
 
 /// The largest eigenvalue in `f64` against the root of the characteristic polynomial next to it.

@@ -15,7 +15,6 @@ const ASYMPTOTE: Stroke = Stroke::dashed(&[1, 7], 1);
 const CRITICAL: Stroke = Stroke::dashed(&[8, 5], 2);
 const BOUND: Stroke = Stroke::solid(3);
 
-/// A curve with its line.
 struct Line<'j> {
     stroke: Stroke,
     curve: &'j Curve,
@@ -78,29 +77,28 @@ fn judged(scenes: &[(String, Scene)]) -> Result<Vec<NyquistScene>, ChartError> {
 pub fn data(scenes: &[(String, Scene)]) -> Result<Data, ChartError> {
     let rows = judged(scenes)?.into_iter().flat_map(|scene| {
         let NyquistScene { name, period, curves, limit, bound, .. } = scene;
-        let lines = [limit, bound].map(|line| line.map(|line| -line));
         curves.into_iter().flat_map(move |curve| {
-            let (name, role) = (name.clone(), curve.role);
+            let words = [&*name, curve.role.as_str()].map(Cell::from);
             let points: Vec<_> = curve.points().collect();
-            points.into_iter().map(move |(theta, value)| {
+            points.into_iter().map(move |(theta, (re, im))| {
                 let frequency = theta / (2.0 * std::f64::consts::PI * period);
-                (name.clone(), role, [theta, frequency], value, lines)
+                let numbers = [theta, frequency, re, im].map(Cell::from);
+                let lines = [limit, bound].map(|line| line.map(|line| -line).into());
+                words.iter().cloned().chain(numbers).chain(lines).collect()
             })
         })
     });
-    Ok(Data::of(
-        rows,
-        [
-            ("scene", |row| row.0.as_str().into()),
-            ("curve", |row| row.1.as_str().into()),
-            ("angle (rad)", |row| row.2[0].into()),
-            ("frequency (Hz)", |row| row.2[1].into()),
-            ("real part (N m s/rad)", |row| row.3.0.into()),
-            ("imaginary part (N m s/rad)", |row| row.3.1.into()),
-            ("critical line (N m s/rad)", |row| row.4[0].into()),
-            ("bound (N m s/rad)", |row| row.4[1].into()),
-        ],
-    ))
+    let header = &[
+        "scene",
+        "curve",
+        "angle (rad)",
+        "frequency (Hz)",
+        "real part (N m s/rad)",
+        "imaginary part (N m s/rad)",
+        "critical line (N m s/rad)",
+        "bound (N m s/rad)",
+    ];
+    Ok(Data::new(header, rows))
 }
 
 fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()> {

@@ -41,7 +41,7 @@ fn what_is_drawn_of_a_rigid_coupling_crosses_the_line_where_the_scene_is_rejecte
     assert!(found.clearance() < 0.0 && found.gain_margin().unwrap() < 1.0);
     let named = [("rigid".to_owned(), rejected)];
     let picture = nyquist("rigid", &named, &Window::default()).unwrap();
-    assert!(picture.svg().contains("environment without its coupling, not judged"));
+    assert!(picture.svg.contains("environment without its coupling, not judged"));
 }
 
 /// A scene of any kind, on both sides of its limit.
@@ -183,5 +183,5 @@ fn ranges_of_the_axes_are_those_that_are_asked_for() {
     let usual = nyquist("w", &named, &Window::default()).unwrap();
     let wanted = Window { x: Some(-0.03..0.0), y: Some(0.25..0.75) };
     let asked = nyquist("w", &named, &wanted).unwrap();
-    assert!(asked.svg().contains("\n0.6\n") && !usual.svg().contains("\n0.6\n"));
+    assert!(asked.svg.contains("\n0.6\n") && !usual.svg.contains("\n0.6\n"));
 }

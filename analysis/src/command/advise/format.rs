@@ -22,7 +22,6 @@ use crate::studies::number_format::{
 };
 use crate::studies::tradeoff::{self, Tradeoff, ticks};
 
-/// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]
 pub struct FormatArguments {
     /// Largest torque of a limit cycle at rest in N m, peak to peak

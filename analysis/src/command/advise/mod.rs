@@ -28,7 +28,6 @@ pub struct Arguments {
     pub answer: JsonOption,
 }
 
-/// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     match &arguments.format {
         Some(format) => format::run(&arguments.scene, format, &arguments.answer),

@@ -12,12 +12,9 @@ use crate::studies::bench::CORE_CLOCK;
 use crate::studies::number_format::{Advice, Candidate, FormatProblem};
 use crate::text_table::table_of;
 
-/// The result as JSON.
 #[derive(Serialize)]
 pub struct FormatReport {
-    /// Its name.
     pub scene: String,
-    /// Ticks per second.
     pub rate: f64,
     /// Stiffness in N m/rad of the coupling at that rate; `None`: rigid.
     pub coupling_stiffness: Option<f64>,
@@ -25,13 +22,10 @@ pub struct FormatReport {
     pub format: Option<&'static str>,
     /// Limit cycle in N m caused by the encoder alone.
     pub encoder_hum: Option<f64>,
-    /// All formats, the cheapest first.
     pub formats: Vec<Candidate>,
-    /// The result as text.
     pub message: String,
 }
 
-/// The result as text.
 pub fn message(problem: &FormatProblem, allowed: f64, advice: &Advice) -> String {
     let choice = advice.choice();
     let format = choice.map_or_else(|| none(advice), |choice| chosen(problem, choice));
@@ -155,7 +149,6 @@ pub fn text(answered: &FormatReport) -> String {
     )
 }
 
-/// A figure of a table.
 fn figure(value: Option<f64>) -> String {
     match value {
         Some(value) if value.is_finite() => number(value),

@@ -13,7 +13,6 @@ use crate::file::{self, Purpose};
 use crate::open_loop::OpenLoop;
 use crate::simulation::Experiment;
 
-/// Arguments of `haptic chart bode`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene files, TOML or JSON; `-` is standard input
@@ -29,7 +28,6 @@ pub struct Arguments {
     #[arg(long)]
     pub title: Option<String>,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 

@@ -10,7 +10,6 @@ use crate::command::identify::{Reading, of_file};
 use crate::command::status::CommandError;
 use crate::command::value_parsers::positive;
 
-/// Arguments of `haptic chart identify`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Record of stepped sines, as for `haptic identify`; `-` is standard input
@@ -20,17 +19,14 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = positive)]
     pub counts_per_rev: f64,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub reading: Reading,
     /// Title of the chart; default: the name of the file
     #[arg(long)]
     pub title: Option<String>,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 
-/// Draws the responses.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let Arguments { file, counts_per_rev, reading, .. } = arguments;
     let found = of_file(file, *counts_per_rev, reading)?;

@@ -13,7 +13,6 @@ use crate::latency_limits::LatencyLimits;
 use crate::progress;
 use crate::quantity::{shortened, significant};
 
-/// Arguments of `haptic chart latency`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file, of which the device's passivity counts
@@ -31,14 +30,11 @@ pub struct Arguments {
     #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true, default_value = "1e-5")]
     pub phase: f64,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 
-/// Rates in a curve.
 const RATES: usize = 61;
 
-/// Finds the limits and draws them.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
     let bar = progress::bar(arguments.loops.len() as u64, "limits");
@@ -57,22 +53,29 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
         significant(arguments.phase * 1e6, 4)
     );
     let picture = chart::latency::latency(&title, &loops)?;
-    let rows = loops
-        .into_iter()
-        .flat_map(|limits| limits.points.into_iter().map(move |point| (limits.bandwidth, point)));
-    let data = Data::of(
-        rows,
-        [
-            ("current loop (Hz)", |(bandwidth, _)| (*bandwidth).into()),
-            ("servo rate (Hz)", |(_, point)| point.rate.into()),
-            ("at a phase (N m/rad)", |(_, point)| point.at_phase.into()),
-            ("latched (N m/rad)", |(_, point)| point.latched.into()),
-            ("whole samples (N m/rad)", |(_, point)| point.whole_samples.into()),
-            ("b/(T/2 + tau) (N m/rad)", |(_, point)| point.folklore.into()),
-            ("oscillates (1)", |(_, point)| f64::from(u8::from(point.folklore_is_unsafe())).into()),
-        ],
-    );
-    Ok(Chart { picture, data })
+    let rows = loops.into_iter().flat_map(|limits| {
+        limits.points.into_iter().map(move |point| {
+            vec![
+                limits.bandwidth.into(),
+                point.rate.into(),
+                point.at_phase.into(),
+                point.latched.into(),
+                point.whole_samples.into(),
+                point.folklore.into(),
+                f64::from(u8::from(point.folklore_is_unsafe())).into(),
+            ]
+        })
+    });
+    let header = &[
+        "current loop (Hz)",
+        "servo rate (Hz)",
+        "at a phase (N m/rad)",
+        "latched (N m/rad)",
+        "whole samples (N m/rad)",
+        "b/(T/2 + tau) (N m/rad)",
+        "oscillates (1)",
+    ];
+    Ok(Chart { picture, data: Data::new(header, rows) })
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -17,11 +17,9 @@ use crate::progress;
 use crate::quantity::{shortened, significant};
 use crate::stability_map::MapError;
 
-/// Arguments of `haptic chart limits`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub scene: SceneArgument,
     /// Range of the sample rate in Hz, the horizontal axis
     #[arg(long, visible_alias = "x", value_name = "MIN..MAX", value_parser = positive_range,
@@ -38,7 +36,6 @@ pub struct Arguments {
     #[arg(long, value_name = "PART", value_parser = part, default_value = "0.7")]
     pub used: f64,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 
@@ -47,7 +44,6 @@ const DELAYS: usize = 4;
 /// Sample rates in the picture of limits.
 const RATES: usize = 61;
 
-/// Finds the limits and draws them.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
     let Some(wall) = file.scene.environment.wall() else {
@@ -89,19 +85,15 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
         ChartError::TooFewPoints => CommandError::NoStiffness { scene: file.name.clone() },
         other => other.into(),
     })?;
-    let rows = drawn
-        .into_iter()
-        .flat_map(|curve| curve.points.into_iter().map(move |point| (curve.delay as f64, point)));
-    let data = Data::of(
-        rows,
-        [
-            ("delay (samples)", |(delay, _)| (*delay).into()),
-            ("sample rate (Hz)", |(_, point): &(f64, Point)| point.rate.into()),
-            ("largest stiffness (N m/rad)", |(_, point)| point.stiffness.into()),
-            ("ripple (N m)", |(_, point)| point.ripple.into()),
-        ],
-    );
-    Ok(Chart { picture, data })
+    let rows = drawn.into_iter().flat_map(|curve| {
+        let delay = curve.delay as f64;
+        curve.points.into_iter().map(move |Point { rate, stiffness, ripple }| {
+            vec![delay.into(), rate.into(), stiffness.into(), ripple.into()]
+        })
+    });
+    let header =
+        &["delay (samples)", "sample rate (Hz)", "largest stiffness (N m/rad)", "ripple (N m)"];
+    Ok(Chart { picture, data: Data::new(header, rows) })
 }
 
 /// The whole number of counts of a rounded step in rad, if one is near enough.

@@ -20,11 +20,9 @@ use crate::quantity::{shortened, significant};
 use crate::stability_map::border::closed_form_border;
 use crate::stability_map::{Family, Map, MapError, Region};
 
-/// Arguments of `haptic chart map`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub scene: SceneArgument,
     /// Range of the stiffness in N m/rad, the horizontal axis; default: to about twice the largest
     /// certified spring. Of a torque profile, that of its number of repetitions in a turn
@@ -41,11 +39,9 @@ pub struct Arguments {
           value_parser = clap::value_parser!(u64).range(4..=25_000_000))]
     pub points: u64,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 
-/// Judges the walls and draws them.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
     let side = (arguments.points as f64).sqrt().ceil() as usize;

@@ -16,9 +16,7 @@ pub mod turn;
 use clap::{Args, Subcommand};
 
 use super::status::{CommandError, CommandStatus};
-use output::OutputArguments;
 
-/// Arguments of `haptic chart`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Which picture.
@@ -26,19 +24,9 @@ pub struct Arguments {
     pub kind: Kind,
 }
 
-/// The kind of chart, or charts.
-#[derive(Debug, Subcommand)]
-pub enum Kind {
-    /// A chart in one file.
-    #[command(flatten)]
-    Single(Single),
-    /// Measure speed and accuracy of methods: tables, charts, Pareto fronts
-    Tradeoff(tradeoff::Arguments),
-}
-
 /// Which picture.
 #[derive(Debug, Subcommand)]
-pub enum Single {
+pub enum Kind {
     /// Draw the Nyquist curves of one or more scenes, with the critical line at -delta
     Nyquist(nyquist::Arguments),
     /// Draw gain and phase of the open loop of device and controller, with the margins
@@ -61,44 +49,22 @@ pub enum Single {
     Identify(identify::Arguments),
     /// Draw the stability limit of methods of integration over their steps in a tick
     Failures(failures::Arguments),
+    /// Measure speed and accuracy of methods: tables, charts, Pareto fronts
+    Tradeoff(tradeoff::Arguments),
 }
 
-impl Single {
-    fn output(&self) -> &OutputArguments {
-        match self {
-            Self::Nyquist(arguments) => &arguments.output,
-            Self::Bode(arguments) => &arguments.output,
-            Self::Profile(arguments) => &arguments.output,
-            Self::Turn(arguments) => &arguments.output,
-            Self::Map(arguments) => &arguments.output,
-            Self::Limits(arguments) => &arguments.output,
-            Self::Latency(arguments) => &arguments.output,
-            Self::Trace(arguments) => &arguments.output,
-            Self::Identify(arguments) => &arguments.output,
-            Self::Failures(arguments) => &arguments.output,
-        }
-    }
-}
-
-/// Draws the picture and writes it.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let kind = match &arguments.kind {
-        Kind::Single(kind) => kind,
-        Kind::Tradeoff(arguments) => return tradeoff::run(arguments),
-    };
-    let files = kind.output().files()?;
-    let chart = match kind {
-        Single::Nyquist(arguments) => nyquist::draw(arguments)?,
-        Single::Bode(arguments) => bode::draw(arguments)?,
-        Single::Profile(arguments) => profile::draw(arguments)?,
-        Single::Turn(arguments) => turn::draw(arguments)?,
-        Single::Map(arguments) => map::draw(arguments)?,
-        Single::Limits(arguments) => limits::draw(arguments)?,
-        Single::Latency(arguments) => latency::draw(arguments)?,
-        Single::Trace(arguments) => return trace::run(arguments, &files),
-        Single::Identify(arguments) => identify::draw(arguments)?,
-        Single::Failures(_) => failures::draw()?,
-    };
-    files.write(chart)?;
-    Ok(CommandStatus::Success)
+    match &arguments.kind {
+        Kind::Nyquist(of) => of.output.write(|| nyquist::draw(of)),
+        Kind::Bode(of) => of.output.write(|| bode::draw(of)),
+        Kind::Profile(of) => of.output.write(|| profile::draw(of)),
+        Kind::Turn(of) => of.output.write(|| turn::draw(of)),
+        Kind::Map(of) => of.output.write(|| map::draw(of)),
+        Kind::Limits(of) => of.output.write(|| limits::draw(of)),
+        Kind::Latency(of) => of.output.write(|| latency::draw(of)),
+        Kind::Trace(of) => trace::run(of),
+        Kind::Identify(of) => of.output.write(|| identify::draw(of)),
+        Kind::Failures(of) => of.output.write(failures::draw),
+        Kind::Tradeoff(of) => tradeoff::run(of),
+    }
 }

@@ -8,7 +8,6 @@ use crate::command::status::CommandError;
 use crate::file;
 use crate::nominal_latency::titled;
 
-/// Arguments of `haptic chart nyquist`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene files, TOML or JSON; `-` is standard input
@@ -18,14 +17,11 @@ pub struct Arguments {
     #[arg(long)]
     pub title: Option<String>,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub window: WindowArguments,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 
-/// Draws the curves.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let files: Result<Vec<_>, _> = arguments.files.iter().map(|file| file::load(file)).collect();
     let scenes: Vec<_> = files?.into_iter().map(|file| (file.name, file.scene)).collect();

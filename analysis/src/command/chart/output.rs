@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::chart::{Chart, ChartError, Picture, Window, has_extension};
+use crate::command::status::{CommandError, CommandStatus};
 use crate::command::value_parsers::range;
 
 /// The output files of a chart and its numbers.
@@ -19,7 +20,6 @@ pub struct OutputArguments {
     pub csv: Option<PathBuf>,
 }
 
-/// Ranges of the axes.
 #[derive(Debug, Args)]
 pub struct WindowArguments {
     /// Range of the horizontal axis, in its unit; default: all data
@@ -31,7 +31,6 @@ pub struct WindowArguments {
 }
 
 impl WindowArguments {
-    /// The ranges, for a drawing.
     pub(super) fn window(&self) -> Window {
         Window { x: self.x.clone(), y: self.y.clone() }
     }
@@ -45,6 +44,16 @@ pub struct Files {
 }
 
 impl OutputArguments {
+    /// Draws a chart and writes it, if its files have valid names.
+    pub(super) fn write(
+        &self,
+        draw: impl FnOnce() -> Result<Chart, CommandError>,
+    ) -> Result<CommandStatus, CommandError> {
+        let files = self.files()?;
+        files.write(draw()?)?;
+        Ok(CommandStatus::Success)
+    }
+
     /// Checks the file names before the work: the picture could not be saved otherwise.
     pub(super) fn files(&self) -> Result<Files, ChartError> {
         let (output, csv) = (self.output.clone(), self.csv.clone());
@@ -62,7 +71,6 @@ impl OutputArguments {
 }
 
 impl Files {
-    /// Writes the files of a chart.
     pub(super) fn write(&self, Chart { picture, data }: Chart) -> Result<(), ChartError> {
         self.picture.as_ref().map_or(Ok(()), |path| picture.write(path))?;
         self.data.as_ref().map_or(Ok(()), |path| data.write(path))

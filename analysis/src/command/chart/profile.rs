@@ -10,23 +10,18 @@ use crate::file::SceneFile;
 use crate::profile_curve::ProfileCurve;
 use crate::quantity::{shortened, significant};
 
-/// Arguments of `haptic chart profile`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub scene: SceneArgument,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 
-/// Draws the profile of a scene.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     of_file(&arguments.scene.load()?)
 }
 
-/// The profile of a scene file.
 pub fn of_file(file: &SceneFile) -> Result<Chart, CommandError> {
     let curve = ProfileCurve::of(&file.scene)
         .ok_or_else(|| CommandError::NoProfile { scene: file.name.clone() })?;

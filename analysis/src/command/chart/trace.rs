@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::output::{Files, OutputArguments, WindowArguments};
+use super::output::{OutputArguments, WindowArguments};
 use crate::chart::trace::{data, drawable, trace};
 use crate::chart::{Chart, ChartError};
 use crate::command::shared_arguments::folder;
@@ -13,7 +13,6 @@ use crate::file::{self, Purpose};
 use crate::run_csv::{self, RunCsvError};
 use crate::trace::Trace;
 
-/// Arguments of `haptic chart trace`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene file with a table `simulation`, TOML or JSON, `-` is standard input; or a .csv from
@@ -30,15 +29,14 @@ pub struct Arguments {
     #[arg(long)]
     pub title: Option<String>,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub window: WindowArguments,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 
 /// Draws the run and writes the chart; the status is negative if the chart cannot show all of it.
-pub fn run(arguments: &Arguments, files: &Files) -> Result<CommandStatus, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
+    let files = arguments.output.files()?;
     let run = drawable(load(arguments)?);
     let left_out = run.lost.map(|_| CommandError::LeftOut { sample: run.time.len() });
     match (trace(&run, &arguments.window.window()), left_out) {

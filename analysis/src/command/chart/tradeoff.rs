@@ -1,18 +1,16 @@
 //! `haptic chart tradeoff`: speed against accuracy, measured, kept as a table and drawn.
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
 use crate::chart;
 use crate::command::status::{CommandError, CommandStatus};
-use crate::quantity::significant;
-use crate::studies::tradeoff::{Comparison, Tradeoff, certificate, servo, simulation, sine, ticks};
+use crate::studies::tradeoff::{Comparison, Tradeoff, certificate, servo, sine, ticks};
 use crate::table::Table;
 
-/// Arguments of `haptic chart tradeoff`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Comparison to draw
@@ -36,14 +34,12 @@ pub enum Topic {
     Servo,
     /// Ways to compute a sine: instructions against error
     Sine,
-    /// Methods of integration: time against error of the motion and of the verdict
-    Simulation,
     /// Methods to compute the certificate: time against error of the index and of the verdict
     Certificate,
 }
 
 /// All topics except [`Topic::All`].
-const TOPICS: [Topic; 4] = [Topic::Servo, Topic::Sine, Topic::Simulation, Topic::Certificate];
+const TOPICS: [Topic; 3] = [Topic::Servo, Topic::Sine, Topic::Certificate];
 
 impl Topic {
     fn topics(self) -> Vec<Self> {
@@ -54,8 +50,7 @@ impl Topic {
         match self {
             Self::Servo => &servo::COMPARISON,
             Self::Sine => &sine::COMPARISON,
-            Self::All | Self::Simulation => &simulation::COMPARISON,
-            Self::Certificate => &certificate::COMPARISON,
+            Self::All | Self::Certificate => &certificate::COMPARISON,
         }
     }
 
@@ -63,13 +58,12 @@ impl Topic {
         match self {
             Self::Servo => Ok(servo::measure()?),
             Self::Sine => Ok(sine::measure()?),
-            Self::All | Self::Simulation => Ok(simulation::measure()?),
-            Self::Certificate => Ok(certificate::measure()),
+            Self::All | Self::Certificate => Ok(certificate::measure()),
         }
     }
 }
 
-/// Measures, stores and draws; prints the methods on the fronts.
+/// Measures, stores and draws.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures/tradeoff");
     let folder = arguments.output.as_ref().unwrap_or(&kept);
@@ -90,7 +84,6 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         }
         let tradeoff = Tradeoff::read(topic.comparison(), Table::open(&table)?)?;
         draw(&tradeoff, folder)?;
-        write!(io::stdout(), "{}", fronts(&tradeoff))?;
     }
     Ok(CommandStatus::Success)
 }
@@ -104,7 +97,6 @@ fn table_of(comparison: &Comparison, folder: &Path) -> PathBuf {
     folder.join(comparison.name).with_extension("csv")
 }
 
-/// Writes a table into a folder.
 fn keep(measured: &Tradeoff, folder: &Path) -> Result<(), CommandError> {
     let path = table_of(measured.comparison, folder);
     let written = File::create(&path).and_then(|out| measured.write(out));
@@ -114,32 +106,13 @@ fn keep(measured: &Tradeoff, folder: &Path) -> Result<(), CommandError> {
 /// Draws a table into a folder: a chart, or one for each of several errors.
 fn draw(tradeoff: &Tradeoff, folder: &Path) -> Result<(), CommandError> {
     let Comparison { name, errors, .. } = tradeoff.comparison;
-    let charts = match errors.len() {
-        1 | 2 => vec![((*name).to_owned(), (0..errors.len()).collect())],
-        many => {
-            (0..many).map(|error| (format!("{name}-{}", errors[error].name), vec![error])).collect()
-        }
-    };
-    for (name, errors) in charts {
-        let picture = chart::tradeoff::tradeoff(tradeoff, &errors)?;
+    for (number, error) in errors.iter().enumerate() {
+        let name = match errors {
+            [_] => (*name).to_owned(),
+            _ => format!("{name}-{}", error.name),
+        };
+        let picture = chart::tradeoff::tradeoff(tradeoff, number)?;
         picture.write(&folder.join(&name).with_extension("svg"))?;
     }
     Ok(())
-}
-
-/// The methods on the fronts with their figures.
-fn fronts(tradeoff: &Tradeoff) -> String {
-    let comparison = tradeoff.comparison;
-    let mut text = format!("{}\n", comparison.title);
-    for case in tradeoff.cases() {
-        for (number, error) in comparison.errors.iter().enumerate() {
-            text += &format!("  {case}: {} against {}\n", comparison.cost.label, error.label);
-            for method in tradeoff.front(case, number) {
-                let figure = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 3);
-                let (cost, error) = (figure(method.cost()), figure(method.error(number)));
-                text += &format!("    {cost:>9} {error:>9}  {}\n", method.name);
-            }
-        }
-    }
-    text
 }

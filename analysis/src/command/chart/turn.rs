@@ -13,14 +13,12 @@ use crate::felt_turn::{FINGERS, FeltTurn, FeltTurnError};
 use crate::program::Program;
 use crate::quantity::{shortened, significant};
 
-/// Arguments of `haptic chart turn`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Name of a scene's program, or scene file; `-` is standard input
     #[arg(value_name = "SCENE")]
     pub scene: String,
     #[command(flatten)]
-    #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 

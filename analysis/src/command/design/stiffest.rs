@@ -257,14 +257,9 @@ fn save(output: &Path, from: &str, file: &SceneFile, found: &Found) -> Result<()
 fn chart(file: &SceneFile, found: &Found) -> Result<Chart, CommandError> {
     let title = format!("{}: stiffest certified wall at the handle", shortened(&file.name, 32));
     let picture: Picture = chart::stiffest::stiffest(&title, found)?;
-    let points: Vec<_> = found.walls.iter().map(point).collect();
-    let data = Data::of(
-        points,
-        [
-            ("structure", |point| point.structure.into()),
-            ("rate (Hz)", |point| point.rate.into()),
-            ("felt stiffness (N m/rad)", |point| point.felt_stiffness.into()),
-        ],
-    );
-    Ok(Chart { picture, data })
+    let row =
+        |point: Point| vec![point.structure.into(), point.rate.into(), point.felt_stiffness.into()];
+    let rows: Vec<_> = found.walls.iter().map(point).map(row).collect();
+    let header = &["structure", "rate (Hz)", "felt stiffness (N m/rad)"];
+    Ok(Chart { picture, data: Data::new(header, rows) })
 }

@@ -25,7 +25,6 @@ use crate::program::identify::TRANSDUCERS;
 use crate::quantity::significant;
 use target::Origin;
 
-/// Arguments of `haptic identify`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Record of stepped sines, each frequency at two amplitudes of torque: CSV with the columns `time` in s,
@@ -100,18 +99,15 @@ impl Reading {
 /// Default of the part of a sine to skip.
 const SETTLE: f64 = 0.25;
 
-/// A response in the JSON output.
 #[derive(Debug, Serialize)]
 struct Point {
     /// Hz.
     frequency: f64,
     /// Real part of `J` in rad/(N m s).
     re: f64,
-    /// Imaginary part.
     im: f64,
     /// Real part of `1/J` in N m s/rad.
     impedance_re: f64,
-    /// Imaginary part.
     impedance_im: f64,
     /// Standard deviation of both parts of `1/J`.
     deviation: f64,
@@ -147,7 +143,6 @@ impl TakenOut {
     }
 }
 
-/// An identification in the JSON output.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     inertia: Estimate,
@@ -163,7 +158,6 @@ struct Report<'a> {
     latency: Option<Latency>,
     /// Whether the responses exclude a lag alone or a delay alone.
     told_apart: bool,
-    /// The reason if `latency` is `None`.
     no_latency: Option<String>,
     taken_out: TakenOut,
     /// The board's own current loop, if there is one.
@@ -211,7 +205,6 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 /// A record and its known properties.
 struct Measured {
     record: Record,
-    /// The origin of a simulated measurement.
     origin: Option<Origin>,
     counts_per_turn: f64,
     /// The motor's torque in N m at the largest code, if the program `identify` of this workspace drove it.
@@ -321,7 +314,6 @@ fn report<'a>(
     }
 }
 
-/// Warnings about the identified numbers.
 fn notes(found: &Identification) -> Vec<String> {
     let mut notes: Vec<String> = identify::left_out::grouped(&found.left_out);
     // If no rigid device explains the responses, the fitted times are meaningless.
@@ -437,7 +429,6 @@ fn device_file(found: &Identification, counts_per_turn: f64, full_scale: Option<
     )
 }
 
-/// The table of the device.
 fn device_table(found: &Identification) -> String {
     let range = |e: &Estimate| format!("{} to {}", significant(e.lo, 4), significant(e.hi, 4));
     let less = match found.motion_loss() {

@@ -60,13 +60,10 @@ pub struct Simulated {
 /// The origin of a record in the JSON output.
 #[derive(Debug, Serialize)]
 pub struct Origin {
-    /// The target that drove the device.
     pub target: Target,
-    /// Samples.
     pub ticks: usize,
     /// Codes of the board that were equal to this machine's.
     pub codes_equal: Option<usize>,
-    /// The first difference.
     pub difference: Option<Difference>,
 }
 

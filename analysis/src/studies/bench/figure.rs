@@ -4,29 +4,22 @@ use serde::Serialize;
 
 use crate::studies::error::StudyError;
 
-/// One measured figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// Its name.
     pub name: String,
-    /// The figure.
     pub value: f64,
-    /// Its unit.
     pub unit: &'static str,
     /// Its budget, or the peer's figure; in the same unit. `None` if there is neither.
     pub against: Option<f64>,
     /// `value / against` if both were measured in this run: below 1 is better for a cost.
     pub ratio: Option<f64>,
-    /// The source of `against`.
     pub source: String,
 }
 
 /// A figure and its peer's, both measured in this run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// The figure.
     pub ours: f64,
-    /// The peer's.
     pub peers: f64,
 }
 
@@ -46,32 +39,25 @@ impl Pair {
         Ok(Self { ours: median(ours), peers: median(peers) })
     }
 
-    /// The figure over its peer's.
     pub fn ratio(&self) -> f64 {
         self.ours / self.peers
     }
 }
 
-/// A bound on a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// The bound.
     pub value: f64,
-    /// Its unit.
     pub unit: &'static str,
-    /// What it is, as text.
     pub source: &'static str,
 }
 
 impl Budget {
-    /// A budget without further text.
     pub const fn of(value: f64, unit: &'static str) -> Self {
         Self { value, unit, source: "budget" }
     }
 }
 
 impl Figure {
-    /// A figure alone.
     pub fn alone(name: impl Into<String>, value: f64, unit: &'static str) -> Self {
         let (name, source) = (name.into(), String::new());
         Self { name, value, unit, against: None, ratio: None, source }

@@ -8,7 +8,6 @@ use crate::studies::error::StudyError;
 /// The beginning of the answer of a peer whose package is missing.
 const UNAVAILABLE: &str = "unavailable: ";
 
-/// A running peer.
 #[derive(Debug)]
 pub struct Peer {
     child: Child,
@@ -26,7 +25,6 @@ impl Peer {
         Ok(Self { child, requests, answers: BufReader::new(answers) })
     }
 
-    /// The answer to a request.
     pub fn ask(&mut self, request: &str) -> Result<String, StudyError> {
         writeln!(self.requests, "{request}")?;
         let mut answer = String::new();
@@ -40,14 +38,12 @@ impl Peer {
         }
     }
 
-    /// The numbers of an answer.
     pub fn numbers(&mut self, request: &str) -> Result<Vec<f64>, StudyError> {
         let answer = self.ask(request)?;
         let numbers: Result<_, _> = answer.split_whitespace().map(str::parse).collect();
         numbers.map_err(|_| StudyError::WrongPeer(format!("{answer:?} to {request:?}")))
     }
 
-    /// The first number of an answer.
     pub fn number(&mut self, request: &str) -> Result<f64, StudyError> {
         let first = self.numbers(request)?.first().copied();
         first.ok_or_else(|| StudyError::WrongPeer(format!("no number to {request:?}")))

@@ -94,7 +94,6 @@ impl PythonPeers {
     }
 }
 
-/// The line that describes the work.
 fn work(scenes: &[Scene]) -> String {
     let environments = scenes.iter().filter_map(|scene| match &scene.environment {
         Environment::Rational(of) => {

@@ -25,7 +25,6 @@ const START: f64 = 1e-3;
 /// the sums have other orders.
 const ROUNDING: f64 = 1e-10;
 
-/// The same motion in plain C.
 const C_SOURCE: &str = include_str!("steps.c");
 /// The C compiler, which a linker of Rust's programs brings.
 const C_COMPILER: &str = "cc";

@@ -2,33 +2,8 @@
 
 use super::setting::*;
 use crate::simulation::method::Method;
-use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Integration};
 use crate::stability::critical_stiffness;
-use crate::studies::tradeoff::simulation;
-
-/// Two masses in a hand, of which the first has motor, encoder and all of the device's damping to
-/// the ground, so that this is its passivity (theory, section 3.2): the knob's.
-fn two_masses() -> Plant {
-    let [_, held] = simulation::cases();
-    held.experiment.plant
-}
-
-/// Explicit Euler: a stable device grows.
-pub fn explicit_euler() -> Result<CaseResult, StudyError> {
-    let scene = coupled(KNOB, wall_of(500.0, 0.0, 1));
-    let experiment = Experiment { plant: two_masses(), ..Experiment::still(&scene) };
-    let by = |name, integration| MethodResult::eigenvalues(name, &experiment, integration);
-    let euler = |substeps| {
-        by(name(Method::Euler, substeps), Integration { method: Method::Euler, substeps })
-    };
-    let methods = vec![euler(1)?, euler(20)?];
-    let truth = by(Method::Exact.name().to_owned(), Integration::default())?;
-    let mut certified =
-        loop_run("the certified wall", &scene, KNOBS, Outcome::Converges).pushed(1.0, 3000);
-    certified.experiment.plant = two_masses();
-    Ok(CaseResult::of(&scene, methods, truth, [certified]))
-}
 
 /// Semi-implicit Euler with few steps: an oscillating wall comes to rest.
 pub fn semi_implicit_euler() -> Result<CaseResult, StudyError> {

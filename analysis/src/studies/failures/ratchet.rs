@@ -9,7 +9,6 @@ use super::setting::*;
 use crate::device::Hand;
 use crate::simulation::{Integration, simulate};
 
-/// Teeth in a turn.
 const TEETH: u32 = 24;
 /// Mean torque in N m.
 const MEAN: f64 = 3.0;

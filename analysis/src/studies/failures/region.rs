@@ -1,10 +1,29 @@
 //! The largest stiffness of a spring that a method shows as stable, over its steps per tick.
 
 use super::setting::*;
+use crate::chain::{Link, Mass};
+use crate::device::{self, Hand};
 use crate::simulation::method::Method;
+use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Integration};
 use crate::stability::critical_stiffness;
-use crate::studies::tradeoff::simulation;
+
+/// The devices by name: that of theory, section 9; and as two masses whose resonance is at 1183 rad/s, in a hand.
+/// Each is released at a millirad, on a spring of 300 N m/rad without delay and coupling.
+pub fn devices() -> [(&'static str, Experiment); 2] {
+    let masses = [Mass { inertia: 0.05, damping: 0.5 }, Mass { inertia: 0.02, damping: 0.0 }];
+    let links = [Link { stiffness: 20e3, damping: 0.27 }];
+    let hand = Hand { inertia: 0.1, damping: 1.0, stiffness: 1000.0 };
+    let released = |plant| {
+        let scene = rigid(KNOB, wall_of(300.0, 0.0, 0));
+        let start = device::Motion { position: 1e-3, velocity: 0.0 };
+        Experiment { plant, start, samples: 1000, ..Experiment::still(&scene) }
+    };
+    [
+        ("mass and damper", released(Plant::rigid(KNOB))),
+        ("two masses in a hand", released(Plant::chain(&masses, &links).with_hand(hand))),
+    ]
+}
 
 /// The compared methods, the least accurate first.
 pub const METHODS: [Method; 4] = [Method::SemiImplicit, Method::Rk4, Method::Tustin, Method::Euler];
@@ -30,8 +49,8 @@ pub struct Region {
 impl Region {
     /// An undelayed spring without a coupling on the heavy knob, and on two masses in a hand.
     pub fn all() -> Result<[Self; 2], StudyError> {
-        let [knob, held] = simulation::cases();
-        Ok([Self::of(knob.name, &knob.experiment)?, Self::of(held.name, &held.experiment)?])
+        let [knob, held] = devices();
+        Ok([Self::of(knob.0, &knob.1)?, Self::of(held.0, &held.1)?])
     }
 
     fn of(device: &'static str, experiment: &Experiment) -> Result<Self, StudyError> {
@@ -47,5 +66,34 @@ impl Region {
             }
         }
         Ok(Self { device, truth: limit(Method::Exact, 1)?, certified, apparent })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Theory, section 9: `b / (T/2 + h/2)` and `b / (T/2 - h/2)` for one mass, and what the others make of two.
+    #[test]
+    fn apparent_limits_are_those_of_theory() {
+        let [(_, rigid), (_, chain)] = devices();
+        let limit = |experiment, method, substeps| {
+            critical_stiffness(experiment, Integration { method, substeps }).unwrap()
+        };
+        for substeps in SUBSTEPS {
+            let (b, t) = (0.5, 1e-3);
+            let h = t / f64::from(substeps);
+            let euler = limit(&rigid, Method::Euler, substeps).unwrap();
+            assert!((euler * 0.5 * (t + h) / b - 1.0).abs() < 0.003, "{substeps} {euler}");
+            // At one step the formula has no limit, and the method a very large one.
+            let semi = limit(&rigid, Method::SemiImplicit, substeps).unwrap();
+            let formula = b / (0.5 * (t - h)).max(1e-9);
+            assert!(semi > 1e5 || (semi / formula - 1.0).abs() < 0.003, "{substeps} {semi}");
+        }
+        let truth = limit(&chain, Method::Exact, 1).unwrap();
+        let part = |method| limit(&chain, method, 1).map(|found| found / truth - 1.0);
+        assert!((0.12..0.16).contains(&part(Method::Rk4).unwrap()));
+        assert!((-0.06..-0.04).contains(&part(Method::Tustin).unwrap()));
+        assert_eq!(part(Method::Euler), None);
     }
 }

@@ -1,13 +1,44 @@
-//! Verdicts, truth and observed motions as one report.
+//! A question about one loop: the verdicts of the methods, the truth, and the observed motions.
 
+use haptic_servo::scene::Scene;
 use serde::Serialize;
 
-use super::case::Case;
-use super::loop_run::{BoardResult, LoopRun};
+use super::loop_run::LoopRun;
 use super::method_result::{Failure, MethodResult};
 use super::motion::{Motion, Outcome};
-use crate::emulator::Client;
 use crate::studies::error::StudyError;
+
+/// A question about one loop.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// The question as short text.
+    pub question: &'static str,
+    pub(super) evaluate: fn() -> Result<CaseResult, StudyError>,
+}
+
+/// The results of all methods, and the loops that show which of them are right.
+pub struct CaseResult {
+    pub(super) methods: Vec<MethodResult>,
+    pub(super) certificate: MethodResult,
+    /// The true result for this loop.
+    pub(super) truth: MethodResult,
+    /// The runs: of the loop in question, then of a loop that the certificate allows.
+    pub(super) runs: Vec<LoopRun>,
+}
+
+impl CaseResult {
+    /// The results of common methods on a scene, and the certificate's.
+    pub(super) fn of(
+        scene: &Scene,
+        methods: Vec<MethodResult>,
+        truth: MethodResult,
+        runs: impl Into<Vec<LoopRun>>,
+    ) -> Self {
+        Self { methods, certificate: MethodResult::certificate(scene), truth, runs: runs.into() }
+    }
+}
 
 /// A case with all its results.
 #[derive(Clone, Debug, Serialize)]
@@ -47,14 +78,14 @@ pub struct RunResult {
     pub expected: Outcome,
     /// Its motion in simulation.
     pub simulated: Motion,
-    /// The result on the emulated board, if requested and if it can run the scene.
-    pub emulated: Option<BoardResult>,
+    /// Its motion with a board's servo, if a board can run the scene.
+    pub servo: Option<Motion>,
 }
 
 impl Case {
-    /// Evaluates all methods, and runs the loops, also on the emulated board if there is one.
-    pub fn report(&self, player: &mut Option<Client>) -> Result<CaseReport, StudyError> {
-        let result = self.evaluate()?;
+    /// Evaluates all methods, and runs the loops.
+    pub fn report(&self) -> Result<CaseReport, StudyError> {
+        let result = (self.evaluate)()?;
         let truth = result.truth.verdict;
         let judged = |result: MethodResult| JudgedMethod { failure: result.failure(truth), result };
         Ok(CaseReport {
@@ -63,26 +94,22 @@ impl Case {
             methods: result.methods.into_iter().map(judged).collect(),
             truth: result.truth,
             certificate: result.certificate,
-            runs: run_all(&result.runs, player)?,
+            runs: result.runs.iter().map(RunResult::of).collect::<Result<_, _>>()?,
         })
     }
 }
 
-fn run_all(runs: &[LoopRun], player: &mut Option<Client>) -> Result<Vec<RunResult>, StudyError> {
-    let run = |loop_run: &LoopRun| {
-        let player = player.as_mut().filter(|_| loop_run.goes_to_a_board());
-        let emulated = player.map(|player| loop_run.emulated(player)).transpose()?;
-        let (what, expected) = (loop_run.what, loop_run.expected);
-        Ok(RunResult { what, expected, simulated: loop_run.simulated()?, emulated })
-    };
-    runs.iter().map(run).collect()
-}
-
 impl RunResult {
+    fn of(loop_run: &LoopRun) -> Result<Self, StudyError> {
+        let (what, expected) = (loop_run.what, loop_run.expected);
+        let (simulated, servo) = (loop_run.simulated()?, loop_run.with_servo()?);
+        Ok(Self { what, expected, simulated, servo })
+    }
+
     /// Whether the outcome is the expected one.
     pub fn is_as_expected(&self) -> bool {
-        let emulated = self.emulated.as_ref().is_none_or(|board| board.agrees_with(self.expected));
-        self.simulated.outcome() == self.expected && emulated
+        let is_it = |motion: &Motion| motion.outcome() == self.expected;
+        is_it(&self.simulated) && self.servo.as_ref().is_none_or(is_it)
     }
 }
 

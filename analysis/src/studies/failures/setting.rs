@@ -4,16 +4,15 @@ use std::f64::consts::TAU;
 
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{Coefficients, Environment, FULL_SCALE, Rational, Wall};
+use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
 pub use haptic_servo::scene::Scene;
 use haptic_servo::scene::{Coupling, Device, Latency, Timing};
 use haptic_servo::servo::Transducers;
 
-pub use super::case::CaseResult;
-pub use super::loaded::LoadedDevice;
 pub use super::loop_run::LoopRun;
 pub use super::method_result::{MethodResult, MethodVerdict};
 pub use super::motion::{Motion, Outcome};
+pub use super::report::CaseResult;
 use crate::device;
 use crate::limits::{Limit, largest_stiffness, standard_coupling};
 use crate::simulation::Experiment;
@@ -95,15 +94,9 @@ pub fn friction_for_rest(scene: &Scene, transducers: &Transducers) -> f64 {
     encoder_friction(scene, transducers) + 0.5 * transducers.full_scale_torque / codes
 }
 
-/// `K Delta / 2 + B Delta / T` in N m for the encoder's step `Delta` in rad; `K` is the steepest slope of a
-/// torque profile.
+/// `K Delta / 2 + B Delta / T` in N m for the encoder's step `Delta` in rad and a wall; 0 for other environments.
 pub fn encoder_friction(scene: &Scene, transducers: &Transducers) -> f64 {
     let step = TAU / transducers.counts_per_turn;
-    if let Some(profile) = scene.environment.profile() {
-        let units = f64::from(profile.outline().rise.max(profile.outline().fall));
-        let slope = units / f64::from(FULL_SCALE) * profile.torque * profile.knots_per_rad();
-        return 0.5 * slope * step;
-    }
     let Some(wall) = scene.environment.wall() else { return 0.0 };
     (0.5 * wall.stiffness + wall.damping() / scene.timing.period) * step
 }

@@ -9,36 +9,29 @@ use crate::file::SceneFile;
 use crate::simulation::Experiment;
 use crate::studies::error::StudyError;
 
-/// The comparison of models.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Advice {
     /// The name of the scene in the file.
     pub scene: String,
     /// Largest relative error of a number, compared with the fullest model.
     pub bound: f64,
-    /// The cheapest sufficient model.
     pub enough: String,
-    /// The omissions of that model.
     pub left_out: Vec<String>,
     /// All models, the cheapest first; the last is the fullest.
     pub models: Vec<JudgedModel>,
     /// The reason if there is no certificate to compare.
     pub no_certificate: Option<String>,
-    /// The result as text.
     pub message: String,
 }
 
 /// A model compared with the fullest model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JudgedModel {
-    /// Its name.
     pub model: String,
     /// Parts of the fullest model that this model omits.
     pub lacks: Vec<String>,
-    /// Its result.
     #[serde(flatten)]
     pub result: ModelResult,
-    /// Its deviation from the fullest model.
     pub deviation: Deviation,
     /// The deviations beyond the bound; empty if the model is sufficient.
     pub beyond: Vec<String>,

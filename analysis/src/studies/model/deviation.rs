@@ -17,7 +17,6 @@ pub struct Deviation {
     /// Largest deviation of the angle over the run, relative to the largest angle; infinite if the motion of
     /// only one of the two leaves the range of numbers.
     pub angle: f64,
-    /// The same of the torque.
     pub torque: f64,
 }
 
@@ -37,7 +36,6 @@ impl Deviation {
         Self { delta, critical_stiffness, angle, torque }
     }
 
-    /// Its available parts by name.
     pub fn parts(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let parts = [
             ("delta", self.delta),

@@ -22,14 +22,12 @@ use crate::file::SceneFile;
 use crate::simulation::Experiment;
 use crate::simulation::plant::Plant;
 
-/// The modelled parts of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Model {
     /// Masses of the chain; one is a rigid device.
     pub masses: usize,
     /// Whether the file's hand holds it.
     pub hand: bool,
-    /// Whether the amplifier lags.
     pub lag: bool,
 }
 

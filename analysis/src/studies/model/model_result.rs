@@ -13,7 +13,6 @@ use crate::stability;
 use crate::studies::bench::figure::median;
 use crate::verdict::{self, VerdictReport};
 
-/// The results of a model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelResult {
     /// States of the loop, the servo's included.
@@ -28,7 +27,6 @@ pub struct ModelResult {
     pub stability: stability::StabilityVerdict,
     /// Stiffness of the environment in N m/rad above which the loop is unstable.
     pub critical_stiffness: Option<f64>,
-    /// The motion of the file's run.
     #[serde(skip)]
     pub motion: Trajectory,
 }

@@ -9,7 +9,6 @@ use crate::quantity::significant;
 use crate::studies::error::StudyError;
 use crate::verdict::AtRest;
 
-/// The requirements on a format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Requirements {
     /// Largest torque of a limit cycle at rest in N m, peak to peak: by the format, and by the encoder.
@@ -18,7 +17,6 @@ pub struct Requirements {
     pub error: Option<f64>,
     /// Largest fraction of a core's time for a tick.
     pub share: f64,
-    /// Ticks per second.
     pub rate: f64,
     /// Instructions per second of a core.
     pub clock: f64,
@@ -27,7 +25,6 @@ pub struct Requirements {
 /// A format with its cost and its errors.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
-    /// Its name.
     pub format: &'static str,
     /// Largest number of instructions of a tick from count to code.
     pub instructions: f64,
@@ -58,10 +55,8 @@ fn at_rest<S: Serializer>(rest: &Option<QuantizationBound>, to: S) -> Result<S::
     rest.as_ref().map(AtRest::of).serialize(to)
 }
 
-/// All formats, the cheapest first.
 #[derive(Clone, Debug)]
 pub struct Advice {
-    /// The formats.
     pub candidates: Vec<Candidate>,
     /// Torque in N m of the limit cycle by the encoder alone, in the finest format; `None` if its
     /// resolution is not stated.

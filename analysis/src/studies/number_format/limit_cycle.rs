@@ -86,7 +86,6 @@ fn ticks(time: f64, period: f64) -> usize {
     (time / period).ceil() as usize
 }
 
-/// Whether the environment has a spring.
 fn has_spring(environment: &Environment) -> bool {
     match environment {
         Environment::Parts(parts) => parts.wall.is_some() || parts.profile.is_some(),

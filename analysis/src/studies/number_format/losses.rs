@@ -6,14 +6,12 @@ use serde::Serialize;
 use super::{LimitCycle, Motion, at_rest};
 use crate::studies::error::StudyError;
 
-/// The errors of a format.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Losses {
     /// Largest difference in N m to the torques of `f64` on the same counts.
     pub error: f64,
     /// The same around 1 rad; `None` if the scene cannot be moved there.
     pub error_elsewhere: Option<f64>,
-    /// Limit cycle by the format alone.
     pub alone: LimitCycle,
     /// The same with the encoder; `None` if its resolution is not stated.
     pub with_encoder: Option<LimitCycle>,

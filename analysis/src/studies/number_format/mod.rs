@@ -9,10 +9,10 @@ mod losses;
 mod motion;
 mod units;
 
-pub use advice::{Advice, Candidate, Requirements};
+pub(crate) use advice::{Advice, Candidate, Requirements};
 pub use cost::{Cost, cost};
-pub use limit_cycle::{LimitCycle, at_rest};
-pub use losses::Losses;
+pub(crate) use limit_cycle::{LimitCycle, at_rest};
+pub(crate) use losses::Losses;
 pub use motion::Motion;
 pub use units::Units;
 

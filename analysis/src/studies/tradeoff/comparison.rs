@@ -1,15 +1,6 @@
-//! Comparisons: their columns, and the better direction of each.
+//! Comparisons and their columns, in each of which smaller numbers are better.
 
 use crate::table::Column;
-
-/// The better direction of a column's values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    /// Smaller values are better.
-    Minimize,
-    /// Greater values are better.
-    Maximize,
-}
 
 /// A column of a table for an axis of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +9,6 @@ pub struct Axis {
     pub name: &'static str,
     /// Name and unit on the axis.
     pub label: &'static str,
-    /// The better direction.
-    pub direction: Direction,
     /// Values up to this floor count as equal and are drawn there: the precision of the reference, or half of
     /// the smallest count. Above 0, because axes are logarithmic.
     pub floor: f64,
@@ -28,15 +17,9 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// A column in which smaller numbers are better.
-    pub const fn least(name: &'static str, label: &'static str) -> Self {
-        let (direction, floor) = (Direction::Minimize, f64::MIN_POSITIVE);
-        Self { name, label, direction, floor, at_floor: "0" }
-    }
-
-    /// A column in which greater numbers are better.
-    pub const fn most(name: &'static str, label: &'static str) -> Self {
-        Self { direction: Direction::Maximize, ..Self::least(name, label) }
+    /// A column with this name in the file and this name with its unit on the axis.
+    pub const fn new(name: &'static str, label: &'static str) -> Self {
+        Self { name, label, floor: f64::MIN_POSITIVE, at_floor: "0" }
     }
 
     /// The same with a floor and its name.
@@ -46,11 +29,7 @@ impl Axis {
 
     /// Whether the first value is better than the second, beyond the floor.
     pub fn is_better(&self, value: f64, than: f64) -> bool {
-        let [value, than] = [value, than].map(|value| value.max(self.floor));
-        match self.direction {
-            Direction::Minimize => value < than,
-            Direction::Maximize => value > than,
-        }
+        value.max(self.floor) < than.max(self.floor)
     }
 }
 

@@ -2,19 +2,18 @@
 //! Pareto front.
 //!
 //! A [`Comparison`] has the topic and its columns; a [`Tradeoff`] is the measured table, kept as CSV
-//! beside its chart ([`crate::chart::tradeoff`]).
+//! beside its chart.
 
 pub mod certificate;
 mod comparison;
 pub mod servo;
-pub mod simulation;
 pub mod sine;
 pub mod ticks;
 
 use std::io::{Read, Write};
 use std::time::Instant;
 
-pub use comparison::{Axis, Comparison, Direction};
+pub use comparison::{Axis, Comparison};
 
 use crate::emulator::Client;
 use crate::progress;
@@ -91,7 +90,7 @@ impl Tradeoff {
     /// The Pareto front of a case: each method has the best value of the error with this index among all
     /// methods of at most its cost. From the cheapest to the best. A failing method is never on a front.
     pub fn front(&self, case: &str, error: usize) -> Vec<&Method> {
-        let (cost, direction) = (&self.comparison.cost, &self.comparison.errors[error]);
+        let (cost, error_axis) = (&self.comparison.cost, &self.comparison.errors[error]);
         let figures = |m: &Method| Some((m.cost()?, m.error(error)?));
         let finite = |m: &&Method| figures(m).is_some_and(|(c, e)| c.is_finite() && e.is_finite());
         let mut front: Vec<_> = self.of(case).filter(finite).collect();
@@ -99,16 +98,13 @@ impl Tradeoff {
             let (Some((c, e)), Some((by_c, by_e))) = (figures(m), figures(by)) else {
                 return false;
             };
-            let worse = cost.is_better(c, by_c) || direction.is_better(e, by_e);
-            !worse && (cost.is_better(by_c, c) || direction.is_better(by_e, e))
+            let worse = cost.is_better(c, by_c) || error_axis.is_better(e, by_e);
+            !worse && (cost.is_better(by_c, c) || error_axis.is_better(by_e, e))
         };
         let all = front.clone();
         front.retain(|method| !all.iter().any(|other| is_beaten(method, other)));
         let by_cost = |m: &&Method| m.cost().unwrap_or(f64::INFINITY);
         front.sort_by(|a, b| by_cost(a).total_cmp(&by_cost(b)));
-        if cost.direction == Direction::Maximize {
-            front.reverse();
-        }
         front
     }
 

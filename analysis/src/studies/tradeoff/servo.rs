@@ -18,13 +18,13 @@ use crate::studies::number_format::{FormatProblem, HALF_A_TURN, Losses, Motion, 
 pub static COMPARISON: Comparison = Comparison {
     name: "servo",
     title: "Servo: number formats, a tick of each scene at 1 kHz on the emulated Cortex-M4",
-    cost: Axis::least("instructions", "most instructions from count to code"),
+    cost: Axis::new("instructions", "most instructions from count to code"),
     errors: &[
-        Axis::least("error", "largest error of the torque (N m)").floored(FLOOR, NONE),
-        Axis::least("error_at_1_rad", "largest error of the torque around 1 rad (N m)")
+        Axis::new("error", "largest error of the torque (N m)").floored(FLOOR, NONE),
+        Axis::new("error_at_1_rad", "largest error of the torque around 1 rad (N m)")
             .floored(FLOOR, NONE),
-        Axis::least("hum", "limit cycle at rest, without encoder (N m)").floored(FLOOR, NONE),
-        Axis::least("cycle", "smallest limit cycle (rad)").floored(FLOOR, NONE),
+        Axis::new("hum", "limit cycle at rest, without encoder (N m)").floored(FLOOR, NONE),
+        Axis::new("cycle", "smallest limit cycle (rad)").floored(FLOOR, NONE),
     ],
     others: &["mean_instructions", "hum_with_encoder", "cycle_with_encoder"],
     kept: include_bytes!("../../../pictures/tradeoff/servo.csv"),

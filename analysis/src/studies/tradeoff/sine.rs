@@ -21,8 +21,8 @@ use crate::studies::number_format::Cost;
 pub static COMPARISON: Comparison = Comparison {
     name: "sine",
     title: "Sine of a sweep, and sine and cosine of a phase, on the emulated Cortex-M4",
-    cost: Axis::least("instructions", "most instructions"),
-    errors: &[Axis::least("error", "largest error (1)")],
+    cost: Axis::new("instructions", "most instructions"),
+    errors: &[Axis::new("error", "largest error (1)")],
     others: &["mean_instructions"],
     kept: include_bytes!("../../../pictures/tradeoff/sine.csv"),
 };

@@ -22,7 +22,7 @@ use crate::studies::number_format::cost;
 pub static COMPARISON: Comparison = Comparison {
     name: "ticks",
     title: "Servo: number formats, a tick of each type of scene on the emulated Cortex-M4",
-    cost: Axis::least("instructions", "most instructions from count to code"),
+    cost: Axis::new("instructions", "most instructions from count to code"),
     errors: &[],
     others: &[],
     kept: include_bytes!("../../../pictures/tradeoff/ticks.csv"),

@@ -2,7 +2,6 @@
 
 pub mod bench;
 pub mod certify;
-pub mod servo;
 
 use haptic_servo::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep};
 use semihosting::fs::File;

@@ -21,14 +21,14 @@ use index_methods::{Grid, IndexMethod, IndexResult};
 pub static COMPARISON: Comparison = Comparison {
     name: "certificate",
     title: "Certificate: ways to the index alpha and the verdict, on 2500 environments of each kind",
-    cost: Axis::least("microseconds", "time of a verdict (microseconds)"),
+    cost: Axis::new("microseconds", "time of a verdict (microseconds)"),
     errors: &[
         // The indices are doubles with an error of at most one place.
-        Axis::least("alpha_error", "error of alpha, 99 of 100 below it (part)")
+        Axis::new("alpha_error", "error of alpha, 99 of 100 below it (part)")
             .floored(1e-15, "a double's last places"),
-        Axis::least("wrong_yes", "not passive, and passed, of 2500").floored(0.5, "none"),
-        Axis::least("wrong_no", "passive, and refused, of 2500").floored(0.5, "none"),
-        Axis::least("open", "left undecided, of 2500").floored(0.5, "none"),
+        Axis::new("wrong_yes", "not passive, and passed, of 2500").floored(0.5, "none"),
+        Axis::new("wrong_no", "passive, and refused, of 2500").floored(0.5, "none"),
+        Axis::new("open", "left undecided, of 2500").floored(0.5, "none"),
     ],
     others: &["median_error", "largest_error"],
     kept: include_bytes!("../../../../pictures/tradeoff/certificate.csv"),

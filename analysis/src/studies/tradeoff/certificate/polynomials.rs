@@ -10,30 +10,25 @@ use crate::stability::eigenvalues;
 pub(super) struct Ascending(Vec<f64>);
 
 impl Ascending {
-    /// Value.
     pub(super) fn at(&self, x: f64) -> f64 {
         self.0.iter().rev().fold(0.0, |sum, value| sum * x + value)
     }
 
-    /// Derivative.
     pub(super) fn slope(&self) -> Self {
         let terms = self.0.iter().enumerate().skip(1);
         Self(terms.map(|(power, value)| power as f64 * value).collect())
     }
 
-    /// Product.
     pub(super) fn times(&self, other: &Self) -> Self {
         Self(multiply(&self.0, &other.0))
     }
 
-    /// Difference.
     pub(super) fn minus(&self, other: &Self) -> Self {
         let at = |values: &[f64], i: usize| values.get(i).copied().unwrap_or(0.0);
         let longest = self.0.len().max(other.0.len());
         Self((0..longest).map(|i| at(&self.0, i) - at(&other.0, i)).collect())
     }
 
-    /// Coefficients from the highest power.
     pub(super) fn descending(&self) -> Vec<f64> {
         self.0.iter().rev().copied().collect()
     }
@@ -47,7 +42,7 @@ pub(super) fn roots(descending: &[f64]) -> Option<Vec<Complex<f64>>> {
 }
 
 /// The matrix whose eigenvalues are the roots of a polynomial, of which the first coefficient is not 0.
-pub fn companion(descending: &[f64]) -> DMatrix<f64> {
+fn companion(descending: &[f64]) -> DMatrix<f64> {
     let degree = descending.len() - 1;
     DMatrix::from_fn(degree, degree, |i, j| match (i, j) {
         (0, j) => -descending[j + 1] / descending[0],

@@ -71,13 +71,6 @@ fn a_proof_is_never_wrong_and_grids_and_roots_are() {
     }
 }
 
-/// A danger, a loss, and a loss that is known: each has a panel of its own, and no panel has a sum.
-#[test]
-fn wrong_passes_wrong_refusals_and_undecided_verdicts_are_drawn_apart() {
-    let drawn = COMPARISON.errors.iter().map(|axis| axis.name);
-    assert_eq!(drawn.collect::<Vec<_>>(), ["alpha_error", "wrong_yes", "wrong_no", "open"]);
-}
-
 /// A wall one sample late by every way: `alpha = K T/2 + B` (equation 27).
 #[test]
 fn every_way_finds_the_index_of_a_wall() {
