@@ -3,15 +3,14 @@
 
 use std::fmt;
 
-use haptic_servo::dac::DacCode;
 use haptic_servo::scene::{Latency, Scene, Timing};
 use haptic_servo::servo::Transducers;
 
 use crate::controller::{Controller, Tick};
-use crate::device::{Energy, Hand, Motion, SimulatedEncoder};
+use crate::device::{Energy, Motion};
 use crate::hand::HandTrajectory;
 use crate::simulation::SimulationError;
-use crate::simulation::held_device::{DeviceState, HeldDevice};
+use crate::simulation::device_in_hand::DeviceInHand;
 
 /// Source of the encoder's counts and sink of the DAC codes.
 pub trait PlantIo {
@@ -41,18 +40,12 @@ impl PlantIo for Recording<'_> {
     fn hold(&mut self, _: u16) {}
 }
 
-/// A simulated device in a hand that follows a trajectory. A code acts after the output delay of the scene,
-/// and amplifier and sensor have the lags of the scene: the middle of each range, without jitter.
+/// A simulated device in a hand that follows a trajectory.
 pub struct SimulatedDevice {
-    held: HeldDevice,
-    free: HeldDevice,
+    device: DeviceInHand,
     trajectory: HandTrajectory,
-    encoder: SimulatedEncoder,
     period: f64,
-    torque_per_code: f64,
     ticks: u64,
-    state: DeviceState,
-    energy: Energy,
     let_go: bool,
 }
 
@@ -63,20 +56,8 @@ impl SimulatedDevice {
         trajectory: HandTrajectory,
         transducers: &Transducers,
     ) -> Result<Self, SimulationError> {
-        let full_scale = transducers.full_scale_torque;
-        let held = HeldDevice::of(scene, trajectory.hand)?;
-        Ok(Self {
-            state: held.at(Motion::default()),
-            held,
-            free: HeldDevice::of(scene, Hand::default())?,
-            trajectory,
-            encoder: SimulatedEncoder::new(transducers.counts_per_turn),
-            period: scene.timing.period,
-            torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
-            ticks: 0,
-            energy: Energy::default(),
-            let_go: false,
-        })
+        let device = DeviceInHand::new(scene, trajectory.hand, transducers)?;
+        Ok(Self { device, trajectory, period: scene.timing.period, ticks: 0, let_go: false })
     }
 
     /// The same on the shaft of a motor whose torque comes from elsewhere, in steps of this length in s.
@@ -102,32 +83,27 @@ impl SimulatedDevice {
         self.ticks += 1;
         let setpoint = self.trajectory.setpoint(start, self.ticks as f64 * self.period);
         let is_held = start < self.trajectory.release && !self.let_go;
-        let device = if is_held { &self.held } else { &self.free };
-        let work = device.step(&mut self.state, torque, setpoint);
-        if is_held {
-            self.energy.add(work);
-        }
+        self.device.push(torque, setpoint, is_held);
     }
 
     /// The present motion of the device.
     pub fn motion(&self) -> Motion {
-        self.state.motion()
+        self.device.motion()
     }
 
     /// Energy that passed between hand and device so far.
     pub fn energy(&self) -> Energy {
-        self.energy
+        self.device.energy()
     }
 }
 
 impl PlantIo for SimulatedDevice {
     fn count(&mut self) -> Option<i32> {
-        Some(self.encoder.read(self.state.measured()))
+        Some(self.device.count())
     }
 
     fn hold(&mut self, code: u16) {
-        let codes = f64::from(code) - f64::from(DacCode::MID_SCALE.get());
-        self.push(codes * self.torque_per_code);
+        self.push(self.device.torque(code));
     }
 }
 
@@ -230,6 +206,7 @@ impl RemoteServo for NoRemote {
 
 #[cfg(test)]
 mod tests {
+    use haptic_servo::dac::DacCode;
     use haptic_servo::encoder::CounterWidth;
     use haptic_servo::environment::Wall;
     use haptic_servo::scene::{Coupling, Device};

@@ -14,30 +14,10 @@ thread_local! {
 /// The last answer.
 #[derive(Debug, Default)]
 pub struct Answers {
-    text: String,
-    numbers: Vec<f64>,
-}
-
-impl Answers {
-    /// Address of the text.
-    pub fn text(&self) -> *const u8 {
-        self.text.as_ptr()
-    }
-
-    /// Its bytes.
-    pub fn text_bytes(&self) -> usize {
-        self.text.len()
-    }
-
-    /// Address of the numbers.
-    pub fn numbers(&self) -> *const f64 {
-        self.numbers.as_ptr()
-    }
-
-    /// Number of the numbers.
-    pub fn numbers_count(&self) -> usize {
-        self.numbers.len()
-    }
+    /// Its text.
+    pub text: String,
+    /// Its numbers.
+    pub numbers: Vec<f64>,
 }
 
 /// Address for a request with this size in bytes.

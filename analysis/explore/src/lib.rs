@@ -22,8 +22,6 @@ pub mod wire;
 #[cfg(test)]
 mod test_scenes;
 
-use buffer::Answers;
-
 /// The answer of a function: a text, or the text of a refusal. Numbers go to the buffer in addition.
 pub type PageResult = Result<String, String>;
 
@@ -109,23 +107,23 @@ pub extern "C" fn input(bytes: usize) -> *mut u8 {
 /// Address of the last answer's text.
 #[unsafe(no_mangle)]
 pub extern "C" fn text() -> *const u8 {
-    buffer::read(Answers::text)
+    buffer::read(|answer| answer.text.as_ptr())
 }
 
 /// Size of that text in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn text_bytes() -> usize {
-    buffer::read(Answers::text_bytes)
+    buffer::read(|answer| answer.text.len())
 }
 
 /// Address of the last answer's numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn numbers() -> *const f64 {
-    buffer::read(Answers::numbers)
+    buffer::read(|answer| answer.numbers.as_ptr())
 }
 
 /// Number of the numbers.
 #[unsafe(no_mangle)]
 pub extern "C" fn numbers_count() -> usize {
-    buffer::read(Answers::numbers_count)
+    buffer::read(|answer| answer.numbers.len())
 }

@@ -9,82 +9,20 @@ pub struct Preset {
     pub toml: &'static str,
 }
 
-macro_rules! scene {
-    ($name:literal, $($part:expr),*) => {
-        Preset { name: $name, toml: concat!("name = \"", $name, "\"\n", $($part),*) }
-    };
-}
-
-/// The paddle of the paper's examples, at 1 kHz.
-macro_rules! paddle {
-    () => {
-        "[device]\ninertia = 2.2e-5\ndamping = 0.022\n[servo]\nperiod = 0.001\n"
-    };
-}
-
-/// The standard coupling of the paddle, `2 delta / T`.
-macro_rules! spring {
-    () => {
-        "[coupling]\nstiffness = 44.0\n"
-    };
-}
-
-/// The paddle's encoder of 61440 counts a turn, and its motor.
-macro_rules! steps {
-    () => {
-        "encoder_step = 1.0226538585904274e-4\nfull_scale = 2.0\n"
+macro_rules! presets {
+    ($($name:literal in $file:literal),* $(,)?) => {
+        &[$(Preset { name: $name, toml: include_str!(concat!("presets/", $file)) }),*]
     };
 }
 
 /// All values.
-pub const ALL: &[Preset] = &[
-    scene!(
-        "delayed spring",
-        paddle!(),
-        spring!(),
-        "[environment]\ntype = \"delayed-spring\"\nstiffness = 22.0\ndelay = 1\n[limits]\ntorque = 1.0\n",
-        steps!()
-    ),
-    scene!(
-        "damper wall",
-        paddle!(),
-        spring!(),
-        "[environment]\ntype = \"damper-wall\"\nstiffness = 22.0\ndamping = 0.01\ndelay = 1\n\
-         one_sided = true\n[limits]\ntorque = 1.0\n",
-        steps!()
-    ),
-    scene!(
-        "free mode",
-        paddle!(),
-        spring!(),
-        "[environment]\ntype = \"free-mode\"\nresidual = 0.001\ndelay = 1\n[limits]\n\
-         encoder_step = 1.0226538585904274e-4\nfull_scale = 0.25\n"
-    ),
-    scene!(
-        "knob",
-        paddle!(),
-        spring!(),
-        "[environment]\ntype = \"profile\"\ndelay = 1\n[[environment.shape]]\ntype = \"detents\"\n\
-         count = 24\ntorque = 0.05\n[[environment.shape]]\ntype = \"end_stops\"\nfrom = -2.618\n\
-         to = 2.618\nstiffness = 15.0\n[limits]\ntorque = 1.0\n",
-        steps!()
-    ),
-    scene!(
-        "undelayed wall behind a lag",
-        "[device]\ninertia = 2.2e-5\ndamping = 0.022\nactuator_lag = 5.3e-5\n[servo]\nperiod = 0.001\n\
-         output_delay = 1.0e-5\noutput_jitter = 1.0e-6\n[coupling]\ntype = \"matched\"\n[environment]\n\
-         type = \"free-mode-wall\"\nresidual = 0.004\nstiffness = 22.0\ndamping = 0.01\ndelay = 0\n\
-         one_sided = true\n[limits]\ntorque = 1.0\n",
-        steps!()
-    ),
-    scene!(
-        "beyond the limit",
-        paddle!(),
-        spring!(),
-        "[environment]\ntype = \"damper-wall\"\nstiffness = 60.0\ndamping = 0.01\ndelay = 1\n\
-         one_sided = true\n[limits]\ntorque = 1.0\n",
-        steps!()
-    ),
+pub const ALL: &[Preset] = presets![
+    "delayed spring" in "delayed_spring.toml",
+    "damper wall" in "damper_wall.toml",
+    "free mode" in "free_mode.toml",
+    "knob" in "knob.toml",
+    "undelayed wall behind a lag" in "undelayed_wall.toml",
+    "beyond the limit" in "beyond_the_limit.toml",
 ];
 
 #[cfg(test)]

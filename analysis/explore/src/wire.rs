@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use std::time::Duration;
 
 use haptic_model::board::request::{Reply, Request};
-use haptic_model::board::sample::{COLUMNS, Row};
+use haptic_model::board::sample::{COLUMNS, Sample};
 use haptic_model::board::timing::RETRY;
 use haptic_model::board::{Power, change, formatting};
 use haptic_model::chain::Chain;
@@ -98,9 +98,9 @@ pub fn turn(question: &str, _: &mut Vec<f64>) -> PageResult {
         let mut rows = wire.is_recording.then(String::new);
         let mut lost = None;
         if let Some(client) = &mut wire.client {
-            let each = |sample: &_| {
+            let each = |sample: &Sample| {
                 if let Some(rows) = &mut rows {
-                    *rows += &format!("{}\n", Row::from(sample));
+                    *rows += &format!("{sample}\n");
                 }
             };
             lost = client.turn(&bytes, now, each).err();

@@ -27,11 +27,7 @@ macro_rules! kept {
     };
 }
 
-kept! {
-    delayed_spring damper_wall free_mode knob undelayed_wall
-    bridge composed damped encoder filtered placed rational response rigid snap table
-    program
-}
+kept! { free_mode knob bridge composed damped encoder filtered placed rational table program }
 
 fn preset(name: &str) -> Option<&'static str> {
     presets::ALL.iter().find(|preset| preset.name == name).map(|preset| preset.toml)
@@ -41,10 +37,7 @@ fn preset(name: &str) -> Option<&'static str> {
 fn the_constants_of_scenes_are_the_scenes() {
     for (name, kept) in KEPT {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/constants");
-        let of_preset = match *name {
-            "undelayed_wall" => preset("undelayed wall behind a lag"),
-            name => preset(&name.replace('_', " ")),
-        };
+        let of_preset = preset(&name.replace('_', " "));
         let read = || std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
         let toml = of_preset.map_or_else(read, str::to_owned);
         let file = parse(name, Format::Toml, &toml).unwrap_or_else(|error| panic!("{error}"));

@@ -1,25 +1,6 @@
-//! Scene files, their certificates, and their simulation: the mathematics of the host, without an operating
-//! system, so that a browser and a notebook have the same.
+#![doc = include_str!("../README.md")]
 //!
-//! A [`mod@file`] holds a scene, [`verdict`] the certificate's answer; [`simulation`] computes a scene's
-//! motion, certified or not:
-//!
-//! ```
-//! use haptic_model::file::{self, Format};
-//! use haptic_model::verdict::{self, Verdict};
-//!
-//! let file = file::parse("wall.toml", Format::Toml, r#"
-//!     name = "wall"
-//!     device = { inertia = 2.2e-5, damping = 0.022 }
-//!     servo = { period = 0.001 }
-//!     coupling = { stiffness = 44.0 }
-//!     environment = { type = "damper-wall", stiffness = 22.0, damping = 0.023, delay = 1 }
-//! "#)?;
-//! let report = verdict::judge(&file.name, &file.scene);
-//! assert_eq!(report.verdict, Verdict::Rejected);
-//! println!("{}", report.message);
-//! # Ok::<(), haptic_model::file::FileError>(())
-//! ```
+//! # Modules
 //!
 //! | what | begin with |
 //! |---|---|
@@ -91,8 +72,3 @@ pub mod text_width;
 
 #[cfg(test)]
 mod fixture;
-
-/// The page of the package, so that its example is tested.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-mod readme {}

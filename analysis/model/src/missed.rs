@@ -20,11 +20,8 @@ pub enum Missed {
 impl Missed {
     /// Whether a tick is missed, tick by tick.
     pub fn ticks(self) -> Ticks {
-        Ticks { missed: self, random: fastrand::Rng::with_seed(self.seed()), k: 0 }
-    }
-
-    fn seed(self) -> u64 {
-        if let Self::Random { seed, .. } = self { seed } else { 0 }
+        let seed = if let Self::Random { seed, .. } = self { seed } else { 0 };
+        Ticks { missed: self, random: fastrand::Rng::with_seed(seed), k: 0 }
     }
 }
 

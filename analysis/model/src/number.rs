@@ -1,10 +1,9 @@
 //! Number formats by name, and the numbers of a scene that do not fit them.
 
-use std::fmt;
-
 use haptic_servo::number::{Format, OutOfRange};
 use haptic_servo::parameter::Parameter;
 use haptic_servo::scene::Scene;
+use thiserror::Error;
 
 /// The format of a name such as `f32`, `f64`, `i8f24`, `i8f24-truncated` or `q8.24`.
 ///
@@ -40,21 +39,14 @@ pub fn format(name: &str) -> Result<Format, String> {
 }
 
 /// A number of a scene that a format does not hold.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("`{key}`: {reason}")]
 pub struct DoesNotFit {
     /// Its key in a file.
     pub key: &'static str,
     /// Value, bound and format.
     pub reason: OutOfRange,
 }
-
-impl fmt::Display for DoesNotFit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "`{}`: {}", self.key, self.reason)
-    }
-}
-
-impl std::error::Error for DoesNotFit {}
 
 /// Whether a format holds a scene's angles and torques. Its coefficients are checked by their certificate:
 /// where the format does not hold them, they stay as they were written.

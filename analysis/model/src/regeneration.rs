@@ -183,30 +183,6 @@ mod tests {
         assert!(!judge_file(&file, Format::F64).passes());
     }
 
-    #[test]
-    fn a_supply_is_read_with_clear_errors() {
-        for (supply, parts) in [
-            ("voltage = 24.0\nfault_voltage = 25.2\n", ["supply.capacitance", "greater than 0 F"]),
-            (
-                "voltage = 24.0\nfault_voltage = 25.2\ncapacitance = 0.0\n",
-                ["0.0", "greater than 0 F"],
-            ),
-            ("voltage = 24.0\nfault_voltage = 25.2\ncapacitance = -1e-3\n", ["-1e-3", "greater"]),
-            ("voltage = 24.0\nfault_voltage = 25.2\ncapacitance = nan\n", ["nan", "greater"]),
-            ("voltage = 26.0\nfault_voltage = 25.2\ncapacitance = 1e-3\n", ["26.0", "25.2 V"]),
-            ("sinks = 1\n", ["supply.sinks", "true or false"]),
-            ("sinks = true\nvoltage = -1.0\n", ["supply.voltage", "greater than 0 V"]),
-            ("sink = true\n", ["supply.sink", "`sinks`"]),
-        ] {
-            let text = format!("{DEVICE}{SPRING}{LIMIT}[supply]\n{supply}");
-            let told = parse("a.toml", file::Format::Toml, &text).unwrap_err().to_string();
-            assert!(parts.iter().all(|part| told.contains(part)), "{told}");
-        }
-        let text = format!("{DEVICE}{SPRING}[supply]\n{}", stores(12.0, 1e-3));
-        let told = parse("a.toml", file::Format::Toml, &text).unwrap_err().to_string();
-        assert!(told.contains("limits.torque"), "{told}");
-    }
-
     /// Steps of the motion in a tick.
     const STEPS: usize = 50;
 

@@ -20,38 +20,26 @@ const ROUNDING: f64 = 1e-6;
 pub struct UnitCirclePole {
     /// Its angle in rad, from 0 to pi.
     pub theta: f64,
-    /// Its multiplicity and residue.
-    pub kind: Kind,
-}
-
-/// The effect of a pole on the unit circle on passivity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// A simple pole with `k = rho / z0` in N m s/rad. A positive `k` is passive: the curve closes through
-    /// infinity on the right.
-    Simple(Complex<f64>),
-    /// More than one pole at the same place: never passive.
-    Repeated,
+    /// `k = rho / z0` in N m s/rad of a simple pole. A positive `k` is passive: the curve closes through infinity
+    /// on the right. `None`: more than one pole at the same place, which is never passive.
+    pub k: Option<Complex<f64>>,
 }
 
 impl UnitCirclePole {
     /// Whether the pole meets the condition of equation 4.
     pub fn is_passive(&self) -> bool {
-        matches!(self.kind, Kind::Simple(k) if k.re > 0.0 && k.im.abs() <= ROUNDING * k.norm())
+        self.residue().is_some_and(|residue| residue > 0.0)
     }
 
     /// Whether its way through infinity is drawn: the way around several poles at one place is longer than a
     /// picture's frame.
     pub fn is_simple(&self) -> bool {
-        matches!(self.kind, Kind::Simple(_))
+        self.k.is_some()
     }
 
     /// The residue, if it is real: then the curve closes on the right or on the left, and otherwise askew.
     pub fn residue(&self) -> Option<f64> {
-        match self.kind {
-            Kind::Simple(k) if k.im.abs() <= ROUNDING * k.norm() => Some(k.re),
-            _ => None,
-        }
+        self.k.filter(|k| k.im.abs() <= ROUNDING * k.norm()).map(|k| k.re)
     }
 }
 
@@ -75,7 +63,7 @@ pub fn poles(g: &Transfer) -> Vec<UnitCirclePole> {
             .iter_mut()
             .find(|found: &&mut UnitCirclePole| (found.theta - theta).abs() < 1e-5)
         {
-            Some(known) => known.kind = Kind::Repeated,
+            Some(known) => known.k = None,
             None => {
                 // Outwards, where no other pole is near: (z / z0 - 1) G(z).
                 let step = 1e-7;
@@ -85,7 +73,7 @@ pub fn poles(g: &Transfer) -> Vec<UnitCirclePole> {
         }
     }
     // A zero at the same place leaves no pole.
-    found.retain(|pole| !matches!(pole.kind, Kind::Simple(k) if k.norm() == 0.0));
+    found.retain(|pole| pole.k.is_none_or(|k| k.norm() != 0.0));
     found.sort_by(|a, b| a.theta.total_cmp(&b.theta));
     found
 }
@@ -96,7 +84,7 @@ pub fn outside(g: &Transfer) -> usize {
 }
 
 fn pole(theta: f64, is_simple: bool, k: Complex<f64>) -> UnitCirclePole {
-    UnitCirclePole { theta, kind: if is_simple { Kind::Simple(k) } else { Kind::Repeated } }
+    UnitCirclePole { theta, k: is_simple.then_some(k) }
 }
 
 /// Roots of the denominator that is not factored: eigenvalues of its companion matrix.
@@ -142,12 +130,12 @@ mod tests {
         let numerator = [2.0 * (k * z0).re, -2.0 * k.re];
         let resonator = ratio(&numerator, &[1.0, -2.0 * z0.re, 1.0]);
         let [pole] = poles(&resonator)[..] else { panic!() };
-        let Kind::Simple(found) = pole.kind else { panic!() };
+        let found = pole.k.unwrap();
         assert!((pole.theta - 1.0).abs() < 1e-9 && (found - k).norm() < 1e-5, "{found}");
         assert!(!pole.is_passive() && pole.residue().is_none());
 
         let twice = Transfer { ones: -2, ..ratio(&[1.0], &[1.0]) };
-        assert_eq!(poles(&twice)[0].kind, Kind::Repeated);
+        assert_eq!(poles(&twice)[0].k, None);
         // B (2 / T)(z - 1) / (z + 1) behind T z / (z - 1).
         let tustin = Transfer { minus_ones: -1, ..ratio(&[0.02, 0.0], &[1.0]) };
         let [pole] = poles(&tustin)[..] else { panic!() };

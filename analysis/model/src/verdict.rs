@@ -36,11 +36,7 @@ pub enum Verdict {
 
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Certified => "certified",
-            Self::Rejected => "rejected",
-            Self::Undecided => "undecided",
-        })
+        f.pad(&format!("{self:?}").to_lowercase())
     }
 }
 

@@ -3,7 +3,7 @@
 use std::io::{self, BufWriter, Write};
 use std::num::NonZeroU32;
 
-use super::sample::{COLUMNS, Row, Sample};
+use super::sample::{COLUMNS, Sample};
 use crate::tick_gaps::TickGaps;
 
 /// Writes ticks as CSV: tick, time, count, position, code, torque, state, limit, slack; in s, rad
@@ -28,7 +28,7 @@ impl Recorder {
         }
         self.count += 1;
         self.gaps.add(sample.tick, self.every);
-        writeln!(self.rows, "{}", Row::from(sample))
+        writeln!(self.rows, "{sample}")
     }
 
     pub fn flush(&mut self) -> io::Result<()> {

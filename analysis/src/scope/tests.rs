@@ -10,7 +10,7 @@ use haptic_servo::wire::message::{ActiveParameters, BoardUnits, Changes, Previou
 
 use super::history::History;
 use super::poller::Event;
-use super::sample::{COLUMNS, Row, Sample, Scale};
+use super::sample::{Sample, Scale};
 use super::{Scope, tui};
 
 const BOARD: BoardUnits = BoardUnits {
@@ -226,14 +226,16 @@ fn rows_are_those_of_the_library_for_csv() {
     let mut scale =
         Scale::new(BoardUnits { timer_counts, counts_per_turn, full_scale_torque, ..BOARD });
     let mut library = csv::Writer::from_writer(Vec::new());
-    let mut rows = format!("{COLUMNS}\n");
+    let mut rows = String::new();
     for (i, code) in [0, 2047, 2048, 2049, 4095].into_iter().enumerate() {
         let (tick, count, slack) = (3 * i as u32, 1 - i as i32, 7 * i as u32);
         let code = DacCode::new(code).unwrap();
         let frame = Frame { code, slack, ..frame(tick, count, LimitReason::Torque) };
-        let row = Row::from(&scale.sample(&frame));
-        library.serialize(&row).unwrap();
-        rows += &format!("{row}\n");
+        let sample = scale.sample(&frame);
+        let Sample { tick, time, count, position, code, torque, state, limit, slack } = sample;
+        let words = (state.as_str(), limit.as_str());
+        library.serialize((tick, time, count, position, code, torque, words, slack)).unwrap();
+        rows += &format!("{sample}\n");
     }
     assert_eq!(rows, String::from_utf8(library.into_inner().unwrap()).unwrap());
 }

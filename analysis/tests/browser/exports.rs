@@ -3,13 +3,15 @@
 use std::fs;
 use std::io::Cursor;
 
+use analysis::file::constant::constants;
+
+use crate::common::WALL;
 use crate::common::board::Running;
-use crate::common::{WALL, read, root};
 use crate::devtools::{Page, saved};
 use crate::explore::{explore, opened};
 use crate::picture::Picture;
 use crate::serve;
-use crate::verdict_page::{REFUSED, certified, certified_by_page, choose, presets};
+use crate::verdict_page::{certified, certified_by_page, choose, presets};
 
 /// The text that a button of the page shows.
 fn exported(page: &mut Page, button: &str) -> String {
@@ -18,17 +20,6 @@ fn exported(page: &mut Page, button: &str) -> String {
     page.value("document.getElementById('export').close()");
     page.wait_for("document.getElementById('export') === null");
     text.as_str().unwrap().to_owned()
-}
-
-/// Where the constants of a preset are kept, which are compiled and compared with its scene beside the page's
-/// sources; none of the preset that compiles nowhere.
-fn constants(preset: &str) -> Option<String> {
-    let name = match preset {
-        REFUSED => return None,
-        "undelayed wall behind a lag" => "undelayed_wall".to_owned(),
-        other => other.replace(' ', "_"),
-    };
-    Some(read(root().join("analysis/explore/tests/constants").join(name).with_extension("rs")))
 }
 
 pub fn what_the_page_exports_is_the_scene_to_the_bit() {
@@ -41,11 +32,9 @@ pub fn what_the_page_exports_is_the_scene_to_the_bit() {
         fs::write(&file, exported(&mut page, "#export-toml")).unwrap();
         // Numbers are printed so that each stands for one double only.
         assert_eq!(certified(file.to_str().unwrap()), of_page, "{name}");
-        let constant = exported(&mut page, "#export-rust");
-        match constants(&name) {
-            Some(kept) => assert_eq!(constant, kept, "{name}"),
-            None => assert!(constant.contains("Wall::damped(60.0,"), "{constant}"),
-        }
+        // Constants like these are compiled beside the page's sources.
+        let scene = analysis::file::load(file.to_str().unwrap()).unwrap();
+        assert_eq!(exported(&mut page, "#export-rust"), constants(&scene).unwrap(), "{name}");
     }
     page.assert_silent();
 }

@@ -8,7 +8,7 @@ use analysis::chain::{Chain, Link, Mass};
 use analysis::device::Motion;
 use analysis::simulation::{Experiment, Integration, simulate};
 use analysis::stability::{StabilityVerdict, judge};
-use analysis::worst_hand::{Compliance, HandImpedance, plant, search};
+use analysis::worst_hand::{HandImpedance, plant, search};
 use haptic_servo::certificate::{RuleAnswer, assess, assess_in};
 use haptic_servo::environment::{Environment, Parts};
 use haptic_servo::scene::{Coupling, Device, Scene};
@@ -52,7 +52,7 @@ fn hand(rng: &mut ChaCha8Rng, scene: &Scene) -> HandImpedance {
         stiffness: sometimes(unit, 1e-3, 10.0),
         ..HandImpedance::default()
     };
-    let link = Compliance {
+    let link = Link {
         stiffness: sometimes(unit, 1e-2, 10.0),
         damping: sometimes(damping, 1e-3, 1.0),
     };

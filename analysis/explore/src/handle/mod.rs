@@ -6,7 +6,6 @@
 //! scene's output delay and lags. A board with latched codes computes each code one tick earlier, from the
 //! same counts, without a difference for motor and device.
 
-mod device_in_hand;
 mod oscillation;
 mod push;
 mod rim;

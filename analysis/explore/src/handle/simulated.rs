@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 
 use haptic_model::device::{Energy, HandSetpoint};
+use haptic_model::simulation::device_in_hand::DeviceInHand;
 use haptic_servo::dac::DacCode;
 use haptic_servo::environment::Wall;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 use serde::{Deserialize, Serialize};
 
-use super::device_in_hand::DeviceInHand;
 use super::oscillation::{Oscillation, Watch};
 use super::push::Push;
 use super::servo::{Rendered, Rendering};
@@ -128,9 +128,13 @@ impl Simulated {
                 "an encoder of {counts} counts a turn; they must be positive and finite"
             ));
         }
-        let old = before.map(|before| (&before.device, &before.scene));
-        let device = DeviceInHand::new(&file.scene, hand, &transducers, old)
+        let mut device = DeviceInHand::new(&file.scene, hand, &transducers)
             .map_err(|error| error.to_string())?;
+        if let Some(before) = before {
+            let (old, new) = (&before.scene, &file.scene);
+            let is_same = old.timing.period == new.timing.period && old.latency == new.latency;
+            device = device.moving_as(&before.device, is_same);
+        }
         let period = file.scene.timing.period;
         let step = transducers.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
         let mut simulated = Self {
@@ -233,10 +237,12 @@ impl Simulated {
         let raw = self.device.count();
         let tick = self.rendered.servo.tick(raw);
         self.keep(raw, tick.code);
-        self.device.step(tick.code, setpoint);
-        self.setpoint = setpoint.map_or(self.device.position(), |setpoint| setpoint.to);
+        let torque = self.device.torque(tick.code);
+        self.device.push(torque, setpoint.unwrap_or_default(), setpoint.is_some());
+        let position = self.device.motion().position;
+        self.setpoint = setpoint.map_or(position, |setpoint| setpoint.to);
         let rests = setpoint.is_none_or(|setpoint| setpoint.from == setpoint.to);
-        self.watch.add(tick.torque, self.device.position(), rests);
+        self.watch.add(tick.torque, position, rests);
         numbers.extend([
             tick.count as f64,
             tick.angle,
@@ -244,7 +250,7 @@ impl Simulated {
             f64::from(tick.code),
             f64::from(tick.limit as u8),
             self.setpoint,
-            self.device.position(),
+            position,
         ]);
     }
 

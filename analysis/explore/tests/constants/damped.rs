@@ -3,7 +3,11 @@ use haptic_servo::environment::{Knots, Profile, Shape};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// Torque over angle: a table, which stays in flash.
-static KNOTS: Knots<16> = Knots::of(&[Shape::Detents { count: 24, torque: 0.05, centre: 0.01 }]);
+static KNOTS: Knots<32> = Knots::of(&[
+    Shape::detents(24, 0.05).snap(0.75),
+    Shape::Detents { count: 8, torque: 0.01, centre: 0.01 },
+    Shape::end_stops(-2.0, 2.0, 9.0),
+]);
 
 /// The scene.
 pub const SCENE: Scene = Scene {

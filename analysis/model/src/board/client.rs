@@ -49,25 +49,21 @@ pub enum ClientError {
     /// A board of another version.
     #[error(transparent)]
     Protocol(#[from] OtherProtocol),
-    /// No board has identified itself.
+    /// No board has identified itself at this address.
     #[error(
-        "no board answers on {address} within {} s: is it powered, flashed with a scene's program, and is \
+        "no board answers on {} within {} s: is it powered, flashed with a scene's program, and is \
          this its port?",
+        .0,
         QUERY.end.as_secs_f64()
     )]
-    Silent {
-        /// The address.
-        address: String,
-    },
-    /// The board has stopped answering.
+    Silent(String),
+    /// The board at this address has stopped answering.
     #[error(
-        "the board on {address} has not answered the request for its status within {} s",
+        "the board on {} has not answered the request for its status within {} s",
+        .0,
         SILENCE.as_secs_f64()
     )]
-    Unanswered {
-        /// The address.
-        address: String,
-    },
+    Unanswered(String),
 }
 
 /// A conversation with a board.
@@ -178,7 +174,7 @@ impl Client {
     pub fn tick(&mut self, now: Duration) -> Result<(), ClientError> {
         if let Some(greeting) = &mut self.greeting {
             if now >= greeting.end {
-                return Err(ClientError::Silent { address: self.address.clone() });
+                return Err(ClientError::Silent(self.address.clone()));
             }
             if now >= greeting.again {
                 greeting.again = now + QUERY.again;
@@ -188,7 +184,7 @@ impl Client {
         }
         if let Some(beat) = self.beat {
             if now.saturating_sub(self.heard) > SILENCE {
-                return Err(ClientError::Unanswered { address: self.address.clone() });
+                return Err(ClientError::Unanswered(self.address.clone()));
             }
             if beat <= now {
                 self.beat = Some(now + STATUS_INTERVAL);

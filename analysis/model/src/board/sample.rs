@@ -7,7 +7,6 @@ use haptic_servo::dac::DacCode;
 use haptic_servo::servo_loop::{Frame, State};
 use haptic_servo::torque::LimitReason;
 use haptic_servo::wire::message::BoardUnits;
-use serde::Serialize;
 
 use crate::quantity::rounded;
 
@@ -72,35 +71,14 @@ impl Scale {
     }
 }
 
-/// A sample as a row of a table.
-#[derive(Debug, Serialize)]
-pub struct Row {
-    tick: u64,
-    time: f64,
-    count: i64,
-    position: f64,
-    code: u16,
-    torque: f64,
-    state: &'static str,
-    limit: &'static str,
-    slack: f64,
-}
-
-impl From<&Sample> for Row {
-    fn from(sample: &Sample) -> Self {
-        let Sample { tick, time, count, position, code, torque, state, limit, slack } = *sample;
-        let (state, limit) = (state.as_str(), limit.as_str());
-        Self { tick, time, count, position, code, torque, state, limit, slack }
-    }
-}
-
 /// The names of a row's columns.
 pub const COLUMNS: &str = "tick,time,count,position,code,torque,state,limit,slack";
 
-/// As a line of a table in CSV; the shortest decimals that are the numbers.
-impl fmt::Display for Row {
+/// As a row of a table in CSV; the shortest decimals that are the numbers.
+impl fmt::Display for Sample {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { tick, count, code, state, limit, .. } = self;
+        let Self { tick, count, code, .. } = self;
+        let (state, limit) = (self.state.as_str(), self.limit.as_str());
         let [time, position, torque, slack] =
             [self.time, self.position, self.torque, self.slack].map(decimal);
         write!(f, "{tick},{time},{count},{position},{code},{torque},{state},{limit},{slack}")

@@ -16,6 +16,7 @@ mod passivity;
 pub mod two_port;
 
 use haptic_servo::scene::Device;
+use serde::Serialize;
 use thiserror::Error;
 
 pub use passivity::{ExcessPassivity, NoPassivity, Reached};
@@ -34,7 +35,7 @@ pub struct Mass {
 }
 
 /// The connection of two masses: a spring and a damper side by side.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Link {
     /// Stiffness in N m/rad, 0 or more.
     pub stiffness: f64,
@@ -167,6 +168,11 @@ impl Chain {
     /// Where the encoder is.
     pub fn encoder(&self) -> EncoderPlace {
         self.encoder
+    }
+
+    /// The number of the mass that the encoder is on, counted from the motor's.
+    pub fn encoder_mass(&self) -> usize {
+        if self.encoder == EncoderPlace::Motor { 0 } else { self.masses.len() - 1 }
     }
 
     /// Time constant of the amplifier in s, 0 where it follows at once.

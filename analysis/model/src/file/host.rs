@@ -36,14 +36,11 @@ pub fn check(
     simulation: Option<&Simulation>,
 ) -> Read<()> {
     let [limit, full_scale] = limits;
-    let torques = simulation.and_then(|simulation| Some((simulation, simulation.host.as_ref()?)));
+    let driven = simulation.filter(|simulation| simulation.host.is_some());
+    let torques = |reason: String| Err(top.conflict(&key::HOST_TORQUES, reason));
     let Some(host) = host else {
-        return match torques {
-            Some(_) => {
-                Err(top.conflict(&key::HOST_TORQUES, "needs the table `host` with a budget"))
-            }
-            None => Ok(()),
-        };
+        let needed = "needs the table `host` with a budget".to_owned();
+        return driven.map_or(Ok(()), |_| torques(needed));
     };
     if let Some(full_scale) = full_scale
         && host.check_range(limit, full_scale).is_err()
@@ -57,11 +54,8 @@ pub fn check(
         };
         return Err(top.conflict(&key::HOST_TORQUE, reason));
     }
-    match torques {
-        Some((simulation, _)) if simulation.missed != Missed::None => {
-            let reason = format!("stands beside `{}`, in which nothing pays", key::MISSED.path);
-            Err(top.conflict(&key::HOST_TORQUES, reason))
-        }
-        _ => Ok(()),
+    if driven.is_some_and(|simulation| simulation.missed != Missed::None) {
+        return torques(format!("stands beside `{}`, in which nothing pays", key::MISSED.path));
     }
+    Ok(())
 }

@@ -80,24 +80,13 @@ mod tests {
     use super::*;
     use crate::file::{Format, example, parse};
 
-    fn text_of(toml: &str) -> String {
-        let file = parse("wall.toml", Format::Toml, toml).unwrap();
-        program(&file, &file.transducers(None, None), "wall.toml").unwrap()
-    }
-
+    /// One with both is compiled beside the page's sources.
     #[test]
-    fn friction_and_the_time_of_the_output_are_options_of_the_program() {
+    fn a_program_without_friction_and_phase_has_neither_option() {
         let wall = example::toml("damper-wall").unwrap();
-        let text = text_of(&wall);
-        assert!(text.starts_with("//! damper-wall example, of wall.toml.\n#![cfg_attr("), "{text}");
-        assert!(text.ends_with("    transducers: TRANSDUCERS,\n}\n"), "{text}");
+        let file = parse("wall.toml", Format::Toml, &wall).unwrap();
+        let text = program(&file, &file.transducers(None, None), "wall.toml").unwrap();
         assert!(text.contains("::servo::Transducers;") && !text.contains("Output"), "{text}");
-
-        let phase = wall.replace("[servo]\n", "[servo]\noutput_delay = 1.0e-5\n");
-        let rubbing = phase.replace("[device]\n", "[device]\nfriction = 0.003\n");
-        let text = text_of(&rubbing);
-        assert!(text.contains("::servo::{AtPhase, Transducers};"), "{text}");
-        assert!(text.contains("pub type Output = AtPhase<10000>;\n"), "{text}");
-        assert!(text.ends_with("    output: Output,\n    friction: 0.003,\n}\n"), "{text}");
+        assert!(text.ends_with("    transducers: TRANSDUCERS,\n}\n"), "{text}");
     }
 }

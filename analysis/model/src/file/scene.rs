@@ -152,7 +152,9 @@ struct Servo {
 }
 
 fn servo_of(mut section: Section<'_>) -> Read<Servo> {
-    let period = period(&mut section);
+    let period = section
+        .or_reciprocal(&key::PERIOD)
+        .and_then(|period| period.ok_or_else(|| section.missing(&key::PERIOD)));
     let worst = section.optional(&key::WORST_PERIOD);
     let output_delay = section.time(&key::OUTPUT_DELAY);
     let jitters = [&key::OUTPUT_JITTER, &key::COUNT_JITTER].map(|key| section.number(key));
@@ -170,11 +172,6 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
         return Err(section.conflict(&key::WORST_PERIOD, reason));
     }
     Ok(Servo { timing: Timing { period, worst_period }, latency })
-}
-
-/// The period in s, or that of the rate.
-fn period(section: &mut Section<'_>) -> Read<f64> {
-    section.or_reciprocal(&key::PERIOD)?.ok_or_else(|| section.missing(&key::PERIOD))
 }
 
 /// Checks the times between count and torque, each with a bound that depends on other keys.
@@ -201,20 +198,15 @@ fn check_latency(top: &Section<'_>, timing: &Timing, latency: &Latency, is_late:
         // If the time is too long, any jitter is small enough.
         Err(_) => f64::INFINITY,
     };
-    let jitter = check_output_jitter(top, latency, largest);
+    let jitter = (latency.output_jitter > largest).then(|| {
+        let reason = format!("is {}", more_than_time_to_torque(latency, largest));
+        top.conflict(&key::OUTPUT_JITTER, reason)
+    });
     output_delay?;
     others?;
-    jitter?;
+    jitter.map_or(Ok(()), Err)?;
     check_count_jitter(top, timing, latency, largest)?;
     updates::check(top, latency, timing)
-}
-
-fn check_output_jitter(top: &Section<'_>, latency: &Latency, largest: f64) -> Read<()> {
-    if latency.output_jitter <= largest {
-        return Ok(());
-    }
-    let reason = format!("is {}", more_than_time_to_torque(latency, largest));
-    Err(top.conflict(&key::OUTPUT_JITTER, reason))
 }
 
 fn more_than_time_to_torque(latency: &Latency, largest: f64) -> String {

@@ -7,7 +7,7 @@ use crate::device::Hand;
 use crate::missed::Missed;
 
 use super::faults::Read;
-use super::key::{self, Key};
+use super::key;
 use super::section::Section;
 
 /// The settings of a simulation, with the torque of the hand.
@@ -149,7 +149,9 @@ fn torque(section: &mut Section<'_>) -> Read<HandTorque> {
         (&key::TORQUE_PULSES, pulses.is_some()),
     ];
     if let Some((key, _)) = given.into_iter().filter(|(_, is_given)| *is_given).nth(1) {
-        return Err(section.conflict(key, twice()));
+        let names = given.map(|(key, _)| key.name()).join(", ");
+        let reason = format!("stands beside another torque; the hand has one of {names}");
+        return Err(section.conflict(key, reason));
     }
     match (held, file, sine, pulses) {
         (Some(torques), ..) => Ok(HandTorque::Held(torques)),
@@ -158,12 +160,6 @@ fn torque(section: &mut Section<'_>) -> Read<HandTorque> {
         (_, _, _, Some(table)) => pulses_of_torque(table),
         _ => Ok(HandTorque::Free),
     }
-}
-
-fn twice() -> String {
-    let names = [key::TORQUE, key::TORQUE_FILE, key::TORQUE_SINE, key::TORQUE_PULSES]
-        .map(|key: Key| key.name());
-    format!("stands beside another torque; the hand has one of {}", names.join(", "))
 }
 
 fn sine_torque(mut table: Section<'_>) -> Read<HandTorque> {

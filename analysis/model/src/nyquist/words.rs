@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::{Curve, NyquistScene, Role};
 use crate::quantity::significant;
-use crate::unit_circle_poles::{Kind, UnitCirclePole};
+use crate::unit_circle_poles::UnitCirclePole;
 
 /// The meaning of the two halves of a curve.
 pub const HALVES: &str =
@@ -26,9 +26,13 @@ pub fn curve(name: &str, scene: &NyquistScene, curve: &Curve, is_single: bool) -
     };
     let mark =
         if is_single && curve.role.is_judged() && curve.alpha.is_some() { "circle: " } else { "" };
+    let least = match curve.minimum {
+        Some(_) => "least real part, -alpha",
+        None => "real part everywhere, -alpha",
+    };
     let alpha = curve.alpha.map_or_else(
         || "no alpha: its poles forbid it".to_owned(),
-        |alpha| format!("{} = {} N m s/rad", least_words(curve), significant(-alpha, 4)),
+        |alpha| format!("{least} = {} N m s/rad", significant(-alpha, 4)),
     );
     let mut words = vec![format!("{name}{mark}{what}{alpha}")];
     if curve.role == Role::Alone {
@@ -57,10 +61,6 @@ pub fn curve(name: &str, scene: &NyquistScene, curve: &Curve, is_single: bool) -
         words.extend(margins(scene));
     }
     words
-}
-
-fn least_words(curve: &Curve) -> &'static str {
-    if curve.minimum.is_some() { "least real part, -alpha" } else { "real part everywhere, -alpha" }
 }
 
 /// Describes the bound that is judged in place of a curve; `None` for a scene whose curve is judged.
@@ -100,20 +100,18 @@ fn sentence(pole: &UnitCirclePole) -> String {
         PI => "pole at z = -1".to_owned(),
         theta => format!("poles at +-{} rad", significant(theta, 4)),
     };
-    match (pole.residue(), pole.kind) {
-        (Some(k), _) if k > 0.0 => format!(
+    match pole.residue() {
+        Some(k) if k > 0.0 => format!(
             "{place}: residue {} N m s/rad > 0, closes through infinity on the right: allowed",
             significant(k, 4)
         ),
-        (Some(k), _) => format!(
+        Some(k) => format!(
             "{place}: residue {} N m s/rad < 0, closes through infinity on the left: not passive",
             significant(k, 4)
         ),
-        (None, Kind::Repeated) => {
-            format!("{place}: repeated, a whole turn or more at infinity: not passive")
-        }
-        (None, Kind::Simple(_)) => {
+        None if pole.is_simple() => {
             format!("{place}: residue of the wrong angle, askew at infinity: not passive")
         }
+        None => format!("{place}: repeated, a whole turn or more at infinity: not passive"),
     }
 }

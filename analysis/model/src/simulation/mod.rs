@@ -25,6 +25,7 @@
 //! ```
 
 pub mod closed_loop;
+pub mod device_in_hand;
 pub mod discrete_plant;
 mod error;
 mod experiment;

@@ -13,7 +13,7 @@
 use haptic_servo::scene::{Device, Latency};
 use nalgebra::{DMatrix, DVector};
 
-use crate::chain::{Chain, EncoderPlace, Link, Mass};
+use crate::chain::{Chain, Link, Mass};
 use crate::device::Hand;
 use crate::sampled_actuator::SampledActuator;
 
@@ -60,11 +60,7 @@ impl Plant {
 
     /// A device as a file describes it, with its amplifier.
     pub fn of(chain: &Chain) -> Self {
-        let encoder = match chain.encoder() {
-            EncoderPlace::Motor => 0,
-            EncoderPlace::Hand => chain.masses().len() - 1,
-        };
-        let plant = Self::with_encoder_at(encoder, chain.masses(), chain.links());
+        let plant = Self::with_encoder_at(chain.encoder_mass(), chain.masses(), chain.links());
         let lag = chain.actuator_lag();
         if lag > 0.0 { plant.with_actuator_lag(lag) } else { plant }
     }

@@ -45,12 +45,7 @@ pub enum StabilityVerdict {
 
 impl fmt::Display for StabilityVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Stable => "stable",
-            Self::Unstable => "unstable",
-            Self::Marginal => "marginal",
-            Self::Undecided => "undecided",
-        })
+        f.pad(&format!("{self:?}").to_lowercase())
     }
 }
 

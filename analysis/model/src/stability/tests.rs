@@ -49,22 +49,6 @@ fn apparent_limits_of_the_methods() {
     near(critical(&bare, Method::Rk4, 1), 1001.67, 5e-3);
 }
 
-/// The characteristic polynomial of a mass and damper under an undelayed rigid spring is
-/// `z^2 - (1 + e - K g) z + (e + K h)` with the exponential `e`, so Jury's conditions are exact:
-/// here it is `|z|^2 = e + K h` that reaches 1.
-#[test]
-fn the_crossing_is_where_jurys_condition_has_it() {
-    let (m, b, t) = (DEVICE.inertia, DEVICE.damping, 1e-3);
-    let a = b * t / m;
-    let gone = -(-a).exp_m1();
-    let torque = (t - gone * m / b) / b;
-    // h = (velocity's share of the position) * gone / b - e * (position's share)
-    let h = gone * m / b * (gone / b) - (1.0 - gone) * torque;
-    let exact = gone / h;
-    let found = critical(&spring(1.0, 0, Coupling::Rigid), Method::Exact, 1);
-    near(found / exact, 1.0, 1e-10);
-}
-
 #[test]
 fn the_radius_is_one_at_the_critical_stiffness_and_the_loop_differs_on_its_sides() {
     let standard = Coupling::Spring { stiffness: 1000.0 };

@@ -1,4 +1,3 @@
-use haptic_servo::certificate::RuleAnswer;
 use haptic_servo::scene::TimeRange;
 
 use super::border::closed_form_border;
@@ -41,30 +40,6 @@ fn stability_is_that_of_the_eigenvalues() {
         }
     }
     assert!(compared > 700, "{compared}");
-}
-
-#[test]
-fn certified_walls_are_stable_without_a_hand() {
-    for (delay, coupling) in [(1, STANDARD), (2, SOFT), (2, ""), (4, STANDARD)] {
-        let family = Family::of(&wall(delay, coupling)).unwrap();
-        let (stiffness, damping) = family.usual_ranges();
-        let map = Map::new(&family, stiffness, damping, 40, || {});
-        for region in [Region::Unstable, Region::Rejected, Region::Exact, Region::Paper] {
-            let is_rare = region == Region::Exact && coupling == STANDARD;
-            let is_void = region == Region::Paper && coupling.is_empty();
-            assert!(map.share(region) > 0.0 || is_rare || is_void, "{delay} {region:?}");
-        }
-        let part = |range: &Range<f64>, index: usize| {
-            range.start + (range.end - range.start) * (index as f64 + 0.5) / 40.0
-        };
-        for (column, row) in (0..40).flat_map(|column| (0..40).map(move |row| (column, row))) {
-            let scene = family.member(part(&map.stiffness, column), part(&map.damping, row));
-            let assessment = assess(&scene);
-            let certified = [assessment.paper, assessment.exact].contains(&RuleAnswer::Pass);
-            assert_eq!(map.at(column, row) >= Region::Exact, certified, "{scene:?}");
-            assert!(!certified || family.plant.is_stable_under(&scene).unwrap(), "{scene:?}");
-        }
-    }
 }
 
 #[test]

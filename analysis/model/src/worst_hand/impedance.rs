@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use serde::Serialize;
 
-use crate::chain::{Chain, EncoderPlace, Link, Mass};
+use crate::chain::{Chain, Link, Mass};
 use crate::device::Hand;
 use crate::simulation::plant::Plant;
 
@@ -19,8 +19,8 @@ pub struct HandImpedance {
     pub damping: f64,
     /// Stiffness in N m/rad of the hand, to the ground.
     pub stiffness: f64,
-    /// The link between device and hand; `None`: the hand is on the device.
-    pub link: Option<Compliance>,
+    /// The link between device and hand, skin and tendons; `None`: the hand is on the device.
+    pub link: Option<Link>,
     /// Masses on springs, side by side, on the mass that the hand holds.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub absorbers: Vec<Absorber>,
@@ -43,15 +43,6 @@ pub struct Absorber {
     pub stiffness: f64,
 }
 
-/// Skin and tendons between the device and a hand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Compliance {
-    /// Stiffness in N m/rad.
-    pub stiffness: f64,
-    /// Damping in N m s/rad.
-    pub damping: f64,
-}
-
 /// Hands that resonate around an angle in rad a tick on a device of this inertia in kg m^2, and some
 /// that do not.
 pub(super) fn impedance_grid(inertia: f64, period: f64, angle: f64) -> Vec<HandImpedance> {
@@ -72,7 +63,7 @@ pub(super) fn impedance_grid(inertia: f64, period: f64, angle: f64) -> Vec<HandI
         hands.push(hand(mass, 0.0));
         for &theta in &angles {
             hands.push(hand(mass, (inertia + mass) * rate(theta)));
-            let link = Compliance { stiffness: mass * rate(theta), damping: 0.0 };
+            let link = Link { stiffness: mass * rate(theta), damping: 0.0 };
             hands.push(HandImpedance { link: Some(link), ..hand(mass, 0.0) });
         }
     }
@@ -93,15 +84,11 @@ pub fn plant(device: &Chain, lighter: f64, impedance: &HandImpedance) -> Plant {
         },
         Some(link) => {
             masses.push(Mass { inertia: impedance.inertia, damping: impedance.damping });
-            links.push(Link { stiffness: link.stiffness, damping: link.damping });
+            links.push(link);
             Hand { inertia: 0.0, damping: 0.0, stiffness: impedance.stiffness }
         }
     };
-    let encoder = match device.encoder() {
-        EncoderPlace::Motor => 0,
-        EncoderPlace::Hand => device.masses().len() - 1,
-    };
-    let held = Plant::with_encoder_at(encoder, &masses, &links).with_hand(hand);
+    let held = Plant::with_encoder_at(device.encoder_mass(), &masses, &links).with_hand(hand);
     let on = |plant: Plant, absorber: &Absorber| {
         plant.with_absorber(absorber.inertia, absorber.stiffness)
     };

@@ -21,7 +21,7 @@ use haptic_servo::scene::{Coupling, Scene};
 use nalgebra::Complex;
 use serde::Serialize;
 
-use crate::chain::Chain;
+use crate::chain::{Chain, Link};
 use crate::line_search::minimizing_angle;
 use crate::response::Response;
 use crate::simulation::{Experiment, Integration, SimulationError};
@@ -30,7 +30,7 @@ use crate::stability::{Characteristic, closed_loop, eigenvalues};
 use constructed::LaggingLoop;
 use impedance::impedance_grid;
 
-pub use impedance::{Absorber, Compliance, HandImpedance, plant};
+pub use impedance::{Absorber, HandImpedance, plant};
 
 /// Growth over 1 in a tick from which a loop counts as growing.
 pub const GROWTH_THRESHOLD: f64 = 1e-9;
@@ -305,7 +305,7 @@ impl<'d> HandSearch<'d> {
         }
         // A mass behind an empty link is not part of a hand. Its rest at any place is a double eigenvalue 1,
         // which rounding moves to either side.
-        let holds = |link: Compliance| link.stiffness > 0.0 || link.damping > 0.0;
+        let holds = |link: Link| link.stiffness > 0.0 || link.damping > 0.0;
         // Springs that resonate far above the sample rate are as good as rigid.
         let stiffest = |mass: f64| (inertia + mass) * (4.0 * PI / period).powi(2);
         all.retain(|hand| {

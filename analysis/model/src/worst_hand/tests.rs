@@ -1,5 +1,5 @@
 use super::*;
-use crate::chain::{EncoderPlace, Link, Mass};
+use crate::chain::{EncoderPlace, Mass};
 use crate::fixture::on_paddle;
 use haptic_servo::certificate::certify;
 use haptic_servo::environment::Wall;

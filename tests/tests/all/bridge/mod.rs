@@ -4,9 +4,9 @@ mod back_emf;
 mod rig;
 mod servos;
 
-use analysis::chain::Chain;
+use analysis::chain::{Chain, Link};
 use analysis::design::{DesignLimit, Quantity, Terms, largest};
-use analysis::worst_hand::{Compliance, HandImpedance, search};
+use analysis::worst_hand::{HandImpedance, search};
 use haptic_servo::certificate::{Certified, QuantizationBound, Resolution};
 use haptic_servo::current::{CurrentLoop, Drive, Motor, Supply, Winding};
 use haptic_servo::encoder::CounterWidth;
@@ -84,7 +84,7 @@ fn hands() -> Vec<HandImpedance> {
     for inertia in [5e-6, 2e-5, 2e-4, 2e-3] {
         hands.push(HandImpedance { inertia, ..own.clone() });
         let rate = 1000.0_f64;
-        let link = Some(Compliance { stiffness: inertia * rate.powi(2), damping: 0.0 });
+        let link = Some(Link { stiffness: inertia * rate.powi(2), damping: 0.0 });
         hands.push(HandImpedance { inertia, link, ..own.clone() });
     }
     for stiffness in [10.0, 1000.0] {

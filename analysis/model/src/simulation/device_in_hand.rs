@@ -1,0 +1,91 @@
+//! The simulated device between the DAC's codes and the encoder's counts, held or released.
+
+use haptic_servo::dac::DacCode;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
+
+use super::error::SimulationError;
+use super::held_device::{DeviceState, HeldDevice};
+use crate::device::{Energy, Hand, HandSetpoint, Motion, SimulatedEncoder};
+
+/// A device that a hand holds or not. A code acts after the output delay of the scene, and amplifier and sensor
+/// have the lags of the scene: the middle of each range, without jitter.
+#[derive(Clone, Debug)]
+pub struct DeviceInHand {
+    held: HeldDevice,
+    free: HeldDevice,
+    state: DeviceState,
+    encoder: SimulatedEncoder,
+    torque_per_code: f64,
+    energy: Energy,
+}
+
+impl DeviceInHand {
+    /// A scene's device in a hand, at rest at zero, with the encoder and the motor of the servo.
+    ///
+    /// # Errors
+    /// If device and hand are too fast for their motion over a period to be computed.
+    pub fn new(
+        scene: &Scene,
+        hand: Hand,
+        transducers: &Transducers,
+    ) -> Result<Self, SimulationError> {
+        let full_scale = transducers.full_scale_torque;
+        let held = HeldDevice::of(scene, hand)?;
+        Ok(Self {
+            state: held.at(Motion::default()),
+            held,
+            free: HeldDevice::of(scene, Hand::default())?,
+            encoder: SimulatedEncoder::new(transducers.counts_per_turn),
+            torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
+            energy: Energy::default(),
+        })
+    }
+
+    /// The same in the motion of another device, with its torques in transit if it has the same states.
+    pub fn moving_as(mut self, other: &Self, has_same_states: bool) -> Self {
+        self.state = match has_same_states {
+            true => other.state.clone(),
+            false => self.held.at(other.motion()),
+        };
+        self
+    }
+
+    /// Changes the hand.
+    ///
+    /// # Errors
+    /// As [`DeviceInHand::new`].
+    pub fn change_hand(&mut self, scene: &Scene, hand: Hand) -> Result<(), SimulationError> {
+        self.held = HeldDevice::of(scene, hand)?;
+        Ok(())
+    }
+
+    /// The counter's content.
+    pub fn count(&self) -> i32 {
+        self.encoder.read(self.state.measured())
+    }
+
+    /// The present motion of the device.
+    pub fn motion(&self) -> Motion {
+        self.state.motion()
+    }
+
+    /// Energy that passed between hand and device.
+    pub fn energy(&self) -> Energy {
+        self.energy
+    }
+
+    /// Torque in N m of a code.
+    pub fn torque(&self, code: u16) -> f64 {
+        (f64::from(code) - f64::from(DacCode::MID_SCALE.get())) * self.torque_per_code
+    }
+
+    /// A tick with a motor torque in N m, in a hand with this set-point, or free.
+    pub fn push(&mut self, torque: f64, setpoint: HandSetpoint, is_held: bool) {
+        let device = if is_held { &self.held } else { &self.free };
+        let work = device.step(&mut self.state, torque, setpoint);
+        if is_held {
+            self.energy.add(work);
+        }
+    }
+}
