@@ -328,7 +328,7 @@ const fn sentence_of(doubt: UndecidedReason) -> &'static str {
         }
         UndecidedReason::NoSnapBound => {
             "no proof is known for a snap point whose torque comes more than one sample late, without a coupling, or \
-             beside a wall or a canceller: the jump of each snap would add energy in every late tick; give it a \
+             beside another part: the jump of each snap would add energy in every late tick; give it a \
              delay of 0 or 1, a coupling spring or, where torques lag, the matched coupling, and nothing beside it"
         }
         UndecidedReason::NoProofWithInl => {

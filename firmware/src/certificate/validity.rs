@@ -82,6 +82,7 @@ pub(super) const fn check(scene: &Scene) -> Checked {
         ok!(check_updates(scene));
     }
     ok!(check_encoder(scene));
+    ok!(check_range(Parameter::Delay, scene.environment.parts().longest_delay() as f64));
     let Some(rational) = scene.environment.rational() else { return Ok(()) };
     ok!(check_coefficients(Parameter::Numerator, rational.numerator.as_slice()));
     check_coefficients(Parameter::Denominator, rational.denominator.as_slice())
@@ -178,7 +179,7 @@ const fn profile_of(environment: &Environment, parameter: Parameter) -> Option<&
 
 /// Whether the numbers of a sum agree, also those that have no name there.
 const fn check_sum(parts: &Parts, has: ProfileUse) -> Checked {
-    let Parts { canceller, wall, profile } = parts;
+    let Parts { canceller, wall, profile, .. } = parts;
     if parts.count() < 2 {
         return Ok(());
     }
@@ -190,7 +191,7 @@ const fn check_sum(parts: &Parts, has: ProfileUse) -> Checked {
     }
     let (Some(profile), true) = (profile, has.is_composed) else { return Ok(()) };
     if profile.delay == 0 {
-        let bound = "at least 1 where a wall or a canceller is beside the torque profile";
+        let bound = "at least 1 where another part is beside the torque profile";
         return must_be(Parameter::Delay, 0.0, bound, None);
     }
     let Some(wall) = wall else { return Ok(()) };

@@ -559,6 +559,9 @@ keys! {
     LARGEST_SPEED = other("supply.largest_speed", "rad/s", POSITIVE), Default(100.0), "25.0";
 }
 
+/// The keys of parts that may be beside every type of environment that is a sum of parts.
+pub const BESIDE: &[&Key] = &[];
+
 /// Keys that state the number of another key in a unit that data sheets have: the key, the other key, and the
 /// product of their values. A file that is written has the other key.
 pub const RECIPROCALS: [(&Key, &Key, f64); 2] =

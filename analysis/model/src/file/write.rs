@@ -56,7 +56,7 @@ pub fn toml(file: &SceneFile) -> String {
     lines.push("[environment]".to_owned());
     match (scene.environment.profile(), shapes) {
         (Some(profile), Some(shapes)) => {
-            shaped::profile(&mut lines, scene.environment.canceller(), profile, shapes);
+            shaped::profile(&mut lines, &scene.environment, profile, shapes);
             lines.extend(scene.environment.wall().into_iter().flat_map(shaped::wall));
         }
         _ => environment(&mut lines, &scene.environment),
@@ -213,9 +213,11 @@ fn environment(lines: &mut Vec<String>, environment: &Environment) {
             !kind.needed.contains(&key)
                 && matches!(key.presence, Presence::Default(default) if left_out(default))
         };
-        // A spring that is written as a wall has a damping of 0.
+        // What is written as a wall has a damping of 0, or a stiffness.
         let value = match key.parameter {
-            Some(Parameter::Damping) => environment.get(Parameter::Damping).or(Some(0.0)),
+            Some(parameter @ (Parameter::Stiffness | Parameter::Damping)) => {
+                environment.get(parameter).or(Some(0.0))
+            }
             Some(parameter) => environment.get(parameter),
             None => None,
         };

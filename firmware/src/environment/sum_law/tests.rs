@@ -1,13 +1,10 @@
 use fixed::types::I8F24;
-use proptest::prelude::*;
 
-use super::*;
 use crate::certificate::{
     Certified, Parameter, QuantizationBound, Resolution, TimingChecked, certify, certify_in,
     certify_scene, timing_checked,
 };
 use crate::encoder::RawCount;
-use crate::energy::NoAction;
 use crate::environment::{Canceller, Ends, Environment, Knots, Parts, Profile, Shape, Wall};
 use crate::number::Format;
 use crate::parameter::NamedParameters;
@@ -108,7 +105,7 @@ fn what_has_no_proof_is_refused_with_a_sentence() {
     let undelayed = free_mode(0.01, None, endless(0));
     assert_eq!(
         refusal(undelayed, spring),
-        "rejected: the delay is 0 samples, and must be at least 1 where a wall or a canceller is beside the \
+        "rejected: the delay is 0 samples, and must be at least 1 where another part is beside the \
          torque profile"
     );
     let endless = wall_and_profile(WALL.behind(FACE), endless(1));
@@ -279,28 +276,5 @@ fn no_motion_has_a_torque_farther_off_than_the_bound_on_its_limit_cycle() {
             assert!(found <= encoder + bound.numbers + encoder / 1024.0, "{found} {bound:?}");
             assert!(found > 0.25 * encoder, "{found} {bound:?}");
         }
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
-
-    #[test]
-    fn a_latched_code_is_that_of_the_tick_after(steps in prop::collection::vec(-3_000..3_000_i32, 200)) {
-        fn check<N: Number>(steps: &[i32]) {
-            let certified = certify_scene(KNOB_AND_WALL, N::FORMAT).unwrap();
-            let servo: Servo<_, N> = Servo::new(&certified, &TRANSDUCERS).unwrap();
-            let (mut ahead, mut then) = (servo.clone(), servo);
-            let (mut count, mut latched) = (0_i32, None);
-            for step in steps {
-                count = (count + step).clamp(-30_000, 30_000);
-                let raw = RawCount::from(count.cast_unsigned());
-                let code = then.tick(raw).code;
-                assert!(latched.is_none_or(|latched| latched == code), "{latched:?} {code:?}");
-                latched = Some(ahead.timed_tick::<Latched>(raw, &mut NoAction).code);
-            }
-        }
-        check::<f32>(&steps);
-        check::<I8F24>(&steps);
     }
 }
