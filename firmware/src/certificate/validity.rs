@@ -77,7 +77,7 @@ const fn requirement(range: Range) -> &'static str {
 
 /// Checks every number of a scene.
 pub(super) const fn check(scene: &Scene) -> Checked {
-    ok!(check_numbers(scene, ProfileUse::ANY));
+    ok!(check_numbers(scene, ProfileUse::ANY, false));
     if scene.latency.actuator_updates != 0 {
         ok!(check_updates(scene));
     }
@@ -89,16 +89,21 @@ pub(super) const fn check(scene: &Scene) -> Checked {
 }
 
 /// The same without polynomials, on which no bound for a board depends. A program omits the code for the
-/// parts of torque profiles that its environment does not have, and the text if it only needs to know whether
-/// a problem exists.
+/// parts of torque profiles that its environment does not have, that for delays that no change alters, and the
+/// text if it only needs to know whether a problem exists.
 #[inline(always)]
-pub(super) const fn check_numbers(scene: &Scene, profile: ProfileUse) -> Checked {
+pub(super) const fn check_numbers(
+    scene: &Scene,
+    profile: ProfileUse,
+    has_fixed_delays: bool,
+) -> Checked {
     let environment = &scene.environment;
     let (own, numbers) = (scene.own_numbers(), environment.numbers());
-    let whole = [
-        (Parameter::Delay, environment.get(Parameter::Delay)),
-        (Parameter::UnitZeros, environment.get(Parameter::UnitZeros)),
-    ];
+    let whole = [Parameter::Delay, Parameter::UnitZeros];
+    let whole = match has_fixed_delays {
+        true => [(whole[0], None), (whole[1], None)],
+        false => [(whole[0], environment.get(whole[0])), (whole[1], environment.get(whole[1]))],
+    };
     let lists: [&[(Parameter, Option<f64>)]; 3] = [&own, &numbers, &whole];
     each!(list in 0..lists.len() => {
         each!(i in 0..lists[list].len() => {

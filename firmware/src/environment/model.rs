@@ -131,6 +131,9 @@ pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
     /// The parts that it may have.
     const PARTS: PartSet;
 
+    /// Whether its delays are those of its type, so that no change of a parameter alters them.
+    const HAS_FIXED_DELAYS: bool = false;
+
     /// Its possible use of a torque profile.
     const PROFILE: ProfileUse;
 
