@@ -77,7 +77,7 @@ impl<S: SceneType> Typed<S> {
     /// The parts with their present numbers. All but the numbers is that of the structure, so that the compiler
     /// leaves out what the scene does not have.
     fn parts(&self) -> Parts {
-        let Parts { canceller, wall, profile } = Self::LIKE;
+        let Parts { canceller, wall, profile, drag } = Self::LIKE;
         // If both have them, these names are the wall's.
         let of_wall =
             |it| wall.is_some() && matches!(it, Parameter::Stiffness | Parameter::Damping);
@@ -87,6 +87,7 @@ impl<S: SceneType> Typed<S> {
             profile: profile.map(|like| {
                 like.with_numbers(|it| if of_wall(it) { None } else { self.number(it) })
             }),
+            drag: drag.map(|like| like.with_numbers(|it| self.number(it))),
         }
     }
 }
@@ -159,6 +160,10 @@ pub struct Structure {
     pub snaps: bool,
     /// Whether it is one of several modes.
     pub has_modes: bool,
+    /// Number of drags.
+    pub drags: usize,
+    /// The drag's delay.
+    pub drag_delay: usize,
     /// Whether the coupling stores torques.
     pub is_matched: bool,
     /// The whole samples of output delay.
@@ -175,7 +180,8 @@ impl Structure {
     /// # Panics
     /// If its environment is not a sum of parts; in a constant this is a compile error.
     pub const fn of(scene: &Scene) -> Self {
-        let Environment::Parts(Parts { canceller, wall, profile }) = &scene.environment else {
+        let Environment::Parts(Parts { canceller, wall, profile, drag }) = &scene.environment
+        else {
             panic!("a board renders sums of parts, and no rational environment");
         };
         let (latency, is_matched) = (&scene.latency, matches!(scene.coupling, Coupling::Matched));
@@ -201,6 +207,11 @@ impl Structure {
             is_profile_damped: matches!(profile, Some(Profile { damping: Some(_), .. })),
             snaps: matches!(profile, Some(Profile { snap: Some(_), .. })),
             has_modes: matches!(profile, Some(Profile { modes: Some(_), .. })),
+            drags: drag.is_some() as usize,
+            drag_delay: match drag {
+                Some(drag) => drag.delay,
+                None => 0,
+            },
             is_matched,
             whole: if is_matched { latency.whole_samples(scene.timing.period) } else { 0 },
             lags: latency.trails(),
@@ -337,6 +348,7 @@ macro_rules! scene_type {
                         >,
                         FixedDelay<N, { OF.wall_delay }>,
                     >; OF.walls],
+                    [DragLaw<N, FixedDelay<N, { OF.drag_delay }>>; OF.drags],
                     [CancellerLaw<N, FixedDelay<N, { OF.canceller_delay }>>; OF.cancellers],
                 >;
                 type Memory<N: Number> = Either<
@@ -373,8 +385,8 @@ pub mod names {
     pub use crate::certificate::Certified;
     pub use crate::coupling_memory::{MatchedMemory, NoMemory};
     pub use crate::environment::{
-        AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, Environment, Face, FixedDelay,
-        NoDamping, NoSnap, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
+        AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, DragLaw, Environment, Face,
+        FixedDelay, NoDamping, NoSnap, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
     };
     pub use crate::number::Number;
     pub use crate::scene::Scene;

@@ -1,8 +1,8 @@
 //! What each part of a sum adds to the numbers of the certificate, apart from a torque profile: its transfer
 //! function, its bounds (theory, sections 5, 14.3 and 16), and the errors of its torque (section 14.4).
 //!
-//! A program omits the code for a canceller that its type of environment does not have
-//! ([`EnvironmentModel::PARTS`]).
+//! A program omits the code for a canceller or a drag that its type of environment does not have
+//! ([`EnvironmentModel::PARTS`]). A drag adds what a wall without stiffness adds.
 
 use super::loop_intervals::LoopIntervals;
 use super::profile::{profile_bound, profile_gain};
@@ -22,8 +22,14 @@ pub(super) const fn transfer(out: &mut Transfer, parts: &Parts, n: &LoopInterval
         *out = free_mode(canceller, n);
         is_first = false;
     }
-    match &parts.wall {
-        Some(wall) => add(out, &self::wall(wall, n), is_first),
+    if let Some(wall) = &parts.wall {
+        if !add(out, &self::wall(wall, n), is_first) {
+            return false;
+        }
+        is_first = false;
+    }
+    match &parts.drag {
+        Some(drag) => add(out, &self::wall(&drag.as_wall(), n), is_first),
         None => true,
     }
 }
@@ -143,6 +149,12 @@ pub(super) const fn solved<E: EnvironmentModel>(
         }
         feedthrough = feedthrough.add(free_mode(canceller, n).feedthrough());
     }
+    if let Some(drag) = &parts.drag {
+        if !E::PARTS.drag {
+            return None;
+        }
+        feedthrough = feedthrough.add(self::wall(&drag.as_wall(), n).feedthrough());
+    }
     let scale = n.solved(feedthrough);
     if scale.is_finite() { Some(scale) } else { None }
 }
@@ -191,6 +203,16 @@ pub(super) const fn sum_of<E: EnvironmentModel>(
         sum = sum.add(match quantity {
             Quantity::Index => bound,
             Quantity::Gain => bound.double(),
+        });
+    }
+    if let Some(drag) = &parts.drag {
+        if !E::PARTS.drag {
+            return None;
+        }
+        let wall = &drag.as_wall();
+        sum = sum.add(match quantity {
+            Quantity::Index => wall_bound(wall, n),
+            Quantity::Gain => wall_gain(wall, n),
         });
     }
     Some(sum)
@@ -268,15 +290,20 @@ const fn canceller_bound(n: &LoopIntervals) -> Option<Interval> {
     }
 }
 
-/// The damping that a canceller takes at the device's port, in N m s/rad; `None` if it is unknown.
+/// The damping that canceller and drag take at the device's port, in N m s/rad; `None` if it is unknown.
 pub(super) const fn dampers<E: EnvironmentModel>(
     parts: &Parts,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    match &parts.canceller {
-        Some(_) if E::PARTS.canceller => canceller_bound(n),
+    let cancelled = match &parts.canceller {
+        Some(_) if E::PARTS.canceller => some!(canceller_bound(n)),
+        Some(_) => return None,
+        None => Interval::ZERO,
+    };
+    match &parts.drag {
+        Some(drag) if E::PARTS.drag => Some(cancelled.add(switched_damping(&drag.as_wall(), n))),
         Some(_) => None,
-        None => Some(Interval::ZERO),
+        None => Some(cancelled),
     }
 }
 
@@ -293,7 +320,8 @@ pub(super) fn peak_gain_beside(parts: &Parts, n: &LoopIntervals) -> f64 {
     };
     let wall = parts.wall.as_ref().map_or(Interval::ZERO, of_wall);
     let cancelled = parts.canceller.map_or(Interval::ZERO, |_| of_washout(canceller(n)));
-    wall.add(cancelled).hi()
+    let drag = parts.drag.map_or(Interval::ZERO, |drag| of_wall(&drag.as_wall()));
+    wall.add(cancelled).add(drag).hi()
 }
 
 /// Largest relative difference between the rounded gains that solve a tick in contact and out of it: a face
@@ -301,10 +329,13 @@ pub(super) fn peak_gain_beside(parts: &Parts, n: &LoopIntervals) -> f64 {
 pub(super) fn jump_at_face(parts: &Parts, n: &LoopIntervals) -> f64 {
     match &parts.wall {
         Some(wall) if wall.is_one_sided() && wall.delay == 0 => {
-            let free = match &parts.canceller {
+            let mut free = match &parts.canceller {
                 Some(canceller) => free_mode(canceller, n).feedthrough(),
                 None => Interval::ZERO,
             };
+            if let Some(drag) = &parts.drag {
+                free = free.add(self::wall(&drag.as_wall(), n).feedthrough());
+            }
             let spring = n.coefficient(Interval::decimal(wall.stiffness));
             let contact = free.add(spring).add(damper(wall, n).gain.div(n.period));
             n.solved(contact).sub(n.solved(free)).magnitude()

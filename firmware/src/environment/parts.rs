@@ -1,5 +1,5 @@
-//! Environments as sums of parts, all at the same position `x_E`: a canceller of the device's damping, a wall
-//! and a torque profile, each of them at most once.
+//! Environments as sums of parts, all at the same position `x_E`: a canceller of the device's damping, a wall,
+//! a torque profile and a drag, each of them at most once.
 //!
 //! Their passivity indices add, with a torque limit on the sum as well (theory, section 14.3). In a sum the
 //! profile is late by at least one sample, because an undelayed profile is solved in front of the coupling,
@@ -7,12 +7,13 @@
 //! stops.
 //!
 //! If parts have parameters of the same name, `stiffness`, `damping` and `face` are the wall's; `torque`,
-//! `count`, `centre`, `from`, `to` and `delay` the profile's; `residual` the canceller's. Without a wall,
-//! `stiffness` is that of the end stops.
+//! `count`, `centre`, `from`, `to` and `delay` the profile's; `residual` the canceller's; `drag` the drag's.
+//! Without a wall, `stiffness` is that of the end stops.
 
 use core::fmt::Debug;
 
 use super::canceller::Canceller;
+use super::drag::Drag;
 use super::profile::Profile;
 use super::wall::Wall;
 
@@ -26,6 +27,8 @@ pub struct Parts {
     pub wall: Option<Wall>,
     /// A torque profile.
     pub profile: Option<Profile>,
+    /// A damper that acts everywhere.
+    pub drag: Option<Drag>,
 }
 
 /// Gives a macro all parts, in the order in which their torques are added: a type parameter for the law, the
@@ -35,6 +38,7 @@ macro_rules! for_each_part {
         $macro! {
             P profile: super::profile::Profile,
             W wall: super::wall::Wall,
+            D drag: super::drag::Drag,
             C canceller: super::canceller::Canceller,
         }
     };
@@ -135,6 +139,26 @@ impl Parts {
         if let Some(canceller) = &mut self.canceller {
             canceller.delay = delay;
         }
+        self.align_drag();
+    }
+
+    /// Makes a drag as late as the first of the other parts: a scene file has one delay for both.
+    pub(super) const fn align_drag(&mut self) {
+        let delay = self.delay();
+        if let Some(drag) = &mut self.drag {
+            drag.delay = delay;
+        }
+    }
+
+    /// The same with a drag of this damping in N m s/rad, as late as the others. A canceller is then not
+    /// late.
+    pub(super) const fn with_drag(self, damping: f64) -> Self {
+        let mut parts = self;
+        parts.drag = Some(Drag::of(damping, self.delay()));
+        if let Some(canceller) = &mut parts.canceller {
+            canceller.delay = 0;
+        }
+        parts
     }
 
     /// The number of parts besides a canceller, a wall and a torque profile: proofs about these that do not
@@ -147,14 +171,16 @@ impl Parts {
 
     /// Damping in N m s/rad of the dampers that act everywhere, whether a wall is in contact or not.
     pub fn damping_everywhere(&self) -> f64 {
-        self.profile.as_ref().map_or(0.0, Profile::damping)
+        let drag = self.drag.map_or(0.0, |drag| drag.damping);
+        drag + self.profile.as_ref().map_or(0.0, Profile::damping)
     }
 
     /// Whether the torque depends on a velocity.
     pub const fn is_damped(&self) -> bool {
-        let Self { canceller, wall, profile } = self;
+        let Self { canceller, wall, profile, drag } = self;
         canceller.is_some()
             || matches!(wall, Some(wall) if wall.damping() != 0.0)
             || matches!(profile, Some(profile) if profile.damping() != 0.0)
+            || matches!(drag, Some(drag) if drag.damping != 0.0)
     }
 }

@@ -294,6 +294,8 @@ mod tests {
             "type = \"damper-wall\"\nstiffness = 1e-30\ndamping = -0.3\ndelay = 0\n\
              filter = 0.3\nface = -0.2\none_sided = true\n",
             "type = \"free-mode\"\nresidual = 0.001\ndelay = 1\n",
+            "type = \"free-mode\"\nresidual = 0.001\ndelay = 1\ndrag = -0.002\n",
+            "type = \"damper-wall\"\nstiffness = 0\ndamping = 0\ndelay = 2\ndrag = 0.01\n",
             "type = \"free-mode-wall\"\nresidual = 0.001\nstiffness = 3\ndamping = 0.2\ndelay = 1\n",
             "type = \"rational\"\nnumerator = [1, -0.3]\ndenominator = [1, 0.1, 0.7]\ndelay = 2\n\
              unit_zeros = 1\n",

@@ -5,7 +5,7 @@ use crate::certificate::{
     certify_scene, timing_checked,
 };
 use crate::encoder::RawCount;
-use crate::environment::{Canceller, Ends, Environment, Knots, Parts, Profile, Shape, Wall};
+use crate::environment::{Canceller, Drag, Ends, Environment, Knots, Parts, Profile, Shape, Wall};
 use crate::number::Format;
 use crate::parameter::NamedParameters;
 use crate::passivity::interval::Interval;
@@ -37,12 +37,18 @@ const fn endless(delay: usize) -> Profile {
 }
 
 const fn wall_and_profile(wall: Wall, profile: Profile) -> Environment {
-    Parts { canceller: None, wall: Some(wall), profile: Some(profile) }.sum()
+    Parts { wall: Some(wall), profile: Some(profile), ..Parts::NONE }.sum()
 }
 
 /// A profile, with or without a wall, and an undelayed canceller.
 const fn free_mode(residual: f64, wall: Option<Wall>, profile: Profile) -> Environment {
-    Parts { canceller: Some(Canceller::to(residual)), wall, profile: Some(profile) }.sum()
+    let canceller = Some(Canceller::to(residual));
+    Parts { canceller, wall, profile: Some(profile), ..Parts::NONE }.sum()
+}
+
+/// The same with a drag of this damping and delay.
+const fn dragging(environment: Environment, damping: f64, delay: usize) -> Environment {
+    Parts { drag: Some(Drag::of(damping, delay)), ..*environment.parts() }.sum()
 }
 
 /// Slope in N m/rad of the detents, `4 n F / (2 pi)`, by which they rise and fall.
@@ -70,6 +76,11 @@ fn indices_add() {
             free_mode(residual, Some(LATE.behind(FACE)), knob(1)),
             cancelled + late(3.0, 2.0, 0.001) + stops(1.0),
         ),
+        (dragging(wall_and_profile(WALL, knob(1)), 0.001, 3), late(5.0, 1.0, 0.003) + stops(1.0)),
+        (dragging(LATE.behind(FACE).alone(), -0.004, 1), late(3.0, 2.0, 0.005)),
+        (dragging(LATE.behind(FACE).alone(), -0.004, 0), late(3.0, 2.0, 0.005)),
+        // Without a delay it takes energy.
+        (dragging(LATE.behind(FACE).alone(), 0.004, 0), late(3.0, 2.0, 0.001)),
     ] {
         let found = bound(environment);
         // A knot is a whole number of units.
@@ -139,11 +150,23 @@ fn without_a_coupling_dampers_add() {
     for (environment, expected) in [
         (free_mode(0.015, None, knob(1)), late * 5.0 + DAMPING - 0.015),
         (wall_and_profile(Wall::damped(2.0, 0.003, 1), knob(1)), late * 7.0 + 0.003),
+        (dragging(knob(1).alone(), -0.003, 0), late * 5.0 + 0.003),
+        (dragging(WALL.behind(FACE).alone(), 0.003, 0), late * 5.0 + 0.005),
     ] {
         let found = certify(&Scene { coupling: Coupling::Rigid, ..scene(environment) }).unwrap();
         let bound = found.bound.unwrap();
         assert!((bound.midpoint() / expected - 1.0).abs() < 1e-9, "{bound:?} {expected}");
     }
+}
+
+/// A scene file has one delay for both.
+#[test]
+fn a_drag_is_as_late_as_the_part_beside_it() {
+    let environment = LATE.alone().with(Parameter::Drag, 0.004).unwrap();
+    assert_eq!(environment, dragging(LATE.alone(), 0.004, 2));
+    let earlier = Wall { delay: 1, ..LATE };
+    let expected = dragging(earlier.alone(), 0.004, 1);
+    assert_eq!(environment.with(Parameter::Delay, 1.0), Some(expected));
 }
 
 /// Each remedy is certified, and the one of a sum is of its parts by name.
@@ -259,6 +282,9 @@ fn no_motion_has_a_torque_farther_off_than_the_bound_on_its_limit_cycle() {
         wall_and_profile(spring.behind(FACE), knob(1)),
         wall_and_profile(WALL, knob(1)),
         free_mode(residual, Some(spring.behind(FACE)), knob(1)),
+        dragging(knob(1).alone(), -0.004, 1),
+        dragging(spring.behind(FACE).alone(), 0.006, 0),
+        dragging(spring.behind(FACE).alone(), -0.004, 1),
     ] {
         let scene = scene(environment);
         let steps = Resolution {

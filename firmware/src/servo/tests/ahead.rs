@@ -58,6 +58,7 @@ fn what_is_latched_is_what_would_have_been_computed_in_time() {
     let sum = Parts {
         wall: Some(Wall::damped(3.0, 0.001, 2).behind(0.05)),
         profile: Some(Profile::of(&KNOB, 1)),
+        drag: Some(Drag::of(0.004, 3)),
         ..Parts::NONE
     };
     for environment in [

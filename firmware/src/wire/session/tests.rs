@@ -16,7 +16,8 @@ use crate::current::IndexOffset;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::environment::{
-    Canceller, Damper, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side, Wall,
+    Canceller, Damper, Drag, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side,
+    Wall,
 };
 use crate::fault::Fault;
 use crate::number::Format;
@@ -282,7 +283,8 @@ fn largest_description() -> Description {
         delay: usize::MAX,
     };
     let canceller = Some(Canceller::to(1.0));
-    let environment = Parts { canceller, wall: Some(wall), profile: Some(profile) }.sum();
+    let drag = Some(Drag::of(1.0, 8));
+    let environment = Parts { canceller, wall: Some(wall), profile: Some(profile), drag }.sum();
     Description {
         scene: Scene {
             device: Device { passivity: Some(1.0), ..SCENE.device },
