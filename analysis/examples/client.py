@@ -17,7 +17,7 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 9
+PROTOCOL = 10
 BAUD = 460800
 
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
@@ -35,7 +35,7 @@ FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 5: "link-lost"
 # The parameters that can be changed, by their numbers on the wire.
 PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter", 10: "face",
               11: "residual", 15: "torque_limit", 23: "torque", 24: "count", 25: "centre",
-              28: "mode"}
+              28: "mode", 36: "drag"}
 
 # Messages to the board and to the host, by number.
 HELLO, GET, STATUS, SET, ARM, DISARM, STREAM, DESCRIBE, ALIGN = range(9)
@@ -52,6 +52,7 @@ REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)
                     ("set", [("step", STEP)]),
                     ("not-aligning", [("fault", ("option", FAULT))])])
 CANCELLER = [("residual", "f64"), ("delay", "u")]
+DRAG = [("damping", "f64"), ("delay", "u")]
 DAMPER = [("damping", "f64"), ("filter", ("option", "f64"))]
 SIDE = ("enum", [("centred", []), ("displaced", [("position", "f64")]),
                  ("face", [("position", "f64")])])
@@ -73,7 +74,8 @@ SCENE = [
     ("coupling", ("enum", [("rigid", []), ("spring", [("stiffness", "f64")]), ("matched", [])])),
     ("environment", ("enum", [("parts", [("canceller", ("option", CANCELLER)),
                                          ("wall", ("option", WALL)),
-                                         ("profile", ("option", PROFILE))]),
+                                         ("profile", ("option", PROFILE)),
+                                         ("drag", ("option", DRAG))]),
                               ("stated", [("model", STATED)])])),
     ("latency", [("output_delay", TIME_RANGE), ("output_jitter", "f64"),
                  ("count_jitter", "f64"), ("actuator_lag", TIME_RANGE),

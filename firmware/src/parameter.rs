@@ -120,12 +120,13 @@ parameters! {
     Noise: "encoder.noise", "noise of the encoder", "counts", Range::NotNegative;
     Hysteresis: "encoder.hysteresis", "hysteresis of the encoder", "counts", Range::NotNegative;
     Dropped: "encoder.dropped", "number of readings that may be dropped", "", Range::Whole(0, MAX_DELAY as u32);
+    Drag: "environment.drag", "drag", "N m s/rad", Range::Finite;
 }
 
 /// The parameters that may be changed while the servo runs, with their names for users.
 ///
 /// No message can change the device; period and delay are fixed at compile time and by the board's set-up.
-pub const TUNABLE: [(&str, Parameter); 11] = [
+pub const TUNABLE: [(&str, Parameter); 12] = [
     ("stiffness", Parameter::Stiffness),
     ("damping", Parameter::Damping),
     ("filter", Parameter::Filter),
@@ -137,6 +138,7 @@ pub const TUNABLE: [(&str, Parameter); 11] = [
     ("count", Parameter::Count),
     ("centre", Parameter::Centre),
     ("mode", Parameter::Mode),
+    ("drag", Parameter::Drag),
 ];
 
 /// A type with named parameters.

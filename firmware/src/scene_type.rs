@@ -9,8 +9,8 @@ use crate::certificate::Certified;
 use crate::coupling::Coupling;
 use crate::coupling_memory::CouplingMemory;
 use crate::environment::{
-    Delayed, Discretize, Environment, EnvironmentModel, LawContext, LawOf, Memory, Parts,
-    ProfileUse, Side, SupportsTiming, Wall, sealed,
+    Canceller, Delayed, Discretize, Environment, EnvironmentModel, LawContext, LawOf, Memory,
+    PartSet, Parts, Profile, ProfileUse, Side, SupportsTiming, Wall, sealed,
 };
 use crate::number::Number;
 use crate::output_timing::AtPhase;
@@ -77,7 +77,7 @@ impl<S: SceneType> Typed<S> {
     /// The parts with their present numbers. All but the numbers is that of the structure, so that the compiler
     /// leaves out what the scene does not have.
     fn parts(&self) -> Parts {
-        let Parts { canceller, wall, profile } = Self::LIKE;
+        let Parts { canceller, wall, profile, drag } = Self::LIKE;
         // If both have them, these names are the wall's.
         let of_wall =
             |it| wall.is_some() && matches!(it, Parameter::Stiffness | Parameter::Damping);
@@ -87,6 +87,7 @@ impl<S: SceneType> Typed<S> {
             profile: profile.map(|like| {
                 like.with_numbers(|it| if of_wall(it) { None } else { self.number(it) })
             }),
+            drag: drag.map(|like| like.with_numbers(|it| self.number(it))),
         }
     }
 }
@@ -100,7 +101,8 @@ impl<S: SceneType> NamedParameters for Typed<S> {
 impl<S: SceneType> sealed::Sealed for Typed<S> {}
 
 impl<S: SceneType> EnvironmentModel for Typed<S> {
-    const CANCELS_DAMPING: bool = Self::LIKE.canceller.is_some();
+    const PARTS: PartSet = PartSet::of(&Self::LIKE);
+    const HAS_FIXED_DELAYS: bool = true;
     const PROFILE: ProfileUse = ProfileUse::of(&Self::LIKE);
     const MEMORY: Memory = Memory::of(S::CERTIFIED.scene());
     const MAY_MISREAD: bool = !S::CERTIFIED.scene().latency.encoder.is_ideal();
@@ -158,6 +160,10 @@ pub struct Structure {
     pub snaps: bool,
     /// Whether it is one of several modes.
     pub has_modes: bool,
+    /// Number of drags.
+    pub drags: usize,
+    /// The drag's delay.
+    pub drag_delay: usize,
     /// Whether the coupling stores torques.
     pub is_matched: bool,
     /// The whole samples of output delay.
@@ -174,48 +180,43 @@ impl Structure {
     /// # Panics
     /// If its environment is not a sum of parts; in a constant this is a compile error.
     pub const fn of(scene: &Scene) -> Self {
-        let Environment::Parts(Parts { canceller, wall, profile }) = &scene.environment else {
+        let Environment::Parts(Parts { canceller, wall, profile, drag }) = &scene.environment
+        else {
             panic!("a board renders sums of parts, and no rational environment");
         };
-        let (is_damped, is_filtered) = match wall {
-            Some(Wall { damper: Some(damper), .. }) => (true, damper.filter.is_some()),
-            _ => (false, false),
-        };
         let (latency, is_matched) = (&scene.latency, matches!(scene.coupling, Coupling::Matched));
-        let mut out = Self {
+        let as_wall = or!(*wall, Wall::spring(0.0, 0));
+        Self {
             cancellers: canceller.is_some() as usize,
-            canceller_delay: 0,
+            canceller_delay: or!(*canceller, Canceller::to(0.0)).delay,
             walls: wall.is_some() as usize,
-            wall_delay: 0,
-            is_damped,
-            is_filtered,
-            is_displaced: matches!(wall, Some(Wall { side: Side::Displaced(_), .. })),
-            is_one_sided: matches!(wall, Some(Wall { side: Side::Face(_), .. })),
+            wall_delay: as_wall.delay,
+            is_damped: as_wall.damper.is_some(),
+            is_filtered: as_wall.filter().is_some(),
+            is_displaced: matches!(as_wall.side, Side::Displaced(_)),
+            is_one_sided: as_wall.is_one_sided(),
             profiles: profile.is_some() as usize,
-            profile_delay: 0,
-            cells: 0,
-            is_profile_damped: false,
-            snaps: false,
-            has_modes: false,
+            profile_delay: match profile {
+                Some(profile) => profile.delay,
+                None => 0,
+            },
+            cells: match profile {
+                Some(profile) => profile.cells().len(),
+                None => 0,
+            },
+            is_profile_damped: matches!(profile, Some(Profile { damping: Some(_), .. })),
+            snaps: matches!(profile, Some(Profile { snap: Some(_), .. })),
+            has_modes: matches!(profile, Some(Profile { modes: Some(_), .. })),
+            drags: drag.is_some() as usize,
+            drag_delay: match drag {
+                Some(drag) => drag.delay,
+                None => 0,
+            },
             is_matched,
             whole: if is_matched { latency.whole_samples(scene.timing.period) } else { 0 },
             lags: latency.trails(),
             has_updates: latency.actuator_updates != 0,
-        };
-        if let Some(canceller) = canceller {
-            out.canceller_delay = canceller.delay;
         }
-        if let Some(wall) = wall {
-            out.wall_delay = wall.delay;
-        }
-        if let Some(profile) = profile {
-            out.profile_delay = profile.delay;
-            out.cells = profile.cells().len();
-            out.is_profile_damped = profile.damping.is_some();
-            out.snaps = profile.snap.is_some();
-            out.has_modes = profile.modes.is_some();
-        }
-        out
     }
 }
 
@@ -322,7 +323,17 @@ macro_rules! scene_type {
                 const NUMBERS: Self::Numbers = numbers(ENVIRONMENT);
                 type Numbers = [f64; count(ENVIRONMENT)];
                 type Law<N: Number> = SumLaw<
-                    [CancellerLaw<N, FixedDelay<N, { OF.canceller_delay }>>; OF.cancellers],
+                    [ProfileLaw<
+                        N,
+                        Either<{ OF.cells > 0 }, &'static [Cell; OF.cells], &'static [i16]>,
+                        Either<{ OF.is_profile_damped }, Difference<N>, NoDamping>,
+                        FixedDelay<N, { OF.profile_delay }>,
+                        Either<
+                            { OF.has_modes },
+                            AnySnap<N>,
+                            Either<{ OF.snaps }, Snap<N>, NoSnap>,
+                        >,
+                    >; OF.profiles],
                     [WallLaw<
                         N,
                         Either<
@@ -337,17 +348,8 @@ macro_rules! scene_type {
                         >,
                         FixedDelay<N, { OF.wall_delay }>,
                     >; OF.walls],
-                    [ProfileLaw<
-                        N,
-                        Either<{ OF.cells > 0 }, &'static [Cell; OF.cells], &'static [i16]>,
-                        Either<{ OF.is_profile_damped }, Difference<N>, NoDamping>,
-                        FixedDelay<N, { OF.profile_delay }>,
-                        Either<
-                            { OF.has_modes },
-                            AnySnap<N>,
-                            Either<{ OF.snaps }, Snap<N>, NoSnap>,
-                        >,
-                    >; OF.profiles],
+                    [DragLaw<N, FixedDelay<N, { OF.drag_delay }>>; OF.drags],
+                    [CancellerLaw<N, FixedDelay<N, { OF.canceller_delay }>>; OF.cancellers],
                 >;
                 type Memory<N: Number> = Either<
                     { OF.is_matched },
@@ -383,8 +385,8 @@ pub mod names {
     pub use crate::certificate::Certified;
     pub use crate::coupling_memory::{MatchedMemory, NoMemory};
     pub use crate::environment::{
-        AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, Environment, Face, FixedDelay,
-        NoDamping, NoSnap, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
+        AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, DragLaw, Environment, Face,
+        FixedDelay, NoDamping, NoSnap, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
     };
     pub use crate::number::Number;
     pub use crate::scene::Scene;

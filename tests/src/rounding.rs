@@ -4,7 +4,7 @@
 use crate::exact::{Q, of_f64};
 use crate::poly::Poly;
 use crate::rules::Exact;
-use haptic_servo::environment::{Canceller, Parts, Wall};
+use haptic_servo::environment::{Canceller, Drag, Parts, Wall};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Scene};
 use num_integer::Integer;
@@ -100,14 +100,19 @@ pub fn as_it_runs(scene: &Scene, format: Format) -> Option<Exact> {
         let (numerator, denominator) = washout(&-gain, &rate, format);
         (numerator, denominator.raised(canceller.delay))
     };
-    let (numerator, denominator) = match scene.environment.parts() {
-        Parts { canceller: None, wall: Some(alone), profile: None } => wall(alone, &period, format),
-        Parts { canceller: Some(alone), wall: None, profile: None } => free(alone),
-        Parts { canceller: Some(canceller), wall: Some(beside), profile: None } => {
-            plus(&free(canceller), &wall(beside, &period, format))
-        }
-        _ => return None,
+    let damper = |drag: &Drag| {
+        let (numerator, denominator) = washout(&(q(drag.damping) / &period), &Q::one(), format);
+        (numerator, denominator.raised(drag.delay))
     };
+    let Parts { canceller, wall: beside, profile: None, drag } = scene.environment.parts() else {
+        return None;
+    };
+    let parts = [
+        canceller.as_ref().map(free),
+        beside.as_ref().map(|beside| wall(beside, &period, format)),
+        drag.as_ref().map(damper),
+    ];
+    let (numerator, denominator) = parts.into_iter().flatten().reduce(|a, b| plus(&a, &b))?;
     // The direct feedthrough is solved with the coupling by a gain that is rounded as well.
     let through = if numerator.degree() < denominator.degree() || numerator.is_zero() {
         Q::zero()

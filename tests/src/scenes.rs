@@ -7,7 +7,7 @@ use crate::exact::{Q, of_f64};
 use crate::poly::Poly;
 use crate::rules::Exact;
 use haptic_servo::environment::{
-    Canceller, Coefficients, Damper, Environment, Parts, Rational, Wall,
+    Canceller, Coefficients, Damper, Drag, Environment, Parts, Rational, Wall,
 };
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use num_traits::{One, Zero};
@@ -70,13 +70,15 @@ impl Frame {
     }
 
     /// The scene with a sum of these.
-    pub fn with_parts(&self, canceller: Option<Canceller>, wall: Option<Wall>) -> ExactScene {
-        let parts = [
+    pub fn with_parts(&self, parts: Parts) -> ExactScene {
+        let Parts { canceller, wall, drag, .. } = parts;
+        let fractions = [
             canceller.map(|canceller| free_fraction(&canceller, self)),
             wall.map(|wall| wall_fraction(&wall, self.period)),
+            drag.map(|drag| drag_fraction(&drag, self.period)),
         ];
-        let sum = parts.into_iter().flatten().reduce(|a, b| sum_of(&a, &b));
-        self.with(Parts { canceller, wall, profile: None }.sum(), sum.expect("at least one part"))
+        let sum = fractions.into_iter().flatten().reduce(|a, b| sum_of(&a, &b));
+        self.with(parts.sum(), sum.expect("at least one part"))
     }
 
     /// The scene with an environment, and its exact transfer function.
@@ -220,6 +222,12 @@ fn free_fraction(canceller: &Canceller, frame: &Frame) -> (Poly, Poly) {
     (numerator, denominator.raised(canceller.delay))
 }
 
+/// Transfer function of a drag, `z^-n B q / T`.
+fn drag_fraction(drag: &Drag, period: f64) -> (Poly, Poly) {
+    let step = Poly::integers(&[-1, 1]).scaled(&q(drag.damping));
+    (step, Poly::ascending(vec![Q::zero(), q(period)]).raised(drag.delay))
+}
+
 /// Sum of two fractions.
 fn sum_of(a: &(Poly, Poly), b: &(Poly, Poly)) -> (Poly, Poly) {
     (a.0.times(&b.1).plus(&b.0.times(&a.1)), a.1.times(&b.1))
@@ -237,7 +245,7 @@ pub fn wall(rng: &mut impl Rng) -> ExactScene {
         let filter = rng.random_bool(0.4).then(|| short(rng.random_range(0.0..0.98), 20));
         wall.damper = Some(Damper { damping, filter });
     }
-    frame.with_parts(None, Some(wall))
+    frame.with_parts(Parts { wall: Some(wall), ..Parts::NONE })
 }
 
 /// A free mode, with or without a wall behind it.
@@ -246,20 +254,45 @@ pub fn free(rng: &mut impl Rng) -> ExactScene {
     let residual = short(frame.delta * rng.random_range(-0.2..1.0), 24);
     if rng.random_bool(0.5) {
         let delay = rng.random_range(0..=2);
-        return frame.with_parts(Some(Canceller { residual, delay }), None);
+        let canceller = Some(Canceller { residual, delay });
+        return frame.with_parts(Parts { canceller, ..Parts::NONE });
     }
     let stiffness = short(frame.unit() * log_uniform(rng, 0.02, 2.0), 16);
     let damping = short(frame.delta * log_uniform(rng, 0.01, 1.0), 24);
     let wall = Wall::damped(stiffness, damping, rng.random_range(0..=2));
-    frame.with_parts(Some(Canceller::to(residual)), Some(wall))
+    let canceller = Some(Canceller::to(residual));
+    frame.with_parts(Parts { canceller, wall: Some(wall), ..Parts::NONE })
+}
+
+/// A drag with a wall, a free mode, both or nothing beside it.
+pub fn dragging(rng: &mut impl Rng) -> ExactScene {
+    let frame = Frame::draw(rng);
+    let sign = if rng.random_bool(0.7) { 1.0 } else { -1.0 };
+    let damping = short(sign * frame.delta * log_uniform(rng, 0.01, 1.0), 24);
+    let drag = Some(Drag::of(damping, rng.random_range(0..=4)));
+    let canceller = rng
+        .random_bool(0.3)
+        .then(|| Canceller::to(short(frame.delta * rng.random_range(0.3..1.0), 24)));
+    let wall = rng.random_bool(0.7).then(|| {
+        let stiffness = short(frame.unit() * log_uniform(rng, 0.02, 2.0), 16);
+        let damping = short(frame.delta * log_uniform(rng, 0.01, 0.5), 24);
+        let wall = Wall::damped(stiffness, damping, rng.random_range(0..=4));
+        if rng.random_bool(0.3) {
+            wall.filtered(short(rng.random_range(0.0..0.9), 20))
+        } else {
+            wall
+        }
+    });
+    frame.with_parts(Parts { canceller, wall, drag, ..Parts::NONE })
 }
 
 /// Any of the above; rational environments have up to three poles, none nearer the circle than
 /// 0.02, so that the closed loop's eigenvalues are well conditioned.
 pub fn any(rng: &mut impl Rng) -> ExactScene {
-    match rng.random_range(0..4) {
+    match rng.random_range(0..5) {
         0 => wall(rng),
         1 => free(rng),
+        2 => dragging(rng),
         _ => rational(rng, Poles { count: 3, nearest: 0.02, delay: 2 }),
     }
 }

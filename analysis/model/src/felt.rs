@@ -61,7 +61,7 @@ pub fn stiffness(scene: &Scene) -> Option<f64> {
 }
 
 /// Damping in N m s/rad that the hand feels outside of the wall: the device's, or that which a canceller
-/// leaves of it, and that of a damper beside a torque profile. `None` without free motion: with a filter, an
+/// leaves of it, and that of dampers that act everywhere. `None` without free motion: with a filter, an
 /// environment of another crate, or a wall on both sides.
 pub fn free_damping(scene: &Scene) -> Option<f64> {
     let Environment::Parts(parts) = &scene.environment else { return None };
@@ -69,7 +69,7 @@ pub fn free_damping(scene: &Scene) -> Option<f64> {
         return None;
     }
     let left = parts.canceller.map_or(scene.device.damping, |canceller| canceller.residual);
-    Some(left + parts.profile.as_ref().map_or(0.0, Profile::damping))
+    Some(left + parts.damping_everywhere())
 }
 
 /// Torque of a filter at rest for 1 rad; infinite if it has a pole at `z = 1`.

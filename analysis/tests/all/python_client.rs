@@ -10,7 +10,7 @@ use haptic_servo::certificate::Parameter;
 use haptic_servo::current::IndexOffset;
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{Canceller, Parts, Wall};
+use haptic_servo::environment::{Canceller, Drag, Parts, Wall};
 use haptic_servo::fault::Fault;
 use haptic_servo::number::Format;
 use haptic_servo::power_reading::PowerReading;
@@ -94,12 +94,13 @@ fn status() -> Status {
 fn description() -> Description {
     let wall = Wall::damped(22.0, 0.01, 300).filtered(0.5).behind(-0.1);
     let canceller = Some(Canceller::to(0.01));
+    let drag = Some(Drag::of(-0.5, 2));
     Description {
         scene: Scene {
             device: Device { inertia: 0.25, damping: 0.022, passivity: Some(0.02) },
             timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
-            environment: Parts { canceller, wall: Some(wall), ..Parts::NONE }.sum(),
+            environment: Parts { canceller, wall: Some(wall), drag, ..Parts::NONE }.sum(),
             latency: Latency::NONE,
             torque_limit: Some(1.5),
         },

@@ -21,7 +21,7 @@ pub fn run(data: &[u8]) {
     let Some(ToBoard::Set { changes, .. }) = heard else { return };
     let wall = Wall::damped(22.0, 0.01, 1);
     let filtered = wall.filtered(0.5).behind(0.1);
-    let free = |wall| Parts { canceller: Some(Canceller::to(0.01)), wall, profile: None }.sum();
+    let free = |wall| Parts { canceller: Some(Canceller::to(0.01)), wall, ..Parts::NONE }.sum();
     let environment = match kind % 9 {
         0 => wall.behind(0.0).alone(),
         1 => Wall { side: Side::Displaced(0.5), ..wall }.alone(),

@@ -144,7 +144,7 @@ mod tests {
     fn scenes_survive_their_frames() {
         let wall = Wall::damped(-1.5, 2.5, 3);
         let free =
-            |wall| Parts { canceller: Some(Canceller::to(0.25)), wall: Some(wall), profile: None };
+            |wall| Parts { canceller: Some(Canceller::to(0.25)), wall: Some(wall), ..Parts::NONE };
         let rational = Rational {
             numerator: Coefficients::new(&[1.0, -0.0, 5e-324]).unwrap(),
             denominator: Coefficients::new(&[0.1; MAX_DEGREE + 1]).unwrap(),

@@ -29,6 +29,9 @@
 //! **Static laws at the port** (equation 59). The index is the norm of a sum of operators, one for each slope
 //! and damper, and convex in them.
 //!
+//! **Another part** beside these adds a constant to the transfer function, to the gain and to the bound, so
+//! that the above holds in stiffness, damping and residual; nothing is claimed about periods.
+//!
 //! **Torque profiles** (equations 46 to 48). The bound grows with each slope and with the damper's magnitude,
 //! and the slopes grow with the torque of the table and with the stiffness of its end stops: with less of one
 //! of them a passing scene still passes, rounded or not, because rounding keeps the order. It is affine in
@@ -78,7 +81,7 @@ pub(super) const fn between(
         Parameter::Residual => is_affine_in_residual(scene, &n),
         // An amplifier's response may take at most a period.
         Parameter::Period if !scene.latency.actuator_response.is_zero() => false,
-        Parameter::Period if n.is_at_port && n.latency.is_some() => false,
+        Parameter::Period if n.is_at_port && n.latency.is_some() || parts.others() > 0 => false,
         Parameter::Period => return between_periods(scene, &n, value),
         _ => false,
     };

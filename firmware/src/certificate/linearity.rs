@@ -1,6 +1,6 @@
 //! Which scenes are judged by a bound in place of the exact rule.
 
-use crate::environment::{Environment, Parts, Wall};
+use crate::environment::{Environment, Wall};
 use crate::latency::Latency;
 use crate::scene::{Coupling, Scene};
 
@@ -21,26 +21,22 @@ const fn replaces_exact_rule(scene: &Scene) -> bool {
     if latency.is_none() && encoder.is_ideal() || !matches!(scene.coupling, Coupling::Rigid) {
         return false;
     }
-    let Environment::Parts(Parts { canceller, wall, profile: None }) = &scene.environment else {
+    let Environment::Parts(parts) = &scene.environment else { return false };
+    if parts.profile.is_some() || matches!(&parts.wall, Some(wall) if wall.stiffness < 0.0) {
         return false;
-    };
-    let (damping, pulls) = match wall {
-        Some(wall) => (wall.damping(), wall.stiffness < 0.0),
-        None => (0.0, false),
-    };
-    let has_damping = damping != 0.0 || canceller.is_some();
+    }
     let has_one_jitter = latency.total_jitter() > 0.0 && !latency.jitters_twice();
     let misses_updates = scene.timing.longer_period().is_some();
-    let is_late_or_missed =
-        !latency.is_none() && (misses_updates || !has_damping && has_one_jitter);
-    let is_beyond_exact_rule = match has_damping {
+    let is_damped = parts.is_damped();
+    let is_late_or_missed = !latency.is_none() && (misses_updates || !is_damped && has_one_jitter);
+    let is_beyond_exact_rule = match is_damped {
         true => encoder.linearity != 0.0 && (misses_updates || !is_delay_alone(latency)),
         false => {
             let is_beyond_times = encoder.linearity != 0.0 || encoder.dropped > 0;
             is_beyond_times || !encoder.is_ideal() && !latency.jitters_twice()
         }
     };
-    !pulls && (is_late_or_missed || is_beyond_exact_rule)
+    is_late_or_missed || is_beyond_exact_rule
 }
 
 /// Whether all of a latency is one known delay, for which the exact rule covers a nonlinear encoder.
@@ -70,25 +66,22 @@ pub const fn is_static_at_port(scene: &Scene) -> bool {
 
 /// Whether the torque depends on one position, without dampers, and pushes back.
 const fn is_static(environment: &Environment) -> bool {
-    let Environment::Parts(Parts { canceller: None, wall, profile }) = environment else {
-        return false;
-    };
-    let is_wall_static = match wall {
-        Some(wall) => wall.damping() == 0.0 && wall.stiffness >= 0.0,
+    let Environment::Parts(parts) = environment else { return false };
+    let pushes = match &parts.wall {
+        Some(wall) => wall.stiffness >= 0.0,
         None => true,
     };
-    let is_profile_static = match profile {
-        Some(profile) => profile.damping() == 0.0 && profile.snap.is_none(),
-        None => true,
-    };
-    is_wall_static && is_profile_static
+    pushes && !parts.is_damped() && !environment.snaps()
 }
 
 /// The wall that is all of an environment, late and without a damper.
 pub(super) const fn late_spring(environment: &Environment) -> Option<&Wall> {
-    match environment {
-        Environment::Parts(Parts { canceller: None, wall: Some(wall), profile: None })
-            if wall.delay > 0 && wall.damping() == 0.0 && wall.stiffness >= 0.0 =>
+    match environment.wall() {
+        Some(wall)
+            if environment.parts().count() == 1
+                && wall.delay > 0
+                && wall.damping() == 0.0
+                && wall.stiffness >= 0.0 =>
         {
             Some(wall)
         }

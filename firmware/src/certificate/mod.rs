@@ -29,7 +29,6 @@
 
 mod assessment;
 mod assumption;
-mod beside_profile;
 mod between;
 mod deviation;
 pub(crate) mod digits;
@@ -40,6 +39,7 @@ mod loop_intervals;
 mod margin;
 mod model;
 mod modes;
+mod part;
 mod port;
 mod problem;
 mod profile;

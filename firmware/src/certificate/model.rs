@@ -6,11 +6,9 @@
 //! doubles.
 
 use super::loop_intervals::LoopIntervals;
-use super::profile::{profile_bound, profile_gain};
+use super::part::{self, Quantity, solved};
 use super::validity::check;
-use crate::environment::{
-    Canceller, Environment, EnvironmentModel, MAX_DEGREE, Parts, Rational, StatedModel, Wall,
-};
+use crate::environment::{Environment, EnvironmentModel, MAX_DEGREE, Rational, StatedModel};
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
@@ -32,114 +30,13 @@ pub(super) const fn transfer(
             }
             None => false,
         },
-        None => sum(out, environment.parts(), n),
+        None => part::transfer(out, environment.parts(), n),
     };
     if !is_built {
         return Err(Unbuildable::OutOfRange);
     }
     out.scale = n.solved(out.feedthrough());
     out.check()
-}
-
-/// The sum over the parts with a transfer function; `false` if its degree is too high. A late torque profile,
-/// or an environment that is stated only by its bound and late, is without feedthrough.
-#[inline(never)]
-const fn sum(out: &mut Transfer, parts: &Parts, n: &LoopIntervals) -> bool {
-    match (&parts.canceller, &parts.wall) {
-        (Some(canceller), None) => *out = free_mode(canceller, n),
-        (Some(canceller), Some(w)) => {
-            *out = free_mode(canceller, n);
-            return out.add(&wall(w, n));
-        }
-        (None, Some(w)) => *out = wall(w, n),
-        (None, None) => *out = Transfer::ZERO,
-    }
-    true
-}
-
-/// `z^-n (K + B (1 - a)(z - 1) / (T (z - a)))`, `a = 0` without a filter (equation 24).
-const fn wall(w: &Wall, n: &LoopIntervals) -> Transfer {
-    let k = n.coefficient(Interval::decimal(w.stiffness));
-    let Washout { gain: b, pole: a } = damper(w, n);
-    let denominator = Polynomial::ascending(&[a.neg().mul(n.period), n.period]);
-    let shift = -(w.delay as i32);
-    if k.is_zero() {
-        // A pure damper keeps its exact zero at z = 1; so does a wall whose stiffness is rounded to zero.
-        let numerator = Polynomial::ascending(&[b]);
-        return Transfer { shift, ones: 1, ..Transfer::new(numerator, denominator) };
-    }
-    let kt = k.mul(n.period);
-    let numerator = Polynomial::ascending(&[kt.mul(a).add(b).neg(), kt.add(b)]);
-    Transfer { shift, ..Transfer::new(numerator, denominator) }
-}
-
-/// `(gain / T) (z - 1) / (z - pole)`, as a servo computes it: from the gain over the period and
-/// from the rate `1 - pole`.
-pub(super) struct Washout {
-    pub gain: Interval,
-    pub pole: Interval,
-}
-
-impl Washout {
-    /// From the unrounded gain over the period and the unrounded rate.
-    const fn rounded(gain: Interval, rate: Interval, n: &LoopIntervals) -> Self {
-        let gain = n.coefficient(gain).mul(n.period);
-        Self { gain, pole: Interval::ONE.sub(n.coefficient(rate)) }
-    }
-
-    /// `sum abs(h)` of its impulse response from velocity to torque.
-    const fn l1_norm(&self) -> Interval {
-        self.gain.abs().div(Interval::ONE.sub(self.pole.abs()))
-    }
-}
-
-/// The damper of a wall.
-pub(super) const fn damper(w: &Wall, n: &LoopIntervals) -> Washout {
-    let b = Interval::decimal(w.damping());
-    let rate = match w.filter() {
-        Some(a) if w.damping() != 0.0 => Interval::ONE.sub(Interval::decimal(a)),
-        _ => Interval::ONE,
-    };
-    match (n.format, w.filter()) {
-        (Format::F64, Some(a)) if w.damping() != 0.0 => {
-            Washout { gain: b.mul(rate), pole: Interval::decimal(a) }
-        }
-        (Format::F64, _) => Washout { gain: b, pole: Interval::ZERO },
-        _ => Washout::rounded(b.div(n.period).mul(rate), rate, n),
-    }
-}
-
-/// `-be K (z - 1) / ((K T + be) z - be)`, for a rigid coupling `-be (z - 1) / (T z)` (equation
-/// 23, generalised from `K = 2 b / T` to any coupling spring), late by the canceller's delay.
-pub(super) const fn free_mode(canceller: &Canceller, n: &LoopIntervals) -> Transfer {
-    let be = n.cancelled;
-    let (gain, denominator) = match (n.format, n.coupling) {
-        (Format::F64, Some(k)) => {
-            let kt = k.mul(n.period);
-            (be.mul(k), Polynomial::ascending(&[be.neg(), kt.add(be)]))
-        }
-        (Format::F64, None) => (be, Polynomial::ascending(&[Interval::ZERO, n.period])),
-        _ => {
-            let Washout { gain, pole } = self::canceller(n);
-            (gain, Polynomial::ascending(&[pole.neg().mul(n.period), n.period]))
-        }
-    };
-    let numerator = Polynomial::ascending(&[gain.neg()]);
-    let shift = -(canceller.delay as i32);
-    Transfer { shift, ones: 1, ..Transfer::new(numerator, denominator) }
-}
-
-/// The canceller as a servo computes it, with the opposite sign.
-pub(super) const fn canceller(n: &LoopIntervals) -> Washout {
-    let be = n.cancelled;
-    match n.coupling {
-        Some(k) => {
-            let kt = k.mul(n.period);
-            let leading = kt.add(be);
-            Washout::rounded(be.mul(k).div(leading), kt.div(leading), n)
-        }
-        None => Washout::rounded(be.div(n.period), Interval::ONE, n),
-    }
 }
 
 #[inline(never)]
@@ -183,15 +80,15 @@ const fn divided(p: &Polynomial, leading: Interval, n: &LoopIntervals) -> Polyno
 /// and coupling (equation 31); `None` if none is known.
 ///
 /// - Wall, `n >= 1`: `K T (n - 1/2) + abs(B)`; a velocity filter has the l1 norm 1 and does not change
-///   `sum abs(v(k)) abs(v(k - i))`. On both sides a filter counts: [`filtered_bound`].
+///   `sum abs(v(k)) abs(v(k - i))`. On both sides a filter counts (equation 61).
 /// - Wall, undelayed: 0 for `B >= 0` without a filter, otherwise `abs(B)`.
-/// - A torque profile: [`profile_bound`]. A sum: the sum of the bounds (theory, section 14.3).
+/// - A torque profile: equations 46 and 47. A sum: the sum of the bounds (theory, section 14.3).
 /// - Canceller: the clipped torque is `g(k) (h * v)(k)` with `g` in `[0, 1]`, so by Young's
-///   inequality `alpha <= sum abs(h)`, which for the first-order lag of [`free_mode`] is `be`.
+///   inequality `alpha <= sum abs(h)`, which for its first-order lag is `be`.
 ///
 /// `solved` bounds the gain from solving a tick: [`largest_solved`]. There is no bound for a rational
 /// environment, nor for an environment that cancels damping where the type `E` does not
-/// ([`EnvironmentModel::CANCELS_DAMPING`]): its program has no code for that bound.
+/// ([`EnvironmentModel::PARTS`]): its program has no code for that bound.
 pub(super) const fn nonlinear_bound<E: EnvironmentModel>(
     environment: &Environment,
     solved: Interval,
@@ -213,101 +110,32 @@ pub(super) const fn largest_solved<E: EnvironmentModel>(
     if matches!(n.format, Format::F64) || environment.is_late() {
         return Some(Interval::ONE);
     }
-    let parts = environment.parts();
+    let Environment::Parts(parts) = environment else { return None };
     if E::PROFILE.exists && parts.profile.is_some() && parts.count() == 1 {
         // The profile is solved in front of the coupling, without a gain.
         return Some(Interval::ONE);
     }
-    let Some(contact) = scale::<E>(environment, n) else { return None };
-    Some(match &parts.canceller {
-        Some(canceller) if E::CANCELS_DAMPING && parts.count() > 1 => {
-            n.solved(free_mode(canceller, n).feedthrough()).max(contact)
-        }
-        _ => contact.max(Interval::ONE),
-    })
+    let contact = some!(solved::<E>(parts, n, true));
+    let has_line = E::PARTS.has_lines() && parts.count() > 1;
+    Some(contact.max(if has_line { some!(solved::<E>(parts, n, false)) } else { Interval::ONE }))
 }
 
-/// The factor of the servo's rounded gains, from an environment's [feedthrough](Transfer::feedthrough): for a
-/// wall and a canceller the sum of both. `None` for a rational environment, where no bound needs it.
-const fn scale<E: EnvironmentModel>(
-    environment: &Environment,
-    n: &LoopIntervals,
-) -> Option<Interval> {
-    let Environment::Parts(Parts { canceller, wall, profile }) = environment else { return None };
-    if profile.is_some() && !E::PROFILE.is_composed {
-        return None;
-    }
-    let mut feedthrough = match wall {
-        Some(w) => self::wall(w, n).feedthrough(),
-        None => Interval::ZERO,
-    };
-    if let Some(canceller) = canceller {
-        if !E::CANCELS_DAMPING {
-            return None;
-        }
-        feedthrough = feedthrough.add(free_mode(canceller, n).feedthrough());
-    }
-    let scale = n.solved(feedthrough);
-    if scale.is_finite() { Some(scale) } else { None }
-}
-
-/// A quantity of an environment, the sum of those of its parts.
-#[derive(Clone, Copy)]
-enum Quantity {
-    /// [`nonlinear_bound`].
-    Index,
-    /// [`largest_gain`].
-    Gain,
-}
-
-/// The quantity if a tick is solved exactly; `None` if it is unknown of a part, or if the program of the type
-/// `E` has no such sum.
+/// The quantity if a tick is solved exactly; `None` if it is unknown.
 const fn sum_of<E: EnvironmentModel>(
     quantity: Quantity,
     environment: &Environment,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    let parts = match environment {
-        Environment::Parts(parts) => parts,
+    match environment {
+        Environment::Parts(parts) => part::sum_of::<E>(quantity, parts, n),
         Environment::Stated(StatedModel::Bounded { bound, .. }) => {
-            return Some(Interval::decimal(match quantity {
+            Some(Interval::decimal(match quantity {
                 Quantity::Index => bound.index,
                 Quantity::Gain => bound.gain,
-            }));
+            }))
         }
-        Environment::Stated(StatedModel::Linear(_)) | Environment::Rational(_) => return None,
-    };
-    let is_alone = parts.count() == 1;
-    let mut sum = match (quantity, &parts.wall) {
-        (_, None) => Interval::ZERO,
-        (Quantity::Gain, Some(w)) => wall_gain(w, n),
-        // A negative spring is not a monotone law.
-        (Quantity::Index, Some(w)) if w.stiffness < 0.0 => return None,
-        (Quantity::Index, Some(w)) if is_alone => wall_alone_bound(w, n),
-        (Quantity::Index, Some(w)) => wall_bound(w, n),
-    };
-    if let Some(profile) = &parts.profile {
-        if !E::PROFILE.exists || !is_alone && !E::PROFILE.is_composed {
-            return None;
-        }
-        let of_profile = match quantity {
-            Quantity::Gain => some!(profile_gain::<E>(profile, n)),
-            Quantity::Index if !is_alone && profile.snap.is_some() => return None,
-            Quantity::Index => some!(profile_bound::<E>(profile, n)),
-        };
-        sum = of_profile.add(sum);
+        Environment::Stated(StatedModel::Linear(_)) | Environment::Rational(_) => None,
     }
-    if parts.canceller.is_some() {
-        if !E::CANCELS_DAMPING {
-            return None;
-        }
-        let bound = some!(canceller_bound(n));
-        sum = sum.add(match quantity {
-            Quantity::Index => bound,
-            Quantity::Gain => bound.double(),
-        });
-    }
-    Some(sum)
 }
 
 /// [`nonlinear_bound`], with [`largest_solved`].
@@ -329,78 +157,6 @@ pub(super) const fn largest_gain<E: EnvironmentModel>(
     n: &LoopIntervals,
 ) -> Option<Interval> {
     Some(some!(sum_of::<E>(Quantity::Gain, environment, n)).mul(solved))
-}
-
-const fn wall_gain(w: &Wall, n: &LoopIntervals) -> Interval {
-    let k = n.coefficient(Interval::decimal(w.stiffness)).abs();
-    k.mul(n.period).add(switched_damping(w, n).double())
-}
-
-/// Sum of the magnitudes of a wall's torques for a unit of velocity.
-pub(super) const fn switched_damping(w: &Wall, n: &LoopIntervals) -> Interval {
-    match n.format {
-        Format::F64 => Interval::decimal(w.damping()).abs(),
-        _ => damper(w, n).l1_norm(),
-    }
-}
-
-const fn wall_bound(w: &Wall, n: &LoopIntervals) -> Interval {
-    let damping = switched_damping(w, n);
-    if w.delay == 0 {
-        let passive = w.filter().is_none() && w.damping() >= 0.0;
-        return if passive { Interval::ZERO } else { damping };
-    }
-    let samples = Interval::exact(w.delay as f64 - 0.5);
-    let k = n.coefficient(Interval::decimal(w.stiffness));
-    k.mul(n.period).mul(samples).add(damping)
-}
-
-/// The same for a wall that is the only part.
-const fn wall_alone_bound(w: &Wall, n: &LoopIntervals) -> Interval {
-    let bound = wall_bound(w, n);
-    if w.filter().is_none() {
-        return bound;
-    }
-    match filtered_bound(w, n) {
-        Some(filtered) => filtered.min(bound),
-        None => bound,
-    }
-}
-
-/// The same for a wall on both sides whose velocity is filtered: `(2 n - 1) B (1 - a) / (1 + a)` in place of
-/// `abs(B)`, and 0 without delay (equation 61). `None` if the wall or the filter is another.
-const fn filtered_bound(w: &Wall, n: &LoopIntervals) -> Option<Interval> {
-    let Washout { gain, pole } = damper(w, n);
-    let is_filter = gain.lo() >= 0.0 && pole.lo() >= 0.0 && pole.hi() < 1.0;
-    if w.is_one_sided() || !is_filter {
-        return None;
-    }
-    if w.delay == 0 {
-        return Some(Interval::ZERO);
-    }
-    let samples = Interval::exact(w.delay as f64 - 0.5);
-    let k = n.coefficient(Interval::decimal(w.stiffness));
-    let damping = gain.double().div(Interval::ONE.add(pole));
-    Some(k.mul(n.period).add(damping).mul(samples))
-}
-
-/// Sum of the magnitudes of a canceller's torques for a unit of velocity; `None` if there is none.
-pub(super) const fn canceller_bound(n: &LoopIntervals) -> Option<Interval> {
-    let be = n.cancelled;
-    match (n.format, n.coupling) {
-        (Format::F64, Some(k)) if be.lo() < 0.0 => {
-            // Added damping: the lag's pole be / (K T + be) is negative, its l1 norm larger.
-            let kt = k.mul(n.period);
-            let room = kt.sub(be.abs().double());
-            if room.is_positive() { Some(kt.mul(be.abs()).div(room)) } else { None }
-        }
-        (Format::F64, _) => Some(be.abs()),
-        _ => {
-            let canceller = canceller(n);
-            let settles = Interval::ONE.sub(canceller.pole.abs()).is_positive();
-            if settles { Some(canceller.l1_norm()) } else { None }
-        }
-    }
 }
 
 /// The numbers of a scene and its environment, if all numbers are in range.

@@ -15,10 +15,10 @@
 use core::f64::consts::TAU;
 use core::fmt;
 
-use super::beside_profile::{jump_at_face, peak_gain_beside};
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
-use super::model::{LoopTransfers, Washout, canceller, damper};
+use super::model::LoopTransfers;
+use super::part::{Washout, canceller, damper, jump_at_face, peak_gain_beside};
 use super::profile::{peak_gain, step_of_part};
 use crate::current::CurrentResolution;
 use crate::dac::DacCode;
@@ -262,14 +262,12 @@ fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     })
 }
 
-/// The scene out of contact with its wall, if a canceller acts there.
+/// The scene out of contact with its wall, if another part acts there.
 fn out_of_contact(scene: &Scene) -> Option<Scene> {
-    match scene.environment.parts() {
-        Parts { canceller: Some(canceller), wall: Some(wall), .. } if wall.is_one_sided() => {
-            Some(Scene { environment: canceller.alone(), ..*scene })
-        }
-        _ => None,
-    }
+    let parts = *scene.environment.parts();
+    let is_one_sided = parts.wall.is_some_and(|wall| wall.is_one_sided());
+    let beside = Parts { wall: None, ..parts };
+    (is_one_sided && beside.count() > 0).then(|| Scene { environment: beside.sum(), ..*scene })
 }
 
 /// Largest deflection of the coupling in rad for torques of up to 1 N m each.
@@ -324,6 +322,10 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
         None => (at_torque, at_position),
     };
     let parts = scene.environment.parts();
+    // Another part is a product, a sum, and a difference of positions.
+    let others = parts.others() as f64;
+    let at_torque = at_torque + others * torque * roundings(format, 1.0, 1.0);
+    let at_position = at_position + others * angle * roundings(format, 0.0, 1.0);
     let at_torque = if parts.profile.is_some() && parts.count() > 1 {
         // A product of the table and a sum for each part; the face of a wall that is solved in the tick
         // changes the other parts.

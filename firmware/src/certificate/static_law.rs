@@ -6,12 +6,12 @@
 
 use super::linearity::{is_behind_spring, is_static_at_port};
 use super::loop_intervals::LoopIntervals;
-use super::model::{canceller_bound, switched_damping};
+use super::part::{dampers, switched_damping};
 use super::profile::{ExtremeSlopes, damper, is_motor};
 use super::window::Moments;
 use crate::coupling::Coupling;
 use crate::encoder_reading::EncoderReading;
-use crate::environment::{Environment, EnvironmentModel, Parts, Profile, Wall};
+use crate::environment::{Environment, EnvironmentModel, Profile, Wall};
 use crate::latency::Latency;
 use crate::passivity::interval::Interval;
 use crate::passivity::lagged::{Decay, left};
@@ -167,18 +167,16 @@ impl Law {
     /// `None` if no bound is known: for rational and stated environments, negative springs, motors and snap
     /// points.
     const fn of<E: EnvironmentModel>(environment: &Environment, n: &LoopIntervals) -> Option<Self> {
-        let Environment::Parts(Parts { canceller, wall, profile }) = environment else {
-            return None;
-        };
+        let Environment::Parts(parts) = environment else { return None };
         let mut sum = None;
-        if let Some(wall) = wall {
+        if let Some(wall) = &parts.wall {
             if wall.stiffness < 0.0 {
                 return None;
             }
             sum = Some(Self::of_wall(wall, n));
         }
-        if let Some(profile) = profile {
-            if !E::PROFILE.exists || environment.parts().count() > 1 && !E::PROFILE.is_composed {
+        if let Some(profile) = &parts.profile {
+            if !E::PROFILE.exists || parts.count() > 1 && !E::PROFILE.is_composed {
                 return None;
             }
             let law = some!(Self::of_profile::<E>(profile, n));
@@ -187,11 +185,11 @@ impl Law {
                 None => law,
             });
         }
-        if canceller.is_none() {
+        if parts.canceller.is_none() && parts.others() == 0 {
             return sum;
         }
-        let beside = or!(sum, Self::NONE);
-        beside.with_canceller::<E>(n)
+        let damping = some!(dampers::<E>(parts, n)).div(n.period);
+        Some(or!(sum, Self::NONE).plus(Self { damping, ..Self::NONE }))
     }
 
     /// [`needed_at_port`] of the law in a scene.
@@ -261,14 +259,6 @@ impl Law {
             damping: self.damping.add(other.damping),
             is_spring_somewhere: false,
         }
-    }
-
-    const fn with_canceller<E: EnvironmentModel>(self, n: &LoopIntervals) -> Option<Self> {
-        if !E::CANCELS_DAMPING {
-            return None;
-        }
-        let damping = some!(canceller_bound(n)).div(n.period);
-        Some(self.plus(Self { damping, ..Self::NONE }))
     }
 }
 

@@ -77,27 +77,33 @@ const fn requirement(range: Range) -> &'static str {
 
 /// Checks every number of a scene.
 pub(super) const fn check(scene: &Scene) -> Checked {
-    ok!(check_numbers(scene, ProfileUse::ANY));
+    ok!(check_numbers(scene, ProfileUse::ANY, false));
     if scene.latency.actuator_updates != 0 {
         ok!(check_updates(scene));
     }
     ok!(check_encoder(scene));
+    ok!(check_range(Parameter::Delay, scene.environment.parts().longest_delay() as f64));
     let Some(rational) = scene.environment.rational() else { return Ok(()) };
     ok!(check_coefficients(Parameter::Numerator, rational.numerator.as_slice()));
     check_coefficients(Parameter::Denominator, rational.denominator.as_slice())
 }
 
 /// The same without polynomials, on which no bound for a board depends. A program omits the code for the
-/// parts of torque profiles that its environment does not have, and the text if it only needs to know whether
-/// a problem exists.
+/// parts of torque profiles that its environment does not have, that for delays that no change alters, and the
+/// text if it only needs to know whether a problem exists.
 #[inline(always)]
-pub(super) const fn check_numbers(scene: &Scene, profile: ProfileUse) -> Checked {
+pub(super) const fn check_numbers(
+    scene: &Scene,
+    profile: ProfileUse,
+    has_fixed_delays: bool,
+) -> Checked {
     let environment = &scene.environment;
     let (own, numbers) = (scene.own_numbers(), environment.numbers());
-    let whole = [
-        (Parameter::Delay, environment.get(Parameter::Delay)),
-        (Parameter::UnitZeros, environment.get(Parameter::UnitZeros)),
-    ];
+    let whole = [Parameter::Delay, Parameter::UnitZeros];
+    let whole = match has_fixed_delays {
+        true => [(whole[0], None), (whole[1], None)],
+        false => [(whole[0], environment.get(whole[0])), (whole[1], environment.get(whole[1]))],
+    };
     let lists: [&[(Parameter, Option<f64>)]; 3] = [&own, &numbers, &whole];
     each!(list in 0..lists.len() => {
         each!(i in 0..lists[list].len() => {
@@ -178,7 +184,7 @@ const fn profile_of(environment: &Environment, parameter: Parameter) -> Option<&
 
 /// Whether the numbers of a sum agree, also those that have no name there.
 const fn check_sum(parts: &Parts, has: ProfileUse) -> Checked {
-    let Parts { canceller, wall, profile } = parts;
+    let Parts { canceller, wall, profile, .. } = parts;
     if parts.count() < 2 {
         return Ok(());
     }
@@ -190,7 +196,7 @@ const fn check_sum(parts: &Parts, has: ProfileUse) -> Checked {
     }
     let (Some(profile), true) = (profile, has.is_composed) else { return Ok(()) };
     if profile.delay == 0 {
-        let bound = "at least 1 where a wall or a canceller is beside the torque profile";
+        let bound = "at least 1 where another part is beside the torque profile";
         return must_be(Parameter::Delay, 0.0, bound, None);
     }
     let Some(wall) = wall else { return Ok(()) };

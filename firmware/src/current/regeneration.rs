@@ -88,7 +88,11 @@ impl ReturnedEnergy {
 const fn pushed(scene: &Scene, push: &Push) -> Option<Interval> {
     let torque = Interval::decimal(push.torque);
     let Some(coupling) = compliance(scene) else { return None };
-    let Parts { profile, wall, canceller } = scene.environment.parts();
+    let parts = scene.environment.parts();
+    if parts.others() > 0 {
+        return None;
+    }
+    let Parts { profile, wall, canceller, .. } = parts;
     let depth = match (profile, wall) {
         (None, Some(wall)) => match depth(wall, torque) {
             Some(depth) if coupling.is_zero() => return Some(at_the_port(wall, depth, push)),

@@ -1,8 +1,6 @@
 //! Any environment as data: for scenes that come from a file or over the wire, and for the certificate.
 
-use super::canceller::Canceller;
-use super::parts::Parts;
-use super::profile::Profile;
+use super::parts::{Parts, for_each_part};
 use super::rational::Rational;
 use super::stated::StatedModel;
 use super::wall::Wall;
@@ -30,27 +28,12 @@ impl Environment {
         }
     }
 
-    /// The canceller, if it has one.
-    pub const fn canceller(&self) -> Option<&Canceller> {
-        self.parts().canceller.as_ref()
-    }
-
-    /// The wall, if it has one.
-    pub const fn wall(&self) -> Option<&Wall> {
-        self.parts().wall.as_ref()
-    }
-
     /// The wall, mutable.
     pub const fn wall_mut(&mut self) -> Option<&mut Wall> {
         match self {
             Self::Parts(parts) => parts.wall.as_mut(),
             Self::Stated(_) | Self::Rational(_) => None,
         }
-    }
-
-    /// The torque profile, if it has one.
-    pub const fn profile(&self) -> Option<&Profile> {
-        self.parts().profile.as_ref()
     }
 
     /// Whether its torque jumps when a knob snaps from one detent to the next.
@@ -114,23 +97,21 @@ impl Parts {
     }
 }
 
-impl Canceller {
-    /// The environment of which it is the only part.
-    pub const fn alone(self) -> Environment {
-        Parts { canceller: Some(self), ..Parts::NONE }.sum()
-    }
-}
+macro_rules! of_parts {
+    ($($law:ident $part:ident: $data:ty,)+) => {
+        impl Environment {$(
+            #[doc = concat!("The ", stringify!($part), ", if it has one.")]
+            pub const fn $part(&self) -> Option<&$data> {
+                self.parts().$part.as_ref()
+            }
+        )+}
 
-impl Wall {
-    /// The environment of which it is the only part.
-    pub const fn alone(self) -> Environment {
-        Parts { wall: Some(self), ..Parts::NONE }.sum()
-    }
+        $(impl $data {
+            /// The environment of which it is the only part.
+            pub const fn alone(self) -> Environment {
+                Parts { $part: Some(self), ..Parts::NONE }.sum()
+            }
+        })+
+    };
 }
-
-impl Profile {
-    /// The environment of which it is the only part.
-    pub const fn alone(self) -> Environment {
-        Parts { profile: Some(self), ..Parts::NONE }.sum()
-    }
-}
+for_each_part!(of_parts);

@@ -1,8 +1,8 @@
 //! The part of an environment that cancels the device's own damping, so that the hand feels almost nothing:
 //! free mode.
 
-use super::delay_line::DelayLine;
-use super::law::{Law, LawContext, LawOf};
+use super::delay_line::{DelayLine, VariableDelay};
+use super::law::{AnyPart, Law, LawContext, LawOf};
 use super::velocity::{Velocity, Washout};
 use crate::build_error::BuildError;
 use crate::coupling::{Coupling, Response, Slopes};
@@ -59,6 +59,10 @@ fn high_pass<N: Number>(residual: f64, context: &LawContext) -> Result<Washout<N
 pub struct CancellerLaw<N: Number, D> {
     high_pass: Washout<N>,
     delay: D,
+}
+
+impl<N: Number> AnyPart<N> for Canceller {
+    type Law = CancellerLaw<N, VariableDelay<N>>;
 }
 
 impl<N: Number, D: DelayLine<N>> LawOf<N, Canceller> for CancellerLaw<N, D> {

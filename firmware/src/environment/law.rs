@@ -40,6 +40,12 @@ pub trait LawOf<N: Number, D>: Law<N> + Clone + core::fmt::Debug {
     fn law_of(part: &D, context: &LawContext) -> Result<Self, BuildError>;
 }
 
+/// The data of a part of an environment, with its law for scenes as data.
+pub trait AnyPart<N: Number>: Sized {
+    /// The law, of which all structure is chosen at run time.
+    type Law: LawOf<N, Self>;
+}
+
 /// An environment that can run in the number format `N`.
 pub trait Discretize<N: Number> {
     /// Its difference equation: only the state and the coefficients that it uses.

@@ -13,6 +13,7 @@ mod any;
 mod any_law;
 mod canceller;
 mod delay_line;
+mod drag;
 mod late;
 mod law;
 mod model;
@@ -31,11 +32,12 @@ pub use any::Environment;
 pub use any_law::AnyLaw;
 pub use canceller::{Canceller, CancellerLaw};
 pub use delay_line::{DelayLine, FixedDelay, VariableDelay};
+pub use drag::{Drag, DragLaw};
 pub use late::{Delayed, SupportsTiming};
-pub use law::{Discretize, Law, LawContext, LawOf};
+pub use law::{AnyPart, Discretize, Law, LawContext, LawOf};
 pub(crate) use model::sealed;
 pub use model::{EnvironmentModel, Memory, ProfileUse, StatedEnvironment};
-pub use parts::Parts;
+pub use parts::{PartSet, Parts};
 pub use profile::{
     AnySnap, Cell, Ends, FULL_SCALE, Holding, KNOB_MODES, KnotTable, Knots, Layout, MODES,
     MOST_KNOTS, Mode, ModeSelection, ModeTable, NoSnap, Outline, Profile, ProfileLaw, ProfileMode,

@@ -11,7 +11,7 @@
 
 use super::any::Environment;
 use super::law::LawContext;
-use super::parts::Parts;
+use super::parts::{PartSet, Parts};
 use super::stated::StatedModel;
 use crate::coupling::Coupling;
 use crate::parameter::NamedParameters;
@@ -128,9 +128,11 @@ impl ProfileUse {
 
 /// An environment for the certificate: one of this crate, or a [`StatedEnvironment`].
 pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
-    /// Whether it may cancel the device's damping. If not, the program of the environment omits the
-    /// code that certifies cancelled damping.
-    const CANCELS_DAMPING: bool;
+    /// The parts that it may have.
+    const PARTS: PartSet;
+
+    /// Whether its delays are those of its type, so that no change of a parameter alters them.
+    const HAS_FIXED_DELAYS: bool = false;
 
     /// Its possible use of a torque profile.
     const PROFILE: ProfileUse;
@@ -149,7 +151,7 @@ pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
 impl<E: StatedEnvironment> sealed::Sealed for E {}
 
 impl<E: StatedEnvironment> EnvironmentModel for E {
-    const CANCELS_DAMPING: bool = false;
+    const PARTS: PartSet = PartSet::NONE;
     const PROFILE: ProfileUse = ProfileUse::NONE;
     const MEMORY: Memory = Memory::None;
 
@@ -161,7 +163,7 @@ impl<E: StatedEnvironment> EnvironmentModel for E {
 impl sealed::Sealed for Environment {}
 
 impl EnvironmentModel for Environment {
-    const CANCELS_DAMPING: bool = true;
+    const PARTS: PartSet = PartSet::ALL;
     const PROFILE: ProfileUse = ProfileUse::ANY;
     const MEMORY: Memory = Memory::Any;
 

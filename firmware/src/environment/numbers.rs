@@ -2,6 +2,7 @@
 
 use super::any::Environment;
 use super::canceller::Canceller;
+use super::drag::Drag;
 use super::parts::Parts;
 use super::profile::{Ends, ModeSelection, Profile};
 use super::stated::{StatedBound, StatedModel};
@@ -29,10 +30,15 @@ impl Environment {
         let mut changed = *self;
         let is_whole = parameter.range().admits(value);
         match (parameter, &mut changed) {
-            (Parameter::Delay, _) if is_whole => match changed.delay_mut() {
-                Some(delay) => *delay = value as usize,
-                None => return None,
-            },
+            (Parameter::Delay, _) if is_whole => {
+                match changed.delay_mut() {
+                    Some(delay) => *delay = value as usize,
+                    None => return None,
+                }
+                if let Self::Parts(parts) = &mut changed {
+                    parts.align_drag();
+                }
+            }
             (
                 Parameter::UnitZeros,
                 Self::Rational(rational) | Self::Stated(StatedModel::Linear(rational)),
@@ -49,6 +55,9 @@ impl Environment {
                     Some(selected) => *profile = selected,
                     None => return None,
                 }
+            }
+            (Parameter::Drag, Self::Parts(parts)) if parts.drag.is_none() => {
+                *parts = parts.with_drag(value);
             }
             _ => match changed.number_mut(parameter) {
                 Some(place) => *place = value,
@@ -117,6 +126,7 @@ impl Environment {
             Self::Parts(Parts {
                 profile: Some(Profile { modes: Some(ModeSelection { mode: value, .. }), .. }), ..
             }),
+        Drag: Self::Parts(Parts { drag: Some(Drag { damping: value, .. }), .. }),
         StatedGain: Self::Stated(StatedModel::Bounded { bound: StatedBound { gain: value, .. }, .. }),
     }
 }

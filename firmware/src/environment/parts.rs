@@ -1,5 +1,5 @@
-//! Environments as sums of parts, all at the same position `x_E`: a canceller of the device's damping, a wall
-//! and a torque profile, each of them at most once.
+//! Environments as sums of parts, all at the same position `x_E`: a canceller of the device's damping, a wall,
+//! a torque profile and a drag, each of them at most once.
 //!
 //! Their passivity indices add, with a torque limit on the sum as well (theory, section 14.3). In a sum the
 //! profile is late by at least one sample, because an undelayed profile is solved in front of the coupling,
@@ -7,10 +7,13 @@
 //! stops.
 //!
 //! If parts have parameters of the same name, `stiffness`, `damping` and `face` are the wall's; `torque`,
-//! `count`, `centre`, `from`, `to` and `delay` the profile's; `residual` the canceller's. Without a wall,
-//! `stiffness` is that of the end stops.
+//! `count`, `centre`, `from`, `to` and `delay` the profile's; `residual` the canceller's; `drag` the drag's.
+//! Without a wall, `stiffness` is that of the end stops.
+
+use core::fmt::Debug;
 
 use super::canceller::Canceller;
+use super::drag::Drag;
 use super::profile::Profile;
 use super::wall::Wall;
 
@@ -24,44 +27,160 @@ pub struct Parts {
     pub wall: Option<Wall>,
     /// A torque profile.
     pub profile: Option<Profile>,
+    /// A damper that acts everywhere.
+    pub drag: Option<Drag>,
 }
 
+/// Gives a macro all parts, in the order in which their torques are added: a type parameter for the law, the
+/// name and the data of each. The first of them has the delay of the sum.
+macro_rules! for_each_part {
+    ($macro:ident) => {
+        $macro! {
+            P profile: super::profile::Profile,
+            W wall: super::wall::Wall,
+            D drag: super::drag::Drag,
+            C canceller: super::canceller::Canceller,
+        }
+    };
+}
+pub(super) use for_each_part;
+
+macro_rules! parts {
+    ($($law:ident $part:ident: $data:ty,)+) => {
+        impl Parts {
+            /// No part: no torque.
+            pub const NONE: Self = Self { $($part: None),+ };
+
+            /// The number of kinds of parts.
+            pub const KINDS: usize = [$(stringify!($part)),+].len();
+
+            /// The number of parts.
+            pub const fn count(&self) -> usize {
+                0 $(+ self.$part.is_some() as usize)+
+            }
+
+            /// Whether a part is late by at least one sample, and no part is not.
+            pub const fn is_late(&self) -> bool {
+                $(if let Some(part) = &self.$part && part.delay == 0 {
+                    return false;
+                })+
+                self.count() > 0
+            }
+
+            /// The delay in whole samples: that of the first part.
+            pub(super) const fn delay(&self) -> usize {
+                $(if let Some(part) = &self.$part {
+                    return part.delay;
+                })+
+                0
+            }
+
+            /// The longest delay of a part in whole samples.
+            pub(crate) const fn longest_delay(&self) -> usize {
+                let mut longest = 0;
+                $(if let Some(part) = &self.$part && part.delay > longest {
+                    longest = part.delay;
+                })+
+                longest
+            }
+
+            /// [`Parts::delay`], mutable; `None` without parts.
+            pub(super) const fn delay_mut(&mut self) -> Option<&mut usize> {
+                $(if let Some(part) = &mut self.$part {
+                    return Some(&mut part.delay);
+                })+
+                None
+            }
+
+            /// The parts by their names.
+            pub fn named(&self) -> impl Iterator<Item = (&'static str, &dyn Debug)> {
+                let all = [$(
+                    (stringify!($part), self.$part.as_ref().map(|part| part as &dyn Debug))
+                ),+];
+                all.into_iter().rev().filter_map(|(name, part)| Some((name, part?)))
+            }
+        }
+
+        /// Which parts a type of environment may have. Its program omits the certificate's code for some of the
+        /// others, and rejects a scene that has them.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct PartSet {$(
+            #[doc = concat!("Whether it may have a ", stringify!($part), ".")]
+            pub $part: bool,
+        )+}
+
+        impl PartSet {
+            /// None.
+            pub const NONE: Self = Self::of(&Parts::NONE);
+            /// All.
+            pub const ALL: Self = Self { $($part: true),+ };
+
+            /// Whether there may be another part than a wall and a torque profile, whose torque is a line at all
+            /// positions.
+            pub(crate) const fn has_lines(self) -> bool {
+                (0 $(+ self.$part as usize)+) > self.wall as usize + self.profile as usize
+            }
+
+            /// Those of a program's environment.
+            pub(crate) const fn of(parts: &Parts) -> Self {
+                Self { $($part: parts.$part.is_some()),+ }
+            }
+        }
+    };
+}
+for_each_part!(parts);
+
 impl Parts {
-    /// No part: no torque.
-    pub const NONE: Self = Self { canceller: None, wall: None, profile: None };
-
-    /// The number of parts.
-    pub const fn count(&self) -> usize {
-        self.canceller.is_some() as usize
-            + self.wall.is_some() as usize
-            + self.profile.is_some() as usize
+    /// Makes the wall, and the parts that are as late as it, late by this many samples.
+    pub const fn set_wall_delay(&mut self, delay: usize) {
+        if let Some(wall) = &mut self.wall {
+            wall.delay = delay;
+        }
+        if let Some(canceller) = &mut self.canceller {
+            canceller.delay = delay;
+        }
+        self.align_drag();
     }
 
-    /// Whether a part is late by at least one sample, and no part is not.
-    pub const fn is_late(&self) -> bool {
-        self.count() > 0
-            && !matches!(self.canceller, Some(Canceller { delay: 0, .. }))
-            && !matches!(self.wall, Some(Wall { delay: 0, .. }))
-            && !matches!(self.profile, Some(Profile { delay: 0, .. }))
-    }
-
-    /// The delay in whole samples: the profile's, else the wall's, else the canceller's.
-    pub(super) const fn delay(&self) -> usize {
-        match self {
-            Self { profile: Some(profile), .. } => profile.delay,
-            Self { wall: Some(wall), .. } => wall.delay,
-            Self { canceller: Some(canceller), .. } => canceller.delay,
-            Self { canceller: None, wall: None, profile: None } => 0,
+    /// Makes a drag as late as the first of the other parts: a scene file has one delay for both.
+    pub(super) const fn align_drag(&mut self) {
+        let delay = self.delay();
+        if let Some(drag) = &mut self.drag {
+            drag.delay = delay;
         }
     }
 
-    /// The same, mutable; `None` without parts.
-    pub(super) const fn delay_mut(&mut self) -> Option<&mut usize> {
-        match self {
-            Self { profile: Some(profile), .. } => Some(&mut profile.delay),
-            Self { wall: Some(wall), .. } => Some(&mut wall.delay),
-            Self { canceller: Some(canceller), .. } => Some(&mut canceller.delay),
-            Self { canceller: None, wall: None, profile: None } => None,
+    /// The same with a drag of this damping in N m s/rad, as late as the others. A canceller is then not
+    /// late.
+    pub(super) const fn with_drag(self, damping: f64) -> Self {
+        let mut parts = self;
+        parts.drag = Some(Drag::of(damping, self.delay()));
+        if let Some(canceller) = &mut parts.canceller {
+            canceller.delay = 0;
         }
+        parts
+    }
+
+    /// The number of parts besides a canceller, a wall and a torque profile: proofs about these that do not
+    /// add part by part do not cover others.
+    pub const fn others(&self) -> usize {
+        let Self { canceller, wall, profile, .. } = self;
+        let known = canceller.is_some() as usize + wall.is_some() as usize;
+        self.count() - known - profile.is_some() as usize
+    }
+
+    /// Damping in N m s/rad of the dampers that act everywhere, whether a wall is in contact or not.
+    pub fn damping_everywhere(&self) -> f64 {
+        let drag = self.drag.map_or(0.0, |drag| drag.damping);
+        drag + self.profile.as_ref().map_or(0.0, Profile::damping)
+    }
+
+    /// Whether the torque depends on a velocity.
+    pub const fn is_damped(&self) -> bool {
+        let Self { canceller, wall, profile, drag } = self;
+        canceller.is_some()
+            || matches!(wall, Some(wall) if wall.damping() != 0.0)
+            || matches!(profile, Some(profile) if profile.damping() != 0.0)
+            || matches!(drag, Some(drag) if drag.damping != 0.0)
     }
 }

@@ -1,14 +1,8 @@
 //! The law of a sum of parts.
 
-use super::canceller::{Canceller, CancellerLaw};
-use super::delay_line::VariableDelay;
-use super::law::{Law, LawContext, LawOf};
-use super::parts::Parts;
-use super::profile::{AnySnap, Profile, ProfileLaw};
+use super::law::{AnyPart, Law, LawContext, LawOf};
+use super::parts::{Parts, for_each_part};
 use super::turn::Turn;
-use super::velocity::AnyVelocity;
-use super::wall::Wall;
-use super::wall_law::{AnyPlace, WallLaw};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
 use crate::number::Number;
@@ -85,89 +79,80 @@ part_of_a_program! {
     };
 }
 
-/// The sum of a canceller, a wall and a torque profile.
-///
-/// It adds the wall to the profile and the canceller to both, so that the torques of every sum are the same
-/// bits, however its parts are stored.
-#[derive(Clone, Debug)]
-pub struct SumLaw<C, W, P> {
-    canceller: C,
-    wall: W,
-    profile: P,
-}
+macro_rules! sum_law {
+    ($($law:ident $part:ident: $data:ty,)+) => {
+        /// The sum of the laws of all parts.
+        ///
+        /// It adds them in one order, so that the torques of every sum are the same bits, however its parts are
+        /// stored.
+        #[derive(Clone, Debug)]
+        pub struct SumLaw<$($law),+> {
+            $($part: $law),+
+        }
 
-/// The law of any sum of parts.
-pub type AnySumLaw<N> = SumLaw<
-    Option<CancellerLaw<N, VariableDelay<N>>>,
-    Option<WallLaw<N, AnyVelocity<N>, AnyPlace<N>, VariableDelay<N>>>,
-    Option<ProfileLaw<N, &'static [i16], AnyVelocity<N>, VariableDelay<N>, AnySnap<N>>>,
->;
+        /// The law of any sum of parts.
+        pub type AnySumLaw<N> = SumLaw<$(Option<<$data as AnyPart<N>>::Law>),+>;
 
-impl<N: Number, C: Part<N>, W: Part<N>, P: Part<N>> LawOf<N, Parts> for SumLaw<C, W, P>
-where
-    C::Law: LawOf<N, Canceller>,
-    W::Law: LawOf<N, Wall>,
-    P::Law: LawOf<N, Profile>,
-{
-    fn law_of(parts: &Parts, context: &LawContext) -> Result<Self, BuildError> {
-        let Parts { canceller, wall, profile } = parts;
-        Ok(Self {
-            canceller: C::of(canceller.as_ref(), context)?,
-            wall: W::of(wall.as_ref(), context)?,
-            profile: P::of(profile.as_ref(), context)?,
-        })
-    }
-}
+        impl<N: Number, $($law: Part<N>),+> LawOf<N, Parts> for SumLaw<$($law),+>
+        where
+            $($law::Law: LawOf<N, $data>),+
+        {
+            fn law_of(parts: &Parts, context: &LawContext) -> Result<Self, BuildError> {
+                Ok(Self { $($part: $law::of(parts.$part.as_ref(), context)?),+ })
+            }
+        }
 
-/// An expression for the law of each of these parts, in this order.
-macro_rules! each_law {
-    ($sum:ident.{$($part:ident),+}.$laws:ident(), $law:ident => $value:expr) => {
-        $(for $law in $sum.$part.$laws() {
-            $value;
-        })+
+        impl<N: Number, $($law: Part<N>),+> Law<N> for SumLaw<$($law),+> {
+            #[inline(always)]
+            fn evaluate(&self, x: N) -> Response<N> {
+                let mut sum = None;
+                $(for law in self.$part.laws() {
+                    sum = Some(added(sum, law.evaluate(x)));
+                })+
+                sum.unwrap_or(Response::Held(N::ZERO))
+            }
+
+            #[inline(always)]
+            fn update(&mut self, x_e: N) {
+                $(for law in self.$part.laws_mut() {
+                    law.update(x_e);
+                })+
+            }
+
+            fn rest_at(&mut self, x_e: N) {
+                $(for law in self.$part.laws_mut() {
+                    law.rest_at(x_e);
+                })+
+            }
+
+            // Only a profile repeats in every turn.
+            #[inline(always)]
+            fn turn(&mut self) -> Option<&mut Turn<N>> {
+                self.profile.laws_mut().first_mut().and_then(Law::turn)
+            }
+
+            fn shift(&mut self, by: N) {
+                $(for law in self.$part.laws_mut() {
+                    law.shift(by);
+                })+
+            }
+
+            // Only a profile snaps.
+            fn hysteresis(&self) -> f64 {
+                self.profile.laws().first().map_or(f64::INFINITY, Law::hysteresis)
+            }
+
+            fn slopes(&self) -> Slopes {
+                let mut sum = Slopes::default();
+                $(for law in self.$part.laws() {
+                    sum = sum.plus(law.slopes());
+                })+
+                sum
+            }
+        }
     };
 }
-
-impl<N: Number, C: Part<N>, W: Part<N>, P: Part<N>> Law<N> for SumLaw<C, W, P> {
-    #[inline(always)]
-    fn evaluate(&self, x: N) -> Response<N> {
-        let mut sum = None;
-        each_law!(self.{profile, wall, canceller}.laws(), law => {
-            sum = Some(added(sum, law.evaluate(x)));
-        });
-        sum.unwrap_or(Response::Held(N::ZERO))
-    }
-
-    #[inline(always)]
-    fn update(&mut self, x_e: N) {
-        each_law!(self.{canceller, wall, profile}.laws_mut(), law => law.update(x_e));
-    }
-
-    fn rest_at(&mut self, x_e: N) {
-        each_law!(self.{canceller, wall, profile}.laws_mut(), law => law.rest_at(x_e));
-    }
-
-    // Only a profile repeats in every turn.
-    #[inline(always)]
-    fn turn(&mut self) -> Option<&mut Turn<N>> {
-        self.profile.laws_mut().first_mut().and_then(Law::turn)
-    }
-
-    fn shift(&mut self, by: N) {
-        each_law!(self.{canceller, wall, profile}.laws_mut(), law => law.shift(by));
-    }
-
-    // Only a profile snaps.
-    fn hysteresis(&self) -> f64 {
-        self.profile.laws().first().map_or(f64::INFINITY, Law::hysteresis)
-    }
-
-    fn slopes(&self) -> Slopes {
-        let mut sum = Slopes::default();
-        each_law!(self.{wall, canceller, profile}.laws(), law => sum = sum.plus(law.slopes()));
-        sum
-    }
-}
+for_each_part!(sum_law);
 
 #[inline(always)]
 fn added<N: Number>(sum: Option<Response<N>>, part: Response<N>) -> Response<N> {

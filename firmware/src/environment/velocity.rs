@@ -50,6 +50,14 @@ pub struct Difference<N: Number> {
     previous: N,
 }
 
+impl<N: Number> Difference<N> {
+    /// The torque in N m with the environment at `x` (rad).
+    #[inline(always)]
+    pub(super) fn torque(&self, x: N) -> N {
+        x.minus(self.previous).times(self.gain)
+    }
+}
+
 impl<N: Number> Velocity<N> for Difference<N> {
     fn of(damper: Option<&Damper>, period: f64) -> Result<Self, BuildError> {
         let Some(Damper { damping, filter: None }) = damper else {
@@ -61,7 +69,7 @@ impl<N: Number> Velocity<N> for Difference<N> {
 
     #[inline(always)]
     fn add_to(&self, torque: N, x: N) -> N {
-        torque.plus(x.minus(self.previous).times(self.gain))
+        torque.plus(self.torque(x))
     }
 
     #[inline(always)]

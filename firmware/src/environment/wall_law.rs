@@ -1,8 +1,8 @@
 //! The law of every wall: a spring with an optional damper, face and delay.
 
-use super::delay_line::DelayLine;
-use super::law::{Law, LawContext, LawOf};
-use super::velocity::Velocity;
+use super::delay_line::{DelayLine, VariableDelay};
+use super::law::{AnyPart, Law, LawContext, LawOf};
+use super::velocity::{AnyVelocity, Velocity};
 use super::wall::{Side, Wall};
 use crate::build_error::BuildError;
 use crate::coupling::{Contact, Response, Slopes};
@@ -144,6 +144,10 @@ impl<N: Number, V: Velocity<N>, S: Place<N>, D: DelayLine<N>> WallLaw<N, V, S, D
             Response::Line(torque)
         }
     }
+}
+
+impl<N: Number> AnyPart<N> for Wall {
+    type Law = WallLaw<N, AnyVelocity<N>, AnyPlace<N>, VariableDelay<N>>;
 }
 
 impl<N, V, S, D> LawOf<N, Wall> for WallLaw<N, V, S, D>

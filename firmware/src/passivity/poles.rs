@@ -67,9 +67,9 @@ words! {
     NotBelowBound "without a coupling the bound on what the scene needs is not below delta, and it is \
         not known whether it needs as much",
     NoSnapBound "no proof is known for a snap point whose torque comes more than one sample late, \
-        without a coupling, or beside a wall or a canceller: the jump of each snap would add energy in \
-        every late tick; give it a delay of 0 or 1, a coupling spring or, where torques lag, the \
-        matched coupling, and nothing beside it",
+        without a coupling, or beside another part: the jump of each snap would add energy in every \
+        late tick; give it a delay of 0 or 1, a coupling spring or, where torques lag, the matched \
+        coupling, and nothing beside it",
     NoProofWithInl "no proof is known for a nonlinear encoder with this coupling and these times: leave \
         the coupling out, or correct the angle and state the linearity of the rest",
     }

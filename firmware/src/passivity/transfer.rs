@@ -172,6 +172,14 @@ impl Transfer {
     /// a small board's stack has no room for the polynomials of all of them.
     #[inline(never)]
     pub(crate) const fn add(&mut self, other: &Self) -> bool {
+        let later = if self.shift > other.shift { self.shift } else { other.shift };
+        if later < 0 {
+            // Their common delay would raise the degree twice.
+            self.shift -= later;
+            let is_in_range = self.add(&Self { shift: other.shift - later, ..*other });
+            self.shift += later;
+            return is_in_range;
+        }
         let ones = positive(if self.ones < other.ones { self.ones } else { other.ones });
         let mut numerator = self.numerator;
         let mut of_other = other.numerator;

@@ -6,7 +6,9 @@ use proptest::prelude::*;
 use super::*;
 use crate::encoder::RawCount;
 use crate::energy::NoAction;
-use crate::environment::{Canceller, KNOB_MODES, Knots, ModeTable, Profile, ProfileMode, Shape};
+use crate::environment::{
+    Canceller, Drag, KNOB_MODES, Knots, ModeTable, Profile, ProfileMode, Shape,
+};
 use crate::scene::{Latency, TimeRange};
 use crate::servo::{Latched, Output, Servo};
 use crate::test_scene::{self, TRANSDUCERS};
@@ -39,11 +41,16 @@ const SOFT: Wall = Wall::damped(5.0, 0.002, 1);
 const LATE: Wall = Wall::damped(3.0, 0.001, 2);
 
 const fn free_mode(residual: f64, wall: Option<Wall>, profile: Option<Profile>) -> Environment {
-    Parts { canceller: Some(Canceller::to(residual)), wall, profile }.sum()
+    Parts { canceller: Some(Canceller::to(residual)), wall, profile, drag: None }.sum()
 }
 
 const fn beside(wall: Wall, profile: Profile) -> Environment {
-    Parts { canceller: None, wall: Some(wall), profile: Some(profile) }.sum()
+    Parts { wall: Some(wall), profile: Some(profile), ..Parts::NONE }.sum()
+}
+
+/// The same with a drag of this damping and delay.
+const fn dragging(environment: Environment, damping: f64, delay: usize) -> Environment {
+    Parts { drag: Some(Drag::of(damping, delay)), ..*environment.parts() }.sum()
 }
 
 static ENDLESS: Knots<16> = Knots::of(&[Shape::detents(24, 0.02)]);
@@ -118,6 +125,11 @@ programs![
     scene(beside(UNDELAYED.behind(0.3), knob(2))),
     scene(free_mode(0.018, Some(LATE.behind(0.3)), Some(knob(2)))),
     scene(free_mode(0.018, Some(SPRING), Some(knob(2)))),
+    scene(Drag::of(0.01, 0).alone()),
+    scene(dragging(DAMPED.behind(0.05).alone(), 0.004, 1)),
+    scene(dragging(UNDELAYED.behind(0.05).alone(), -0.004, 2)),
+    scene(dragging(free_mode(0.018, Some(LATE.behind(0.3)), Some(knob(2))), 0.001, 0)),
+    scene(dragging(free_mode(0.018, None, Some(endless(1))), -0.001, 3)),
     // Without lags, with one, with three, with whole samples, and with updates within a period.
     matched(free_mode(0.018, Some(UNDELAYED.behind(0.3)), Some(knob(2))), delayed(2e-4)),
     matched(Profile::of(&SNAP_ENDLESS, 0).alone(), Latency::delayed(5e-4)),
@@ -190,6 +202,7 @@ fn is_its_data<S: SceneType, N: Number>(counts: &[i32], is_felt: bool) {
         Parameter::Filter,
         Parameter::Face,
         Parameter::Residual,
+        Parameter::Drag,
         Parameter::ProfileTorque,
         Parameter::Centre,
         Parameter::From,
@@ -288,7 +301,7 @@ fn a_program_renders_no_other_structure() {
     crate::scene_type!(Of: CERTIFIED);
     let context = CERTIFIED.scene().context();
     let law = |wall: Option<Wall>, profile: Profile| {
-        let parts = Parts { canceller: None, wall, profile: Some(profile) };
+        let parts = Parts { wall, profile: Some(profile), ..Parts::NONE };
         <Of as SceneType>::Law::<f32>::law_of(&parts, &context).map(|_| ())
     };
     assert_eq!(law(Some(SOFT), knob(1)), Ok(()));

@@ -83,7 +83,7 @@ fn a_change_is_made_where_it_belongs_and_nowhere_else() {
         assert_eq!(parameter(name), Some(wanted));
         assert_eq!(super::name(wanted), Some(name));
         let filtered = Wall::damped(2.0, 0.01, 1).filtered(0.5);
-        let wall = free_mode_wall(0.02, filtered.behind(0.1));
+        let wall = free_mode_wall(0.02, filtered.behind(0.1)).with(Parameter::Drag, 0.01).unwrap();
         let value = 0.125 + i as f64;
         // No scene has the numbers of both, and those of several modes have no number but the mode's.
         match wanted {
@@ -153,7 +153,7 @@ fn what_cannot_be_changed_is_refused_in_a_sentence() {
     assert_eq!(
         refusal(&[(Parameter::Period, 0.002)]),
         "the period is fixed while the program runs; the tunable parameters are stiffness, damping, \
-         filter, face, residual, coupling.stiffness, torque_limit, torque, count, centre, mode"
+         filter, face, residual, coupling.stiffness, torque_limit, torque, count, centre, mode, drag"
     );
     assert!(refusal(&[(Parameter::DeviceDamping, 1.0)]).starts_with("the device damping is fixed"));
     let twice = [(Parameter::Face, 0.1), (Parameter::Stiffness, 1.0), (Parameter::Face, 0.1)];

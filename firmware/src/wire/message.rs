@@ -19,10 +19,14 @@ use crate::reset::ResetCause;
 use crate::servo::Step;
 use crate::servo_loop::State;
 
+/// Version of the messages. Board and host must have the same; [`ToBoard::Hello`] and [`ToHost::Welcome`]
+/// have the same beginning in all versions, so that each side can report its version.
+pub const PROTOCOL: u16 = 10;
+
 /// Longest message to a board, in bytes: the longest set.
 pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;
 /// Longest message to the host, in bytes: a full batch of ticks, or the description of a program.
-pub const LONGEST_TO_HOST: usize = 360;
+pub const LONGEST_TO_HOST: usize = 372;
 
 /// The host's number for a request; the answer has the same number.
 pub type Id = u16;
@@ -73,7 +77,7 @@ pub enum ToHost<S> {
     /// The identity of the board. The same in every version of the protocol, so that a host of another
     /// version can report the mismatch.
     Welcome {
-        /// [`super::PROTOCOL`] of the board.
+        /// [`PROTOCOL`] of the board.
         protocol: u16,
         /// Name of the program.
         program: S,

@@ -17,12 +17,8 @@ pub mod telemetry;
 pub use decoder::{Decoder, Discarded};
 pub use frame::{CHECKSUM, TooLong, encode, largest_frame};
 pub use link::{BroughtUp, Link, Port, bring_up};
+pub use message::PROTOCOL;
 pub use session::{BoardInfo, Session};
-
-/// Version of the messages. Board and host must have the same; [`message::ToBoard::Hello`] and
-/// [`message::ToHost::Welcome`] have the same beginning in all versions, so that each side can report its
-/// version.
-pub const PROTOCOL: u16 = 9;
 
 #[cfg(test)]
 mod tests;

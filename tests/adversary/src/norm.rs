@@ -144,7 +144,8 @@ impl Errors {
     /// The torque of the environment, at the position where it is: a wall that switches or is
     /// clipped included. `None`: of another environment.
     pub fn alone(scene: &Scene, format: Format, bound: f64) -> Option<Self> {
-        let Environment::Parts(Parts { canceller, wall, profile }) = &scene.environment else {
+        let Environment::Parts(Parts { canceller, wall, profile, drag }) = &scene.environment
+        else {
             return None;
         };
         let period = scene.timing.period;
@@ -171,6 +172,7 @@ impl Errors {
             canceller.as_ref().map(of_canceller),
             wall.as_ref().map(of_wall),
             profile.as_ref().map(of_profile),
+            drag.as_ref().map(|drag| washout(drag.damping, 1.0)),
         ]
         .map(Option::unwrap_or_default);
         let position = parts.iter().map(|part| part.0).sum();

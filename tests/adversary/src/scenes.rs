@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use haptic_servo::certificate::{PassivityProblem, TimingError, assess_in};
 use haptic_servo::encoder::CounterWidth;
 use haptic_servo::environment::{
-    Canceller, Coefficients, Damper, Environment, Parts, Rational, Side, Wall,
+    Canceller, Coefficients, Damper, Drag, Environment, Parts, Rational, Side, Wall,
 };
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
@@ -387,7 +387,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             let delay = rng.random_range(0..=2);
             let wall = Some(wall(rng, unit, delta, delay, reach));
             let canceller = Some(Canceller::to(residual));
-            scene.environment = Parts { canceller, wall, profile: None }.sum();
+            scene.environment = Parts { canceller, wall, ..Parts::NONE }.sum();
             if rng.random_bool(0.3) { Knob::Residual } else { Knob::Gain }
         }
         Kind::Rational | Kind::Unstable => {
@@ -413,6 +413,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
                 canceller: (which > 0).then_some(Canceller::to(residual)),
                 wall: (which < 2).then_some(beside),
                 profile: Some(profile),
+                drag: None,
             }
             .sum();
             Knob::Gain
@@ -425,6 +426,14 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
             Knob::Coupling
         }
     };
+    if let Environment::Parts(parts) = &mut scene.environment
+        && matches!(kind, Kind::Wall | Kind::FreeModeWall | Kind::Sum)
+        && rng.random_bool(0.2)
+    {
+        let damping =
+            delta * log_uniform(rng, 0.03, 0.6) * if rng.random_bool(0.7) { 1.0 } else { -1.0 };
+        parts.drag = Some(Drag::of(damping, rng.random_range(least..=2)));
+    }
     let knob = match scene.coupling {
         Coupling::Spring { .. } if rng.random_bool(0.15) => Knob::Coupling,
         _ => knob,
@@ -787,7 +796,9 @@ fn another(rng: &mut impl Rng, scene: &Scene, size: f64, format: Numbers) -> Opt
         Environment::Parts(Parts { profile: None, .. }) => {
             other = scaled(&other, Knob::Residual, log_uniform(rng, 0.1, 1.0));
         }
-        Environment::Parts(Parts { canceller: None, wall: None, profile: Some(profile) }) => {
+        Environment::Parts(Parts {
+            canceller: None, wall: None, profile: Some(profile), ..
+        }) => {
             let mode = f64::from(rng.random_range(1..11_u8));
             match profile.selecting(mode) {
                 Some(selected) => *profile = selected,

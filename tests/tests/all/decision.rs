@@ -97,7 +97,7 @@ fn wall(rng: &mut ChaCha8Rng, delay: usize, coupling: Coupling) -> Scene {
         device: Device { inertia: 2.2e-5, damping, passivity: None },
         timing: Timing { period, worst_period: rng.random_bool(0.2).then_some(0.0015) },
         coupling,
-        environment: Parts { canceller, wall: Some(wall), profile: None }.sum(),
+        environment: Parts { canceller, wall: Some(wall), ..Parts::NONE }.sum(),
         latency: Latency::NONE,
         torque_limit: rng.random_bool(0.1).then_some(1.0),
     }

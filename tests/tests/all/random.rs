@@ -55,9 +55,10 @@ fn environments_with_poles_near_the_circle() {
 }
 
 #[test]
-fn walls_springs_and_free_modes() {
+fn walls_springs_free_modes_and_drags() {
     rare(300, judge(300, scenes::wall));
     rare(300, judge(300, scenes::free));
+    rare(300, judge(300, scenes::dragging));
 }
 
 /// Scenes a hair from the line, behind a coupling a few last places off the standard one, where
@@ -138,7 +139,11 @@ fn coefficients_as_they_run() {
     let (mut judged, mut refused, mut saved) = (0, [0; 3], [0; 3]);
     for seed in 0..24 {
         let rng = &mut ChaCha8Rng::seed_from_u64(seed);
-        let drawn = if seed % 4 == 0 { scenes::free(rng) } else { scenes::wall(rng) };
+        let drawn = match seed % 4 {
+            0 => scenes::free(rng),
+            1 => scenes::dragging(rng),
+            _ => scenes::wall(rng),
+        };
         let own = drawn.scene.device.damping / drawn.scene.timing.period;
         let Some(line) = line(&drawn.scene, own) else { continue };
         for step in [-1e-3, -1e-6, -1e-7, -2e-8, -3e-9, 3e-9, 2e-8, 1e-7, 1e-6, 1e-3] {

@@ -1,5 +1,5 @@
 use haptic_servo::certificate::Certified;
-use haptic_servo::environment::{Canceller, Knots, Parts, Profile, Shape, Wall};
+use haptic_servo::environment::{Canceller, Drag, Knots, Parts, Profile, Shape, Wall};
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// Torque over angle: a table, which stays in flash.
@@ -12,6 +12,7 @@ pub const SCENE: Scene = Scene {
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: Parts {
         canceller: Some(Canceller::to(0.018)),
+        drag: Some(Drag { damping: 0.0005, delay: 1 }),
         wall: Some(Wall::damped(2.0, 0.001, 1).behind(1.2)),
         profile: Some(Profile::of(&KNOTS, 1)),
     }

@@ -257,10 +257,7 @@ impl Search {
         let Environment::Parts(parts) = &mut scene.environment else { return None };
         let delay = usize::from(is_latched);
         parts.wall.as_mut()?.damper = damper;
-        parts.wall.as_mut()?.delay = delay;
-        if let Some(canceller) = &mut parts.canceller {
-            canceller.delay = delay;
-        }
+        parts.set_wall_delay(delay);
         let latency = &mut scene.latency;
         let encoder = latency.encoder;
         if encoder.window > 0.0 {

@@ -2,8 +2,10 @@
 
 pub mod layout;
 
+use std::collections::BTreeSet;
+
 use haptic_servo::environment::{
-    Canceller, Coefficients, Damper, Environment, Profile, Rational, Shape, Side, Wall,
+    Canceller, Coefficients, Damper, Environment, Parts, Profile, Rational, Shape, Side, Wall,
 };
 use haptic_servo::scene::{EncoderReading, Latency, TimeRange};
 
@@ -12,20 +14,6 @@ use super::profile::Shapes;
 
 /// A text of Rust, or the reason why there is none.
 pub type Written = Result<String, String>;
-
-/// What an environment and its table may be made of.
-const NAMES: [&str; 10] = [
-    "Canceller",
-    "Coefficients",
-    "Ends",
-    "Environment",
-    "Knots",
-    "Parts",
-    "Profile",
-    "Rational",
-    "Shape",
-    "Wall",
-];
 
 /// The constants of a program.
 pub struct Constants {
@@ -58,8 +46,8 @@ pub fn of(file: &SceneFile) -> Result<Constants, String> {
         (Some(profile), Some(shapes)) => knots(shapes, profile.outline().knots) + "\n",
         _ => String::new(),
     };
-    let is_used = |name: &&str| knots.contains(*name) || environment.contains(*name);
-    let names: Vec<_> = NAMES.into_iter().filter(is_used).collect();
+    let names: BTreeSet<_> = types(&knots).chain(types(&environment)).collect();
+    let names = Vec::from_iter(names);
     let mut of_scene = vec!["Coupling", "Device", "Latency", "Scene", "Timing"];
     if scene.latency != Latency::NONE {
         of_scene.insert(4, "TimeRange");
@@ -86,6 +74,18 @@ pub fn of(file: &SceneFile) -> Result<Constants, String> {
     );
     let environment = imports("haptic_servo::environment", &names);
     Ok(Constants { environment, scene: imports("haptic_servo::scene", &of_scene), items })
+}
+
+/// The types that lines of code name by themselves, and not within another.
+fn types(code: &str) -> impl Iterator<Item = &str> {
+    let is_apart = |letter: char| !letter.is_alphanumeric() && !"_:".contains(letter);
+    let lines = code.lines().filter(|line| !line.starts_with("//"));
+    let names = lines.flat_map(move |line| line.split(is_apart));
+    let first = names.map(|name| name.split(':').next().unwrap_or(name));
+    first.filter(|name| {
+        let is_type = name.starts_with(char::is_uppercase) && name.contains(char::is_lowercase);
+        is_type && !["Some", "None"].contains(name)
+    })
 }
 
 /// An item that imports names of a module, in lines as wide as rustfmt makes them.
@@ -172,17 +172,20 @@ fn environment(environment: &Environment, shapes: Option<&Shapes>) -> Written {
             return Err("an environment of another crate has no constant here".to_owned());
         }
     };
-    let mut all = Vec::new();
-    all.extend(parts.canceller.map(|it| ("canceller", canceller(&it))));
-    all.extend(parts.wall.map(|it| ("wall", wall(&it))));
-    if let Some(it) = &parts.profile {
-        all.push(("profile", profile(it, shapes)?));
+    let mut some = Vec::new();
+    for (name, part) in parts.named() {
+        let part = match (name, parts) {
+            ("canceller", Parts { canceller: Some(it), .. }) => canceller(it),
+            ("wall", Parts { wall: Some(it), .. }) => wall(it),
+            ("profile", Parts { profile: Some(it), .. }) => profile(it, shapes)?,
+            _ => format!("{part:?}"),
+        };
+        if parts.count() == 1 {
+            return Ok(format!("{part}.alone()"));
+        }
+        some.push(format!("{name}: Some({part})"));
     }
-    if let [(_, part)] = &all[..] {
-        return Ok(format!("{part}.alone()"));
-    }
-    let rest = if all.len() == 3 { "" } else { ", ..Parts::NONE" };
-    let some: Vec<_> = all.iter().map(|(name, part)| format!("{name}: Some({part})")).collect();
+    let rest = if parts.count() == Parts::KINDS { "" } else { ", ..Parts::NONE" };
     Ok(format!("Parts {{ {}{rest} }}.sum()", some.join(", ")))
 }
 

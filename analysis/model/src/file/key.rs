@@ -339,6 +339,9 @@ keys! {
     /// Damping that free mode leaves in the hand; beside a torque profile, of an undelayed one, if it is
     /// there.
     RESIDUAL = of(Parameter::Residual), Needed, "0.018";
+    /// Damping of a damper that acts everywhere, also out of contact with a wall, as late as the environment's
+    /// `delay`.
+    DRAG = of(Parameter::Drag), Optional("no such damper"), "0.001";
     /// Numerator of the environment, from position to torque.
     NUMERATOR = other("environment.numerator", "", POLYNOMIAL), Needed, "[5.0, -2.0]";
     /// Denominator of the environment.
@@ -558,6 +561,9 @@ keys! {
     /// Largest speed of the device, above which the servo has a fault.
     LARGEST_SPEED = other("supply.largest_speed", "rad/s", POSITIVE), Default(100.0), "25.0";
 }
+
+/// The keys of parts that may be beside every type of environment that is a sum of parts.
+pub const BESIDE: &[&Key] = &[&DRAG];
 
 /// Keys that state the number of another key in a unit that data sheets have: the key, the other key, and the
 /// product of their values. A file that is written has the other key.

@@ -78,7 +78,7 @@ pub const ALL: &[Kind] = &[
             "Free motion with a wall in it.",
             &[&key::RESIDUAL, &key::STIFFNESS, &key::DAMPING, &key::DELAY_SAMPLES],
             OF_A_WALL,
-            Parts { canceller: Some(CANCELLER), wall: Some(WALL), profile: None }.sum(),
+            Parts { canceller: Some(CANCELLER), wall: Some(WALL), ..Parts::NONE }.sum(),
         )
     },
     kind(
@@ -140,11 +140,15 @@ impl Kind {
         ALL.iter().find(|kind| kind.name == name)
     }
 
-    /// The type that a file has for an environment; `None` for stated environments and for torque profiles.
+    /// The type that a file has for an environment, apart from the parts that may be beside every type; `None`
+    /// for stated environments and for torque profiles.
     pub fn of(environment: &Environment) -> Option<&'static Self> {
-        let Parts { canceller, wall, profile } = environment.parts();
+        let parts = environment.parts();
+        let Parts { canceller, wall, profile, .. } = parts;
         let name = match (canceller, wall, profile) {
             (None, None, None) if matches!(environment, Environment::Rational(_)) => "rational",
+            // In a file, such a part stands beside a wall without stiffness.
+            (None, None, None) if parts.count() > 0 => "damper-wall",
             (Some(_), None, None) => "free-mode",
             (Some(_), Some(_), None) => "free-mode-wall",
             // In a file, a spring with a face is a wall without damping.
@@ -159,7 +163,9 @@ impl Kind {
 
     /// Its keys, first those that it must have.
     pub fn keys(&self) -> impl Iterator<Item = &'static Key> {
-        self.needed.iter().chain(self.optional).copied()
+        let beside: &[&Key] =
+            if matches!(self.blank, Environment::Parts(_)) { key::BESIDE } else { &[] };
+        self.needed.iter().chain(self.optional).chain(beside).copied()
     }
 }
 

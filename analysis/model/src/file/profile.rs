@@ -118,12 +118,14 @@ pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
         .map(|key| section.optional(key));
     let ends = [&key::FROM, &key::TO, &key::STIFFNESS].map(|key| section.optional(key));
     let residual = section.optional(&key::RESIDUAL);
+    let beside = key::BESIDE.iter().filter_map(|key| Some((key, key.parameter?)));
+    let beside = all(beside.map(|(key, parameter)| Ok((parameter, section.optional(key)?))));
     let wall = section.table(&key::WALL).and_then(|wall| wall.map(wall_of).transpose());
     let cells = cells(section);
     let knots = table(section, &key::KNOTS, &key::KNOTS_PERIOD, key::ENVIRONMENT.path);
     let shapes = shapes(section);
     let (delay, cells, knots, shapes) = (delay?, cells?, knots?, shapes?);
-    let (residual, wall) = (residual?, wall?);
+    let (residual, wall, beside) = (residual?, wall?, beside?);
     let [damping, torque, count, centre] = numbers;
     let [from, to, stiffness] = ends;
     let (from, to, stiffness) = (from?, to?, stiffness?);
@@ -164,7 +166,11 @@ pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
         ends.stiffness = stiffness.unwrap_or(ends.stiffness);
     }
     let canceller = residual.map(Canceller::to);
-    let environment = Parts { canceller, wall, profile: Some(profile) }.sum();
+    let mut environment = Parts { canceller, wall, ..*profile.alone().parts() }.sum();
+    for (parameter, value) in beside {
+        let changed = value.and_then(|value| environment.with(parameter, value));
+        environment = changed.unwrap_or(environment);
+    }
     Ok(ProfileTable {
         environment,
         shapes,

@@ -34,12 +34,14 @@ pub fn markdown() -> String {
         }
         text += &format!("\n## {}\n\n{}{}\n\n", heading(table), table.doc, absent(table));
         if **table == key::ENVIRONMENT {
-            let kinds = kind::ALL.iter().map(|it| (it.name, it.needed, it.optional, it.doc));
-            text += &types(kinds);
+            text += &types(
+                kind::ALL.iter().map(|it| (it.name, it.needed, it.keys().collect(), it.doc)),
+            );
         }
         if **table == key::SHAPE {
-            let kinds = shape::ALL.iter().map(|it| (it.name, it.needed, it.optional, it.doc));
-            text += &types(kinds);
+            text += &types(
+                shape::ALL.iter().map(|it| (it.name, it.needed, it.keys().collect(), it.doc)),
+            );
         }
         text += &rows(&keys);
     }
@@ -83,16 +85,16 @@ fn rows(keys: &[&Key]) -> String {
     text
 }
 
-/// Name, required keys, optional keys and description of a type.
-type Row = (&'static str, &'static [&'static Key], &'static [&'static Key], &'static str);
+/// Name, required keys, all keys with the required ones first, and description of a type.
+type Row = (&'static str, &'static [&'static Key], Vec<&'static Key>, &'static str);
 
 fn types(kinds: impl Iterator<Item = Row>) -> String {
     let mut text = "| `type` | must have | may have | |\n|---|---|---|---|\n".to_owned();
-    for (name, needed, optional, doc) in kinds {
+    for (name, needed, keys, doc) in kinds {
         let names = |keys: &[&Key]| {
             keys.iter().map(|key| format!("`{}`", key.name())).collect::<Vec<_>>().join(", ")
         };
-        let (needed, optional) = (names(needed), names(optional));
+        let (needed, optional) = (names(needed), names(&keys[needed.len()..]));
         text += &format!("| `{name}` | {needed} | {optional} | {doc} |\n");
     }
     text + "\nEach key is an error with the types that do not have it.\n\n"

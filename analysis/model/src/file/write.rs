@@ -56,7 +56,7 @@ pub fn toml(file: &SceneFile) -> String {
     lines.push("[environment]".to_owned());
     match (scene.environment.profile(), shapes) {
         (Some(profile), Some(shapes)) => {
-            shaped::profile(&mut lines, scene.environment.canceller(), profile, shapes);
+            shaped::profile(&mut lines, &scene.environment, profile, shapes);
             lines.extend(scene.environment.wall().into_iter().flat_map(shaped::wall));
         }
         _ => environment(&mut lines, &scene.environment),
@@ -213,9 +213,11 @@ fn environment(lines: &mut Vec<String>, environment: &Environment) {
             !kind.needed.contains(&key)
                 && matches!(key.presence, Presence::Default(default) if left_out(default))
         };
-        // A spring that is written as a wall has a damping of 0.
+        // What is written as a wall has a damping of 0, or a stiffness.
         let value = match key.parameter {
-            Some(Parameter::Damping) => environment.get(Parameter::Damping).or(Some(0.0)),
+            Some(parameter @ (Parameter::Stiffness | Parameter::Damping)) => {
+                environment.get(parameter).or(Some(0.0))
+            }
             Some(parameter) => environment.get(parameter),
             None => None,
         };
@@ -292,6 +294,8 @@ mod tests {
             "type = \"damper-wall\"\nstiffness = 1e-30\ndamping = -0.3\ndelay = 0\n\
              filter = 0.3\nface = -0.2\none_sided = true\n",
             "type = \"free-mode\"\nresidual = 0.001\ndelay = 1\n",
+            "type = \"free-mode\"\nresidual = 0.001\ndelay = 1\ndrag = -0.002\n",
+            "type = \"damper-wall\"\nstiffness = 0\ndamping = 0\ndelay = 2\ndrag = 0.01\n",
             "type = \"free-mode-wall\"\nresidual = 0.001\nstiffness = 3\ndamping = 0.2\ndelay = 1\n",
             "type = \"rational\"\nnumerator = [1, -0.3]\ndenominator = [1, 0.1, 0.7]\ndelay = 2\n\
              unit_zeros = 1\n",

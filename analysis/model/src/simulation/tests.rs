@@ -43,7 +43,7 @@ fn both_ways_of_running_a_linear_loop_agree() {
         Parts {
             canceller: Some(Canceller::to(0.01)),
             wall: Some(Wall::damped(5.0, 0.001, 1)),
-            profile: None,
+            ..Parts::NONE
         }
         .sum(),
         Environment::Rational(Rational { numerator, denominator, delay: 1, unit_zeros: 1 }),

@@ -102,9 +102,11 @@ pub fn closed_form_border(family: &Family, map: &Map) -> Option<Border> {
 /// formula for it.
 fn index_of(scene: &Scene, later: usize) -> Option<Interval> {
     let period = Interval::decimal(scene.timing.period);
-    let &Parts { canceller, wall: Some(wall), profile: None } = scene.environment.parts() else {
+    let parts = scene.environment.parts();
+    let &Parts { canceller, wall: Some(wall), profile: None, .. } = parts else { return None };
+    if parts.others() > 0 {
         return None;
-    };
+    }
     let Some(canceller) = canceller else {
         return wall_index(&Wall { delay: wall.delay + later, ..wall }, period);
     };

@@ -59,31 +59,19 @@ impl Units {
     fn environment(&self, environment: Environment) -> Environment {
         // N m/rad, and N m s/rad as well.
         let slope = |value: f64| value * self.angle / self.torque;
-        let scaled = |mut environment: Environment, parameter| {
-            let Some(number) = environment.value(parameter) else { return environment };
-            *number = match parameter {
-                Parameter::Face | Parameter::Centre | Parameter::From | Parameter::To => {
-                    *number / self.angle
-                }
-                Parameter::ProfileTorque => *number / self.torque,
+        let scaled = |mut environment: Environment, parameter: &Parameter| {
+            let Some(number) = environment.value(*parameter) else { return environment };
+            *number = match (parameter, parameter.name_and_unit().1) {
                 // A turn has fewer units.
-                Parameter::Count => *number * self.angle,
-                _ => slope(*number),
+                (Parameter::Count, _) => *number * self.angle,
+                (_, "rad") => *number / self.angle,
+                (_, "N m") => *number / self.torque,
+                (_, "N m/rad" | "N m s/rad") => slope(*number),
+                _ => *number,
             };
             environment
         };
-        let numbers = [
-            Parameter::Stiffness,
-            Parameter::Damping,
-            Parameter::Face,
-            Parameter::Residual,
-            Parameter::ProfileTorque,
-            Parameter::Count,
-            Parameter::Centre,
-            Parameter::From,
-            Parameter::To,
-        ];
-        match numbers.into_iter().fold(environment, scaled) {
+        match Parameter::ALL.iter().fold(environment, scaled) {
             Environment::Rational(rational) => {
                 let scaled: Vec<_> =
                     rational.numerator.as_slice().iter().map(|n| slope(*n)).collect();

@@ -71,6 +71,9 @@ fn type_of(environment: &Environment) -> String {
             return format!("rational of degree {degree}, {}", delay(rational.delay));
         }
     };
+    if parts.others() > 0 {
+        return "sum with another part".to_owned();
+    }
     match (&parts.canceller, &parts.wall, &parts.profile) {
         (None, None, Some(profile)) => {
             format!("{}, {}", profile_type(profile), delay(profile.delay))

@@ -4,13 +4,13 @@ use super::data::Profile;
 use super::knots::{KnotTable, Outline};
 use super::layout::{Ends, Layout};
 use super::scale::Scale;
-use super::snap::Holding;
+use super::snap::{AnySnap, Holding};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
-use crate::environment::delay_line::DelayLine;
-use crate::environment::law::{Law, LawContext, LawOf};
+use crate::environment::delay_line::{DelayLine, VariableDelay};
+use crate::environment::law::{AnyPart, Law, LawContext, LawOf};
 use crate::environment::turn::Turn;
-use crate::environment::velocity::Velocity;
+use crate::environment::velocity::{AnyVelocity, Velocity};
 use crate::number::Number;
 
 /// The law of a torque profile.
@@ -46,6 +46,10 @@ struct End<N> {
     angle: N,
     /// The torque there.
     torque: N,
+}
+
+impl<N: Number> AnyPart<N> for Profile {
+    type Law = ProfileLaw<N, &'static [i16], AnyVelocity<N>, VariableDelay<N>, AnySnap<N>>;
 }
 
 impl<N, K, V, D, S> LawOf<N, Profile> for ProfileLaw<N, K, V, D, S>

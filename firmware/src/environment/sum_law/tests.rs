@@ -1,14 +1,11 @@
 use fixed::types::I8F24;
-use proptest::prelude::*;
 
-use super::*;
 use crate::certificate::{
     Certified, Parameter, QuantizationBound, Resolution, TimingChecked, certify, certify_in,
     certify_scene, timing_checked,
 };
 use crate::encoder::RawCount;
-use crate::energy::NoAction;
-use crate::environment::{Canceller, Ends, Environment, Knots, Parts, Profile, Shape, Wall};
+use crate::environment::{Canceller, Drag, Ends, Environment, Knots, Parts, Profile, Shape, Wall};
 use crate::number::Format;
 use crate::parameter::NamedParameters;
 use crate::passivity::interval::Interval;
@@ -40,12 +37,18 @@ const fn endless(delay: usize) -> Profile {
 }
 
 const fn wall_and_profile(wall: Wall, profile: Profile) -> Environment {
-    Parts { canceller: None, wall: Some(wall), profile: Some(profile) }.sum()
+    Parts { wall: Some(wall), profile: Some(profile), ..Parts::NONE }.sum()
 }
 
 /// A profile, with or without a wall, and an undelayed canceller.
 const fn free_mode(residual: f64, wall: Option<Wall>, profile: Profile) -> Environment {
-    Parts { canceller: Some(Canceller::to(residual)), wall, profile: Some(profile) }.sum()
+    let canceller = Some(Canceller::to(residual));
+    Parts { canceller, wall, profile: Some(profile), ..Parts::NONE }.sum()
+}
+
+/// The same with a drag of this damping and delay.
+const fn dragging(environment: Environment, damping: f64, delay: usize) -> Environment {
+    Parts { drag: Some(Drag::of(damping, delay)), ..*environment.parts() }.sum()
 }
 
 /// Slope in N m/rad of the detents, `4 n F / (2 pi)`, by which they rise and fall.
@@ -73,6 +76,11 @@ fn indices_add() {
             free_mode(residual, Some(LATE.behind(FACE)), knob(1)),
             cancelled + late(3.0, 2.0, 0.001) + stops(1.0),
         ),
+        (dragging(wall_and_profile(WALL, knob(1)), 0.001, 3), late(5.0, 1.0, 0.003) + stops(1.0)),
+        (dragging(LATE.behind(FACE).alone(), -0.004, 1), late(3.0, 2.0, 0.005)),
+        (dragging(LATE.behind(FACE).alone(), -0.004, 0), late(3.0, 2.0, 0.005)),
+        // Without a delay it takes energy.
+        (dragging(LATE.behind(FACE).alone(), 0.004, 0), late(3.0, 2.0, 0.001)),
     ] {
         let found = bound(environment);
         // A knot is a whole number of units.
@@ -108,7 +116,7 @@ fn what_has_no_proof_is_refused_with_a_sentence() {
     let undelayed = free_mode(0.01, None, endless(0));
     assert_eq!(
         refusal(undelayed, spring),
-        "rejected: the delay is 0 samples, and must be at least 1 where a wall or a canceller is beside the \
+        "rejected: the delay is 0 samples, and must be at least 1 where another part is beside the \
          torque profile"
     );
     let endless = wall_and_profile(WALL.behind(FACE), endless(1));
@@ -142,11 +150,23 @@ fn without_a_coupling_dampers_add() {
     for (environment, expected) in [
         (free_mode(0.015, None, knob(1)), late * 5.0 + DAMPING - 0.015),
         (wall_and_profile(Wall::damped(2.0, 0.003, 1), knob(1)), late * 7.0 + 0.003),
+        (dragging(knob(1).alone(), -0.003, 0), late * 5.0 + 0.003),
+        (dragging(WALL.behind(FACE).alone(), 0.003, 0), late * 5.0 + 0.005),
     ] {
         let found = certify(&Scene { coupling: Coupling::Rigid, ..scene(environment) }).unwrap();
         let bound = found.bound.unwrap();
         assert!((bound.midpoint() / expected - 1.0).abs() < 1e-9, "{bound:?} {expected}");
     }
+}
+
+/// A scene file has one delay for both.
+#[test]
+fn a_drag_is_as_late_as_the_part_beside_it() {
+    let environment = LATE.alone().with(Parameter::Drag, 0.004).unwrap();
+    assert_eq!(environment, dragging(LATE.alone(), 0.004, 2));
+    let earlier = Wall { delay: 1, ..LATE };
+    let expected = dragging(earlier.alone(), 0.004, 1);
+    assert_eq!(environment.with(Parameter::Delay, 1.0), Some(expected));
 }
 
 /// Each remedy is certified, and the one of a sum is of its parts by name.
@@ -262,6 +282,9 @@ fn no_motion_has_a_torque_farther_off_than_the_bound_on_its_limit_cycle() {
         wall_and_profile(spring.behind(FACE), knob(1)),
         wall_and_profile(WALL, knob(1)),
         free_mode(residual, Some(spring.behind(FACE)), knob(1)),
+        dragging(knob(1).alone(), -0.004, 1),
+        dragging(spring.behind(FACE).alone(), 0.006, 0),
+        dragging(spring.behind(FACE).alone(), -0.004, 1),
     ] {
         let scene = scene(environment);
         let steps = Resolution {
@@ -279,28 +302,5 @@ fn no_motion_has_a_torque_farther_off_than_the_bound_on_its_limit_cycle() {
             assert!(found <= encoder + bound.numbers + encoder / 1024.0, "{found} {bound:?}");
             assert!(found > 0.25 * encoder, "{found} {bound:?}");
         }
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
-
-    #[test]
-    fn a_latched_code_is_that_of_the_tick_after(steps in prop::collection::vec(-3_000..3_000_i32, 200)) {
-        fn check<N: Number>(steps: &[i32]) {
-            let certified = certify_scene(KNOB_AND_WALL, N::FORMAT).unwrap();
-            let servo: Servo<_, N> = Servo::new(&certified, &TRANSDUCERS).unwrap();
-            let (mut ahead, mut then) = (servo.clone(), servo);
-            let (mut count, mut latched) = (0_i32, None);
-            for step in steps {
-                count = (count + step).clamp(-30_000, 30_000);
-                let raw = RawCount::from(count.cast_unsigned());
-                let code = then.tick(raw).code;
-                assert!(latched.is_none_or(|latched| latched == code), "{latched:?} {code:?}");
-                latched = Some(ahead.timed_tick::<Latched>(raw, &mut NoAction).code);
-            }
-        }
-        check::<f32>(&steps);
-        check::<I8F24>(&steps);
     }
 }

@@ -28,6 +28,8 @@ fn is_ahead_in<N: Number>(scene: &Scene) {
     assert!(codes.iter().any(|code| *code != DacCode::MID_SCALE), "{scene:?}");
 }
 
+static KNOB: Knots<16> = Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-2.0, 2.0, 5.0)]);
+
 #[test]
 fn what_is_latched_is_what_would_have_been_computed_in_time() {
     let damper = Wall::damped(12.0, 0.005, 1);
@@ -53,7 +55,14 @@ fn what_is_latched_is_what_would_have_been_computed_in_time() {
     ] {
         is_ahead(wall.alone(), Coupling::Spring { stiffness: 44.0 }, Latency::NONE);
     }
+    let sum = Parts {
+        wall: Some(Wall::damped(3.0, 0.001, 2).behind(0.05)),
+        profile: Some(Profile::of(&KNOB, 1)),
+        drag: Some(Drag::of(0.004, 3)),
+        ..Parts::NONE
+    };
     for environment in [
+        sum.sum(),
         Canceller { residual: 0.015, delay: 1 }.alone(),
         Canceller { residual: 0.02, delay: 4 }.alone(),
         Environment::Rational(rational),

@@ -88,6 +88,10 @@ fn environment() -> impl Strategy<Value = Environment> {
         (residual.clone(), 0..=4_usize)
             .prop_map(|(residual, delay)| Canceller { residual, delay }.alone()),
         (residual, wall()).prop_map(|(residual, wall)| free_mode_wall(residual, wall)),
+        (wall(), -0.01..0.01_f64, 0..=4_usize).prop_map(|(wall, damping, delay)| {
+            let drag = Some(Drag::of(damping, delay));
+            Parts { wall: Some(wall), drag, ..Parts::NONE }.sum()
+        }),
         rational().prop_map(Environment::Rational),
     ]
 }

@@ -1,7 +1,7 @@
 //! The same loops, computed another way: the environment as the sum over its whole past, the
 //! algebraic loop by bisection. Slow, in f64, and without one formula in common with the laws.
 
-use crate::environment::{Environment, Parts, Rational, Wall};
+use crate::environment::{Drag, Environment, Parts, Rational, Wall};
 use crate::scene::{Coupling, Scene};
 
 /// First `length` samples of the impulse response of a rational function, by long division of
@@ -108,10 +108,16 @@ impl Reference {
             let response = impulse_response(&numerator, &denominator, length);
             Part { sum: Sum::Linear(response), delay, given: Vec::new() }
         };
+        let damper = |drag: Drag| {
+            let numerator = [drag.damping, -drag.damping];
+            let response = impulse_response(&numerator, &[scene.timing.period, 0.0], length);
+            Part { sum: Sum::Linear(response), delay: drag.delay, given: Vec::new() }
+        };
         let parts = match scene.environment {
-            Environment::Parts(Parts { canceller, wall: data, profile: None }) => {
+            Environment::Parts(Parts { canceller, wall: data, profile: None, drag }) => {
                 let free = canceller.map(|canceller| free(canceller.residual, canceller.delay));
-                free.into_iter().chain(data.map(wall)).collect()
+                let parts = [free, data.map(wall), drag.map(damper)];
+                parts.into_iter().flatten().collect()
             }
             Environment::Parts(_) | Environment::Stated(_) => panic!("no law is known of it here"),
             Environment::Rational(data) => {

@@ -15,7 +15,8 @@ use crate::certificate::Parameter;
 use crate::current::IndexOffset;
 use crate::dac::DacCode;
 use crate::environment::{
-    Canceller, Damper, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side, Wall,
+    Canceller, Damper, Drag, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side,
+    Wall,
 };
 use crate::fault::Fault;
 use crate::number::Format;
@@ -237,7 +238,8 @@ fn largest_description() -> Description {
         delay: usize::MAX,
     };
     let canceller = Some(Canceller::to(1.0));
-    let environment = Parts { canceller, wall: Some(wall), profile: Some(profile) }.sum();
+    let drag = Some(Drag::of(1.0, 8));
+    let environment = Parts { canceller, wall: Some(wall), profile: Some(profile), drag }.sum();
     Description {
         scene: Scene {
             device: Device { passivity: Some(1.0), ..SCENE.device },

@@ -126,7 +126,7 @@ ticks! {
     behind: f32 = Parts {
         canceller: Some(Canceller::to(0.02)),
         wall: Some(Wall::damped(4.0, 0.002, 2).filtered(0.5).behind(0.1)),
-        profile: None,
+        ..Parts::NONE
     }
     .sum();
 }

@@ -76,6 +76,7 @@ fn every_field_of_every_message_is_there_in_order() {
         ("firmware/src/scene.rs", "Scene"),
         ("firmware/src/environment/parts.rs", "Parts"),
         ("firmware/src/environment/canceller.rs", "Canceller"),
+        ("firmware/src/environment/drag.rs", "Drag"),
         (WALL, "Wall"),
         (WALL, "Damper"),
         ("firmware/src/environment/profile/data.rs", "Profile"),

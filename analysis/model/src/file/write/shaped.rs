@@ -1,7 +1,7 @@
 //! `[environment]` of a torque profile: its shapes as they were read, and the numbers that differ from
 //! theirs.
 
-use haptic_servo::environment::{Canceller, Ends, Profile, Shape, Wall};
+use haptic_servo::environment::{Ends, Environment, Profile, Shape, Wall};
 
 use super::{number, quoted};
 use crate::file::key::{self, Bound, Key};
@@ -10,15 +10,17 @@ use crate::file::profile::Shapes;
 use crate::file::shape;
 use crate::file::shape::span;
 
-/// A torque profile, with the canceller beside it.
+/// A torque profile, with the parts beside it but the wall.
 pub fn profile(
     lines: &mut Vec<String>,
-    canceller: Option<&Canceller>,
+    environment: &Environment,
     profile: &Profile,
     shapes: &Shapes,
 ) {
     lines.push(format!("type = {}\ndelay = {}", quoted(PROFILE), profile.delay));
-    number(lines, key::RESIDUAL.name(), canceller.map(|canceller| canceller.residual));
+    for key in [&key::RESIDUAL].into_iter().chain(key::BESIDE.iter().copied()) {
+        number(lines, key.name(), key.parameter.and_then(|parameter| environment.get(parameter)));
+    }
     // By its bits: -0.0 is another number than 0.0.
     number(lines, "damping", profile.damping);
     let own = shapes.sampled(profile.delay).ok();

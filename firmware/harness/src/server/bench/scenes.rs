@@ -101,7 +101,7 @@ impl SceneSet for AllScenes {
 
 /// An undelayed canceller and a wall.
 const fn ended(wall: Wall) -> Environment {
-    Parts { canceller: Some(Canceller::to(0.021)), wall: Some(wall), profile: None }.sum()
+    Parts { canceller: Some(Canceller::to(0.021)), wall: Some(wall), ..Parts::NONE }.sum()
 }
 
 macro_rules! of_delay {
