@@ -11,7 +11,7 @@ use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
 use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
 use rand::Rng;
-use tests::scenes::log_uniform;
+use tests::scenes::{log_uniform, multiply};
 
 use crate::mode::{Actual, draw_latency, has_latency, plain};
 use crate::planted::Planted;
@@ -537,16 +537,6 @@ fn wall(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize, reach: f64) -> 
     Wall { stiffness, damper: Some(Damper { damping, filter }), side, delay }
 }
 
-fn multiplied(a: &[f64], b: &[f64]) -> Vec<f64> {
-    let mut product = vec![0.0; a.len() + b.len() - 1];
-    for (i, x) in a.iter().enumerate() {
-        for (j, y) in b.iter().enumerate() {
-            product[i + j] += x * y;
-        }
-    }
-    product
-}
-
 fn coefficients(descending: &[f64]) -> Coefficients {
     Coefficients::new(descending).expect("at most eight poles are drawn")
 }
@@ -567,7 +557,7 @@ fn rational_with(rng: &mut impl Rng, unit: f64, delay: usize, unstable: bool) ->
         } else {
             vec![1.0, if rng.random_bool(0.3) { radius } else { -radius }]
         };
-        denominator = multiplied(&denominator, &factor);
+        denominator = multiply(&denominator, &factor);
     }
     let count = denominator.len() - 1;
     let zeros = rng.random_range(0..=count);
@@ -643,7 +633,7 @@ fn hidden(rng: &mut impl Rng, unit: f64, delay: usize) -> (Environment, Environm
         if factor.len() + next.len() > 10 {
             break;
         }
-        factor = multiplied(&factor, next);
+        factor = multiply(&factor, next);
     }
     let numerator: Vec<f64> = factor.iter().map(|c| c * gain).collect();
     let with = |numerator: &[f64], denominator: &[f64]| {

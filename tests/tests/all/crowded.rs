@@ -14,7 +14,7 @@ use rand_chacha::ChaCha8Rng;
 use tests::agreement;
 use tests::exact::{Q, of_f64};
 use tests::poly::Poly;
-use tests::scenes::{ExactScene, Frame, log_uniform};
+use tests::scenes::{ExactScene, Frame, log_uniform, multiply};
 
 const SCENES: u64 = 60;
 
@@ -25,13 +25,7 @@ fn with_roots(roots: &[Complex<f64>]) -> Vec<f64> {
             true => vec![1.0, -root.re],
             false => vec![1.0, -2.0 * root.re, root.norm_sqr()],
         };
-        let mut out = vec![0.0; product.len() + factor.len() - 1];
-        for (i, a) in product.iter().enumerate() {
-            for (j, b) in factor.iter().enumerate() {
-                out[i + j] += a * b;
-            }
-        }
-        out
+        multiply(&product, &factor)
     })
 }
 

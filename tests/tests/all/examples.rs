@@ -18,31 +18,19 @@ fn shown(name: &str) -> &'static str {
     rest.split_once("```").expect("the block ends").0
 }
 
-fn check(name: &str) {
-    let output = Command::new(env!("CARGO"))
-        // Of all default members, for which it is built already.
-        .args(["run", "--quiet", "--example", name])
-        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
-        .output()
-        .expect("cargo starts");
-    let (said, error) = (output.stdout.as_slice(), String::from_utf8_lossy(&output.stderr));
-    assert!(output.status.success(), "{name}: {error}");
-    assert_eq!(String::from_utf8_lossy(said), shown(name), "{name}");
-}
-
 #[test]
-fn a_certificate_and_a_refusal() {
-    check("certify");
-}
-
-#[test]
-fn somebody_elses_loop_with_a_certified_constant() {
-    check("verify_only");
-}
-
-#[test]
-fn the_servo_on_the_host() {
-    check("servo_on_host");
+fn each_prints_what_the_guide_shows() {
+    for name in ["certify", "verify_only", "servo_on_host"] {
+        let output = Command::new(env!("CARGO"))
+            // Of all default members, for which it is built already.
+            .args(["run", "--quiet", "--example", name])
+            .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+            .output()
+            .expect("cargo starts");
+        let (said, error) = (output.stdout.as_slice(), String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success(), "{name}: {error}");
+        assert_eq!(String::from_utf8_lossy(said), shown(name), "{name}");
+    }
 }
 
 /// What the foreign loop computes by itself is the law that was certified.

@@ -2,11 +2,8 @@
 
 use analysis::file::{self, Format};
 use analysis::verdict::{Verdict, VerdictReport, judge};
-use haptic_servo::certificate::Certified;
-use haptic_servo::environment::Wall;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::Scene;
 use serde_json::{Value, json};
-use std::hint::black_box;
 use tests::exact::{Q, of_decimal, of_f64};
 
 /// Width of an index relative to its magnitude.
@@ -44,24 +41,6 @@ pub fn scenes() -> Vec<Scene> {
         read.unwrap_or_else(|error| panic!("{error}")).scene
     };
     published()["cases"].as_array().expect("a list").iter().map(read).collect()
-}
-
-const LAGGING: Scene = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 40.0 },
-    environment: Wall::damped(9.0, 0.004, 1).alone(),
-    latency: Latency::delayed(1e-5).with_actuator_lag(53e-6),
-    torque_limit: None,
-};
-/// The compiler's judgement.
-const CERTIFIED: Certified<Scene> = LAGGING.certified();
-
-#[test]
-fn the_compiler_judges_as_the_host_does() {
-    let here = black_box(LAGGING).certify().unwrap();
-    assert_eq!(CERTIFIED.assessment(), here.assessment());
-    assert!(CERTIFIED.assessment().outcome.is_ok());
 }
 
 fn judged(case: &Value) -> VerdictReport {

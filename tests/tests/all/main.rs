@@ -5,7 +5,6 @@ mod actuator_response;
 mod agreement;
 mod bits;
 mod boards;
-mod bridge;
 mod closed_motions;
 mod corpus;
 mod crowded;

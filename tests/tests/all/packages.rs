@@ -80,16 +80,6 @@ fn a_registry_has_what_it_shows() {
     }
 }
 
-/// A path alone means nothing to a registry.
-#[test]
-fn the_one_names_the_version_of_the_other() {
-    let (servo, model) = (manifest("haptic-servo"), manifest("haptic-model"));
-    let dependencies = model["dependencies"].as_array().expect("a list");
-    let on_servo = dependencies.iter().find(|one| one["name"] == "haptic-servo");
-    let version = servo["version"].as_str().expect("a version");
-    assert_eq!(on_servo.expect("it depends on it")["req"], format!("^{version}"));
-}
-
 #[test]
 fn the_packages_have_all_that_they_speak_of_and_no_more() {
     // Files as documents name them: in a package, and not in the repository.
