@@ -1,6 +1,8 @@
 //! `haptic bench`: the cost of a certificate, a simulated step and a tick.
 
+use std::io;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use clap::Args;
 use comfy_table::Table;
@@ -25,7 +27,7 @@ use crate::toolchain::{self, BoardModel, NumberFormat, Toolchain, Tools, TorqueO
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Print only the figures of this machine: verdicts, simulated steps, maps
+    /// Print only the figures of this machine: verdicts, simulated steps, maps, compilation
     #[arg(long)]
     pub host: bool,
     /// Also measure numpy, slycot, python-control and scipy, in turns with this program; installs them from
@@ -55,6 +57,8 @@ const STEP: Budget = Budget { value: 10.0, unit: "ns", source: "budget, 100 M st
 const JITTER: Budget = Budget { value: 0.98, unit: "of delta", source: "budget, at least" };
 /// Of the number of walls per second in a map.
 const MAP: Budget = Budget { value: 1e5, unit: "1/s", source: "budget, a million in 10 s" };
+/// Of the time that a certificate may add to a compilation.
+const COMPILATION: Budget = Budget::of(50.0, "ms");
 /// Of a certificate on the target.
 const CERTIFICATE: Budget =
     Budget { value: 3.4e6, unit: "instructions", source: "budget, 20 ms at 170 MHz" };
@@ -190,6 +194,15 @@ fn on_host(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     figures.push(Figure::within(name, time, &PROFILE));
     figures.extend(maps(rounds));
     spinner.finish_and_clear();
+    let spinner = progress::spinner("compiling certificates");
+    for (name, latency) in [("", bench::AT_ONCE), (" with delay and lag", bench::LAGGING)] {
+        let name = format!("certificate{name}, added to compilation");
+        match compile_time(latency, rounds) {
+            Ok(time) => figures.push(Figure::within(name, time, &COMPILATION)),
+            Err(error) => eprintln!("{name}: not measured: {error}"),
+        }
+    }
+    spinner.finish_and_clear();
     Ok(figures)
 }
 
@@ -260,6 +273,37 @@ fn maps(rounds: Rounds) -> Vec<Figure> {
         Some(Figure::within(format!("{name}: {what}"), rate, &MAP))
     };
     scenes.into_iter().filter_map(figure).collect()
+}
+
+/// Builds the library once and measures the time that a certified constant adds to a program that uses it.
+fn compile_time(latency: &str, rounds: Rounds) -> io::Result<f64> {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(&cargo)
+        .current_dir(&workspace)
+        .args(["build", "--package", "haptic-servo", "--lib"])
+        .arg("--message-format=json")
+        .output()?;
+    let library = library(&output.stdout)
+        .ok_or_else(|| io::Error::other(String::from_utf8_lossy(&output.stderr).into_owned()))?;
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let dependencies = library.parent().map(|folder| folder.join("deps")).unwrap_or_default();
+    let rustc = Path::new(&rustc);
+    bench::compile_time(rustc, &library, &dependencies, latency, rounds.compilations)
+}
+
+/// The path of the built library in cargo's messages.
+fn library(messages: &[u8]) -> Option<PathBuf> {
+    let messages = String::from_utf8_lossy(messages);
+    let mut artifacts = messages.lines().filter_map(|line| {
+        let message: serde_json::Value = serde_json::from_str(line).ok()?;
+        (message["target"]["name"] == "haptic_servo").then_some(())?;
+        let files = message["filenames"].as_array()?;
+        files.iter().find_map(|file| {
+            file.as_str().filter(|file| file.ends_with(".rlib")).map(PathBuf::from)
+        })
+    });
+    artifacts.next_back()
 }
 
 fn on_target(

@@ -11,6 +11,8 @@ pub(crate) mod python;
 pub(crate) mod steps;
 
 use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
 use std::time::Instant;
 
 use self::figure::{Pair, median};
@@ -34,13 +36,15 @@ pub struct Rounds {
     pub python: usize,
     /// For a map.
     pub maps: usize,
+    /// Compilations of each program.
+    pub compilations: usize,
 }
 
 impl Rounds {
     /// For repeatable figures.
-    pub const THOROUGH: Self = Self { own: 31, python: 9, maps: 5 };
+    pub const THOROUGH: Self = Self { own: 31, python: 9, maps: 5, compilations: 15 };
     /// For their order of magnitude.
-    pub const QUICK: Self = Self { own: 3, python: 1, maps: 1 };
+    pub const QUICK: Self = Self { own: 3, python: 1, maps: 1, compilations: 1 };
 }
 
 /// Environments to judge: low and high degrees, poles near and far, delays. The coefficients are products of
@@ -128,6 +132,83 @@ pub fn spring_with_jitter() -> f64 {
     };
     let limit = PassivityProblem::of(&scene).ok().and_then(|posed| posed.limit());
     limit.map_or(0.0, |limit| limit.lo() / PADDLE.damping)
+}
+
+/// Milliseconds that a certificate adds to the compilation of a program: the difference between a program
+/// with `COPIES` certified scenes and the same program without, divided by their number. The two are compiled
+/// alternately, so that other load of the machine affects both.
+///
+/// `latency` is the varying part of the scenes: [`AT_ONCE`] or [`LAGGING`].
+///
+/// `library` is the built firmware library, `dependencies` the folder of its dependencies.
+pub fn compile_time(
+    rustc: &Path,
+    library: &Path,
+    dependencies: &Path,
+    latency: &str,
+    rounds: usize,
+) -> std::io::Result<f64> {
+    let folder = tempfile::tempdir()?;
+    let time = |copies: usize| -> std::io::Result<f64> {
+        let source = folder.path().join(format!("scene_{copies}.rs"));
+        std::fs::write(&source, program(copies, latency))?;
+        let start = Instant::now();
+        let output = Command::new(rustc)
+            .args(["--edition=2024", "--crate-type=lib", "--emit=metadata", "-o"])
+            .arg(folder.path().join("scene.rmeta"))
+            .arg(format!("--extern=haptic_servo={}", library.display()))
+            .arg("-L")
+            .arg(format!("dependency={}", dependencies.display()))
+            .arg(&source)
+            .output()?;
+        let time = start.elapsed().as_secs_f64() * 1e3;
+        if output.status.success() {
+            Ok(time)
+        } else {
+            Err(std::io::Error::other(String::from_utf8_lossy(&output.stderr).into_owned()))
+        }
+    };
+    let differences = (0..rounds).map(|_| Ok((time(COPIES)? - time(0)?) / COPIES as f64));
+    Ok(median(differences.collect::<std::io::Result<Vec<_>>>()?))
+}
+
+/// One-sided walls without latency and with limited torque.
+pub const AT_ONCE: &str = "const fn placed(wall: Wall) -> Wall { wall.behind(0.0) }
+const LATENCY: Latency = Latency::NONE;
+const LIMIT: Option<f64> = Some(1.0);
+";
+/// Linear walls behind a delay and a lag.
+pub const LAGGING: &str = "const fn placed(wall: Wall) -> Wall { wall }
+const LATENCY: Latency = Latency::delayed(1e-5).with_actuator_lag(53e-6);
+const LIMIT: Option<f64> = None;
+";
+
+/// Certificates in the compiled program.
+const COPIES: usize = 8;
+
+fn program(copies: usize, latency: &str) -> String {
+    let mut text = String::from(
+        "use haptic_servo::{certificate::Certified, environment::*, scene::*};
+pub const fn scene(stiffness: f64) -> Scene {
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 0.001, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 44.0 },
+        environment: placed(Wall::damped(stiffness, 0.01, 1)).alone(),
+        latency: LATENCY,
+        torque_limit: LIMIT,
+    }
+}
+",
+    );
+    text += latency;
+    for copy in 0..copies {
+        text += &format!(
+            "pub const C{copy}: Certified<Scene> = scene({:?}).certified();\n",
+            10.0 + copy as f64
+        );
+    }
+    text
 }
 
 #[cfg(test)]

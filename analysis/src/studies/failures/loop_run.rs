@@ -36,14 +36,14 @@ impl LoopRun {
     }
 
     /// The motion of the loop with the servo as a board runs it: in `f32`, between encoder and DAC. `None` for a
-    /// torque profile: no board has its table.
+    /// torque profile, whose table no board has, and for a scene that a board refuses whatever its device.
     pub fn with_servo(&self) -> Result<Option<Motion>, StudyError> {
         let Experiment { scene, samples, .. } = &self.experiment;
         if scene.environment.profile().is_some() {
             return Ok(None);
         }
-        let certified =
-            Scene { device: self.claimed.unwrap_or(scene.device), ..*scene }.certify()?;
+        let claimed = Scene { device: self.claimed.unwrap_or(scene.device), ..*scene };
+        let Ok(certified) = claimed.certify() else { return Ok(None) };
         let mut servo = controller::<Environment, f32>(&certified, &self.transducers)?;
         let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
         let Ok(_) = run::<NoRemote>(&mut device, servo.as_mut(), None, *samples, || {});
