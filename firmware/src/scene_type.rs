@@ -102,7 +102,7 @@ impl<S: SceneType> sealed::Sealed for Typed<S> {}
 
 impl<S: SceneType> EnvironmentModel for Typed<S> {
     const PARTS: PartSet = PartSet::of(&Self::LIKE);
-    const HAS_FIXED_DELAYS: bool = true;
+    const IS_SUM: bool = true;
     const PROFILE: ProfileUse = ProfileUse::of(&Self::LIKE);
     const MEMORY: Memory = Memory::of(S::CERTIFIED.scene());
     const MAY_MISREAD: bool = !S::CERTIFIED.scene().latency.encoder.is_ideal();

@@ -7,7 +7,7 @@ use crate::scene::{Coupling, Scene};
 /// Whether the scene is judged by the nonlinear bound.
 pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
     scene.torque_limit.is_some()
-        || matches!(scene.environment.wall(), Some(w) if w.is_one_sided())
+        || scene.environment.parts().is_switched()
         || !scene.environment.has_transfer()
         || replaces_exact_rule(scene)
 }

@@ -201,7 +201,7 @@ pub fn timing_checked<E: EnvironmentModel + SupportsTiming<M>, M: OutputMode>(
 ) -> Result<TimingChecked<Scene<E>, M>, Step> {
     let data = scene_data(&scene);
     // Checked here, because the type is known here.
-    let is_late = data.environment.is_late();
+    let is_late = is_late::<E>(&data.environment);
     timed::judged::<E, M>(&data, is_late, format)
         .map(|limited| TimingChecked::new(scene, format, limited))
 }

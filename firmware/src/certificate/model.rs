@@ -8,7 +8,9 @@
 use super::loop_intervals::LoopIntervals;
 use super::part::{self, Quantity, solved};
 use super::validity::check;
-use crate::environment::{Environment, EnvironmentModel, MAX_DEGREE, Rational, StatedModel};
+use crate::environment::{
+    Environment, EnvironmentModel, MAX_DEGREE, Rational, StatedModel, is_late,
+};
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
@@ -107,7 +109,7 @@ pub(super) const fn largest_solved<E: EnvironmentModel>(
     environment: &Environment,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    if matches!(n.format, Format::F64) || environment.is_late() {
+    if matches!(n.format, Format::F64) || is_late::<E>(environment) {
         return Some(Interval::ONE);
     }
     let Environment::Parts(parts) = environment else { return None };

@@ -2,7 +2,7 @@
 //! function, its bounds (theory, sections 5, 14.3 and 16), and the errors of its torque (section 14.4).
 //!
 //! A program omits the code for a canceller or a drag that its type of environment does not have
-//! ([`EnvironmentModel::PARTS`]). A drag adds what a wall without stiffness adds.
+//! ([`EnvironmentModel::PARTS`]). A drag adds what a wall without stiffness adds (equation 69).
 
 use super::loop_intervals::LoopIntervals;
 use super::profile::{profile_bound, profile_gain};

@@ -2,7 +2,8 @@
 
 use super::linearity::is_static_at_port;
 use crate::environment::{
-    Canceller, Environment, MOST_KNOTS, Parts, Profile, ProfileUse, StatedModel,
+    Canceller, Environment, EnvironmentModel, MOST_KNOTS, Parts, Profile, ProfileUse, StatedModel,
+    is_late,
 };
 use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
 use crate::parameter::{Parameter, Range};
@@ -77,7 +78,7 @@ const fn requirement(range: Range) -> &'static str {
 
 /// Checks every number of a scene.
 pub(super) const fn check(scene: &Scene) -> Checked {
-    ok!(check_numbers(scene, ProfileUse::ANY, false));
+    ok!(check_numbers::<Environment>(scene));
     if scene.latency.actuator_updates != 0 {
         ok!(check_updates(scene));
     }
@@ -92,15 +93,11 @@ pub(super) const fn check(scene: &Scene) -> Checked {
 /// parts of torque profiles that its environment does not have, that for delays that no change alters, and the
 /// text if it only needs to know whether a problem exists.
 #[inline(always)]
-pub(super) const fn check_numbers(
-    scene: &Scene,
-    profile: ProfileUse,
-    has_fixed_delays: bool,
-) -> Checked {
+pub(super) const fn check_numbers<E: EnvironmentModel>(scene: &Scene) -> Checked {
     let environment = &scene.environment;
     let (own, numbers) = (scene.own_numbers(), environment.numbers());
     let whole = [Parameter::Delay, Parameter::UnitZeros];
-    let whole = match has_fixed_delays {
+    let whole = match E::IS_SUM {
         true => [(whole[0], None), (whole[1], None)],
         false => [(whole[0], environment.get(whole[0])), (whole[1], environment.get(whole[1]))],
     };
@@ -108,11 +105,11 @@ pub(super) const fn check_numbers(
     each!(list in 0..lists.len() => {
         each!(i in 0..lists[list].len() => {
             if let (parameter, Some(value)) = lists[list][i] {
-                ok!(check_number(scene, parameter, value, profile, list > 0));
+                ok!(check_number::<E>(scene, parameter, value, list > 0));
             }
         });
     });
-    check_sum(environment.parts(), profile)
+    check_sum(environment.parts(), E::PROFILE)
 }
 
 const fn check_coefficients(parameter: Parameter, coefficients: &[f64]) -> Checked {
@@ -131,27 +128,30 @@ const fn check_range(parameter: Parameter, value: f64) -> Checked {
 
 /// Whether a number of the scene is in its range, and agrees with the others.
 #[inline(always)]
-const fn check_number(
+const fn check_number<E: EnvironmentModel>(
     scene: &Scene,
     parameter: Parameter,
     value: f64,
-    profile: ProfileUse,
     is_environments: bool,
 ) -> Checked {
     ok!(check_range(parameter, value));
-    ok!(check_beside_others(scene, parameter, value));
-    if profile.exists
+    ok!(check_beside_others::<E>(scene, parameter, value));
+    if E::PROFILE.exists
         && is_environments
         && let Some(of) = profile_of(&scene.environment, parameter)
     {
-        return check_profile(of, parameter, value, profile);
+        return check_profile(of, parameter, value, E::PROFILE);
     }
     Ok(())
 }
 
 /// Whether a number in its range agrees with the other numbers of the scene.
 #[inline(always)]
-const fn check_beside_others(scene: &Scene, parameter: Parameter, value: f64) -> Checked {
+const fn check_beside_others<E: EnvironmentModel>(
+    scene: &Scene,
+    parameter: Parameter,
+    value: f64,
+) -> Checked {
     let (bound, limit) = match parameter {
         Parameter::Passivity if value > scene.device.damping => {
             (NO_MORE_THAN_DAMPING, Some(scene.device.damping))
@@ -169,7 +169,7 @@ const fn check_beside_others(scene: &Scene, parameter: Parameter, value: f64) ->
             ("at least 1 where no transfer function is stated", None)
         }
         _ if scene.latency.is_none() => return Ok(()),
-        _ => return check_latency(scene, parameter, value),
+        _ => return check_latency::<E>(scene, parameter, value),
     };
     must_be(parameter, value, bound, limit)
 }
@@ -291,19 +291,29 @@ const fn holds_nothing(profile: &Profile) -> bool {
 /// In rad: beyond a few turns, a centre is equivalent to another centre of the same profile.
 const LARGEST_ANGLE: f64 = 100.0;
 
+/// [`Scene::largest_jitter`] of an environment of the type `E`.
+const fn largest_jitter<E: EnvironmentModel>(scene: &Scene) -> f64 {
+    scene.latency.largest_jitter(is_late::<E>(&scene.environment), scene.timing.period)
+}
+
 /// The same for a time between count and torque.
 #[inline(always)]
-const fn check_latency(scene: &Scene, parameter: Parameter, value: f64) -> Checked {
+const fn check_latency<E: EnvironmentModel>(
+    scene: &Scene,
+    parameter: Parameter,
+    value: f64,
+) -> Checked {
     let (period, latency) = (scene.timing.period, &scene.latency);
     let most_lag = (LONGEST_LAG * period, "at most a hundred periods:");
     let (TimeRange { least, .. }, (longest, bound)) = match parameter {
         Parameter::OutputDelay => {
             (latency.output_delay, (LONGEST_DELAY * period, "at most eight periods:"))
         }
-        Parameter::OutputJitter if value > scene.largest_jitter() => {
-            return must_be(parameter, value, NO_TORQUE_BEFORE, Some(scene.largest_jitter()));
+        Parameter::OutputJitter if value > largest_jitter::<E>(scene) => {
+            let largest = largest_jitter::<E>(scene);
+            return must_be(parameter, value, NO_TORQUE_BEFORE, Some(largest));
         }
-        Parameter::CountJitter => return check_count_jitter(scene, value),
+        Parameter::CountJitter => return check_count_jitter::<E>(scene, value),
         Parameter::ActuatorLag => (latency.actuator_lag, most_lag),
         Parameter::SensorLag => (latency.sensor_lag, most_lag),
         Parameter::ActuatorResponse => {
@@ -329,8 +339,8 @@ const fn check_latency(scene: &Scene, parameter: Parameter, value: f64) -> Check
 }
 
 /// Whether the count jitter may be so large: alone, or beside an output jitter.
-const fn check_count_jitter(scene: &Scene, value: f64) -> Checked {
-    let (latency, largest) = (&scene.latency, scene.largest_jitter());
+const fn check_count_jitter<E: EnvironmentModel>(scene: &Scene, value: f64) -> Checked {
+    let (latency, largest) = (&scene.latency, largest_jitter::<E>(scene));
     let (beside, sum) = (latency.output_jitter, latency.total_jitter());
     let (bound, limit) = if !latency.jitters_twice() {
         if sum <= largest {

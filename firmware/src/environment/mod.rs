@@ -35,8 +35,8 @@ pub use delay_line::{DelayLine, FixedDelay, VariableDelay};
 pub use drag::{Drag, DragLaw};
 pub use late::{Delayed, SupportsTiming};
 pub use law::{AnyPart, Discretize, Law, LawContext, LawOf};
-pub(crate) use model::sealed;
 pub use model::{EnvironmentModel, Memory, ProfileUse, StatedEnvironment};
+pub(crate) use model::{is_late, sealed};
 pub use parts::{PartSet, Parts};
 pub use profile::{
     AnySnap, Cell, Ends, FULL_SCALE, Holding, KNOB_MODES, KnotTable, Knots, Layout, MODES,

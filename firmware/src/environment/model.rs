@@ -131,8 +131,9 @@ pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
     /// The parts that it may have.
     const PARTS: PartSet;
 
-    /// Whether its delays are those of its type, so that no change of a parameter alters them.
-    const HAS_FIXED_DELAYS: bool = false;
+    /// Whether it is a sum of parts with the delays of its type, which no change of a parameter alters. Its
+    /// program omits the code for other environments.
+    const IS_SUM: bool = false;
 
     /// Its possible use of a torque profile.
     const PROFILE: ProfileUse;
@@ -146,6 +147,15 @@ pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
 
     /// As data, for the certificate.
     fn as_data(&self, context: &LawContext) -> Environment;
+}
+
+/// [`Environment::is_late`] of an environment of the type `E`.
+#[inline(always)]
+pub(crate) const fn is_late<E: EnvironmentModel>(environment: &Environment) -> bool {
+    match environment {
+        Environment::Parts(parts) => parts.is_late(),
+        _ => !E::IS_SUM && environment.is_late(),
+    }
 }
 
 impl<E: StatedEnvironment> sealed::Sealed for E {}

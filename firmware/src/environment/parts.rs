@@ -175,6 +175,11 @@ impl Parts {
         drag + self.profile.as_ref().map_or(0.0, Profile::damping)
     }
 
+    /// Whether a part is not linear even without a torque limit, apart from a torque profile.
+    pub(crate) const fn is_switched(&self) -> bool {
+        matches!(&self.wall, Some(wall) if wall.is_one_sided())
+    }
+
     /// Whether the torque depends on a velocity.
     pub const fn is_damped(&self) -> bool {
         let Self { canceller, wall, profile, drag } = self;

@@ -238,7 +238,7 @@ fn environment(lines: &mut Vec<String>, environment: &Environment) {
             !kind.needed.contains(&key)
                 && matches!(key.presence, Presence::Default(default) if left_out(default))
         };
-        // What is written as a wall has a damping of 0, or a stiffness.
+        // A part that is written as a wall has a damping of 0, or a stiffness.
         let value = match key.parameter {
             Some(parameter @ (Parameter::Stiffness | Parameter::Damping)) => {
                 environment.get(parameter).or(Some(0.0))

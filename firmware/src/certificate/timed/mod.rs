@@ -192,7 +192,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
 ) -> Result<Limited, Step> {
     let is_covered = E::MAY_MISREAD || scene.latency.encoder.is_ideal();
     if is_covered
-        && check_numbers(scene, E::PROFILE, E::HAS_FIXED_DELAYS).is_ok()
+        && check_numbers::<E>(scene).is_ok()
         && let Some(limited) = limited::<E>(M::TIMING, scene, is_late, format)
     {
         return Ok(limited);
