@@ -18,7 +18,6 @@ const FRAMES: usize = 2;
 struct Board {
     count: i32,
     code: DacCode,
-    start_up_ticks: u32,
 }
 
 impl SimIo for Board {
@@ -28,10 +27,6 @@ impl SimIo for Board {
 
     fn write(&mut self, code: DacCode) {
         self.code = code;
-    }
-
-    fn start_up_ticks(&self) -> u32 {
-        self.start_up_ticks
     }
 }
 
@@ -48,7 +43,7 @@ pub struct Replica<E: Tunable<f32>, M: 'static> {
 impl<E: Tunable<f32> + SupportsTiming<M>, M: OutputMode> Replica<E, M> {
     /// Boots a program, whose scene is certified; it is off until it is armed.
     pub fn boot(program: Program<E>) -> Self {
-        let lines = Board { count: 0, code: DacCode::MID_SCALE, start_up_ticks: 0 };
+        let lines = Board { count: 0, code: DacCode::MID_SCALE };
         let mut board = SimHardware::new(lines, PERIOD);
         // A replica for a test: its memory lives as long as the test.
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
@@ -56,13 +51,6 @@ impl<E: Tunable<f32> + SupportsTiming<M>, M: OutputMode> Replica<E, M> {
         let Booted { servo_loop, .. } =
             boot(&program, &mut board, &requests).expect("it is certified");
         Self { board, servo_loop, requests, inbox, frames, program }
-    }
-
-    /// The same, with an output that needs so many ticks after it was switched on.
-    #[must_use]
-    pub fn starting_up(mut self, ticks: u32) -> Self {
-        self.board.lines.start_up_ticks = ticks;
-        self
     }
 
     /// Asks for it to be armed in the next tick.

@@ -90,7 +90,7 @@ fn assert_near(found: &Estimate, wanted: f64, part: f64) {
 #[test]
 fn damping_and_inertia_through_counts_and_noise() {
     for (device, noise) in [(PADDLE, 0.02), (KNOB, 2e-4)] {
-        for seed in 0..10 {
+        for seed in 0..4 {
             let rig = rig(device, Sensing { torque_noise: noise, seed, ..SENSING });
             let found = identified(&rig, LOW_TO_HIGH, 0.02);
             assert_near(&found.damping, device.damping, 0.02);

@@ -11,11 +11,10 @@
 use std::path::Path;
 
 use analysis::board_sim::Pacing;
-use analysis::lockstep::PlantIo;
 use tempfile::TempDir;
 
 use crate::cases::{alternatives, changed, fields, lines, words};
-use crate::common::board::Rig;
+use crate::common::board::{Rig, Still};
 use crate::common::{WALL, program, read, with_input};
 
 /// The pictures of the documents, and what they are drawn of.
@@ -42,7 +41,7 @@ fn play(session: &str) {
             continue;
         }
         if let Some(name) = line.strip_prefix("board ") {
-            board = Some(Rig::start(name, Held, Pacing::Unthrottled));
+            board = Some(Rig::start(name, Still(300), Pacing::Unthrottled));
             continue;
         }
         let port = board.as_ref().map_or_else(String::new, Rig::port);
@@ -51,17 +50,6 @@ fn play(session: &str) {
             run(folder, case);
         }
     }
-}
-
-/// A device that is held where it is.
-struct Held;
-
-impl PlantIo for Held {
-    fn count(&mut self) -> Option<i32> {
-        Some(300)
-    }
-
-    fn hold(&mut self, _: u16) {}
 }
 
 /// Runs a command and checks what it says.

@@ -240,41 +240,6 @@ fn chain_with_lag_and_sine() {
     compare("chain, lag and sine", &experiment, &reference);
 }
 
-/// The motions that methods of integration are compared on.
-#[test]
-fn motions_that_methods_are_compared_on() {
-    let zero = || r(0.0);
-    let spring = |x: &Real| r(300.0) * x.clone();
-    let [rigid, chain] = analysis::studies::failures::region::devices();
-    let per = |x: f64| r(x) / r(0.05);
-    let rates =
-        vec![vec![zero(), r(1.0), zero(), zero()], vec![zero(), per(-0.5), per(1.0), per(1.0)]];
-    let reference = run(&rates, &[0.001, 0.0], spring, |_| 0.0);
-    compare(rigid.0, &rigid.1, &reference);
-
-    // The motor's mass and damper, and the other mass with the hand's.
-    let (k, c) = (20e3, 0.27);
-    let held = r(0.02) + r(0.1);
-    let at_hand = |x: Real| x / held.clone();
-    let (spring_there, damper_there) = (r(k) + r(1000.0), r(c) + r(1.0));
-    let damper_here = (r(c) + r(0.5)) / r(0.05);
-    let rates = vec![
-        vec![zero(), r(1.0), zero(), zero(), zero(), zero()],
-        vec![per(-k), -damper_here, per(k), per(c), per(1.0), zero()],
-        vec![zero(), zero(), zero(), r(1.0), zero(), zero()],
-        vec![
-            at_hand(r(k)),
-            at_hand(r(c)),
-            -at_hand(spring_there),
-            -at_hand(damper_there),
-            zero(),
-            at_hand(r(1.0)),
-        ],
-    ];
-    let reference = run(&rates, &[0.001, 0.0, 0.001, 0.0], spring, |_| 0.0);
-    compare(chain.0, &chain.1, &reference);
-}
-
 /// The largest eigenvalue in `f64` against the root of the characteristic polynomial next to it.
 #[test]
 fn spectral_radius() {

@@ -1,30 +1,11 @@
 //! Flashed programs on a virtual board, as a user runs them.
 
-use analysis::toolchain::BoardModel;
 use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::common::board::BoardProcess;
 use crate::common::{answer, haptic};
 use crate::readme::block;
-
-#[test]
-#[ignore = "builds for minutes"]
-fn what_is_flashed_gives_the_codes_of_the_host() {
-    for board in BoardModel::ALL {
-        for scene in ["delayed_spring", "damper_wall", "free_mode"] {
-            let target = format!("board:{board}");
-            let run = haptic(&["run", "--target", &target, scene, "--json", "--ticks", "3000"]);
-            assert_eq!(run.status.code(), Some(0), "{run:?}");
-            let run = answer(&run);
-            assert_eq!(run["target"], target);
-            assert_eq!((&run["codes_equal"], &run["difference"]), (&3000.into(), &Value::Null));
-            // The whole interrupt includes the code around the servo.
-            let instructions = |which| run["instructions"][which].as_f64().unwrap();
-            assert!(instructions("interrupt_mean") > instructions("compute_max"), "{run}");
-        }
-    }
-}
 
 /// Columns of the rows that `haptic run --csv` has printed.
 fn columns(csv: &[u8]) -> (Vec<f64>, Vec<f64>) {
@@ -34,10 +15,6 @@ fn columns(csv: &[u8]) -> (Vec<f64>, Vec<f64>) {
         (angle, torque)
     });
     rows.unzip()
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Runs a program with its board's own bridge in the hand that shows it; then has it, and the servo on this
@@ -74,25 +51,6 @@ fn a_scene_file_with_a_motor_has_the_codes_of_the_host_on_the_bridge() {
     assert!(torques.iter().any(|torque| torque.abs() > 0.1), "{torques:?}");
 }
 
-/// The hand is a spring of 6 N m/rad to its set-point of 0.12 rad: the motor's torque is the servo's, or the
-/// device would rest elsewhere.
-#[test]
-#[ignore = "builds for minutes"]
-fn a_hand_rests_in_the_wall_of_a_motor_board_by_the_motor_s_torque() {
-    let (angles, torques) = with_its_bridge("bridge_wall", "1700");
-    let (angles, torques) = (&angles[1500..], &torques[1500..]);
-    let count = std::f64::consts::TAU / 61_440.0;
-    let least = angles.iter().copied().fold(f64::INFINITY, f64::min);
-    assert!(angles.iter().all(|angle| angle - least < 2.5 * count), "{angles:?}");
-    // The middle of the count.
-    let angle = mean(angles) + 0.5 * count;
-    let (torque, hand) = (mean(torques), 6.0 * (0.12 - angle));
-    println!("{torque:.4} N m at {angle:.5} rad, where the hand pushes with {hand:.4} N m");
-    // The error of the current's ADC steps.
-    assert!((torque - hand).abs() < 0.01, "{torque} N m against {hand} N m of the hand");
-    assert!(torque > 0.4);
-}
-
 /// Aligned before that, as a person would have it aligned.
 #[test]
 #[ignore = "builds for minutes"]
@@ -110,39 +68,27 @@ fn tuned(board: &BoardProcess, arguments: &[&str]) -> (Option<i32>, Value) {
     (output.status.code(), answer(&output))
 }
 
+/// Over the serial port that the drivers have set up, judged by the certificate in the flash.
 #[test]
 fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
-    tune(&[BoardModel::NucleoG474re]);
-}
-
-#[test]
-#[ignore = "builds for minutes"]
-fn so_are_those_of_other_boards() {
-    tune(&[BoardModel::BG431bEsc1, BoardModel::FeatherStm32f405]);
-}
-
-/// Over the serial port that the drivers have set up, judged by the certificate in the flash.
-fn tune(boards: &[BoardModel]) {
-    for &board in boards {
-        let board = BoardProcess::start("damper_wall", &["--board", board.name()]);
-        let (status, running) = tuned(&board, &[]);
-        assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
-        assert_eq!(running["parameters"]["stiffness"], 22.0);
-        let (state, reset) = (&running["state"], &running["reset"]);
-        assert_eq!((state, reset), (&"disarmed".into(), &"power-on".into()), "{running}");
-        let (status, running) = tuned(&board, &["--arm"]);
-        assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
-        let (status, running) = tuned(&board, &["stiffness=20"]);
-        assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
-        assert_eq!(running["parameters"]["stiffness"], 20.0);
-        // Past the line: the board itself refuses, names numbers that would pass, and goes on.
-        let (status, refused) = tuned(&board, &["damping=0.02"]);
-        assert_eq!(status, Some(1), "{refused}");
-        assert!(refused["refused"].to_string().contains("would pass"), "{refused}");
-        let (_, running) = tuned(&board, &[]);
-        assert_eq!(running["parameters"]["damping"], 0.01);
-        assert_eq!(running["missed"], 0, "{running}");
-    }
+    let board = BoardProcess::start("damper_wall", &["--board", "nucleo-g474re"]);
+    let (status, running) = tuned(&board, &[]);
+    assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
+    assert_eq!(running["parameters"]["stiffness"], 22.0);
+    let (state, reset) = (&running["state"], &running["reset"]);
+    assert_eq!((state, reset), (&"disarmed".into(), &"power-on".into()), "{running}");
+    let (status, running) = tuned(&board, &["--arm"]);
+    assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
+    let (status, running) = tuned(&board, &["stiffness=20"]);
+    assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
+    assert_eq!(running["parameters"]["stiffness"], 20.0);
+    // Past the line: the board itself refuses, names numbers that would pass, and goes on.
+    let (status, refused) = tuned(&board, &["damping=0.02"]);
+    assert_eq!(status, Some(1), "{refused}");
+    assert!(refused["refused"].to_string().contains("would pass"), "{refused}");
+    let (_, running) = tuned(&board, &[]);
+    assert_eq!(running["parameters"]["damping"], 0.01);
+    assert_eq!(running["missed"], 0, "{running}");
 }
 
 /// With the measurements of its power stage.

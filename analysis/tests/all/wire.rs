@@ -1,13 +1,13 @@
 //! The program as the client of a board that is a thread: `tune`, `scope`, and everything that a
 //! wire may do to them.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::num::NonZeroU32;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::board::{BoardProcess, Codes, Rig, wall};
+use crate::common::board::{BoardProcess, Codes, Rig};
 use crate::common::{answer, complaint, haptic, program};
 use analysis::board_sim::Pacing;
 use analysis::link::{Link, RequestResult};
@@ -18,8 +18,6 @@ use analysis::scope::control::{Action, Reply, Request};
 use analysis::scope::keys::Key;
 use analysis::scope::poller::{BoardPoller, Event};
 use haptic_servo::certificate::Parameter;
-use haptic_servo::number::Format;
-use haptic_servo::wire::message::Changes;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -257,49 +255,6 @@ fn a_serial_port_that_another_program_has_open_is_said_with_its_name() {
         let said = text(&output.stderr);
         assert!(said.contains("is in use by") && said.contains(&named), "{said}");
     }
-}
-
-/// Half of them inadmissible; the verdict on each is made here, apart from the wire.
-#[test]
-fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
-    let (held, rig) = armed(Pacing::Unthrottled);
-    let mut link = rig.link();
-    let mut random = fastrand::Rng::with_seed(7);
-    let (mut running, mut refused) = (22.0, 0);
-    held.after(500);
-    for i in 0..1000 {
-        let stiffness = if i % 2 == 0 { 0.5 + 19.0 * random.f64() } else { 44.0 * random.f64() };
-        let damping = if i % 2 == 0 { 0.001 } else { 0.02 + 0.02 * random.f64() };
-        let changes = [(Parameter::Stiffness, stiffness), (Parameter::Damping, damping)];
-        held.forget();
-        let outcome = link.set(Changes::from_slice(&changes).unwrap()).unwrap();
-        match wall(stiffness, damping).certify_in(Format::F32) {
-            Ok(_) => {
-                assert_eq!(outcome, RequestResult::Done, "set {i}");
-                running = stiffness;
-                // Near its limit a certified wall rings at half the sample rate for a long time: it has not
-                // reached its torque at rest.
-                if stiffness * 0.001 / 2.0 + damping > 0.9 * 0.022 {
-                    continue;
-                }
-            }
-            Err(rejection) => {
-                // What would pass is judged on the board's terms, and may be another number.
-                let reason = |text: &str| text.split("; it would pass").next().map(str::to_owned);
-                let RequestResult::Refused(said) = &outcome else { panic!("set {i}: {outcome:?}") };
-                assert_eq!(reason(said), reason(&rejection.to_string()), "set {i}");
-                refused += 1;
-                // Not for a single tick.
-                let last = held.after(150);
-                assert_eq!(held.seen(), BTreeSet::from([last]), "set {i}");
-            }
-        }
-        let last = held.after(150);
-        assert!((f64::from(last) - code(running)).abs() <= 1.0, "set {i}: {last}");
-    }
-    assert!((400..600).contains(&refused), "{refused}");
-    let status = link.status().unwrap();
-    assert_eq!((status.sets, status.missed, status.dropped), (1000 - refused, 0, 0));
 }
 
 #[test]

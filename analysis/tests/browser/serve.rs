@@ -7,12 +7,14 @@ use std::path::Path;
 use analysis::board_sim::{Pacing, SimulatedBoard};
 use analysis::link::Address;
 use analysis::lockstep::PlantIo;
-use analysis::program::Program;
+use analysis::program::{Program, damper_wall};
 use analysis::serve::{Port, Server};
+use haptic_servo::environment::Wall;
 use haptic_servo::number::Format;
+use haptic_servo::scene::Scene;
 use serde_json::Value;
 
-use crate::common::board::{BoardProcess, Running, wall};
+use crate::common::board::{BoardProcess, Running};
 use crate::common::{WALL, read};
 use crate::devtools::{Page, saved};
 use crate::explore::explore;
@@ -94,7 +96,9 @@ pub fn a_board_is_watched_tuned_armed_and_recorded() {
     page.wait_for("JSON.parse(window.haptic.scene()).name === 'damper_wall'");
 
     // Refused before it is sent, in the words of the certificate.
-    let rejection = wall(30.0, 0.01).certify_in(Format::F32).unwrap_err();
+    let environment = Wall::damped(30.0, 0.01, 1).behind(0.0).alone();
+    let wall = Scene { environment, ..damper_wall::SCENE };
+    let rejection = wall.certify_in(Format::F32).unwrap_err();
     type_number(&mut page, "stiffness", "30");
     let judged = text(&mut page, "judged");
     assert!(judged.starts_with(rejection.reason_in(Format::F64).as_str()), "{judged}");

@@ -311,13 +311,6 @@ impl VirtualBoard {
         self.encoder.turn(counts - before);
     }
 
-    /// Turns the encoder by counts that its counter loses, as with a bad cable.
-    pub fn lose_counts(&mut self, counts: i32) {
-        if let Some(index) = &mut self.index {
-            index.turn(counts);
-        }
-    }
-
     /// Sends bytes on the line to the program, if its pin is configured for that.
     pub fn send(&mut self, bytes: &[u8]) {
         if self.is_wired(self.chip.serial) {

@@ -9,9 +9,7 @@ use std::time::{Duration, Instant};
 use analysis::board_sim::{Pacing, SimulatedBoard};
 use analysis::link::{Address, Link};
 use analysis::lockstep::PlantIo;
-use analysis::program::{Program, damper_wall};
-use haptic_servo::environment::Wall;
-use haptic_servo::scene::Scene;
+use analysis::program::Program;
 use tempfile::TempDir;
 
 use super::{haptic, program};
@@ -49,6 +47,17 @@ impl Rig {
 fn with_port(port: &str, arguments: &[&str]) -> Output {
     let (command, rest) = arguments.split_first().unwrap();
     haptic(&[&[*command, "--port", port], rest].concat())
+}
+
+/// A device that is held still at a count.
+pub struct Still(pub i32);
+
+impl PlantIo for Still {
+    fn count(&mut self) -> Option<i32> {
+        Some(self.0)
+    }
+
+    fn hold(&mut self, _: u16) {}
 }
 
 /// The codes that a motor receives.
@@ -144,10 +153,4 @@ impl BoardProcess {
     pub fn haptic(&self, arguments: &[&str]) -> Output {
         with_port(&self.port, arguments)
     }
-}
-
-/// The scene of `damper_wall` with another wall.
-pub fn wall(stiffness: f64, damping: f64) -> Scene {
-    let environment = Wall::damped(stiffness, damping, 1).behind(0.0).alone();
-    Scene { environment, ..damper_wall::SCENE }
 }

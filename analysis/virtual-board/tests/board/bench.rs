@@ -223,18 +223,6 @@ impl Bench {
         self.machine.image().symbol_ending(end).unwrap_or_else(|| panic!("there is no {end}"))
     }
 
-    /// Address of the words that keep a fault's record.
-    pub fn record(&self) -> u32 {
-        self.symbol("12fault_memory6MEMORY").0
-    }
-
-    /// Flips bits of a word in memory.
-    pub fn flip(&mut self, address: u32, bits: u32) {
-        let core = self.machine.core_mut();
-        let word = core.word(address).unwrap() ^ bits;
-        assert!(core.set_memory(address, &word.to_le_bytes()));
-    }
-
     /// Says something to the board.
     pub fn say(&mut self, message: &ToBoard) {
         self.board_mut().send(&frame(message));

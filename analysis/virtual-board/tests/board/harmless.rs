@@ -1,7 +1,6 @@
 //! Events that are not faults, or cannot be detected as faults: nothing unsafe follows.
 
 use analysis::program::Program;
-use haptic_servo::fault::{Fault, FaultRecord};
 use haptic_servo::servo_loop::State;
 use unicorn_engine::RegisterARM;
 use virtual_board::chip::Chip;
@@ -127,30 +126,6 @@ fn a_peripheral_that_is_broken_at_power_on_leaves_the_amplifier_off() {
             assert_eq!(locked_up, register == Register::Dac, "{what}");
             assert_eq!(bench.board().amplifier(), Level::Low, "{what}");
             assert_eq!(bench.amplifier_on(), None, "{what}");
-        }
-    });
-}
-
-#[test]
-fn a_record_outlives_a_reset_and_a_flipped_bit_makes_it_none() {
-    on_both(|chip| {
-        for word in 0..=FaultRecord::WORDS {
-            let mut bench = Bench::running(chip, "damper_wall");
-            bench.turn(10_000);
-            bench.run(2);
-            let record = bench.record();
-            let is_flipped = word < FaultRecord::WORDS;
-            if is_flipped {
-                bench.flip(record + 4 * word as u32, 1 << (4 * word));
-            }
-            bench.board_mut().system.reset_requested = true;
-            bench.run(150);
-            let told = bench.previous_fault().and_then(|record| record.fault.fault());
-            let was_jump = matches!(told, Some(Fault::EncoderJump { counts: 10_000, .. }));
-            let state = bench.status().state;
-            let expected = (!is_flipped, State::Disarmed);
-            assert_eq!((was_jump, state), expected, "word {word}: {told:?}");
-            assert_eq!(told.is_some(), was_jump);
         }
     });
 }

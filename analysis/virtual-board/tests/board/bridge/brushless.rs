@@ -1,4 +1,4 @@
-//! A brushless motor: aligned on request, or refused; and then with the torque of the code.
+//! A brushless motor: aligned on request, and then with the torque of the code.
 
 use std::sync::{Arc, Mutex};
 
@@ -6,7 +6,6 @@ use haptic_servo::fault::Fault;
 use haptic_servo::servo_loop::State;
 use haptic_servo::wire::message::{Outcome, ToBoard};
 use virtual_board::motor::{Motor, Winding};
-use virtual_board::power_stage::Circuit;
 use virtual_board::power_stage::gate_log::any_high;
 
 use super::bench::{INSTANT, asked_torque, boot_program, circuit, motor, run_to_valley};
@@ -50,21 +49,6 @@ pub fn wired(wires: [usize; 3], offset: f64) -> Motor {
     motor
 }
 
-/// Has the motor aligned in a circuit; gives the bench and what the board says of it.
-pub fn aligned(motor: Motor, change: impl Fn(&mut Circuit)) -> (Held, Option<Fault>) {
-    let mut held = Held::new("brushless_wall", motor);
-    let bench = &mut held.bench;
-    change(circuit(bench));
-    bench.run(200);
-    assert_eq!(bench.request(|id| ToBoard::Align { id }), Outcome::Done);
-    let has_ended = |bench: &mut Bench| bench.status().state != State::Aligning;
-    assert!(bench.run_until(2000, LONGEST, has_ended), "it does not end");
-    let fault = bench.fault();
-    assert!(!bench.is_on());
-    println!("{fault:?}");
-    (held, fault)
-}
-
 /// A hand that leans against the wall comes to rest: the torque is that of the code, and the hand's.
 pub fn check_torque(held: &mut Held, what: &str) {
     assert_eq!(held.bench.arm(), Outcome::Done, "{what}");
@@ -83,16 +67,14 @@ pub fn check_torque(held: &mut Held, what: &str) {
 /// With two wires swapped, so that the phase falls while the count rises; the other orders are tested on the host.
 #[test]
 fn an_aligned_motor_gives_the_torque_of_its_code() {
-    let (mut held, fault) = aligned(wired([1, 0, 2], -2.0), |_| {});
-    assert_eq!(fault, None);
+    let mut held = Held::new("brushless_wall", wired([1, 0, 2], -2.0));
+    let bench = &mut held.bench;
+    bench.run(200);
+    assert_eq!(bench.request(|id| ToBoard::Align { id }), Outcome::Done);
+    let has_ended = |bench: &mut Bench| bench.status().state != State::Aligning;
+    assert!(bench.run_until(2000, LONGEST, has_ended), "it does not end");
+    assert_eq!((bench.fault(), bench.is_on()), (None, false));
     check_torque(&mut held, "aligned");
-}
-
-#[test]
-fn a_motor_that_cannot_be_aligned_is_not_driven() {
-    let (mut held, fault) = aligned(wired([0, 1, 2], 0.7), |circuit| circuit.is_blocked = true);
-    assert_eq!(fault.map(Fault::as_str), Some("alignment-blocked"));
-    check_stays_off(&mut held.bench);
 }
 
 /// It is asked to be armed, and no gate is high for it.

@@ -1,10 +1,8 @@
-//! A motor that its encoder's index aligns after a reset, and counts that the index finds lost.
+//! A motor that its encoder's index aligns after a reset.
 
 use std::f64::consts::TAU;
 
 use haptic_servo::current::{IndexOffset, Winding};
-use haptic_servo::fault::Fault;
-use haptic_servo::servo_loop::State;
 use virtual_board::encoder_index::EncoderIndex;
 use virtual_board::power_stage::gate_log::any_high;
 
@@ -68,28 +66,6 @@ pub fn leaning() -> Held {
     held
 }
 
-/// The offset of the program is that of another motor: the board says so at the first arming, and the shaft has
-/// hardly moved.
-#[test]
-fn an_offset_of_another_motor_does_not_spin_the_shaft_away() {
-    for degrees in [90.0, 180.0, -120.0_f64] {
-        let motor = wired([0, 1, 2], magnets(f64::from(OFFSET.counts)) + degrees.to_radians());
-        let mut held = Held::new("brushless_index", motor);
-        held.bench.board_mut().index = Some(index());
-        held.bench.run(200);
-        assert_eq!(turn_past(&mut held), Some(OFFSET));
-        let before = held.bench.status().count;
-        held.bench.arm();
-        held.bench.run(3000);
-        let status = held.bench.status();
-        let told = held.bench.fault();
-        assert_eq!(told.map(Fault::as_str), Some("index-offset"), "{degrees}: {told:?}");
-        let turned = (status.count - before).unsigned_abs() as f64 / COUNTS;
-        println!("{degrees} degrees: {turned:.3} turns");
-        assert!(turned < 0.25, "{degrees} degrees: {turned} turns");
-    }
-}
-
 /// The encoder's counter has lost counts, and the index comes.
 pub fn comes_elsewhere(bench: &mut Bench) {
     let board = bench.board_mut();
@@ -111,29 +87,4 @@ fn the_first_index_after_a_reset_aligns_the_motor_and_no_gate_is_high_before() {
     let encoder = &bench.board().encoder;
     assert_eq!(encoder.filters(), [encoder.index_filter(); 2]);
     check_torque(&mut held, "by the index");
-}
-
-#[test]
-fn lost_counts_are_found_at_the_index_and_the_next_index_aligns_again() {
-    let mut held = leaning();
-    held.bench.board_mut().lose_counts(60);
-    held.push(-TURNS);
-    let is_found = |bench: &mut Bench| bench.status().state == State::Faulted;
-    assert!(held.bench.run_until(50, 8000, is_found), "it is not found");
-    let fault = held.bench.fault();
-    let Some(Fault::Power(fault)) = fault else { panic!("{fault:?}") };
-    let (code, [count, aligned]) = fault.encode();
-    // Met from the upper side, both times.
-    let wanted = (COUNTS as i64 + AT + WIDTH - 1) as u32;
-    assert_eq!((code, count, aligned), (21, wanted - 60, wanted));
-    assert!(!held.bench.is_on());
-    assert_eq!(told(&mut held.bench), None);
-    held.push(0.0);
-    held.bench.run(500);
-    check_stays_off(&mut held.bench);
-    // Back past the index, which aligns it.
-    held.push(TURNS);
-    held.bench.run(1000);
-    held.push(0.0);
-    assert_eq!(told(&mut held.bench), Some(OFFSET));
 }

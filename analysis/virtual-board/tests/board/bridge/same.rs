@@ -1,18 +1,15 @@
-//! What runs on the board against the same on the host, bit for bit: the current controller with the samples
-//! that the board's interrupt has read, and the servo with its counts.
+//! The current controller on the board against the same on the host, bit for bit, with the samples that the board's
+//! interrupt has read.
 
 use haptic_servo::current::{CurrentController, Sample};
 use haptic_servo::encoder::RawCount;
-use haptic_servo::output_timing::Latched;
-use tests::replica::Replica;
 use virtual_board::board::BusAccess;
 use virtual_board::chip::TICK_INTERRUPT;
 
 use super::bench::{armed, boot, code, take_accesses};
-use super::bridge_wall::{CURRENT_LOOP, SCENE, TRANSDUCERS};
+use super::bridge_wall::CURRENT_LOOP;
 use super::paddle::paddle;
 use crate::bench::MID_SCALE;
-use crate::scenes::program;
 
 /// Registers of the current interrupt.
 const COUNT: u32 = 0x4000_0840;
@@ -134,35 +131,4 @@ fn the_current_interrupt_computes_what_the_host_computes() {
     }
     println!("{compared} instants are the same, {moved} of them with a torque; armed at {armed}");
     assert!(compared > PERIODS * 39 && moved > PERIODS * 10);
-}
-
-#[test]
-fn the_servo_gives_the_host_s_codes() {
-    const PERIODS: usize = 1500;
-    let mut bench = boot(paddle(swings, 0.0));
-    let armed = armed(&mut bench);
-    let first = bench.pins().samples.len();
-    let mut codes = Vec::new();
-    for _ in 0..PERIODS {
-        bench.run(1);
-        codes.push(code(&mut bench));
-    }
-    let mut host = Replica::<_, Latched>::boot(program(SCENE, &TRANSDUCERS))
-        .starting_up(CURRENT_LOOP.start_up_ticks());
-    host.arm();
-    // The gates go on after the search for the comparators' thresholds.
-    let armed =
-        armed - (CURRENT_LOOP.trip_range().instants() / u32::from(CURRENT_LOOP.updates())) as usize;
-    let samples = bench.pins().samples[armed..].to_vec();
-    let mut torques = 0;
-    for (tick, sample) in samples.iter().enumerate() {
-        let expected = host.tick(sample.count).0;
-        // Seen at the request for the next tick.
-        let Some(seen) = (armed + tick + 1).checked_sub(first) else { continue };
-        let Some(&seen) = codes.get(seen) else { break };
-        assert_eq!(seen, expected, "tick {tick}: {sample:?}");
-        torques += u32::from(expected != MID_SCALE);
-    }
-    println!("{torques} ticks with a torque");
-    assert!(torques > PERIODS as u32 / 4);
 }
