@@ -79,7 +79,7 @@ fn listening(
         return Ok(program.listen(device, address, Pacing::RealTime));
     };
     let board = if let Some((board, current_loop)) = built.boot_bridge()? {
-        let shaft = HandHeldShaft::new(scene, hand, transducers, &current_loop)?;
+        let shaft = HandHeldShaft::new(scene, hand, transducers, current_loop)?;
         DrivingBoard::Bridge { board, shaft: Box::new(shaft) }
     } else {
         let plant = Box::new(SimulatedDevice::new(scene, hand, transducers)?);

@@ -205,11 +205,11 @@ fn ran(
     {
         let input = match counts {
             Some(counts) => {
-                ShaftInput::Recording(RecordedShaft::new(counts, transducers, &current_loop))
+                ShaftInput::Recording(RecordedShaft::new(counts, transducers, current_loop))
             }
             None => {
                 let hand = trajectory.clone();
-                let shaft = HandHeldShaft::new(scene, hand, transducers, &current_loop)?;
+                let shaft = HandHeldShaft::new(scene, hand, transducers, current_loop)?;
                 ShaftInput::Hand(Box::new(shaft))
             }
         };

@@ -20,7 +20,7 @@ pub struct VirtualBoardBuild {
     board: BoardModel,
     elf: PathBuf,
     /// The current loop of the board's own bridge, with the encoder and the motor behind it.
-    bridge: Option<(CurrentLoop, Transducers)>,
+    bridge: Option<(&'static CurrentLoop, Transducers)>,
 }
 
 impl VirtualBoardBuild {
@@ -38,7 +38,7 @@ impl VirtualBoardBuild {
             let elf = toolchain.build_for(board, output, &[name], format)?.swap_remove(0).path;
             Ok((elf, toolchain.build_virtual_board()?))
         })?;
-        let bridge = program.bridge.map(|bridge| (bridge, program.transducers));
+        let bridge = program.bridge.as_ref().map(|bridge| (bridge, program.transducers));
         Ok(Self { executable, board, elf, bridge })
     }
 
@@ -60,7 +60,9 @@ impl VirtualBoardBuild {
     }
 
     /// Boots the board with a motor, if its program drives the board's own bridge.
-    pub fn boot_bridge(&self) -> Result<Option<(BridgeBoard, CurrentLoop)>, VirtualBoardError> {
+    pub fn boot_bridge(
+        &self,
+    ) -> Result<Option<(BridgeBoard, &'static CurrentLoop)>, VirtualBoardError> {
         let Some((current_loop, transducers)) = self.bridge else { return Ok(None) };
         let executable = &self.executable;
         let board =
