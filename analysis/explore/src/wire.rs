@@ -173,6 +173,7 @@ fn scene_of(client: &Client) -> Option<Value> {
         full_scale: Some(transducers.full_scale_torque),
         friction: None,
         supply: None,
+        motor: None,
         shapes: None,
     };
     file::as_json(&file.name, Format::Toml, &write::toml(&file)).ok()

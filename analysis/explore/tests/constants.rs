@@ -51,7 +51,7 @@ fn the_constants_of_scenes_are_the_scenes() {
         let text = match *name {
             "program" => {
                 let transducers = file.board_transducers(None, None).unwrap();
-                program(&file, &transducers, "program.toml")
+                program(&file, &transducers, None, "program.toml")
             }
             _ => constant(&toml, &mut Vec::new()),
         };

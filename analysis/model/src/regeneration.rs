@@ -39,7 +39,7 @@ pub const ASSUMPTION: &str = "supply: a hand pushes in one direction, no farther
 /// The answer for the supply of a scene file; `None` if the file states none.
 pub fn judge(file: &SceneFile) -> Option<SupplyReport> {
     let (bus, largest_speed) = match file.supply? {
-        FileSupply::Sinks => return Some(sinking()),
+        FileSupply::Sinks { .. } => return Some(sinking()),
         FileSupply::Stores { bus, largest_speed } => (bus, largest_speed),
     };
     // The reader has refused a file with neither.

@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
+use haptic_servo::current::CurrentLoop;
 use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 
 use super::building::building;
 use super::status::CommandError;
 use crate::file::{DeviceFile, SceneFile, program};
 use crate::program::Program;
-use crate::toolchain::{self, BoardModel, NumberFormat, Sources, Toolchain};
+use crate::toolchain::{self, BoardModel, NumberFormat, Sources, Toolchain, TorqueOutput};
 
 /// The longest name that a board tells its host, in bytes.
 const LONGEST: usize = 32;
@@ -20,10 +22,13 @@ pub struct FileProgram {
     /// Its text.
     pub text: String,
     is_certified: bool,
+    /// The current loop of the board's own bridge that makes its torques; none where a DAC does.
+    pub bridge: Option<(&'static CurrentLoop, Transducers)>,
 }
 
 impl FileProgram {
-    /// The program of a file, which states encoder and motor if they are not given.
+    /// The program of a file, which states encoder and motor if they are not given; for a board's own bridge if
+    /// the file has a motor for it.
     pub fn of(
         file: &SceneFile,
         source: &str,
@@ -32,9 +37,14 @@ impl FileProgram {
     ) -> Result<Self, CommandError> {
         let failed = |why| CommandError::NoBoardProgram { file: source.to_owned(), why };
         let transducers = file.board_transducers(counts_per_turn, full_scale).map_err(failed)?;
-        let text = program::program(file, &transducers, source).map_err(failed)?;
+        let bridge =
+            file.motor.map(|_| file.on_bridge(&transducers)).transpose().map_err(failed)?;
+        let text = program::program(file, &transducers, bridge.as_ref(), source).map_err(failed)?;
         let is_certified = file.scene.certify().is_ok();
-        Ok(Self { source: source.to_owned(), text, is_certified })
+        // It lives as long as that of a program of the examples, which is a constant.
+        let leaked = |current_loop| &*Box::leak(Box::new(current_loop));
+        let bridge = bridge.map(|bridge| (leaked(bridge.current_loop), transducers));
+        Ok(Self { source: source.to_owned(), text, is_certified, bridge })
     }
 
     /// A program of the examples with the device of a file in place of the paddle.
@@ -43,7 +53,12 @@ impl FileProgram {
         let scene = Program::find(name).map(|program| program.scene);
         let is_certified =
             scene.is_none_or(|scene| Scene { device: file.device, ..scene }.certify().is_ok());
-        Ok(Self { source: name.to_owned(), text, is_certified })
+        Ok(Self { source: name.to_owned(), text, is_certified, bridge: None })
+    }
+
+    /// What makes its torques.
+    pub fn output(&self) -> TorqueOutput {
+        if self.bridge.is_some() { TorqueOutput::Bridge } else { TorqueOutput::Dac }
     }
 
     /// Writes it out, and builds it for a board or the emulated board.
@@ -54,7 +69,9 @@ impl FileProgram {
         format: NumberFormat,
     ) -> Result<toolchain::Program, CommandError> {
         let file = toolchain.write_scene(self.name(), &self.text)?;
-        let built = building(&self.source, || toolchain.build_written(&file, board, format));
+        let built = building(&self.source, || {
+            toolchain.build_written(&file, board.map(|board| (board, self.output())), format)
+        });
         built.map_err(|why| CommandError::FileNotBuilt {
             file: self.source.clone(),
             why: Box::new(why),

@@ -51,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let toolchain = set_up(Tools::Compiler)?;
     let output = match (arguments.output, &file) {
         (Some(output), _) => output,
-        (None, Some(_)) => TorqueOutput::Dac,
+        (None, Some(file)) => file.output(),
         (None, None) => toolchain.output_of(name)?,
     };
     let program = match &file {
@@ -82,11 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 /// The program that is written for a file, or none for a program as it is in `firmware/src/bin`.
 fn written(arguments: &Arguments) -> Result<Option<FileProgram>, CommandError> {
     let name = &arguments.scene;
-    let is_written = arguments.device.is_some() || is_file(name);
-    if is_written && arguments.output == Some(TorqueOutput::Bridge) {
-        return Err(CommandError::FileOnBridge { file: name.clone() });
-    }
-    match &arguments.device {
+    let program = match &arguments.device {
         Some(file) if is_file(name) => {
             let error =
                 format!("{name} is a file with its own device: --device {file} is for a program");
@@ -109,6 +105,12 @@ fn written(arguments: &Arguments) -> Result<Option<FileProgram>, CommandError> {
             check_device(arguments, device.or(paddle))?;
             Ok(None)
         }
+    }?;
+    match (&program, arguments.output) {
+        (Some(program), Some(output)) if output != program.output() => {
+            Err(CommandError::FileForOther { file: name.clone(), output: program.output() })
+        }
+        _ => Ok(program),
     }
 }
 

@@ -8,7 +8,7 @@ use super::file_program::{FileProgram, device_module};
 use super::file_scene::{is_file, scene_file};
 use super::status::{CommandError, CommandStatus};
 use crate::file;
-use crate::toolchain::Sources;
+use crate::toolchain::{BoardModel, Sources};
 
 /// Arguments of `haptic new`.
 #[derive(Debug, Args)]
@@ -29,6 +29,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let Arguments { name, from, device } = arguments;
     let sources = Sources::find()?;
+    let mut board = BoardModel::NucleoG474re;
     let (text, begun) = if is_file(from) {
         if device.is_some() {
             let error = format!("{from} is a file with its own device: --device is for a program");
@@ -41,6 +42,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
             why: Box::new(CommandError::Refused(Box::new(rejection))),
             is_certified: false,
         })?;
+        if program.bridge.is_some() {
+            board = BoardModel::BG431bEsc1;
+        }
         (program.text, format!("is the program of {from}, with its numbers as constants:"))
     } else {
         let device = device.as_ref().map(|file| device_module(file, &file::load_device(file)?));
@@ -55,8 +59,8 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         "{path}\n  \
          {begun}\n  \
          cargo haptic run {name}                               on this machine\n  \
-         cargo haptic run {name} --target board:nucleo-g474re  as flashed, on a virtual board\n  \
-         cargo haptic flash {name} --board nucleo-g474re       on a board",
+         cargo haptic run {name} --target board:{board:<14} as flashed, on a virtual board\n  \
+         cargo haptic flash {name} --board {board:<19} on a board",
         path = path.display(),
     )?;
     Ok(CommandStatus::Success)

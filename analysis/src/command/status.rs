@@ -11,6 +11,7 @@ use crate::link::Address;
 use crate::quantity::significant;
 use crate::simulation::SimulationError;
 use crate::studies::error::StudyError;
+use crate::toolchain::TorqueOutput;
 
 /// Verdict of a command, which becomes the exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,12 +47,11 @@ pub enum CommandError {
     #[error("{file}: {why}")]
     NoBoardProgram { file: String, why: String },
     #[error(
-        "{file}: the motor of a board's own bridge is in the DRIVE of a program, which `cargo haptic new NAME \
-         --from bridge_wall` begins: resistance, inductance and torque constant of its winding, and its supply \
-         (docs/power-stage.md). `cargo haptic design motor` computes the bandwidth, torque and speed that they \
-         allow"
+        "{file} is for {}: a file with the table [motor] is for a board's own bridge, and without it for a DAC and \
+         an amplifier (docs/power-stage.md)",
+        match output { TorqueOutput::Bridge => "a bridge", TorqueOutput::Dac => "a DAC" }
     )]
-    FileOnBridge { file: String },
+    FileForOther { file: String, output: TorqueOutput },
     #[error(
         "{scene} is for a device of the examples, by its inertia and damping, not for yours: on another device \
          it may oscillate. {way}; measure it (docs/measure.md). Or state --example-device"

@@ -51,7 +51,7 @@ impl VirtualBoardBuild {
         let toolchain = set_up(Tools::CompilerAndVirtualBoard)?;
         let elf = program.build(&toolchain, Some(board), format)?.path;
         let executable = building("the virtual board", || toolchain.build_virtual_board())?;
-        Ok(Self { executable, board, elf, bridge: None })
+        Ok(Self { executable, board, elf, bridge: program.bridge })
     }
 
     /// Boots a board whose program drives a DAC.

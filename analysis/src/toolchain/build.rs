@@ -205,16 +205,16 @@ impl Toolchain {
         }
     }
 
-    /// Builds the program in a file of [`write_scene`](Self::write_scene): for a board's DAC as if to be flashed,
+    /// Builds the program in a file of [`write_scene`](Self::write_scene): for a board as if to be flashed,
     /// or for the emulated board with its log.
     pub fn build_written(
         &self,
         file: &Path,
-        board: Option<BoardModel>,
+        board: Option<(BoardModel, TorqueOutput)>,
         format: NumberFormat,
     ) -> Result<Program, BuildError> {
         let [features, suffix] = match board {
-            Some(board) => board_variant(board, TorqueOutput::Dac)?,
+            Some((board, output)) => board_variant(board, output)?,
             None => ["board-qemu,log".to_owned(), String::new()],
         };
         let name = file.file_stem().map(|name| name.to_string_lossy()).unwrap_or_default();

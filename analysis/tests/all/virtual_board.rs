@@ -6,6 +6,7 @@ use tempfile::TempDir;
 
 use crate::common::board::BoardProcess;
 use crate::common::{answer, haptic};
+use crate::readme::block;
 
 #[test]
 #[ignore = "builds for minutes"]
@@ -61,6 +62,16 @@ fn with_its_bridge(scene: &str, ticks: &str) -> (Vec<f64>, Vec<f64>) {
     assert_eq!(replayed["instructions"]["compute_max"], Value::Null);
     assert!(replayed["instructions"]["interrupt_mean"].as_f64().unwrap() > 100.0, "{replayed}");
     columns(&in_hand.stdout)
+}
+
+#[test]
+#[ignore = "builds for minutes"]
+fn a_scene_file_with_a_motor_has_the_codes_of_the_host_on_the_bridge() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("driven.toml");
+    std::fs::write(&file, block("docs/power-stage.md", "driven")).unwrap();
+    let (_, torques) = with_its_bridge(file.to_str().unwrap(), "3000");
+    assert!(torques.iter().any(|torque| torque.abs() > 0.1), "{torques:?}");
 }
 
 /// The hand is a spring of 6 N m/rad to its set-point of 0.12 rad: the motor's torque is the servo's, or the

@@ -30,6 +30,7 @@ fn file(scene: Scene) -> SceneFile {
         full_scale: None,
         friction: None,
         supply: None,
+        motor: None,
         shapes: None,
     }
 }

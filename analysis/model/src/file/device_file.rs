@@ -29,7 +29,7 @@ pub struct DeviceFile {
 
 /// A file of a device is a table, like that of a scene.
 const ROOT: Key =
-    Key::root("a table of [device], and perhaps `name`, [encoder], [limits] and [supply]");
+    Key::root("a table of [device], and perhaps `name`, [encoder], [limits], [supply] and [motor]");
 
 /// Reads a device file, or the device of a scene file, which is checked as a whole.
 pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
@@ -47,8 +47,8 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
     }
     let name = top.text(&key::NAME);
     let table = top.needed_table(&key::DEVICE);
-    let [reading, limits, supplied] =
-        [&key::READING, &key::LIMITS, &key::SUPPLY].map(|key| top.table(key));
+    let [reading, limits, supplied, motor] =
+        [&key::READING, &key::LIMITS, &key::SUPPLY, &key::MOTOR].map(|key| top.table(key));
     top.finish();
     let limits = limits.and_then(|table| table.map_or(Ok([None; 3]), scene::limits_of));
     // The torque limit may be that of a scene.
@@ -56,6 +56,7 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
         supplied.and_then(|table| table.map(|it| supply(it, Some(f64::INFINITY))).transpose())?;
     let [torque_limit, encoder_step, full_scale] = limits?;
     reading.and_then(|table| table.map(encoder).transpose())?;
+    motor.and_then(|table| table.map(super::motor::motor).transpose())?;
     let table = table.and_then(|table| device(table, Purpose::Simulate))?;
     let chain = lagging(source.1, table.chain, table.latency.actuator_lag)?;
     let transducers = StatedTransducers { encoder_step, full_scale, torque_limit, supply };

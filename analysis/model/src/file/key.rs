@@ -205,7 +205,7 @@ keys! {
     NAME = other("name", "", Bound::Other(Form::Text, "a string")), Needed, "\"a wall\"";
 
     /// The machine that the hand holds. In place of this table, `device = "knob.toml"` at the top names a file
-    /// that has it, and that may have `[limits]` and `[supply]`, too; each of their keys is in one of both files.
+    /// that has it, and that may have `[limits]`, `[supply]` and `[motor]`, too; each of their keys is in one of both files.
     /// The name is relative to the scene file; of standard input or a line of a batch, to the working folder.
     DEVICE = other("device", "", Bound::Other(Form::Table, "a table, or the name of a device file")), Needed, "";
     /// Inertia of a rigid device. The certificate does not use it; simulations do.
@@ -557,6 +557,22 @@ keys! {
         Optional("an error where the supply does not sink"), "0.001";
     /// Largest speed of the device, above which the servo has a fault.
     LARGEST_SPEED = other("supply.largest_speed", "rad/s", POSITIVE), Default(100.0), "25.0";
+
+    /// The motor that a board's own bridge drives, beside `[supply]`; a device file may have this table, too. The
+    /// current loop's times are in `device.actuator_lag`, `device.actuator_updates` and `servo.output_delay`.
+    MOTOR = other("motor", "", TABLE), Optional("an amplifier outside of the board drives the motor"), "";
+    /// Between the terminals of a brushed motor, of one phase of a brushless one.
+    RESISTANCE = other("motor.resistance", "ohm", POSITIVE), Needed, "0.6";
+    /// The same of its inductance.
+    INDUCTANCE = other("motor.inductance", "H", POSITIVE), Needed, "0.00012";
+    /// Torque at the handle; of a brushless motor per ampere of a phase current's amplitude.
+    TORQUE_CONSTANT = other("motor.torque_constant", "N m/A", POSITIVE), Needed, "0.29";
+    /// Electrical turns in a turn of the handle, of a brushless motor.
+    POLE_PAIRS = other("motor.pole_pairs", "", whole(1, u16::MAX as u32)), Optional("a brushed motor"), "7";
+    /// Lowest voltage of the supply, under load.
+    LOWEST_SUPPLY = other("motor.lowest_supply", "V", POSITIVE), Needed, "12.0";
+    /// Highest voltage, when the motor feeds the supply: above this, over-voltage is a fault.
+    HIGHEST_SUPPLY = other("motor.highest_supply", "V", POSITIVE), Needed, "25.2";
 }
 
 /// Keys that state the number of another key in a unit that data sheets have: the key, the other key, and the

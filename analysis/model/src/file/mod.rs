@@ -9,6 +9,7 @@
 
 #[cfg(test)]
 mod any_text;
+pub mod bridge;
 pub mod constant;
 pub mod device;
 mod device_file;
@@ -17,6 +18,7 @@ pub mod example;
 pub mod host;
 pub mod key;
 pub mod kind;
+pub mod motor;
 pub mod profile;
 pub mod program;
 pub mod reference;

@@ -1,19 +1,35 @@
 //! A scene file as a program for boards, as in `firmware/src/bin`.
 
+use haptic_servo::current::{Drive, Motor, Supply};
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::Device;
 use haptic_servo::servo::Transducers;
 
+use super::bridge::MotorOnBridge;
 use super::constant::{self, Constants, Written, imports, layout};
 use super::{SceneFile, excerpt};
 
-/// The program of a scene with these transducers; `source` is the name of its file.
+/// The program of a scene with these transducers, for a DAC or for a board's own bridge; `source` is the name of
+/// its file.
 ///
 /// # Errors
 /// Where its environment has no constant.
-pub fn program(file: &SceneFile, transducers: &Transducers, source: &str) -> Written {
+pub fn program(
+    file: &SceneFile,
+    transducers: &Transducers,
+    bridge: Option<&MotorOnBridge>,
+    source: &str,
+) -> Written {
     let Constants { environment, scene, items } = constant::of(file)?;
-    let output = OutputTiming::of_delay(file.scene.latency.stated_delay());
+    let of_dac = || OutputTiming::of_delay(file.scene.latency.stated_delay());
+    let output = bridge.map_or_else(of_dac, |bridge| bridge.output);
+    let (current, driven, current_loop) = bridge.map_or_else(Default::default, |bridge| {
+        let names =
+            ["B_G431B_ESC1", "CurrentLoop", "Drive", "Motor", "Regeneration", "Supply", "Winding"];
+        let driven = current_loop_of(bridge.current_loop.drive(), file.scene.timing.period);
+        let current = imports("haptic_servo::current", &names) + "\n";
+        (current, driven, "    bridge: CURRENT_LOOP,\n")
+    });
     let (mode, option, servo) = match output {
         OutputTiming::AtPhase(nanoseconds) => (
             format!(
@@ -30,12 +46,12 @@ pub fn program(file: &SceneFile, transducers: &Transducers, source: &str) -> Wri
         "//! {}, of {}.\n\
          #![cfg_attr(target_os = \"none\", no_std, no_main)]\n\n\
          use haptic_servo::certificate::Certified;\n\
-         use haptic_servo::encoder::CounterWidth;\n\
+         {current}use haptic_servo::encoder::CounterWidth;\n\
          {environment}\n{scene}\n{}\n\n\
          {}\n\
-         {mode}{items}\n\
+         {driven}{mode}{items}\n\
          haptic_servo::scene_program! {{\n    \
-         scene: SCENE,\n    certified: CERTIFIED,\n    transducers: TRANSDUCERS,\n{option}{friction}}}\n",
+         scene: SCENE,\n    certified: CERTIFIED,\n    transducers: TRANSDUCERS,\n{option}{current_loop}{friction}}}\n",
         excerpt(&file.name),
         excerpt(source),
         imports("haptic_servo::servo", servo),
@@ -54,6 +70,34 @@ fn constant_of(transducers: &Transducers) -> String {
         "/// The encoder, and the motor with its amplifier, at the handle: torque in N m, speed in rad/s.\n\
          pub const TRANSDUCERS: Transducers = {};\n",
         layout::broken(0, &constant)
+    )
+}
+
+/// The constants of a motor on a board's own bridge, with the servo's period in s.
+fn current_loop_of(drive: &Drive, period: f64) -> String {
+    let Drive { motor, supply, bandwidth, largest_temperature } = drive;
+    let Motor { winding, resistance, inductance, torque_constant } = motor;
+    let Supply { lowest, highest, regeneration } = supply;
+    format!(
+        "/// The motor, its supply, and the bandwidth of its current: ohm, H, N m/A, V, Hz, degrees Celsius.\n\
+         pub const DRIVE: Drive = Drive {{\n    \
+         motor: Motor {{\n        \
+         winding: Winding::{winding:?},\n        \
+         resistance: {resistance:?},\n        \
+         inductance: {inductance:?},\n        \
+         torque_constant: {torque_constant:?},\n    \
+         }},\n    \
+         supply: Supply {{\n        \
+         lowest: {lowest:?},\n        \
+         highest: {highest:?},\n        \
+         regeneration: Regeneration::{regeneration:?},\n    \
+         }},\n    \
+         bandwidth: {bandwidth:?},\n    \
+         largest_temperature: {largest_temperature:?},\n\
+         }};\n\n\
+         /// Its current loop, whose times are the scene's.\n\
+         pub const CURRENT_LOOP: CurrentLoop =\n    \
+         CurrentLoop::checked(&DRIVE, &B_G431B_ESC1, &TRANSDUCERS, {period:?});\n\n"
     )
 }
 
@@ -82,7 +126,7 @@ mod tests {
 
     fn text_of(toml: &str) -> String {
         let file = parse("wall.toml", Format::Toml, toml).unwrap();
-        program(&file, &file.transducers(None, None), "wall.toml").unwrap()
+        program(&file, &file.transducers(None, None), None, "wall.toml").unwrap()
     }
 
     #[test]

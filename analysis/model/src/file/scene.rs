@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use haptic_servo::certificate::Resolution;
 use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
 use haptic_servo::host::HostTorque;
 use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
@@ -15,6 +14,7 @@ use super::filter;
 use super::host;
 use super::key::{self, Key};
 use super::kind::{self, Kind};
+use super::motor::{FileMotor, motor};
 use super::profile::{self, ProfileTable, Shapes};
 use super::section::Section;
 use super::simulation::{self, Simulation};
@@ -46,18 +46,12 @@ pub struct SceneFile {
     pub friction: Option<f64>,
     /// The supply of the bridge that drives the motor.
     pub supply: Option<FileSupply>,
+    /// The motor, if a board's own bridge drives it.
+    pub motor: Option<FileMotor>,
     /// The budget of a host that adds torques.
     pub host: Option<HostTorque>,
     /// The shapes that the scene's torque profile was sampled from.
     pub shapes: Option<Shapes>,
-}
-
-impl SceneFile {
-    /// The file's resolution, for the certificate's assumptions.
-    pub fn steps(&self) -> Resolution {
-        let Self { encoder_step: encoder, full_scale, friction, .. } = *self;
-        Resolution { encoder, full_scale, friction, ..Resolution::default() }
-    }
 }
 
 /// Reads the tables of a parsed file.
@@ -66,7 +60,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let name = top.needed_text(&key::NAME);
     let [device, servo, environment] =
         [&key::DEVICE, &key::SERVO, &key::ENVIRONMENT].map(|key| top.needed_table(key));
-    let [reading, coupling, simulation, human, limits, host, supplied] = [
+    let [reading, coupling, simulation, human, limits, host, supplied, driven] = [
         &key::READING,
         &key::COUPLING,
         &key::SIMULATION,
@@ -74,6 +68,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         &key::LIMITS,
         &key::HOST,
         &key::SUPPLY,
+        &key::MOTOR,
     ]
     .map(|key| top.table(key));
     top.finish();
@@ -93,6 +88,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let largest = limits.as_ref().map_or(Some(f64::INFINITY), |[torque, _, full]| torque.or(*full));
     let supply = supplied.and_then(|table| table.map(|it| supply(it, largest)).transpose());
     let host = host.and_then(|table| table.map(host::host).transpose());
+    let driven = driven.and_then(|table| table.map(motor).transpose());
     let (name, table, reading) = (name?, device?, reading?);
     let [torque_limit, encoder_step, full_scale] = limits?;
     let (servo, coupling, environment) = (servo?, coupling?, environment?);
@@ -124,7 +120,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
             encoder_step = Some(TAU / counts);
         }
     }
-    let (simulation, hand, host, supply) = (simulation?, hand?, host?, supply?);
+    let (simulation, hand, host, supply, motor) = (simulation?, hand?, host?, supply?, driven?);
     host::check(&top, host.as_ref(), [torque_limit, full_scale], simulation.as_ref())?;
     Ok(SceneFile {
         name,
@@ -137,6 +133,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         friction,
         host,
         supply,
+        motor,
         shapes,
     })
 }

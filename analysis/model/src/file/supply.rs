@@ -10,7 +10,10 @@ use super::section::Section;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FileSupply {
     /// It takes energy back.
-    Sinks,
+    Sinks {
+        /// Largest speed of the device in rad/s.
+        largest_speed: f64,
+    },
     /// It takes none.
     Stores {
         /// The capacitance and its voltages.
@@ -31,8 +34,7 @@ pub fn supply(mut section: Section<'_>, torque: Option<f64>) -> Read<FileSupply>
         for (_, number) in numbers {
             number?;
         }
-        speed?;
-        return Ok(FileSupply::Sinks);
+        return Ok(FileSupply::Sinks { largest_speed: speed? });
     }
     let [voltage, fault_level, capacitance] =
         numbers.map(|(key, number)| number?.ok_or_else(|| section.missing(key)));

@@ -37,8 +37,10 @@ impl StatedTransducers {
             counter: CounterWidth::Bits32,
             full_scale_torque: self.full_scale.or(self.torque_limit).unwrap_or(FULL_SCALE),
             largest_speed: match self.supply {
-                Some(FileSupply::Stores { largest_speed, .. }) => largest_speed,
-                _ => Transducers::NO_HAND_IS_FASTER,
+                Some(
+                    FileSupply::Stores { largest_speed, .. } | FileSupply::Sinks { largest_speed },
+                ) => largest_speed,
+                None => Transducers::NO_HAND_IS_FASTER,
             },
         }
     }

@@ -13,6 +13,7 @@ use haptic_servo::scene::{Coupling, EncoderReading, Scene, TimeRange};
 
 use super::key::{self, Bound, Key, Presence};
 use super::kind::Kind;
+use super::motor::FileMotor;
 use super::scene::SceneFile;
 use super::supply::FileSupply;
 use crate::chain::{Chain, EncoderPlace};
@@ -30,6 +31,7 @@ pub fn toml(file: &SceneFile) -> String {
         friction,
         host,
         supply,
+        motor,
         shapes,
     } = file;
     let mut lines = vec![format!("name = {}", quoted(name)), "[device]".to_owned()];
@@ -86,6 +88,10 @@ pub fn toml(file: &SceneFile) -> String {
         lines.push("[supply]".to_owned());
         supplied(&mut lines, supply);
     }
+    if let Some(motor) = motor {
+        lines.push("[motor]".to_owned());
+        driven(&mut lines, motor);
+    }
     lines.join("\n") + "\n"
 }
 
@@ -104,7 +110,10 @@ fn budget(lines: &mut Vec<String>, host: &HostTorque) {
 
 fn supplied(lines: &mut Vec<String>, supply: &FileSupply) {
     match supply {
-        FileSupply::Sinks => lines.push("sinks = true".to_owned()),
+        FileSupply::Sinks { largest_speed } => {
+            lines.push("sinks = true".to_owned());
+            number(lines, "largest_speed", Some(*largest_speed));
+        }
         FileSupply::Stores { bus, largest_speed } => {
             let Bus { voltage, capacitance, fault_level } = bus;
             for (key, value) in [
@@ -116,6 +125,22 @@ fn supplied(lines: &mut Vec<String>, supply: &FileSupply) {
                 number(lines, key, Some(*value));
             }
         }
+    }
+}
+
+fn driven(lines: &mut Vec<String>, motor: &FileMotor) {
+    let FileMotor { motor, lowest_supply, highest_supply } = motor;
+    for (key, value) in [
+        ("resistance", motor.resistance),
+        ("inductance", motor.inductance),
+        ("torque_constant", motor.torque_constant),
+        ("lowest_supply", *lowest_supply),
+        ("highest_supply", *highest_supply),
+    ] {
+        number(lines, key, Some(value));
+    }
+    if motor.winding.is_brushless() {
+        lines.push(format!("pole_pairs = {}", motor.winding.pole_pairs()));
     }
 }
 

@@ -23,19 +23,19 @@ use crate::toolchain::BoardModel;
 pub struct Arguments {
     /// Scene file: of its numbers, those of the options that are left out
     pub file: Option<String>,
-    /// Voltage in V of the supply, under load; from a file: `supply.voltage`
+    /// Voltage in V of the supply, under load; from a file: `motor.lowest_supply` or `supply.voltage`
     #[arg(long, value_name = "V", value_parser = positive, required_unless_present = "file")]
     pub supply: Option<f64>,
-    /// Resistance in ohm: between the terminals of a brushed motor, of one phase of a brushless one
-    #[arg(long, value_name = "OHM", value_parser = positive)]
-    pub resistance: f64,
-    /// Inductance in H, of the same
-    #[arg(long, value_name = "H", value_parser = positive)]
-    pub inductance: f64,
-    /// Torque at the handle in N m/A; of a brushless motor per ampere of a phase current's amplitude
-    #[arg(long, value_name = "N m/A", value_parser = positive)]
-    pub torque_constant: f64,
-    /// Electrical turns in a turn of the handle, of a brushless motor
+    /// Resistance in ohm: between the terminals of a brushed motor, of one phase of a brushless one; from a file: `motor.resistance`
+    #[arg(long, value_name = "OHM", value_parser = positive, required_unless_present = "file")]
+    pub resistance: Option<f64>,
+    /// Inductance in H, of the same; from a file: `motor.inductance`
+    #[arg(long, value_name = "H", value_parser = positive, required_unless_present = "file")]
+    pub inductance: Option<f64>,
+    /// Torque at the handle in N m/A; of a brushless motor per ampere of a phase current's amplitude; from a file: `motor.torque_constant`
+    #[arg(long, value_name = "N m/A", value_parser = positive, required_unless_present = "file")]
+    pub torque_constant: Option<f64>,
+    /// Electrical turns in a turn of the handle, of a brushless motor; from a file: `motor.pole_pairs`
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub pole_pairs: Option<u16>,
     /// Bandwidth in Hz of the current loop; from a file: by `device.actuator_lag`; otherwise 1000
@@ -97,21 +97,28 @@ pub fn run(arguments: &Arguments, output: &JsonOption) -> Result<CommandStatus, 
         return Err(CommandError::Failed(error.into()));
     }
     let file = arguments.file.as_deref().map(file::load).transpose()?;
-    let Some(case) = arguments.case(file.as_ref()) else {
-        let error = "the file states no `supply.voltage`: state it, or --supply";
-        return Err(CommandError::Failed(error.into()));
-    };
+    let missing = |key: &str| format!("the file states no `{key}`: state it, or the option");
+    let case = arguments.case(file.as_ref());
+    let case = case.map_err(|key| CommandError::Failed(missing(key).into()))?;
     let report = report(arguments.board, &case);
     output.print(&report, text)?;
     Ok(CommandStatus::of(report.possible))
 }
 
 impl Arguments {
-    /// With the numbers of a file where none is stated; `None` without a supply.
-    fn case(&self, file: Option<&SceneFile>) -> Option<Case> {
+    /// With the numbers of a file where none is stated.
+    ///
+    /// # Errors
+    /// The key that the file lacks.
+    fn case(&self, file: Option<&SceneFile>) -> Result<Case, &'static str> {
         let supplied = file.and_then(|file| match file.supply {
-            Some(FileSupply::Stores { bus, largest_speed }) => Some((bus.voltage, largest_speed)),
+            Some(FileSupply::Stores { bus, .. }) => Some(bus.voltage),
             _ => None,
+        });
+        let speed = file.and_then(|file| match file.supply? {
+            FileSupply::Stores { largest_speed, .. } | FileSupply::Sinks { largest_speed } => {
+                Some(largest_speed)
+            }
         });
         let of_file = |number: fn(&SceneFile) -> Option<f64>| file.and_then(number);
         let lag =
@@ -120,14 +127,26 @@ impl Arguments {
         let bandwidth = self.bandwidth.or(lag.map(|lag| 1.0 / (turn * lag))).unwrap_or(1000.0);
         let torque = self.torque.or(of_file(|file| file.full_scale));
         let counts = of_file(|file| file.encoder_step).map(|step| (turn / step).round());
-        let voltage = self.supply.or(supplied.map(|supply| supply.0))?;
-        let Self { resistance, inductance, torque_constant, .. } = *self;
-        let winding = self
-            .pole_pairs
-            .map_or(Winding::Brushed, |pole_pairs| Winding::Brushless { pole_pairs });
-        Some(Case {
+        let stated = file.and_then(|file| file.motor);
+        let lowest = stated.map(|it| it.lowest_supply).or(supplied);
+        let voltage = self.supply.or(lowest).ok_or("supply.voltage")?;
+        let number = |own: Option<f64>, key, of: fn(&Motor) -> f64| {
+            own.or(stated.map(|it| of(&it.motor))).ok_or(key)
+        };
+        let torque_constant =
+            number(self.torque_constant, "motor.torque_constant", |it| it.torque_constant)?;
+        let winding = match self.pole_pairs {
+            Some(pole_pairs) => Winding::Brushless { pole_pairs },
+            None => stated.map_or(Winding::Brushed, |it| it.motor.winding),
+        };
+        Ok(Case {
             drive: Drive {
-                motor: Motor { winding, resistance, inductance, torque_constant },
+                motor: Motor {
+                    winding,
+                    resistance: number(self.resistance, "motor.resistance", |it| it.resistance)?,
+                    inductance: number(self.inductance, "motor.inductance", |it| it.inductance)?,
+                    torque_constant,
+                },
                 supply: Supply::sinking(voltage, voltage),
                 bandwidth,
                 largest_temperature: B_G431B_ESC1.largest_temperature,
@@ -137,7 +156,7 @@ impl Arguments {
                 counter: CounterWidth::Bits32,
                 full_scale_torque: torque
                     .unwrap_or(B_G431B_ESC1.continuous_current * torque_constant),
-                largest_speed: self.speed.or(supplied.map(|supply| supply.1)).unwrap_or(25.0),
+                largest_speed: self.speed.or(speed).unwrap_or(25.0),
             },
             period: self.period.or(of_file(|file| Some(file.scene.timing.period))).unwrap_or(0.001),
         })

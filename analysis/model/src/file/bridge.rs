@@ -1,0 +1,101 @@
+//! The motor of a scene file on a board's own bridge: its current loop, and what the scene states of it.
+
+use std::f64::consts::TAU;
+
+use haptic_servo::certificate::Resolution;
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Regeneration, Supply};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::output_timing::OutputTiming;
+use haptic_servo::scene::TimeRange;
+use haptic_servo::servo::Transducers;
+use haptic_servo::text::RoundUp3;
+
+use super::key;
+use super::motor::FileMotor;
+use super::scene::SceneFile;
+use super::supply::FileSupply;
+use crate::quantity::rounded_down;
+
+/// A motor on a board's bridge.
+#[derive(Clone, Copy, Debug)]
+pub struct MotorOnBridge {
+    /// Its current loop.
+    pub current_loop: CurrentLoop,
+    /// When the torque of a count is put out.
+    pub output: OutputTiming,
+}
+
+/// Relative tolerance of times that should be equal.
+const SAME: f64 = 1e-9;
+
+impl SceneFile {
+    /// The file's resolution, for the certificate's assumptions.
+    pub fn steps(&self) -> Resolution {
+        let Self { encoder_step: encoder, full_scale, friction, .. } = *self;
+        let steps = Resolution { encoder, full_scale, friction, ..Resolution::default() };
+        match self.on_bridge(&self.transducers(None, None)) {
+            Ok(bridge) => steps.with_current_loop(&bridge.current_loop.resolution()),
+            Err(_) => steps,
+        }
+    }
+
+    /// Its motor on the bridge of the board that has one, with the times and the passivity that the scene states.
+    ///
+    /// # Errors
+    /// A sentence about the keys that are missing, or that the current loop does not have.
+    pub fn on_bridge(&self, transducers: &Transducers) -> Result<MotorOnBridge, String> {
+        let Self { scene, motor, supply, .. } = self;
+        let Some(FileMotor { motor, lowest_supply, highest_supply }) = *motor else {
+            return Err(format!("a board's own bridge needs the motor: set [{}]", key::MOTOR.path));
+        };
+        let regeneration = match supply {
+            Some(FileSupply::Sinks { .. }) => Regeneration::Sinks,
+            Some(FileSupply::Stores { bus, .. }) => {
+                Regeneration::Stores { voltage: bus.voltage, capacitance: bus.capacitance }
+            }
+            None => return Err(format!("a board's own bridge needs [{}]", key::SUPPLY.path)),
+        };
+        let (latency, period) = (&scene.latency, scene.timing.period);
+        let TimeRange { least: lag, most } = latency.actuator_lag;
+        if lag == 0.0 || lag != most {
+            let key = key::ACTUATOR_LAG.path;
+            return Err(format!(
+                "a board's own bridge needs `{key}` as one number, 1/(2 pi bandwidth in Hz)"
+            ));
+        }
+        let drive = Drive {
+            motor,
+            supply: Supply { lowest: lowest_supply, highest: highest_supply, regeneration },
+            bandwidth: 1.0 / (TAU * lag),
+            largest_temperature: B_G431B_ESC1.largest_temperature,
+        };
+        let transducers = Transducers { counter: CounterWidth::Bits16, ..*transducers };
+        let current_loop = CurrentLoop::design(&drive, &B_G431B_ESC1, &transducers, period)
+            .map_err(|error| error.to_string())?;
+        let response = current_loop.response();
+        let phase = latency.stated_delay() - response.delay;
+        let is_latched = phase.abs() <= SAME * response.delay;
+        let output = OutputTiming::of_delay(if is_latched { 0.0 } else { phase });
+        // The reader has refused a delay that is not a whole number of updates.
+        let is_too_early = phase < -SAME * response.delay;
+        if latency.actuator_updates != response.updates || is_too_early {
+            return Err(format!(
+                "the current loop of this motor has `{}` = {} and `{}` = {:?} or a multiple",
+                key::ACTUATOR_UPDATES.path,
+                response.updates,
+                key::OUTPUT_DELAY.path,
+                response.delay
+            ));
+        }
+        let (passivity, loss) = (scene.device.passivity(), current_loop.motion_loss());
+        if passivity + loss > scene.device.damping {
+            return Err(format!(
+                "through this motor's current loop motion takes {} N m s/rad of the damping: set `{}` to at most {}",
+                RoundUp3(loss),
+                key::PASSIVITY.path,
+                rounded_down((scene.device.damping - loss).max(0.0), 3)
+            ));
+        }
+        Ok(MotorOnBridge { current_loop, output })
+    }
+}
