@@ -24,7 +24,7 @@ pub struct Arguments {
     #[arg(long, value_parser = BoardModel::find)]
     pub board: BoardModel,
     /// What makes the torque: the board's DAC, for an amplifier outside, or its own bridge; by default what
-    /// the program is for, and the DAC for a file
+    /// the program or the file is for
     #[arg(long, value_enum)]
     pub output: Option<TorqueOutput>,
     /// Number format of the servo
