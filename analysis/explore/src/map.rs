@@ -190,7 +190,6 @@ mod tests {
     #[test]
     fn cells_of_any_two_numbers_are_judged_as_their_files() {
         compared(WALL, None);
-        compared(LATE_WALL, None);
         compared(FREE_MODE, None);
         compared(PROFILE, None);
         compared(WALL, Some(["servo.period", "environment.stiffness"]));

@@ -23,9 +23,7 @@ pub enum Rendering {
 
 /// A servo, and the reason if it is not that of a certified scene.
 pub struct Rendered {
-    /// The servo.
     pub servo: Box<dyn Controller>,
-    /// The kind of servo.
     pub rendering: Rendering,
     /// The reason if it is not that of a certified scene.
     pub refusal: Option<String>,

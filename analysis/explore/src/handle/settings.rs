@@ -7,11 +7,9 @@ use serde::Deserialize;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Text of the scene.
     pub scene: String,
     /// Encoder counts per turn; default: those of the scene.
     pub counts_per_turn: Option<f64>,
-    /// The hand.
     pub hand: Hand,
     /// Whether only a certified scene has torque.
     pub is_checked: bool,

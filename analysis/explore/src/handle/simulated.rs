@@ -65,11 +65,9 @@ pub struct Held<'a> {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
-    /// The number of ticks.
     pub ticks: u32,
     /// The set-point in rad at their end, subject to the hand's largest speed.
     pub setpoint: f64,
-    /// Whether it holds the device.
     pub is_held: bool,
     /// Whether it takes over from a push, which continues otherwise.
     #[serde(default)]
@@ -101,9 +99,7 @@ impl Path {
 /// The state after some ticks.
 #[derive(Debug, Serialize)]
 pub struct Moved {
-    /// Whether a push is played.
     pub is_pushing: bool,
-    /// Whether a hand holds the device.
     pub is_held: bool,
     /// Its set-point in rad; the device's angle without a hand.
     pub setpoint: f64,
@@ -186,7 +182,6 @@ impl Simulated {
         }
     }
 
-    /// Text of the scene.
     pub fn scene_text(&self) -> &str {
         &self.settings.scene
     }

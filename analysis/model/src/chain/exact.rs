@@ -50,7 +50,6 @@ impl Polynomial {
         Self(coefficients)
     }
 
-    /// Whether it is zero everywhere.
     pub fn is_zero(&self) -> bool {
         self.0.is_empty()
     }
@@ -60,7 +59,6 @@ impl Polynomial {
         self.0.len().saturating_sub(1)
     }
 
-    /// Coefficient of a power.
     pub fn coefficient(&self, power: usize) -> BigInt {
         self.0.get(power).cloned().unwrap_or_default()
     }
@@ -81,18 +79,15 @@ impl Polynomial {
         Self(zero.into_iter().chain(self.0.iter().cloned()).collect())
     }
 
-    /// The sum.
     pub fn plus(&self, other: &Self) -> Self {
         let len = self.0.len().max(other.0.len());
         Self::new((0..len).map(|i| self.coefficient(i) + other.coefficient(i)).collect())
     }
 
-    /// Times a number.
     pub fn scaled(&self, factor: &BigInt) -> Self {
         Self::new(self.0.iter().map(|coefficient| coefficient * factor).collect())
     }
 
-    /// The product.
     pub fn times(&self, other: &Self) -> Self {
         let mut product = vec![BigInt::zero(); self.0.len() + other.0.len()];
         for (i, a) in self.0.iter().enumerate() {
@@ -103,12 +98,10 @@ impl Polynomial {
         Self::new(product)
     }
 
-    /// The derivative.
     pub fn derivative(&self) -> Self {
         Self::new(self.0.iter().enumerate().skip(1).map(|(i, a)| a * BigInt::from(i)).collect())
     }
 
-    /// The value at `x`.
     pub fn at(&self, x: &BigRational) -> BigRational {
         let zero = BigRational::zero();
         self.0.iter().rev().fold(zero, |sum, a| sum * x + BigRational::from(a.clone()))

@@ -13,9 +13,7 @@ const MAX_LEVEL: u32 = 160;
 
 /// The infimum of `p(x) / r(x)` over `x >= 0`.
 pub struct Infimum {
-    /// A lower bound of it.
     pub lower: BigRational,
-    /// An upper bound of it.
     pub upper: BigRational,
     /// The number at which it is reached; infinity: in the limit.
     pub minimizer: f64,

@@ -21,7 +21,6 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// Adds an error.
     pub fn report(&self, fault: Fault) -> Reported {
         self.faults.borrow_mut().push(fault);
         Reported

@@ -36,7 +36,6 @@ pub struct Section<'t> {
 
 /// A value and its place in the text.
 pub struct Found<T> {
-    /// The value.
     pub value: T,
     /// Bytes of the value in the text.
     pub span: Span,
@@ -103,7 +102,6 @@ impl<'t> Section<'t> {
             .transpose()
     }
 
-    /// The table of that key, which must be there.
     pub fn needed_table(&mut self, key: &Key) -> Read<Self> {
         self.table(key)?.ok_or_else(|| self.missing(key))
     }
@@ -210,7 +208,6 @@ impl<'t> Section<'t> {
         Ok(self.number(key)? as usize)
     }
 
-    /// The string of that key, which must be there.
     pub fn needed_text(&mut self, key: &Key) -> Read<String> {
         self.text(key)?.ok_or_else(|| self.missing(key))
     }
@@ -359,7 +356,6 @@ impl<'t> Section<'t> {
         }
     }
 
-    /// Reports a problem.
     pub fn report(&self, span: Span, problem: Problem) -> Reported {
         self.faults.report(Fault { span, problem })
     }

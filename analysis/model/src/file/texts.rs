@@ -25,7 +25,6 @@ impl<'t> Texts<'t> {
         Self { file, first_line, all: text.into(), second: None }
     }
 
-    /// Both texts.
     pub fn all(&self) -> &str {
         &self.all
     }

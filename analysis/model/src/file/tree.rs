@@ -10,7 +10,6 @@ pub type Span = Range<usize>;
 pub struct Node {
     /// Bytes of the value in the text.
     pub span: Span,
-    /// The value.
     pub value: Value,
 }
 
@@ -19,11 +18,8 @@ pub struct Node {
 pub enum Value {
     /// Integer or decimal number; as written it may be infinite or NaN.
     Number(f64),
-    /// A string.
     Text(String),
-    /// `true` or `false`.
     Boolean(bool),
-    /// A list of values.
     List(Vec<Node>),
     /// A table, or an object.
     Table(Vec<Entry>),
@@ -34,11 +30,9 @@ pub enum Value {
 /// A key with its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// The key.
     pub name: String,
     /// Bytes of the key in the text.
     pub span: Span,
-    /// Its value.
     pub node: Node,
 }
 
@@ -59,7 +53,6 @@ impl Node {
 }
 
 impl Value {
-    /// The value as JSON.
     pub fn into_json(self) -> serde_json::Value {
         match self {
             Self::Number(number) => number.into(),

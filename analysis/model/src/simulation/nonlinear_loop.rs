@@ -44,9 +44,7 @@ pub struct Machine {
 /// The plant, with Coulomb friction or without.
 #[derive(Debug)]
 enum Body {
-    /// Without friction.
     Smooth(Box<Smooth>),
-    /// With friction.
     FrictionPlant(Box<FrictionPlant>),
 }
 

@@ -128,7 +128,6 @@ impl Mul for &Ball {
     }
 }
 
-/// A square matrix.
 #[derive(Clone, Debug)]
 pub struct BallMatrix {
     size: usize,
@@ -142,7 +141,6 @@ impl BallMatrix {
         Self { size, entries }
     }
 
-    /// An entry.
     pub fn at(&self, row: usize, column: usize) -> &Ball {
         &self.entries[row * self.size + column]
     }
@@ -159,7 +157,6 @@ impl BallMatrix {
         Self::from_fn(self.size, |i, j| self.at(i, j) * factor)
     }
 
-    /// The product.
     pub fn times(&self, other: &Self) -> Self {
         Self::from_fn(self.size, |i, j| {
             (0..self.size).fold(Ball::zero(), |sum, k| &sum + &(self.at(i, k) * other.at(k, j)))
@@ -219,7 +216,6 @@ impl BallMatrix {
     }
 }
 
-/// The product of two polynomials.
 pub fn product(a: &[Ball], b: &[Ball]) -> Vec<Ball> {
     let mut out = vec![Ball::zero(); (a.len() + b.len()).saturating_sub(1)];
     for (i, x) in a.iter().enumerate() {
@@ -230,7 +226,6 @@ pub fn product(a: &[Ball], b: &[Ball]) -> Vec<Ball> {
     out
 }
 
-/// The sum of two polynomials.
 pub fn sum(a: &[Ball], b: &[Ball]) -> Vec<Ball> {
     let zero = Ball::zero();
     let at = |p: &[Ball], i: usize| p.get(i).cloned().unwrap_or_else(|| zero.clone());
