@@ -52,10 +52,8 @@ fn hand(rng: &mut ChaCha8Rng, scene: &Scene) -> HandImpedance {
         stiffness: sometimes(unit, 1e-3, 10.0),
         ..HandImpedance::default()
     };
-    let link = Link {
-        stiffness: sometimes(unit, 1e-2, 10.0),
-        damping: sometimes(damping, 1e-3, 1.0),
-    };
+    let link =
+        Link { stiffness: sometimes(unit, 1e-2, 10.0), damping: sometimes(damping, 1e-3, 1.0) };
     if hand.inertia > 0.0 && link.stiffness > 0.0 {
         hand.link = Some(link);
     }
