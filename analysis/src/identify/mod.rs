@@ -5,14 +5,14 @@
 //!                                      fit 1/J = (b + j w m + Z) (1 + j w tau) e^(j w d)
 //! ```
 //!
-//! [`record`] reads a CSV file, [`step`] finds the stretches of steady sine in it, [`response`] takes one bin
-//! of each, [`fit`] draws the conclusions, and [`clipping`] refuses them where the motor did not give the
+//! [`record`] reads a CSV file, `step` finds the stretches of steady sine in it, `response` takes one bin
+//! of each, `fit` draws the conclusions, and `clipping` refuses them where the motor did not give the
 //! torques. `input_check` refuses wrapped counters and reversed signs; `left_out` says which tones are not
-//! used. A conclusion is a [`model`] of the device and of its torque's latency; [`least_squares`] finds
-//! the nearest one for a lag, [`profile`] the intervals over all lags, and [`latency`] derives lag and delay
+//! used. A conclusion is a `model` of the device and of its torque's latency; `least_squares` finds
+//! the nearest one for a lag, `profile` the intervals over all lags, and `latency` derives lag and delay
 //! from them. [`torque_source`] is `Z`, the impedance that the current loop of a board's own bridge adds to
-//! the device. [`port`] records a board's measurement; [`rig`] simulates a measured device, with the errors
-//! of a real measurement, and [`measurement`] has the emulated board measure it.
+//! the device. `port` records a board's measurement; [`rig`] simulates a measured device, with the errors
+//! of a real measurement, and `measurement` has the emulated board measure it.
 
 mod clipping;
 mod error;

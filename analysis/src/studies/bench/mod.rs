@@ -1,7 +1,7 @@
 //! Measured cost of a certificate, a step and a tick, beside a budget or beside a peer of the same run.
 //!
-//! A row of the table is a [`figure::Figure`]: `new` for a budget, `beside` for a peer, which needs a
-//! [`figure::Pair`] that measures both.
+//! A row of the table is a `figure::Figure`: `new` for a budget, `beside` for a peer, which needs a
+//! `figure::Pair` that measures both.
 
 pub mod at_rest;
 pub(crate) mod figure;
