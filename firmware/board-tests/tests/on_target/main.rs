@@ -4,13 +4,14 @@
 #![no_std]
 #![no_main]
 
+use haptic_servo::board::ProgramMode;
 use haptic_servo::board::input_filter::InputFilter;
 use haptic_servo::board::stm32::output::Setup;
 use haptic_servo::board::stm32::output::dac::present_code;
 use haptic_servo::board::stm32::quadrature::Counter;
 use haptic_servo::board::stm32::registers::Registers;
 use haptic_servo::board::stm32::wiring::{CHIP, ENCODER, TIMER_CLOCK};
-use haptic_servo::board::stm32::{Mode, init_chip, registers, width};
+use haptic_servo::board::stm32::{init_chip, registers, width};
 use haptic_servo::boot::Startup;
 use haptic_servo::certificate::Certified;
 use haptic_servo::dac::DacCode;
@@ -55,9 +56,9 @@ static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 fn paced() -> Registers {
     let _ = init_chip(FILTER);
     let mut hardware =
-        registers(Setup::DAC, CERTIFIED.scene().timing.period, <Mode as OutputMode>::TIMING);
+        registers(Setup::DAC, CERTIFIED.scene().timing.period, <ProgramMode as OutputMode>::TIMING);
     hardware.zero_encoder();
-    hardware.start(<Mode as OutputMode>::TIMING);
+    hardware.start(<ProgramMode as OutputMode>::TIMING);
     hardware
 }
 
