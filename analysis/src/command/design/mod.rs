@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::shared_arguments::{JsonOption, folder, json};
+use super::shared_arguments::{JsonOption, folder, json, warned};
 use super::status::{CommandError, CommandStatus};
 use crate::design::{self, Choice, DesignLimit, Judge, Quantity, Terms, board_refusal};
 use crate::file::simulation::HandTorque;
@@ -118,7 +118,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         DesignGoal::Stiffest(stiffest) => stiffest::run(arguments, stiffest),
         DesignGoal::Motor(motor) => motor::run(motor, &arguments.answer),
         DesignGoal::Border { first, second, file, points } => {
-            let file = file::load(file)?;
+            let file = warned(file::load(file)?);
             let (wanted, points) = ([*first, *second], *points as usize);
             let of = |terms: &Terms| design::border(&file.scene, wanted, points, terms);
             let mut points = of(&Terms { exact: true, ..terms });
@@ -212,7 +212,7 @@ impl Arguments {
 
     /// Reads a scene file. A copy in another folder still finds its torque file.
     fn load(&self, name: &str) -> Result<SceneFile, CommandError> {
-        let mut file = file::load(name)?;
+        let mut file = warned(file::load(name)?);
         if self.output.is_some()
             && let Some(simulation) = &mut file.simulation
             && let HandTorque::File(torque) = &mut simulation.torque

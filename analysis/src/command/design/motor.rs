@@ -8,7 +8,7 @@ use haptic_servo::encoder::CounterWidth;
 use haptic_servo::servo::Transducers;
 use serde::Serialize;
 
-use crate::command::shared_arguments::JsonOption;
+use crate::command::shared_arguments::{JsonOption, warned};
 use crate::command::status::{CommandError, CommandStatus};
 use crate::command::value_parsers::positive;
 use crate::file::supply::FileSupply;
@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments, output: &JsonOption) -> Result<CommandStatus, 
         let error = format!("the board {} has no bridge that drives a motor", arguments.board);
         return Err(CommandError::Failed(error.into()));
     }
-    let file = arguments.file.as_deref().map(file::load).transpose()?;
+    let file = arguments.file.as_deref().map(file::load).transpose()?.map(warned);
     let missing = |key: &str| format!("the file states no `{key}`: state it, or the option");
     let case = arguments.case(file.as_ref());
     let case = case.map_err(|key| CommandError::Failed(missing(key).into()))?;
