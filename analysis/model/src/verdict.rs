@@ -246,9 +246,11 @@ fn reported(
     let delta = assessment.delta.midpoint();
     let margin = assessment.margin(scene);
     let lags = lags(scene);
-    let is_margin_known = !(lags && assessment.rule == Rule::Nonlinear);
-    let is_margin_known_on_board = !lags;
+    // A coupling is made for one passivity: with lagging torques a bound behind it leaves 0.
+    let leaves_some = |margin: Option<f64>| margin.is_some_and(|margin| margin > 0.0);
+    let is_margin_known = !(lags && assessment.rule == Rule::Nonlinear) || leaves_some(margin);
     let margin_on_board = assessment.outcome.ok().and_then(|()| assessment.margin_on_board(scene));
+    let is_margin_known_on_board = !lags || leaves_some(margin_on_board);
     let assumptions = Assumptions::of(scene, assessment, steps);
     let failing = assumptions.iter().filter(|one| one.standing() == AssumptionStatus::Fails);
     let refusal =
