@@ -2,10 +2,11 @@
 //! free mode.
 
 use super::delay_line::{DelayLine, VariableDelay};
-use super::law::{AnyPart, Law, LawContext, LawOf};
-use super::velocity::{Velocity, Washout};
+use super::late_velocity::LateVelocity;
+use super::law::{AnyPart, LawContext, LawOf};
+use super::velocity::Washout;
 use crate::build_error::BuildError;
-use crate::coupling::{Coupling, Response, Slopes};
+use crate::coupling::Coupling;
 use crate::number::Number;
 use crate::parameter::Parameter;
 
@@ -55,11 +56,7 @@ fn high_pass<N: Number>(residual: f64, context: &LawContext) -> Result<Washout<N
 }
 
 /// The law of a [`Canceller`].
-#[derive(Clone, Debug)]
-pub struct CancellerLaw<N: Number, D> {
-    high_pass: Washout<N>,
-    delay: D,
-}
+pub type CancellerLaw<N, D> = LateVelocity<Washout<N>, D>;
 
 impl<N: Number> AnyPart<N> for Canceller {
     type Law = CancellerLaw<N, VariableDelay<N>>;
@@ -67,41 +64,7 @@ impl<N: Number> AnyPart<N> for Canceller {
 
 impl<N: Number, D: DelayLine<N>> LawOf<N, Canceller> for CancellerLaw<N, D> {
     fn law_of(canceller: &Canceller, context: &LawContext) -> Result<Self, BuildError> {
-        let high_pass = high_pass(canceller.residual, context)?;
-        Ok(Self { high_pass, delay: D::at_rest(canceller.delay)? })
-    }
-}
-
-impl<N: Number, D: DelayLine<N>> Law<N> for CancellerLaw<N, D> {
-    #[inline(always)]
-    fn evaluate(&self, x: N) -> Response<N> {
-        match self.delay.due() {
-            Some(torque) => Response::Held(torque),
-            None => Response::Line(self.high_pass.torque(x)),
-        }
-    }
-
-    #[inline(always)]
-    fn update(&mut self, x_e: N) {
-        if self.delay.due().is_some() {
-            self.delay.push(self.high_pass.torque(x_e));
-        }
-        self.high_pass.update(x_e);
-    }
-
-    fn rest_at(&mut self, x_e: N) {
-        self.high_pass.rest_at(x_e);
-        self.delay.fill(N::ZERO);
-    }
-
-    fn shift(&mut self, by: N) {
-        self.high_pass.shift(by);
-    }
-
-    fn slopes(&self) -> Slopes {
-        match self.delay.due() {
-            Some(_) => Slopes::default(),
-            None => Slopes { line: self.high_pass.slope(), wall: 0.0 },
-        }
+        let velocity = high_pass(canceller.residual, context)?;
+        Ok(Self { velocity, delay: D::at_rest(canceller.delay)? })
     }
 }

@@ -1,11 +1,11 @@
 //! A viscous damper that acts everywhere, also out of contact with a wall.
 
 use super::delay_line::{DelayLine, VariableDelay};
-use super::law::{AnyPart, Law, LawContext, LawOf};
+use super::late_velocity::LateVelocity;
+use super::law::{AnyPart, LawContext, LawOf};
 use super::velocity::{Difference, Velocity};
 use super::wall::{Damper, Wall};
 use crate::build_error::BuildError;
-use crate::coupling::{Response, Slopes};
 use crate::number::Number;
 use crate::parameter::Parameter;
 
@@ -43,11 +43,7 @@ impl Drag {
 }
 
 /// The law of a [`Drag`].
-#[derive(Clone, Debug)]
-pub struct DragLaw<N: Number, D> {
-    velocity: Difference<N>,
-    delay: D,
-}
+pub type DragLaw<N, D> = LateVelocity<Difference<N>, D>;
 
 impl<N: Number> AnyPart<N> for Drag {
     type Law = DragLaw<N, VariableDelay<N>>;
@@ -57,39 +53,5 @@ impl<N: Number, D: DelayLine<N>> LawOf<N, Drag> for DragLaw<N, D> {
     fn law_of(drag: &Drag, context: &LawContext) -> Result<Self, BuildError> {
         let velocity = Difference::of(Some(&drag.damper()), context.period)?;
         Ok(Self { velocity, delay: D::at_rest(drag.delay)? })
-    }
-}
-
-impl<N: Number, D: DelayLine<N>> Law<N> for DragLaw<N, D> {
-    #[inline(always)]
-    fn evaluate(&self, x: N) -> Response<N> {
-        match self.delay.due() {
-            Some(torque) => Response::Held(torque),
-            None => Response::Line(self.velocity.torque(x)),
-        }
-    }
-
-    #[inline(always)]
-    fn update(&mut self, x_e: N) {
-        if self.delay.due().is_some() {
-            self.delay.push(self.velocity.torque(x_e));
-        }
-        self.velocity.update(x_e);
-    }
-
-    fn rest_at(&mut self, x_e: N) {
-        self.velocity.rest_at(x_e);
-        self.delay.fill(N::ZERO);
-    }
-
-    fn shift(&mut self, by: N) {
-        self.velocity.shift(by);
-    }
-
-    fn slopes(&self) -> Slopes {
-        match self.delay.due() {
-            Some(_) => Slopes::default(),
-            None => Slopes { line: self.velocity.slope(), wall: 0.0 },
-        }
     }
 }

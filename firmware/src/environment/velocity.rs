@@ -8,17 +8,19 @@ use super::wall::Damper;
 use crate::build_error::BuildError;
 use crate::number::Number;
 
-/// Adds a torque for the velocity to a torque for the position.
+/// A torque for the velocity.
 pub trait Velocity<N: Number>: Clone + core::fmt::Debug + Sized {
     /// That of a damper, with the period in s; `None`: without a damper.
     ///
     /// # Errors
     /// If a coefficient does not fit the number format, or it is not such a damper.
     fn of(damper: Option<&Damper>, period: f64) -> Result<Self, BuildError>;
-    /// `torque` plus the torque for the velocity in N m, with the environment at `x` (rad).
+    /// The torque in N m with the environment at `x` (rad).
+    fn torque(&self, x: N) -> N;
+    /// `torque` plus that torque.
     #[inline(always)]
-    fn add_to(&self, torque: N, _x: N) -> N {
-        torque
+    fn add_to(&self, torque: N, x: N) -> N {
+        torque.plus(self.torque(x))
     }
     /// Ends the tick with the environment at `x_e` (rad).
     #[inline(always)]
@@ -41,6 +43,16 @@ impl<N: Number> Velocity<N> for NoDamping {
     fn of(damper: Option<&Damper>, _: f64) -> Result<Self, BuildError> {
         if damper.is_none() { Ok(Self) } else { Err(BuildError::Structure) }
     }
+
+    #[inline(always)]
+    fn torque(&self, _x: N) -> N {
+        N::ZERO
+    }
+
+    #[inline(always)]
+    fn add_to(&self, torque: N, _x: N) -> N {
+        torque
+    }
 }
 
 /// Damping `B` on the backward difference: `B (z - 1) / (T z)`.
@@ -48,14 +60,6 @@ impl<N: Number> Velocity<N> for NoDamping {
 pub struct Difference<N: Number> {
     gain: N::Coefficient,
     previous: N,
-}
-
-impl<N: Number> Difference<N> {
-    /// The torque in N m with the environment at `x` (rad).
-    #[inline(always)]
-    pub(super) fn torque(&self, x: N) -> N {
-        x.minus(self.previous).times(self.gain)
-    }
 }
 
 impl<N: Number> Velocity<N> for Difference<N> {
@@ -68,8 +72,8 @@ impl<N: Number> Velocity<N> for Difference<N> {
     }
 
     #[inline(always)]
-    fn add_to(&self, torque: N, x: N) -> N {
-        torque.plus(self.torque(x))
+    fn torque(&self, x: N) -> N {
+        x.minus(self.previous).times(self.gain)
     }
 
     #[inline(always)]
@@ -107,12 +111,6 @@ impl<N: Number> Washout<N> {
             state: N::ZERO,
         })
     }
-
-    /// The torque in N m with the environment at `x` (rad).
-    #[inline(always)]
-    pub fn torque(&self, x: N) -> N {
-        x.minus(self.state).times(self.gain)
-    }
 }
 
 impl<N: Number> Velocity<N> for Washout<N> {
@@ -126,8 +124,8 @@ impl<N: Number> Velocity<N> for Washout<N> {
     }
 
     #[inline(always)]
-    fn add_to(&self, torque: N, x: N) -> N {
-        torque.plus(self.torque(x))
+    fn torque(&self, x: N) -> N {
+        x.minus(self.state).times(self.gain)
     }
 
     #[inline(always)]
@@ -176,6 +174,10 @@ impl<N: Number> Velocity<N> for AnyVelocity<N> {
             Some(Damper { filter: None, .. }) => Self::Difference(Difference::of(damper, period)?),
             Some(Damper { filter: Some(_), .. }) => Self::Filtered(Washout::of(damper, period)?),
         })
+    }
+
+    fn torque(&self, x: N) -> N {
+        of_any!(self, velocity => velocity.torque(x))
     }
 
     fn add_to(&self, torque: N, x: N) -> N {
