@@ -21,7 +21,7 @@ pub struct FileProgram {
     pub text: String,
     is_certified: bool,
     /// The current loop of the board's own bridge that makes its torques; none where a DAC does.
-    pub bridge: Option<(&'static CurrentLoop, Transducers)>,
+    pub bridge: Option<(Box<CurrentLoop>, Transducers)>,
 }
 
 impl FileProgram {
@@ -39,9 +39,7 @@ impl FileProgram {
             file.motor.map(|_| file.on_bridge(&transducers)).transpose().map_err(failed)?;
         let text = program::program(file, &transducers, bridge.as_ref(), source).map_err(failed)?;
         let is_certified = file.scene.certify().is_ok();
-        // It lives as long as that of a program of the examples, which is a constant.
-        let leaked = |current_loop| &*Box::leak(Box::new(current_loop));
-        let bridge = bridge.map(|bridge| (leaked(bridge.current_loop), transducers));
+        let bridge = bridge.map(|bridge| (Box::new(bridge.current_loop), transducers));
         Ok(Self { source: source.to_owned(), text, is_certified, bridge })
     }
 
