@@ -19,24 +19,30 @@ use super::OtherProtocol;
 use super::request::{Reply, Request, RequestResult, refusal_in_words};
 use super::timing::{QUERY, REQUEST, SILENCE, STATUS_INTERVAL};
 
+/// A board that has identified itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Connected {
+    /// Name of its program.
+    pub program: String,
+    /// The units of its numbers.
+    pub units: BoardUnits,
+    /// The fault that stopped it before its last start.
+    pub previous_fault: Option<PreviousFault>,
+}
+
 /// A board's event.
 #[derive(Clone, Debug)]
 pub enum Event {
     /// A board has identified itself.
-    Connected {
-        /// Name of its program.
-        program: String,
-        /// The units of its numbers.
-        board: BoardUnits,
-        /// The fault that stopped it before its last start.
-        previous_fault: Option<PreviousFault>,
-    },
+    Connected(Connected),
     /// Ticks.
     Ticks(Vec<Frame>),
     /// Its status, and the frames that the host could not read.
     Status(Status, Discarded),
     /// The active parameters.
     ActiveParameters(ActiveParameters),
+    /// The running scene.
+    Description(Box<Description>),
     /// The result of a request.
     Reply(Request, Reply),
     /// The link is lost, or the board has restarted without its settings: the conversation has to begin again.
@@ -203,6 +209,12 @@ impl Client {
         self.send_missing();
     }
 
+    /// Ends [`Self::watch`].
+    pub fn unwatch(&mut self) {
+        self.beat = None;
+        self.send(&ToBoard::Stream(None));
+    }
+
     /// Sends a request, one at a time, except that disarming never waits.
     pub fn request(&mut self, request: Request, now: Duration) -> Result<(), Reply> {
         self.check_free(&request)?;
@@ -274,10 +286,11 @@ impl Client {
             }
             ToHost::PreviousFault(fault) => greeting.previous_fault = Some(fault),
             // The last part of the greeting.
-            ToHost::Board(board) => {
+            ToHost::Board(units) => {
                 if let Some(program) = greeting.program.take() {
                     let previous_fault = greeting.previous_fault;
-                    self.events.push_back(Event::Connected { program, board, previous_fault });
+                    let connected = Connected { program, units, previous_fault };
+                    self.events.push_back(Event::Connected(connected));
                     (self.greeting, self.heard) = (None, now);
                 }
             }
@@ -311,6 +324,7 @@ impl Client {
             }
             ToHost::Described(description) => {
                 self.description = Some(description);
+                self.events.push_back(Event::Description(Box::new(description)));
                 self.explain();
             }
             ToHost::Answer { id, outcome } => self.take_answer(id, outcome, now),
