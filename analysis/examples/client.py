@@ -17,7 +17,7 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 10
+PROTOCOL = 11
 BAUD = 460800
 
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",

@@ -329,7 +329,10 @@ impl Client {
             }
             ToHost::Answer { id, outcome } => self.take_answer(id, outcome, now),
             // Replies to a repeated hello.
-            ToHost::Welcome { .. } | ToHost::PreviousFault(_) | ToHost::Board(_) => {}
+            ToHost::Welcome { .. }
+            | ToHost::PreviousFault(_)
+            | ToHost::Board(_)
+            | ToHost::Host(_) => {}
         }
     }
 

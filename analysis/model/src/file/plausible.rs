@@ -11,9 +11,11 @@ use crate::quantity::significant;
 const COARSEST_STEP: f64 = 0.15;
 /// The longest period in s at which a hand feels anything but steps.
 const LONGEST_PERIOD: f64 = 0.1;
-/// The largest inertia in kg m^2 and friction in N m of a device that a hand moves.
+/// The largest inertia in kg m^2 and friction in N m of a device that a hand moves, and the largest torque in
+/// N m of a motor that it holds.
 const LARGEST_INERTIA: f64 = 1.0;
 const LARGEST_FRICTION: f64 = 100.0;
+const LARGEST_TORQUE: f64 = 100.0;
 /// The largest damping, in inertias per period: a device stops within a hundredth of a period.
 const LARGEST_DAMPING: f64 = 100.0;
 /// The farthest face in rad, three turns away.
@@ -22,7 +24,7 @@ const FARTHEST_FACE: f64 = 3.0 * TAU;
 /// A sentence for each implausible number of a file.
 pub fn warnings(file: &SceneFile) -> Vec<String> {
     let doubts =
-        [step(file), period(file), inertia(file), damping(file), friction(file), face(file)];
+        [step, period, inertia, damping, friction, full_scale, face].map(|doubt| doubt(file));
     doubts.into_iter().flatten().collect()
 }
 
@@ -88,6 +90,11 @@ fn friction(file: &SceneFile) -> Option<String> {
     Some(doubt(&key::DEVICE_FRICTION, friction, &why, 1e-3 * friction, "mN m"))
 }
 
+fn full_scale(file: &SceneFile) -> Option<String> {
+    let torque = file.full_scale.filter(|&it| it > LARGEST_TORQUE)?;
+    Some(doubt(&key::FULL_SCALE, torque, "is more than a hand holds", 1e-3 * torque, "mN m"))
+}
+
 fn face(file: &SceneFile) -> Option<String> {
     let face = file.scene.environment.wall()?.face();
     let why = "is more than three turns away";
@@ -115,6 +122,7 @@ mod tests {
             (changed(|file| file.encoder_step = Some(4096.0)), ["4096 rad", "mean 0.00153,"]),
             (changed(|file| file.encoder_step = Some(0.36)), ["17 counts", "mean 0.00628,"]),
             (changed(|file| file.friction = Some(49_200.0)), ["49200 N m", "mN m"]),
+            (changed(|file| file.full_scale = Some(300.0)), ["hand holds", "mean 0.3,"]),
             (changed(|file| file.scene.device.damping = 22.0), ["1000 times", "mean 0.022,"]),
             (changed(|file| file.scene.device.inertia = 220.0), ["hand", "mean 2.2e-5,"]),
         ] {

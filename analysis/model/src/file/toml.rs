@@ -29,7 +29,7 @@ pub fn parse(text: &str, faults: &Faults) -> Read<Node> {
     }
 }
 
-/// The problem of a number with a unit behind it, which is not valid TOML, on the line of a byte.
+/// The problem of a number with a unit behind it or a decimal comma, which is not valid TOML, on the line of a byte.
 fn with_unit(text: &str, at: usize) -> Option<Problem> {
     let bare = |line: &'_ str| line.split('#').next().unwrap_or_default().trim().to_owned();
     let (before, _) = text.split_at_checked(at)?;
@@ -41,7 +41,8 @@ fn with_unit(text: &str, at: usize) -> Option<Problem> {
     let path = table + name.trim();
     let key = key::ALL.iter().find(|key| key.path == path)?;
     let meant = significant(units::in_unit(value, key.unit)?, 6);
-    let wrong = format!("has a unit; it must be {}; did you mean {meant}?", key.requirement());
+    let has = if value.contains(',') { "a decimal comma" } else { "a unit" };
+    let wrong = format!("has {has}; it must be {}; did you mean {meant}?", key.requirement());
     Some(Problem::value(key.path, value, wrong))
 }
 

@@ -14,6 +14,10 @@ const MULTIPLES: &[(&str, &str, f64)] = &[
     ("kgm^2", "kgcm^2", 1e-4),
     ("Nm", "Ncm", 1e-2),
     ("Nm/rad", "Nm/deg", 180.0 / PI),
+    ("counts", "cpr", 1.0),
+    ("counts", "CPR", 1.0),
+    ("counts", "lines", 4.0),
+    ("counts", "PPR", 4.0),
 ];
 
 /// Units of the reciprocal, in the same way: the value is the size over the written number.
@@ -26,6 +30,7 @@ const RECIPROCALS: &[(&str, &str, f64)] = &[
     ("rad", "counts", TAU),
     ("rad", "counts/turn", TAU),
     ("rad", "cpr", TAU),
+    ("rad", "CPR", TAU),
     ("counts", "rad", TAU),
     ("counts", "deg", 360.0),
 ];
@@ -33,10 +38,10 @@ const RECIPROCALS: &[(&str, &str, f64)] = &[
 const PREFIXES: &[(&str, f64)] =
     &[("", 1.0), ("m", 1e-3), ("u", 1e-6), ("µ", 1e-6), ("n", 1e-9), ("k", 1e3)];
 
-/// The number of a text such as `1.5 ms`, in `unit`; `None` if it is not a number with a unit of that kind. A
-/// number without a unit has the key's.
+/// The number of a text such as `1.5 ms` or `1,5`, in `unit`; `None` if it is not a number with a unit of that
+/// kind. A number without a unit has the key's.
 pub fn in_unit(text: &str, unit: &str) -> Option<f64> {
-    let text = text.trim();
+    let text = &text.trim().replacen(',', ".", 1);
     let end = (0..=text.len())
         .rev()
         .find(|&end| text.get(..end).is_some_and(|number| number.parse::<f64>().is_ok()))?;
@@ -74,6 +79,8 @@ mod tests {
             ("300 g cm^2", "kg m^2", 3e-5),
             ("3 mN m s/rad", "N m s/rad", 3e-3),
             ("470 uF", "F", 4.7e-4),
+            ("0,003", "N m s/rad", 3e-3),
+            ("1024 PPR", "counts", 4096.0),
         ] {
             let found = in_unit(text, unit).unwrap_or_else(|| panic!("{text}"));
             assert!((found / expected - 1.0).abs() < 1e-12, "{text}: {found}");

@@ -17,14 +17,14 @@ use super::{column, read, regex, table};
 
 const DOCUMENT: &str = "firmware/PROTOCOL.md";
 const MESSAGES: &str = "firmware/src/wire/message.rs";
+const HOST: &str = "firmware/src/wire/host.rs";
 const WALL: &str = "firmware/src/environment/wall.rs";
 
 /// The text in the braces of a type in a source file, or of the table of its values.
 fn body(path: &str, kind: &str, name: &str) -> String {
     let source = read(path);
-    let of = regex(&format!(
-        r"(?s)\n(?:pub(?:\(\w+\))? )?{kind} {name}(?:<\w+(?: = \w+)?>)? \{{\n(.*?)\n\}}"
-    ));
+    let of =
+        regex(&format!(r"(?s)\n(?:pub(?:\(\w+\))? )?{kind} {name}(?:<[\w, =]+>)? \{{\n(.*?)\n\}}"));
     let table = regex(&format!(
         r"(?s)\n\w+! \{{\n(?:    [/#][^\n]*\n)+    {name}(?:: \w+)? \{{\n(.*?)\n    \}}"
     ));
@@ -69,6 +69,9 @@ fn every_field_of_every_message_is_there_in_order() {
         (MESSAGES, "Status"),
         ("firmware/src/power_reading.rs", "PowerReading"),
         ("firmware/src/current/phase.rs", "IndexOffset"),
+        (HOST, "HostCommand"),
+        ("firmware/src/host/mod.rs", "HostTorque"),
+        (HOST, "HostState"),
         (MESSAGES, "FaultCode"),
         (MESSAGES, "PreviousFault"),
         ("firmware/src/wire/decoder.rs", "Discarded"),
@@ -103,8 +106,9 @@ fn every_field_of_every_message_is_there_in_order() {
 fn every_variant_is_there_with_its_number() {
     let document = read(DOCUMENT);
     for (path, name, heading, fields) in [
-        (MESSAGES, "ToBoard", "## To the board", Some(2)),
-        (MESSAGES, "ToHost", "## To the host", Some(2)),
+        (MESSAGES, "ToBoardWith", "## To the board", Some(2)),
+        (MESSAGES, "ToHostWith", "## To the host", Some(2)),
+        (HOST, "HostReport", "### HostReport", Some(2)),
         ("firmware/src/wire/sweep.rs", "SweepRequest", "## A sweep", Some(2)),
         (MESSAGES, "Outcome", "### Outcome", None),
         (MESSAGES, "Refusal", "### Refusal", Some(2)),
@@ -123,7 +127,14 @@ fn every_variant_is_there_with_its_number() {
         let names: Vec<_> = variants.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(column(&table, 1), names, "{name}");
         if let Some(place) = fields {
-            let fields: Vec<_> = variants.iter().map(|(_, fields)| fields.as_str()).collect();
+            // A program with a host has these in place of the parameters of the types.
+            let with_host = |fields| match fields {
+                "C" => "HostCommand",
+                "R" => "HostReport",
+                other => other,
+            };
+            let fields: Vec<_> =
+                variants.iter().map(|(_, fields)| with_host(fields.as_str())).collect();
             assert_eq!(column(&table, place), fields, "{name}");
         }
     }
