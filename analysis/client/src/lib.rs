@@ -29,6 +29,7 @@ mod holder;
 mod link;
 mod poller;
 pub mod simulated;
+mod stream;
 #[cfg(test)]
 mod tests;
 mod transport;
@@ -40,6 +41,7 @@ pub use haptic_model::board::client::{Connected, Event, frame};
 pub use haptic_model::board::request::{Reply, Request, RequestResult};
 pub use link::Link;
 pub use poller::BoardPoller;
+pub use stream::{StreamError, StreamTick};
 pub use transport::{Transport, is_timeout, open, read_within};
 
 /// A message of a board that owns its text.

@@ -181,6 +181,10 @@ impl Link {
         self.wire.unwatch()
     }
 
+    pub(crate) fn wire(&mut self) -> &mut Wire {
+        &mut self.wire
+    }
+
     /// The conversation, to carry it on.
     pub(crate) fn into_wire(self) -> Wire {
         self.wire
@@ -211,40 +215,42 @@ impl Wire {
     /// Ends [`Self::watch`].
     pub fn unwatch(&mut self) -> Result<(), LinkError> {
         self.client.unwatch();
-        self.flush().map_err(|source| self.lost(source))
+        self.flush()
     }
 
     /// Waits for bytes until a time at the latest, and sends the messages that are due then. It reads first: the
     /// bytes that came while this process did not run are no silence.
     pub fn carry(&mut self, until: Instant) -> Result<(), LinkError> {
-        let received = self.exchange(until).map_err(|source| self.lost(source))?;
+        let received = self.exchange(until)?;
         let now = self.now();
         self.client
             .receive(&self.bytes[..received], now)
             .and_then(|()| self.client.tick(now))
             .map_err(|error| self.ended(error))?;
-        self.flush().map_err(|source| self.lost(source))
+        self.flush()
     }
 
     /// Sends the waiting bytes; returns the number of received bytes.
-    fn exchange(&mut self, until: Instant) -> io::Result<usize> {
+    fn exchange(&mut self, until: Instant) -> Result<usize, LinkError> {
         self.flush()?;
         // No operating system takes a timeout of zero.
         let left = until.saturating_duration_since(Instant::now()).max(Duration::from_millis(1));
         read_within(self.transport.as_mut(), self.bytes.as_mut_slice(), left)
+            .map_err(|source| self.lost(source))
     }
 
-    fn flush(&mut self) -> io::Result<()> {
+    /// Sends the waiting bytes.
+    pub fn flush(&mut self) -> Result<(), LinkError> {
         let bytes = self.client.take_outgoing();
         if bytes.is_empty() {
             return Ok(());
         }
-        self.transport.write_all(&bytes)?;
-        self.transport.flush()
+        let sent = self.transport.write_all(&bytes).and_then(|()| self.transport.flush());
+        sent.map_err(|source| self.lost(source))
     }
 
     /// The next event, if there is one before a time.
-    fn next(&mut self, until: Instant) -> Result<Option<Event>, LinkError> {
+    pub fn next(&mut self, until: Instant) -> Result<Option<Event>, LinkError> {
         loop {
             if let Some(event) = self.client.next_event() {
                 return Ok(Some(event));
@@ -276,7 +282,8 @@ impl Wire {
         Err(self.unanswered(what, QUERY.end))
     }
 
-    fn restarted(&self) -> LinkError {
+    /// The link is lost because the board was started again.
+    pub fn restarted(&self) -> LinkError {
         self.lost(io::Error::other("the board was started again"))
     }
 
@@ -296,7 +303,8 @@ impl Wire {
         }
     }
 
-    fn unanswered(&self, what: &'static str, after: Duration) -> LinkError {
+    /// A message has no answer.
+    pub fn unanswered(&self, what: &'static str, after: Duration) -> LinkError {
         LinkError::Unanswered { address: self.address.clone(), what, after }
     }
 }

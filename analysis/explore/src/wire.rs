@@ -246,7 +246,7 @@ impl Wire {
 /// The state of a board as text, as in `haptic scope`.
 fn view(client: &Client) -> Option<Value> {
     let connected = client.connected.as_ref()?;
-    let client::Connected { program, units: board, previous_fault } = &connected.board;
+    let client::Connected { program, units: board, previous_fault, .. } = &connected.board;
     let (parameters, status) = (connected.parameters.as_ref()?, connected.status.as_ref()?);
     let slack = connected.history.last().map(|last| last.slack);
     let numbers = parameters.values.iter().map(|(parameter, value)| number(*parameter, *value));

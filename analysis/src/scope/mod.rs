@@ -80,7 +80,7 @@ impl Scope {
             }
             Event::Status(status, discarded) => self.status = Some((status, discarded)),
             Event::ActiveParameters(parameters) => self.parameters = Some(parameters),
-            Event::Description(_) => {}
+            Event::Description(_) | Event::Host(_) => {}
             Event::Reply(request, reply) => self.control.message = Some(reply.line(&request)),
             Event::Lost(why) => self.lost = Some(why),
         }

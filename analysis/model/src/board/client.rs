@@ -5,9 +5,11 @@ use std::collections::VecDeque;
 use std::num::NonZeroU32;
 use std::time::Duration;
 
+use haptic_servo::host::HostTorque;
 use haptic_servo::servo::Step;
 use haptic_servo::servo_loop::Frame;
 use haptic_servo::wire::description::Description;
+use haptic_servo::wire::host::{HostReport, HostState};
 use haptic_servo::wire::message::{
     ActiveParameters, BoardUnits, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, PreviousFault,
     Refusal, Status, ToBoard, ToHost,
@@ -28,6 +30,8 @@ pub struct Connected {
     pub units: BoardUnits,
     /// The fault that stopped it before its last start.
     pub previous_fault: Option<PreviousFault>,
+    /// What a host's torque may do there, if the program takes one.
+    pub budget: Option<HostTorque>,
 }
 
 /// A board's event.
@@ -43,6 +47,8 @@ pub enum Event {
     ActiveParameters(ActiveParameters),
     /// The running scene.
     Description(Box<Description>),
+    /// The tick that took a host's torque.
+    Host(HostState),
     /// The result of a request.
     Reply(Request, Reply),
     /// The link is lost, or the board has restarted without its settings: the conversation has to begin again.
@@ -95,6 +101,7 @@ pub struct Client {
 struct Greeting {
     program: Option<String>,
     previous_fault: Option<PreviousFault>,
+    budget: Option<HostTorque>,
     again: Duration,
     end: Duration,
 }
@@ -120,7 +127,7 @@ impl Client {
     /// Greets the board at an address. `id` should not have been used by an earlier client.
     pub fn start(address: String, id: Id, now: Duration) -> Self {
         let (again, end) = (now + QUERY.again, now + QUERY.end);
-        let greeting = Greeting { program: None, previous_fault: None, again, end };
+        let greeting = Greeting { program: None, previous_fault: None, budget: None, again, end };
         Self {
             address,
             decoder: Decoder::new(),
@@ -285,11 +292,12 @@ impl Client {
                 return Err(OtherProtocol { address, program, theirs }.into());
             }
             ToHost::PreviousFault(fault) => greeting.previous_fault = Some(fault),
+            ToHost::Host(HostReport::Budget(budget)) => greeting.budget = Some(budget),
             // The last part of the greeting.
             ToHost::Board(units) => {
                 if let Some(program) = greeting.program.take() {
-                    let previous_fault = greeting.previous_fault;
-                    let connected = Connected { program, units, previous_fault };
+                    let Greeting { previous_fault, budget, .. } = *greeting;
+                    let connected = Connected { program, units, previous_fault, budget };
                     self.events.push_back(Event::Connected(connected));
                     (self.greeting, self.heard) = (None, now);
                 }
@@ -328,11 +336,12 @@ impl Client {
                 self.explain();
             }
             ToHost::Answer { id, outcome } => self.take_answer(id, outcome, now),
+            ToHost::Host(HostReport::State(state)) => self.events.push_back(Event::Host(state)),
             // Replies to a repeated hello.
             ToHost::Welcome { .. }
             | ToHost::PreviousFault(_)
             | ToHost::Board(_)
-            | ToHost::Host(_) => {}
+            | ToHost::Host(HostReport::Budget(_)) => {}
         }
     }
 
