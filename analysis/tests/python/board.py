@@ -4,9 +4,14 @@
 """
 
 import math
+import pathlib
+import re
 import socket
+import struct
 import sys
 import threading
+import time
+import zlib
 
 import haptic
 import numpy as np
@@ -100,6 +105,128 @@ def streams():
         refuses(haptic.StreamError, "the rate of a stream is 0 Hz; ", lambda: board.stream(abs, 0))
         refuses(haptic.StreamError, "at most 1000 Hz", lambda: board.stream(abs, math.nan))
         refuses(haptic.StreamError, "wall takes no torque from a host", lambda: board.stream(abs, 100))
+    seen = []
+
+    def spring(position, velocity, time):
+        seen.append((position, velocity, time))
+        return -0.5 * position
+
+    def fails(position, velocity, time):
+        raise ZeroDivisionError("of the function")
+
+    with HostBoard() as hosted, haptic.connect(hosted.port) as board:
+        board.stream(spring, rate=500.0, duration=0.01)
+        assert [round(time, 9) for _, _, time in seen] == [round(0.001 * tick, 9) for tick in range(10)]
+        assert np.allclose([position for position, _, _ in seen], 0.1 * np.arange(1, 11))
+        hosted.wait_for(12)
+        assert np.allclose(hosted.torques, [0.0, *(-0.05 * np.arange(1, 11)), 0.0], atol=1e-6), hosted.torques
+        for function, kind, words in [
+            (lambda *_: math.nan, haptic.StreamError, "the function returned a torque of NaN N m at "),
+            (lambda *_: None, haptic.StreamError, "the function returned None at "),
+            (fails, ZeroDivisionError, "of the function"),
+            (lambda: 0.0, TypeError, "takes 0 positional arguments"),
+        ]:
+            hosted.torques.clear()
+            try:
+                board.stream(function, 1000.0)
+            except Exception as error:
+                assert type(error) is kind and words in str(error), (words, repr(error))
+            else:
+                raise AssertionError(f"no error: {words}")
+            hosted.wait_for(2)
+            assert hosted.torques == [0.0, 0.0]
+        hosted.close()
+        refuses(haptic.LinkLostError, "is lost: ", lambda: board.stream(spring, 1000.0))
+
+
+class HostBoard(threading.Thread):
+    """A board that takes torques, by PROTOCOL.md: it moves by a count, 0.1 rad, in each tick that takes one."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.server = socket.create_server(("127.0.0.1", 0))
+        self.port = f"tcp://127.0.0.1:{self.server.getsockname()[1]}"
+        self.torques = []
+        self.ticks = 0
+
+    def __enter__(self):
+        self.start()
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        self.is_over = True
+        self.join()
+
+    is_over = False
+
+    def run(self):
+        line, _ = self.server.accept()
+        line.settimeout(0.01)
+        received = b""
+        while not self.is_over:
+            try:
+                received += line.recv(4096)
+            except TimeoutError:
+                continue
+            *frames, received = received.split(b"\0")
+            for encoded in filter(None, frames):
+                line.sendall(b"".join(map(framed, self.answers(unframed(encoded)))))
+        line.close()
+        self.server.close()
+
+    def answers(self, message):
+        if message == bytes([0]):
+            return [
+                bytes([0]) + varint(protocol()) + b"\x06hosted",
+                bytes([8, 0]) + struct.pack("<5d", 0.05, 0.5, 0.004, 0.5, 0.05),
+                bytes([1]) + struct.pack("<d", 1e-3) + varint(1000) + struct.pack("<4d", 20 * math.pi, 2, 1e-6, 0),
+            ]
+        if message[0] != 9:
+            return []
+        # The command's number is as many bytes as say that another follows, and one.
+        end = next(at for at in range(1, 4) if message[at] < 0x80) + 1
+        self.torques.append(struct.unpack_from("<f", message, end)[0])
+        self.ticks += 1
+        state = varint(self.ticks) + varint(2 * self.ticks) + struct.pack("<4f", 100.0, 0.04, 0.0, 0.0)
+        return [bytes([8, 1]) + message[1:end] + state + bytes([0, 2, 0])]
+
+    def wait_for(self, torques):
+        end = time.monotonic() + 10
+        while len(self.torques) < torques and time.monotonic() < end:
+            time.sleep(0.001)
+
+
+def protocol():
+    """The version of the protocol, from its document."""
+    document = pathlib.Path(__file__).parents[3] / "firmware/PROTOCOL.md"
+    return int(re.search(r"\| `PROTOCOL` \| (\d+) \|", document.read_text())[1])
+
+
+def varint(number):
+    encoded = []
+    while number > 0x7F:
+        encoded.append(number & 0x7F | 0x80)
+        number >>= 7
+    return bytes([*encoded, number])
+
+
+def framed(message):
+    """A message that is shorter than a block of 254 bytes."""
+    pieces = (message + struct.pack("<I", zlib.crc32(message))).split(b"\0")
+    return b"\0" + b"".join(bytes([len(piece) + 1]) + piece for piece in pieces) + b"\0"
+
+
+def unframed(encoded):
+    pieces = []
+    while encoded:
+        pieces.append(encoded[1 : encoded[0]])
+        encoded = encoded[encoded[0] :]
+    checked = b"\0".join(pieces)
+    assert struct.unpack("<I", checked[-4:])[0] == zlib.crc32(checked[:-4])
+    return checked[:-4]
 
 
 {test.__name__: test for test in (tunes, records, is_no_board, is_lost, streams)}[sys.argv[1]]()
