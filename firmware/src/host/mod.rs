@@ -33,6 +33,7 @@ use crate::text::or_refuse;
 /// assert!(error.to_string().contains("margin of 0.003 N m s/rad"), "{error}");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct HostTorque {
     /// Energy in J that the hand can get at once: the level at the start, and the highest.
     pub energy: f64,

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 pub use super::changes::{Changes, MAX_CHANGES};
 use super::decoder::Discarded;
 use super::description::Description;
+use super::host::{HostCommand, HostReport};
 use super::telemetry::Batch;
 use crate::fault::{Fault, FaultRecord};
 use crate::power_reading::PowerReading;
@@ -21,7 +22,7 @@ use crate::servo_loop::State;
 
 /// Version of the messages. Board and host must have the same; [`ToBoard::Hello`] and [`ToHost::Welcome`]
 /// have the same beginning in all versions, so that each side can report its version.
-pub const PROTOCOL: u16 = 10;
+pub const PROTOCOL: u16 = 11;
 
 /// Longest message to a board, in bytes: the longest set.
 pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;
@@ -32,8 +33,14 @@ pub const LONGEST_TO_HOST: usize = 372;
 pub type Id = u16;
 
 /// Requests of a host.
+pub type ToBoard = ToBoardWith<HostCommand>;
+
+/// Replies and telemetry. `S` is text.
+pub type ToHost<S> = ToHostWith<S, HostReport>;
+
+/// Requests to a program that takes commands `C` from a host; a program without a host takes none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum ToBoard {
+pub enum ToBoardWith<C> {
     /// Requests the identity of the board. Answered by [`ToHost::Welcome`], [`ToHost::PreviousFault`] if
     /// there was a fault, and [`ToHost::Board`]. The same in every version of the protocol.
     Hello,
@@ -68,12 +75,14 @@ pub enum ToBoard {
         /// Comes back with the answer.
         id: Id,
     },
+    /// The torque that the host wants. Answered by [`HostReport::State`] of the tick that takes it.
+    Torque(C),
 }
 
-/// Replies and telemetry. `S` is text.
+/// Replies and telemetry of a program with reports `R` to a host. `S` is text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(clippy::large_enum_variant, reason = "a board has no heap, and one message at a time")]
-pub enum ToHost<S> {
+pub enum ToHostWith<S, R> {
     /// The identity of the board. The same in every version of the protocol, so that a host of another
     /// version can report the mismatch.
     Welcome {
@@ -101,6 +110,8 @@ pub enum ToHost<S> {
     Telemetry(Batch),
     /// The running scene and its options.
     Described(Description),
+    /// What a host may do, and what became of its torque.
+    Host(R),
 }
 
 /// Units of the other messages on this board.

@@ -8,6 +8,7 @@ mod changes;
 pub mod decoder;
 pub mod description;
 pub mod frame;
+pub mod host;
 mod link;
 pub mod message;
 pub mod session;
@@ -16,6 +17,7 @@ pub mod telemetry;
 
 pub use decoder::{Decoder, Discarded};
 pub use frame::{CHECKSUM, TooLong, encode, largest_frame};
+
 pub use link::{BroughtUp, Link, Port, bring_up};
 pub use message::PROTOCOL;
 pub use session::{BoardInfo, Session};

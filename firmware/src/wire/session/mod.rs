@@ -12,7 +12,7 @@
 //! ToBoard::Set -> on_message     kept in `requested`, or refused: busy
 //!         poll -> prepare_set    certified and built (`tuning::prepare`), or refused with the step
 //!                 submit         to the servo's interrupt, which swaps it in (`servo_loop::swap`)
-//! Requests::swapped -> compare   has its number: it is the active set; ToHost::Answer
+//! Requests::swapped -> compare   has its number: it is the active set; ToHostWith::Answer
 //! ```
 
 mod outgoing;
@@ -27,9 +27,10 @@ use super::PROTOCOL;
 use super::decoder::Decoder;
 use super::description::Description;
 use super::frame::CHECKSUM;
+use super::host::Nothing;
 use super::message::{
     ActiveParameters, BoardUnits, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal,
-    Status, ToBoard, ToHost,
+    Status, ToBoardWith, ToHostWith,
 };
 use crate::boot::Program;
 use crate::certificate::scene_data;
@@ -168,24 +169,25 @@ where
         self.outbox.sent(bytes);
     }
 
-    fn on_message(&mut self, message: ToBoard) {
+    fn on_message(&mut self, message: ToBoardWith<Nothing>) {
         match message {
-            ToBoard::Hello => self.replies.greet(),
-            ToBoard::Get => self.replies.parameters = true,
-            ToBoard::Describe => self.replies.description = true,
-            ToBoard::Status => {
+            ToBoardWith::Hello => self.replies.greet(),
+            ToBoardWith::Get => self.replies.parameters = true,
+            ToBoardWith::Describe => self.replies.description = true,
+            ToBoardWith::Status => {
                 self.replies.status_number.get_or_insert_with(|| self.requests.request_status());
             }
-            ToBoard::Stream(every) => self.stream.set(every),
-            ToBoard::Arm { id } => self.replies.arm(id, || self.requests.arm()),
-            ToBoard::Align { id } => self.replies.align(id, || self.requests.align()),
-            ToBoard::Disarm { id } => self.replies.disarm(id, self.requests.disarm()),
-            ToBoard::Set { id, changes } => match self.open_set() {
+            ToBoardWith::Stream(every) => self.stream.set(every),
+            ToBoardWith::Arm { id } => self.replies.arm(id, || self.requests.arm()),
+            ToBoardWith::Align { id } => self.replies.align(id, || self.requests.align()),
+            ToBoardWith::Disarm { id } => self.replies.disarm(id, self.requests.disarm()),
+            ToBoardWith::Set { id, changes } => match self.open_set() {
                 None => self.requested = Some((id, changes)),
                 // A host repeats a request because the answer takes a while.
                 Some(open) if open == id => {}
                 Some(_) => self.replies.refuse(id, Refusal::Busy),
             },
+            ToBoardWith::Torque(command) => match command {},
         }
     }
 
@@ -236,22 +238,22 @@ where
             Turn::Greeting => return self.greet(),
             Turn::Status => {
                 let Some(status) = replies.status.take() else { return };
-                return self.outbox.put(&ToHost::Status(self.status(&status)));
+                return self.outbox.put(&ToHostWith::Status(self.status(&status)));
             }
             Turn::Parameters if core::mem::take(&mut replies.parameters) => {
-                return self.outbox.put(&ToHost::ActiveParameters(self.parameters()));
+                return self.outbox.put(&ToHostWith::ActiveParameters(self.parameters()));
             }
             Turn::Description if core::mem::take(&mut replies.description) => {
-                return self.outbox.put(&ToHost::Described(self.description()));
+                return self.outbox.put(&ToHostWith::Described(self.description()));
             }
             Turn::Telemetry => {
                 let Some(batch) = self.stream.batch() else { return };
-                return self.outbox.put(&ToHost::Telemetry(batch));
+                return self.outbox.put(&ToHostWith::Telemetry(batch));
             }
             Turn::Parameters | Turn::Description => return,
         };
         if let Some((id, outcome)) = answer {
-            self.outbox.put(&ToHost::Answer { id, outcome });
+            self.outbox.put(&ToHostWith::Answer { id, outcome });
         }
     }
 
@@ -263,11 +265,11 @@ where
         }
         let message = match (part, self.info.previous_fault) {
             (Greeting::Welcome, _) => {
-                ToHost::Welcome { protocol: PROTOCOL, program: self.info.name }
+                ToHostWith::Welcome { protocol: PROTOCOL, program: self.info.name }
             }
-            (Greeting::PreviousFault, Some(record)) => ToHost::PreviousFault(record.into()),
+            (Greeting::PreviousFault, Some(record)) => ToHostWith::PreviousFault(record.into()),
             (Greeting::PreviousFault, None) => return,
-            (Greeting::Board, _) => ToHost::Board(self.board()),
+            (Greeting::Board, _) => ToHostWith::Board(self.board()),
         };
         self.outbox.put(&message);
     }

@@ -5,7 +5,8 @@ use core::num::NonZeroU32;
 
 use crate::servo_loop::{Frame, FrameReader};
 use crate::wire::frame::{encode, largest_frame};
-use crate::wire::message::{LONGEST_TO_HOST, ToHost};
+use crate::wire::host::Nothing;
+use crate::wire::message::{LONGEST_TO_HOST, ToHostWith};
 use crate::wire::telemetry::Batch;
 
 /// The largest number of other messages that are sent before the answer to an accepted request, once the servo
@@ -69,7 +70,7 @@ impl Outbox {
     }
 
     /// Takes a message; the rest of the previous message is discarded.
-    pub(super) fn put(&mut self, message: &ToHost<&str>) {
+    pub(super) fn put(&mut self, message: &ToHostWith<&str, Nothing>) {
         self.gone = 0;
         // The buffer has room for the longest message; a longer one would not be sent.
         self.end = encode(message, &mut self.buffer).map_or(0, <[u8]>::len);

@@ -26,7 +26,7 @@ use crate::servo_loop::tests::board::Board;
 use crate::servo_loop::{Frame, FrameQueue, Frames, Inbox, Mailbox, OutputEvent, ServoLoop, State};
 use crate::test_scene;
 use crate::tuning::RenderError;
-use crate::wire::message::LONGEST_TO_HOST;
+use crate::wire::message::{LONGEST_TO_HOST, ToBoard, ToHost};
 use crate::wire::{Discarded, encode, largest_frame};
 
 const SCENE: Scene = Scene {

@@ -1,12 +1,10 @@
 //! `firmware/PROTOCOL.md` is the protocol: its tables are the types of the messages, its numbers the
-//! constants, and the client in Python has both.
+//! constants.
 
 use haptic_servo::board::BAUD;
 use haptic_servo::excitation::SWEEP_PROTOCOL;
 use haptic_servo::fault::Fault;
 use haptic_servo::parameter::{Parameter, TUNABLE};
-use haptic_servo::servo_loop::State;
-use haptic_servo::torque::LimitReason;
 use haptic_servo::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, MAX_CHANGES, ToBoard};
 use haptic_servo::wire::session::MESSAGES_AHEAD;
 use haptic_servo::wire::sweep::SweepRequest;
@@ -17,14 +15,14 @@ use super::{column, read, regex, table};
 
 const DOCUMENT: &str = "firmware/PROTOCOL.md";
 const MESSAGES: &str = "firmware/src/wire/message.rs";
+const HOST: &str = "firmware/src/wire/host.rs";
 const WALL: &str = "firmware/src/environment/wall.rs";
 
 /// The text in the braces of a type in a source file, or of the table of its values.
 fn body(path: &str, kind: &str, name: &str) -> String {
     let source = read(path);
-    let of = regex(&format!(
-        r"(?s)\n(?:pub(?:\(\w+\))? )?{kind} {name}(?:<\w+(?: = \w+)?>)? \{{\n(.*?)\n\}}"
-    ));
+    let of =
+        regex(&format!(r"(?s)\n(?:pub(?:\(\w+\))? )?{kind} {name}(?:<[\w, =]+>)? \{{\n(.*?)\n\}}"));
     let table = regex(&format!(
         r"(?s)\n\w+! \{{\n(?:    [/#][^\n]*\n)+    {name}(?:: \w+)? \{{\n(.*?)\n    \}}"
     ));
@@ -69,6 +67,9 @@ fn every_field_of_every_message_is_there_in_order() {
         (MESSAGES, "Status"),
         ("firmware/src/power_reading.rs", "PowerReading"),
         ("firmware/src/current/phase.rs", "IndexOffset"),
+        (HOST, "HostCommand"),
+        ("firmware/src/host/mod.rs", "HostTorque"),
+        (HOST, "HostState"),
         (MESSAGES, "FaultCode"),
         (MESSAGES, "PreviousFault"),
         ("firmware/src/wire/decoder.rs", "Discarded"),
@@ -103,8 +104,9 @@ fn every_field_of_every_message_is_there_in_order() {
 fn every_variant_is_there_with_its_number() {
     let document = read(DOCUMENT);
     for (path, name, heading, fields) in [
-        (MESSAGES, "ToBoard", "## To the board", Some(2)),
-        (MESSAGES, "ToHost", "## To the host", Some(2)),
+        (MESSAGES, "ToBoardWith", "## To the board", Some(2)),
+        (MESSAGES, "ToHostWith", "## To the host", Some(2)),
+        (HOST, "HostReport", "### HostReport", Some(2)),
         ("firmware/src/wire/sweep.rs", "SweepRequest", "## A sweep", Some(2)),
         (MESSAGES, "Outcome", "### Outcome", None),
         (MESSAGES, "Refusal", "### Refusal", Some(2)),
@@ -123,7 +125,14 @@ fn every_variant_is_there_with_its_number() {
         let names: Vec<_> = variants.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(column(&table, 1), names, "{name}");
         if let Some(place) = fields {
-            let fields: Vec<_> = variants.iter().map(|(_, fields)| fields.as_str()).collect();
+            // A program with a host has these in place of the parameters of the types.
+            let with_host = |fields| match fields {
+                "C" => "HostCommand",
+                "R" => "HostReport",
+                other => other,
+            };
+            let fields: Vec<_> =
+                variants.iter().map(|(_, fields)| with_host(fields.as_str())).collect();
             assert_eq!(column(&table, place), fields, "{name}");
         }
     }
@@ -202,31 +211,4 @@ fn the_frames_of_the_examples_are_those_that_are_sent() {
         let hex: Vec<_> = frame.iter().map(|byte| format!("{byte:02x}")).collect();
         assert_eq!(shown, hex.join(" "));
     }
-}
-
-/// What the client shows by name it has from tables of its own.
-#[test]
-fn the_client_in_python_has_the_same_tables() {
-    let client = read("analysis/examples/client.py");
-    // Debug writes a list of words as Python does.
-    let states = format!("{:?}", State::ALL.map(State::as_str));
-    let limits = format!("{:?}", LimitReason::ALL.map(LimitReason::as_str));
-    for line in [
-        format!("\nPROTOCOL = {PROTOCOL}\nBAUD = {BAUD}\n"),
-        format!("\nSTATES = {states}\n"),
-        format!("\nLIMITS = {limits}\n"),
-    ] {
-        assert!(client.contains(&line), "not in the client: {line}");
-    }
-    let dictionary = |name: &str| -> Vec<(u32, String)> {
-        let body = regex(&format!(r"(?s)\n{name} = \{{(.*?)\}}")).captures(&client).unwrap();
-        let entries = regex(r#"(\d+): "([^"]+)""#);
-        let entries = entries.captures_iter(&body[1]);
-        entries.map(|entry| (entry[1].parse().unwrap(), entry[2].to_owned())).collect()
-    };
-    let named = |(code, fault): (u32, Fault)| (code, fault.as_str().to_owned());
-    assert_eq!(dictionary("FAULTS"), faults().into_iter().map(named).collect::<Vec<_>>());
-    let mut tunable = TUNABLE.map(|(name, parameter)| (parameter as u32, name.to_owned()));
-    tunable.sort();
-    assert_eq!(dictionary("PARAMETERS"), tunable);
 }

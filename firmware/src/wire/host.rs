@@ -1,0 +1,104 @@
+//! The torque of a host on the wire: a command, and the board's report of the tick that took it.
+//!
+//! A line of 460,800 bit/s carries 46 bytes in a millisecond each way. A command takes at most 18 of them, and
+//! its report 43, with frame and checksum: a stream at 1 kHz fits, and a slower one leaves room for telemetry.
+
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::host::HostTorque;
+use crate::servo_loop::State;
+use crate::torque::LimitReason;
+
+/// The torque that a host wants. The last command wins.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HostCommand {
+    /// The host's number; comes back with the state.
+    pub number: u16,
+    /// Torque in N m, positive in the direction of the angle. If it is not finite it counts as zero.
+    pub torque: f32,
+    /// Ticks over which the torque moves there along a line; with 0 it is there at once.
+    pub ramp: u16,
+}
+
+/// What a host may do, and what became of its torque.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum HostReport {
+    /// The budget; part of the greeting of a program that takes torques.
+    Budget(HostTorque),
+    /// The tick that took a command.
+    State(HostState),
+}
+
+/// The tick that took a command. If commands arrive faster than reports can leave, the last one is reported.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HostState {
+    /// The command's number.
+    pub number: u16,
+    /// The number of the tick.
+    pub tick: u32,
+    /// Low 32 bits of the position in counts.
+    pub count: i32,
+    /// Mean velocity in rad/s since the last report.
+    pub velocity: f32,
+    /// Level of the tank in J.
+    pub energy: f32,
+    /// Torque in N m that this tick gave of the torque before this command.
+    pub torque: f32,
+    /// Torque in N m that was wanted in this tick and not given.
+    pub refused: f32,
+    /// The reason for that.
+    pub limit: LimitReason,
+    /// The servo's state; the torque is zero unless it runs.
+    pub state: State,
+    /// Commands since the start whose torque was no finite number; stops at its largest value.
+    pub invalid: u16,
+}
+
+/// The command or report of a program without a host: there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Nothing {}
+
+impl<'de> Deserialize<'de> for Nothing {
+    fn deserialize<D: Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
+        Err(D::Error::custom("no host"))
+    }
+}
+
+impl Serialize for Nothing {
+    fn serialize<S: Serializer>(&self, _: S) -> Result<S::Ok, S::Error> {
+        match *self {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::board::BAUD;
+    use crate::wire::encode;
+    use crate::wire::message::{ToBoard, ToHost};
+
+    #[test]
+    fn a_stream_at_1_khz_fits_the_line() {
+        let command = HostCommand { number: u16::MAX, torque: -1.5, ramp: u16::MAX };
+        let state = HostState {
+            number: u16::MAX,
+            tick: u32::MAX,
+            count: i32::MIN,
+            velocity: 1.0,
+            energy: 1.0,
+            torque: 1.0,
+            refused: 1.0,
+            limit: LimitReason::Energy,
+            state: State::Running,
+            invalid: u16::MAX,
+        };
+        let mut buffer = [0; 64];
+        let command = encode(&ToBoard::Torque(command), &mut buffer).unwrap().len();
+        let report = ToHost::<&str>::Host(HostReport::State(state));
+        let report = encode(&report, &mut buffer).unwrap().len();
+        assert_eq!((command, report), (18, 43));
+        // A byte has ten bits on the line.
+        assert!(report * 10 * 1000 <= BAUD as usize);
+    }
+}
