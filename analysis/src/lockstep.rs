@@ -8,6 +8,7 @@ use haptic_servo::servo::Transducers;
 
 use crate::controller::{Controller, Tick};
 use crate::device::{Energy, Motion};
+use crate::disturbance::Disturbance;
 use crate::hand::HandTrajectory;
 use crate::simulation::SimulationError;
 use crate::simulation::device_in_hand::DeviceInHand;
@@ -60,6 +61,11 @@ impl SimulatedDevice {
         Ok(Self { device, trajectory, period: scene.timing.period, ticks: 0, let_go: false })
     }
 
+    /// The same with friction and cogging of its motor.
+    pub fn with_disturbance(self, disturbance: Disturbance) -> Self {
+        Self { device: self.device.with_disturbance(disturbance), ..self }
+    }
+
     /// The same on the shaft of a motor whose torque comes from elsewhere, in steps of this length in s.
     pub fn on_shaft(
         scene: &Scene,
@@ -68,7 +74,8 @@ impl SimulatedDevice {
         step: f64,
     ) -> Result<Self, SimulationError> {
         let timing = Timing { period: step, worst_period: None };
-        let latency = Latency::NONE;
+        // Its encoder is that of the scene.
+        let latency = Latency::NONE.read_by(scene.latency.encoder);
         Self::new(&Scene { timing, latency, ..*scene }, trajectory, transducers)
     }
 

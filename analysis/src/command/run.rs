@@ -25,6 +25,7 @@ use crate::compare_run::{Backend, Input, RunError, RunOutcome, run_with_backend}
 use crate::controller::{Controller, controller};
 use crate::counts_csv;
 use crate::device::Energy;
+use crate::disturbance::Disturbance;
 use crate::file::SceneFile;
 use crate::hand::HandTrajectory;
 use crate::lockstep::{Difference, Run, SimulatedDevice};
@@ -121,6 +122,8 @@ struct RunSetup {
     scene: Scene,
     transducers: Transducers,
     trajectory: HandTrajectory,
+    /// Friction and cogging of the simulated motor.
+    disturbance: Disturbance,
     controller: Box<dyn Controller>,
     program: RunProgram,
 }
@@ -198,7 +201,7 @@ fn ran(
     ticks: usize,
     progress: impl FnMut(),
 ) -> Result<RunOutcome, CommandError> {
-    let RunSetup { scene, transducers, trajectory, .. } = setup;
+    let RunSetup { scene, transducers, trajectory, disturbance, .. } = setup;
     let controller = setup.controller.as_mut();
     if let Built::Virtual(flashed) = built
         && let Some((board, current_loop)) = flashed.boot_bridge()?
@@ -210,7 +213,7 @@ fn ran(
             None => {
                 let hand = trajectory.clone();
                 let shaft = HandHeldShaft::new(scene, hand, transducers, current_loop)?;
-                ShaftInput::Hand(Box::new(shaft))
+                ShaftInput::Hand(Box::new(shaft.with_disturbance(*disturbance)))
             }
         };
         let outcome = run_on_bridge(input, controller, board, scene, ticks, progress);
@@ -219,7 +222,8 @@ fn ran(
     let input = match counts {
         Some(counts) => Input::Recording(counts),
         None => {
-            Input::Hand(Box::new(SimulatedDevice::new(scene, trajectory.clone(), transducers)?))
+            let device = SimulatedDevice::new(scene, trajectory.clone(), transducers)?;
+            Input::Hand(Box::new(device.with_disturbance(*disturbance)))
         }
     };
     let backend = built.backend(scene.timing.period);
@@ -254,6 +258,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
         scene: program.scene,
         transducers,
         trajectory: (program.trajectory)(),
+        disturbance: Disturbance::default(),
         controller: program.controller(format, &transducers)?,
         program: RunProgram::Named(program),
     })
@@ -279,9 +284,10 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
         writeln!(io::stderr(), "note: {note}")?;
     }
     let (report, trajectory) = (judge_file(&file, Format::F64), hand_trajectory(&file));
+    let disturbance = file.disturbance();
     let (name, scene) = (file.name, file.scene);
     let program = RunProgram::OfFile(program);
-    Ok(RunSetup { name, report, scene, transducers, trajectory, controller, program })
+    Ok(RunSetup { name, report, scene, transducers, trajectory, disturbance, controller, program })
 }
 
 /// The parts of a scene file that a run does not use, as text: the servo runs on a rigid device in a hand's

@@ -125,7 +125,8 @@ impl Simulated {
             ));
         }
         let mut device = DeviceInHand::new(&file.scene, hand, &transducers)
-            .map_err(|error| error.to_string())?;
+            .map_err(|error| error.to_string())?
+            .with_disturbance(file.disturbance());
         if let Some(before) = before {
             let (old, new) = (&before.scene, &file.scene);
             let is_same = old.timing.period == new.timing.period && old.latency == new.latency;
