@@ -278,9 +278,7 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
         NumberFormat::F32 => controller::<_, f32>(&certified, &transducers)?,
         NumberFormat::Fixed => controller::<_, fixed::types::I8F24>(&certified, &transducers)?,
     };
-    let on_bridge = program.as_ref().is_some_and(|program| program.bridge.is_some())
-        && matches!(arguments.target, Target::Board(_));
-    for note in unused(&file, arguments.replay.is_some(), on_bridge) {
+    for note in unused(&file, arguments.replay.is_some()) {
         writeln!(io::stderr(), "note: {note}")?;
     }
     let (report, trajectory) = (judge_file(&file, Format::F64), hand_trajectory(&file));
@@ -292,17 +290,15 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
 
 /// The parts of a scene file that a run does not use, as text: the servo runs on a rigid device in a hand's
 /// trajectory, with the currents of a bridge's motor, or on recorded counts.
-fn unused(file: &SceneFile, is_replay: bool, on_bridge: bool) -> Vec<String> {
+fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
     let mut notes = Vec::new();
     if is_replay {
         if file.hand.is_some() {
             notes.push("[human] is not used: the counts are those of the recording".to_owned());
         }
-    } else if !(file.chain.is_rigid() && (on_bridge || file.scene.latency.is_none())) {
+    } else if !file.chain.is_rigid() {
         let rigid = "the device runs as one rigid body, with all of its inertia and damping";
-        notes.push(format!(
-            "{rigid}, without delay and lags; `haptic simulate` includes its masses and these"
-        ));
+        notes.push(format!("{rigid}; `haptic simulate` includes its masses"));
     }
     if file.simulation.is_some() {
         let instead = if is_replay {
@@ -313,7 +309,7 @@ fn unused(file: &SceneFile, is_replay: bool, on_bridge: bool) -> Vec<String> {
         notes.push(format!("[simulation] is not used: {instead}; `haptic simulate` uses it"));
     }
     let encoder = file.scene.latency.encoder;
-    let misreads = !encoder.is_ideal() || encoder.steps() > 1.0;
+    let misreads = is_replay && (!encoder.is_ideal() || encoder.steps() > 1.0);
     for (table, is_there) in [("host", file.host.is_some()), ("encoder", misreads)] {
         if is_there {
             notes.push(format!("[{table}] is not used; `haptic simulate` uses it"));
