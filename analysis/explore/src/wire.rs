@@ -173,6 +173,7 @@ fn scene_of(client: &Client) -> Option<Value> {
         encoder_step: Some(TAU / transducers.counts_per_turn),
         full_scale: Some(transducers.full_scale_torque),
         friction: None,
+        cogging: None,
         supply: None,
         motor: None,
         shapes: None,

@@ -1,6 +1,7 @@
 //! The surroundings of a simulated board: encoder, motor, device and hand.
 
 use haptic_model::device::{Energy, Motion};
+use haptic_model::disturbance::Disturbance;
 use haptic_model::hand::HandTrajectory;
 use haptic_model::simulation::SimulationError;
 use haptic_model::simulation::device_in_hand::DeviceInHand;
@@ -35,6 +36,11 @@ impl SimulatedDevice {
         Ok(Self { device, trajectory, period: scene.timing.period, ticks: 0, let_go: false })
     }
 
+    /// The same with friction and cogging of its motor.
+    pub fn with_disturbance(self, disturbance: Disturbance) -> Self {
+        Self { device: self.device.with_disturbance(disturbance), ..self }
+    }
+
     /// The same on the shaft of a motor whose torque comes from elsewhere, in steps of this length in s.
     pub fn on_shaft(
         scene: &Scene,
@@ -43,7 +49,8 @@ impl SimulatedDevice {
         step: f64,
     ) -> Result<Self, SimulationError> {
         let timing = Timing { period: step, worst_period: None };
-        let latency = Latency::NONE;
+        // Its encoder is that of the scene.
+        let latency = Latency::NONE.read_by(scene.latency.encoder);
         Self::new(&Scene { timing, latency, ..*scene }, trajectory, transducers)
     }
 

@@ -29,6 +29,7 @@ fn file(scene: Scene) -> SceneFile {
         encoder_step: None,
         full_scale: None,
         friction: None,
+        cogging: None,
         supply: None,
         motor: None,
         shapes: None,

@@ -218,6 +218,13 @@ keys! {
     /// Dry (Coulomb) friction at the motor.
     DEVICE_FRICTION = other("device.friction", "N m", NOT_NEGATIVE),
         Optional("not counted on: the verdict does not say whether the device comes to rest"), "0.003";
+    /// Cogging of the motor, for simulation: a torque of `-torque` times the sine of `count` times the angle. The
+    /// certificate needs no number of it, because it takes no energy in a turn.
+    COGGING = other("device.cogging", "", TABLE), Optional("no cogging"), "{ torque = 0.005, count = 84 }";
+    /// Amplitude of the cogging.
+    COGGING_TORQUE = other("device.cogging.torque", "N m", NOT_NEGATIVE), Needed, "0.005";
+    /// Its periods in a turn, mostly the least common multiple of slots and poles: 84 of 12 and 14.
+    COGGING_COUNT = other("device.cogging.count", "", whole(1, 4096)), Needed, "84";
     /// Masses of a chain, in place of inertia and damping: the motor's first, the hand's last.
     MASS = other("device.mass", "", Bound::Other(Form::Tables, "a list of 1 to 10 tables")),
         Optional("one rigid body, of `device.inertia` and `device.damping`"), "";

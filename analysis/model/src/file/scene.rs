@@ -23,6 +23,7 @@ use super::tree::Node;
 use super::updates;
 use crate::chain::Chain;
 use crate::device::Hand;
+use crate::disturbance::{Cogging, Disturbance};
 
 /// The contents of a scene file.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +45,8 @@ pub struct SceneFile {
     pub full_scale: Option<f64>,
     /// Dry friction of the device in N m.
     pub friction: Option<f64>,
+    /// Cogging of its motor.
+    pub cogging: Option<Cogging>,
     /// The supply of the bridge that drives the motor.
     pub supply: Option<FileSupply>,
     /// The motor, if a board's own bridge drives it.
@@ -52,6 +55,16 @@ pub struct SceneFile {
     pub host: Option<HostTorque>,
     /// The shapes that the scene's torque profile was sampled from.
     pub shapes: Option<Shapes>,
+}
+
+impl SceneFile {
+    /// Friction and cogging of the device's motor.
+    pub fn disturbance(&self) -> Disturbance {
+        Disturbance {
+            friction: self.friction.unwrap_or(0.0),
+            cogging: self.cogging.unwrap_or_default(),
+        }
+    }
 }
 
 /// Reads the tables of a parsed file.
@@ -99,7 +112,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         }
         EnvironmentTable::Other(environment) => (*environment, None),
     };
-    let DeviceTable { chain, device, friction, latency } = table;
+    let DeviceTable { chain, device, friction, cogging, latency } = table;
     let latency = Latency {
         output_delay: servo.latency.output_delay,
         output_jitter: servo.latency.output_jitter,
@@ -131,6 +144,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         encoder_step,
         full_scale,
         friction,
+        cogging,
         host,
         supply,
         motor,

@@ -17,6 +17,7 @@ use super::motor::FileMotor;
 use super::scene::SceneFile;
 use super::supply::FileSupply;
 use crate::chain::{Chain, EncoderPlace};
+use crate::disturbance::Cogging;
 
 /// The text of a scene file in TOML: all keys of the file, and no others.
 pub fn toml(file: &SceneFile) -> String {
@@ -29,13 +30,14 @@ pub fn toml(file: &SceneFile) -> String {
         encoder_step,
         full_scale,
         friction,
+        cogging,
         host,
         supply,
         motor,
         shapes,
     } = file;
     let mut lines = vec![format!("name = {}", quoted(name)), "[device]".to_owned()];
-    device(&mut lines, chain, scene, *friction);
+    device(&mut lines, chain, scene, *friction, *cogging);
     lines.push(format!("[servo]\nperiod = {:?}", scene.timing.period));
     number(&mut lines, "worst_period", scene.timing.worst_period);
     let EncoderReading { age, .. } = *scene.latency.encoder;
@@ -192,7 +194,13 @@ fn encoder(lines: &mut Vec<String>, reading: &EncoderReading) {
 }
 
 /// Writes the passivity only if it was declared and differs from the chain's own.
-fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Option<f64>) {
+fn device(
+    lines: &mut Vec<String>,
+    chain: &Chain,
+    scene: &Scene,
+    friction: Option<f64>,
+    cogging: Option<Cogging>,
+) {
     let own = chain.as_rigid().ok().and_then(|own| own.passivity);
     let declared = scene.device.passivity.filter(|passivity| !passivity.is_nan());
     let passivity = declared.filter(|&declared| Some(declared) != own);
@@ -201,6 +209,9 @@ fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Optio
     }
     number(lines, "passivity", passivity);
     number(lines, "friction", friction);
+    lines.extend(cogging.map(|Cogging { torque, count }| {
+        format!("cogging = {{ torque = {torque:?}, count = {count} }}")
+    }));
     if chain.encoder() == EncoderPlace::Hand {
         lines.push(format!("encoder = {}", quoted(EncoderPlace::Hand.word())));
     }
@@ -301,7 +312,8 @@ mod tests {
         [first, second]
     }
 
-    const RIGID: &str = "inertia = 2.2e-5\ndamping = 0.1\npassivity = 0.07\nfriction = 0.003\n";
+    const RIGID: &str = "inertia = 2.2e-5\ndamping = 0.1\npassivity = 0.07\nfriction = 0.003\n\
+                         cogging = { torque = 0.005, count = 84 }\n";
     const SERVO: &str = "period = 0.001\nworst_period = 0.003\n";
     const SPRING: &str = "[environment]\ntype = \"delayed-spring\"\nstiffness = 0.1\ndelay = 3\n";
     const CHAIN: &str = "[[device.mass]]\ninertia = 1e-5\ndamping = 0.3\n[[device.mass]]\n\
