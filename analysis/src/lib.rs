@@ -32,7 +32,8 @@ mod shaft;
 pub mod toolchain;
 mod virtual_board;
 
-// A board that runs, at the other end of a wire, and the view of it. Its client is the package `haptic-client`.
+// A board that runs, at the other end of a wire, and the view of it; its client is the package
+// `haptic-client`.
 pub use haptic_client as link;
 pub mod scope;
 pub mod serve;

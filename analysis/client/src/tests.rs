@@ -37,7 +37,7 @@ fn board(stiffness: f64) -> Result<SimulatedBoard, String> {
     SimulatedBoard::of_file(&file, &loopback(), Pacing::RealTime).map_err(|error| error.to_string())
 }
 
-/// Somebody else at a port: says `greeting` and returns all that it heard.
+/// Another program at a port, which says `greeting` and returns all that it heard.
 fn other(greeting: Vec<u8>) -> (Address, JoinHandle<Vec<u8>>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = Address::Tcp(listener.local_addr().unwrap().to_string());
@@ -106,8 +106,8 @@ fn a_board_of_another_version_is_not_used() {
     heard.join().unwrap();
 }
 
-/// A board with a host, which moves by 0.1 rad in each tick of 1 ms that takes a torque, and is gone after so many.
-/// It returns these torques.
+/// A board that takes torques, and moves by 0.1 rad in each tick of 1 ms that takes a torque. It is gone after
+/// so many, and returns them.
 fn streamed(ticks: usize) -> (Link, JoinHandle<Vec<f32>>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = Address::Tcp(listener.local_addr().unwrap().to_string());
