@@ -94,6 +94,9 @@ pub struct Step<'a> {
     pub command: f64,
 }
 
+/// Takes the length in s of a step that was made, and the states at its start and at its end.
+type OnStep<'a> = dyn FnMut(f64, &DVector<f64>, &DVector<f64>) + 'a;
+
 impl DisturbedPlant {
     /// A plant with friction and cogging at its motor; `omega` in rad/s is that of the hand's sine torque.
     pub fn new(
@@ -171,7 +174,7 @@ impl DisturbedPlant {
         part: &Part,
         halving: usize,
         changes: &mut u32,
-        made: &mut dyn FnMut(f64, &DVector<f64>, &DVector<f64>),
+        made: &mut OnStep<'_>,
     ) {
         let length = part.length * 0.5_f64.powi(halving as i32);
         let mut next = self.stepped(state, part, halving, length);
