@@ -193,7 +193,7 @@ class SimulatedBoard:
 def connect(port: str) -> Board:
     """Connect to a board: ``/dev/ttyACM0`` (``@BAUD``), ``COM3``, ``tcp://HOST:PORT`` or ``unix:PATH``.
 
-    One program at a time can have a board. :class:`ConnectError` says what is there instead of a board.
+    One program at a time can have a board. :class:`ConnectError` has the reason if there is no board.
     """
     return Board(port)
 
