@@ -31,7 +31,8 @@ FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 5: "link-lost"
           19: "current-not-following", 20: "saturated-duty", 21: "index-mismatch",
           22: "current-interrupt-late", 23: "not-aligned", 24: "alignment-not-needed",
           25: "alignment-blocked", 26: "alignment-pole-pairs", 27: "alignment-not-returned",
-          28: "alignment-uneven", 29: "thermistor", 30: "comparator", 31: "index-offset"}
+          28: "alignment-uneven", 29: "thermistor", 30: "comparator", 31: "index-offset",
+          32: "encoder-reading"}
 # The parameters that can be changed, by their numbers on the wire.
 PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter", 10: "face",
               11: "residual", 15: "torque_limit", 23: "torque", 24: "count", 25: "centre",
