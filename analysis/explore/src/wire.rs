@@ -177,6 +177,7 @@ fn scene_of(client: &Client) -> Option<Value> {
         supply: None,
         motor: None,
         shapes: None,
+        chip: None,
     };
     file::as_json(&file.name, Format::Toml, &write::toml(&file)).ok()
 }

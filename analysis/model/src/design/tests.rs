@@ -33,6 +33,7 @@ fn file(scene: Scene) -> SceneFile {
         supply: None,
         motor: None,
         shapes: None,
+        chip: None,
     }
 }
 

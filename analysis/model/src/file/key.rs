@@ -9,6 +9,7 @@
 
 use std::f64::consts::TAU;
 
+use haptic_servo::magnetic::Chip;
 use haptic_servo::parameter::{Parameter, Range};
 
 use Presence::{Default, Needed, Optional};
@@ -268,6 +269,10 @@ keys! {
     /// Counts of the encoder in a turn, in place of `limits.counts_per_turn`.
     READING_COUNTS = other("encoder.counts_per_turn", "counts", POSITIVE),
         Optional("`[limits]` states them"), "16384.0";
+    /// The chip of a magnetic absolute encoder that the board reads, with its angle as the position of the device's
+    /// axis. Its counts need not be stated; the age and the lag must cover the chip's, which docs/encoders.md lists.
+    CHIP = other("encoder.chip", "", Bound::Other(Form::OneOf(&Chip::NAMES), "the name of a chip")),
+        Optional("a quadrature encoder"), "\"mt6701\"";
     /// Age of a reading at the instant of its count: the delay of the chip and the time from its last
     /// conversion. With two numbers it is anywhere between them in each tick.
     AGE = Key { bound: TIME, ..of(Parameter::Age) }, Default(0.0), "[0.0, 1.0e-5]";

@@ -8,6 +8,7 @@ use std::fmt::Write;
 use haptic_servo::current::Bus;
 use haptic_servo::environment::{Coefficients, Environment, Wall};
 use haptic_servo::host::HostTorque;
+use haptic_servo::magnetic::Chip;
 use haptic_servo::parameter::{Parameter, Range};
 use haptic_servo::scene::{Coupling, EncoderReading, Scene, TimeRange};
 
@@ -35,6 +36,7 @@ pub fn toml(file: &SceneFile) -> String {
         supply,
         motor,
         shapes,
+        chip,
     } = file;
     let mut lines = vec![format!("name = {}", quoted(name)), "[device]".to_owned()];
     device(&mut lines, chain, scene, *friction, *cogging);
@@ -47,7 +49,7 @@ pub fn toml(file: &SceneFile) -> String {
     time(&mut lines, "output_jitter", TimeRange::exactly(scene.latency.output_jitter));
     let jitter = less(scene.latency.count_jitter, scene.latency.encoder.deviation_of_age());
     time(&mut lines, "count_jitter", TimeRange::exactly(jitter));
-    encoder(&mut lines, scene.latency.encoder);
+    encoder(&mut lines, scene.latency.encoder, *chip);
     match scene.coupling {
         Coupling::Rigid => {}
         Coupling::Spring { stiffness } => {
@@ -172,12 +174,13 @@ fn less(sum: f64, part: f64) -> f64 {
 }
 
 /// Writes the encoder's table, if it is not that of a quadrature encoder.
-fn encoder(lines: &mut Vec<String>, reading: &EncoderReading) {
+fn encoder(lines: &mut Vec<String>, reading: &EncoderReading, chip: Option<&Chip>) {
     let EncoderReading { age, window, linearity, noise, hysteresis, dropped, .. } = *reading;
-    if *reading == EncoderReading::IDEAL {
+    if *reading == EncoderReading::IDEAL && chip.is_none() {
         return;
     }
     lines.push("[encoder]".to_owned());
+    lines.extend(chip.map(|chip| format!("chip = {}", quoted(chip.name))));
     time(lines, "age", age);
     let numbers = [
         ("window", window),

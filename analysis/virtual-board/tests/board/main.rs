@@ -10,6 +10,7 @@ mod device;
 mod faults;
 mod harmless;
 mod interrupts;
+mod magnetic;
 mod own_board;
 mod phase;
 mod provoked;
