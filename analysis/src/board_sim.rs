@@ -36,7 +36,7 @@ pub enum DrivingBoard {
     /// By its own bridge.
     Bridge {
         /// The board.
-        board: BridgeBoard,
+        board: Box<BridgeBoard>,
         /// The shaft of the motor. The hand lets go of it while the motor is aligned.
         shaft: Box<HandHeldShaft>,
     },

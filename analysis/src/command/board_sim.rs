@@ -80,7 +80,7 @@ fn listening(
     };
     let board = if let Some((board, current_loop)) = built.boot_bridge()? {
         let shaft = HandHeldShaft::new(scene, hand, transducers, current_loop)?;
-        DrivingBoard::Bridge { board, shaft: Box::new(shaft) }
+        DrivingBoard::Bridge { board: Box::new(board), shaft: Box::new(shaft) }
     } else {
         let plant = Box::new(SimulatedDevice::new(scene, hand, transducers)?);
         DrivingBoard::Dac { board: built.boot()?, plant, count: None }

@@ -5,7 +5,6 @@ use std::f64::consts::{PI, TAU};
 
 use haptic_servo::certificate::{Assessment, QuantizationBound, Resolution, RuleAnswer};
 use haptic_servo::dac::DacCode;
-use haptic_servo::encoder::CounterWidth;
 use haptic_servo::environment::Profile;
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Scene, TimeRange};
