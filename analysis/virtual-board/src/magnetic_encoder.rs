@@ -145,14 +145,14 @@ impl MagneticEncoder {
         let (mut bits, length) = match self.model {
             Model::Mt6701 => {
                 // Status: 2 is a weak field, 8 a lost track.
-                let status = u64::from(weak) * 2 | u64::from(flag) * 8;
+                let status = (u64::from(weak) * 2) | (u64::from(flag) * 8);
                 let content = (self.sample(now) as u64) << 4 | status;
                 (content << 6 | remainder(content, 18, 0b100_0011, 6), 24)
             }
             Model::MagAlpha => (self.sample(now) as u64, 16),
             Model::Mt6835 => {
                 // Status: 1 is too fast, 2 a weak field, 4 a low supply.
-                let status = u64::from(weak) * 2 | u64::from(flag) * 4;
+                let status = (u64::from(weak) * 2) | (u64::from(flag) * 4);
                 let content = (self.sample(now) as u64) << 3 | status;
                 (0xFFFF << 32 | content << 8 | remainder(content, 24, 0x107, 8), 48)
             }

@@ -345,8 +345,8 @@ mod tests {
         assert!((found / period - 1.0).abs() < 5e-4, "{found} {period}");
     }
 
-    /// It rests where cogging and torque together are no more than its friction; the way there takes up what
-    /// is left of its energy.
+    /// It rests where cogging and torque together are no more than its friction; the way there takes up the
+    /// rest of its energy.
     #[test]
     fn a_mass_sticks_on_the_flank_of_its_cogging() {
         let cogging = Cogging { torque: 0.2, count: 3.0 };
