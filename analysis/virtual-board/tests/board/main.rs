@@ -9,6 +9,7 @@ mod contact;
 mod device;
 mod faults;
 mod harmless;
+mod hosted;
 mod interrupts;
 mod own_board;
 mod phase;
