@@ -26,7 +26,7 @@ const RETURN: f64 = 0.5;
 /// A running board, which waits at the beginning of a period of the servo.
 pub struct BridgeBoard {
     board: VirtualBoard,
-    current_loop: &'static CurrentLoop,
+    current_loop: CurrentLoop,
     transducers: Transducers,
     sample: Option<Sample>,
 }
@@ -37,11 +37,11 @@ impl BridgeBoard {
         program: &Path,
         board: BoardModel,
         elf: &Path,
-        current_loop: &'static CurrentLoop,
+        current_loop: &CurrentLoop,
         transducers: Transducers,
     ) -> Result<Self, VirtualBoardError> {
         let board = VirtualBoard::boot(program, board, elf, Some(current_loop.drive()))?;
-        Ok(Self { board, current_loop, transducers, sample: None })
+        Ok(Self { board, current_loop: *current_loop, transducers, sample: None })
     }
 
     /// Runs to the beginning of the next period of the servo, with bytes to the serial port.
@@ -71,7 +71,7 @@ impl BridgeBoard {
     /// back to zero as a hand would; then arms the servo there, and runs until the bridge has started up and the clamp has opened.
     pub fn align_and_arm(&mut self, scene: &Scene) -> Result<(), VirtualBoardError> {
         let period = scene.timing.period;
-        let mut still = LedShaft::new(0.0, &self.transducers, self.current_loop);
+        let mut still = LedShaft::new(0.0, &self.transducers, &self.current_loop);
         for _ in 0..OFFSETS / usize::from(self.current_loop.updates()) + 1 {
             self.period(&mut still, &[])?;
         }
@@ -88,7 +88,7 @@ impl BridgeBoard {
 
     fn align(&mut self, scene: &Scene) -> Result<(), VirtualBoardError> {
         let hand = HandTrajectory::push_and_let_go();
-        let mut shaft = HandHeldShaft::new(scene, hand, &self.transducers, self.current_loop)?;
+        let mut shaft = HandHeldShaft::new(scene, hand, &self.transducers, &self.current_loop)?;
         shaft.let_go(true);
         let mut bytes = frame(&ToBoard::Align { id: 0 });
         let samples = (LONGEST_ALIGNMENT / scene.timing.period) as usize;
@@ -106,7 +106,7 @@ impl BridgeBoard {
     /// Turns the shaft smoothly from an angle in rad to zero.
     fn turn_to_zero(&mut self, angle: f64, period: f64) -> Result<(), VirtualBoardError> {
         let from = angle * self.transducers.counts_per_turn / std::f64::consts::TAU;
-        let mut shaft = LedShaft::new(from, &self.transducers, self.current_loop);
+        let mut shaft = LedShaft::new(from, &self.transducers, &self.current_loop);
         let way = HandTrajectory {
             path: vec![(0.0, from), (RETURN, 0.0)],
             ..HandTrajectory::push_and_let_go()

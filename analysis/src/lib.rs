@@ -32,18 +32,19 @@ mod shaft;
 pub mod toolchain;
 mod virtual_board;
 
-// A board that runs, at the other end of a wire, and the view of it.
-pub mod link;
+// A board that runs, at the other end of a wire, and the view of it; its client is the package
+// `haptic-client`.
+pub use haptic_client as link;
 pub mod scope;
 pub mod serve;
 
 // Verdicts, motions and limits of scenes: all code for them that needs no operating system is in the package
 // `haptic-model`.
 pub use haptic_model::{
-    chain, closed_form, controller, design, device, felt, file, hand, latency_limits, limits,
-    line_search, missed, nominal_latency, number, nyquist, on_board, open_loop, profile_curve,
-    quantity, response, sampled_actuator, simulation, snap_branches, stability, stability_map,
-    text_width, trace, unit_circle_poles, verdict, verdict_text, worst_hand,
+    chain, closed_form, controller, design, device, disturbance, felt, file, hand, latency_limits,
+    limits, line_search, missed, nominal_latency, number, nyquist, on_board, open_loop,
+    profile_curve, quantity, response, sampled_actuator, simulation, snap_branches, stability,
+    stability_map, text_width, trace, unit_circle_poles, verdict, verdict_text, worst_hand,
 };
 
 // The same with threads, files and studies.

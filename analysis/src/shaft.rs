@@ -13,6 +13,7 @@ use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 
 use crate::device::Energy;
+use crate::disturbance::Disturbance;
 use crate::hand::HandTrajectory;
 use crate::lockstep::{PlantIo, SimulatedDevice};
 use crate::simulation::SimulationError;
@@ -142,6 +143,11 @@ impl HandHeldShaft {
         let step = current_loop.response().delay;
         let device = SimulatedDevice::on_shaft(scene, trajectory, transducers, step)?;
         Ok(Self { device, step, time: 0.0, impulse: 0.0 })
+    }
+
+    /// The same with friction and cogging of its motor.
+    pub fn with_disturbance(self, disturbance: Disturbance) -> Self {
+        Self { device: self.device.with_disturbance(disturbance), ..self }
     }
 
     /// The hand lets go, or follows its trajectory.

@@ -6,6 +6,7 @@ use core::hint::black_box;
 
 use crate::build_error::BuildError;
 use crate::dac::DacCode;
+use crate::encoder::RawCount;
 use crate::environment::SupportsTiming;
 use crate::fault::{Fault, FaultRecord};
 use crate::number::Number;
@@ -24,6 +25,11 @@ use crate::tuning::{self, Prepared, Tunable};
 pub trait Startup: Hardware {
     /// Sets the encoder's counter to zero: the present position is its zero.
     fn zero_encoder(&mut self);
+    /// The reading of an absolute encoder, whose zero is its own; `None` if the encoder counts from where
+    /// [`zero_encoder`](Self::zero_encoder) was called.
+    fn absolute_count(&mut self) -> Option<RawCount> {
+        None
+    }
     /// Starts the watchdog. From here on only the servo feeds it.
     fn start_watchdog(&mut self);
     /// The words that survived the reset; see [`FaultRecord`].
@@ -106,9 +112,12 @@ where
     hardware.write(DacCode::MID_SCALE);
     // Hidden from the optimiser, which would otherwise certify a constant scene at compile time.
     let scene = black_box(program.scene);
-    let Prepared { rendering, margin, .. } =
+    let Prepared { mut rendering, margin, .. } =
         tuning::prepare(&scene, &[], &program.transducers, &program.rendering)?;
     hardware.zero_encoder();
+    if let Some(raw) = hardware.absolute_count() {
+        rendering.servo_mut().begin_at(raw);
+    }
     let reset = hardware.reset_cause();
     let previous_fault = read_previous_fault(hardware, reset);
     let fault = previous_fault.map(|previous_fault| previous_fault.fault);

@@ -15,8 +15,24 @@ pub trait Encoder {
 pub enum CounterWidth {
     /// A 32-bit timer.
     Bits32 = 0,
-    /// A 16-bit timer.
+    /// A 16-bit timer, or an angle of as many bits.
     Bits16 = 16,
+    /// An angle of 14 bits.
+    Bits14 = 18,
+    /// An angle of 21 bits.
+    Bits21 = 11,
+}
+
+impl CounterWidth {
+    /// Its bits.
+    pub const fn mask(self) -> u32 {
+        u32::MAX >> self as u32
+    }
+
+    /// Counts after which the counter wraps.
+    pub const fn counts(self) -> f64 {
+        self.mask() as f64 + 1.0
+    }
 }
 
 /// A counter's content, in its low bits; bits above the counter's width are ignored.

@@ -48,6 +48,7 @@
 //! | `b-g431b-esc1` | board: B-G431B-ESC1 |
 //! | `feather-stm32f405` | board: Adafruit Feather STM32F405 Express |
 //! | `bridge` | the board's own bridge drives the motor: B-G431B-ESC1 |
+//! | `magnetic` | a magnetic absolute encoder on SPI: NUCLEO-G474RE |
 //! | `board-qemu` | the emulated board |
 //! | `log` | measurements and their log, on the emulated board |
 //! | `on-target` | tests that run on a board |
@@ -120,6 +121,7 @@ macro_rules! each {
 
 pub mod encoder;
 pub mod encoder_reading;
+pub mod magnetic;
 
 pub mod coupling;
 pub mod coupling_memory;

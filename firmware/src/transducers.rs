@@ -62,10 +62,7 @@ impl Transducers {
         ok!(BuildError::unless_positive("largest speed", speed));
         let step = ok!(self.radians_per_count());
         let counts = speed * time / step + 1.0;
-        let half = match self.counter {
-            CounterWidth::Bits16 => (1_u32 << 15) as f64,
-            CounterWidth::Bits32 => (1_u32 << 31) as f64,
-        };
+        let half = 0.5 * self.counter.counts();
         // Written so that NaN is refused.
         if counts < half { Ok(counts as u32) } else { Err(BuildError::Speed { counts, half }) }
     }

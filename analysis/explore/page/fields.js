@@ -66,7 +66,7 @@ class Fields {
     const { scene } = this.#store;
     const shapes = this.#list("environment.shape").map((shape) => shape?.type);
     const isThere = (path) => this.#store.get(path) !== undefined;
-    const tables = ["device.mass", "environment.wall", "human"].map(isThere);
+    const tables = ["device.mass", "device.cogging", "environment.wall", "human"].map(isThere);
     return JSON.stringify([scene.environment?.type, this.#coupling(), shapes, tables]);
   }
 
@@ -144,9 +144,10 @@ class Fields {
       const usual = examples(word === "chain" ? chain : rigid);
       this.#exchange("device", word, isChain ? "chain" : "rigid", [...rigid, ...chain], usual);
     }, () => (isChain ? "chain" : "rigid"));
-    const others = [...this.#keys.keys()].filter((path) =>
-      /^device\.\w+$/.test(path) && ![...rigid, ...chain].includes(path));
-    const paths = [...(isChain ? chain : rigid), ...others];
+    const others = [...this.#keys.values()].filter(({ path, form }) =>
+      /^device\.\w+$/.test(path) && form !== "table" && ![...rigid, ...chain].includes(path));
+    const cogging = this.#store.get("device.cogging") === undefined ? [] : this.#keysOf("device.cogging");
+    const paths = [...(isChain ? chain : rigid), ...others.map(({ path }) => path), ...cogging];
     return this.#group("Device", body.row, ...this.#rows("Device", paths));
   }
 

@@ -15,11 +15,25 @@ class HandSettings {
   /** Has a function called after each change. */
   constructor(changed) {
     const rows = Object.keys(HandSettings.#FIELDS).map((name) => this.#row(name, changed));
-    const note = "Without encoder counts: those of the scene. A changed scene goes on with the device as it "
+    const note = "Without encoder counts: the encoder of the scene, with its noise; with them, a quadrature encoder. "
+      + "A changed scene goes on with the device as it "
       + "moves; its servo has settled at the device's angle when it takes over. The device is one rigid body, "
-      + "with the scene's delay and lags.";
+      + "with the scene's delay, lags, friction and cogging.";
     this.element = make("details", { id: "handle-settings" },
-      make("summary", {}, "Hand and encoder"), ...rows, make("p", { className: "note" }, note));
+      make("summary", {}, "Hand and encoder"), ...rows, this.#encoders(changed), make("p", { className: "note" }, note));
+  }
+
+  /** Buttons for two encoders: that of the scene, and a finer one without noise. */
+  #encoders(changed) {
+    const choice = (words, counts) => {
+      const button = make("button", { type: "button" }, words);
+      button.addEventListener("click", () => {
+        this.#fields.counts.field.value = counts;
+        changed();
+      });
+      return button;
+    };
+    return make("p", {}, choice("Encoder of the scene", ""), " ", choice("10,000 counts", "10000"));
   }
 
   #row(name, changed) {

@@ -10,9 +10,7 @@ use haptic_model::board::request::{Request, in_words, names};
 use haptic_model::board::sample::{Sample, Scale};
 use haptic_model::board::timing::stream_every;
 use haptic_servo::tuning::RenderError;
-use haptic_servo::wire::message::{
-    ActiveParameters, BoardUnits, Changes, Id, PreviousFault, Status,
-};
+use haptic_servo::wire::message::{ActiveParameters, Changes, Id, Status};
 
 /// Duration of the kept curves in s.
 pub const WINDOW: f64 = 5.0;
@@ -42,12 +40,8 @@ pub struct Client {
 
 /// A board after its greeting.
 pub struct Connected {
-    /// Name of its program.
-    pub program: String,
-    /// The units of its numbers.
-    pub board: BoardUnits,
-    /// The fault that stopped it before its last reset.
-    pub previous_fault: Option<PreviousFault>,
+    /// Its own description.
+    pub board: client::Connected,
     /// Its last status.
     pub status: Option<Status>,
     /// The active parameters.
@@ -134,9 +128,9 @@ impl Client {
     }
 
     fn take(&mut self, event: Event, now: Duration, each: &mut impl FnMut(&Sample)) {
-        if let Event::Connected { program, board, previous_fault } = event {
-            self.wire.watch(stream_every(board.period), now);
-            self.connected = Some(Connected::new(program, board, previous_fault));
+        if let Event::Connected(board) = event {
+            self.wire.watch(stream_every(board.units.period), now);
+            self.connected = Some(Connected::new(board));
             return;
         }
         let Some(connected) = &mut self.connected else { return };
@@ -162,22 +156,20 @@ impl Client {
 }
 
 impl Connected {
-    fn new(program: String, board: BoardUnits, previous_fault: Option<PreviousFault>) -> Self {
+    fn new(board: client::Connected) -> Self {
         Self {
-            program,
+            scale: Scale::new(board.units),
             board,
-            previous_fault,
             status: None,
             parameters: None,
             history: History::new(WINDOW),
             slow: VecDeque::new(),
-            scale: Scale::new(board),
         }
     }
 
     fn take_status(&mut self, status: Status) {
         self.status = Some(status);
-        let board = &self.board;
+        let board = &self.board.units;
         let time = match self.history.last() {
             Some(sample) => sample.time,
             None => f64::from(status.tick) * board.period,

@@ -1,4 +1,4 @@
-//! Scenes to start from: those of the programs in `firmware/src/bin`, and a rejected scene.
+//! Scenes to start from: those of the programs in `firmware/src/bin`, a knob of bought parts, and a rejected scene.
 
 /// A scene to start from.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +18,7 @@ macro_rules! presets {
 /// All values.
 pub const ALL: &[Preset] = presets![
     "delayed spring" in "delayed_spring.toml",
+    "gimbal knob with MT6701" in "gimbal_knob.toml",
     "damper wall" in "damper_wall.toml",
     "free mode" in "free_mode.toml",
     "knob" in "knob.toml",
@@ -40,7 +41,8 @@ mod tests {
             let file = parse(preset.name, Format::Toml, preset.toml);
             let file = file.unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(file.name, preset.name);
-            assert_eq!(file.encoder_step, Some(TAU / 61_440.0));
+            let counts = if preset.name.contains("MT6701") { 16_384.0 } else { 61_440.0 };
+            assert_eq!(file.encoder_step, Some(TAU / counts));
             let format = haptic_servo::number::Format::F64;
             let report = judge_in(&file.name, &file.scene, format, &file.steps());
             let is_last = index + 1 == ALL.len();

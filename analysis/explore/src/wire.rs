@@ -7,6 +7,7 @@ use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::time::Duration;
 
+use haptic_model::board::client;
 use haptic_model::board::request::{Reply, Request};
 use haptic_model::board::sample::{COLUMNS, Sample};
 use haptic_model::board::timing::RETRY;
@@ -163,7 +164,7 @@ fn scene_of(client: &Client) -> Option<Value> {
         return None;
     }
     let file = SceneFile {
-        name: connected.program.clone(),
+        name: connected.board.program.clone(),
         scene,
         chain: Chain::rigid(scene.device.inertia, scene.device.damping).ok()?,
         simulation: None,
@@ -172,9 +173,11 @@ fn scene_of(client: &Client) -> Option<Value> {
         encoder_step: Some(TAU / transducers.counts_per_turn),
         full_scale: Some(transducers.full_scale_torque),
         friction: None,
+        cogging: None,
         supply: None,
         motor: None,
         shapes: None,
+        chip: None,
     };
     file::as_json(&file.name, Format::Toml, &write::toml(&file)).ok()
 }
@@ -245,7 +248,7 @@ impl Wire {
 /// The state of a board as text, as in `haptic scope`.
 fn view(client: &Client) -> Option<Value> {
     let connected = client.connected.as_ref()?;
-    let Connected { program, board, previous_fault, .. } = connected;
+    let client::Connected { program, units: board, previous_fault, .. } = &connected.board;
     let (parameters, status) = (connected.parameters.as_ref()?, connected.status.as_ref()?);
     let slack = connected.history.last().map(|last| last.slack);
     let numbers = parameters.values.iter().map(|(parameter, value)| number(*parameter, *value));

@@ -58,6 +58,7 @@ pub mod worst_hand;
 pub mod chain;
 pub mod controller;
 pub mod device;
+pub mod disturbance;
 pub mod file;
 pub mod hand;
 pub mod missed;

@@ -1,6 +1,7 @@
-"""Haptic scenes in Python: passivity certificate, simulation, stability map.
+"""Haptic scenes in Python: passivity certificate, simulation, stability map, and boards that run.
 
-Every function takes a scene in one of three forms, and none changes it:
+:func:`connect` returns a board behind a port, :func:`simulated_board` starts a board without hardware. Every
+other function takes a scene in one of three forms, and none changes it:
 
 - a dictionary of the shape of a scene file, whose numbers and lists may be NumPy's;
 - the path of a scene file, TOML or JSON, as a string or a ``pathlib.Path``;
@@ -11,8 +12,6 @@ same bits. What has no answer raises :class:`SceneError`, which names the key, i
 """
 
 import json
-import math
-import os
 import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any, Literal, TypedDict
@@ -22,26 +21,49 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _native
 from ._native import SceneError
+from ._scene import Scene, plain, source
+from .board import LIMITS, STATES, Board, Parameters, SimulatedBoard, Telemetry, connect, simulated_board
+from .errors import (
+    BoardError,
+    ConnectError,
+    LinkLostError,
+    ParameterError,
+    RefusedError,
+    StreamError,
+    VersionError,
+)
 
 __all__ = [
+    "LIMITS",
     "METHODS",
     "REGIONS",
+    "STATES",
     "TICK_STATUSES",
+    "Board",
+    "BoardError",
+    "ConnectError",
+    "LinkLostError",
     "Motion",
+    "ParameterError",
+    "Parameters",
+    "RefusedError",
     "Scene",
     "SceneError",
+    "SimulatedBoard",
+    "StreamError",
+    "Telemetry",
+    "VersionError",
     "certify",
     "certify_many",
+    "connect",
     "index",
     "load",
     "response",
     "simulate",
+    "simulated_board",
     "stability",
     "stability_map",
 ]
-
-Scene = Mapping[str, Any] | str | os.PathLike[str]
-"""A scene: a dictionary, a path, or a text."""
 
 METHODS: tuple[str, ...] = tuple(_native.METHODS)
 """Methods of integration, for ``method``."""
@@ -73,8 +95,8 @@ class Motion(TypedDict, total=False):
 def load(scene: Scene) -> dict[str, Any]:
     """Read a scene file, or its text, as a dictionary to change. Its keys and values are not checked."""
     if isinstance(scene, Mapping):
-        return _object(json.dumps(_plain(scene, "")))
-    return _object(_native.load(_source(scene)))
+        return _object(json.dumps(plain(scene, "")))
+    return _object(_native.load(source(scene)))
 
 
 def certify(scene: Scene, *, format: str = "f64") -> dict[str, Any]:
@@ -84,7 +106,7 @@ def certify(scene: Scene, *, format: str = "f64") -> dict[str, Any]:
     ``margin`` the damping in N m s/rad that the device may lose. ``format`` is the number format that rounds
     the servo's coefficients: f64 (not rounded), f32, or 32-bit fixed point such as i8f24.
     """
-    return _object(_native.certify(_source(scene), format))
+    return _object(_native.certify(source(scene), format))
 
 
 def certify_many(scenes: Iterable[Scene], *, format: str = "f64") -> list[dict[str, Any]]:
@@ -96,7 +118,7 @@ def certify_many(scenes: Iterable[Scene], *, format: str = "f64") -> list[dict[s
     sources = []
     for scene in scenes:
         try:
-            sources.append(_source(scene))
+            sources.append(source(scene))
             results.append(None)
         except SceneError as error:
             results.append({"error": str(error)})
@@ -111,7 +133,7 @@ def simulate(scene: Scene, *, method: str = "exact", substeps: int = 1) -> Motio
     in every method. A motion that grows beyond the range of numbers ends before it does, with a
     RuntimeWarning.
     """
-    found = _native.simulate(_source(scene), method, substeps)
+    found = _native.simulate(source(scene), method, substeps)
     if found["overflow"] is not None:
         warnings.warn(found["overflow"], RuntimeWarning, stacklevel=2)
     position = np.frombuffer(found["position"])
@@ -135,7 +157,7 @@ def stability(scene: Scene, *, method: str = "exact", substeps: int = 1) -> dict
     ``stable_stiffness`` of the stable range in N m/rad, None where there is none. This is about one hand; the
     certificate is about all passive hands.
     """
-    return _object(_native.stability(_source(scene), method, substeps))
+    return _object(_native.stability(source(scene), method, substeps))
 
 
 def index(scene: Scene, *, coupled: bool = False, format: str = "f64") -> tuple[float, float] | None:
@@ -145,7 +167,7 @@ def index(scene: Scene, *, coupled: bool = False, format: str = "f64") -> tuple[
     ``coupled`` that of E', behind what the coupling has beyond the standard one (``alpha_coupled``). None if
     there is none.
     """
-    return _native.index(_source(scene), coupled, format)
+    return _native.index(source(scene), coupled, format)
 
 
 def response(
@@ -164,7 +186,7 @@ def response(
     value is infinite or not a number.
     """
     angles = np.asarray(theta, dtype=np.float64)
-    parts = _native.response(_source(scene), angles.tobytes(), of, from_velocity, format)
+    parts = _native.response(source(scene), angles.tobytes(), of, from_velocity, format)
     return np.frombuffer(parts, np.complex128).reshape(angles.shape)
 
 
@@ -179,7 +201,7 @@ def stability_map(scene: Scene, stiffness: ArrayLike, damping: ArrayLike) -> NDA
     for name, axis in (("stiffness", columns), ("damping", rows)):
         if axis.ndim != 1:
             raise SceneError(f"`{name}` has {axis.ndim} dimensions; it must have one")
-    codes = _native.stability_map(_source(scene), columns.tobytes(), rows.tobytes())
+    codes = _native.stability_map(source(scene), columns.tobytes(), rows.tobytes())
     return np.frombuffer(codes, np.uint8).reshape(rows.size, columns.size)
 
 
@@ -187,35 +209,3 @@ def _object(text: str) -> dict[str, Any]:
     """Read an answer."""
     answer: dict[str, Any] = json.loads(text)
     return answer
-
-
-def _source(scene: Scene) -> tuple[str, str]:
-    """Name the form of a scene, and give its text."""
-    if isinstance(scene, Mapping):
-        return "dictionary", json.dumps(_plain(scene, ""))
-    if isinstance(scene, os.PathLike):
-        return "path", os.fspath(scene)
-    if not isinstance(scene, str):
-        kind = type(scene).__name__
-        raise SceneError(f"the scene is a {kind}; it must be a dictionary, a path or a text")
-    is_text = "\n" in scene or scene.lstrip().startswith("{")
-    return "text" if is_text else "path", scene
-
-
-def _plain(value: Any, key: str) -> Any:
-    """Turn NumPy's numbers and arrays into what JSON has."""
-    if isinstance(value, Mapping):
-        prefix = f"{key}." if key else ""
-        return {str(name): _plain(inner, f"{prefix}{name}") for name, inner in value.items()}
-    if isinstance(value, (np.ndarray, np.generic)):
-        value = value.tolist()
-    if isinstance(value, (list, tuple)):
-        return [_plain(inner, f"{key}[{place}]") for place, inner in enumerate(value)]
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    if isinstance(value, float) and not math.isfinite(value):
-        raise SceneError(f"`{key}` = {value} is out of bounds; it must be a finite number")
-    if value is None or isinstance(value, (bool, int, float, str)):
-        return value
-    kind = type(value).__name__
-    raise SceneError(f"`{key}` is a {kind}; it must be a number, a text, a list or a table")

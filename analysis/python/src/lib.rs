@@ -6,6 +6,7 @@
 //! signal now and then, so that Ctrl-C ends them.
 
 mod arrays;
+mod board;
 mod certificate;
 mod integration;
 mod map;
@@ -22,6 +23,8 @@ mod _native {
     use pyo3::prelude::*;
 
     #[pymodule_export]
+    use crate::board::{Connection, Simulated};
+    #[pymodule_export]
     use crate::certificate::{certify, certify_many, index};
     #[pymodule_export]
     use crate::map::stability_map;
@@ -37,6 +40,8 @@ mod _native {
     #[pymodule_init]
     fn words(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("METHODS", crate::integration::names())?;
+        module.add("STATES", crate::board::states())?;
+        module.add("LIMITS", crate::board::limits())?;
         module.add("REGIONS", crate::map::names())?;
         module.add("TICK_STATUSES", crate::motion::tick_statuses())
     }

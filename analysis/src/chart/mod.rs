@@ -7,6 +7,7 @@ pub mod bode;
 pub mod cell_polygons;
 pub mod data;
 pub mod detents;
+pub mod device;
 mod error;
 pub mod failures;
 mod frame;

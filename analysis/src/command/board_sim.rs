@@ -12,7 +12,7 @@ use super::rebuild_with_scene;
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::seconds;
 use super::virtual_board_build::VirtualBoardBuild;
-use crate::board_sim::{DrivingBoard, Pacing, SimulatedBoard};
+use crate::board_sim::{self, DrivingBoard, Pacing, SimulatedBoard};
 use crate::hand::HandTrajectory;
 use crate::link::Address;
 use crate::lockstep::SimulatedDevice;
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     while !board.has_ended() && !is_over() {
         thread::sleep(POLL_INTERVAL);
     }
-    board.end()?;
+    board.end().map_err(|end| CommandError::Failed(end))?;
     Ok(CommandStatus::Success)
 }
 
@@ -86,7 +86,7 @@ fn listening(
         DrivingBoard::Dac { board: built.boot()?, plant, count: None }
     };
     let period = scene.timing.period;
-    Ok(SimulatedBoard::from_virtual_board(board, address, Pacing::RealTime, period))
+    Ok(board_sim::listen(board, address, period))
 }
 
 /// The error if there is no simulated board of this name, which may be a scene file.

@@ -20,8 +20,9 @@ pub struct FileProgram {
     source: String,
     pub text: String,
     is_certified: bool,
+    is_magnetic: bool,
     /// The current loop of the board's own bridge that makes its torques; none where a DAC does.
-    pub bridge: Option<(&'static CurrentLoop, Transducers)>,
+    pub bridge: Option<(Box<CurrentLoop>, Transducers)>,
 }
 
 impl FileProgram {
@@ -39,10 +40,9 @@ impl FileProgram {
             file.motor.map(|_| file.on_bridge(&transducers)).transpose().map_err(failed)?;
         let text = program::program(file, &transducers, bridge.as_ref(), source).map_err(failed)?;
         let is_certified = file.scene.certify().is_ok();
-        // It lives as long as that of a program of the examples, which is a constant.
-        let leaked = |current_loop| &*Box::leak(Box::new(current_loop));
-        let bridge = bridge.map(|bridge| (leaked(bridge.current_loop), transducers));
-        Ok(Self { source: source.to_owned(), text, is_certified, bridge })
+        let bridge = bridge.map(|bridge| (Box::new(bridge.current_loop), transducers));
+        let (source, is_magnetic) = (source.to_owned(), file.chip.is_some());
+        Ok(Self { source, text, is_certified, is_magnetic, bridge })
     }
 
     /// A program of the examples with the device of a file in place of the paddle.
@@ -51,7 +51,8 @@ impl FileProgram {
         let scene = Program::find(name).map(|program| program.scene);
         let is_certified =
             scene.is_none_or(|scene| Scene { device: file.device, ..scene }.certify().is_ok());
-        Ok(Self { source: name.to_owned(), text, is_certified, bridge: None })
+        let source = name.to_owned();
+        Ok(Self { source, text, is_certified, is_magnetic: false, bridge: None })
     }
 
     /// What makes its torques.
@@ -68,7 +69,8 @@ impl FileProgram {
     ) -> Result<toolchain::Program, CommandError> {
         let file = toolchain.write_scene(self.name(), &self.text)?;
         let built = building(&self.source, || {
-            toolchain.build_written(&file, board.map(|board| (board, self.output())), format)
+            let board = board.map(|board| (board, self.output()));
+            toolchain.build_written(&file, board, format, self.is_magnetic)
         });
         built.map_err(|why| CommandError::FileNotBuilt {
             file: self.source.clone(),

@@ -202,7 +202,7 @@ impl Command {
             // It would only be asked for its device.
             Self::Flash(arguments) if !arguments.example_device => Some(&arguments.scene),
             Self::BoardSim(arguments) => Some(&arguments.scene),
-            Self::Advise(arguments) if arguments.format.is_some() => Some(&arguments.scene),
+            Self::Advise(arguments) if arguments.format.is_some() => arguments.scene.as_deref(),
             _ => None,
         }
     }

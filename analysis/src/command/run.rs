@@ -25,6 +25,7 @@ use crate::compare_run::{Backend, Input, RunError, RunOutcome, run_with_backend}
 use crate::controller::{Controller, controller};
 use crate::counts_csv;
 use crate::device::Energy;
+use crate::disturbance::Disturbance;
 use crate::file::SceneFile;
 use crate::hand::HandTrajectory;
 use crate::lockstep::{Difference, Run, SimulatedDevice};
@@ -121,6 +122,8 @@ struct RunSetup {
     scene: Scene,
     transducers: Transducers,
     trajectory: HandTrajectory,
+    /// Friction and cogging of the simulated motor.
+    disturbance: Disturbance,
     controller: Box<dyn Controller>,
     program: RunProgram,
 }
@@ -198,7 +201,7 @@ fn ran(
     ticks: usize,
     progress: impl FnMut(),
 ) -> Result<RunOutcome, CommandError> {
-    let RunSetup { scene, transducers, trajectory, .. } = setup;
+    let RunSetup { scene, transducers, trajectory, disturbance, .. } = setup;
     let controller = setup.controller.as_mut();
     if let Built::Virtual(flashed) = built
         && let Some((board, current_loop)) = flashed.boot_bridge()?
@@ -210,7 +213,7 @@ fn ran(
             None => {
                 let hand = trajectory.clone();
                 let shaft = HandHeldShaft::new(scene, hand, transducers, current_loop)?;
-                ShaftInput::Hand(Box::new(shaft))
+                ShaftInput::Hand(Box::new(shaft.with_disturbance(*disturbance)))
             }
         };
         let outcome = run_on_bridge(input, controller, board, scene, ticks, progress);
@@ -219,7 +222,8 @@ fn ran(
     let input = match counts {
         Some(counts) => Input::Recording(counts),
         None => {
-            Input::Hand(Box::new(SimulatedDevice::new(scene, trajectory.clone(), transducers)?))
+            let device = SimulatedDevice::new(scene, trajectory.clone(), transducers)?;
+            Input::Hand(Box::new(device.with_disturbance(*disturbance)))
         }
     };
     let backend = built.backend(scene.timing.period);
@@ -254,6 +258,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
         scene: program.scene,
         transducers,
         trajectory: (program.trajectory)(),
+        disturbance: Disturbance::default(),
         controller: program.controller(format, &transducers)?,
         program: RunProgram::Named(program),
     })
@@ -273,30 +278,27 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
         NumberFormat::F32 => controller::<_, f32>(&certified, &transducers)?,
         NumberFormat::Fixed => controller::<_, fixed::types::I8F24>(&certified, &transducers)?,
     };
-    let on_bridge = program.as_ref().is_some_and(|program| program.bridge.is_some())
-        && matches!(arguments.target, Target::Board(_));
-    for note in unused(&file, arguments.replay.is_some(), on_bridge) {
+    for note in unused(&file, arguments.replay.is_some()) {
         writeln!(io::stderr(), "note: {note}")?;
     }
     let (report, trajectory) = (judge_file(&file, Format::F64), hand_trajectory(&file));
+    let disturbance = file.disturbance();
     let (name, scene) = (file.name, file.scene);
     let program = RunProgram::OfFile(program);
-    Ok(RunSetup { name, report, scene, transducers, trajectory, controller, program })
+    Ok(RunSetup { name, report, scene, transducers, trajectory, disturbance, controller, program })
 }
 
 /// The parts of a scene file that a run does not use, as text: the servo runs on a rigid device in a hand's
 /// trajectory, with the currents of a bridge's motor, or on recorded counts.
-fn unused(file: &SceneFile, is_replay: bool, on_bridge: bool) -> Vec<String> {
+fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
     let mut notes = Vec::new();
     if is_replay {
         if file.hand.is_some() {
             notes.push("[human] is not used: the counts are those of the recording".to_owned());
         }
-    } else if !(file.chain.is_rigid() && (on_bridge || file.scene.latency.is_none())) {
+    } else if !file.chain.is_rigid() {
         let rigid = "the device runs as one rigid body, with all of its inertia and damping";
-        notes.push(format!(
-            "{rigid}, without delay and lags; `haptic simulate` includes its masses and these"
-        ));
+        notes.push(format!("{rigid}; `haptic simulate` includes its masses"));
     }
     if file.simulation.is_some() {
         let instead = if is_replay {
@@ -307,7 +309,7 @@ fn unused(file: &SceneFile, is_replay: bool, on_bridge: bool) -> Vec<String> {
         notes.push(format!("[simulation] is not used: {instead}; `haptic simulate` uses it"));
     }
     let encoder = file.scene.latency.encoder;
-    let misreads = !encoder.is_ideal() || encoder.steps() > 1.0;
+    let misreads = is_replay && (!encoder.is_ideal() || encoder.steps() > 1.0);
     for (table, is_there) in [("host", file.host.is_some()), ("encoder", misreads)] {
         if is_there {
             notes.push(format!("[{table}] is not used; `haptic simulate` uses it"));

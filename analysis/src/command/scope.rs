@@ -14,9 +14,8 @@ use signal_hook::consts::SIGHUP;
 
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::seconds;
-use crate::link::{Address, Link};
+use crate::link::{Address, BoardPoller, Link};
 use crate::scope::control::Action;
-use crate::scope::poller::BoardPoller;
 use crate::scope::record::Recorder;
 use crate::scope::screen::Screen;
 use crate::scope::{Scope, tui};
@@ -50,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     // A pipe or a file gets rows.
     let to_output = arguments.csv.as_deref().map_or(!is_screen, |path| path == Path::new("-"));
     let link = Link::open(&arguments.port)?;
-    let every = arguments.every.unwrap_or_else(|| stream_every(link.board().period));
+    let every = arguments.every.unwrap_or_else(|| stream_every(link.board().units.period));
     let rows: Option<Box<dyn Write>> = match &arguments.csv {
         _ if to_output => Some(Box::new(io::stdout())),
         Some(path) => Some(Box::new(create(path)?)),

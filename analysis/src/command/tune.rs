@@ -5,15 +5,15 @@ use std::thread;
 use std::time::Duration;
 
 use clap::Args;
+use haptic_model::board::Report;
 use haptic_servo::certificate::Parameter;
 use haptic_servo::servo_loop::State;
 use haptic_servo::wire::message::{ActiveParameters, Changes, FaultCode, Status};
-use serde::Serialize;
 
 use super::shared_arguments::{JsonOption, json};
 use super::status::{CommandError, CommandStatus};
 use crate::link::change::{change, collect};
-use crate::link::{self, Address, Link};
+use crate::link::{self, Address, Link, Request};
 use crate::scope::{Power, formatting, modes};
 
 #[derive(Debug, Args)]
@@ -47,34 +47,6 @@ pub struct Arguments {
 /// Time between two polls for the end of an alignment.
 const POLL: Duration = Duration::from_millis(200);
 
-#[derive(Serialize)]
-struct Report<'a> {
-    program: &'a str,
-    refused: Option<&'a str>,
-    sets: u32,
-    margin: Option<f64>,
-    /// The longest time in s for which a change reduces the torque.
-    longest_gap: f64,
-    parameters: serde_json::Map<String, serde_json::Value>,
-    state: &'static str,
-    fault: Option<String>,
-    remembered: Option<String>,
-    /// The cause of the board's last reset, in one word.
-    reset: &'static str,
-    /// Whether the option bytes let the chip run at a supply that is too low.
-    low_brown_out: bool,
-    missed: u32,
-    worst_slack: Option<f64>,
-    energy: f64,
-    worst_deficit: f64,
-    dropped: u32,
-    thinned: u32,
-    discarded: u32,
-    stack_left: Option<u32>,
-    /// Measurements of the power stage, if the board drives the motor itself.
-    power: Option<Power>,
-}
-
 /// Sends the request and prints the active parameters. A refusal is a negative verdict.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let changes = collect(&arguments.changes)?;
@@ -87,11 +59,11 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     };
     let (running, status) = (link.parameters()?, link.status()?);
     if arguments.answer.json {
-        json(io::stdout(), &report(&link, refused, &running, &status))?;
+        json(io::stdout(), &Report::of(link.board(), refused, &running, &status))?;
     } else {
         print(&link, refused, &running, &status)?;
         if refused.is_none() && swaps {
-            writeln!(io::stdout(), "{}", formatting::gap(link.board()))?;
+            writeln!(io::stdout(), "{}", formatting::gap(&link.board().units))?;
         }
     }
     Ok(if refused.is_none() { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
@@ -121,7 +93,7 @@ fn request(
 
 /// Aligns the motor, and waits for the end.
 fn align(link: &mut Link) -> Result<link::RequestResult, CommandError> {
-    let outcome = link.align()?;
+    let outcome = link.request(Request::Align)?;
     if outcome != link::RequestResult::Done {
         return Ok(outcome);
     }
@@ -141,15 +113,16 @@ fn print(
     running: &ActiveParameters,
     status: &Status,
 ) -> Result<(), CommandError> {
-    let board = link.board();
+    let board = &link.board().units;
     if let Some(sentence) = refused {
         writeln!(io::stderr(), "{sentence}")?;
     }
-    let mut lines = vec![format!("{} on {}: {}", link.program(), link.address(), status.state)];
+    let mut lines =
+        vec![format!("{} on {}: {}", &link.board().program, link.address(), status.state)];
     lines.extend(status.fault.map(|fault| format!("stopped: {fault}")));
-    lines.extend(link.previous_fault().as_ref().map(formatting::previous_fault));
+    lines.extend(link.board().previous_fault.as_ref().map(formatting::previous_fault));
     lines.extend([formatting::reset(status), formatting::numbers(running)]);
-    lines.extend(modes::modes(link.program(), running));
+    lines.extend(modes::modes(&link.board().program, running));
     lines.push(formatting::reserves(running, status, board, None));
     lines.push(formatting::energy(status, board));
     if let Some(power) = status.power.map(Power::from) {
@@ -159,38 +132,4 @@ fn print(
     lines.push(formatting::losses(status, link.discarded()));
     writeln!(io::stdout(), "{}", lines.join("\n"))?;
     Ok(())
-}
-
-fn report<'a>(
-    link: &'a Link,
-    refused: Option<&'a str>,
-    running: &ActiveParameters,
-    status: &Status,
-) -> Report<'a> {
-    let board = link.board();
-    let named = |(parameter, value): &(Parameter, f64)| {
-        (formatting::name(*parameter).to_owned(), (*value).into())
-    };
-    Report {
-        program: link.program(),
-        refused,
-        sets: running.sets,
-        margin: running.margin,
-        longest_gap: board.longest_gap,
-        parameters: running.values.iter().map(named).collect(),
-        state: status.state.as_str(),
-        fault: status.fault.map(|fault| fault.to_string()),
-        remembered: link.previous_fault().as_ref().map(formatting::previous_fault),
-        reset: status.reset.as_str(),
-        low_brown_out: status.low_brown_out,
-        missed: status.missed,
-        worst_slack: formatting::worst_slack(status, board),
-        energy: status.energy as f64 * board.energy_step,
-        worst_deficit: status.worst_deficit as f64 * board.energy_step,
-        dropped: status.dropped,
-        thinned: status.thinned,
-        discarded: status.discarded.total(),
-        stack_left: status.stack_left,
-        power: status.power.map(Power::from),
-    }
 }

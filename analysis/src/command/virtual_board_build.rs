@@ -20,7 +20,7 @@ pub struct VirtualBoardBuild {
     board: BoardModel,
     elf: PathBuf,
     /// The current loop of the board's own bridge, with the encoder and the motor behind it.
-    bridge: Option<(&'static CurrentLoop, Transducers)>,
+    bridge: Option<(Box<CurrentLoop>, Transducers)>,
 }
 
 impl VirtualBoardBuild {
@@ -38,7 +38,7 @@ impl VirtualBoardBuild {
             let elf = toolchain.build_for(board, output, &[name], format)?.swap_remove(0).path;
             Ok((elf, toolchain.build_virtual_board()?))
         })?;
-        let bridge = program.bridge.as_ref().map(|bridge| (bridge, program.transducers));
+        let bridge = program.bridge.map(|bridge| (Box::new(bridge), program.transducers));
         Ok(Self { executable, board, elf, bridge })
     }
 
@@ -51,7 +51,7 @@ impl VirtualBoardBuild {
         let toolchain = set_up(Tools::CompilerAndVirtualBoard)?;
         let elf = program.build(&toolchain, Some(board), format)?.path;
         let executable = building("the virtual board", || toolchain.build_virtual_board())?;
-        Ok(Self { executable, board, elf, bridge: program.bridge })
+        Ok(Self { executable, board, elf, bridge: program.bridge.clone() })
     }
 
     /// Boots a board whose program drives a DAC.
@@ -60,13 +60,11 @@ impl VirtualBoardBuild {
     }
 
     /// Boots the board with a motor, if its program drives the board's own bridge.
-    pub fn boot_bridge(
-        &self,
-    ) -> Result<Option<(BridgeBoard, &'static CurrentLoop)>, VirtualBoardError> {
-        let Some((current_loop, transducers)) = self.bridge else { return Ok(None) };
+    pub fn boot_bridge(&self) -> Result<Option<(BridgeBoard, &CurrentLoop)>, VirtualBoardError> {
+        let Some((current_loop, transducers)) = &self.bridge else { return Ok(None) };
         let executable = &self.executable;
         let board =
-            BridgeBoard::boot(executable, self.board, &self.elf, current_loop, transducers)?;
+            BridgeBoard::boot(executable, self.board, &self.elf, current_loop, *transducers)?;
         Ok(Some((board, current_loop)))
     }
 

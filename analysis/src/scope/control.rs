@@ -1,9 +1,7 @@
 //! Commands to the board that the scope has keys for.
 
-pub use haptic_model::board::request::{Reply, Request};
-
 use super::keys::Key;
-use crate::link::change;
+use crate::link::{Request, change};
 
 /// The action of a key.
 #[derive(Clone, Debug, PartialEq)]

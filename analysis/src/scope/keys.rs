@@ -159,8 +159,9 @@ impl KeyReader {
 
 #[cfg(test)]
 mod tests {
-    use super::super::control::{Action, Control, Request};
+    use super::super::control::{Action, Control};
     use super::*;
+    use crate::link::Request;
 
     /// Keys and reports of xterm, VTE, rxvt, kitty, the Linux console, a VT52 and an 8-bit terminal, where ␛, ␠,
     /// ␇, ␍ and ␡ are control characters, and every other character is one byte.

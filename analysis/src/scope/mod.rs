@@ -4,7 +4,6 @@ mod canvas;
 pub mod control;
 pub mod keys;
 pub(crate) mod modes;
-pub mod poller;
 pub(crate) mod record;
 pub(crate) mod screen;
 #[cfg(test)]
@@ -12,14 +11,14 @@ mod tests;
 pub(crate) mod tui;
 
 use haptic_servo::wire::Discarded;
-use haptic_servo::wire::message::{ActiveParameters, BoardUnits, PreviousFault, Status};
+use haptic_servo::wire::message::{ActiveParameters, Status};
 
 pub use haptic_model::board::{Power, formatting, history, sample};
 
 use self::control::Control;
 use self::history::History;
-use self::poller::Event;
 use self::sample::{Sample, Scale};
+use crate::link::{Connected, Event};
 
 /// The state of a board.
 #[derive(Clone, Debug)]
@@ -27,7 +26,8 @@ pub struct Scope {
     /// Its address.
     pub address: String,
     /// Its own description.
-    pub connected: Option<ConnectedBoard>,
+    pub connected: Option<Connected>,
+    scale: Option<Scale>,
     /// Why there is no link now.
     pub lost: Option<String>,
     /// Its last status, and the frames that the host could not read.
@@ -40,18 +40,6 @@ pub struct Scope {
     pub control: Control,
 }
 
-/// The board that is connected.
-#[derive(Clone, Debug)]
-pub struct ConnectedBoard {
-    /// Name of its program.
-    pub program: String,
-    /// The units of its numbers.
-    pub board: BoardUnits,
-    /// The fault that stopped it before its last start.
-    pub previous_fault: Option<PreviousFault>,
-    scale: Scale,
-}
-
 impl Scope {
     /// Nothing is known yet of the board there; `window` seconds are kept.
     pub fn new(address: String, window: f64) -> Self {
@@ -60,6 +48,7 @@ impl Scope {
         Self {
             address,
             connected: None,
+            scale: None,
             lost: None,
             status: None,
             parameters: None,
@@ -75,22 +64,23 @@ impl Scope {
         mut each: impl FnMut(&Sample) -> Result<(), E>,
     ) -> Result<(), E> {
         match event {
-            Event::Connected { program, board, previous_fault } => {
-                let scale = Scale::new(board);
-                self.connected = Some(ConnectedBoard { program, board, previous_fault, scale });
+            Event::Connected(connected) => {
+                self.scale = Some(Scale::new(connected.units));
+                self.connected = Some(connected);
                 self.lost = None;
                 self.history.clear();
             }
             Event::Ticks(frames) => {
-                let Some(connected) = &mut self.connected else { return Ok(()) };
+                let Some(scale) = &mut self.scale else { return Ok(()) };
                 for frame in &frames {
-                    let sample = connected.scale.sample(frame);
+                    let sample = scale.sample(frame);
                     each(&sample)?;
                     self.history.push(sample);
                 }
             }
             Event::Status(status, discarded) => self.status = Some((status, discarded)),
             Event::ActiveParameters(parameters) => self.parameters = Some(parameters),
+            Event::Description(_) | Event::Host(_) => {}
             Event::Reply(request, reply) => self.control.message = Some(reply.line(&request)),
             Event::Lost(why) => self.lost = Some(why),
         }

@@ -9,9 +9,9 @@ use haptic_servo::wire::Discarded;
 use haptic_servo::wire::message::{ActiveParameters, BoardUnits, Changes, PreviousFault, Status};
 
 use super::history::History;
-use super::poller::Event;
 use super::sample::{Sample, Scale};
 use super::{Scope, tui};
+use crate::link::{Connected, Event};
 
 const BOARD: BoardUnits = BoardUnits {
     period: 0.001,
@@ -56,7 +56,9 @@ fn connected() -> Scope {
     let fault = Fault::EncoderJump { counts: 900, largest: 100 }.into();
     let previous_fault = Some(PreviousFault { fault, tick: 77, count: 0 });
     let program = "damper_wall".to_owned();
-    take(&mut scope, Event::Connected { program, board: BOARD, previous_fault });
+    let budget = None;
+    let connected = Connected { program, units: BOARD, previous_fault, budget };
+    take(&mut scope, Event::Connected(connected));
     let values = Changes::from_slice(&[(Parameter::Stiffness, 22.0)]).unwrap();
     take(
         &mut scope,

@@ -105,10 +105,10 @@ fn facts_of(scope: &Scope) -> Vec<Line> {
         return Vec::new();
     };
     let slack = scope.history.last().map(|last| last.slack);
-    let energy = formatting::energy(&status, &connected.board);
+    let energy = formatting::energy(&status, &connected.units);
     let mut lines = vec![
         plain(formatting::numbers(parameters)),
-        plain(formatting::reserves(parameters, &status, &connected.board, slack)),
+        plain(formatting::reserves(parameters, &status, &connected.units, slack)),
         plain(format!("{energy}   {}", formatting::limits(&scope.history))),
     ];
     lines.extend(status.power.map(|reading| plain(Power::from(reading).to_string())));

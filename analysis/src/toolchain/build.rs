@@ -206,15 +206,19 @@ impl Toolchain {
     }
 
     /// Builds the program in a file of [`write_scene`](Self::write_scene): for a board as if to be flashed,
-    /// or for the emulated board with its log.
+    /// or for the emulated board with its log. A magnetic encoder is read by the board alone.
     pub fn build_written(
         &self,
         file: &Path,
         board: Option<(BoardModel, TorqueOutput)>,
         format: NumberFormat,
+        is_magnetic: bool,
     ) -> Result<Program, BuildError> {
         let [features, suffix] = match board {
-            Some((board, output)) => board_variant(board, output)?,
+            Some((board, output)) => {
+                let [features, suffix] = board_variant(board, output)?;
+                [features + if is_magnetic { ",magnetic" } else { "" }, suffix]
+            }
             None => ["board-qemu,log".to_owned(), String::new()],
         };
         let name = file.file_stem().map(|name| name.to_string_lossy()).unwrap_or_default();

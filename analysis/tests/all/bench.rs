@@ -9,6 +9,7 @@ fn text<'f>(figure: &'f Value, key: &str) -> &'f str {
 }
 
 #[test]
+#[ignore = "measures for long"]
 fn a_figure_has_a_ratio_if_its_peer_was_in_the_run() {
     let output = program(&["bench", "--host", "--quick", "--json"]).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{output:?}");

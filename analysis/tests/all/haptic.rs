@@ -95,6 +95,7 @@ fn a_batch_answers_before_its_input_ends() {
 
 /// The size is that of the flashed board, and not of the smallest.
 #[test]
+#[ignore = "builds for minutes"]
 fn flash_says_how_much_the_board_has() {
     let arguments = ["flash", "damper_wall", "--board", "nucleo-g474re", "--build-only"];
     let built = haptic(&arguments, b"");

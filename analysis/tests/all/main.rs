@@ -14,7 +14,6 @@ mod knob_modes;
 mod own_scene;
 mod pictures;
 mod profiles;
-mod python_client;
 mod readme;
 mod reference;
 mod refused;

@@ -89,6 +89,7 @@ fn commands_of_the_guides_answer_what_the_guides_show() {
 }
 
 #[test]
+#[ignore = "builds for minutes"]
 fn what_is_flashed_does_on_a_virtual_board_what_the_guide_shows() {
     play("docs/first-hour.md", &["knob.toml", "wall.toml"], &["stiffest", "board"]);
 }

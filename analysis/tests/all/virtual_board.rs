@@ -70,6 +70,7 @@ fn tuned(board: &BoardProcess, arguments: &[&str]) -> (Option<i32>, Value) {
 
 /// Over the serial port that the drivers have set up, judged by the certificate in the flash.
 #[test]
+#[ignore = "builds for minutes"]
 fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
     let board = BoardProcess::start("damper_wall", &["--board", "nucleo-g474re"]);
     let (status, running) = tuned(&board, &[]);

@@ -2,7 +2,7 @@
 //! wire may do to them.
 
 use std::collections::HashMap;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader};
 use std::num::NonZeroU32;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -10,13 +10,12 @@ use std::time::{Duration, Instant};
 use crate::common::board::{BoardProcess, Codes, Rig};
 use crate::common::{answer, complaint, haptic, program};
 use analysis::board_sim::Pacing;
-use analysis::link::{Link, RequestResult};
+use analysis::link::{BoardPoller, Event, Reply, Request, RequestResult};
 use analysis::lockstep::PlantIo;
 use analysis::program::{Program, damper_wall};
 use analysis::scope::Scope;
-use analysis::scope::control::{Action, Reply, Request};
+use analysis::scope::control::Action;
 use analysis::scope::keys::Key;
-use analysis::scope::poller::{BoardPoller, Event};
 use haptic_servo::certificate::Parameter;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -60,22 +59,6 @@ fn code(stiffness: f64) -> f64 {
     let angle = f64::from(DEPTH) * std::f64::consts::TAU / transducers.counts_per_turn;
     let torque = (angle / (1.0 / stiffness + 1.0 / 44.0)).min(1.0);
     2048.0 - torque * 1791.0 / transducers.full_scale_torque
-}
-
-#[test]
-fn somebody_who_is_no_board_is_told_from_one() {
-    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
-    let port = format!("tcp://{}", listener.local_addr().unwrap());
-    let mute = std::thread::spawn(move || {
-        let (mut stream, _) = listener.accept().unwrap();
-        stream.write_all(b"220 mail.example.org ESMTP\r\n").unwrap();
-        let mut rest = Vec::new();
-        stream.read_to_end(&mut rest).unwrap();
-        rest
-    });
-    let error = Link::open(&port.parse().unwrap()).err().unwrap().to_string();
-    assert!(error.contains("no board answers on tcp://127.0.0.1"), "{error}");
-    assert!(mute.join().unwrap().len() > 20, "it was asked more than once");
 }
 
 /// The motor follows what `tune` says.

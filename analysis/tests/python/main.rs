@@ -25,6 +25,9 @@ use self::picture::Picture;
 /// The tests of `agree.py`, each a process.
 const AGREE: [&str; 5] = ["certify", "simulate", "index", "stability_map", "refusals"];
 
+/// The tests of `board.py`, each a process.
+const BOARD: [&str; 5] = ["tunes", "records", "is_no_board", "is_lost", "streams"];
+
 /// The packages for the build of the package, and for its example.
 const FROM_PYPI: [&str; 3] = ["maturin>=1.9,<2", "numpy", "matplotlib"];
 
@@ -38,6 +41,11 @@ fn main() -> ExitCode {
     for test in AGREE {
         tests.push((test, Box::new(move || agrees(test))));
     }
+    for test in BOARD {
+        tests
+            .push((test, Box::new(move || drop(alone("analysis/tests/python/board.py", &[test])))));
+    }
+    tests.push(("the_example_tunes_a_board", Box::new(the_example_tunes_a_board)));
     tests.push(("the_example_draws_its_map", Box::new(the_example_draws_its_map)));
     tests
         .push(("peers_are_measured_in_the_same_run", Box::new(peers_are_measured_in_the_same_run)));
@@ -76,19 +84,33 @@ fn python(folder: &Path, file: &str, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
+/// The same in an empty folder.
+fn alone(file: &str, arguments: &[&str]) -> String {
+    python(tempfile::tempdir().unwrap().path(), file, arguments)
+}
+
 fn agrees(test: &str) {
-    let folder = tempfile::tempdir().unwrap();
-    let program = env!("CARGO_BIN_EXE_haptic");
-    python(folder.path(), "analysis/tests/python/agree.py", &[program, test]);
+    alone("analysis/tests/python/agree.py", &[env!("CARGO_BIN_EXE_haptic"), test]);
+}
+
+/// It prints the text that the guide shows.
+fn the_example_tunes_a_board() {
+    assert_eq!(alone("analysis/python/examples/board.py", &[]), shown("board"));
+}
+
+/// The text that the guide shows under this mark.
+fn shown(mark: &str) -> String {
+    let guide = common::read(root().join("docs/python.md"));
+    let (_, shown) =
+        guide.split_once(&format!("<!-- {mark} -->\n```text\n")).expect("the guide shows it");
+    shown.split_once("```").unwrap().0.to_owned()
 }
 
 /// It also prints the text that the guide shows.
 fn the_example_draws_its_map() {
     let folder = tempfile::tempdir().unwrap();
     let printed = python(folder.path(), "analysis/python/examples/map.py", &["map.png"]);
-    let guide = common::read(root().join("docs/python.md"));
-    let (_, shown) = guide.split_once("<!-- map -->\n```text\n").expect("the guide shows it");
-    assert_eq!(printed, shown.split_once("```").unwrap().0);
+    assert_eq!(printed, shown("map"));
     let picture = std::fs::read(folder.path().join("map.png")).unwrap();
     let Picture { size: [width, height], pixels, .. } = Picture::read(Cursor::new(picture), "");
     let certified = pixels.iter().filter(|pixel| **pixel == [0x3f, 0x7f, 0xb5]).count();

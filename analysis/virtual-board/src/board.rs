@@ -2,20 +2,26 @@
 
 mod bus;
 
-use crate::chip::{BREAKS, CONVERSION_INTERRUPT, Chip, LOCK_UP_BREAKS, TICK_INTERRUPT, TORQUE};
+use crate::chip::{
+    BREAKS, CONVERSION_INTERRUPT, Chip, LOCK_UP_BREAKS, RECEIVED, SPI_PINS, TICK_INTERRUPT,
+    TIM6_UPDATE, TORQUE, TRANSFER_INTERRUPT, WANTED,
+};
 use crate::core::System;
 use crate::core::exceptions::FIRST_INTERRUPT;
 use crate::device::{Device, FixedDevice};
 use crate::encoder_index::EncoderIndex;
 use crate::error::{AccessError, NotModelled};
+use crate::magnetic_encoder::MagneticEncoder;
 use crate::meter::Meter;
 use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::clock::{Cause, Clock};
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::{Dac, Trigger};
+use crate::peripheral::dma::{Dma, Move};
 use crate::peripheral::pins::{Level, Pins};
 use crate::peripheral::registers::Registers;
 use crate::peripheral::serial::Serial;
+use crate::peripheral::spi::Spi;
 use crate::peripheral::watchdog::Watchdog;
 use crate::power_stage::{Gates, Outcome, PowerStage, Surroundings};
 
@@ -60,6 +66,14 @@ pub struct VirtualBoard {
     pub encoder: Counter,
     /// The encoder's index, if it has a wired index.
     pub index: Option<EncoderIndex>,
+    /// A magnetic encoder at the SPI, in place of the quadrature encoder.
+    pub magnetic: Option<MagneticEncoder>,
+    /// That SPI.
+    pub spi: Spi,
+    /// What moves its words.
+    pub dma: Dma,
+    /// Whether an update of the pacing timer has made a request that was not served yet.
+    update_requested: bool,
     /// The DAC.
     pub dac: Dac,
     /// The serial port.
@@ -108,6 +122,10 @@ impl VirtualBoard {
             phase_timer: BasicTimer::default(),
             encoder: Counter::new(chip.counter),
             index: None,
+            magnetic: None,
+            spi: Spi::default(),
+            dma: Dma::default(),
+            update_requested: false,
             dac: Dac::new(chip.dac),
             serial: Serial::new(chip.usart),
             power_stage: PowerStage::default(),
@@ -149,6 +167,7 @@ impl VirtualBoard {
             meter: self.meter,
             samples: self.samples,
             index: self.index,
+            magnetic: self.magnetic.take(),
             broken: self.broken,
             events: self.events.take(),
             gates: self.gates.take(),
@@ -197,7 +216,7 @@ impl VirtualBoard {
         let timers = [self.tick_timer.due(), self.phase_timer.due()];
         timers
             .into_iter()
-            .chain([self.serial.due(), self.watchdog.due(), self.power_stage.due()])
+            .chain([self.serial.due(), self.watchdog.due(), self.power_stage.due(), self.spi.due()])
             .flatten()
             .min()
             .unwrap_or(u64::MAX)
@@ -210,11 +229,15 @@ impl VirtualBoard {
         let divider = self.clock.timer_divider();
         if self.tick_timer.advance(now, divider) {
             self.sample();
+            self.update_requested = self.tick_timer.requests() && self.dma.serves(TIM6_UPDATE);
         }
         if self.phase_timer.advance(now, divider) && self.phase_timer.triggers() {
             self.dac.trigger(Trigger::Tim7);
         }
-        self.serial.advance(now, self.clock.bus_divider());
+        let bus_divider = self.clock.bus_divider();
+        self.serial.advance(now, bus_divider);
+        let chip = self.magnetic.as_mut().filter(|_| is_wired(&self.ports, SPI_PINS));
+        self.spi.advance(now, bus_divider, chip);
         self.update_interrupt_lines();
         self.record_pin_events();
         self.watchdog.due().is_some_and(|due| due <= now)
@@ -293,8 +316,26 @@ impl VirtualBoard {
         }
     }
 
+    /// The next move of the DMA, whose memory is the core's.
+    pub(crate) fn next_move(&mut self) -> Option<Move> {
+        let (received, wanted) = (self.spi.requests_taking(), self.spi.requests_word());
+        let update = self.update_requested;
+        let next = self.dma.next(|request| match request {
+            TIM6_UPDATE => update,
+            RECEIVED => received,
+            WANTED => wanted,
+            _ => false,
+        })?;
+        self.update_requested &= next.request != TIM6_UPDATE;
+        Some(next)
+    }
+
     /// Turns the encoder, which counts if the program has configured its pins as wired.
     pub fn turn_encoder(&mut self, counts: i32) {
+        if let Some(magnetic) = &mut self.magnetic {
+            magnetic.turn(counts, self.now);
+            return;
+        }
         let rose = self.index.as_mut().and_then(|index| index.turn(counts));
         if !self.is_wired(self.chip.encoder) {
             return;
@@ -320,14 +361,15 @@ impl VirtualBoard {
     }
 
     /// Whether both pins have this alternate function.
-    fn is_wired(&self, (pins, function): ([(usize, u32); 2], u32)) -> bool {
-        pins.iter().all(|&(port, pin)| self.ports[port].function(pin) == Some(function))
+    fn is_wired(&self, pins: ([(usize, u32); 2], u32)) -> bool {
+        is_wired(&self.ports, pins)
     }
 
     /// Sets the interrupt lines from the units.
     fn update_interrupt_lines(&mut self) {
         let exceptions = &mut self.system.exceptions;
         exceptions.set_line(FIRST_INTERRUPT + TICK_INTERRUPT, self.tick_timer.line());
+        exceptions.set_line(FIRST_INTERRUPT + TRANSFER_INTERRUPT, self.dma.line());
         exceptions.set_line(FIRST_INTERRUPT + self.chip.serial_interrupt, self.serial.line());
         if self.chip.gates.is_some() {
             let line = self.power_stage.conversion_line();
@@ -354,6 +396,14 @@ impl VirtualBoard {
 
     /// Whether an event is due before the next instruction.
     pub(crate) fn wants_attention(&self) -> bool {
-        self.stopped.is_some() || self.bus_error.is_some() || self.system.reset_requested
+        self.stopped.is_some()
+            || self.bus_error.is_some()
+            || self.system.reset_requested
+            || self.spi.requests_word() && self.dma.serves(WANTED)
     }
+}
+
+/// Whether all of some pins have this alternate function.
+fn is_wired<const N: usize>(ports: &[Pins], (pins, function): ([(usize, u32); N], u32)) -> bool {
+    pins.iter().all(|&(port, pin)| ports[port].function(pin) == Some(function))
 }

@@ -31,6 +31,12 @@ pub enum Unit {
     Dac,
     /// The serial port.
     Serial,
+    /// The SPI of a magnetic encoder.
+    Spi,
+    /// DMA1.
+    Dma,
+    /// Its multiplexer.
+    DmaMultiplexer,
     /// The independent watchdog.
     Watchdog,
     /// A unit of the power stage.
@@ -132,6 +138,16 @@ pub struct Chip {
 
 /// TIM6 with the DAC's underrun: the servo's interrupt.
 pub const TICK_INTERRUPT: u16 = 54;
+/// The first channel of DMA1: the end of a magnetic encoder's transfer.
+pub const TRANSFER_INTERRUPT: u16 = 11;
+/// Requests of the DMA: TIM6's update, and SPI2's received word and word to send.
+pub const TIM6_UPDATE: u32 = 8;
+/// The second.
+pub const RECEIVED: u32 = 12;
+/// The third.
+pub const WANTED: u32 = 13;
+/// NSS, SCK, MISO and MOSI of SPI2, PB12 to PB15, and their alternate function.
+pub const SPI_PINS: ([(usize, u32); 4], u32) = ([(1, 12), (1, 13), (1, 14), (1, 15)], 5);
 /// ADC1 and ADC2: the current loop's interrupt.
 pub const CONVERSION_INTERRUPT: u16 = 18;
 /// The pin that the DAC drives: PA4 on both.
@@ -199,9 +215,12 @@ static G4_MAP: &[MapEntry] = &[
     map_entry(0x4000_1000, "TIM6", Unit::TickTimer, 0x58, 0x38, 4),
     map_entry(0x4000_1400, "TIM7", Unit::PhaseTimer, 0x58, 0x38, 5),
     ungated(0x4000_3000, "IWDG", Unit::Watchdog),
+    map_entry(0x4000_3800, "SPI2", Unit::Spi, 0x58, 0x38, 14),
     map_entry(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
     map_entry(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
     map_entry(0x4001_0000, "SYSCFG", Unit::Configuration, 0x60, 0x40, 0),
+    map_entry(0x4002_0000, "DMA1", Unit::Dma, 0x48, 0x28, 0),
+    map_entry(0x4002_0800, "DMAMUX1", Unit::DmaMultiplexer, 0x48, 0x28, 2),
     ungated(0x4002_1000, "RCC", Unit::Clock),
     map_entry(0x4002_2000, "FLASH", Unit::Flash, 0x48, 0x28, 8),
     map_entry(0x4800_0000, "GPIOA", Unit::Pins(0), 0x4C, 0x2C, 0),

@@ -10,7 +10,7 @@
 //! - [`peripheral`], [`core`]: the units, and the core's parts other than its instructions.
 //! - [`power_stage`]: TIM1 and the analogue units, with the circuit around them; [`motor`]: its currents.
 //! - [`device`]: the device at the board; [`bridge_memory`]: the state of a program in its memory.
-//!   [`encoder_index`]: the encoder's third output.
+//!   [`encoder_index`]: the encoder's third output. [`magnetic_encoder`]: chips on an SPI.
 //! - [`meter`]: instructions of a tick.
 //! - [`processor`]: the instructions, which a library executes; `hooks`: its callbacks, and the reasons for its
 //!   stops.
@@ -32,6 +32,7 @@ pub mod image;
 mod it_block;
 mod log;
 pub mod machine;
+pub mod magnetic_encoder;
 pub mod meter;
 pub mod motor;
 pub mod peripheral;

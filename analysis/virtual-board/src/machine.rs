@@ -17,6 +17,7 @@ use crate::hooks::Halt;
 use crate::image::Image;
 use crate::log;
 use crate::peripheral::clock::Cause;
+use crate::peripheral::dma::Move;
 use crate::processor::Processor;
 use crate::rtt;
 
@@ -187,6 +188,7 @@ impl Machine {
         if self.core.board_mut().advance() {
             self.reset(Cause::Watchdog);
         }
+        self.move_words();
         if self.core.board().system.reset_requested {
             self.reset(Cause::Software);
         }
@@ -203,6 +205,22 @@ impl Machine {
             self.fault(FaultStatus::Data, address)?;
         }
         Ok(())
+    }
+
+    /// The moves of the DMA that are requested.
+    fn move_words(&mut self) {
+        while let Some(next) = self.core.board_mut().next_move() {
+            let Move { peripheral, memory, from_memory, .. } = next;
+            if from_memory {
+                let word = self.core.memory(memory, 2).and_then(|bytes| bytes.try_into().ok());
+                let word = word.map_or(0, u16::from_le_bytes);
+                self.core.board_mut().write(peripheral, 2, word.into());
+            } else {
+                let word = self.core.board_mut().read(peripheral, 2) as u16;
+                self.core.set_memory(memory, &word.to_le_bytes());
+            }
+            self.core.board_mut().advance();
+        }
     }
 
     /// Handles a stop of the core.

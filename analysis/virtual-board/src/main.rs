@@ -46,6 +46,7 @@ use virtual_board::bridge_memory::BridgeMemory;
 use virtual_board::chip::Chip;
 use virtual_board::device::{Device, Motion};
 use virtual_board::machine::Machine;
+use virtual_board::magnetic_encoder::MagneticEncoder;
 use virtual_board::meter::InstructionStats;
 
 use host_link::{Drive, HostLink};
@@ -74,6 +75,7 @@ fn run() -> Result<(), Failure> {
     let host = Arc::new(Mutex::new(HostLink::new()));
     let mut machine = if motor.is_empty() {
         let mut machine = Machine::boot(elf.as_ref(), chip, Box::new(DacPlant(host.clone())))?;
+        connect_encoder(&mut machine)?;
         while step(&mut machine, &host)?.is_none() {}
         machine
     } else {
@@ -99,6 +101,19 @@ fn wire(machine: &mut Machine, motor: &[String]) -> Result<BridgeMemory, Failure
     let circuit = &mut board.power_stage.circuit;
     (circuit.motor, circuit.supply) = (Some(motor), supply);
     BridgeMemory::of(machine.image()).ok_or_else(|| "the program does not drive the bridge".into())
+}
+
+/// Connects the magnetic encoder that the program reads, if it reads one, with its zero at the device's.
+fn connect_encoder(machine: &mut Machine) -> Result<(), Failure> {
+    const NAME_BYTES: usize = 8;
+    let Some(setup) = machine.image().symbol("ENCODER_SETUP") else { return Ok(()) };
+    let bytes = machine.core().memory(setup, NAME_BYTES).unwrap_or_default();
+    let name = String::from_utf8_lossy(&bytes);
+    let name = name.trim_end_matches('\0');
+    let chip = MagneticEncoder::find(name, 0);
+    let chip = chip.ok_or_else(|| format!("there is no virtual chip {name:?} for this program"))?;
+    machine.board_mut().magnetic = Some(chip);
+    Ok(())
 }
 
 fn locked(host: &Mutex<HostLink>) -> MutexGuard<'_, HostLink> {

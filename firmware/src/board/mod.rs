@@ -76,7 +76,10 @@ pub type ProgramMode<M = crate::servo::Latched> = M;
 ///   `Options { link: LinkPolicy::Release, ..Options::DEFAULT }`. A servo stays off until the host arms
 ///   it, after every reset; with `Options::DEFAULT.armed_at_power_on("reason")` it also arms itself when
 ///   the supply is switched on, and after no other reset. Without words in the reason, which the board
-///   logs, the program does not compile.
+///   logs, the program does not compile;
+/// - `encoder`: the [`Chip`](crate::magnetic::Chip) of a magnetic absolute encoder, which a board with the feature
+///   `magnetic` reads in place of its quadrature counter: `haptic_servo::magnetic::MT6701`. The scene's age and lag
+///   cover the chip's, or this does not compile.
 ///
 /// All of it together is the program's constant `PROGRAM`. Numbers that no board can run do not compile
 /// either.
@@ -145,6 +148,7 @@ macro_rules! scene_program {
         $(, friction: $friction:expr)?
         $(, rendering: $rendering:expr)?
         $(, options: $options:expr)?
+        $(, encoder: $encoder:expr)?
         $(,)?
     ) => {
         const GIVEN: $crate::certificate::Certified<$crate::scene::Scene<$environment>> =
@@ -183,6 +187,10 @@ macro_rules! scene_program {
             CERTIFIED_AS_IT_RUNS.timing_checked::<$mode>();)?
 
         $crate::bridge_checked!([$($current_loop)?] [$($mode)?] $scene, GIVEN, $transducers);
+
+        // The readings of its chip, where it has one, are those that the certificate covers.
+        $(const _: &$crate::magnetic::Chip =
+            $encoder.checked(&$scene.latency, $scene.timing.period, $transducers.counts_per_turn);)?
 
         /// The current loop of the board's bridge; `None` with a DAC and an external amplifier.
         #[cfg(not(target_os = "none"))]
@@ -225,7 +233,8 @@ macro_rules! scene_program {
             CERTIFIED_AS_IT_RUNS,
             $crate::chosen_number!($float, $fixed),
             [$($mode)?],
-            [$($current_loop)?]
+            [$($current_loop)?],
+            [$($encoder)?]
         );
     };
     (

@@ -12,6 +12,8 @@ use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
+#[cfg(feature = "magnetic")]
+use super::stm32::magnetic::{Bus, BusPin};
 use super::stm32::output::OutputPin;
 use super::stm32::serial::{self, Serial};
 use super::stm32::{clock_170, quadrature};
@@ -33,6 +35,19 @@ pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
 /// The amplifier: PB10, which is D6 on the Arduino header. It floats while the chip is in reset, so
 /// the amplifier's input needs a pull-down resistor.
 pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOB, pin: 10 };
+
+/// The bus of a magnetic encoder: SPI2 on the morpho header, which the DAC, the LED and the serial port leave free
+/// (alternate functions by DS12288, requests of the DMA by RM0440's table of the multiplexer).
+#[cfg(feature = "magnetic")]
+pub const BUS: Bus = Bus {
+    spi: pac::SPI2,
+    select: BusPin { port: pac::GPIOB, pin: 12, function: 5 },
+    clock: BusPin { port: pac::GPIOB, pin: 13, function: 5 },
+    input: BusPin { port: pac::GPIOB, pin: 14, function: 5 },
+    output: BusPin { port: pac::GPIOB, pin: 15, function: 5 },
+    received: 12,
+    wants: 13,
+};
 
 bind_interrupts!(struct Interrupts {
     USART2 => BufferedInterruptHandler<USART2>;

@@ -97,7 +97,17 @@ impl Assumption {
                 Some(false) => AssumptionStatus::Fails,
             },
             // The others are about the machine.
-            _ => AssumptionStatus::Assumed,
+            Self::DevicePassivity { .. }
+            | Self::Hold { .. }
+            | Self::Latency(_)
+            | Self::Encoder(_)
+            | Self::Endless { .. }
+            | Self::WorstPeriod { .. }
+            | Self::Delay { .. }
+            | Self::StatedModel { .. }
+            | Self::Saturates { .. }
+            | Self::CancelledDamping { .. }
+            | Self::StepsUnbounded => AssumptionStatus::Assumed,
         }
     }
 }

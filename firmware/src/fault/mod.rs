@@ -13,8 +13,9 @@ use core::panic::PanicInfo;
 use codes::fault_table;
 
 use crate::current::PowerFault;
+use crate::magnetic::ReadingError;
 
-// 4 was the code of a fault that no longer exists; from 14 on codes are those of a power stage.
+// 4 was the code of a fault that no longer exists; codes from 14 to 31 are those of a power stage.
 fault_table! {
     /// A fault with its numbers.
     Fault {
@@ -60,10 +61,20 @@ fault_table! {
     /// A non-maskable interrupt without a cause in the chip's registers.
     13 "non-maskable" NonMaskable => (
         "a non-maskable interrupt came, and the chip does not report its cause: arm again"),
+    /// More readings of a magnetic encoder in a row failed than the scene allows, or it has stopped: the number of the
+    /// last one's [error](ReadingError), and how many may fail.
+    32 "encoder-reading" EncoderReading { error: u32, allowed: u32 } => (
+        "the readings of the encoder failed more than {allowed} times in a row, the last because {}: check its wires, \
+         its supply and its magnet, then reset the board", reason(error)),
     others:
     /// A fault of the board's bridge, or of its motor.
     Power(fault: PowerFault) => (""),
     }
+}
+
+/// The reason of a failed reading by its number.
+fn reason(error: u32) -> &'static str {
+    ReadingError::ALL.get(error as usize).map_or("of an unknown error", |error| error.as_str())
 }
 
 impl Fault {

@@ -275,6 +275,11 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
         self.position.low()
     }
 
+    /// Begins at a reading of an absolute encoder, before the first tick.
+    pub(crate) const fn begin_at(&mut self, raw: RawCount) {
+        self.position.follow(raw);
+    }
+
     /// Counts from the position to the position of the next reading.
     pub(crate) fn step_to(&self, raw: RawCount) -> i32 {
         let mut next = self.position;

@@ -157,10 +157,7 @@ impl NormalizedScene {
             timing.delay = TimeRange::exactly(delay);
         }
         let filters = Lags { sensor: timing.sensor.most, ..Lags::default() };
-        let half = match transducers.counter {
-            CounterWidth::Bits16 => f64::from(1_u32 << 15),
-            CounterWidth::Bits32 => f64::from(1_u32 << 31),
-        };
+        let half = 0.5 * transducers.counter.counts();
         let worst = scene.timing.worst_period.unwrap_or(scene.timing.period);
         let periods = worst / scene.timing.period;
         let cos = |c: f64| c.clamp(-1.0, 1.0).acos();

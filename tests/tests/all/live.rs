@@ -138,6 +138,7 @@ fn every_code_is_that_of_the_sets_that_were_taken() {
 /// Each mode of a knob, under a hand that turns it to and fro through a third of a turn: no code is farther from the
 /// code before than a fade and the hand account for.
 #[test]
+#[ignore = "builds for minutes"]
 fn every_mode_is_selected_while_the_knob_turns() {
     // Through all of them, back, and to a mode that does not exist.
     let modes = (1..KNOB_MODES.len()).chain((0..KNOB_MODES.len()).rev()).chain([11]);

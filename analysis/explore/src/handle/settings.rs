@@ -8,7 +8,7 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     pub scene: String,
-    /// Encoder counts per turn; default: those of the scene.
+    /// Counts per turn of a quadrature encoder in place of the scene's; default: the scene's own encoder.
     pub counts_per_turn: Option<f64>,
     pub hand: Hand,
     /// Whether only a certified scene has torque.

@@ -6,7 +6,7 @@ use haptic_model::device::{Energy, HandSetpoint};
 use haptic_model::simulation::device_in_hand::DeviceInHand;
 use haptic_servo::dac::DacCode;
 use haptic_servo::environment::Wall;
-use haptic_servo::scene::Scene;
+use haptic_servo::scene::{EncoderReading, Scene};
 use haptic_servo::servo::Transducers;
 use serde::{Deserialize, Serialize};
 
@@ -124,8 +124,13 @@ impl Simulated {
                 "an encoder of {counts} counts a turn; they must be positive and finite"
             ));
         }
-        let mut device = DeviceInHand::new(&file.scene, hand, &transducers)
-            .map_err(|error| error.to_string())?;
+        let mut moved = file.scene;
+        if settings.counts_per_turn.is_some() {
+            moved.latency.encoder = EncoderReading::ideal();
+        }
+        let mut device = DeviceInHand::new(&moved, hand, &transducers)
+            .map_err(|error| error.to_string())?
+            .with_disturbance(file.disturbance());
         if let Some(before) = before {
             let (old, new) = (&before.scene, &file.scene);
             let is_same = old.timing.period == new.timing.period && old.latency == new.latency;

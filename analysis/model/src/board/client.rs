@@ -5,9 +5,11 @@ use std::collections::VecDeque;
 use std::num::NonZeroU32;
 use std::time::Duration;
 
+use haptic_servo::host::HostTorque;
 use haptic_servo::servo::Step;
 use haptic_servo::servo_loop::Frame;
 use haptic_servo::wire::description::Description;
+use haptic_servo::wire::host::{HostReport, HostState};
 use haptic_servo::wire::message::{
     ActiveParameters, BoardUnits, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, PreviousFault,
     Refusal, Status, ToBoard, ToHost,
@@ -19,24 +21,34 @@ use super::OtherProtocol;
 use super::request::{Reply, Request, RequestResult, refusal_in_words};
 use super::timing::{QUERY, REQUEST, SILENCE, STATUS_INTERVAL};
 
+/// A board that has identified itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Connected {
+    /// Name of its program.
+    pub program: String,
+    /// The units of its numbers.
+    pub units: BoardUnits,
+    /// The fault that stopped it before its last start.
+    pub previous_fault: Option<PreviousFault>,
+    /// What a host's torque may do there, if the program takes one.
+    pub budget: Option<HostTorque>,
+}
+
 /// A board's event.
 #[derive(Clone, Debug)]
 pub enum Event {
     /// A board has identified itself.
-    Connected {
-        /// Name of its program.
-        program: String,
-        /// The units of its numbers.
-        board: BoardUnits,
-        /// The fault that stopped it before its last start.
-        previous_fault: Option<PreviousFault>,
-    },
+    Connected(Connected),
     /// Ticks.
     Ticks(Vec<Frame>),
     /// Its status, and the frames that the host could not read.
     Status(Status, Discarded),
     /// The active parameters.
     ActiveParameters(ActiveParameters),
+    /// The running scene.
+    Description(Box<Description>),
+    /// The tick that took a host's torque.
+    Host(HostState),
     /// The result of a request.
     Reply(Request, Reply),
     /// The link is lost, or the board has restarted without its settings: the conversation has to begin again.
@@ -89,6 +101,7 @@ pub struct Client {
 struct Greeting {
     program: Option<String>,
     previous_fault: Option<PreviousFault>,
+    budget: Option<HostTorque>,
     again: Duration,
     end: Duration,
 }
@@ -114,7 +127,7 @@ impl Client {
     /// Greets the board at an address. `id` should not have been used by an earlier client.
     pub fn start(address: String, id: Id, now: Duration) -> Self {
         let (again, end) = (now + QUERY.again, now + QUERY.end);
-        let greeting = Greeting { program: None, previous_fault: None, again, end };
+        let greeting = Greeting { program: None, previous_fault: None, budget: None, again, end };
         Self {
             address,
             decoder: Decoder::new(),
@@ -203,6 +216,12 @@ impl Client {
         self.send_missing();
     }
 
+    /// Ends [`Self::watch`].
+    pub fn unwatch(&mut self) {
+        self.beat = None;
+        self.send(&ToBoard::Stream(None));
+    }
+
     /// Sends a request, one at a time, except that disarming never waits.
     pub fn request(&mut self, request: Request, now: Duration) -> Result<(), Reply> {
         self.check_free(&request)?;
@@ -273,11 +292,13 @@ impl Client {
                 return Err(OtherProtocol { address, program, theirs }.into());
             }
             ToHost::PreviousFault(fault) => greeting.previous_fault = Some(fault),
+            ToHost::Host(HostReport::Budget(budget)) => greeting.budget = Some(budget),
             // The last part of the greeting.
-            ToHost::Board(board) => {
+            ToHost::Board(units) => {
                 if let Some(program) = greeting.program.take() {
-                    let previous_fault = greeting.previous_fault;
-                    self.events.push_back(Event::Connected { program, board, previous_fault });
+                    let Greeting { previous_fault, budget, .. } = *greeting;
+                    let connected = Connected { program, units, previous_fault, budget };
+                    self.events.push_back(Event::Connected(connected));
                     (self.greeting, self.heard) = (None, now);
                 }
             }
@@ -311,14 +332,16 @@ impl Client {
             }
             ToHost::Described(description) => {
                 self.description = Some(description);
+                self.events.push_back(Event::Description(Box::new(description)));
                 self.explain();
             }
             ToHost::Answer { id, outcome } => self.take_answer(id, outcome, now),
+            ToHost::Host(HostReport::State(state)) => self.events.push_back(Event::Host(state)),
             // Replies to a repeated hello.
             ToHost::Welcome { .. }
             | ToHost::PreviousFault(_)
             | ToHost::Board(_)
-            | ToHost::Host(_) => {}
+            | ToHost::Host(HostReport::Budget(_)) => {}
         }
     }
 

@@ -7,9 +7,11 @@ pub mod formatting;
 pub mod history;
 mod other_protocol;
 mod power;
+mod report;
 pub mod request;
 pub mod sample;
 pub mod timing;
 
 pub use other_protocol::OtherProtocol;
 pub use power::Power;
+pub use report::Report;

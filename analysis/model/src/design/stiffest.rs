@@ -8,7 +8,7 @@ use haptic_servo::number::Format;
 use haptic_servo::output_timing::{READ_WITHIN, SHORTEST_PHASE};
 use haptic_servo::parameter::Parameter;
 use haptic_servo::period;
-use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange};
+use haptic_servo::scene::{Coupling, EncoderReading, Latency, Scene, TimeRange};
 
 use super::edge::{Edge, edge, inward};
 use super::{Choice, Judge, Terms, at_period, prepared};
@@ -91,8 +91,8 @@ pub struct Search {
 /// A change of the device or the board, which cannot be made in the scene.
 type Lever = (&'static str, fn(&Search) -> Option<Search>);
 
-const LEVERS: [Lever; 6] = [
-    ("twice the rate of the board", |search| {
+const LEVERS: [Lever; 8] = [
+    (Search::FASTER_BOARD, |search| {
         let shortest_period = 0.5 * search.shortest_period;
         Some(Search { shortest_period, ..search.clone() })
     }),
@@ -101,6 +101,12 @@ const LEVERS: [Lever; 6] = [
     }),
     ("half the lag of the sensor", |search| {
         search.with_latency(|latency| halved(&mut latency.sensor_lag))
+    }),
+    ("half the age of the encoder's readings", |search| {
+        search.with_encoder(|encoder| halved(&mut encoder.age))
+    }),
+    ("half the noise of the encoder", |search| {
+        search.rests.then(|| search.with_encoder(|encoder| halve(&mut encoder.noise)))?
     }),
     ("20 % more damping at the shaft", |search| {
         let mut more = search.clone();
@@ -120,6 +126,12 @@ const LEVERS: [Lever; 6] = [
         Some(punctual)
     }),
 ];
+
+/// Halves a number; whether that changes it.
+fn halve(number: &mut f64) -> bool {
+    *number *= 0.5;
+    *number > 0.0
+}
 
 /// Halves a time; whether that changes it.
 fn halved(time: &mut TimeRange) -> bool {
@@ -144,6 +156,9 @@ const SATURATED: f64 = 100.0;
 const PRECISION: f64 = 1e-5;
 
 impl Search {
+    /// The change of the board's rate.
+    pub const FASTER_BOARD: &'static str = "twice the rate of the board";
+
     /// A search on the device of a scene; `None` without a wall.
     pub fn new(file: &SceneFile, terms: &Terms) -> Option<Self> {
         file.scene.environment.wall()?;
@@ -155,6 +170,11 @@ impl Search {
             steps,
             rests: comes_to_rest(&file.scene, &steps) == Some(true),
         })
+    }
+
+    /// The same search, whether friction prevents a limit cycle or not.
+    pub fn without_rest(&self) -> Self {
+        Self { rests: false, ..self.clone() }
     }
 
     /// The search for the stiffest wall that the stated friction keeps silent at rest; `None` if no friction is
@@ -177,6 +197,12 @@ impl Search {
         Some(Found { best: self.refined(*stiffest), walls })
     }
 
+    /// The stiffest wall at a period in s.
+    pub fn at(&self, period: f64) -> Option<Wall> {
+        let walls = Structure::ALL.iter().filter_map(|&structure| self.wall(structure, period));
+        walls.max_by(|a, b| a.felt.total_cmp(&b.felt))
+    }
+
     /// The number of rates that are tried.
     pub fn rates(&self) -> usize {
         self.periods().len()
@@ -192,9 +218,22 @@ impl Search {
         change(&mut changed.scene.latency).then_some(changed)
     }
 
+    fn with_encoder(&self, change: fn(&mut EncoderReading) -> bool) -> Option<Self> {
+        let mut encoder = *self.scene.latency.encoder;
+        let before = encoder.deviation_of_age();
+        change(&mut encoder).then(|| {
+            let mut changed = self.clone();
+            let latency = &mut changed.scene.latency;
+            latency.count_jitter -= before - encoder.deviation_of_age();
+            // A scene refers to it.
+            latency.encoder = Box::leak(Box::new(encoder));
+            changed
+        })
+    }
+
     /// The tried periods in s, in two digits: from the shortest to the scene's own, or to four times the
     /// shortest. Those of a bridge are filled by whole periods of its modulation.
-    fn periods(&self) -> Vec<f64> {
+    pub fn periods(&self) -> Vec<f64> {
         let own = self.scene.timing.period.max(4.0 * self.shortest_period);
         let steps = ((own / self.shortest_period).ln() / RATE_STEP.ln()).ceil() as i32;
         let step = (own / self.shortest_period).powf(1.0 / f64::from(steps));

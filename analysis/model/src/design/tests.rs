@@ -29,9 +29,11 @@ fn file(scene: Scene) -> SceneFile {
         encoder_step: None,
         full_scale: None,
         friction: None,
+        cogging: None,
         supply: None,
         motor: None,
         shapes: None,
+        chip: None,
     }
 }
 

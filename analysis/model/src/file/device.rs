@@ -6,6 +6,7 @@ use super::faults::{Read, all};
 use super::key::{self, Key};
 use super::section::Section;
 use crate::chain::{Chain, EncoderPlace, Link, MAX_MASSES, Mass};
+use crate::disturbance::Cogging;
 
 /// The purpose of reading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +25,8 @@ pub struct DeviceTable {
     pub device: Device,
     /// Dry friction of the motor's mass in N m.
     pub friction: Option<f64>,
+    /// Cogging of the motor.
+    pub cogging: Option<Cogging>,
     /// The times of amplifier and encoder.
     pub latency: Latency,
 }
@@ -31,6 +34,7 @@ pub struct DeviceTable {
 /// Reads `[device]`.
 pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     let friction = section.optional(&key::DEVICE_FRICTION);
+    let cogging = section.table(&key::COGGING).and_then(|table| table.map(cogging_of).transpose());
     let masses = section.tables(&key::MASS);
     let is_rigid = matches!(masses, Ok(None));
     let chain = match masses {
@@ -49,7 +53,8 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
             .map(|key| section.time(key));
     let updates = section.number(&key::ACTUATOR_UPDATES);
     section.finish();
-    let (friction, chain, declared, encoder) = (friction?, chain?, declared?, encoder?);
+    let (friction, cogging) = (friction?, cogging?);
+    let (chain, declared, encoder) = (chain?, declared?, encoder?);
     let latency = Latency {
         actuator_lag: actuator_lag?,
         sensor_lag: sensor_lag?,
@@ -63,7 +68,14 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     let key = if is_apart { &key::ENCODER } else { &key::DEVICE };
     let passivity = passivity(&section, &chain, purpose, key, declared, is_rigid)?;
     let device = Device { inertia: chain.inertia(), damping: chain.damping(), passivity };
-    Ok(DeviceTable { chain, device, friction, latency })
+    Ok(DeviceTable { chain, device, friction, cogging, latency })
+}
+
+fn cogging_of(mut section: Section<'_>) -> Read<Cogging> {
+    let torque = section.number(&key::COGGING_TORQUE);
+    let count = section.number(&key::COGGING_COUNT);
+    section.finish();
+    Ok(Cogging { torque: torque?, count: count? })
 }
 
 /// A step response of unknown shape cannot stand beside a lag: no bound is known for both.

@@ -2,9 +2,10 @@
 
 use haptic_servo::certificate::is_static_at_port;
 use haptic_servo::latency::LONGEST_DELAY;
+use haptic_servo::magnetic::Chip;
 use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 
-use super::faults::Read;
+use super::faults::{Read, Reported};
 use super::key;
 use super::section::Section;
 
@@ -15,6 +16,8 @@ pub struct EncoderTable {
     lag: TimeRange,
     /// Counts in a turn.
     pub counts_per_turn: Option<f64>,
+    /// The chip that the board reads.
+    pub chip: Option<&'static Chip>,
 }
 
 /// Why an encoder that predicts is refused.
@@ -22,9 +25,15 @@ const PREDICTS: &str = "is true: no certificate exists for an encoder that predi
                         of past positions; of an AS5047 read the angle without it, register 0x3FFE, or set DAECDIS, \
                         of a TLE5012B clear PREDICT, and state the age then";
 
+fn unknown(section: &Section<'_>) -> Reported {
+    let names = Chip::NAMES.join(", ");
+    section.conflict(&key::CHIP, format!("has no driver; there are {names}"))
+}
+
 /// Reads `[encoder]`.
 pub fn encoder(mut section: Section<'_>) -> Read<EncoderTable> {
     let counts_per_turn = section.optional(&key::READING_COUNTS);
+    let chip = section.text(&key::CHIP);
     let [age, lag] = [&key::AGE, &key::READING_LAG].map(|key| section.time(key));
     let predicts = section.boolean(&key::PREDICTION);
     let [window, linearity, noise, hysteresis, dropped] =
@@ -43,10 +52,27 @@ pub fn encoder(mut section: Section<'_>) -> Read<EncoderTable> {
         friction: 0.0,
         dropped: dropped? as u16,
     };
-    Ok(EncoderTable { reading, lag: lag?, counts_per_turn: counts_per_turn? })
+    let (lag, counts_per_turn, chip) = (lag?, counts_per_turn?, chip?);
+    let chip = chip.map(|name| Chip::find(&name).ok_or_else(|| unknown(&section)));
+    Ok(EncoderTable { reading, lag, counts_per_turn, chip: chip.transpose()? })
 }
 
 impl EncoderTable {
+    /// Checks that the scene covers the readings of its chip; returns the counts of the encoder in a turn.
+    pub fn of_chip(
+        &self,
+        top: &Section<'_>,
+        scene: &Scene,
+        counts: Option<f64>,
+    ) -> Read<Option<f64>> {
+        let Some(chip) = self.chip else { return Ok(counts) };
+        let counts_per_turn = counts.unwrap_or(chip.counts_per_turn());
+        let checked = chip.check(&scene.latency, scene.timing.period, counts_per_turn);
+        checked
+            .map_err(|error| top.conflict(&key::CHIP, format!("has no certificate: {error}")))?;
+        Ok(Some(counts_per_turn))
+    }
+
     /// The scene read by this encoder, with the device's friction.
     pub fn read(&self, top: &Section<'_>, scene: Scene, friction: Option<f64>) -> Read<Scene> {
         let latency = self.within(top, &scene)?;

@@ -9,6 +9,7 @@
 
 use std::f64::consts::TAU;
 
+use haptic_servo::magnetic::Chip;
 use haptic_servo::parameter::{Parameter, Range};
 
 use Presence::{Default, Needed, Optional};
@@ -218,6 +219,13 @@ keys! {
     /// Dry (Coulomb) friction at the motor.
     DEVICE_FRICTION = other("device.friction", "N m", NOT_NEGATIVE),
         Optional("not counted on: the verdict does not say whether the device comes to rest"), "0.003";
+    /// Cogging of the motor, for simulation: a torque of `-torque` times the sine of `count` times the angle. The
+    /// certificate needs no number of it, because it takes no energy in a turn.
+    COGGING = other("device.cogging", "", TABLE), Optional("no cogging"), "{ torque = 0.005, count = 84 }";
+    /// Amplitude of the cogging.
+    COGGING_TORQUE = other("device.cogging.torque", "N m", NOT_NEGATIVE), Needed, "0.005";
+    /// Its periods in a turn, mostly the least common multiple of slots and poles: 84 of 12 and 14.
+    COGGING_COUNT = other("device.cogging.count", "", whole(1, 4096)), Needed, "84";
     /// Masses of a chain, in place of inertia and damping: the motor's first, the hand's last.
     MASS = other("device.mass", "", Bound::Other(Form::Tables, "a list of 1 to 10 tables")),
         Optional("one rigid body, of `device.inertia` and `device.damping`"), "";
@@ -261,6 +269,10 @@ keys! {
     /// Counts of the encoder in a turn, in place of `limits.counts_per_turn`.
     READING_COUNTS = other("encoder.counts_per_turn", "counts", POSITIVE),
         Optional("`[limits]` states them"), "16384.0";
+    /// The chip of a magnetic absolute encoder that the board reads, with its angle as the position of the device's
+    /// axis. Its counts need not be stated; the age and the lag must cover the chip's, which docs/encoders.md lists.
+    CHIP = other("encoder.chip", "", Bound::Other(Form::OneOf(&Chip::NAMES), "the name of a chip")),
+        Optional("a quadrature encoder"), "\"mt6701\"";
     /// Age of a reading at the instant of its count: the delay of the chip and the time from its last
     /// conversion. With two numbers it is anywhere between them in each tick.
     AGE = Key { bound: TIME, ..of(Parameter::Age) }, Default(0.0), "[0.0, 1.0e-5]";

@@ -1,6 +1,8 @@
 //! A scene file as a program for boards, as in `firmware/src/bin`.
 
 use haptic_servo::current::{Drive, Motor, Supply};
+use haptic_servo::encoder::CounterWidth;
+use haptic_servo::magnetic::Chip;
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::Device;
 use haptic_servo::servo::Transducers;
@@ -41,6 +43,9 @@ pub fn program(
         ),
         _ => (String::new(), "", ["Transducers"].as_slice()),
     };
+    let encoder = file.chip.map_or_else(String::new, |chip| {
+        format!("    encoder: haptic_servo::magnetic::{},\n", chip.name.to_uppercase())
+    });
     let friction = file.friction.map_or_else(String::new, |it| format!("    friction: {it:?},\n"));
     Ok(format!(
         "//! {}, of {}.\n\
@@ -51,19 +56,20 @@ pub fn program(
          {}\n\
          {driven}{mode}{items}\n\
          haptic_servo::scene_program! {{\n    \
-         scene: SCENE,\n    certified: CERTIFIED,\n    transducers: TRANSDUCERS,\n{option}{current_loop}{friction}}}\n",
+         scene: SCENE,\n    certified: CERTIFIED,\n    transducers: TRANSDUCERS,\n{option}{current_loop}{friction}{encoder}}}\n",
         excerpt(&file.name),
         excerpt(source),
         imports("haptic_servo::servo", servo),
-        constant_of(transducers),
+        constant_of(transducers, file.chip),
     ))
 }
 
 /// The constant of encoder and motor.
-fn constant_of(transducers: &Transducers) -> String {
+fn constant_of(transducers: &Transducers, chip: Option<&Chip>) -> String {
     let Transducers { counts_per_turn, full_scale_torque, largest_speed, .. } = transducers;
+    let counter = chip.map_or(CounterWidth::Bits16, |chip| chip.width);
     let constant = format!(
-        "Transducers {{ counts_per_turn: {counts_per_turn:?}, counter: CounterWidth::Bits16, \
+        "Transducers {{ counts_per_turn: {counts_per_turn:?}, counter: CounterWidth::{counter:?}, \
          full_scale_torque: {full_scale_torque:?}, largest_speed: {largest_speed:?} }}"
     );
     format!(
@@ -110,7 +116,7 @@ pub fn device_module(device: &Device, transducers: &Transducers, source: &str) -
          /// The part that the hand holds: inertia in kg m^2, damping in N m s/rad.\n\
          pub const DEVICE: Device = {device:?};\n\n\
          {}",
-        constant_of(transducers)
+        constant_of(transducers, None)
     );
     let indented = |line: &str| if line.is_empty() { "\n".into() } else { format!("    {line}\n") };
     let items: String = items.lines().map(indented).collect();

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
 use haptic_servo::host::HostTorque;
 use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
+use haptic_servo::magnetic::Chip;
 use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange, Timing};
 
 use super::device::{self, DeviceTable, Purpose};
@@ -19,10 +20,12 @@ use super::profile::{self, ProfileTable, Shapes};
 use super::section::Section;
 use super::simulation::{self, Simulation};
 use super::supply::{FileSupply, supply};
+use super::transducers::counts_per_turn_of;
 use super::tree::Node;
 use super::updates;
 use crate::chain::Chain;
 use crate::device::Hand;
+use crate::disturbance::{Cogging, Disturbance};
 
 /// The contents of a scene file.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +47,8 @@ pub struct SceneFile {
     pub full_scale: Option<f64>,
     /// Dry friction of the device in N m.
     pub friction: Option<f64>,
+    /// Cogging of its motor.
+    pub cogging: Option<Cogging>,
     /// The supply of the bridge that drives the motor.
     pub supply: Option<FileSupply>,
     /// The motor, if a board's own bridge drives it.
@@ -52,6 +57,18 @@ pub struct SceneFile {
     pub host: Option<HostTorque>,
     /// The shapes that the scene's torque profile was sampled from.
     pub shapes: Option<Shapes>,
+    /// The chip of a magnetic encoder that the board reads.
+    pub chip: Option<&'static Chip>,
+}
+
+impl SceneFile {
+    /// Friction and cogging of the device's motor.
+    pub fn disturbance(&self) -> Disturbance {
+        Disturbance {
+            friction: self.friction.unwrap_or(0.0),
+            cogging: self.cogging.unwrap_or_default(),
+        }
+    }
 }
 
 /// Reads the tables of a parsed file.
@@ -99,7 +116,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         }
         EnvironmentTable::Other(environment) => (*environment, None),
     };
-    let DeviceTable { chain, device, friction, latency } = table;
+    let DeviceTable { chain, device, friction, cogging, latency } = table;
     let latency = Latency {
         output_delay: servo.latency.output_delay,
         output_jitter: servo.latency.output_jitter,
@@ -109,7 +126,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let timing = servo.timing;
     check_latency(&top, &timing, &latency, environment.is_late())?;
     let mut scene = Scene { device, timing, coupling, environment, latency, torque_limit };
-    let mut encoder_step = encoder_step;
+    let (mut encoder_step, mut chip) = (encoder_step, None);
     if let Some(reading) = reading {
         scene = reading.read(&top, scene, friction)?;
         if let Some(counts) = reading.counts_per_turn {
@@ -119,6 +136,9 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
             }
             encoder_step = Some(TAU / counts);
         }
+        let counts = encoder_step.map(counts_per_turn_of);
+        encoder_step = reading.of_chip(&top, &scene, counts)?.map(|counts| TAU / counts);
+        chip = reading.chip;
     }
     let (simulation, hand, host, supply, motor) = (simulation?, hand?, host?, supply?, driven?);
     host::check(&top, host.as_ref(), [torque_limit, full_scale], simulation.as_ref())?;
@@ -131,10 +151,12 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         encoder_step,
         full_scale,
         friction,
+        cogging,
         host,
         supply,
         motor,
         shapes,
+        chip,
     })
 }
 

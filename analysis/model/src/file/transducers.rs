@@ -108,7 +108,7 @@ impl SceneFile {
 }
 
 /// Counts in a turn by the angle of one in rad: a whole number, if the angle was rounded from one.
-fn counts_per_turn_of(step: f64) -> f64 {
+pub(super) fn counts_per_turn_of(step: f64) -> f64 {
     const ROUNDED: f64 = 1e-12;
     let counts = TAU / step;
     let whole = counts.round();

@@ -8,6 +8,7 @@ use std::fmt::Write;
 use haptic_servo::current::Bus;
 use haptic_servo::environment::{Coefficients, Environment, Wall};
 use haptic_servo::host::HostTorque;
+use haptic_servo::magnetic::Chip;
 use haptic_servo::parameter::{Parameter, Range};
 use haptic_servo::scene::{Coupling, EncoderReading, Scene, TimeRange};
 
@@ -17,6 +18,7 @@ use super::motor::FileMotor;
 use super::scene::SceneFile;
 use super::supply::FileSupply;
 use crate::chain::{Chain, EncoderPlace};
+use crate::disturbance::Cogging;
 
 /// The text of a scene file in TOML: all keys of the file, and no others.
 pub fn toml(file: &SceneFile) -> String {
@@ -29,13 +31,15 @@ pub fn toml(file: &SceneFile) -> String {
         encoder_step,
         full_scale,
         friction,
+        cogging,
         host,
         supply,
         motor,
         shapes,
+        chip,
     } = file;
     let mut lines = vec![format!("name = {}", quoted(name)), "[device]".to_owned()];
-    device(&mut lines, chain, scene, *friction);
+    device(&mut lines, chain, scene, *friction, *cogging);
     lines.push(format!("[servo]\nperiod = {:?}", scene.timing.period));
     number(&mut lines, "worst_period", scene.timing.worst_period);
     let EncoderReading { age, .. } = *scene.latency.encoder;
@@ -45,7 +49,7 @@ pub fn toml(file: &SceneFile) -> String {
     time(&mut lines, "output_jitter", TimeRange::exactly(scene.latency.output_jitter));
     let jitter = less(scene.latency.count_jitter, scene.latency.encoder.deviation_of_age());
     time(&mut lines, "count_jitter", TimeRange::exactly(jitter));
-    encoder(&mut lines, scene.latency.encoder);
+    encoder(&mut lines, scene.latency.encoder, *chip);
     match scene.coupling {
         Coupling::Rigid => {}
         Coupling::Spring { stiffness } => {
@@ -170,12 +174,13 @@ fn less(sum: f64, part: f64) -> f64 {
 }
 
 /// Writes the encoder's table, if it is not that of a quadrature encoder.
-fn encoder(lines: &mut Vec<String>, reading: &EncoderReading) {
+fn encoder(lines: &mut Vec<String>, reading: &EncoderReading, chip: Option<&Chip>) {
     let EncoderReading { age, window, linearity, noise, hysteresis, dropped, .. } = *reading;
-    if *reading == EncoderReading::IDEAL {
+    if *reading == EncoderReading::IDEAL && chip.is_none() {
         return;
     }
     lines.push("[encoder]".to_owned());
+    lines.extend(chip.map(|chip| format!("chip = {}", quoted(chip.name))));
     time(lines, "age", age);
     let numbers = [
         ("window", window),
@@ -192,7 +197,13 @@ fn encoder(lines: &mut Vec<String>, reading: &EncoderReading) {
 }
 
 /// Writes the passivity only if it was declared and differs from the chain's own.
-fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Option<f64>) {
+fn device(
+    lines: &mut Vec<String>,
+    chain: &Chain,
+    scene: &Scene,
+    friction: Option<f64>,
+    cogging: Option<Cogging>,
+) {
     let own = chain.as_rigid().ok().and_then(|own| own.passivity);
     let declared = scene.device.passivity.filter(|passivity| !passivity.is_nan());
     let passivity = declared.filter(|&declared| Some(declared) != own);
@@ -201,6 +212,9 @@ fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Optio
     }
     number(lines, "passivity", passivity);
     number(lines, "friction", friction);
+    lines.extend(cogging.map(|Cogging { torque, count }| {
+        format!("cogging = {{ torque = {torque:?}, count = {count} }}")
+    }));
     if chain.encoder() == EncoderPlace::Hand {
         lines.push(format!("encoder = {}", quoted(EncoderPlace::Hand.word())));
     }
@@ -301,7 +315,8 @@ mod tests {
         [first, second]
     }
 
-    const RIGID: &str = "inertia = 2.2e-5\ndamping = 0.1\npassivity = 0.07\nfriction = 0.003\n";
+    const RIGID: &str = "inertia = 2.2e-5\ndamping = 0.1\npassivity = 0.07\nfriction = 0.003\n\
+                         cogging = { torque = 0.005, count = 84 }\n";
     const SERVO: &str = "period = 0.001\nworst_period = 0.003\n";
     const SPRING: &str = "[environment]\ntype = \"delayed-spring\"\nstiffness = 0.1\ndelay = 3\n";
     const CHAIN: &str = "[[device.mass]]\ninertia = 1e-5\ndamping = 0.3\n[[device.mass]]\n\

@@ -1,4 +1,7 @@
-//! The simulated device between the DAC's codes and the encoder's counts, held or released.
+//! The simulated device between the DAC's codes and the encoder's counts, held or released: all that is
+//! simulated beside a servo on a board, or in the place of one, moves this.
+
+use std::f64::consts::TAU;
 
 use haptic_servo::dac::DacCode;
 use haptic_servo::scene::Scene;
@@ -6,7 +9,9 @@ use haptic_servo::servo::Transducers;
 
 use super::error::SimulationError;
 use super::held_device::{DeviceState, HeldDevice};
+use super::reading::Reading;
 use crate::device::{Energy, Hand, HandSetpoint, Motion, SimulatedEncoder};
+use crate::disturbance::Disturbance;
 
 /// A device that a hand holds or not. A code acts after the output delay of the scene, and amplifier and sensor
 /// have the lags of the scene: the middle of each range, without jitter.
@@ -14,7 +19,9 @@ use crate::device::{Energy, Hand, HandSetpoint, Motion, SimulatedEncoder};
 pub struct DeviceInHand {
     held: HeldDevice,
     free: HeldDevice,
+    disturbance: Disturbance,
     state: DeviceState,
+    reading: Reading,
     encoder: SimulatedEncoder,
     torque_per_code: f64,
     energy: Energy,
@@ -36,10 +43,19 @@ impl DeviceInHand {
             state: held.at(Motion::default()),
             held,
             free: HeldDevice::of(scene, Hand::default())?,
+            disturbance: Disturbance::default(),
+            reading: Reading::new(scene.latency.encoder, Some(TAU / transducers.counts_per_turn)),
             encoder: SimulatedEncoder::new(transducers.counts_per_turn),
             torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
             energy: Energy::default(),
         })
+    }
+
+    /// The same with friction and cogging of its motor.
+    pub fn with_disturbance(self, disturbance: Disturbance) -> Self {
+        let [held, free] =
+            [self.held, self.free].map(|device| device.with_disturbance(disturbance));
+        Self { held, free, disturbance, ..self }
     }
 
     /// The same in the motion of another device, with its torques in transit if it has the same states.
@@ -56,13 +72,13 @@ impl DeviceInHand {
     /// # Errors
     /// As [`DeviceInHand::new`].
     pub fn change_hand(&mut self, scene: &Scene, hand: Hand) -> Result<(), SimulationError> {
-        self.held = HeldDevice::of(scene, hand)?;
+        self.held = HeldDevice::of(scene, hand)?.with_disturbance(self.disturbance);
         Ok(())
     }
 
-    /// The counter's content.
-    pub fn count(&self) -> i32 {
-        self.encoder.read(self.state.measured())
+    /// The counter's content, as the encoder reads it now.
+    pub fn count(&mut self) -> i32 {
+        self.encoder.read(self.reading.angle(self.state.measured()))
     }
 
     /// The present motion of the device.

@@ -11,6 +11,7 @@ use super::method::Method;
 use super::plant::Plant;
 use super::torque_signal::TorqueSignal;
 use crate::device::Motion;
+use crate::disturbance::{Cogging, Disturbance};
 use crate::file::SceneFile;
 use crate::missed::Missed;
 
@@ -31,6 +32,8 @@ pub struct Experiment {
     pub encoder_step: Option<f64>,
     /// Coulomb friction of the motor's mass in N m.
     pub friction: f64,
+    /// Cogging of the motor.
+    pub cogging: Cogging,
     /// Time in s from a sample to its torque besides the scene's delay, less than the period.
     pub latency: f64,
     /// Ticks in which the servo does not run.
@@ -82,6 +85,7 @@ impl Experiment {
     pub fn at_rest(file: &SceneFile) -> Self {
         Self {
             plant: Plant::of(&file.chain).with_hand(file.hand.unwrap_or_default()),
+            cogging: file.cogging.unwrap_or_default(),
             latency: file.simulation.as_ref().map_or(0.0, |simulation| simulation.latency),
             ..Self::still(&file.scene)
         }
@@ -97,6 +101,7 @@ impl Experiment {
             hand_torque: TorqueSignal::Free,
             encoder_step: None,
             friction: 0.0,
+            cogging: Cogging::default(),
             latency: 0.0,
             missed: Missed::None,
             host: None,
@@ -115,6 +120,11 @@ impl Experiment {
         Err(SimulationError::Overflow { sample: computed, time })
     }
 
+    /// Friction and cogging of the motor.
+    pub fn disturbance(&self) -> Disturbance {
+        Disturbance { friction: self.friction, cogging: self.cogging }
+    }
+
     /// Whether the loop is linear and the same in every tick.
     pub(super) fn is_linear(&self) -> bool {
         let wall = self.scene.environment.wall();
@@ -125,7 +135,7 @@ impl Experiment {
         centred
             && unlimited
             && reads_linearly
-            && self.friction == 0.0
+            && self.disturbance().is_none()
             && self.missed == Missed::None
     }
 

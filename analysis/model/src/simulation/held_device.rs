@@ -7,7 +7,7 @@
 //! `x` angle of the device, `u` motor torque, `p` the hand's set-point; `m`, `b`
 //! of the device, `m_h`, `b_h`, `k_h` of the hand. Over a tick `p` moves steadily, and the commanded
 //! torque changes once: at the beginning, or as much later as the output is delayed. An amplifier may lag
-//! behind the command, and a filter behind the encoder.
+//! behind the command, and a filter behind the encoder. Friction and cogging of the motor may act besides.
 
 use std::collections::VecDeque;
 
@@ -15,10 +15,12 @@ use haptic_servo::scene::{Device, Latency, Scene};
 use nalgebra::{DMatrix, DVector};
 
 use super::discrete_plant::{DiscretePlant, Discretization, Pieces};
+use super::disturbed_plant::{DisturbedPlant, Step, TickInputs};
 use super::error::SimulationError;
 use super::method::{Method, step};
 use super::plant::{Input, POSITION, Plant, VELOCITY};
 use crate::device::{Hand, HandSetpoint, Motion};
+use crate::disturbance::Disturbance;
 
 /// State of the grip, behind the device's own two; those of the lags are behind it.
 const GRIP: usize = 2;
@@ -31,8 +33,11 @@ pub struct HeldDevice {
     device: Device,
     period: f64,
     plant: Plant,
-    /// Whole ticks from a sample to its torque.
-    whole: usize,
+    discretization: Discretization,
+    /// Whether the amplifier lags.
+    lags: bool,
+    /// Friction and cogging, and the plant with them, where there are any.
+    disturbed: Option<(Disturbance, DisturbedPlant)>,
     /// The part of a tick before its new torque, where there is one.
     before: Option<Part>,
     /// The part with its new torque.
@@ -83,7 +88,17 @@ impl HeldDevice {
         let [before, after] = delayed.pieces(&plant);
         let before = (delayed.latency > 0.0).then(|| part(before)).transpose()?;
         let after = part(after)?;
-        Ok(Self { device, period, plant, whole: delayed.whole, before, after })
+        let (discretization, disturbed) = (delayed, None);
+        Ok(Self { device, period, plant, discretization, lags, disturbed, before, after })
+    }
+
+    /// The same with friction and cogging of the motor.
+    pub fn with_disturbance(mut self, disturbance: Disturbance) -> Self {
+        self.disturbed = (!disturbance.is_none()).then(|| {
+            let plant = DisturbedPlant::new(&self.plant, disturbance, &self.discretization, 0.0);
+            (disturbance, plant)
+        });
+        self
     }
 
     /// The state of a device that moves like this, without torque.
@@ -91,7 +106,7 @@ impl HeldDevice {
         DeviceState {
             states: self.plant.state_at(motion.position, motion.velocity),
             measured: self.plant.measured(),
-            torques: VecDeque::from(vec![0.0; self.whole + 1]),
+            torques: VecDeque::from(vec![0.0; self.discretization.whole + 1]),
         }
     }
 
@@ -99,10 +114,15 @@ impl HeldDevice {
     /// returns the work in J that the hand did on the device.
     pub fn step(&self, state: &mut DeviceState, motor: f64, setpoint: HandSetpoint) -> f64 {
         state.torques.push_front(motor);
-        let [old, new] = [self.whole + 1, self.whole].map(|age| state.torques[age]);
+        let whole = self.discretization.whole;
+        let [old, new] = [whole + 1, whole].map(|age| state.torques[age]);
         state.torques.pop_back();
         let speed = (setpoint.to - setpoint.from) / self.period;
         state.states[GRIP] = setpoint.from;
+        if let Some((disturbance, plant)) = &self.disturbed {
+            let inputs = TickInputs { hand: speed, sine: [0.0; 2], motor: [old, new] };
+            return self.disturbed_step(state, disturbance, plant, &inputs);
+        }
         let before = self.before.as_ref().map(|part| (part, old));
         let mut work = 0.0;
         for (part, command) in before.into_iter().chain([(&self.after, new)]).flat_map(each) {
@@ -112,6 +132,33 @@ impl HeldDevice {
             work += self.kinetic(state.motion()) - self.kinetic(start) + spent;
         }
         work
+    }
+
+    /// A tick with friction and cogging; the hand's work is that of steps in which the velocity goes in a
+    /// straight line.
+    fn disturbed_step(
+        &self,
+        state: &mut DeviceState,
+        disturbance: &Disturbance,
+        plant: &DisturbedPlant,
+        inputs: &TickInputs,
+    ) -> f64 {
+        let start = state.motion();
+        let mut disturbed = plant.at(&state.states);
+        let mut spent = 0.0;
+        plant.tick(&mut disturbed, inputs, |&Step { length, from, to, command }| {
+            let [before, after] = [from, to].map(|states| states[VELOCITY]);
+            let square = (before * before + before * after + after * after) / 3.0;
+            let moved = to[POSITION] - from[POSITION];
+            let torque = if self.lags { 0.5 * (from[TORQUE] + to[TORQUE]) } else { command };
+            spent += self.device.damping * square * length + disturbance.friction * moved.abs()
+                - torque * moved;
+        });
+        let n = state.states.len();
+        state.states = disturbed.states().rows(0, n).into_owned();
+        let end = state.motion();
+        let [held, more] = [start, end].map(|it| disturbance.cogging.energy(it.position));
+        self.kinetic(end) - self.kinetic(start) + more - held + spent
     }
 
     fn kinetic(&self, motion: Motion) -> f64 {
@@ -208,6 +255,8 @@ fn integral(plant: &Plant, length: f64, states: [usize; 2]) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    use crate::disturbance::Cogging;
 
     const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
@@ -313,6 +362,51 @@ mod tests {
         let between = Latency { output_delay: between.output_delay, ..latency };
         let refused = HeldDevice::lagging(DEVICE, &between, hand, period).unwrap_err();
         assert!(refused.to_string().contains("between two updates"), "{refused}");
+    }
+
+    /// With next to no friction and cogging a device moves as without, also behind lags and delays; with some
+    /// it stands still where the hand and the motor together are too weak, and a free one gets no work.
+    #[test]
+    fn friction_and_cogging_hold_a_device() {
+        let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 5.0 };
+        let cogging = Cogging { torque: 1e-15, count: 84.0 };
+        let few = Disturbance { friction: 1e-15, cogging };
+        let latency = Latency::delayed(1.25e-3).with_actuator_lag(2e-4);
+        let plain = HeldDevice::lagging(DEVICE, &latency, hand, 1e-3).unwrap();
+        let disturbed = plain.clone().with_disturbance(few);
+        let start = Motion { position: 0.02, velocity: -1.0 };
+        let (mut state, mut same) = (plain.at(start), disturbed.at(start));
+        for torque in [0.3, -0.1, 0.2, 0.05, -0.4, 0.1] {
+            let setpoint = HandSetpoint { from: 0.02, to: 0.03 };
+            let work = plain.step(&mut state, torque, setpoint);
+            let other = disturbed.step(&mut same, torque, setpoint);
+            let [one, two] = [&state, &same].map(DeviceState::motion);
+            assert!((one.position - two.position).abs() < 1e-9, "{one:?} {two:?}");
+            assert!((one.velocity - two.velocity).abs() < 1e-6, "{one:?} {two:?}");
+            // Of the second order in the steps, of which the lag is two.
+            assert!((work - other).abs() < 0.1 * work.abs(), "{work} {other}");
+        }
+        let cogging = Cogging { torque: 0.03, count: 84.0 };
+        let held = plain.with_disturbance(Disturbance { friction: 0.02, cogging });
+        let mut state = held.at(Motion { position: 0.25 * cogging.pitch(), velocity: 0.0 });
+        // The cogging pushes back with its 0.03 N m, more than the friction: the device moves, and sticks.
+        let still = HandSetpoint { from: 0.0, to: 0.0 };
+        for _ in 0..200 {
+            held.step(&mut state, 0.0, still);
+        }
+        let rest = state.motion();
+        assert_eq!(rest.velocity, 0.0);
+        let torque = cogging.at(rest.position) - 5.0 * rest.position;
+        assert!(torque.abs() <= 0.02, "{rest:?} {torque}");
+        let free = HeldDevice::lagging(DEVICE, &Latency::NONE, Hand::default(), 1e-3).unwrap();
+        let free = free.with_disturbance(Disturbance { friction: 0.002, cogging });
+        let mut state = free.at(Motion::default());
+        let mut work = 0.0;
+        for _ in 0..100 {
+            work += free.step(&mut state, 0.04, still);
+        }
+        let given = 0.04 * state.motion().position;
+        assert!(given > 1e-3 && work.abs() < 1e-3 * given, "{work} {given}");
     }
 
     /// A free device behind an amplifier that lags, in closed form; and no hand does no work.

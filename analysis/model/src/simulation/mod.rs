@@ -27,9 +27,9 @@
 pub mod closed_loop;
 pub mod device_in_hand;
 pub mod discrete_plant;
+pub mod disturbed_plant;
 mod error;
 mod experiment;
-pub mod friction;
 pub mod held_device;
 pub mod kernel;
 pub mod method;

@@ -6,9 +6,9 @@ use haptic_servo::torque::LimitReason;
 use nalgebra::DVector;
 
 use super::discrete_plant::DiscretePlant;
+use super::disturbed_plant::{DisturbedPlant, DisturbedState, TickInputs};
 use super::error::SimulationError;
 use super::experiment::{Experiment, Integration};
-use super::friction::FrictionPlant;
 use super::hosted::Hosted;
 use super::kernel::{DEAD, LOOK};
 use super::plant::{POSITION, VELOCITY};
@@ -41,11 +41,19 @@ pub struct Machine {
     torques: VecDeque<f64>,
 }
 
-/// The plant, with Coulomb friction or without.
+/// The plant, with friction and cogging or without.
 #[derive(Debug)]
 enum Body {
     Smooth(Box<Smooth>),
-    FrictionPlant(Box<FrictionPlant>),
+    Disturbed(Box<Disturbed>),
+}
+
+/// A plant with friction and cogging.
+#[derive(Debug)]
+struct Disturbed {
+    plant: DisturbedPlant,
+    period: f64,
+    state: DisturbedState,
 }
 
 /// A plant with one matrix for all ticks.
@@ -127,14 +135,16 @@ impl Machine {
             (&experiment.machine(), experiment.discretization(integration));
         let omega = experiment.hand_torque.omega();
         let state = plant.state_at(experiment.start.position, experiment.start.velocity);
-        let body = if experiment.friction > 0.0 {
-            let friction_plant =
-                FrictionPlant::new(plant, experiment.friction, &discretization, omega, &state);
-            Body::FrictionPlant(Box::new(friction_plant))
+        let disturbance = experiment.disturbance();
+        let period = discretization.period;
+        let body = if !disturbance.is_none() {
+            let plant = DisturbedPlant::new(plant, disturbance, &discretization, omega);
+            let state = plant.at(&state);
+            Body::Disturbed(Box::new(Disturbed { plant, period, state }))
         } else {
             let tick = DiscretePlant::new(plant, &discretization, omega);
             let next = state.clone();
-            Body::Smooth(Box::new(Smooth { tick, period: discretization.period, state, next }))
+            Body::Smooth(Box::new(Smooth { tick, period, state, next }))
         };
         let whole = discretization.whole;
         let torques = VecDeque::from(vec![0.0; whole + 1]);
@@ -145,7 +155,7 @@ impl Machine {
     pub fn state(&self) -> &DVector<f64> {
         match &self.body {
             Body::Smooth(smooth) => &smooth.state,
-            Body::FrictionPlant(friction_plant) => friction_plant.state(),
+            Body::Disturbed(disturbed) => disturbed.state.states(),
         }
     }
 
@@ -161,8 +171,16 @@ impl Machine {
         self.torques.pop_back();
         match &mut self.body {
             Body::Smooth(smooth) => smooth.tick(k, hand_torque, torques),
-            Body::FrictionPlant(friction_plant) => friction_plant.tick(k, hand_torque, torques),
+            Body::Disturbed(disturbed) => disturbed.tick(k, hand_torque, torques),
         }
+    }
+}
+
+impl Disturbed {
+    fn tick(&mut self, k: usize, hand_torque: &TorqueSignal, motor: [f64; 2]) {
+        let sine = hand_torque.sine(k, self.period);
+        let inputs = TickInputs { hand: hand_torque.held(k), sine, motor };
+        self.plant.tick(&mut self.state, &inputs, |_| ());
     }
 }
 

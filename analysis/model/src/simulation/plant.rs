@@ -260,6 +260,11 @@ impl Plant {
         self.measured
     }
 
+    /// The state that is the position of the motor's mass.
+    pub fn motor_position(&self) -> usize {
+        2 * self.motor
+    }
+
     /// The state that is the velocity of the motor's mass.
     pub fn motor_velocity(&self) -> usize {
         2 * self.motor + 1

@@ -4,7 +4,7 @@ use haptic_servo::scene::EncoderReading;
 use haptic_servo::torque::LimitReason;
 
 /// An encoder.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Reading {
     encoder: &'static EncoderReading,
     /// Angle of a count in rad; without it there is neither noise nor hysteresis.
@@ -23,10 +23,20 @@ impl Reading {
     /// The angle in rad that is shown at a position in rad, and the limit if its count is too large for the
     /// servo's 32 bits: the angle then saturates.
     pub fn of(&mut self, position: f64) -> (f64, LimitReason) {
+        let angle = self.angle(position);
+        let Some(step) = self.step else { return (angle, LimitReason::None) };
+        let count = (angle / step).floor();
+        let nearest = count.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
+        let reason = if nearest == count { LimitReason::None } else { LimitReason::Angle };
+        (nearest * step, reason)
+    }
+
+    /// The same angle in rad before it is floored to a count.
+    pub fn angle(&mut self, position: f64) -> f64 {
         let EncoderReading { linearity, noise, hysteresis, .. } = *self.encoder;
         // The steepest error of one period in a turn.
         let angle = if linearity == 0.0 { position } else { position + linearity * position.sin() };
-        let Some(step) = self.step else { return (angle, LimitReason::None) };
+        let Some(step) = self.step else { return angle };
         let angle = match noise {
             0.0 => angle,
             _ => angle + noise * step * (2.0 * self.random.f64() - 1.0),
@@ -34,10 +44,7 @@ impl Reading {
         let half = 0.5 * hysteresis * step;
         let held = self.held.map_or(angle, |held| held.clamp(angle - half, angle + half));
         self.held = Some(held);
-        let count = (held / step).floor();
-        let nearest = count.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
-        let reason = if nearest == count { LimitReason::None } else { LimitReason::Angle };
-        (nearest * step, reason)
+        held
     }
 }
 

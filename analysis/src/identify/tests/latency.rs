@@ -39,6 +39,7 @@ fn many(output: Output, records: u64) -> Vec<Identification> {
 }
 
 #[test]
+#[ignore = "searches for long"]
 fn each_interval_holds_the_truth_in_95_of_100_records() {
     let output = Output { lag: 159e-6, delay: 3e-4 };
     let all = many(output, 100);

@@ -54,16 +54,6 @@ pub fn with_input(program: &mut Command, input: &[u8]) -> Output {
     output
 }
 
-/// The program itself, set up.
-///
-/// # Panics
-/// Where it cannot be installed, with the package to install.
-pub fn tool(name: &str) -> &str {
-    analysis::toolchain::set_up_tool(name)
-        .unwrap_or_else(|error| panic!("this test runs {name}: {error}"));
-    name
-}
-
 /// The JSON object of an answer.
 pub fn answer(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))

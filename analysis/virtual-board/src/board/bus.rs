@@ -1,7 +1,7 @@
 //! The board's bus: the reads and writes of a program, and the errors of accesses.
 
-use super::{BusAccess, VirtualBoard};
-use crate::chip::{MapEntry, Stage, TICK_INTERRUPT, Unit};
+use super::{BusAccess, VirtualBoard, is_wired};
+use crate::chip::{MapEntry, SPI_PINS, Stage, TICK_INTERRUPT, Unit};
 use crate::core::System;
 use crate::core::exceptions::Number;
 use crate::core::system::{SYSTEM, pends};
@@ -10,9 +10,11 @@ use crate::peripheral::Access;
 use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::Dac;
+use crate::peripheral::dma::Dma;
 use crate::peripheral::pins::{self, Level};
 use crate::peripheral::registers::Registers;
 use crate::peripheral::serial::Serial;
+use crate::peripheral::spi::Spi;
 use crate::power_stage::Surroundings;
 
 /// The target of an address, with the offset of a register.
@@ -105,7 +107,8 @@ impl VirtualBoard {
                 Ok(())
             }
             Target::System(offset) => {
-                if pends(offset, value, TICK_INTERRUPT) {
+                // With a bridge. A magnetic encoder's sample has ended at the pacing timer's update.
+                if pends(offset, value, TICK_INTERRUPT) && self.magnetic.is_none() {
                     self.end_sample();
                 }
                 self.system.write(offset, value)
@@ -164,6 +167,9 @@ impl VirtualBoard {
             }
             Unit::Dac => self.dac.read(offset),
             Unit::Serial => self.serial.read(offset),
+            Unit::Spi => self.spi.read(offset),
+            Unit::Dma => self.dma.read(offset),
+            Unit::DmaMultiplexer => self.dma.read_request(offset),
             Unit::Watchdog => self.watchdog.read(offset),
             Unit::Stage(unit) => {
                 self.advance_power_stage();
@@ -222,6 +228,13 @@ impl VirtualBoard {
                 self.dac.write(offset, value)
             }
             Unit::Serial => self.serial.write(offset, value),
+            Unit::Spi => {
+                let bus_divider = self.clock.bus_divider();
+                let chip = self.magnetic.as_mut().filter(|_| is_wired(&self.ports, SPI_PINS));
+                self.spi.write(offset, value, (now, bus_divider), chip)
+            }
+            Unit::Dma => self.dma.write(offset, value),
+            Unit::DmaMultiplexer => self.dma.set_request(offset, value),
             Unit::Watchdog => self.watchdog.write(offset, value, now, self.clock.core()),
             Unit::Stage(unit) => {
                 let Self { power_stage, ports, chip, clock, .. } = self;
@@ -260,6 +273,8 @@ impl VirtualBoard {
             Unit::Encoder => self.encoder = Counter::new(self.chip.counter),
             Unit::Dac => self.dac = Dac::new(self.chip.dac),
             Unit::Serial => self.serial = Serial::new(self.chip.usart),
+            Unit::Spi => self.spi = Spi::default(),
+            Unit::Dma | Unit::DmaMultiplexer => self.dma = Dma::default(),
             Unit::Stage(unit) => self.power_stage.reset_unit(unit),
         }
     }

@@ -19,13 +19,15 @@ const ENABLE: u32 = 1;
 const ONLY_OVERFLOW: u32 = 1 << 2;
 /// CR2: the update is the trigger output.
 const TRIGGER_UPDATE: u32 = 0b010 << 4;
-/// The one bit of DIER, SR and EGR.
+/// The bit of an update in DIER, SR and EGR.
 const UPDATE: u32 = 1;
+/// DIER: the update is a request for the DMA.
+const REQUESTS: u32 = 1 << 8;
 
 const REGISTERS: Table = &[
     (CR1, 0, ENABLE | ONLY_OVERFLOW),
     (CR2, 0, TRIGGER_UPDATE),
-    (DIER, 0, UPDATE),
+    (DIER, 0, UPDATE | REQUESTS),
     (SR, 0, 0),
     (PSC, 0, 0),
     (ARR, 0xFFFF, 0),
@@ -69,7 +71,12 @@ impl BasicTimer {
 
     /// The level of its interrupt line.
     pub fn line(&self) -> bool {
-        self.registers.has(SR, self.registers.get(DIER))
+        self.registers.has(SR, self.registers.get(DIER) & UPDATE)
+    }
+
+    /// Whether its updates are requests for the DMA.
+    pub fn requests(&self) -> bool {
+        self.registers.has(DIER, REQUESTS)
     }
 
     /// Whether its updates are triggers.

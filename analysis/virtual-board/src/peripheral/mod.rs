@@ -7,10 +7,12 @@ pub mod basic_timer;
 pub mod clock;
 pub mod counter;
 pub mod dac;
+pub mod dma;
 pub mod pins;
 pub mod pwm_timer;
 pub mod registers;
 pub mod serial;
+pub mod spi;
 pub mod watchdog;
 
 /// Why an access is not modelled.

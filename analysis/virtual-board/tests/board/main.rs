@@ -11,6 +11,7 @@ mod faults;
 mod harmless;
 mod hosted;
 mod interrupts;
+mod magnetic;
 mod own_board;
 mod phase;
 mod provoked;

@@ -41,8 +41,16 @@ unsafe fn DefaultHandler(number: i16) {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
-    // The emulator has no bridge.
-    ($environment:ty, $program:ident, $certified:ident, $number:ty, [$($mode:ty)?], $bridge:tt) => {
+    // The emulator has no bridge and no chip.
+    (
+        $environment:ty,
+        $program:ident,
+        $certified:ident,
+        $number:ty,
+        [$($mode:ty)?],
+        $bridge:tt,
+        $encoder:tt
+    ) => {
         type ProgramMode = $crate::board::qemu::Mode<$($mode)?>;
 
         /// The scene, with its delay checked.

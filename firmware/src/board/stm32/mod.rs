@@ -13,6 +13,8 @@ pub mod clock_170;
 mod f4;
 #[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
 mod g4;
+#[cfg(feature = "magnetic")]
+pub mod magnetic;
 pub mod output;
 pub mod quadrature;
 pub mod registers;
@@ -20,6 +22,7 @@ mod reset;
 pub mod serial;
 mod start;
 pub(super) mod stop;
+#[cfg(not(feature = "magnetic"))]
 mod sweep;
 
 #[cfg(feature = "feather-stm32f405")]
@@ -37,10 +40,16 @@ pub use super::nucleo_g474re as wiring;
 #[cfg(all(feature = "bridge", not(feature = "b-g431b-esc1")))]
 compile_error!("this board has no bridge: --output bridge is for the b-g431b-esc1");
 
+#[cfg(all(feature = "magnetic", any(feature = "bridge", not(feature = "nucleo-g474re"))))]
+compile_error!(
+    "this board reads no magnetic encoder: a program with one is for the nucleo-g474re and its DAC"
+);
+
 // The logger that carries the bytes to a debug probe; it registers itself.
 use defmt_rtt as _;
 pub use start::{
     HostLink, LinkCell, ServoCell, Statics, Task, init_chip, registers, run, width,
     with_board_counter,
 };
+#[cfg(not(feature = "magnetic"))]
 pub use sweep::{Setup, SweepCell, measure};

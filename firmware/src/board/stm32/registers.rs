@@ -3,8 +3,12 @@
 use embassy_stm32::pac;
 use embassy_stm32::pac::iwdg::vals::Key;
 
+#[cfg(feature = "magnetic")]
+use super::magnetic;
 use super::output::{self, Output, Pace, Setup};
+#[cfg(not(feature = "magnetic"))]
 use super::quadrature::Counter;
+#[cfg(not(feature = "magnetic"))]
 use super::wiring::ENCODER;
 use super::{family, reset};
 use crate::board::fault_memory;
@@ -19,7 +23,7 @@ use crate::output_timing::OutputTiming;
 use crate::period;
 use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
-#[cfg(feature = "bridge")]
+#[cfg(any(feature = "bridge", feature = "magnetic"))]
 use crate::servo_loop::OutputEvent;
 
 /// The registers of the servo's interrupt.
@@ -40,6 +44,8 @@ impl Registers {
 
     /// Starts the timers. The servo's interrupt must be enabled within a period.
     pub fn start(&mut self, timing: OutputTiming) {
+        #[cfg(feature = "magnetic")]
+        magnetic::start();
         self.output.start(&mut self.pace, timing);
     }
 }
@@ -64,6 +70,12 @@ impl Hardware for Registers {
     #[inline(always)]
     fn output_event(&mut self) -> Option<OutputEvent> {
         self.output.event()
+    }
+
+    #[cfg(feature = "magnetic")]
+    #[inline(always)]
+    fn output_event(&mut self) -> Option<OutputEvent> {
+        magnetic::event()
     }
 
     #[cfg(feature = "bridge")]
@@ -102,8 +114,18 @@ impl Hardware for Registers {
 }
 
 impl Startup for Registers {
+    #[cfg(not(feature = "magnetic"))]
     fn zero_encoder(&mut self) {
         ENCODER.zero();
+    }
+
+    /// Its zero is its own.
+    #[cfg(feature = "magnetic")]
+    fn zero_encoder(&mut self) {}
+
+    #[cfg(feature = "magnetic")]
+    fn absolute_count(&mut self) -> Option<RawCount> {
+        Some(output::count())
     }
 
     fn start_watchdog(&mut self) {

@@ -12,8 +12,11 @@ use super::quadrature::Counter;
 use super::registers::Registers;
 use super::serial::Serial;
 use super::stop::stop;
-use super::wiring::{self, ENCODER};
+use super::wiring;
+#[cfg(not(feature = "magnetic"))]
+use super::wiring::ENCODER;
 use super::{family, output};
+#[cfg(not(feature = "magnetic"))]
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::{IsrCell, MailboxCell, endpoints};
 use crate::board::{critical, stack};
@@ -23,7 +26,9 @@ use crate::number::Number;
 use crate::period as periods;
 use crate::rendering::Rendering;
 use crate::reset::ResetCause;
-use crate::servo::{OutputMode, OutputTiming, SupportsTiming, Transducers};
+#[cfg(not(feature = "magnetic"))]
+use crate::servo::Transducers;
+use crate::servo::{OutputMode, OutputTiming, SupportsTiming};
 use crate::servo_loop::{Endpoints, Reason, ServoIsr};
 use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Link, Session};
@@ -48,8 +53,8 @@ pub struct Statics<E: Rendering<N> + 'static, N: Number, M: 'static> {
     pub mailbox: &'static MailboxCell<E, N, M>,
     /// The task's link to the host.
     pub link: &'static LinkCell<E, N, M>,
-    /// The filter of the encoder's inputs.
-    pub filter: InputFilter,
+    /// The encoder's data of the program.
+    pub encoder: EncoderSetup,
     /// The output's data of the program.
     pub output: output::Setup,
 }
@@ -75,11 +80,22 @@ where
     })
 }
 
-/// The program with the counter width of this board instead of its own, or a compile error.
+/// The encoder's data of a program: the filter of its inputs, or its chip.
+#[cfg(not(feature = "magnetic"))]
+pub type EncoderSetup = InputFilter;
+/// The encoder's data of a program.
+#[cfg(feature = "magnetic")]
+pub type EncoderSetup = &'static super::magnetic::Setup;
+
+/// The program with the counter width of this board instead of its own, or a compile error. An absolute encoder has
+/// the width of its chip.
 #[track_caller]
 pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
+    #[cfg(not(feature = "magnetic"))]
     let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
-    Program { transducers, ..program }.checked()
+    #[cfg(not(feature = "magnetic"))]
+    let program = Program { transducers, ..program };
+    program.checked()
 }
 
 /// Everything from reset to the first tick; returns the state of the task below the servo.
@@ -98,7 +114,7 @@ where
     N: Number,
     M: OutputMode,
 {
-    let port = init_chip(statics.filter);
+    let port = init_chip(statics.encoder);
     let mut hardware = registers(statics.output, program.scene.timing.period, M::TIMING);
     let timer_counts = hardware.period();
     let Endpoints { requests, inbox, frames, frame_reader } = endpoints(statics.mailbox);
@@ -162,7 +178,7 @@ fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_becaus
 }
 
 /// Sets up clocks, interrupts and pins; returns the port to the host. The motor is off, and the next torque is zero.
-pub fn init_chip(filter: InputFilter) -> Serial {
+pub fn init_chip(encoder: EncoderSetup) -> Serial {
     let chip = embassy_stm32::init(wiring::clocks());
     family::full_speed();
     // From here on a stopped crystal is a fault and does not stop the core.
@@ -174,7 +190,10 @@ pub fn init_chip(filter: InputFilter) -> Serial {
     interrupt::TIM6_DAC.set_priority(Priority::from(critical::SERVO << 4));
     let port = wiring::connect_pins(chip);
     output::stop();
-    ENCODER.complete(filter);
+    #[cfg(not(feature = "magnetic"))]
+    ENCODER.complete(encoder);
+    #[cfg(feature = "magnetic")]
+    super::magnetic::set_up(encoder);
     port
 }
 
@@ -211,14 +230,22 @@ async fn yield_now() {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
-    ($environment:ty, $program:ident, $certified:ident, $number:ty, [$($mode:ty)?], $bridge:tt) => {
+    (
+        $environment:ty,
+        $program:ident,
+        $certified:ident,
+        $number:ty,
+        [$($mode:ty)?],
+        $bridge:tt,
+        $encoder:tt
+    ) => {
         type ProgramMode = $crate::board::ProgramMode<$($mode)?>;
 
         $crate::board_chip!();
 
         $crate::board_output!($bridge);
 
-        $crate::board_filter!($program.transducers);
+        $crate::board_encoder!($encoder, $program);
 
         /// The scene, whose delay must be that of the board's DAC; otherwise this does not compile.
         const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, ProgramMode> =
@@ -254,7 +281,7 @@ macro_rules! board_program {
                 servo: &ISR_STATE,
                 mailbox: &MAILBOX,
                 link: &LINK,
-                filter: FILTER,
+                encoder: ENCODER,
                 output: OUTPUT,
             };
             $crate::board::stm32::run(name, program, statics, serve)
@@ -273,6 +300,23 @@ macro_rules! board_chip {
         #[unsafe(link_section = ".probe-rs.chip")]
         static PROBE_RS_CHIP: [u8; $crate::board::stm32::wiring::CHIP.len()] =
             *$crate::board::stm32::wiring::CHIP;
+    };
+}
+
+/// The encoder's data of a program whose encoder the board counts; the feature is tested here as above.
+#[cfg(not(feature = "magnetic"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! board_encoder {
+    ([], $program:ident) => {
+        $crate::board_filter!($program.transducers);
+
+        const ENCODER: $crate::board::input_filter::InputFilter = FILTER;
+    };
+    ([$chip:expr], $program:ident) => {
+        compile_error!(
+            "this program reads a magnetic encoder: build it with the feature `magnetic`"
+        );
     };
 }
 

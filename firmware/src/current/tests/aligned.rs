@@ -74,9 +74,9 @@ fn any_wires_and_any_encoder_give_torque_of_the_right_sign() {
 
 #[test]
 fn begins_at_any_angle() {
-    for part in 0..16 {
+    for part in 0..8 {
         let mut rig = rig(WIRES[0], 1.0, Some(HANDLE));
-        rig.angle = f64::from(part) / 16.0 * TAU / 7.0 - 1.0 / 7.0;
+        rig.angle = f64::from(part) / 8.0 * TAU / 7.0 - 1.0 / 7.0;
         rig = rig.measured();
         let phase = align(&mut rig).unwrap();
         let off = phase.offset.wrapping_sub((1.0 / TAU * 2_f64.powi(32)) as u32);
@@ -112,6 +112,7 @@ fn a_blocked_handle_is_refused() {
 
 /// Aligned well, or refused: with friction and cogging of up to all that the current has.
 #[test]
+#[ignore = "searches for long"]
 fn friction_and_cogging_leave_a_good_phase_or_none() {
     let (mut good, mut refused) = (0, 0);
     for friction in [0.0, 5e-3, 2.5e-2] {

@@ -18,6 +18,7 @@ fn is_found(planted: Planted, scenes: u64) -> bool {
 
 /// It ends at the first refutation: of all rules, the rarest shows in the 4155th scene.
 #[test]
+#[ignore = "searches for long"]
 fn the_search_finds_what_every_planted_rule_lets_pass() {
     let all = Planted::ALL.into_iter();
     let missed: Vec<_> = all.filter(|planted| !is_found(*planted, super::SCENES)).collect();

@@ -6,11 +6,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{regex, sources};
 
 /// The crates' sources.
-const CRATES: [&str; 7] = [
+const CRATES: [&str; 8] = [
     "firmware/src",
     "firmware/harness/src",
     "analysis/src",
     "analysis/model/src",
+    "analysis/client/src",
     "analysis/explore/src",
     "analysis/python/src",
     "analysis/virtual-board/src",

@@ -1,12 +1,10 @@
 //! `firmware/PROTOCOL.md` is the protocol: its tables are the types of the messages, its numbers the
-//! constants, and the client in Python has both.
+//! constants.
 
 use haptic_servo::board::BAUD;
 use haptic_servo::excitation::SWEEP_PROTOCOL;
 use haptic_servo::fault::Fault;
 use haptic_servo::parameter::{Parameter, TUNABLE};
-use haptic_servo::servo_loop::State;
-use haptic_servo::torque::LimitReason;
 use haptic_servo::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, MAX_CHANGES, ToBoard};
 use haptic_servo::wire::session::MESSAGES_AHEAD;
 use haptic_servo::wire::sweep::SweepRequest;
@@ -213,31 +211,4 @@ fn the_frames_of_the_examples_are_those_that_are_sent() {
         let hex: Vec<_> = frame.iter().map(|byte| format!("{byte:02x}")).collect();
         assert_eq!(shown, hex.join(" "));
     }
-}
-
-/// What the client shows by name it has from tables of its own.
-#[test]
-fn the_client_in_python_has_the_same_tables() {
-    let client = read("analysis/examples/client.py");
-    // Debug writes a list of words as Python does.
-    let states = format!("{:?}", State::ALL.map(State::as_str));
-    let limits = format!("{:?}", LimitReason::ALL.map(LimitReason::as_str));
-    for line in [
-        format!("\nPROTOCOL = {PROTOCOL}\nBAUD = {BAUD}\n"),
-        format!("\nSTATES = {states}\n"),
-        format!("\nLIMITS = {limits}\n"),
-    ] {
-        assert!(client.contains(&line), "not in the client: {line}");
-    }
-    let dictionary = |name: &str| -> Vec<(u32, String)> {
-        let body = regex(&format!(r"(?s)\n{name} = \{{(.*?)\}}")).captures(&client).unwrap();
-        let entries = regex(r#"(\d+): "([^"]+)""#);
-        let entries = entries.captures_iter(&body[1]);
-        entries.map(|entry| (entry[1].parse().unwrap(), entry[2].to_owned())).collect()
-    };
-    let named = |(code, fault): (u32, Fault)| (code, fault.as_str().to_owned());
-    assert_eq!(dictionary("FAULTS"), faults().into_iter().map(named).collect::<Vec<_>>());
-    let mut tunable = TUNABLE.map(|(name, parameter)| (parameter as u32, name.to_owned()));
-    tunable.sort();
-    assert_eq!(dictionary("PARAMETERS"), tunable);
 }

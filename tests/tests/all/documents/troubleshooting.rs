@@ -14,7 +14,7 @@ const KINDS: [(&str, &str); 9] = [
     ("BuildError", "firmware/src/build_error.rs"),
     ("TuningError", "firmware/src/tuning/error.rs"),
     ("Refusal", "firmware/src/wire/message.rs"),
-    ("LinkError", "analysis/src/link/error.rs"),
+    ("LinkError", "analysis/client/src/error.rs"),
     ("ServeError", "analysis/src/serve/mod.rs"),
     ("PageRefusal", "analysis/src/serve/refusal.rs"),
 ];
@@ -63,7 +63,7 @@ fn every_section_has_a_cause_and_what_to_do() {
 fn the_words_that_are_quoted_are_those_of_the_program() {
     let continued = regex(r"\\\n\s+");
     let mut all = sources("firmware/src");
-    for folder in ["analysis/src/link", "analysis/src/serve", "analysis/model/src/board"] {
+    for folder in ["analysis/client/src", "analysis/src/serve", "analysis/model/src/board"] {
         all.extend(sources(folder));
     }
     let all: Vec<_> = all.values().map(|text| continued.replace_all(text, "")).collect();

@@ -22,8 +22,13 @@ pub use bridge::{Output, Setup, off, power_reading, stop};
 #[cfg(not(feature = "bridge"))]
 pub use dac::{Output, Setup, off, power_reading, stop};
 pub use pace::Pace;
+
+#[cfg(feature = "magnetic")]
+pub use super::magnetic::count;
+#[cfg(not(any(feature = "bridge", feature = "magnetic")))]
+pub use tick_timer::count;
 #[cfg(not(feature = "bridge"))]
-pub use tick_timer::{count, period_began};
+pub use tick_timer::period_began;
 
 use embassy_stm32::pac;
 

@@ -24,9 +24,13 @@ use embassy_stm32::peripherals;
 use embassy_stm32::rcc;
 
 use super::pace::{Pace, now};
+#[cfg(not(feature = "magnetic"))]
 use crate::board::stm32::quadrature::Counter;
-use crate::board::stm32::wiring::{ENCODER, TIMER_CLOCK};
+#[cfg(not(feature = "magnetic"))]
+use crate::board::stm32::wiring::ENCODER;
+use crate::board::stm32::wiring::TIMER_CLOCK;
 use crate::build_error::BuildError;
+#[cfg(not(feature = "magnetic"))]
 use crate::encoder::RawCount;
 use crate::output_timing::OutputTiming;
 use crate::period;
@@ -112,7 +116,11 @@ pub fn prepare(seconds: f64, timing: OutputTiming) -> Result<Pace, BuildError> {
     let period = Period::of(seconds)?;
     rcc::enable_and_reset::<peripherals::TIM6>();
     set_up(TIMER, period);
-    TIMER.dier().write(|w| w.set_uie(true));
+    TIMER.dier().write(|w| {
+        // With a magnetic encoder the update begins its transfer, whose end is the tick.
+        w.set_ude(cfg!(feature = "magnetic"));
+        w.set_uie(cfg!(not(feature = "magnetic")));
+    });
     if let Some(phase) = timing.phase() {
         rcc::enable_and_reset::<peripherals::TIM7>();
         set_up(PHASE_TIMER, period);
@@ -120,9 +128,14 @@ pub fn prepare(seconds: f64, timing: OutputTiming) -> Result<Pace, BuildError> {
         // TIM7_CNT: it overflows `phase` counts after the start, and then once per period.
         PHASE_TIMER.cnt().write(|w| w.set_cnt(behind as u16));
     }
-    // The cast saturates.
-    let in_time = (period.clock * READ_WITHIN) as u32;
-    Ok(Pace::new(period.clock_counts(), period.seconds(), in_time))
+    let counts = period.clock_counts();
+    // The casts saturate. The update itself takes the reading of a magnetic encoder, however late its tick is.
+    let in_time = if cfg!(feature = "magnetic") {
+        counts.get() / 2
+    } else {
+        (period.clock * READ_WITHIN) as u32
+    };
+    Ok(Pace::new(counts, period.seconds(), in_time))
 }
 
 /// Starts the clock before the timer, and the timer of a phase last, so that no torque comes before its phase. The
@@ -137,6 +150,7 @@ pub fn start(pace: &mut Pace, timing: OutputTiming) {
 }
 
 /// The encoder's count.
+#[cfg(not(feature = "magnetic"))]
 #[inline(always)]
 pub fn count() -> RawCount {
     ENCODER.count()
@@ -145,6 +159,8 @@ pub fn count() -> RawCount {
 /// Acknowledges the tick, whose period may count as begun now.
 #[inline(always)]
 pub fn period_began() -> u32 {
+    // Nothing waits for the flag where a transfer paces the ticks.
+    #[cfg(not(feature = "magnetic"))]
     TIMER.sr().write(|w| w.set_uif(false));
     now()
 }

@@ -7,7 +7,7 @@ use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::link::Address;
+use crate::Address;
 
 /// Bytes of one read: as many as a serial port collects in a few milliseconds.
 const BYTES: usize = 256;
@@ -22,7 +22,7 @@ trait Stream: Read + Write + Send {}
 impl<S: Read + Write + Send> Stream for S {}
 
 /// A socket and its client: one at a time, as on a serial line.
-pub(super) struct Listener {
+pub struct Listener {
     socket: Socket,
     client: Option<Box<dyn Stream>>,
     next: Option<(Instant, Box<dyn Stream>)>,
@@ -57,7 +57,7 @@ impl Listener {
     }
 
     /// Sends as many bytes as the stream takes, and returns those received.
-    pub(super) fn carry_bytes(&mut self, outgoing: &mut Vec<u8>) -> Vec<u8> {
+    pub fn carry_bytes(&mut self, outgoing: &mut Vec<u8>) -> Vec<u8> {
         self.reject_other_clients();
         let Some(client) = &mut self.client else {
             // Without a client bytes are lost, as on a serial line.

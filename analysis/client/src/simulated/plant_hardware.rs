@@ -5,7 +5,7 @@ use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::RawCount;
 use haptic_servo::servo::OutputTiming;
 
-use crate::lockstep::PlantIo;
+use super::device::PlantIo;
 
 /// The device with its encoder, its DAC and its timer.
 pub(super) struct PlantHardware {

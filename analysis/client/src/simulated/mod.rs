@@ -1,33 +1,38 @@
-//! A simulated board with a simulated device, behind a socket: a thread with the same
-//! cycle and wire as a real one, or a virtual board with the flashed program.
+//! A simulated board with a simulated device, behind a socket: a thread with the same cycle and wire as a real
+//! board.
 //!
 //! Its time advances by ticks, at the rate of a real board or as fast as possible. No tick is late, unlike on
 //! a real board.
 
+mod device;
 mod listener;
 mod plant_hardware;
-mod virtual_board_server;
 
+use std::error::Error;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use haptic_model::file::SceneFile;
+use haptic_model::hand::HandTrajectory;
+use haptic_model::simulation::SimulationError;
 use haptic_servo::board::sim_hardware::SimHardware;
 use haptic_servo::boot::{self, Program};
+use haptic_servo::environment::Environment;
 use haptic_servo::number::Number;
-use haptic_servo::servo::{OutputMode, Step, SupportsTiming};
-use haptic_servo::servo_loop::{FrameQueue, Mailbox};
+use haptic_servo::servo::{
+    BuildError, Latched, OutputMode, RenderingOptions, Step, SupportsTiming,
+};
+use haptic_servo::servo_loop::{FrameQueue, Mailbox, Options};
 use haptic_servo::tuning::{self, RenderError, Tunable};
 use haptic_servo::wire::{BoardInfo, Session};
 
-use self::listener::Listener;
+pub use self::device::{PlantIo, SimulatedDevice};
+pub use self::listener::Listener;
 use self::plant_hardware::PlantHardware;
-pub use self::virtual_board_server::DrivingBoard;
-use crate::link::Address;
-use crate::lockstep::PlantIo;
-use crate::virtual_board::VirtualBoardError;
+use crate::Address;
 
 /// Timer counts in a period: a 170 MHz timer at 1 kHz.
 const TIMER_COUNTS: u32 = 170_000;
@@ -37,6 +42,10 @@ const FRAMES: usize = 64;
 const FRAMES_AT_A_TIME: usize = 16;
 /// Longest time between two polls of the socket.
 const POLL_INTERVAL: Duration = Duration::from_millis(1);
+/// Duration in s for which the hand of a scene file's board repeats its trajectory: an hour.
+const HAND_DURATION: f64 = 3600.0;
+/// The longest name that a board tells its host, in bytes.
+const LONGEST_NAME: usize = 32;
 
 /// How fast a simulated board's time passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,10 +61,13 @@ pub enum Pacing {
 pub struct SimulatedBoard {
     address: Address,
     ended: Arc<AtomicBool>,
-    thread: Option<JoinHandle<Result<(), SimulatedBoardError>>>,
+    thread: Option<JoinHandle<Result<(), BoardEnd>>>,
 }
 
-/// Why a simulated board has ended before it was asked to.
+/// The reason for which a board has ended before it was asked to.
+pub type BoardEnd = Box<dyn Error + Send + Sync>;
+
+/// Why a program could not start on a simulated board.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the sentences describe the variants")]
 pub enum SimulatedBoardError {
@@ -65,7 +77,11 @@ pub enum SimulatedBoardError {
     #[error("refused by its {}", .0.as_str())]
     Start(Step),
     #[error(transparent)]
-    VirtualBoard(#[from] VirtualBoardError),
+    Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    #[error("cannot listen on {address}: {source}")]
+    Listen { address: Address, source: io::Error },
 }
 
 impl SimulatedBoard {
@@ -84,27 +100,43 @@ impl SimulatedBoard {
     {
         Self::listen(address, move |listener, over| {
             let board = SimHardware::new(PlantHardware::new(plant, M::TIMING), TIMER_COUNTS);
-            serve::<E, N, M>(name, program, board, listener, pacing, over)
+            Ok(serve::<E, N, M>(name, program, board, listener, pacing, over)?)
         })
     }
 
-    /// Serves a virtual board that has been switched on at the address; `period` of its servo in s.
-    pub fn from_virtual_board(
-        board: DrivingBoard,
+    /// Boots a program of a scene file in a simulated hand, and listens there. The sensor and the motor that the
+    /// file does not state are the defaults of a simulation.
+    ///
+    /// # Errors
+    /// No board renders the scene, or the address cannot be listened on.
+    pub fn of_file(
+        file: &SceneFile,
         address: &Address,
         pacing: Pacing,
-        period: f64,
-    ) -> io::Result<Self> {
-        let period = (pacing == Pacing::RealTime).then(|| Duration::from_secs_f64(period));
-        Self::listen(address, move |listener, over| {
-            Ok(virtual_board_server::serve(board, listener, period, over)?)
-        })
+    ) -> Result<Self, SimulatedBoardError> {
+        let transducers = file.transducers(None, None);
+        let (rendering, options) = (RenderingOptions::DEFAULT, Options::DEFAULT);
+        let program = Program { scene: file.scene, transducers, rendering, options };
+        program.check()?;
+        tuning::explain::<_, f32, Latched>(&program.scene, &[], &transducers, &rendering)
+            .map_err(|reason| not_rendered(reason.step(), reason))?;
+        let hand = HandTrajectory::for_environment(&file.scene.environment);
+        let hand = hand.repeated_until(HAND_DURATION);
+        let plant = Box::new(SimulatedDevice::new(&file.scene, hand, &transducers)?);
+        // A board's name is a constant.
+        let name = &file.name[..file.name.floor_char_boundary(LONGEST_NAME)];
+        let name = Box::leak(name.to_owned().into_boxed_str());
+        Self::start::<Environment, f32, Latched>(name, program, plant, address, pacing)
+            .map_err(|source| SimulatedBoardError::Listen { address: address.clone(), source })
     }
 
     /// Listens at an address, and serves what connects there in a thread.
-    fn listen(
+    ///
+    /// # Errors
+    /// The address cannot be listened on.
+    pub fn listen(
         address: &Address,
-        serve: impl FnOnce(Listener, &AtomicBool) -> Result<(), SimulatedBoardError> + Send + 'static,
+        serve: impl FnOnce(Listener, &AtomicBool) -> Result<(), BoardEnd> + Send + 'static,
     ) -> io::Result<Self> {
         let (listener, address) = Listener::bind(address)?;
         let ended = Arc::new(AtomicBool::new(false));
@@ -130,7 +162,7 @@ impl SimulatedBoard {
     ///
     /// # Panics
     /// If its thread has.
-    pub fn end(mut self) -> Result<(), SimulatedBoardError> {
+    pub fn end(mut self) -> Result<(), BoardEnd> {
         self.ended.store(true, Ordering::Relaxed);
         self.thread.take().map_or(Ok(()), |thread| thread.join().expect("the board panicked"))
     }
@@ -155,9 +187,13 @@ where
 {
     let Program { scene, transducers, rendering, .. } = program;
     match tuning::explain::<E, N, M>(scene, &[], transducers, rendering) {
-        Err(reason) => SimulatedBoardError::Render { step, reason: Box::new(reason) },
+        Err(reason) => not_rendered(step, reason),
         Ok(()) => SimulatedBoardError::Start(step),
     }
+}
+
+fn not_rendered(step: Step, reason: RenderError) -> SimulatedBoardError {
+    SimulatedBoardError::Render { step, reason: Box::new(reason) }
 }
 
 /// The program, from boot to the end.

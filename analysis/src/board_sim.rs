@@ -1,13 +1,18 @@
-//! A virtual board with the flashed program and a simulated device, behind a socket.
+//! A board without hardware behind a socket: a thread of the package `haptic-client`, or a virtual board with the
+//! flashed program.
 
 use std::collections::VecDeque;
+use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::listener::Listener;
+pub use haptic_client::simulated::{Pacing, SimulatedBoard, SimulatedBoardError};
+
+use haptic_client::Address;
+use haptic_client::simulated::{Listener, PlantIo};
+
 use crate::bridge_board::BridgeBoard;
-use crate::lockstep::PlantIo;
 use crate::shaft::HandHeldShaft;
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
@@ -67,11 +72,17 @@ impl DrivingBoard {
     }
 }
 
-/// Runs a board's samples in real time with this period, or as fast as possible if `period` is `None`.
-pub(super) fn serve(
+/// Serves a virtual board that has been switched on at the address; `period` of its servo in s.
+pub fn listen(board: DrivingBoard, address: &Address, period: f64) -> io::Result<SimulatedBoard> {
+    let period = Duration::from_secs_f64(period);
+    SimulatedBoard::listen(address, move |listener, over| Ok(serve(board, listener, period, over)?))
+}
+
+/// Runs a board's samples in real time with this period.
+fn serve(
     mut board: DrivingBoard,
     mut listener: Listener,
-    period: Option<Duration>,
+    period: Duration,
     over: &AtomicBool,
 ) -> Result<(), VirtualBoardError> {
     let (mut to_board, mut to_host) = (VecDeque::new(), Vec::new());
@@ -81,10 +92,8 @@ pub(super) fn serve(
         to_host.extend(board.sample(&bytes)?);
         to_host.truncate(WAITING);
         to_board.extend(listener.carry_bytes(&mut to_host));
-        if let Some(period) = period {
-            next += period;
-            thread::sleep(next.saturating_duration_since(Instant::now()));
-        }
+        next += period;
+        thread::sleep(next.saturating_duration_since(Instant::now()));
     }
     board.finish()
 }

@@ -8,12 +8,12 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-pub use haptic_model::board::client::Event;
+use haptic_model::board::client::Event;
+use haptic_model::board::request::{Reply, Request};
 use haptic_model::board::timing::RETRY;
-use haptic_servo::wire::message::ToBoard;
 
-use super::control::{Reply, Request};
-use crate::link::{Link, LinkError, Wire};
+use super::LinkError;
+use super::link::{Link, Wire};
 
 /// Longest time until a request is passed on.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
@@ -108,17 +108,14 @@ impl PollerThread {
     /// Forwards the board's messages until the link is lost, the board has restarted without its settings, or
     /// the end.
     fn poll_board(&self, link: Link) -> Result<(), LinkError> {
-        let (program, board) = (link.program().to_owned(), *link.board());
-        let previous_fault = link.previous_fault();
-        self.send(Event::Connected { program, board, previous_fault });
+        self.send(Event::Connected(link.board().clone()));
         let mut wire = link.into_wire();
-        let now = wire.now();
-        wire.client.watch(self.every, now);
+        wire.watch(self.every);
         let polled = self.poll_until_lost(&mut wire);
         wire.client.give_up();
         self.forward(&mut wire);
         polled?;
-        if self.is_over() { wire.send_last(&ToBoard::Stream(None)) } else { Ok(()) }
+        if self.is_over() { wire.unwatch() } else { Ok(()) }
     }
 
     fn poll_until_lost(&self, wire: &mut Wire) -> Result<(), LinkError> {

@@ -1,0 +1,224 @@
+//! The client with a simulated board, and with ports that are no board.
+
+use std::io::{Read, Write};
+use std::net::TcpListener;
+use std::num::NonZeroU32;
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use haptic_model::file::{Format, parse};
+use haptic_servo::host::HostTorque;
+use haptic_servo::parameter::Parameter;
+use haptic_servo::servo_loop::State;
+use haptic_servo::torque::LimitReason;
+use haptic_servo::wire::host::{HostReport, HostState};
+use haptic_servo::wire::message::{BoardUnits, Changes, LONGEST_TO_BOARD, ToBoard, ToHost};
+use haptic_servo::wire::{CHECKSUM, Decoder, PROTOCOL, encode};
+
+use super::simulated::{Pacing, SimulatedBoard};
+use super::{Address, Link, LinkError, RequestResult, StreamError, StreamTick};
+
+fn loopback() -> Address {
+    Address::Tcp("127.0.0.1:0".to_owned())
+}
+
+/// The board of a scene file with a wall of this stiffness.
+fn board(stiffness: f64) -> Result<SimulatedBoard, String> {
+    let text = format!(
+        r#"
+        name = "wall"
+        device = {{ inertia = 2.2e-5, damping = 0.022 }}
+        servo = {{ period = 0.001 }}
+        coupling = {{ stiffness = 44.0 }}
+        environment = {{ type = "damper-wall", stiffness = {stiffness}, damping = 0.005, delay = 1 }}
+        limits = {{ torque = 1.0 }}"#
+    );
+    let file = parse("wall.toml", Format::Toml, &text).unwrap();
+    SimulatedBoard::of_file(&file, &loopback(), Pacing::RealTime).map_err(|error| error.to_string())
+}
+
+/// Another program at a port, which says `greeting` and returns all that it heard.
+fn other(greeting: Vec<u8>) -> (Address, JoinHandle<Vec<u8>>) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = Address::Tcp(listener.local_addr().unwrap().to_string());
+    let thread = thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        stream.write_all(&greeting).unwrap();
+        let mut heard = Vec::new();
+        stream.read_to_end(&mut heard).unwrap();
+        heard
+    });
+    (address, thread)
+}
+
+#[test]
+fn a_scene_file_runs_on_a_board_that_is_tuned_and_watched() {
+    let board = board(20.0).unwrap();
+    let mut link = Link::open(board.address()).unwrap();
+    let softer = Changes::from_slice(&[(Parameter::Stiffness, 12.5)]).unwrap();
+    assert_eq!(link.set(softer.clone()).unwrap(), RequestResult::Done);
+    assert_eq!(link.arm().unwrap(), RequestResult::Done);
+    let running = link.parameters().unwrap();
+    assert!(running.sets == 1 && running.values.contains(&softer[0]), "{running:?}");
+    assert!(link.description().unwrap().scene.certify().is_ok());
+    let refused = link.set(Changes::from_slice(&[(Parameter::Stiffness, 40.0)]).unwrap()).unwrap();
+    let RequestResult::Refused(why) = refused else { panic!("it was not refused") };
+    assert!(why.contains("it would pass with stiffness <= "), "{why}");
+    let mut ticks = Vec::new();
+    let three = NonZeroU32::new(3).unwrap();
+    link.telemetry(Duration::from_secs(20), three, |sample| {
+        ticks.push(sample.tick);
+        ticks.len() < 100
+    })
+    .unwrap();
+    assert!(ticks.len() == 100 && ticks.windows(2).all(|two| two[1] - two[0] == 3), "{ticks:?}");
+    assert_eq!(link.disarm().unwrap(), RequestResult::Done);
+    assert_eq!(link.status().unwrap().state, State::Disarmed);
+    drop(board);
+    let lost = link.status().unwrap_err();
+    assert!(matches!(lost, LinkError::Lost { .. }), "{lost}");
+}
+
+#[test]
+fn a_scene_that_no_board_renders_does_not_start() {
+    let rejected = board(4e3).unwrap_err();
+    assert!(rejected.starts_with("refused by its certificate: "), "{rejected}");
+}
+
+#[test]
+fn a_port_without_a_board_is_told_from_one() {
+    let nowhere = Link::open(&"unix:/nowhere/board".parse().unwrap()).err().unwrap();
+    assert!(matches!(nowhere, LinkError::Open { .. }), "{nowhere}");
+    let (address, mute) = other(b"220 mail.example.org ESMTP\r\n".to_vec());
+    let error = Link::open(&address).err().unwrap().to_string();
+    assert!(error.contains(&format!("no board answers on {address}")), "{error}");
+    assert!(mute.join().unwrap().len() > 20, "it was asked more than once");
+}
+
+#[test]
+fn a_board_of_another_version_is_not_used() {
+    let mut buffer = [0; 64];
+    let welcome = ToHost::Welcome { protocol: 9999, program: "newer" };
+    let (address, heard) = other(encode(&welcome, &mut buffer).unwrap().to_vec());
+    let error = Link::open(&address).err().unwrap();
+    assert!(matches!(error, LinkError::Protocol(_)), "{error}");
+    assert!(error.to_string().contains("9999"), "{error}");
+    heard.join().unwrap();
+}
+
+/// A board that takes torques, and moves by 0.1 rad in each tick of 1 ms that takes a torque. It is gone after
+/// so many, and returns them.
+fn streamed(ticks: usize) -> (Link, JoinHandle<Vec<f32>>) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = Address::Tcp(listener.local_addr().unwrap().to_string());
+    let thread = thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        let mut decoder = Decoder::<{ LONGEST_TO_BOARD + CHECKSUM }>::new();
+        let mut torques = Vec::new();
+        while torques.len() < ticks {
+            let mut byte = [0];
+            if stream.read_exact(&mut byte).is_err() {
+                break;
+            }
+            for message in
+                decoder.push(byte[0]).iter().flat_map(|asked| answers(asked, &mut torques))
+            {
+                let mut buffer = [0; 128];
+                stream.write_all(encode(&message, &mut buffer).unwrap()).unwrap();
+            }
+        }
+        torques
+    });
+    (Link::open(&address).unwrap(), thread)
+}
+
+fn answers(asked: &ToBoard, torques: &mut Vec<f32>) -> Vec<ToHost<&'static str>> {
+    let units = BoardUnits {
+        period: 0.001,
+        timer_counts: 1000,
+        counts_per_turn: std::f64::consts::TAU * 10.0,
+        full_scale_torque: 2.0,
+        energy_step: 1e-6,
+        longest_gap: 0.036,
+    };
+    let budget =
+        HostTorque { energy: 0.05, power: 0.5, damping: 0.004, torque: 0.5, timeout: 0.05 };
+    match asked {
+        ToBoard::Hello => vec![
+            ToHost::Welcome { protocol: PROTOCOL, program: "hosted" },
+            ToHost::Host(HostReport::Budget(budget)),
+            ToHost::Board(units),
+        ],
+        ToBoard::Torque(command) => {
+            let tick = torques.len() as u32;
+            torques.push(command.torque);
+            vec![ToHost::Host(HostReport::State(HostState {
+                number: command.number,
+                tick: tick.wrapping_sub(3),
+                count: i32::MAX.wrapping_add_unsigned(tick),
+                velocity: 100.0,
+                energy: 0.04,
+                torque: command.torque,
+                refused: 0.0,
+                limit: LimitReason::None,
+                state: State::Running,
+                invalid: 0,
+            }))]
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The times and torques of a stream until 5 ms.
+fn until_5_ms(torque: f64) -> impl FnMut(&StreamTick) -> Result<Option<f64>, StreamError> {
+    move |tick| Ok((tick.time < 4.5e-3).then_some(torque))
+}
+
+#[test]
+fn a_stream_gets_the_motion_and_ends_at_zero() {
+    let (mut link, board) = streamed(usize::MAX);
+    let mut ticks = Vec::new();
+    let mut torque = until_5_ms(0.25);
+    let streamed = link.stream(1000.0, true, |tick| {
+        ticks.push(*tick);
+        torque(tick)
+    });
+    streamed.unwrap();
+    assert_eq!(ticks.len(), 6);
+    for (i, two) in ticks.windows(2).enumerate() {
+        assert!((two[0].time - 0.001 * i as f64).abs() < 1e-12, "{ticks:?}");
+        assert!((two[1].position - two[0].position - 0.1).abs() < 1e-6, "{ticks:?}");
+    }
+    drop(link);
+    assert_eq!(board.join().unwrap(), [0.0, 0.25, 0.25, 0.25, 0.25, 0.25, 0.0]);
+}
+
+#[test]
+fn a_stream_that_fails_switches_its_torque_off() {
+    for wrong in [f64::NAN, f64::INFINITY, 1e300] {
+        let (mut link, board) = streamed(usize::MAX);
+        let wrong_at_2_ms = |tick: &StreamTick| {
+            Ok::<_, StreamError>(Some(if tick.time < 1.5e-3 { 0.1 } else { wrong }))
+        };
+        let error = link.stream(1000.0, false, wrong_at_2_ms).unwrap_err().to_string();
+        assert!(error.contains(&format!("a torque of {wrong} N m at 0.002 s")), "{error}");
+        drop(link);
+        assert_eq!(board.join().unwrap(), [0.0, 0.1, 0.1, 0.0]);
+    }
+}
+
+#[test]
+fn a_stream_without_a_board_or_a_rate_has_a_reason() {
+    let (mut link, board) = streamed(3);
+    let lost = link.stream(1000.0, true, until_5_ms(0.1)).unwrap_err();
+    assert!(matches!(lost, StreamError::Link(LinkError::Lost { .. })), "{lost}");
+    board.join().unwrap();
+    for rate in [0.0, -1.0, f64::NAN, 1001.0] {
+        let error = link.stream(rate, true, until_5_ms(0.1)).unwrap_err().to_string();
+        assert!(error.contains(&format!("{rate} Hz; it must be above 0 and at most")), "{error}");
+    }
+    let board = self::board(20.0).unwrap();
+    let mut link = Link::open(board.address()).unwrap();
+    let error = link.stream(100.0, true, until_5_ms(0.1)).unwrap_err().to_string();
+    assert!(error.contains("the program wall takes no torque from a host"), "{error}");
+}

@@ -1,0 +1,284 @@
+//! `haptic advise device`: what a motor, an encoder, a rate and an amplifier make possible, before they are
+//! bought.
+
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+
+use clap::Args;
+use haptic_servo::certificate::QuantizationBound;
+use haptic_servo::environment::Wall;
+use haptic_servo::number::Format;
+use haptic_servo::scene::{Coupling, Scene};
+use serde::Serialize;
+
+use crate::chart::{self, Data, has_extension};
+use crate::command::shared_arguments::{JsonOption, warned};
+use crate::command::status::{CommandError, CommandStatus};
+use crate::command::value_parsers::positive;
+use crate::design::stiffest::{Search, Wall as StiffestWall};
+use crate::design::{Choice, Judge, Quantity, Terms, largest};
+use crate::file::{self, SceneFile};
+use crate::quantity::{rounded, significant};
+use crate::text_table::table_of;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Device file, with `[encoder]` and `[limits]`, or scene file, of which the environment does not count
+    #[arg(value_name = "FILE")]
+    pub file: String,
+    /// Updates of the torque in a second, for a device file
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
+    pub rate: Option<f64>,
+    /// Write the stiffness over the rate into this chart (.svg), or its numbers (.csv)
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// Stiffness at the handle in N m/rad at a rate; null if no wall is.
+#[derive(Debug, Serialize)]
+struct Point {
+    rate: f64,
+    certified: Option<f64>,
+    silent: Option<f64>,
+}
+
+/// A change of the device, and what it buys.
+#[derive(Debug, Serialize)]
+struct Lever {
+    change: &'static str,
+    /// Of the stiffness that is silent at rest, or else of that which certifies.
+    factor: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Report {
+    name: String,
+    /// In Hz.
+    rate: f64,
+    /// At the handle, in N m/rad; null if no wall certifies.
+    stiffness: Option<f64>,
+    structure: Option<&'static str>,
+    /// Largest torque error in N m of that wall at rest; null without counts of an encoder.
+    torque_error: Option<f64>,
+    /// In N m, as stated.
+    friction: Option<f64>,
+    /// Stiffness in N m/rad up to which the friction prevents a limit cycle at rest.
+    silent_stiffness: Option<f64>,
+    /// Most detents in a turn, and the peak torque of each in N m.
+    detents: Option<f64>,
+    detent_torque: Option<f64>,
+    /// Part of the cogging whose compensation certifies, at most 1; null without cogging.
+    compensated: Option<f64>,
+    /// The largest factor first.
+    levers: Vec<Lever>,
+    points: Vec<Point>,
+}
+
+/// Runs the command; the status is negative if no wall certifies.
+pub fn run(arguments: &Arguments, answer: &JsonOption) -> Result<CommandStatus, CommandError> {
+    let file = with_wall(load(arguments)?);
+    let Some(search) = Search::new(&file, &TERMS) else {
+        return Err(CommandError::NoSuchQuantity { scene: file.name, quantity: "wall" });
+    };
+    let report = report(&file, &search.without_rest());
+    if let Some(output) = &arguments.output {
+        let title =
+            format!("{}: stiffness at the handle", crate::quantity::shortened(&file.name, 32));
+        let curves = curves(&report);
+        let row =
+            |name: &str, &(rate, felt): &(f64, f64)| vec![name.into(), rate.into(), felt.into()];
+        let rows =
+            curves.iter().flat_map(|(name, curve)| curve.iter().map(move |it| row(name, it)));
+        let data =
+            Data::new(&["wall", "rate (Hz)", "felt stiffness (N m/rad)"], rows.collect::<Vec<_>>());
+        match has_extension(output, "csv") {
+            true => data.write(output)?,
+            false => chart::device::device(&title, report.rate, &curves)?.write(output)?,
+        }
+    }
+    answer.print(&report, text)?;
+    Ok(CommandStatus::of(report.stiffness.is_some()))
+}
+
+/// A board judges, and the structure of the search has its own coupling.
+const TERMS: Terms = Terms {
+    safety: 1.0,
+    coupling: Choice::Kept,
+    judge: Judge::BOARD,
+    exact: false,
+    full_scale: None,
+};
+
+/// The scene file, or a scene on the device of the device file.
+fn load(arguments: &Arguments) -> Result<SceneFile, CommandError> {
+    let name = &arguments.file;
+    let is_scene = file::load_json(name)?.get("servo").is_some();
+    match (is_scene, arguments.rate) {
+        (true, None) => Ok(warned(file::load(name)?)),
+        (true, Some(rate)) => {
+            let error =
+                format!("--rate {rate}: {name} is a scene file, and its `servo` states the rate");
+            Err(CommandError::Failed(error.into()))
+        }
+        (false, None) => {
+            let error = format!("{name} is a device file, which states no rate: add --rate HZ");
+            Err(CommandError::Failed(error.into()))
+        }
+        (false, Some(rate)) => {
+            let scene = format!(
+                "name = \"device\"\ndevice = {}\n[servo]\nrate = {rate:?}\n[environment]\n\
+                 type = \"damper-wall\"\nstiffness = 1.0\ndamping = 0.0\ndelay = 1\n",
+                serde_json::Value::from(name.as_str())
+            );
+            Ok(warned(file::parse(name, file::Format::Toml, &scene)?))
+        }
+    }
+}
+
+/// The device with a wall of springs, latched at the next sample.
+fn with_wall(mut file: SceneFile) -> SceneFile {
+    file.scene.environment = Wall::damped(1.0, 0.0, 1).alone();
+    file.scene.coupling = Coupling::Rigid;
+    file.shapes = None;
+    file
+}
+
+fn report(file: &SceneFile, search: &Search) -> Report {
+    let period = file.scene.timing.period;
+    let best = search.at(period);
+    let silent = search.silent();
+    let bound =
+        |wall: &StiffestWall| QuantizationBound::of(&wall.scene, Format::F64, &file.steps());
+    let rest = best.as_ref().and_then(bound);
+    // A wall that is silent anyhow needs no search of its own.
+    let felt_silently = |period: f64, certified: Option<&StiffestWall>| match &silent {
+        Some(silent) => silent.at(period).map(|wall| wall.felt),
+        None => certified
+            .filter(|wall| bound(wall).is_some_and(|it| it.comes_to_rest() == Some(true)))
+            .map(|wall| wall.felt),
+    };
+    let silent_stiffness = felt_silently(period, best.as_ref());
+    let points = search.periods().into_iter().rev().map(|period| {
+        let certified = search.at(period);
+        let silent = felt_silently(period, certified.as_ref());
+        Point { rate: rounded(period.recip(), 6), certified: certified.map(|it| it.felt), silent }
+    });
+    let (detents, detent_torque) = silent_stiffness.and_then(|it| detents(file, it)).unzip();
+    Report {
+        name: file.name.clone(),
+        rate: rounded(period.recip(), 6),
+        stiffness: best.map(|wall| wall.felt),
+        structure: best.map(|wall| wall.structure.name()),
+        torque_error: file.encoder_step.and(rest).map(|it| it.hum()),
+        friction: file.friction,
+        silent_stiffness,
+        detents,
+        detent_torque,
+        compensated: compensated(file),
+        levers: levers(silent.as_ref().unwrap_or(search), period),
+        points: points.collect(),
+    }
+}
+
+/// The most detents in a turn with this steepest slope in N m/rad, and the peak torque of each in N m: at least
+/// twice that of friction and cogging, and from rest to peak at least the error of a reading. `None` where no
+/// friction is stated.
+fn detents(file: &SceneFile, slope: f64) -> Option<(f64, f64)> {
+    let disturbance = file.disturbance();
+    let holds = file.friction? + disturbance.cogging.torque;
+    let error = 0.5 * file.encoder_step? * file.scene.latency.encoder.steps();
+    let count = (slope / (2.0 * holds)).min(TAU / (4.0 * error)).floor();
+    (count >= 1.0).then(|| (count, slope / count))
+}
+
+/// The part of the cogging whose compensation, a late spring as steep as the cogging, certifies with all of the
+/// device's passivity.
+fn compensated(file: &SceneFile) -> Option<f64> {
+    let slope = file.cogging?.slope();
+    let scene = Scene { torque_limit: None, ..file.scene };
+    let limit = largest(&scene, Quantity::Stiffness, &Terms::KEPT).value_and_result().0;
+    (slope > 0.0).then(|| (limit.unwrap_or(0.0) / slope).min(1.0))
+}
+
+/// The curves of the chart.
+fn curves(report: &Report) -> Vec<(&'static str, Vec<(f64, f64)>)> {
+    let of = |felt: fn(&Point) -> Option<f64>| {
+        report.points.iter().filter_map(|point| Some((point.rate, felt(point)?))).collect()
+    };
+    vec![("certified", of(|it| it.certified)), ("silent at rest", of(|it| it.silent))]
+}
+
+/// Single changes and their factors at this period in s, the largest first.
+fn levers(search: &Search, period: f64) -> Vec<Lever> {
+    let felt = |search: &Search, period| search.at(period).map_or(0.0, |wall| wall.felt);
+    let own = felt(search, period);
+    let same_rate = search.levers().into_iter().filter(|lever| lever.0 != Search::FASTER_BOARD);
+    let mut levers: Vec<_> = same_rate
+        .map(|(change, search)| (change, felt(&search, period)))
+        .chain([("twice the rate", felt(search, 0.5 * period))])
+        .filter(|_| own > 0.0)
+        .map(|(change, felt)| Lever { change, factor: felt / own })
+        .collect();
+    levers.sort_by(|a, b| b.factor.total_cmp(&a.factor));
+    levers
+}
+
+fn text(report: &Report) -> String {
+    let number = |value: f64, unit: &str| format!("{} {unit}", significant(value, 3));
+    let stiffness = |value| number(value, "N m/rad");
+    let unknown = || "not known: state `device.friction` and the counts of the encoder".to_owned();
+    let certified = report.stiffness.map_or_else(
+        || "none".to_owned(),
+        |felt| format!("{}, {}", stiffness(felt), report.structure.unwrap_or_default()),
+    );
+    let error = report.torque_error.map_or_else(
+        || "not known: state the counts of the encoder".to_owned(),
+        |error| match report.friction {
+            Some(friction) => {
+                let [error, friction] = [error, friction].map(|it| number(it, "N m"));
+                format!("{error}, and the device has {friction} of friction")
+            }
+            None => number(error, "N m"),
+        },
+    );
+    let detents = report.detents.zip(report.detent_torque).map_or_else(
+        || match report.friction {
+            Some(_) => "none: friction and cogging hold more than half of their torque".to_owned(),
+            None => unknown(),
+        },
+        |(count, torque)| format!("{count} a turn, of {}", number(torque, "N m")),
+    );
+    let cogging = report.compensated.map(|part| match part {
+        1.0 => "all of it".to_owned(),
+        0.0 => "nothing of it".to_owned(),
+        _ => format!("{} % of it", significant(100.0 * part, 2)),
+    });
+    let first = report.levers.first().filter(|lever| lever.factor > 1.005).map_or_else(
+        || "no single change earns more".to_owned(),
+        |lever| format!("{}: {} x", lever.change, significant(lever.factor, 3)),
+    );
+    let silent = match (report.silent_stiffness, report.friction) {
+        (Some(felt), _) => stiffness(felt),
+        (None, Some(_)) => "no wall is, with this friction".to_owned(),
+        (None, None) => unknown(),
+    };
+    let rows = [
+        (format!("stiffest certified wall at {} Hz", significant(report.rate, 4)), Some(certified)),
+        ("its torque error at rest".to_owned(), Some(error)),
+        ("silent at rest up to".to_owned(), Some(silent)),
+        ("detents that can be told apart".to_owned(), Some(detents)),
+        ("cogging that can be compensated".to_owned(), cogging),
+        ("to be changed first".to_owned(), Some(first)),
+    ];
+    let rows: Vec<_> =
+        rows.into_iter().filter_map(|(question, answer)| Some((question, answer?))).collect();
+    let name = report.name.clone();
+    let table = table_of(
+        &rows,
+        &[
+            ("of this device", false, |row: &(String, String)| row.0.clone()),
+            ("", false, |row: &(String, String)| row.1.clone()),
+        ],
+    );
+    format!("{name}\n{table}\n")
+}

@@ -1,0 +1,226 @@
+//! Magnetic encoders: the drivers against models of the chips, and a wall on a board that reads one.
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use analysis::file::{Format, SceneFile, parse, program};
+use analysis::hand::HandTrajectory;
+use analysis::lockstep::SimulatedDevice;
+use analysis::toolchain::{BoardModel, NumberFormat, Tools, TorqueOutput, prepare};
+use haptic_servo::fault::Fault;
+use haptic_servo::magnetic::{Chip, Frame, LONGEST, ReadingError};
+use haptic_servo::servo::{Latched, Transducers};
+use virtual_board::chip::NUCLEO_G474RE;
+use virtual_board::device::{Device, FixedDevice};
+use virtual_board::magnetic_encoder::{Failure, MagneticEncoder};
+use virtual_board::peripheral::clock::Cause;
+
+use crate::bench::{Bench, MID_SCALE};
+use crate::device::HandHeldDevice;
+use crate::scenes::with_the_same_cycle;
+
+/// The wall of docs/encoders.md.
+const WALL: &str = include_str!("magnetic_wall.toml");
+/// Counts from zero into the wall, whose face is at 261 counts.
+const INTO: i64 = 300;
+/// Samples in which the clamp opens.
+const OPEN: u64 = 110;
+
+/// A transfer as a master with the driver's interface makes it.
+fn transfer(chip: &Chip, model: &mut MagneticEncoder, words: &Frame, now: u64) -> Frame {
+    // CPHA is 1, and CPOL by the level at rest.
+    model.select(now, 0b01 | u32::from(chip.interface.idle_high) << 1);
+    let mut frame = [0; LONGEST];
+    for (word, received) in words.iter().zip(&mut frame).take(chip.interface.words) {
+        for bit in (0..chip.interface.word_bits).rev() {
+            *received = *received << 1 | u16::from(model.clock(word >> bit & 1 != 0));
+        }
+    }
+    model.release(now);
+    frame
+}
+
+/// A model that is set up and has answered once.
+fn started(chip: &Chip, position: i64) -> MagneticEncoder {
+    let mut model = MagneticEncoder::find(chip.name, position).unwrap();
+    for words in chip.set_up.iter().chain([&chip.command; 2]) {
+        transfer(chip, &mut model, words, 0);
+    }
+    model
+}
+
+#[test]
+fn each_driver_reads_its_chip() {
+    for chip in Chip::ALL {
+        let mut model = started(chip, 1);
+        assert_eq!(f64::from(1 << model.bits()), chip.counts_per_turn(), "{}", chip.name);
+        model.noise = 3;
+        let read = |model: &mut MagneticEncoder, now| {
+            let before = model.sampled;
+            let frame = transfer(chip, model, &chip.command, now);
+            let sampled = if chip.is_period_late { before } else { model.sampled };
+            (sampled, (chip.decode)(&frame))
+        };
+        for now in 1..500 {
+            model.turn(if now < 250 { 7919 } else { -104_729 }, 1000 * now);
+            let (sampled, angle) = read(&mut model, 1000 * now);
+            let dropped = sampled == 0 && angle == Err(ReadingError::Zeros);
+            assert!(dropped || angle == Ok(sampled as u32), "{}: {sampled}, {angle:?}", chip.name);
+        }
+    }
+}
+
+/// An AS5047P predicts in its other register until the driver has switched that off.
+#[test]
+fn the_set_up_switches_the_prediction_off() {
+    let chip = Chip::find("as5047p").unwrap();
+    let compensated = [0xFFFF, 0, 0];
+    let angle = |mut model: MagneticEncoder| {
+        model.turn(50, 1000);
+        transfer(chip, &mut model, &compensated, 1000);
+        (chip.decode)(&transfer(chip, &mut model, &compensated, 1000))
+    };
+    assert_eq!(angle(MagneticEncoder::find(chip.name, 100).unwrap()), Ok(200));
+    assert_eq!(angle(started(chip, 100)), Ok(150));
+}
+
+/// What a driver tells of each failure of its chip; `None`: the transfer cannot tell.
+#[test]
+fn each_failure_is_told() {
+    use ReadingError::*;
+    let checked = |error| [Some(error), Some(Field), Some(Field)];
+    for chip in Chip::ALL {
+        let [bit, flag, weak] = match chip.name {
+            "mt6701" => checked(Checksum),
+            "mt6835" => [Some(Checksum), Some(Flag), Some(Field)],
+            "as5048a" | "as5047p" => [Some(Parity), Some(Flag), None],
+            _ => [None; 3],
+        };
+        for (failure, error) in [
+            (Failure::Bit(9), bit),
+            (Failure::Flag, flag),
+            (Failure::WeakField, weak),
+            (Failure::Zeros, Some(Zeros)),
+            (Failure::Ones, Some(Ones)),
+            (Failure::Frozen, None),
+        ] {
+            let mut model = started(chip, 1234);
+            model.failure = Some(failure);
+            transfer(chip, &mut model, &chip.command, 1);
+            let told = (chip.decode)(&transfer(chip, &mut model, &chip.command, 1));
+            assert_eq!(told.err(), error, "{}: {failure:?}", chip.name);
+        }
+    }
+}
+
+fn file() -> SceneFile {
+    parse("magnetic_wall.toml", Format::Toml, WALL).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn transducers() -> Transducers {
+    file().board_transducers(None, None).unwrap()
+}
+
+/// A board with the wall's program and its chip at a position.
+fn boot(device: impl Device + Send + 'static, position: i64) -> Bench {
+    static ELF: OnceLock<PathBuf> = OnceLock::new();
+    let elf = ELF.get_or_init(|| {
+        let toolchain = prepare(Tools::Compiler).unwrap_or_else(|error| panic!("{error}"));
+        let (file, source) = (file(), "magnetic_wall.toml");
+        let text = program::program(&file, &transducers(), None, source).unwrap();
+        let written = toolchain.write_scene("magnetic_wall", &text).unwrap();
+        let board = BoardModel::find(NUCLEO_G474RE.name).unwrap();
+        let board = Some((board, TorqueOutput::Dac));
+        let built = toolchain.build_written(&written, board, NumberFormat::F32, true);
+        built.unwrap_or_else(|error| panic!("{error}")).path
+    });
+    let mut bench = Bench::boot_file(&NUCLEO_G474RE, elf, device);
+    bench.board_mut().magnetic = MagneticEncoder::find("mt6701", position);
+    bench
+}
+
+/// In the wall, armed and with the clamp open.
+fn in_the_wall() -> Bench {
+    let mut bench = boot(FixedDevice, INTO);
+    bench.armed();
+    bench.run(OPEN);
+    assert_ne!(bench.last_code(), Some(MID_SCALE));
+    bench
+}
+
+/// The code of each tick is that of the position at its update.
+#[test]
+fn the_wall_gives_the_host_s_codes() {
+    let (file, transducers) = (file(), transducers());
+    let trajectory = HandTrajectory::for_environment(&file.scene.environment);
+    let device = SimulatedDevice::new(&file.scene, trajectory, &transducers).unwrap();
+    let mut bench = boot(HandHeldDevice::with(device), 0);
+    let armed = bench.armed();
+    const SAMPLES: usize = 3000;
+    bench.run(SAMPLES as u64 + 2);
+    let samples = &bench.pins().samples[armed..];
+    let codes = with_the_same_cycle::<_, Latched>(file.scene, &transducers, &samples[..SAMPLES]);
+    for (tick, &code) in codes.iter().enumerate() {
+        assert_eq!(samples[tick + 2].code, Some(code), "tick {tick}: {:?}", samples[tick]);
+    }
+    let pushed = codes.iter().filter(|&&code| code != MID_SCALE).count();
+    assert!(pushed > 500, "a torque in {pushed} samples");
+}
+
+#[test]
+fn a_wall_stays_where_it_is_through_a_reset() {
+    let mut bench = in_the_wall();
+    let code = bench.last_code();
+    // By whole turns, which a chip does not know.
+    for _ in 0..32 {
+        bench.turn(1 << 10);
+    }
+    bench.run(40);
+    assert_eq!(bench.status().count, INTO + (1 << 15));
+    bench.machine.reset(Cause::Pin);
+    bench.armed();
+    bench.run(OPEN);
+    assert_eq!(bench.status().count, INTO);
+    assert_eq!(bench.last_code(), code);
+}
+
+/// The scene allows one reading in a row to fail.
+#[test]
+fn a_failed_reading_is_held_and_two_are_a_fault() {
+    for (failure, error) in [
+        (Failure::Bit(3), ReadingError::Checksum),
+        (Failure::Zeros, ReadingError::Zeros),
+        (Failure::Ones, ReadingError::Ones),
+        (Failure::WeakField, ReadingError::Field),
+    ] {
+        let mut bench = in_the_wall();
+        let fail = |bench: &mut Bench, failure, samples| {
+            bench.board_mut().magnetic.as_mut().unwrap().failure = failure;
+            bench.run(samples);
+        };
+        let code = bench.last_code();
+        for _ in 0..5 {
+            fail(&mut bench, Some(failure), 1);
+            fail(&mut bench, None, 1);
+        }
+        assert_eq!((bench.fault(), bench.last_code()), (None, code), "{failure:?}");
+        let now = bench.now();
+        fail(&mut bench, Some(failure), 4);
+        let fault = bench.fault();
+        let off = bench.amplifier_off(now);
+        let off = off.unwrap_or_else(|| panic!("{failure:?}: on, {fault:?}")) - now;
+        assert!(off < 3 * bench.period(), "{failure:?}: {off}");
+        let error = error as u32;
+        assert_eq!(bench.fault(), Some(Fault::EncoderReading { error, allowed: 1 }));
+        fail(&mut bench, None, 20);
+        bench.armed();
+    }
+}
+
+/// An MT6701 may be as quiet at rest as if it had stopped, so that this is no fault.
+#[test]
+fn a_device_at_rest_is_no_fault() {
+    let mut bench = in_the_wall();
+    bench.run(2000);
+    assert_eq!(bench.fault(), None);
+}

@@ -1,0 +1,308 @@
+//! A magnetic absolute encoder on SPI, whose transfer the pacing timer's update begins without a program.
+//!
+//! ```text
+//! TIM6 update ---- DMA 3 writes SPE: selects the chip, and the SPI sends what DMA 2 has put into its buffer
+//!   |              DMA 1 stores each word received
+//! DMA1_CHANNEL1    after the last word: the angle, or the one before [`read`]; pends the servo's interrupt
+//! TIM6_DAC         the servo's tick, with the count of the update
+//! ```
+//!
+//! The chip is selected within some clocks of the update (RM0440, SPI: a master begins when it is enabled with data in
+//! its buffer). So the transfer takes time of the tick and adds nothing to the age of the reading.
+
+use core::sync::atomic::{AtomicU16, AtomicU32, Ordering};
+
+use cortex_m::peripheral::NVIC;
+use embassy_stm32::interrupt;
+use embassy_stm32::interrupt::{InterruptExt, Priority};
+use embassy_stm32::pac;
+use embassy_stm32::pac::bdma::vals::{Dir, Pl, Size};
+use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr, Pupdr};
+use embassy_stm32::pac::spi::regs::Cr1;
+use embassy_stm32::pac::spi::vals::{Br, Cpha, Cpol, Ds, Mstr};
+
+use super::wiring::{BUS, TIMER_CLOCK};
+use crate::board::critical;
+use crate::board::isr_cell::IsrCell;
+use crate::encoder::RawCount;
+use crate::fault::Fault;
+use crate::magnetic::{Chip, Frame, LONGEST, ReadingError, Readings};
+use crate::servo_loop::OutputEvent;
+
+/// A pin of the bus, and the alternate function that connects it.
+#[derive(Clone, Copy)]
+pub struct BusPin {
+    /// Its port.
+    pub port: pac::gpio::Gpio,
+    /// Its number in the port, 0 to 15.
+    pub pin: usize,
+    /// The alternate function.
+    pub function: u8,
+}
+
+/// The bus of a board: an SPI, its pins, and its requests among those of the DMA.
+pub struct Bus {
+    /// The SPI.
+    pub spi: pac::spi::Spi,
+    /// NSS, which is low during a transfer and pulled up.
+    pub select: BusPin,
+    /// SCK.
+    pub clock: BusPin,
+    /// MISO, pulled up, so that a broken wire reads all ones.
+    pub input: BusPin,
+    /// MOSI.
+    pub output: BusPin,
+    /// The request with a received word.
+    pub received: u8,
+    /// The request for a word to send.
+    pub wants: u8,
+}
+
+/// The data of a program that the encoder needs.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Setup {
+    /// The chip's name, by which a virtual board knows it.
+    pub name: [u8; Chip::LONGEST_NAME],
+    /// The chip.
+    pub chip: &'static Chip,
+    /// Readings in a row that may fail.
+    pub dropped: u16,
+}
+
+const DMA: pac::bdma::Dma = pac::DMA1;
+/// Channels, from zero: stores received words, sends words, enables the SPI.
+const RECEIVE: usize = 0;
+const SEND: usize = 1;
+const BEGIN: usize = 2;
+/// TIM6's update among the requests of the DMA.
+const TIM6_UPDATE: u8 = 8;
+
+/// The words of the last transfer.
+static FRAME: [AtomicU16; LONGEST] = [const { AtomicU16::new(0) }; LONGEST];
+/// CR1 of the SPI that begins a transfer.
+static ENABLED: AtomicU16 = AtomicU16::new(0);
+/// The last count.
+static COUNT: AtomicU32 = AtomicU32::new(0);
+/// The error of a failed reading, in the low half and from one on, and how many may fail; 0: none.
+static FAILED: AtomicU32 = AtomicU32::new(0);
+static READINGS: IsrCell<Readings> = IsrCell::empty();
+
+/// The count at the beginning of the period.
+#[inline(always)]
+pub fn count() -> RawCount {
+    RawCount::from(COUNT.load(Ordering::Relaxed))
+}
+
+/// The fault of the readings, if there is one since the last call.
+#[inline(always)]
+pub fn event() -> Option<OutputEvent> {
+    if FAILED.load(Ordering::Relaxed) == 0 { None } else { take_event() }
+}
+
+#[cold]
+#[inline(never)]
+fn take_event() -> Option<OutputEvent> {
+    let failed = FAILED.swap(0, Ordering::Relaxed);
+    let (error, allowed) = ((failed & 0xFFFF).checked_sub(1)?, failed >> 16);
+    Some(OutputEvent::Fault(Fault::EncoderReading { error, allowed }))
+}
+
+/// The end of a transfer.
+///
+/// # Safety
+/// Only the handler of the receiving channel may call it, after [`set_up`].
+#[inline(always)]
+pub unsafe fn read(setup: &'static Setup) {
+    let frame = finish(&setup.chip.command, setup.chip.interface.words);
+    // SAFETY: the caller is the only handler, and the cell is filled.
+    let readings = unsafe { READINGS.borrow_mut() };
+    match readings.take(setup.chip, &frame) {
+        Ok(()) => COUNT.store(readings.count(), Ordering::Relaxed),
+        Err(error) => fail(error, setup.dropped),
+    }
+    NVIC::pend(interrupt::TIM6_DAC);
+}
+
+#[cold]
+#[inline(never)]
+fn fail(error: ReadingError, allowed: u16) {
+    FAILED.store(u32::from(allowed) << 16 | (error as u32 + 1), Ordering::Relaxed);
+}
+
+/// Ends a transfer, and prepares the next one.
+#[inline(always)]
+fn finish(next: &'static Frame, words: usize) -> Frame {
+    DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
+    BUS.spi.cr1().write_value(Cr1(u32::from(ENABLED.load(Ordering::Relaxed)) & !SPE));
+    load(next, words);
+    core::array::from_fn(|word| FRAME[word].load(Ordering::Relaxed))
+}
+
+/// SPE of CR1.
+const SPE: u32 = 1 << 6;
+
+/// Has the words of the next transfer put into the buffer of the SPI, as far as they fit.
+#[inline(always)]
+fn load(words: &'static Frame, count: usize) {
+    let channel = DMA.ch(SEND);
+    let mut control = pac::bdma::regs::Cr(0);
+    control.set_dir(Dir::FROM_MEMORY);
+    control.set_minc(true);
+    control.set_msize(Size::BITS16);
+    control.set_psize(Size::BITS16);
+    channel.cr().write_value(control);
+    channel.ndtr().write(|w| w.set_ndt(count as u16));
+    channel.mar().write_value(words.as_ptr() as u32);
+    control.set_en(true);
+    channel.cr().write_value(control);
+}
+
+/// Connects the chip, sets it up, and reads its angle; nothing paces its transfers yet.
+pub fn set_up(setup: &'static Setup) {
+    // Hidden from the optimiser, so that the name stays in the program.
+    let Setup { chip, dropped, .. } = *core::hint::black_box(setup);
+    let words = chip.interface.words;
+    connect(chip);
+    cortex_m::asm::delay((chip.start_up * TIMER_CLOCK) as u32);
+    for frame in chip.set_up {
+        exchange(frame, words);
+    }
+    // The first may answer the set-up.
+    exchange(&chip.command, words);
+    let mut readings = Readings::new(dropped);
+    if readings.take(chip, &exchange(&chip.command, words)).is_ok() {
+        COUNT.store(readings.count(), Ordering::Relaxed);
+    }
+    load(&chip.command, words);
+    // SAFETY: the interrupt that uses the cell comes from a channel that does not request it yet.
+    unsafe { READINGS.init(readings) };
+    interrupt::DMA1_CHANNEL1.set_priority(Priority::from(critical::SERVO << 4));
+}
+
+/// From now on each update of the pacing timer begins a transfer, whose end is the tick.
+pub fn start() {
+    DMA.ch(RECEIVE).cr().modify(|w| w.set_tcie(true));
+    DMA.ch(BEGIN).cr().modify(|w| w.set_en(true));
+    // SAFETY: its handler finds its cell filled.
+    unsafe { interrupt::DMA1_CHANNEL1.enable() };
+}
+
+/// A transfer that the program begins and waits for.
+fn exchange(words: &'static Frame, count: usize) -> Frame {
+    load(words, count);
+    BUS.spi.cr1().write_value(Cr1(ENABLED.load(Ordering::Relaxed).into()));
+    while !DMA.isr().read().tcif(RECEIVE) {}
+    // A load in between would be sent.
+    DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
+    BUS.spi.cr1().write_value(Cr1(u32::from(ENABLED.load(Ordering::Relaxed)) & !SPE));
+    core::array::from_fn(|word| FRAME[word].load(Ordering::Relaxed))
+}
+
+/// The clocks, the pins, the SPI and the channels.
+fn connect(chip: &Chip) {
+    let (spi, interface) = (BUS.spi, chip.interface);
+    pac::RCC.apb1enr1().modify(|w| w.set_spi2en(true));
+    pac::RCC.ahb1enr().modify(|w| {
+        w.set_dma1en(true);
+        w.set_dmamux1en(true);
+    });
+    // Reads back, so that the units have their clocks.
+    let _ = pac::RCC.ahb1enr().read();
+    let mut enabled = Cr1(SPE);
+    enabled.set_mstr(Mstr::MASTER);
+    enabled.set_br(divider(interface.highest_clock));
+    enabled.set_cpha(Cpha::SECOND_EDGE);
+    enabled.set_cpol(if interface.idle_high { Cpol::IDLE_HIGH } else { Cpol::IDLE_LOW });
+    ENABLED.store(enabled.0 as u16, Ordering::Relaxed);
+    spi.cr1().write_value(Cr1(enabled.0 & !SPE));
+    spi.cr2().write(|w| {
+        w.set_ssoe(true);
+        w.set_ds(Ds::from_bits(interface.word_bits - 1));
+        w.set_rxdmaen(true);
+        w.set_txdmaen(true);
+    });
+    for pin in [BUS.select, BUS.clock, BUS.input, BUS.output] {
+        let BusPin { port, pin, function } = pin;
+        port.afr(pin / 8).modify(|w| w.set_afr(pin % 8, function));
+        port.ospeedr().modify(|w| w.set_ospeedr(pin, Ospeedr::MEDIUM_SPEED));
+        port.moder().modify(|w| w.set_moder(pin, Moder::ALTERNATE));
+    }
+    for BusPin { port, pin, .. } in [BUS.select, BUS.input] {
+        port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::PULL_UP));
+    }
+    let data = spi.dr16().as_ptr() as u32;
+    channel(RECEIVE, BUS.received, data, FRAME.as_ptr() as u32, interface.words);
+    channel(SEND, BUS.wants, data, 0, 0);
+    channel(BEGIN, TIM6_UPDATE, spi.cr1().as_ptr() as u32, ENABLED.as_ptr() as u32, 1);
+    DMA.ch(RECEIVE).cr().modify(|w| {
+        w.set_minc(true);
+        w.set_en(true);
+    });
+    DMA.ch(BEGIN).cr().modify(|w| w.set_dir(Dir::FROM_MEMORY));
+}
+
+/// A channel that moves halfwords in a circle at a request.
+fn channel(number: usize, request: u8, peripheral: u32, memory: u32, count: usize) {
+    pac::DMAMUX1.ccr(number).write(|w| w.set_dmareq_id(request));
+    let channel = DMA.ch(number);
+    channel.par().write_value(peripheral);
+    channel.mar().write_value(memory);
+    channel.ndtr().write(|w| w.set_ndt(count as u16));
+    channel.cr().write(|w| {
+        w.set_circ(true);
+        w.set_msize(Size::BITS16);
+        w.set_psize(Size::BITS16);
+        w.set_pl(Pl::HIGH);
+    });
+}
+
+/// The smallest divider of the bus's clock, a power of two, for at most this clock in Hz.
+fn divider(highest_clock: f64) -> Br {
+    let fits = |bits: &u8| TIMER_CLOCK / f64::from(2_u32 << bits) <= highest_clock;
+    Br::from_bits((0..7).find(fits).unwrap_or(7))
+}
+
+/// The encoder of a program, and the handler of its readings.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! board_encoder {
+    ([], $program:ident) => {
+        compile_error!(
+            "this board reads a magnetic encoder that the program does not state: write `encoder: CHIP` in \
+             scene_program!, or build it without the feature `magnetic`"
+        );
+    };
+    ([$chip:expr], $program:ident) => {
+        /// The encoder's data of this program.
+        #[unsafe(no_mangle)]
+        static ENCODER_SETUP: $crate::board::stm32::magnetic::Setup =
+            $crate::board::stm32::magnetic::Setup {
+                name: $chip.padded_name(),
+                chip: &$chip,
+                dropped: $program.scene.latency.encoder.dropped,
+            };
+
+        const ENCODER: &$crate::board::stm32::magnetic::Setup = &ENCODER_SETUP;
+
+        $crate::in_fast_memory! {
+            /// The end of a transfer.
+            #[unsafe(no_mangle)]
+            unsafe extern "C" fn DMA1_CHANNEL1() {
+                // SAFETY: this is the handler of the channel.
+                unsafe { $crate::board::stm32::magnetic::read(&ENCODER_SETUP) }
+            }
+        }
+    };
+}
+
+/// The program of a sweep, which counts a quadrature encoder.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! board_sweep {
+    ($($any:tt)*) => {
+        compile_error!(
+            "no sweep reads a magnetic encoder: build it without the feature `magnetic`"
+        );
+    };
+}

@@ -1,0 +1,29 @@
+//! The transfers of the AS504x of ams: a word of 16 bits with an even parity, an error flag and 14 bits.
+//!
+//! A command is answered in the next transfer. By the data sheet of the AS5055A the chip samples the angle at the end
+//! of the command's transfer; for the others this is not confirmed. One transfer in a period so reads an angle that
+//! is up to a period older. The error flag sticks until register 1 is read.
+
+use super::{Frame, Interface, ReadingError};
+
+/// Clocked below its limit of 10 MHz.
+pub const INTERFACE: Interface =
+    Interface { words: 1, word_bits: 16, idle_high: false, highest_clock: 10e6 };
+
+/// Reads register 1, which clears the error flag.
+pub const CLEAR_ERRORS: Frame = [0x4001, 0, 0];
+
+const ERROR: u16 = 1 << 14;
+const ANGLE: u16 = ERROR - 1;
+
+/// The angle of a word.
+pub fn decode(&[word, ..]: &Frame) -> Result<u32, ReadingError> {
+    match word {
+        // Both have an even parity.
+        0 => Err(ReadingError::Zeros),
+        u16::MAX => Err(ReadingError::Ones),
+        _ if word.count_ones() % 2 != 0 => Err(ReadingError::Parity),
+        _ if word & ERROR != 0 => Err(ReadingError::Flag),
+        _ => Ok((word & ANGLE).into()),
+    }
+}

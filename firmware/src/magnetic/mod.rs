@@ -1,0 +1,217 @@
+//! Drivers of magnetic absolute encoders: from the words of a transfer to an angle, or the reason why there is none.
+//!
+//! A [`Chip`] is data and one pure function. It knows nothing of a board, which makes a transfer of
+//! [`Interface::words`] words in each period, and gives the received words to [`Chip::decode`]. [`Readings`] then
+//! holds the last angle over as many failed transfers as the scene states.
+//!
+//! A statement that is marked "not confirmed" was not read in a data sheet: read it there before a certificate
+//! rests on it.
+
+mod as5047p;
+mod as5048a;
+mod as504x;
+mod magalpha;
+mod mt6701;
+mod mt6835;
+mod readings;
+
+pub use as5047p::AS5047P;
+pub use as5048a::AS5048A;
+pub use magalpha::{MA600, MA702, MA732};
+pub use mt6701::MT6701;
+pub use mt6835::MT6835;
+pub use readings::Readings;
+
+use crate::encoder::CounterWidth;
+use crate::latency::Latency;
+use crate::text::{Text, sentences, words};
+use crate::time_range::TimeRange;
+
+/// The most words in a transfer.
+pub const LONGEST: usize = 3;
+
+/// The words of a transfer in their order, each in the low bits; those beyond its length are 0.
+pub type Frame = [u16; LONGEST];
+
+/// The longest time in s from the beginning of a period to the end of its transfer, for chips that sample their angle
+/// there.
+pub const TRANSFER_WITHIN: f64 = 1e-5;
+
+words! {
+    /// The reason why a transfer has no angle.
+    ReadingError {
+    /// The checksum is not that of the angle.
+    Checksum "its checksum is wrong",
+    /// The parity is not that of the word.
+    Parity "its parity is wrong",
+    /// All bits are 0: a broken wire, or the angle zero.
+    Zeros "all bits are 0",
+    /// All bits are 1: no chip drives the line.
+    Ones "all bits are 1",
+    /// The chip reports an error.
+    Flag "the chip reports an error",
+    /// The magnetic field is too weak or too strong.
+    Field "the magnet is too weak, too strong or lost",
+    /// A chip whose readings are never at rest reads the same for long.
+    Frozen "it does not change, not even by its noise",
+    }
+}
+
+/// Clock and format of a transfer.
+#[derive(Clone, Copy, Debug)]
+pub struct Interface {
+    /// Words of a transfer.
+    pub words: usize,
+    /// Bits of a word, 8 to 16.
+    pub word_bits: u8,
+    /// Whether the clock is high at rest.
+    pub idle_high: bool,
+    /// The highest clock in Hz.
+    pub highest_clock: f64,
+}
+
+/// A magnetic absolute encoder. A bit is taken over at the second edge of its clock, in all of them.
+#[derive(Debug)]
+pub struct Chip {
+    /// Its name in scene files.
+    pub name: &'static str,
+    /// Bits of an angle.
+    pub width: CounterWidth,
+    /// Its transfers.
+    pub interface: Interface,
+    /// The words to send for an angle.
+    pub command: Frame,
+    /// Transfers that set it up, after power-on.
+    pub set_up: &'static [Frame],
+    /// Time in s from power-on to its first angle.
+    pub start_up: f64,
+    /// Age in s of an angle when the chip samples it for a transfer.
+    pub age: TimeRange,
+    /// Whether a transfer has the angle that was sampled at the end of the transfer before.
+    pub is_period_late: bool,
+    /// Time constant in s of its filter; zero where it is not known.
+    pub lag: TimeRange,
+    /// Equal angles in a row that its noise rules out; `None` if it may be as quiet as that at rest: then nothing in
+    /// its transfers tells a chip that has stopped from a handle that stands still.
+    pub frozen_after: Option<u16>,
+    /// Whether all bits 1 are the last angle of a turn, and not only a line that nothing drives.
+    pub ones_are_angle: bool,
+    /// The angle of a transfer in counts.
+    pub decode: fn(&Frame) -> Result<u32, ReadingError>,
+}
+
+impl Chip {
+    /// All chips.
+    pub const ALL: [&'static Self; 7] =
+        [&MT6701, &MA600, &MA702, &MA732, &MT6835, &AS5048A, &AS5047P];
+
+    /// The names of all chips.
+    pub const NAMES: [&'static str; Self::ALL.len()] = {
+        let mut names = [""; Self::ALL.len()];
+        each!(chip in 0..Self::ALL.len() => {
+            names[chip] = Self::ALL[chip].name;
+        });
+        names
+    };
+
+    /// Bytes of the longest name, and one.
+    pub const LONGEST_NAME: usize = 8;
+
+    /// The name, with zeros up to the length of the longest.
+    pub const fn padded_name(&self) -> [u8; Self::LONGEST_NAME] {
+        let (name, mut padded) = (self.name.as_bytes(), [0; Self::LONGEST_NAME]);
+        each!(at in 0..name.len() => {
+            padded[at] = name[at];
+        });
+        padded
+    }
+
+    /// The chip of this name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        Self::ALL.into_iter().find(|chip| chip.name == name)
+    }
+
+    /// Counts in a turn.
+    pub const fn counts_per_turn(&self) -> f64 {
+        self.width.counts()
+    }
+
+    /// The age of a reading at the beginning of its period, in a servo with this period in s.
+    pub const fn age_in(&self, period: f64) -> TimeRange {
+        let TimeRange { least, most } = self.age;
+        if self.is_period_late {
+            return TimeRange::between(least + period - TRANSFER_WITHIN, most + period);
+        }
+        self.age
+    }
+
+    /// Checks that a scene's certificate covers its readings, with `counts` in a turn.
+    ///
+    /// # Errors
+    /// The number of the scene that is not the chip's.
+    pub const fn check(
+        &self,
+        latency: &Latency,
+        period: f64,
+        counts: f64,
+    ) -> Result<(), ChipError> {
+        let (chip, wanted) = (self.name, self.counts_per_turn());
+        if counts != wanted {
+            return Err(ChipError::Counts { chip, counts, wanted });
+        }
+        let (stated, age) = (latency.encoder.age, self.age_in(period));
+        if !covers(stated, age) {
+            let TimeRange { least, most } = age;
+            return Err(ChipError::Age { chip, least, most, from: stated.least, to: stated.most });
+        }
+        let (stated, lag) = (latency.sensor_lag, self.lag);
+        // Of a filter without a known shape no lag is required.
+        if !lag.is_zero() && !covers(stated, lag) {
+            let TimeRange { least, most } = lag;
+            return Err(ChipError::Lag { chip, least, most, from: stated.least, to: stated.most });
+        }
+        Ok(())
+    }
+
+    /// For constants: the same chip, or a compile error.
+    #[track_caller]
+    pub const fn checked(
+        &'static self,
+        latency: &Latency,
+        period: f64,
+        counts: f64,
+    ) -> &'static Self {
+        crate::text::or_refuse!(self.check(latency, period, counts));
+        self
+    }
+}
+
+/// Chips are the same if their names are.
+impl PartialEq for Chip {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+/// Whether a stated range has the whole of another, within the rounding of decimal digits.
+const fn covers(stated: TimeRange, actual: TimeRange) -> bool {
+    const ROUNDED: f64 = 1e-9;
+    stated.least <= actual.least + ROUNDED && stated.most >= actual.most - ROUNDED
+}
+
+sentences! {
+    /// The reason why a scene's certificate does not cover the readings of its chip.
+    ChipError: Text<300> {
+    Counts { chip: &'static str, counts: f64, wanted: f64 } => (
+        "the encoder has " {counts} " counts in a turn, and " {chip} " has " {wanted}),
+    Age { chip: &'static str, least: f64, most: f64, from: f64, to: f64 } => (
+        "the readings of " {chip} " have an age anywhere between " {least} " and " {most} " s at the beginning of a \
+         period, and the scene states an age between " {from} " and " {to} " s: state an age that covers it"),
+    Lag { chip: &'static str, least: f64, most: f64, from: f64, to: f64 } => (
+        "the filter of " {chip} " has a time constant between " {least} " and " {most} " s, and the scene states a \
+         lag between " {from} " and " {to} " s: state a lag that covers it"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,107 @@
+use super::*;
+
+fn frame(words: &[u16]) -> Frame {
+    let mut frame = [0; LONGEST];
+    frame[..words.len()].copy_from_slice(words);
+    frame
+}
+
+/// Chip, words and angle.
+const CASES: &[(&Chip, &[u16], u32)] = &[
+    (&MT6701, &[0x0AAF, 0x0019], 0x2abc),
+    (&MT6835, &[0xFFFF, 0xAAAA, 0xA804], 0x155555),
+    (&MA702, &[0x1234], 0x1234),
+    (&AS5048A, &[0x1235], 0x1235),
+    (&AS5047P, &[0x1235], 0x1235),
+];
+
+/// Frames with checksums from another program.
+#[test]
+fn a_frame_has_its_angle() {
+    for (chip, words, angle) in CASES {
+        assert_eq!((chip.decode)(&frame(words)), Ok(*angle), "{}", chip.name);
+        let bits = u32::from(chip.interface.word_bits);
+        let checked = if *chip.name == *"mt6835" { &[1, 2][..] } else { &[0, 1][..words.len()] };
+        let has_check = !chip.name.starts_with("ma");
+        for (&word, bit) in checked.iter().flat_map(|word| (0..bits).map(move |bit| (word, bit))) {
+            let mut wrong = frame(words);
+            wrong[word] ^= 1 << bit;
+            assert_eq!((chip.decode)(&wrong).is_err(), has_check, "{}, bit {bit}", chip.name);
+        }
+    }
+}
+
+#[test]
+fn a_wire_that_is_broken_is_no_angle() {
+    for chip in Chip::ALL {
+        let ones = u16::MAX >> (16 - chip.interface.word_bits);
+        assert_eq!((chip.decode)(&[0; LONGEST]), Err(ReadingError::Zeros), "{}", chip.name);
+        assert_eq!((chip.decode)(&[ones; LONGEST]), Err(ReadingError::Ones), "{}", chip.name);
+    }
+}
+
+/// The angle before takes the place of as many failed ones as are allowed, also again after a good one.
+#[test]
+fn a_failed_reading_is_an_older_one() {
+    let mut readings = Readings::new(2);
+    let word = |angle: u16| frame(&[angle | (angle.count_ones() as u16 % 2) << 15]);
+    let mut take = |frame| readings.take(&AS5048A, &frame).map(|()| readings.count());
+    let lost = frame(&[u16::MAX]);
+    assert_eq!(take(word(900)), Ok(900));
+    assert_eq!([take(lost), take(lost)], [Ok(900); 2]);
+    assert_eq!(take(word(950)), Ok(950));
+    assert_eq!([take(lost), take(lost)], [Ok(950); 2]);
+    assert_eq!([take(lost), take(lost)], [Err(ReadingError::Ones); 2]);
+    assert_eq!(take(word(960)), Ok(960));
+}
+
+#[test]
+fn only_a_chip_that_is_never_quiet_can_be_told_to_be_frozen() {
+    let takes = |chip: &Chip, words: &[u16]| {
+        let mut readings = Readings::new(0);
+        let taken = (0..2000).map(|_| readings.take(chip, &frame(words)));
+        taken.take_while(Result::is_ok).count()
+    };
+    for (chip, words, _) in CASES {
+        let expected = chip.frozen_after.map_or(2000, usize::from);
+        assert_eq!(takes(chip, words), expected, "{}", chip.name);
+    }
+    assert_eq!(MT6701.frozen_after, None);
+}
+
+#[test]
+fn a_scene_states_an_age_that_covers_the_chip_s() {
+    let check = |chip: &Chip, least: f64, most: f64| {
+        let age = TimeRange::between(least, most);
+        let encoder = crate::scene::EncoderReading { age, ..crate::scene::EncoderReading::IDEAL };
+        let latency = Latency::NONE.read_by(Box::leak(Box::new(encoder)));
+        chip.check(&latency, 1e-4, 16384.0).map_err(|error| error.sentence().as_str().to_owned())
+    };
+    assert_eq!(check(&MT6701, 0.0, 1e-5), Ok(()));
+    let error = check(&MT6701, 0.0, 9e-6).unwrap_err();
+    assert!(error.contains("mt6701 have an age anywhere between 0 and 0.00001 s"), "{error}");
+    assert!(check(&MT6701, 1e-6, 1e-5).is_err());
+    // A period of 100 us more, less the 10 us in which the transfer before has ended.
+    assert_eq!(check(&AS5048A, 1.81e-4, 2.99e-4), Ok(()));
+    assert!(check(&AS5048A, 9.1e-5, 1.99e-4).is_err());
+    let error = check(&MA702, 0.0, 1e-4).unwrap_err();
+    assert_eq!(error, "the encoder has 16384 counts in a turn, and ma702 has 65536");
+}
+
+/// A handle may rest where all bits are equal; a wire that breaks elsewhere is told.
+#[test]
+fn a_word_of_equal_bits_is_an_angle_beside_zero() {
+    let takes = |chip: &Chip, first: u16, word: u16| {
+        let mut readings = Readings::new(0);
+        let _ = readings.take(chip, &frame(&[first]));
+        readings.take(chip, &frame(&[word])).map(|()| readings.count())
+    };
+    assert_eq!(takes(&MA702, 200, 0), Ok(0));
+    assert_eq!(takes(&MA702, 65_400, 65_535), Ok(65_535));
+    assert_eq!(takes(&MA702, 300, 0), Err(ReadingError::Zeros));
+    assert_eq!(takes(&MA702, 65_000, 65_535), Err(ReadingError::Ones));
+    assert_eq!(takes(&AS5048A, 3, 0), Ok(0));
+    assert_eq!(takes(&AS5048A, 3, 65_535), Err(ReadingError::Ones));
+    // Nor is the first reading a zero.
+    assert_eq!(takes(&MA702, 0, 0), Err(ReadingError::Zeros));
+}
