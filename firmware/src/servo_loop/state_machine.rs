@@ -144,7 +144,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     }
 
     fn fade_out(&mut self, hardware: &mut impl Hardware, inbox: &mut Incoming<'_, E, N, M>) {
-        // The clamp was shut before this tick, so this tick's code was mid-scale.
+        // The clamp was shut before this tick, so this tick's code was mid-scale, or a host's torque alone.
         if !self.rendering.servo_mut().clamp().is_shut() {
             for _ in 0..self.ramp {
                 self.rendering.servo_mut().clamp().close();
