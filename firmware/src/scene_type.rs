@@ -294,7 +294,8 @@ pub const fn numbers<const COUNT: usize>(mut environment: Environment) -> [f64; 
 }
 
 /// Makes a type of the structure of a certified scene: `scene_type!(pub MyScene: CERTIFIED)`, where `CERTIFIED` is a
-/// constant `Certified<Scene>`; with `, host: HOST` after it, a constant `HostTorque`, it has a host. The environment of such a program is `Typed<MyScene>`.
+/// constant `Certified<Scene>`; with `, host: HOST` after it, a constant `HostTorque`, it has a host. The
+/// environment of such a program is `Typed<MyScene>`.
 ///
 /// ```
 /// use haptic_servo::certificate::Certified;

@@ -1,5 +1,5 @@
-//! A wall that leaves room for the torque of a host: a game or a notebook adds what it likes, and the hand gets at
-//! most the energy of the budget from it.
+//! A wall that leaves room for the torque of a host: a game or a notebook adds what it likes, and the hand
+//! gets at most the energy of the budget from it.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod paddle;

@@ -57,8 +57,8 @@ pub type ProgramMode<M = crate::servo::Latched> = M;
 /// types to compute in: `float`, and `fixed` with the feature `fixed-point`; without them `f32` and a `Fixed` of its
 /// own. On a board the program runs the servo; on the host it prints the certificate.
 ///
-/// After the certificate of a scene, `host: HOST` is a constant [`HostTorque`](crate::host::HostTorque): what a host
-/// may add to the torque of the scene.
+/// After the certificate of a scene, `host: HOST` is a constant [`HostTorque`](crate::host::HostTorque):
+/// what a host may add to the torque of the scene.
 ///
 /// What may follow, in this order, are a type and constant expressions:
 ///

@@ -11,8 +11,8 @@ use crate::number::{Format, Number};
 use crate::output_timing::{OutputTiming, READ_WITHIN};
 use crate::scene::Timing;
 
-/// Ticks after the amplifier was switched off in which the device's motion gives nothing back: what is left of the
-/// torque is not known then.
+/// Ticks after the amplifier was switched off in which the device's motion gives nothing back: what is left
+/// of the torque is not known then.
 const UNKNOWN: u32 = 10;
 
 /// A command in a report: the tick that took it, in the servo's units.
@@ -97,13 +97,13 @@ pub trait BesideServo: Clone + fmt::Debug {
     /// # Errors
     /// If there is no proof for it beside this servo.
     fn beside(host: &HostTorque, servo: &ServoNumbers<'_>) -> Result<Self, HostError>;
-    /// Ends a tick in which the position moved by so many counts; returns the host's torque in N m, and whether
-    /// it is less than wanted.
+    /// Ends a tick in which the position moved by so many counts; returns the host's torque in N m, and
+    /// whether it is less than wanted.
     fn tick<N: Number>(&mut self, moved: i32) -> (N, bool);
     /// Wants no torque until the next command to a running servo.
     fn rest(&mut self);
-    /// The amplifier was switched off; because of a fault, whose end of the torque no model knows, the tank is
-    /// empty.
+    /// The amplifier was switched off; because of a fault, whose end of the torque no model knows, the tank
+    /// is empty.
     fn cut(&mut self, by_fault: bool);
     /// Takes the last command, if it is new, and reports the tick.
     fn exchange(&mut self, channel: &Self::Channel, tick: TickState);
@@ -207,8 +207,8 @@ impl BesideServo for NoHost {
     }
 }
 
-/// A host with a tank in `f32`. A command acts `TICKS` whole ticks after its count; if `IS_PLAIN`, it acts in one
-/// tick only.
+/// A host with a tank in `f32`. A command acts `TICKS` whole ticks after its count; if `IS_PLAIN`, it acts
+/// in one tick only.
 #[derive(Clone, Debug)]
 pub struct Hosted<const TICKS: usize, const IS_PLAIN: bool> {
     tank: Tank<f32, FixedDelay<f32, TICKS>, IS_PLAIN>,

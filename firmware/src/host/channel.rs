@@ -1,7 +1,8 @@
 //! The words of a host's commands and of their reports, between the task and the servo's interrupt.
 //!
-//! The interrupt runs to its end before the task continues. So the task writes a command into the slot that the
-//! interrupt does not read, and then its number; and it reads a report again if the number changed meanwhile.
+//! The interrupt runs to its end before the task continues. So the task writes a command into the slot that
+//! the interrupt does not read, and then its number; and it reads a report again if the number changed
+//! meanwhile.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 

@@ -70,7 +70,8 @@ impl HostTorque {
         self
     }
 
-    /// For constants: the same host, or a compile error if its torque and the scene's are together above full scale.
+    /// For constants: the same host, or a compile error if its torque and the scene's are together above
+    /// full scale.
     #[track_caller]
     pub const fn checked_range<E>(
         self,

@@ -160,9 +160,9 @@ impl HostResponse {
         })
     }
 
-    /// For a motor without a lag: the steps of the torque are debited when they reach the motor, and not with the
-    /// command. Their cost cannot be known to be payable then, so the reserve has it: of the steps under way and of
-    /// those to zero, each up to twice the largest torque that the energy pays.
+    /// For a motor without a lag: the steps of the torque are debited when they reach the motor, and not
+    /// with the command. Their cost cannot be known to be payable then, so the reserve has it: of the steps
+    /// under way and of those to zero, each up to twice the largest torque that the energy pays.
     ///
     /// # Errors
     /// If the energy is less than this reserve.

@@ -18,8 +18,8 @@ enum Then {
     Rest,
 }
 
-/// The wanted torque. A command is reached along a line, held, and faded to zero if none follows it: after half of
-/// the timeout, over the other half.
+/// The wanted torque. A command is reached along a line, held, and faded to zero if none follows it: after
+/// half of the timeout, over the other half.
 #[derive(Clone, Debug)]
 pub(super) struct Stream {
     pub wanted: f32,

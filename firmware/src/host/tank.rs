@@ -246,8 +246,8 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
         self.held = if may_rise { self.cap } else { self.level.smaller(self.cap) };
     }
 
-    /// The motor makes no torque from now on. What was paid for torques under way is lost; if they may have been
-    /// more than that, so is the level.
+    /// The motor makes no torque from now on. What was paid for torques under way is lost; if they may have
+    /// been more than that, so is the level.
     pub(super) fn forget(&mut self, at_rest: D, is_emptied: bool) {
         if is_emptied {
             self.level = self.level.smaller(R::ZERO);

@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// A board whose torques are latched, a host that sends anything, and a hand that knows the next torque and when its
-/// counts are read.
+/// A board whose torques are latched, a host that sends anything, and a hand that knows the next torque and
+/// when its counts are read.
 struct Search {
     host: HostTorque,
     sampling: Sampling,

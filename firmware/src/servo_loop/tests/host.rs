@@ -1,4 +1,5 @@
-//! The torque of a host in the loop: what it gives in each state, and that a hand gets no more than the budget.
+//! The torque of a host in the loop: what it gives in each state, and that a hand gets no more than the
+//! budget.
 
 use super::*;
 use crate::certificate::Certified;
@@ -138,12 +139,12 @@ fn a_servo_that_does_not_run_gives_no_torque_and_keeps_the_level() {
     assert!((left - leak..=left).contains(&f64::from(taken.energy)), "{taken:?} {left} {leak}");
 }
 
-/// J left of the tank after a disarming while 0.4 N m were held: lost are the torque that acted when the amplifier
-/// went off, the torque after it that never reached the motor, and the step from zero.
+/// J left of the tank after a disarming while 0.4 N m were held: lost are the torque that acted when the
+/// amplifier went off, the torque after it that never reached the motor, and the step from zero.
 fn left_by_hand() -> f64 {
     let (period, torque) = (1e-3_f64, 0.4_f64);
-    // A count that is read up to 1 us late takes these parts of the share for the lost steps of the position, and
-    // for the steps of the torque.
+    // A count that is read up to 1 us late takes these parts of the share for the lost steps of the
+    // position, and for the steps of the torque.
     let late = 1e-6 / period;
     let eta = 2.0 * late.sqrt();
     let of_steps = (2.0 * late).sqrt();

@@ -237,8 +237,9 @@ where
         }
     }
 
-    /// Puts the next report to a host into the outbox, before the other kinds: a report belongs to one command, so
-    /// that a host that sends commands more slowly than the line carries reports leaves room for them.
+    /// Puts the next report to a host into the outbox, before the other kinds: a report belongs to one
+    /// command, so that a host that sends commands more slowly than the line carries reports leaves room
+    /// for them.
     fn report_to_host(&mut self) {
         let report = if E::Host::is_budget_due(&mut self.reported) {
             E::HOST.map(HostReport::Budget)
