@@ -255,7 +255,7 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
             return not_covered("the heat and the supply of a board's own bridge");
         }
         let Timing { period, worst_period } = servo.timing;
-        if !(host.timeout >= 2.0 * period) {
+        if host.timeout < 2.0 * period {
             return Err(HostError::Timeout { timeout: host.timeout, least: 2.0 * period });
         }
         let (ticks, reading) = match servo.output {

@@ -42,7 +42,7 @@ impl Search {
         let (mut taken, mut most) = (0.0_f64, 0.0_f64);
         for tick in 0..400 {
             let wanted = match run % 5 {
-                0 if tick / (1 + run / 5 % 4) % 2 == 0 => torque,
+                0 if (tick / (1 + run / 5 % 4)).is_multiple_of(2) => torque,
                 0 => -torque,
                 1 => torque * size * random.next(),
                 2 => torque * moved.signum(),
