@@ -121,7 +121,9 @@ where
     let reset = hardware.reset_cause();
     let previous_fault = read_previous_fault(hardware, reset);
     let fault = previous_fault.map(|previous_fault| previous_fault.fault);
-    let servo_loop = ServoLoop::new(rendering, &program.options, hardware.period(), fault);
+    let host = tuning::host::<E, N, M>(&scene, &program.transducers, &program.rendering);
+    let servo_loop = ServoLoop::new(rendering, &program.options, hardware.period(), fault)
+        .with_host(host.map_err(|_| Step::Servo)?);
     hardware.start_watchdog();
     let arms_because = reason_to_arm(&program.options, reset, previous_fault);
     if arms_because.is_some() {

@@ -2,18 +2,25 @@
 
 use crate::coupling_memory::{AnyMemory, CouplingMemory, NoMemory};
 use crate::environment::{Discretize, Environment, StatedEnvironment};
+use crate::host::{BesideServo, HostTorque, NoHost};
 use crate::number::Number;
 
 /// An environment that a servo renders in the number format `N`.
 pub trait Rendering<N: Number>: Discretize<N> {
     /// The torques that its coupling stores.
     type Memory: CouplingMemory<N>;
+    /// The host beside the servo, or none.
+    type Host: BesideServo;
+    /// What that host may do.
+    const HOST: Option<HostTorque> = None;
 }
 
 impl<N: Number> Rendering<N> for Environment {
     type Memory = AnyMemory<N>;
+    type Host = NoHost;
 }
 
 impl<N: Number, E: StatedEnvironment + Discretize<N>> Rendering<N> for E {
     type Memory = NoMemory;
+    type Host = NoHost;
 }

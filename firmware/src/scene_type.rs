@@ -12,6 +12,7 @@ use crate::environment::{
     Canceller, Delayed, Discretize, Environment, EnvironmentModel, LawContext, LawOf, Memory,
     PartSet, Parts, Profile, ProfileUse, Side, SupportsTiming, Wall, sealed,
 };
+use crate::host::{BesideServo, HostTorque};
 use crate::number::Number;
 use crate::output_timing::AtPhase;
 use crate::parameter::{NamedParameters, Parameter};
@@ -30,6 +31,10 @@ pub trait SceneType: Copy + core::fmt::Debug + PartialEq + 'static {
     type Law<N: Number>: LawOf<N, Parts>;
     /// The torques that the coupling stores.
     type Memory<N: Number>: CouplingMemory<N>;
+    /// What a host beside the servo may do.
+    const HOST: Option<HostTorque>;
+    /// That host, or none.
+    type Host: BesideServo;
 }
 
 /// An environment whose parts are known statically: the numbers of a program's scene.
@@ -122,6 +127,8 @@ impl<N: Number, S: SceneType> Discretize<N> for Typed<S> {
 
 impl<N: Number, S: SceneType> Rendering<N> for Typed<S> {
     type Memory = S::Memory<N>;
+    type Host = S::Host;
+    const HOST: Option<HostTorque> = S::HOST;
 }
 
 // With late torques, its numbers decide, which are checked with the timing of the scene.
@@ -172,6 +179,10 @@ pub struct Structure {
     pub lags: usize,
     /// Whether the amplifier is updated several times in a period.
     pub has_updates: bool,
+    /// Whether a board puts torques out at the next count.
+    pub is_latched: bool,
+    /// Whether a torque is over with its tick.
+    pub is_plain: bool,
 }
 
 impl Structure {
@@ -216,6 +227,8 @@ impl Structure {
             whole: if is_matched { latency.whole_samples(scene.timing.period) } else { 0 },
             lags: latency.trails(),
             has_updates: latency.actuator_updates != 0,
+            is_latched: latency.output_delay.is_zero(),
+            is_plain: latency.output_delay.is_zero() && latency.actuator_lag.is_zero(),
         }
     }
 }
@@ -281,7 +294,8 @@ pub const fn numbers<const COUNT: usize>(mut environment: Environment) -> [f64; 
 }
 
 /// Makes a type of the structure of a certified scene: `scene_type!(pub MyScene: CERTIFIED)`, where `CERTIFIED` is a
-/// constant `Certified<Scene>`. The environment of such a program is `Typed<MyScene>`.
+/// constant `Certified<Scene>`; with `, host: HOST` after it, a constant `HostTorque`, it has a host. The
+/// environment of such a program is `Typed<MyScene>`.
 ///
 /// ```
 /// use haptic_servo::certificate::Certified;
@@ -306,7 +320,7 @@ pub const fn numbers<const COUNT: usize>(mut environment: Environment) -> [f64; 
 /// ```
 #[macro_export]
 macro_rules! scene_type {
-    ($(#[$attribute:meta])* $visibility:vis $name:ident: $certified:path) => {
+    ($(#[$attribute:meta])* $visibility:vis $name:ident: $certified:path $(, host: $host:path)?) => {
         $(#[$attribute])*
         #[derive(Clone, Copy, Debug, PartialEq)]
         $visibility struct $name;
@@ -317,6 +331,12 @@ macro_rules! scene_type {
             const GIVEN: Certified<Scene> = $crate::reported_once!($certified);
             const OF: Structure = Structure::of(GIVEN.scene());
             const ENVIRONMENT: Environment = GIVEN.scene().environment;
+            #[allow(unused_mut, unused_assignments)]
+            const OF_HOST: Option<HostTorque> = {
+                let mut host = None;
+                $(host = Some($host);)?
+                host
+            };
 
             impl SceneType for $name {
                 const CERTIFIED: Certified<Scene> = GIVEN;
@@ -361,6 +381,12 @@ macro_rules! scene_type {
                     >,
                     NoMemory,
                 >;
+                const HOST: Option<HostTorque> = OF_HOST;
+                type Host = Either<
+                    { OF_HOST.is_some() },
+                    Hosted<{ OF.is_latched as usize }, { OF.is_plain }>,
+                    NoHost,
+                >;
             }
         };
     };
@@ -388,6 +414,7 @@ pub mod names {
         AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, DragLaw, Environment, Face,
         FixedDelay, NoDamping, NoSnap, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
     };
+    pub use crate::host::{HostTorque, Hosted, NoHost};
     pub use crate::number::Number;
     pub use crate::scene::Scene;
 

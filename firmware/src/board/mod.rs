@@ -57,6 +57,9 @@ pub type ProgramMode<M = crate::servo::Latched> = M;
 /// types to compute in: `float`, and `fixed` with the feature `fixed-point`; without them `f32` and a `Fixed` of its
 /// own. On a board the program runs the servo; on the host it prints the certificate.
 ///
+/// After the certificate of a scene, `host: HOST` is a constant [`HostTorque`](crate::host::HostTorque):
+/// what a host may add to the torque of the scene.
+///
 /// What may follow, in this order, are a type and constant expressions:
 ///
 /// - `output`: when the board puts a code out, such as `AtPhase<10_000>`, 10 microseconds after the
@@ -92,6 +95,34 @@ pub type ProgramMode<M = crate::servo::Latched> = M;
 /// ```
 #[macro_export]
 macro_rules! scene_program {
+    (
+        scene: $scene:ident,
+        certified: $certified:ident,
+        host: $host:ident,
+        transducers: $transducers:ident
+        $($rest:tt)*
+    ) => {
+        $crate::scene_type! {
+            /// The structure of the scene.
+            pub ThisScene: $certified, host: $host
+        }
+
+        /// The environment that the servo renders: the parts of the scene and no others.
+        pub type Rendered = $crate::scene_type::Typed<ThisScene>;
+
+        const RENDERED: $crate::certificate::Certified<$crate::scene::Scene<Rendered>> =
+            Rendered::certified();
+
+        const _: $crate::host::HostTorque =
+            $host.checked_beside(&RENDERED).checked_range(&RENDERED, &$transducers);
+
+        $crate::scene_program! {
+            scene: $scene: Rendered,
+            certified: RENDERED,
+            transducers: $transducers
+            $($rest)*
+        }
+    };
     (scene: $scene:ident, certified: $certified:ident, $($rest:tt)*) => {
         $crate::scene_type! {
             /// The structure of the scene.

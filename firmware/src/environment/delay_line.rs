@@ -28,6 +28,13 @@ pub struct FixedDelay<N, const DELAY: usize> {
     oldest_first: [N; DELAY],
 }
 
+impl<N: Copy, const DELAY: usize> FixedDelay<N, DELAY> {
+    /// A line full of one torque.
+    pub const fn full_of(torque: N) -> Self {
+        Self { oldest_first: [torque; DELAY] }
+    }
+}
+
 impl<N: Number, const DELAY: usize> DelayLine<N> for FixedDelay<N, DELAY> {
     fn at_rest(delay: usize) -> Result<Self, BuildError> {
         if delay != DELAY {

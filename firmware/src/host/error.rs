@@ -24,6 +24,8 @@ sentences! {
     Energy { energy: f64, least: f64 } => (
         "the host's energy is " {energy} " J, and must be above " {least} " J, which the error of the \
          encoder's counts can take at the host's largest torque: lower the torque, or take a finer encoder"),
+    Timeout { timeout: f64, least: f64 } => (
+        "the host's timeout is " {timeout} " s, and must be at least two periods, which are " {least} " s"),
     NotCovered { time: &'static str } => ("there is no proof for a host's torque beside " {time}),
     }
 }

@@ -8,18 +8,27 @@
 //! The scene must certify with a part of the device's damping less, the host's *share*. That share pays for
 //! the torque of a tick before its motion is known, so no bound on the speed is needed.
 
+mod beside;
+mod channel;
 mod error;
 mod response;
+mod stream;
 mod tank;
 #[cfg(test)]
 mod tests;
 
+#[cfg(feature = "wire")]
+pub use beside::Nothing;
+pub use beside::{BesideServo, Hosted, NoHost, Reported, ServoNumbers, Taken, TickState};
+pub use channel::{HostChannel, HostWords};
 pub use error::HostError;
 pub use response::{HostResponse, Sampling};
 pub use tank::{Tank, TankNumber};
 
 use crate::certificate::Certified;
+use crate::scene::Scene;
 use crate::text::or_refuse;
+use crate::transducers::Transducers;
 
 /// What a host may do.
 ///
@@ -58,6 +67,18 @@ impl HostTorque {
     pub const fn checked_beside<S>(self, scene: &Certified<S>) -> Self {
         or_refuse!(self.check());
         or_refuse!(self.check_share(scene.assessment().margin(scene.as_data())));
+        self
+    }
+
+    /// For constants: the same host, or a compile error if its torque and the scene's are together above
+    /// full scale.
+    #[track_caller]
+    pub const fn checked_range<E>(
+        self,
+        scene: &Certified<Scene<E>>,
+        transducers: &Transducers,
+    ) -> Self {
+        or_refuse!(self.check_range(scene.scene().torque_limit, transducers.full_scale_torque));
         self
     }
 

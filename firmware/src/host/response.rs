@@ -81,6 +81,8 @@ pub struct HostResponse {
     /// The energy of a command in the second of these: the coefficients of its square, of its product with the
     /// torque at its begin less it, and of the square of that.
     pub unfinished: [f64; 3],
+    /// Coefficient of the squared steps of the mean torque, in place of a memory of the last command.
+    pub step_price: f64,
     /// Energy in J that counts can cost once all later commands are zero.
     pub reserve: f64,
 }
@@ -153,8 +155,33 @@ impl HostResponse {
             second: [total[0] - first[0], total[1] - first[1]],
             is_late: part > 0.0,
             unfinished: [part, 2.0 * held * (rest - a), (held - unspread) * (rest * rest - a * a)],
+            step_price: 0.0,
             reserve,
         })
+    }
+
+    /// For a motor without a lag: the steps of the torque are debited when they reach the motor, and not
+    /// with the command. Their cost cannot be known to be payable then, so the reserve has it: of the steps
+    /// under way and of those to zero, each up to twice the largest torque that the energy pays.
+    ///
+    /// # Errors
+    /// If the energy is less than this reserve.
+    pub fn without_memory(self, host: &HostTorque) -> Result<Self, HostError> {
+        let of_steps = self.tail[1];
+        let has_lag = self.is_late || self.tail[0] != 0.0 || self.pull[0] != 0.0;
+        if of_steps == 0.0 || has_lag {
+            return Ok(self);
+        }
+        let price = self.price - 2.0 * of_steps;
+        let joules = self.joules * price;
+        let square = (host.torque * host.torque).min(host.energy / joules);
+        let steps = 4.0 * (self.whole + 1) as f64 + 1.0;
+        let reserve = self.reserve + steps * of_steps * square * joules;
+        if reserve >= host.energy {
+            return Err(HostError::Energy { energy: host.energy, least: reserve });
+        }
+        let (pull, tail) = ([0.0; 2], [0.0; 2]);
+        Ok(Self { is_plain: true, price, pull, tail, step_price: of_steps, reserve, ..self })
     }
 }
 

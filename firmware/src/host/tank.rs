@@ -84,8 +84,12 @@ pub struct Tank<R: TankNumber, D, const PLAIN: bool> {
     count_error: R,
     /// Level per change of the mean torque, because of the same.
     count_step: R,
+    /// Level per squared change of the mean torque, for commands without a memory of the last.
+    step_price: R,
     power: R,
     cap: R,
+    /// The cap of the present tick: less while motion gives nothing back.
+    held: R,
     leak: R,
     below_root: R,
     torque: R,
@@ -169,8 +173,10 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
             speed: R::nearest(speed * angle * less),
             count_error: R::nearest(count_error * more),
             count_step: R::nearest(speed * count * more),
+            step_price: R::nearest(response.step_price * more),
             power: R::nearest(host.power * response.period / joules * less),
             cap,
+            held: cap,
             leak: R::nearest(16.0 * R::ROUNDOFF),
             below_root: R::nearest(1.0 - 64.0 * R::ROUNDOFF),
             torque: R::bound_from_f64(host.torque / torque).unwrap_or(R::ZERO),
@@ -194,7 +200,75 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
         let level = self.level.plus(earned).minus(lost);
         // Of a negative level, too, it takes something away.
         let level = level.minus(magnitude(level).times(self.leak));
-        self.level = level.smaller(self.cap.minus(self.to_come()));
+        self.level = level.smaller(self.held.minus(self.to_come()));
+    }
+
+    /// An empty tank that never has any energy, with these lines at rest.
+    pub(super) fn empty(means: D, energies: D) -> Self {
+        let zero = R::ZERO;
+        let memory = Spread {
+            decay: zero,
+            pull: [zero; 2],
+            tail: [zero; 2],
+            first: [zero; 2],
+            second: [zero; 2],
+            is_late: false,
+            over: [zero; 3],
+            lagging: zero,
+            before: zero,
+            rest: zero,
+            unfinished: zero,
+        };
+        Self {
+            speed: zero,
+            count_error: zero,
+            count_step: zero,
+            step_price: zero,
+            power: zero,
+            cap: zero,
+            held: zero,
+            leak: zero,
+            below_root: zero,
+            torque: zero,
+            memory,
+            unfinished: means.clone(),
+            level: zero,
+            mean: zero,
+            means,
+            energies,
+            joules: 0.0,
+            reserve: 0.0,
+        }
+    }
+
+    /// Whether the level may rise from now on.
+    pub(super) fn give_back(&mut self, may_rise: bool) {
+        self.held = if may_rise { self.cap } else { self.level.smaller(self.cap) };
+    }
+
+    /// The motor makes no torque from now on. What was paid for torques under way is lost; if they may have
+    /// been more than that, so is the level.
+    pub(super) fn forget(&mut self, at_rest: D, is_emptied: bool) {
+        if is_emptied {
+            self.level = self.level.smaller(R::ZERO);
+            self.held = self.level;
+        }
+        let zero = R::ZERO;
+        (self.mean, self.means, self.energies) = (zero, at_rest.clone(), at_rest.clone());
+        self.unfinished = at_rest;
+        let memory = &mut self.memory;
+        (memory.lagging, memory.before) = (zero, zero);
+        (memory.rest, memory.unfinished) = (zero, zero);
+    }
+
+    /// The level above the reserve, with the energies to come.
+    pub(super) fn level(&self) -> R {
+        self.level.plus(self.to_come())
+    }
+
+    /// J for a level of 1, and for a level of zero.
+    pub(super) const fn joules(&self) -> [f64; 2] {
+        [self.joules, self.reserve]
     }
 
     /// The energy of the commands given so far that is still to come.
@@ -270,8 +344,12 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
         };
         let begins = self.means.due().unwrap_or(mean);
         // The reserve covers this, so that the level may become negative.
-        let step = magnitude(begins.minus(self.mean)).times(self.count_step);
+        let change = begins.minus(self.mean);
+        let step = magnitude(change).times(self.count_step);
         self.level = paid.minus(step);
+        if PLAIN {
+            self.level = self.level.minus(change.times(change).times(self.step_price));
+        }
         self.mean = begins;
         self.means.push(mean);
         self.energies.push(energy);

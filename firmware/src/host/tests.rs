@@ -1,5 +1,7 @@
 //! The tank against a motor and a hand that are integrated here, and that know nothing of the tank's formulas.
 
+mod reading;
+
 use crate::environment::{FixedDelay, VariableDelay};
 use crate::host::{HostError, HostResponse, HostTorque, Sampling, Tank, TankNumber};
 use crate::scene::{Latency, TimeRange};

@@ -22,6 +22,7 @@ use heapless::spsc::{Consumer, Producer, Queue};
 
 use super::interruption::may_interrupt;
 use super::state::{Reply, Status};
+use crate::host::HostChannel;
 
 /// Bits of the word of requests; the first are those of [`Kind`].
 const SET: u32 = 1 << 4;
@@ -65,14 +66,20 @@ struct Shared {
     status: Published<{ 1 + Status::WORDS }>,
 }
 
-/// Shared by both ends; `R` is the swapped servo, a [`PreparedServo`](crate::servo::PreparedServo).
-#[derive(Debug)]
-pub struct Mailbox<R> {
-    sets: Queue<R, SETS>,
-    shared: Shared,
+/// What the mailbox carries beside a servo.
+pub trait Exchanged {
+    /// The words of a host, or none.
+    type Channel: HostChannel;
 }
 
-impl<R> Mailbox<R> {
+/// Shared by both ends; `R` is the swapped servo, a [`PreparedServo`](crate::servo::PreparedServo).
+pub struct Mailbox<R: Exchanged> {
+    sets: Queue<R, SETS>,
+    shared: Shared,
+    host: R::Channel,
+}
+
+impl<R: Exchanged> Mailbox<R> {
     /// An empty mailbox.
     pub const fn new() -> Self {
         let shared = Shared {
@@ -84,32 +91,38 @@ impl<R> Mailbox<R> {
             alignment: Published::new(),
             status: Published::new(),
         };
-        Self { sets: Queue::new(), shared }
+        Self { sets: Queue::new(), shared, host: R::Channel::EMPTY }
     }
 
     /// The task's end and the interrupt's end.
     pub fn split(&mut self) -> (Requests<'_, R>, Inbox<'_, R>) {
         let (submit, sets) = self.sets.split();
-        let shared = &self.shared;
-        let requests = Requests { submit, shared, submitted: 0 };
-        (requests, Inbox { sets, shared, swapped: 0, disarm: 0 })
+        let (shared, host) = (&self.shared, &self.host);
+        let requests = Requests { submit, shared, host, submitted: 0 };
+        (requests, Inbox { sets, shared, host, swapped: 0, disarm: 0 })
     }
 }
 
-impl<R> Default for Mailbox<R> {
+impl<R: Exchanged> Default for Mailbox<R> {
     fn default() -> Self {
         Self::new()
     }
 }
 
 /// The low-priority end. Requests have numbers, by which a reply is recognised.
-pub struct Requests<'a, R> {
+pub struct Requests<'a, R: Exchanged> {
     submit: Producer<'a, R>,
     shared: &'a Shared,
+    host: &'a R::Channel,
     submitted: u32,
 }
 
-impl<R> Requests<'_, R> {
+impl<R: Exchanged> Requests<'_, R> {
+    /// The words of a host.
+    pub(crate) const fn host(&self) -> &R::Channel {
+        self.host
+    }
+
     /// Requests arming; [`Requests::arming`] has the reply under the returned number. Do not request it
     /// before a request to disarm has its reply: the servo would fade in again, and never be off.
     pub fn arm(&self) -> u32 {
@@ -204,9 +217,10 @@ fn numbered(published: &Published<{ 1 + Reply::WORDS }>) -> Option<(u32, Reply)>
 }
 
 /// The interrupt's end.
-pub struct Inbox<'a, R> {
+pub struct Inbox<'a, R: Exchanged> {
     sets: Consumer<'a, R>,
     shared: &'a Shared,
+    host: &'a R::Channel,
     swapped: u32,
     /// The last request to disarm.
     disarm: u32,
@@ -222,7 +236,12 @@ pub(super) struct PendingRequests {
     pub host_alive: bool,
 }
 
-impl<R> Inbox<'_, R> {
+impl<R: Exchanged> Inbox<'_, R> {
+    /// The words of a host.
+    pub(super) const fn host(&self) -> &R::Channel {
+        self.host
+    }
+
     /// Pending requests as a word; zero if none.
     #[inline(always)]
     pub(super) fn pending(&self) -> u32 {

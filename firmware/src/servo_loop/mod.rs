@@ -25,7 +25,7 @@ mod swap;
 
 pub use frames::{Frame, FrameQueue, FrameReader, FrameSink, Frames};
 pub use hardware::{BEGAN_LATE, Hardware, OutputEvent, PeriodClock};
-pub use mailbox::{Inbox, Mailbox, Requests};
+pub use mailbox::{Exchanged, Inbox, Mailbox, Requests};
 pub use options::{Arming, LinkPolicy, Options, Reason};
 pub use state::{Reply, State, Status};
 pub use swap::longest_gap;
@@ -35,6 +35,7 @@ pub use crate::output_timing::READ_WITHIN;
 use crate::dac::DacCode;
 use crate::energy::EnergyMonitor;
 use crate::fault::Fault;
+use crate::host::BesideServo;
 use crate::number::Number;
 use crate::output_timing::OutputMode;
 use crate::rendering::Rendering;
@@ -43,6 +44,10 @@ use crate::torque::LimitReason;
 
 /// The interrupt's end of the mailbox, with its sets.
 type Incoming<'a, E, N, M> = Inbox<'a, PreparedServo<E, N, M>>;
+
+impl<E: Rendering<N>, N: Number, M> Exchanged for PreparedServo<E, N, M> {
+    type Channel = <E::Host as BesideServo>::Channel;
+}
 
 /// The action after the clamp has closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +71,7 @@ struct MissedUpdates {
 #[derive(Clone, Debug)]
 pub struct ServoLoop<E: Rendering<N>, N: Number, M> {
     rendering: PreparedServo<E, N, M>,
+    host: E::Host,
     energy: EnergyMonitor,
     state: State,
     after_fade: AfterFade,
@@ -119,6 +125,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         let deadline = phase.map_or(period, |phase| (phase * f64::from(period)) as u32);
         Self {
             rendering,
+            host: E::Host::silent(),
             energy: phase.map_or_else(EnergyMonitor::default, EnergyMonitor::with_phase),
             state: State::Disarmed,
             after_fade: AfterFade::Release,
@@ -139,6 +146,11 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             link_deadline: link_timeout,
             link_lost: false,
         }
+    }
+
+    /// The same loop with this host in place of a silent one.
+    pub fn with_host(self, host: E::Host) -> Self {
+        Self { host, ..self }
     }
 
     /// One interrupt.
@@ -174,7 +186,14 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.stop_on_nan(hardware, inbox);
         }
         let mut pending = inbox.pending();
-        let mut code = output.code;
+        let (mut code, mut limit) = (output.code, output.limit);
+        if E::Host::IS_PRESENT {
+            let (torque, is_refused) = self.host.tick(step);
+            code = self.rendering.servo().code_beside(torque);
+            if is_refused {
+                limit = LimitReason::Energy;
+            }
+        }
         if self.state != State::Running {
             code = self.unless_disarmed(code);
             pending = u32::MAX;
@@ -197,7 +216,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if !M::TIMING.is_at_phase() {
             slack = self.slack(hardware, inbox);
         }
-        frames.push(Frame { tick, count, code, limit: output.limit, state: self.state, slack });
+        frames.push(Frame { tick, count, code, limit, state: self.state, slack });
     }
 
     /// Timer counts left until the tick's deadline.

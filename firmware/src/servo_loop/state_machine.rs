@@ -4,6 +4,7 @@ use super::swap::{ARMING, SETTLING};
 use super::*;
 use crate::current::PowerFault;
 use crate::fault::FaultRecord;
+use crate::host::TickState;
 
 impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// Called in every tick except that of a running servo without requests.
@@ -38,6 +39,15 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             State::Settling => self.settle(inbox),
             State::Disarmed | State::Faulted => self.idle(inbox),
             State::Aligning => self.wait_for_alignment(hardware, inbox),
+        }
+        let is_running = self.state == State::Running;
+        if !is_running {
+            self.host.rest();
+        }
+        if E::Host::IS_PRESENT {
+            let (tick, count) = (self.tick, self.rendering.servo().low_count());
+            let tick = TickState { tick, count, is_running, state: self.state as u32 };
+            self.host.exchange(inbox.host(), tick);
         }
         if let Some(number) = requests.status {
             inbox.reply_with_status(number, &self.status(dropped));
@@ -134,7 +144,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     }
 
     fn fade_out(&mut self, hardware: &mut impl Hardware, inbox: &mut Incoming<'_, E, N, M>) {
-        // The clamp was shut before this tick, so this tick's code was mid-scale.
+        // The clamp was shut before this tick, so this tick's code was mid-scale, or a host's torque alone.
         if !self.rendering.servo_mut().clamp().is_shut() {
             for _ in 0..self.ramp {
                 self.rendering.servo_mut().clamp().close();
@@ -148,6 +158,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             }
             AfterFade::Release => {
                 hardware.amplifier(false);
+                self.host.cut(false);
                 self.state = State::Disarmed;
                 inbox.off();
             }

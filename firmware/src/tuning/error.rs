@@ -5,6 +5,7 @@ use core::fmt;
 use super::{Parameters, TUNABLE, name};
 use crate::build_error::BuildError;
 use crate::certificate::{Parameter, Rejection, TimingError};
+use crate::host::HostError;
 use crate::step::Step;
 
 /// Why a change is impossible with any value.
@@ -55,6 +56,8 @@ pub enum RenderError {
     Rejected(Rejection),
     /// The scene does not fit this board's timing.
     Timing(TimingError),
+    /// There is no proof for the program's host beside the scene.
+    Host(HostError),
     /// The servo cannot be built with these transducers in this number format.
     Build(BuildError),
     /// The change selects another mode, whose table only the board has.
@@ -70,7 +73,7 @@ impl RenderError {
         match self {
             Self::Tuning(_) => Step::Change,
             Self::Rejected(_) | Self::Timing(_) | Self::OtherMode { .. } => Step::Certificate,
-            Self::Build(_) => Step::Servo,
+            Self::Build(_) | Self::Host(_) => Step::Servo,
         }
     }
 }
@@ -82,6 +85,7 @@ impl fmt::Display for RenderError {
             Self::Rejected(rejection) => rejection.fmt(f),
             Self::Timing(error) => error.fmt(f),
             Self::Build(error) => error.fmt(f),
+            Self::Host(error) => error.fmt(f),
             Self::OtherMode { mode } => write!(
                 f,
                 "mode {mode} is not certified with the other numbers that run, or that were to change with \
@@ -105,4 +109,4 @@ macro_rules! causes {
         }
     )+};
 }
-causes! { Tuning(TuningError) Rejected(Rejection) Timing(TimingError) Build(BuildError) }
+causes! { Tuning(TuningError) Rejected(Rejection) Timing(TimingError) Build(BuildError) Host(HostError) }

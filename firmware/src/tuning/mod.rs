@@ -14,6 +14,7 @@ use crate::build_error::BuildError;
 use crate::certificate::{Parameter, certify_scene, scene_data, timing_checked};
 use crate::current::{Push, ReturnedEnergy};
 use crate::environment::{EnvironmentModel, SupportsTiming};
+use crate::host::{BesideServo, HostError, HostTorque, ServoNumbers};
 use crate::number::Number;
 use crate::output_timing::OutputMode;
 use crate::rendering::Rendering;
@@ -164,11 +165,49 @@ where
     let timed = timing_checked(scene, N::FORMAT)?;
     check_returned(&scene, transducers, options).map_err(|_| Step::Servo)?;
     let rendering = PreparedServo::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
-    Ok(Prepared {
-        scene,
-        margin: Some(timed.margin_with(options.injection.unwrap_or(0.0))),
-        rendering,
-    })
+    let mut margin = timed.margin_with(options.injection.unwrap_or(0.0));
+    if let Some(host) = E::HOST {
+        check_host(&host, &scene, transducers, margin).map_err(|_| Step::Servo)?;
+        margin -= host.damping;
+    }
+    Ok(Prepared { scene, margin: Some(margin), rendering })
+}
+
+/// Checks the program's host against the scene's margin in N m s/rad and its torque limit.
+fn check_host<E>(
+    host: &HostTorque,
+    scene: &Scene<E>,
+    transducers: &Transducers,
+    margin: f64,
+) -> Result<(), HostError> {
+    host.check_share(Some(margin))?;
+    host.check_range(scene.torque_limit, transducers.full_scale_torque)
+}
+
+/// The host beside a program's servo, with a full tank.
+///
+/// # Errors
+/// If there is no proof for it.
+pub fn host<E, N, M>(
+    scene: &Scene<E>,
+    transducers: &Transducers,
+    options: &RenderingOptions,
+) -> Result<E::Host, RenderError>
+where
+    E: Tunable<N>,
+    N: Number,
+    M: OutputMode,
+{
+    let Some(host) = E::HOST else { return Ok(E::Host::silent()) };
+    let servo = ServoNumbers {
+        latency: &scene.latency,
+        timing: scene.timing,
+        output: M::TIMING,
+        radians_per_count: transducers.radians_per_count()?,
+        format: N::FORMAT,
+        has_bridge: options.returned.is_some(),
+    };
+    Ok(E::Host::beside(&host, &servo)?)
 }
 
 /// Whether the program may be for a board's own bridge. The programs of other boards have no code for the energy
@@ -209,6 +248,10 @@ where
     let timed = certify_scene(changed, N::FORMAT)?.time()?;
     check_returned(&changed, transducers, options)?;
     PreparedServo::<E, N, M>::build(&timed, transducers, options)?;
+    if let Some(host) = E::HOST {
+        let margin = timed.margin_with(options.injection.unwrap_or(0.0));
+        check_host(&host, &changed, transducers, margin)?;
+    }
     Ok(())
 }
 

@@ -3,10 +3,9 @@
 //! A line of 460,800 bit/s carries 46 bytes in a millisecond each way. A command takes at most 18 of them, and
 //! its report 43, with frame and checksum: a stream at 1 kHz fits, and a slower one leaves room for telemetry.
 
-use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 
-use crate::host::HostTorque;
+use crate::host::{HostTorque, Taken};
 use crate::servo_loop::State;
 use crate::torque::LimitReason;
 
@@ -55,19 +54,18 @@ pub struct HostState {
     pub invalid: u16,
 }
 
-/// The command or report of a program without a host: there is none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Nothing {}
-
-impl<'de> Deserialize<'de> for Nothing {
-    fn deserialize<D: Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
-        Err(D::Error::custom("no host"))
-    }
-}
-
-impl Serialize for Nothing {
-    fn serialize<S: Serializer>(&self, _: S) -> Result<S::Ok, S::Error> {
-        match *self {}
+impl HostState {
+    /// The state of a tick, with a velocity of one count a tick in rad/s.
+    pub(super) fn of(taken: &Taken, count_a_tick: f64) -> Self {
+        let Taken { number, tick, count, speed, energy, torque, refused, state, invalid } = *taken;
+        let state = State::ALL.get(state).copied().unwrap_or_default();
+        let limit = match state {
+            _ if refused == 0.0 => LimitReason::None,
+            State::Running => LimitReason::Energy,
+            _ => LimitReason::Ramp,
+        };
+        let velocity = speed * count_a_tick as f32;
+        Self { number, tick, count, velocity, energy, torque, refused, limit, state, invalid }
     }
 }
 

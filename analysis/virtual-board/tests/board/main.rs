@@ -9,6 +9,7 @@ mod contact;
 mod device;
 mod faults;
 mod harmless;
+mod hosted;
 mod interrupts;
 mod magnetic;
 mod own_board;

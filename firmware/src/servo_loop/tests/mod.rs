@@ -4,6 +4,7 @@ mod alignment;
 pub(crate) mod board;
 mod faults;
 mod frames;
+mod host;
 mod mailbox;
 mod modes;
 mod phase;

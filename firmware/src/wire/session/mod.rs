@@ -27,7 +27,7 @@ use super::PROTOCOL;
 use super::decoder::Decoder;
 use super::description::Description;
 use super::frame::CHECKSUM;
-use super::host::Nothing;
+use super::host::{HostCommand, HostReport, HostState};
 use super::message::{
     ActiveParameters, BoardUnits, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal,
     Status, ToBoardWith, ToHostWith,
@@ -35,6 +35,7 @@ use super::message::{
 use crate::boot::Program;
 use crate::certificate::scene_data;
 use crate::fault::FaultRecord;
+use crate::host::BesideServo;
 use crate::number::Number;
 use crate::power_reading::PowerReading;
 use crate::rendering::Rendering;
@@ -63,6 +64,9 @@ pub struct BoardInfo {
     pub power: fn() -> Option<PowerReading>,
 }
 
+/// A value in the messages of a program with a host, and none in others.
+type IfHost<E, N, T> = <<E as Rendering<N>>::Host as BesideServo>::IfPresent<T>;
+
 /// A set of parameters with the damping that the device may lose while it runs.
 #[derive(Clone, Copy)]
 struct Set<E> {
@@ -86,6 +90,7 @@ pub struct Session<'a, E: Rendering<N>, N: Number, M, const LENGTH: usize> {
     frames: FrameReader<'a, LENGTH>,
     decoder: Decoder<{ LONGEST_TO_BOARD + CHECKSUM }>,
     outbox: Outbox,
+    reported: <E::Host as BesideServo>::Reported,
     replies: PendingReplies,
     stream: Stream,
     /// The kind of reply that is sent next, if there is one.
@@ -120,6 +125,7 @@ where
             frames,
             decoder: Decoder::new(),
             outbox: Outbox::new(),
+            reported: Default::default(),
             replies: PendingReplies::default(),
             stream: Stream::new(program.scene.timing.period),
             turn: Turn::FIRST,
@@ -148,6 +154,9 @@ where
     pub fn poll(&mut self) {
         self.compare();
         self.stream.take(&mut self.frames);
+        if E::Host::IS_PRESENT && self.outbox.is_empty() {
+            self.report_to_host();
+        }
         // In one round each kind has its turn, and a greeting has no more parts than that.
         for _ in 0..Turn::COUNT {
             if !self.outbox.is_empty() {
@@ -169,7 +178,7 @@ where
         self.outbox.sent(bytes);
     }
 
-    fn on_message(&mut self, message: ToBoardWith<Nothing>) {
+    fn on_message(&mut self, message: ToBoardWith<IfHost<E, N, HostCommand>>) {
         match message {
             ToBoardWith::Hello => self.replies.greet(),
             ToBoardWith::Get => self.replies.parameters = true,
@@ -187,7 +196,12 @@ where
                 Some(open) if open == id => {}
                 Some(_) => self.replies.refuse(id, Refusal::Busy),
             },
-            ToBoardWith::Torque(command) => match command {},
+            ToBoardWith::Torque(command) => {
+                let HostCommand { number, torque, ramp } = E::Host::value(command);
+                E::Host::send(self.requests.host(), number, torque, ramp);
+                // After the command, for the interrupt that takes it.
+                self.requests.host_alive();
+            }
         }
     }
 
@@ -223,6 +237,28 @@ where
         }
     }
 
+    /// Puts the next report to a host into the outbox, before the other kinds: a report belongs to one
+    /// command, so that a host that sends commands more slowly than the line carries reports leaves room
+    /// for them.
+    fn report_to_host(&mut self) {
+        let report = if E::Host::is_budget_due(&mut self.reported) {
+            E::HOST.map(HostReport::Budget)
+        } else {
+            let Program { transducers, scene, .. } = &self.program;
+            let count_a_tick =
+                core::f64::consts::TAU / transducers.counts_per_turn / scene.timing.period;
+            let taken = E::Host::report(self.requests.host(), &mut self.reported);
+            taken.map(|taken| HostReport::State(HostState::of(&taken, count_a_tick)))
+        };
+        if let Some(report) = report.and_then(E::Host::present) {
+            self.put(&ToHostWith::Host(report));
+        }
+    }
+
+    fn put(&mut self, message: &ToHostWith<&str, IfHost<E, N, HostReport>>) {
+        self.outbox.put(message);
+    }
+
     /// Puts a reply of this kind into the outbox, if there is one.
     fn send(&mut self, turn: Turn) {
         let replies = &mut self.replies;
@@ -238,22 +274,22 @@ where
             Turn::Greeting => return self.greet(),
             Turn::Status => {
                 let Some(status) = replies.status.take() else { return };
-                return self.outbox.put(&ToHostWith::Status(self.status(&status)));
+                return self.put(&ToHostWith::Status(self.status(&status)));
             }
             Turn::Parameters if core::mem::take(&mut replies.parameters) => {
-                return self.outbox.put(&ToHostWith::ActiveParameters(self.parameters()));
+                return self.put(&ToHostWith::ActiveParameters(self.parameters()));
             }
             Turn::Description if core::mem::take(&mut replies.description) => {
-                return self.outbox.put(&ToHostWith::Described(self.description()));
+                return self.put(&ToHostWith::Described(self.description()));
             }
             Turn::Telemetry => {
                 let Some(batch) = self.stream.batch() else { return };
-                return self.outbox.put(&ToHostWith::Telemetry(batch));
+                return self.put(&ToHostWith::Telemetry(batch));
             }
             Turn::Parameters | Turn::Description => return,
         };
         if let Some((id, outcome)) = answer {
-            self.outbox.put(&ToHostWith::Answer { id, outcome });
+            self.put(&ToHostWith::Answer { id, outcome });
         }
     }
 
@@ -265,13 +301,14 @@ where
         }
         let message = match (part, self.info.previous_fault) {
             (Greeting::Welcome, _) => {
+                E::Host::request_budget(&mut self.reported);
                 ToHostWith::Welcome { protocol: PROTOCOL, program: self.info.name }
             }
             (Greeting::PreviousFault, Some(record)) => ToHostWith::PreviousFault(record.into()),
             (Greeting::PreviousFault, None) => return,
             (Greeting::Board, _) => ToHostWith::Board(self.board()),
         };
-        self.outbox.put(&message);
+        self.put(&message);
     }
 
     /// Certifies the requested set and submits it to the servo, or refuses it and changes nothing.

@@ -5,9 +5,9 @@ use core::num::NonZeroU32;
 
 use crate::servo_loop::{Frame, FrameReader};
 use crate::wire::frame::{encode, largest_frame};
-use crate::wire::host::Nothing;
 use crate::wire::message::{LONGEST_TO_HOST, ToHostWith};
 use crate::wire::telemetry::Batch;
+use serde::Serialize;
 
 /// The largest number of other messages that are sent before the answer to an accepted request, once the servo
 /// has done it, and before a set is certified: one of each other kind, and the other two parts of a greeting.
@@ -70,7 +70,7 @@ impl Outbox {
     }
 
     /// Takes a message; the rest of the previous message is discarded.
-    pub(super) fn put(&mut self, message: &ToHostWith<&str, Nothing>) {
+    pub(super) fn put<R: Serialize>(&mut self, message: &ToHostWith<&str, R>) {
         self.gone = 0;
         // The buffer has room for the longest message; a longer one would not be sent.
         self.end = encode(message, &mut self.buffer).map_or(0, <[u8]>::len);

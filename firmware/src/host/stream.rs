@@ -1,0 +1,123 @@
+//! The torque that a host wants, tick by tick: from one command to the next, and to zero after the last.
+
+use core::hint::cold_path;
+
+use super::HostTorque;
+
+/// Longest ramp in ticks, whose rounding stays below what a step of it is short of.
+const LONGEST_RAMP: u32 = 10_000;
+
+/// What a ramp does at its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Then {
+    /// Keeps the torque for so many ticks.
+    Hold(u32),
+    /// Ramps to zero.
+    Fade,
+    /// Stays at zero.
+    Rest,
+}
+
+/// The wanted torque. A command is reached along a line, held, and faded to zero if none follows it: after
+/// half of the timeout, over the other half.
+#[derive(Clone, Debug)]
+pub(super) struct Stream {
+    pub wanted: f32,
+    step: f32,
+    /// Ticks until the present ramp or hold ends; wraps at rest.
+    left: u32,
+    target: f32,
+    then: Then,
+    /// Half of the timeout in ticks, at least one.
+    half: u32,
+}
+
+impl Stream {
+    /// At rest. `period` in s.
+    pub fn new(host: &HostTorque, period: f64) -> Self {
+        // The cast rounds down and saturates.
+        let half = ((0.5 * host.timeout / period) as u32).clamp(1, LONGEST_RAMP);
+        Self { wanted: 0.0, step: 0.0, left: 0, target: 0.0, then: Then::Rest, half }
+    }
+
+    /// The wanted torque of the next tick.
+    #[inline(always)]
+    pub fn next(&mut self) -> f32 {
+        self.left = self.left.wrapping_sub(1);
+        self.wanted += self.step;
+        if self.left == 0 {
+            cold_path();
+            self.end();
+        }
+        self.wanted
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn end(&mut self) {
+        self.wanted = self.target;
+        self.step = 0.0;
+        match self.then {
+            Then::Hold(ticks) => (self.left, self.then) = (ticks, Then::Fade),
+            Then::Fade => self.ramp(0.0, self.half, Then::Rest),
+            Then::Rest => {}
+        }
+    }
+
+    /// Takes a command: a torque within the host's largest.
+    pub fn take(&mut self, torque: f32, ramp: u16) {
+        let ticks = u32::from(ramp).clamp(1, self.half);
+        self.ramp(torque, ticks, Then::Hold((self.half - ticks).max(1)));
+    }
+
+    /// A line that stays short of its target until its last tick, so that rounding never leads beyond it.
+    fn ramp(&mut self, target: f32, ticks: u32, then: Then) {
+        self.target = target;
+        self.step = (target - self.wanted) / ticks as f32 * (1.0 - 1.0 / 1024.0);
+        (self.left, self.then) = (ticks, then);
+    }
+
+    /// Wants nothing until the next command.
+    pub fn rest(&mut self) {
+        (self.wanted, self.step, self.left) = (0.0, 0.0, 0);
+        (self.target, self.then) = (0.0, Then::Rest);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A timeout of 20 ticks.
+    fn stream() -> Stream {
+        let host =
+            HostTorque { energy: 1.0, power: 0.0, damping: 0.01, torque: 1.0, timeout: 0.0201 };
+        Stream::new(&host, 1e-3)
+    }
+
+    #[test]
+    fn a_stale_torque_is_zero_after_the_timeout() {
+        for ramp in [0, 1, 4, 10, u16::MAX] {
+            let mut stream = stream();
+            stream.take(1.0, ramp);
+            let torques: std::vec::Vec<_> = (0..40).map(|_| stream.next()).collect();
+            let reached = torques.iter().position(|torque| *torque == 1.0).unwrap();
+            assert_eq!(reached, usize::from(ramp.clamp(1, 10)) - 1, "{ramp}");
+            assert!(
+                torques[..reached].is_sorted() && torques[reached..].is_sorted_by(|a, b| a >= b)
+            );
+            assert!(torques[21..].iter().all(|torque| *torque == 0.0), "{ramp}: {torques:?}");
+        }
+    }
+
+    #[test]
+    fn the_last_command_wins() {
+        let mut stream = stream();
+        stream.take(1.0, 4);
+        stream.next();
+        stream.take(-0.5, 0);
+        assert_eq!(stream.next(), -0.5);
+        stream.rest();
+        assert!((0..100).all(|_| stream.next() == 0.0));
+    }
+}
