@@ -179,10 +179,6 @@ pub struct Structure {
     pub lags: usize,
     /// Whether the amplifier is updated several times in a period.
     pub has_updates: bool,
-    /// Whether a board puts torques out at the next count.
-    pub is_latched: bool,
-    /// Whether a torque is over with its tick.
-    pub is_plain: bool,
 }
 
 impl Structure {
@@ -227,8 +223,6 @@ impl Structure {
             whole: if is_matched { latency.whole_samples(scene.timing.period) } else { 0 },
             lags: latency.trails(),
             has_updates: latency.actuator_updates != 0,
-            is_latched: latency.output_delay.is_zero(),
-            is_plain: latency.output_delay.is_zero() && latency.actuator_lag.is_zero(),
         }
     }
 }
@@ -331,6 +325,7 @@ macro_rules! scene_type {
             const GIVEN: Certified<Scene> = $crate::reported_once!($certified);
             const OF: Structure = Structure::of(GIVEN.scene());
             const ENVIRONMENT: Environment = GIVEN.scene().environment;
+            const TIMES: HostTimes = HostTimes::of(&GIVEN.scene().latency);
             #[allow(unused_mut, unused_assignments)]
             const OF_HOST: Option<HostTorque> = {
                 let mut host = None;
@@ -384,7 +379,7 @@ macro_rules! scene_type {
                 const HOST: Option<HostTorque> = OF_HOST;
                 type Host = Either<
                     { OF_HOST.is_some() },
-                    Hosted<{ OF.is_latched as usize }, { OF.is_plain }>,
+                    Hosted<{ TIMES.ticks }, { TIMES.is_plain }>,
                     NoHost,
                 >;
             }
@@ -414,7 +409,7 @@ pub mod names {
         AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, DragLaw, Environment, Face,
         FixedDelay, NoDamping, NoSnap, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
     };
-    pub use crate::host::{HostTorque, Hosted, NoHost};
+    pub use crate::host::{HostTimes, HostTorque, Hosted, NoHost};
     pub use crate::number::Number;
     pub use crate::scene::Scene;
 

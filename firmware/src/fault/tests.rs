@@ -10,7 +10,7 @@ fn all(numbers: [u32; 2]) -> Vec<Fault> {
 #[test]
 fn every_fault_has_a_code_and_a_word_of_its_own() {
     let all = all([3, 1]);
-    assert_eq!(all.len(), 30);
+    assert_eq!(all.len(), 31);
     for (i, fault) in all.iter().enumerate() {
         let (code, numbers) = fault.encode();
         assert_ne!(code, 0);

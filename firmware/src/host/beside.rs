@@ -11,7 +11,7 @@ use crate::number::{Format, Number};
 use crate::output_timing::{OutputTiming, READ_WITHIN};
 use crate::scene::Timing;
 
-/// Ticks after the amplifier was switched off in which the device's motion gives nothing back: what is left
+/// Ticks after the amplifier was switched off in which the device's motion gives nothing back: the rest
 /// of the torque is not known then.
 const UNKNOWN: u32 = 10;
 
@@ -204,6 +204,23 @@ impl BesideServo for NoHost {
     #[cfg(feature = "wire")]
     fn value<T: serde::Serialize + serde::de::DeserializeOwned>(value: Nothing) -> T {
         match value {}
+    }
+}
+
+/// When a host's command acts on the board of a scene. The host is refused where it does not.
+#[derive(Clone, Copy, Debug)]
+pub struct HostTimes {
+    /// Whole ticks after its count: 1 where a torque is put out at the next count.
+    pub ticks: usize,
+    /// Whether it acts in one tick only.
+    pub is_plain: bool,
+}
+
+impl HostTimes {
+    /// Of a scene with this latency.
+    pub const fn of(latency: &Latency) -> Self {
+        let is_latched = latency.output_delay.is_zero();
+        Self { ticks: is_latched as usize, is_plain: is_latched && latency.actuator_lag.is_zero() }
     }
 }
 

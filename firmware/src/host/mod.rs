@@ -19,7 +19,9 @@ mod tests;
 
 #[cfg(feature = "wire")]
 pub use beside::Nothing;
-pub use beside::{BesideServo, Hosted, NoHost, Reported, ServoNumbers, Taken, TickState};
+pub use beside::{
+    BesideServo, HostTimes, Hosted, NoHost, Reported, ServoNumbers, Taken, TickState,
+};
 pub use channel::{HostChannel, HostWords};
 pub use error::HostError;
 pub use response::{HostResponse, Sampling};
