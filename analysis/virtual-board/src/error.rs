@@ -118,7 +118,7 @@ mod tests {
                 ["wrote 0x00000001 to 0x40004418, in USART2", "not modelled"],
             ),
             (said(0x4000_0024, None), ["0x40000024, in TIM2", "its clock is off"]),
-            (said(0x4002_0000, None), ["0x40020000", "no peripheral there"]),
+            (said(0x4002_0400, None), ["0x40020400", "no peripheral there"]),
             (said(0xE000_EF00, Some(3)), ["0xe000ef00, in the system control space", "not"]),
         ] {
             assert!(parts.iter().all(|part| sentence.contains(part)), "{sentence}");
