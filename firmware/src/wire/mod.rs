@@ -17,7 +17,6 @@ pub mod telemetry;
 
 pub use decoder::{Decoder, Discarded};
 pub use frame::{CHECKSUM, TooLong, encode, largest_frame};
-
 pub use link::{BroughtUp, Link, Port, bring_up};
 pub use message::PROTOCOL;
 pub use session::{BoardInfo, Session};

@@ -133,9 +133,21 @@ fn fail(error: ReadingError, allowed: u16) {
 /// Ends a transfer, and prepares the next one.
 #[inline(always)]
 fn finish(next: &'static Frame, words: usize) -> Frame {
+    end();
+    load(next, words);
+    received()
+}
+
+/// Takes the select away from the chip, whose last word is there.
+#[inline(always)]
+fn end() {
     DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
     BUS.spi.cr1().write_value(Cr1(u32::from(ENABLED.load(Ordering::Relaxed)) & !SPE));
-    load(next, words);
+}
+
+/// The words of the last transfer.
+#[inline(always)]
+fn received() -> Frame {
     core::array::from_fn(|word| FRAME[word].load(Ordering::Relaxed))
 }
 
@@ -194,9 +206,8 @@ fn exchange(words: &'static Frame, count: usize) -> Frame {
     BUS.spi.cr1().write_value(Cr1(ENABLED.load(Ordering::Relaxed).into()));
     while !DMA.isr().read().tcif(RECEIVE) {}
     // A load in between would be sent.
-    DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
-    BUS.spi.cr1().write_value(Cr1(u32::from(ENABLED.load(Ordering::Relaxed)) & !SPE));
-    core::array::from_fn(|word| FRAME[word].load(Ordering::Relaxed))
+    end();
+    received()
 }
 
 /// The clocks, the pins, the SPI and the channels.
