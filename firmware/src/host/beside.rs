@@ -219,8 +219,10 @@ pub struct HostTimes {
 impl HostTimes {
     /// Of a scene with this latency.
     pub const fn of(latency: &Latency) -> Self {
-        let is_latched = latency.output_delay.is_zero();
-        Self { ticks: is_latched as usize, is_plain: is_latched && latency.actuator_lag.is_zero() }
+        let is_whole = latency.output_delay.is_zero();
+        // The emulated board puts a torque out at the instant of its count.
+        let is_latched = is_whole && !cfg!(all(target_os = "none", feature = "board-qemu"));
+        Self { ticks: is_latched as usize, is_plain: is_whole && latency.actuator_lag.is_zero() }
     }
 }
 

@@ -4,6 +4,7 @@
 use haptic_servo::certificate::Certified;
 use haptic_servo::encoder::CounterWidth;
 use haptic_servo::environment::Wall;
+use haptic_servo::host::HostTorque;
 use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use haptic_servo::servo::{AtPhase, Transducers};
 
@@ -22,7 +23,7 @@ pub type Output = AtPhase<10000>;
 pub const SCENE: Scene = Scene {
     device: Device { inertia: 3e-5, damping: 0.003, passivity: None },
     timing: Timing { period: 0.0005, worst_period: None },
-    coupling: Coupling::Matched,
+    coupling: Coupling::Rigid,
     environment: Wall::damped(1.0, 0.0001, 0).behind(0.0).alone(),
     latency: Latency {
         output_delay: TimeRange::exactly(1e-5),
@@ -36,9 +37,14 @@ pub const SCENE: Scene = Scene {
 /// Its certificate: a scene that could oscillate in a hand is a compile error here.
 pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
+/// What a host may do beside it.
+pub const HOST: HostTorque =
+    HostTorque { energy: 0.02, power: 0.1, damping: 0.0002, torque: 0.05, timeout: 0.05 };
+
 haptic_servo::scene_program! {
     scene: SCENE,
     certified: CERTIFIED,
+    host: HOST,
     transducers: TRANSDUCERS,
     output: Output,
     friction: 0.001,

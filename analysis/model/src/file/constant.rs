@@ -17,7 +17,7 @@ pub type Written = Result<String, String>;
 
 /// The constants of a program.
 pub struct Constants {
-    /// What it imports of the library's environments.
+    /// What it imports of the library's environments and hosts.
     pub environment: String,
     /// What it imports of the library's scenes.
     pub scene: String,
@@ -25,7 +25,7 @@ pub struct Constants {
     pub items: String,
 }
 
-/// The constants of a scene: the table of its torque profile, the scene, and its certificate.
+/// The constants of a scene: the table of its torque profile, the scene, its certificate, and its host.
 ///
 /// # Errors
 /// Where its environment has no constant.
@@ -73,7 +73,15 @@ pub fn of(file: &SceneFile) -> Result<Constants, String> {
         layout::broken(0, &constant)
     );
     let environment = imports("haptic_servo::environment", &names);
-    Ok(Constants { environment, scene: imports("haptic_servo::scene", &of_scene), items })
+    let scene = imports("haptic_servo::scene", &of_scene);
+    let Some(host) = &file.host else { return Ok(Constants { environment, scene, items }) };
+    let environment = environment + "\nuse haptic_servo::host::HostTorque;";
+    let start = "pub const HOST: HostTorque =";
+    let items = format!(
+        "{items}\n/// What a host may do beside it.\n{start}{};\n",
+        layout::after(start.len(), &format!("{host:?}"))
+    );
+    Ok(Constants { environment, scene, items })
 }
 
 /// The types that lines of code name by themselves, and not within another.

@@ -542,7 +542,7 @@ keys! {
         Optional("not known: `run` takes the torque limit, or 5 N m"), "2.0";
 
     /// A host that adds any torque to the scene's, within a budget: whatever it sends, the hand gets from it at
-    /// most the energy at once and the power on average. `certify` and `simulate` read it.
+    /// most the energy at once and the power on average. Programs for boards have it, and `simulate` reads it.
     HOST = other("host", "", TABLE), Optional("no torque but the scene's"), "";
     /// Energy that the hand can get at once.
     HOST_ENERGY = other("host.energy", "J", POSITIVE), Needed, "0.05";

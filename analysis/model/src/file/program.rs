@@ -46,6 +46,7 @@ pub fn program(
     let encoder = file.chip.map_or_else(String::new, |chip| {
         format!("    encoder: haptic_servo::magnetic::{},\n", chip.name.to_uppercase())
     });
+    let host = file.host.map_or("", |_| "    host: HOST,\n");
     let friction = file.friction.map_or_else(String::new, |it| format!("    friction: {it:?},\n"));
     Ok(format!(
         "//! {}, of {}.\n\
@@ -56,7 +57,7 @@ pub fn program(
          {}\n\
          {driven}{mode}{items}\n\
          haptic_servo::scene_program! {{\n    \
-         scene: SCENE,\n    certified: CERTIFIED,\n    transducers: TRANSDUCERS,\n{option}{current_loop}{friction}{encoder}}}\n",
+         scene: SCENE,\n    certified: CERTIFIED,\n{host}    transducers: TRANSDUCERS,\n{option}{current_loop}{friction}{encoder}}}\n",
         excerpt(&file.name),
         excerpt(source),
         imports("haptic_servo::servo", servo),

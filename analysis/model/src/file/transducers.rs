@@ -80,15 +80,12 @@ impl SceneFile {
     /// The same for a board's program, which takes no defaults.
     ///
     /// # Errors
-    /// A sentence about the keys that are missing, or that no board renders.
+    /// A sentence about the keys that are missing.
     pub fn board_transducers(
         &self,
         counts_per_turn: Option<f64>,
         full_scale: Option<f64>,
     ) -> Result<Transducers, String> {
-        if self.host.is_some() {
-            return Err(format!("no board renders `{}` yet: leave the table out", key::HOST.path));
-        }
         self.stated(counts_per_turn, full_scale).of_board()
     }
 
