@@ -11,16 +11,33 @@ pub trait Rendering<N: Number>: Discretize<N> {
     type Memory: CouplingMemory<N>;
     /// The host beside the servo, or none.
     type Host: BesideServo;
-    /// What that host may do.
+    /// What that host may do in the program.
     const HOST: Option<HostTorque> = None;
+    /// What it may do now.
+    fn budget(&self) -> <Self::Host as BesideServo>::Budget;
+    /// The same environment with another budget of the host.
+    #[must_use]
+    fn with_budget(self, budget: <Self::Host as BesideServo>::Budget) -> Self;
 }
 
 impl<N: Number> Rendering<N> for Environment {
     type Memory = AnyMemory<N>;
     type Host = NoHost;
+
+    fn budget(&self) {}
+
+    fn with_budget(self, (): ()) -> Self {
+        self
+    }
 }
 
 impl<N: Number, E: StatedEnvironment + Discretize<N>> Rendering<N> for E {
     type Memory = NoMemory;
     type Host = NoHost;
+
+    fn budget(&self) {}
+
+    fn with_budget(self, (): ()) -> Self {
+        self
+    }
 }

@@ -34,20 +34,25 @@ pub trait SceneType: Copy + core::fmt::Debug + PartialEq + 'static {
     /// What a host beside the servo may do.
     const HOST: Option<HostTorque>;
     /// That host, or none.
-    type Host: BesideServo;
+    type Host: BesideServo<Budget = Self::Budget>;
+    /// What it may do, as a type.
+    type Budget: Copy + core::fmt::Debug + PartialEq;
+    /// What it may do.
+    const BUDGET: Self::Budget;
 }
 
 /// An environment whose parts are known statically: the numbers of a program's scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Typed<S: SceneType> {
     numbers: S::Numbers,
+    budget: S::Budget,
 }
 
 impl<S: SceneType> Typed<S> {
     /// The structure's parts.
     const LIKE: Parts = *S::CERTIFIED.scene().environment.parts();
     /// With the structure's numbers.
-    pub(crate) const ENVIRONMENT: Self = Self { numbers: S::NUMBERS };
+    pub(crate) const ENVIRONMENT: Self = Self { numbers: S::NUMBERS, budget: S::BUDGET };
     /// Where each parameter is among the numbers.
     const PLACES: Places = places(S::CERTIFIED.scene().environment);
 
@@ -129,6 +134,14 @@ impl<N: Number, S: SceneType> Rendering<N> for Typed<S> {
     type Memory = S::Memory<N>;
     type Host = S::Host;
     const HOST: Option<HostTorque> = S::HOST;
+
+    fn budget(&self) -> S::Budget {
+        self.budget
+    }
+
+    fn with_budget(self, budget: S::Budget) -> Self {
+        Self { budget, ..self }
+    }
 }
 
 // With late torques, its numbers decide, which are checked with the timing of the scene.
@@ -382,6 +395,8 @@ macro_rules! scene_type {
                     Hosted<{ TIMES.ticks }, { TIMES.is_plain }>,
                     NoHost,
                 >;
+                type Budget = <Self::Host as BesideServo>::Budget;
+                const BUDGET: Self::Budget = ($($host)?);
             }
         };
     };
@@ -409,7 +424,7 @@ pub mod names {
         AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, DragLaw, Environment, Face,
         FixedDelay, NoDamping, NoSnap, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
     };
-    pub use crate::host::{HostTimes, HostTorque, Hosted, NoHost};
+    pub use crate::host::{BesideServo, HostTimes, HostTorque, Hosted, NoHost};
     pub use crate::number::Number;
     pub use crate::scene::Scene;
 

@@ -203,6 +203,35 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
         self.level = level.smaller(self.held.minus(self.to_come()));
     }
 
+    /// Whether what is left of another tank of the same response pays for its torques under way here, too.
+    pub(super) fn pays_for(&self, last: &Self) -> bool {
+        last.to_come() == R::ZERO || self.level_of(last) >= R::ZERO
+    }
+
+    /// Takes the energy and the torques under way of another tank, which differs in its budget alone: torques
+    /// have the same unit in both, and levels another. The energy is at most that of this tank.
+    pub(super) fn take_over(&mut self, last: &Self) {
+        self.level = self.level_of(last).smaller(self.cap.minus(last.to_come()));
+        self.held = self.cap;
+        (self.mean, self.unfinished) = (last.mean, last.unfinished.clone());
+        (self.means, self.energies) = (last.means.clone(), last.energies.clone());
+        let Spread { lagging, before, rest, unfinished, .. } = last.memory;
+        self.memory = Spread { lagging, before, rest, unfinished, ..self.memory };
+    }
+
+    /// The level at which this tank has no more energy than another, with the torques under way at its price.
+    fn level_of(&self, last: &Self) -> R {
+        let (level, to_come) = (last.level.to_f64(), last.to_come().to_f64());
+        // With a torque at the motor the last step of the position is known within that tank's reserve only.
+        let is_at_rest = last.mean == R::ZERO && to_come == 0.0;
+        let unknown = if is_at_rest { 0.0 } else { last.reserve };
+        let energy = (level + to_come) * last.joules + last.reserve - unknown;
+        let scaled = (energy - self.reserve) / self.joules;
+        // Above the rounding of the sums here and of the number format.
+        let rounded = 8.0 * R::ROUNDOFF * (scaled.abs() + to_come + self.reserve / self.joules);
+        R::nearest(scaled - to_come - rounded)
+    }
+
     /// An empty tank that never has any energy, with these lines at rest.
     pub(super) fn empty(means: D, energies: D) -> Self {
         let zero = R::ZERO;

@@ -18,7 +18,7 @@ use haptic_servo::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest
 use thiserror::Error;
 
 use super::OtherProtocol;
-use super::request::{Reply, Request, RequestResult, refusal_in_words};
+use super::request::{Reply, Request, RequestResult, no_host, refusal_in_words};
 use super::timing::{QUERY, REQUEST, SILENCE, STATUS_INTERVAL};
 
 /// A board that has identified itself.
@@ -94,6 +94,8 @@ pub struct Client {
     pub parameters: Option<ActiveParameters>,
     /// The running scene, once it is known.
     pub description: Option<Description>,
+    /// What its host may do now, if it has one.
+    pub budget: Option<HostTorque>,
     pending: Option<Pending>,
 }
 
@@ -101,7 +103,6 @@ pub struct Client {
 struct Greeting {
     program: Option<String>,
     previous_fault: Option<PreviousFault>,
-    budget: Option<HostTorque>,
     again: Duration,
     end: Duration,
 }
@@ -127,7 +128,7 @@ impl Client {
     /// Greets the board at an address. `id` should not have been used by an earlier client.
     pub fn start(address: String, id: Id, now: Duration) -> Self {
         let (again, end) = (now + QUERY.again, now + QUERY.end);
-        let greeting = Greeting { program: None, previous_fault: None, budget: None, again, end };
+        let greeting = Greeting { program: None, previous_fault: None, again, end };
         Self {
             address,
             decoder: Decoder::new(),
@@ -140,6 +141,7 @@ impl Client {
             status: None,
             parameters: None,
             description: None,
+            budget: None,
             pending: None,
         }
     }
@@ -226,9 +228,12 @@ impl Client {
     pub fn request(&mut self, request: Request, now: Duration) -> Result<(), Reply> {
         self.check_free(&request)?;
         self.give_up();
-        self.last_id = self.last_id.wrapping_add(1);
-        let id = self.last_id;
-        self.send(&request.message(id));
+        let id = self.last_id.wrapping_add(1);
+        let Some(message) = request.message(id, self.budget) else {
+            return Err(Reply::Answered(no_host()));
+        };
+        self.last_id = id;
+        self.send(&message);
         self.events.push_back(Event::Reply(request.clone(), Reply::Asked));
         let (again, end) = (now + REQUEST.again, now + REQUEST.end);
         self.pending = Some(Pending { id, request, again, end, refused: None });
@@ -278,8 +283,8 @@ impl Client {
             pending.again = now + QUERY.again;
             self.send_missing();
         } else {
-            let message = pending.request.message(pending.id);
-            self.send(&message);
+            let message = pending.request.message(pending.id, self.budget);
+            message.iter().for_each(|message| self.send(message));
         }
     }
 
@@ -292,11 +297,11 @@ impl Client {
                 return Err(OtherProtocol { address, program, theirs }.into());
             }
             ToHost::PreviousFault(fault) => greeting.previous_fault = Some(fault),
-            ToHost::Host(HostReport::Budget(budget)) => greeting.budget = Some(budget),
+            ToHost::Host(HostReport::Budget(budget)) => self.budget = Some(budget),
             // The last part of the greeting.
             ToHost::Board(units) => {
                 if let Some(program) = greeting.program.take() {
-                    let Greeting { previous_fault, budget, .. } = *greeting;
+                    let (previous_fault, budget) = (greeting.previous_fault, self.budget);
                     let connected = Connected { program, units, previous_fault, budget };
                     self.events.push_back(Event::Connected(connected));
                     (self.greeting, self.heard) = (None, now);
@@ -337,11 +342,9 @@ impl Client {
             }
             ToHost::Answer { id, outcome } => self.take_answer(id, outcome, now),
             ToHost::Host(HostReport::State(state)) => self.events.push_back(Event::Host(state)),
+            ToHost::Host(HostReport::Budget(budget)) => self.budget = Some(budget),
             // Replies to a repeated hello.
-            ToHost::Welcome { .. }
-            | ToHost::PreviousFault(_)
-            | ToHost::Board(_)
-            | ToHost::Host(HostReport::Budget(_)) => {}
+            ToHost::Welcome { .. } | ToHost::PreviousFault(_) | ToHost::Board(_) => {}
         }
     }
 
@@ -366,7 +369,7 @@ impl Client {
             && let Some((description, parameters)) =
                 self.description.as_ref().zip(self.parameters.as_ref())
         {
-            let result = refusal_in_words(*step, &request.changes(), description, parameters);
+            let result = refusal_in_words(*step, request, self.budget, description, parameters);
             self.answer(result);
         }
     }

@@ -1,13 +1,15 @@
 //! Requests to a board and their results, in words.
 
+use haptic_servo::host::HostTorque;
 use haptic_servo::number::Format;
 use haptic_servo::parameter::Parameter;
 use haptic_servo::servo::Step;
 use haptic_servo::tuning::{self, Parameters, RenderError};
 use haptic_servo::wire::description::Description;
+use haptic_servo::wire::host::HostRequest;
 use haptic_servo::wire::message::{ActiveParameters, Changes, Id, Outcome, Refusal, ToBoard};
 
-use super::formatting;
+use super::{budget, formatting};
 use crate::remedy_search::{RemedySearch, would_pass};
 
 /// A request to a board.
@@ -15,6 +17,8 @@ use crate::remedy_search::{RemedySearch, would_pass};
 pub enum Request {
     /// Other parameters, all or none.
     Set(Changes),
+    /// Other numbers of its host's budget, by their names.
+    Budget(Vec<(&'static str, f64)>),
     /// Switch the amplifier on; clears a fault.
     Arm,
     /// Fade the torque out and switch the amplifier off.
@@ -24,13 +28,24 @@ pub enum Request {
 }
 
 impl Request {
-    /// Its message to the board.
-    pub fn message(&self, id: Id) -> ToBoard {
-        match self {
+    /// Its message to a board with this budget in force; `None` if it needs a host, which the board has not.
+    pub fn message(&self, id: Id, host: Option<HostTorque>) -> Option<ToBoard> {
+        Some(match self {
             Self::Set(changes) => ToBoard::Set { id, changes: changes.clone() },
+            Self::Budget(_) => {
+                ToBoard::Host(HostRequest::Budget { id, budget: self.budget(host)? })
+            }
             Self::Arm => ToBoard::Arm { id },
             Self::Disarm => ToBoard::Disarm { id },
             Self::Align => ToBoard::Align { id },
+        })
+    }
+
+    /// The budget after it, of that in force.
+    pub fn budget(&self, host: Option<HostTorque>) -> Option<HostTorque> {
+        match self {
+            Self::Budget(changes) => host.map(|host| budget::changed(host, changes)),
+            Self::Set(_) | Self::Arm | Self::Disarm | Self::Align => host,
         }
     }
 
@@ -38,7 +53,7 @@ impl Request {
     pub fn changes(&self) -> Changes {
         match self {
             Self::Set(changes) => changes.clone(),
-            Self::Arm | Self::Disarm | Self::Align => Changes::new(),
+            Self::Budget(_) | Self::Arm | Self::Disarm | Self::Align => Changes::new(),
         }
     }
 
@@ -46,6 +61,7 @@ impl Request {
     pub fn words(&self) -> String {
         match self {
             Self::Set(changes) => formatting::changes(changes),
+            Self::Budget(changes) => formatting::named(changes),
             Self::Arm => "arm".to_owned(),
             Self::Disarm => "disarm".to_owned(),
             Self::Align => "align".to_owned(),
@@ -106,29 +122,55 @@ impl From<Outcome> for RequestResult {
     }
 }
 
-/// Why a board has refused changes at this step: the host judges them again, with the remedies that a board
+/// The refusal of another budget by a program without a host.
+pub fn no_host() -> RequestResult {
+    let names = budget::NAMES.join(", ");
+    RequestResult::Refused(format!("this program takes no torques of a host: it has no {names}"))
+}
+
+/// Why a board has refused a request at this step, with its budget then: the host judges them again, with the remedies that a board
 /// has no room to look for.
 pub fn refusal_in_words(
     step: Step,
-    changes: &Changes,
+    request: &Request,
+    budget: Option<HostTorque>,
     description: &Description,
     parameters: &ActiveParameters,
 ) -> RequestResult {
-    if let Err(reason) = description.explain(names(parameters), changes)
+    let changes = request.changes();
+    if let Err((reason, words)) = judge(request, budget, description, parameters)
         && reason.step() == step
     {
-        return RequestResult::Refused(in_words(&reason, changes, description, parameters));
+        return RequestResult::Refused(words);
     }
-    if let Some(mode) = description.other_mode(changes) {
+    if let Some(mode) = description.other_mode(&changes) {
         return RequestResult::Refused(RenderError::OtherMode { mode }.to_string());
     }
     Outcome::Refused(Refusal::Set(step)).into()
 }
 
-/// The reason of a refusal, with the changes of one number that the board would take instead.
-pub fn in_words(
+/// Judges a request like the board that has this budget.
+///
+/// # Errors
+/// The reason of a refusal; and in words, with the changes of one number that the board would take instead.
+pub fn judge(
+    request: &Request,
+    budget: Option<HostTorque>,
+    description: &Description,
+    parameters: &ActiveParameters,
+) -> Result<(), (RenderError, String)> {
+    let (changes, host) = (request.changes(), request.budget(budget));
+    let explained = description.explain(names(parameters), host.as_ref(), &changes);
+    explained.map_err(|reason| {
+        let words = in_words(&reason, &changes, host.as_ref(), description, parameters);
+        (reason, words)
+    })
+}
+
+fn in_words(
     reason: &RenderError,
     changes: &Changes,
+    host: Option<&HostTorque>,
     description: &Description,
     parameters: &ActiveParameters,
 ) -> String {
@@ -137,7 +179,7 @@ pub fn in_words(
         let others = changes.iter().filter(|(other, _)| *other != parameter).copied();
         let mut changes: Changes = others.collect();
         changes.push((parameter, value)).is_ok()
-            && description.explain(names(parameters), &changes).is_ok()
+            && description.explain(names(parameters), host, &changes).is_ok()
     };
     let search = RemedySearch { scene: &scene, passes };
     match reason {

@@ -141,7 +141,7 @@ impl Bench {
         let [ToHost::Described(description)] = said.as_slice() else { panic!("{said:?}") };
         let values = self.running().values;
         let has = tuning::Parameters::of(values.iter().map(|(parameter, _)| *parameter));
-        description.explain(has, changes).unwrap_err().to_string()
+        description.explain(has, None, changes).unwrap_err().to_string()
     }
 
     fn running(&mut self) -> ActiveParameters {
