@@ -124,7 +124,7 @@ parameters! {
     Hysteresis: "encoder.hysteresis", "hysteresis of the encoder", "counts", Range::NotNegative;
     Dropped: "encoder.dropped", "number of readings that may be dropped", "", Range::Whole(0, MAX_DELAY as u32);
     Drag: "environment.drag", "drag", "N m s/rad", Range::Finite;
-    Anticogging: "anticogging.share", "share of the cogging that is opposed", "", Range::Share;
+    Anticogging: "anticogging.share", "anticogging", "", Range::Share;
 }
 
 /// The parameters that may be changed while the servo runs, with their names for users.

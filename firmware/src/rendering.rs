@@ -1,7 +1,7 @@
 //! What a servo needs of a scene: the law of its environment, and the memory of its coupling.
 
-use crate::coupling_memory::{AnyMemory, CouplingMemory, NoMemory};
 use crate::certificate::passivity_left;
+use crate::coupling_memory::{AnyMemory, CouplingMemory, NoMemory};
 use crate::environment::{
     Anticogging, AnticoggingLaw, Compensation, Discretize, Environment, LawContext, NoAnticogging,
     StatedEnvironment, VariableDelay,

@@ -9,8 +9,9 @@ use crate::certificate::{Certified, scene_data};
 use crate::coupling::Coupling;
 use crate::coupling_memory::CouplingMemory;
 use crate::environment::{
-    Anticogging, Canceller, Compensation, Delayed, Discretize, Environment, EnvironmentModel, LawContext, LawOf, Memory,
-    PartSet, Parts, Profile, ProfileUse, Side, SupportsTiming, Wall, sealed,
+    Anticogging, Canceller, Compensation, Delayed, Discretize, Environment, EnvironmentModel,
+    LawContext, LawOf, Memory, PartSet, Parts, Profile, ProfileUse, Side, SupportsTiming, Wall,
+    sealed,
 };
 use crate::host::{BesideServo, HostTorque};
 use crate::number::Number;
@@ -433,8 +434,9 @@ pub mod names {
     pub use crate::certificate::Certified;
     pub use crate::coupling_memory::{MatchedMemory, NoMemory};
     pub use crate::environment::{
-        AnticoggingLaw, AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, DragLaw, Environment, Face,
-        FixedDelay, NoAnticogging, NoDamping, NoSnap, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
+        AnticoggingLaw, AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, DragLaw,
+        Environment, Face, FixedDelay, NoAnticogging, NoDamping, NoSnap, ProfileLaw, Snap, SumLaw,
+        WallLaw, Washout,
     };
     pub use crate::host::{HostTimes, HostTorque, Hosted, NoHost};
     pub use crate::number::Number;

@@ -16,7 +16,9 @@ pub(super) const fn mean_torque<E: EnvironmentModel>(
     n: &LoopIntervals,
 ) -> Option<Interval> {
     let of_profile = match scene.environment.profile() {
-        Some(profile) if E::PROFILE.exists && profile.ends.is_none() => by_inl::<E>(profile, scene, n),
+        Some(profile) if E::PROFILE.exists && profile.ends.is_none() => {
+            by_inl::<E>(profile, scene, n)
+        }
         _ => Interval::ZERO,
     };
     let mean = match &scene.environment.parts().anticogging {

@@ -95,7 +95,8 @@ impl PassivityProblem {
     pub(super) const fn pose(&mut self, scene: &Scene) -> Result<(), Rejection> {
         let numbers = &self.numbers;
         if scene.environment.parts().anticogging.is_some() && !numbers.delta.is_positive() {
-            let (needed, delta) = (passivity_for_anticogging(scene, numbers.format), scene.device.passivity());
+            let (needed, delta) =
+                (passivity_for_anticogging(scene, numbers.format), scene.device.passivity());
             if delta > 0.0 {
                 return Err(Rejection::Anticogging { needed, delta, remedies: Remedies::NONE });
             }

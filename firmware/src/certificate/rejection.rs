@@ -180,8 +180,10 @@ impl Rejection {
             Self::Anticogging { needed: Some(needed), delta, .. } => push!(t,
                 "what opposes the cogging needs " {*needed} " N m s/rad of damping, and the device has delta = "
                 {*delta} " N m s/rad"),
-            Self::Anticogging { needed: None, .. } => push!(t,
-                "no proof is known for what opposes the cogging beside these lags, jitters and missed updates"),
+            Self::Anticogging { needed: None, .. } => push!(
+                t,
+                "no proof is known for what opposes the cogging beside these lags, jitters and missed updates"
+            ),
             Self::MotorByInl { linearity, mean, friction, .. } => push!(t,
                 "the torque profile repeats for ever, and read by an encoder with a linearity of " {*linearity}
                 " its mean is up to " {mean.hi()} " N m, by which it would turn the device as a motor does: the device \
@@ -284,6 +286,7 @@ mod tests {
             remedy(Parameter::OutputDelay, RANGE),
             remedy(Parameter::ActuatorLag, RANGE),
             remedy(Parameter::SensorLag, RANGE),
+            remedy(Parameter::Anticogging, RANGE),
         ];
         let of_profile = Remedies::of(all);
         let mut of_sum = all;
@@ -299,7 +302,7 @@ mod tests {
         let shortage =
             |remedies| Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies };
         let doubt = UndecidedReason::ResidueSign;
-        let last = "1.23e-22 <= sensor lag <= 1.24e-22 s";
+        let last = "1.23e-22 <= anticogging <= 1.24e-22";
         let range = "1.23e-22 <= stiffness <= 1.24e-22 N m/rad";
         for (rejection, end) in [
             (

@@ -226,6 +226,11 @@ impl Anticogging {
         Ok(Self { units, numbers, share: 1.0 })
     }
 
+    /// The same with another share, from 0 to 1.
+    pub const fn sharing(self, share: f64) -> Self {
+        Self { share, ..self }
+    }
+
     /// Largest torque in N m.
     pub const fn largest(&self) -> f64 {
         self.share * self.numbers.torque
@@ -238,8 +243,9 @@ impl Anticogging {
 
     /// The cogging in N m at the angles of its map; empty if it came over the wire.
     pub fn torques(&self) -> impl Iterator<Item = f64> {
-        let scale = self.numbers.torque / f64::from(FULL_SCALE);
-        self.units.iter().map(move |unit| f64::from(*unit) * scale)
+        let torque = self.numbers.torque;
+        // In this order the largest is that of the map to the last bit.
+        self.units.iter().map(move |unit| f64::from(*unit) / f64::from(FULL_SCALE) * torque)
     }
 
     /// The same structure with this number.
@@ -408,3 +414,5 @@ impl<N: Number, D: DelayLine<N>> Compensation<N> for Option<AnticoggingLaw<N, D>
     }
 }
 
+#[cfg(test)]
+mod tests;

@@ -169,7 +169,7 @@ impl Parts {
 
     /// The anticogging, and its delay in whole samples: one where all parts are late, because the torque of such an
     /// environment may be latched.
-    pub(crate) const fn late_anticogging(&self) -> Option<(Anticogging, usize)> {
+    pub const fn late_anticogging(&self) -> Option<(Anticogging, usize)> {
         let anticogging = some!(self.anticogging);
         Some((anticogging, self.is_late() as usize))
     }

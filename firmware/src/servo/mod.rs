@@ -113,8 +113,7 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
         if let Some((anticogging, _)) = &anticogging {
             transducers.check_anticogging(anticogging, scene.torque_limit)?;
         }
-        let anticogging =
-            E::Anticogging::of(anticogging, &context, transducers.counts_per_turn)?;
+        let anticogging = E::Anticogging::of(anticogging, &context, transducers.counts_per_turn)?;
         Ok(Self {
             position: Position::new(transducers.counter),
             angle_scale: N::angle_scale(radians_per_count)

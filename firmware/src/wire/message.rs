@@ -22,7 +22,7 @@ use crate::servo_loop::State;
 
 /// Version of the messages. Board and host must have the same; [`ToBoard::Hello`] and [`ToHost::Welcome`]
 /// have the same beginning in all versions, so that each side can report its version.
-pub const PROTOCOL: u16 = 11;
+pub const PROTOCOL: u16 = 12;
 
 /// Longest message to a board, in bytes: the longest set.
 pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;

@@ -239,7 +239,8 @@ fn largest_description() -> Description {
     };
     let canceller = Some(Canceller::to(1.0));
     let drag = Some(Drag::of(1.0, 8));
-    let environment = Parts { canceller, wall: Some(wall), profile: Some(profile), drag }.sum();
+    let environment =
+        Parts { canceller, wall: Some(wall), profile: Some(profile), drag, ..Parts::NONE }.sum();
     Description {
         scene: Scene {
             device: Device { passivity: Some(1.0), ..SCENE.device },
