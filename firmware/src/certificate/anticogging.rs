@@ -35,7 +35,9 @@ pub(crate) const fn passivity_left<E: EnvironmentModel>(
     format: Format,
 ) -> f64 {
     let declared = scene.device.passivity();
-    if !E::PARTS.anticogging || scene.environment.parts().anticogging.is_none() {
+    let has_none = !E::PARTS.anticogging || scene.environment.parts().anticogging.is_none();
+    // A device without passivity stays one.
+    if has_none || declared.is_nan() || declared <= 0.0 {
         return declared;
     }
     match passivity_taken::<E>(scene, is_late, format) {

@@ -28,11 +28,15 @@ pub struct CoggingMap<const ANGLES: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 struct Numbers {
-    outline: Outline,
+    /// Number of angles.
+    angles: u32,
+    /// The largest rise and the largest fall from one angle to the next, in units.
+    steps: [i32; 2],
     /// Torque in N m of a knot at full scale.
     torque: f64,
     /// Bound on the magnitude of the mean of the table, clipped at any level, in its units.
     mean: u32,
+    #[cfg_attr(feature = "wire", serde(skip))]
     checksum: u32,
 }
 
@@ -89,7 +93,8 @@ impl Numbers {
         });
         let outline = Outline::of(units, true);
         let mean = if outline.is_odd { 0 } else { clipped_mean(units) };
-        Ok(Self { outline, torque, mean, checksum: checksum(units) })
+        let steps = [outline.rise, outline.fall];
+        Ok(Self { angles: angles as u32, steps, torque, mean, checksum: checksum(units) })
     }
 }
 
@@ -256,7 +261,9 @@ impl Anticogging {
 
     /// The profile of its torque: the motor applies `-F`, and so `F` has the sign of the cogging.
     pub(crate) const fn profile(&self, delay: usize) -> Profile {
-        let Numbers { outline, .. } = self.numbers;
+        let Numbers { angles: knots, steps: [rise, fall], .. } = self.numbers;
+        // Its mean has a bound of its own.
+        let outline = Outline { knots, rise, fall, wraps: true, sum: 0, is_odd: false };
         let layout =
             Layout { torque: self.largest(), count: 1.0, centre: 0.0, ends: None, snap: None };
         Profile::of_table(self.units, &[], outline, layout, delay)
