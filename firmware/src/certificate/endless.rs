@@ -1,5 +1,5 @@
 //! The mean torque of what repeats in every turn: a torque profile through a nonlinear encoder (theory, section
-//! 18.4), and learnt cogging, whose mean over the encoder's angle is not zero (section 18.7).
+//! 18.4), and learnt cogging, whose mean over the encoder's angle is not zero (section 18.6).
 
 use super::loop_intervals::LoopIntervals;
 use super::profile::ExtremeSlopes;

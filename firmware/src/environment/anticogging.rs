@@ -1,7 +1,7 @@
 //! Anticogging: the torque that opposes a motor's cogging, read from a learnt table over a turn of the encoder.
 //!
 //! It acts outside of the coupling, on the measured position: the coupling and the environment behind it know
-//! nothing of it. It is a torque profile without ends, with the profile's arithmetic (theory, section 18.7).
+//! nothing of it. It is a torque profile without ends, with the profile's arithmetic (theory, section 18.6).
 
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 

@@ -454,7 +454,7 @@ const AGED: EncoderReading =
     EncoderReading { age: TimeRange::exactly(1e-5), ..EncoderReading::IDEAL };
 
 /// At a slow speed `v` the torque over a turn is what the mean age of the torque and an encoder's count leave of the
-/// cogging: up to `M (abar v + q)` (theory, section 18.7).
+/// cogging: up to `M (abar v + q)` (theory, section 18.6).
 #[test]
 fn a_slow_hand_feels_what_age_and_counts_leave_of_the_cogging() {
     const INERTIA: f64 = 1e-2;
