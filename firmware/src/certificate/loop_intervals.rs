@@ -1,5 +1,6 @@
 //! The numbers of a scene as the certificate computes with them: enclosed, and rounded to a number format.
 
+use super::anticogging::passivity_left;
 use super::linearity::{is_behind_spring, is_nonlinear, late_spring};
 use crate::environment::{Environment, EnvironmentModel, Wall};
 use crate::latency::Latency;
@@ -116,7 +117,9 @@ impl LoopIntervals {
         if linearity != 0.0 && out.linearity.is_zero() && !is_nonlinear(scene) {
             // The exact rule has its own proof.
             out.linearity = Interval::decimal(linearity);
-            out.delta = Interval::decimal(scene.device.passivity());
+            let is_late = scene.environment.is_late();
+            let passivity = passivity_left::<Environment>(scene, is_late, format);
+            out.delta = Interval::decimal(passivity);
         }
         if let (Some(stiffness), None) = (out.coupling, &out.latency) {
             let unrounded = Interval::ONE.div(stiffness);
@@ -137,7 +140,8 @@ impl LoopIntervals {
         format: Format,
     ) -> Self {
         let period = Interval::decimal(scene.timing.period);
-        let delta = Interval::decimal(scene.device.passivity());
+        let passivity = passivity_left::<E>(scene, is_late, format);
+        let delta = Interval::decimal(passivity);
         let (delta, missed) = match scene.timing.longer_period() {
             Some(worst) => {
                 let worst = Interval::decimal(worst);
@@ -166,35 +170,50 @@ impl LoopIntervals {
         };
         let compliance = rounded(written, format, Rounding::Outward);
         let mut out = Self {
-            period,
             delta,
             missed,
             cancelled,
             coupling,
             compliance,
-            is_standard: false,
-            format,
-            misses_updates: scene.timing.longer_period().is_some(),
-            stretch: match scene.timing.longer_period() {
-                Some(worst) => Interval::decimal(worst).div(period),
-                None => Interval::ONE,
-            },
-            is_at_port: false,
             is_matched: matches!(scene.coupling, Coupling::Matched),
-            linearity: Interval::ZERO,
-            latency: None,
+            ..Self::timed(scene.timing, format)
         };
         if E::MAY_MISREAD && scene.latency.encoder.linearity != 0.0 {
             out.read_through_inl(scene);
         }
         if E::MEMORY.is_stored() && has_latency(scene) {
             if E::MEMORY.has_updates() {
-                out.add_latency::<true>(scene);
+                out.add_latency::<true>(scene, passivity);
             } else {
-                out.add_latency::<false>(scene);
+                out.add_latency::<false>(scene, passivity);
             }
         }
         out
+    }
+
+    /// The times alone, without passivity, coupling and latency.
+    #[inline(always)]
+    pub const fn timed(timing: Timing, format: Format) -> Self {
+        let period = Interval::decimal(timing.period);
+        Self {
+            period,
+            delta: Interval::ZERO,
+            missed: None,
+            cancelled: Interval::ZERO,
+            coupling: None,
+            compliance: Interval::ZERO,
+            is_standard: false,
+            format,
+            misses_updates: timing.longer_period().is_some(),
+            stretch: match timing.longer_period() {
+                Some(worst) => Interval::decimal(worst).div(period),
+                None => Interval::ONE,
+            },
+            is_at_port: false,
+            is_matched: false,
+            linearity: Interval::ZERO,
+            latency: None,
+        }
     }
 
     #[inline(never)]
@@ -231,14 +250,14 @@ impl LoopIntervals {
 
     // Not inlined: scenes without latency do not need its frame.
     #[inline(never)]
-    const fn add_latency<const UPDATES: bool>(&mut self, scene: &Scene) {
+    const fn add_latency<const UPDATES: bool>(&mut self, scene: &Scene, passivity: f64) {
         let Scene { latency, timing, .. } = *scene;
         let mut lagging = Lagging { latency, timing, matched: None, limit: None };
         // A latched torque is that of a count before the missed ones.
         let may_be_latched = self.missed.is_some() && latency.output_delay.least == 0.0;
         if self.is_matched && !may_be_latched {
             let Timing { period, worst_period } = timing;
-            let (passivity, format) = (scene.device.passivity(), self.format);
+            let format = self.format;
             lagging.matched = MatchedCoupling::of_kind::<UPDATES>(
                 period,
                 worst_period,

@@ -27,6 +27,7 @@
 //! assert!(rejection.to_string().contains("it would pass with stiffness <= 23.9 N m/rad"));
 //! ```
 
+mod anticogging;
 mod assessment;
 mod assumption;
 mod between;
@@ -55,6 +56,8 @@ mod validity;
 mod varied;
 mod window;
 
+pub use anticogging::passivity_for_anticogging;
+pub(crate) use anticogging::passivity_left;
 pub use assessment::{Assessment, assess, assess_in};
 pub use assumption::{Assumption, AssumptionStatus, Assumptions};
 pub use linearity::is_static_at_port;
