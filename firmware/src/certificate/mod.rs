@@ -49,6 +49,7 @@ mod rejection;
 mod remedy;
 mod remedy_search;
 mod rules;
+mod scene_intervals;
 mod secant;
 mod static_law;
 mod timed;

@@ -1,7 +1,7 @@
 //! Anticogging: the torque that opposes a motor's cogging, read from a learnt table over a turn of the encoder.
 //!
 //! It acts outside of the coupling, on the measured position: the coupling and the environment behind it know
-//! nothing of it. It is a torque profile without ends, with the profile's arithmetic (theory, section 18.6).
+//! nothing of it. It is a torque profile without ends, with the profile's arithmetic (theory, section 18.6, equation 71).
 
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
@@ -24,7 +24,7 @@ pub struct CoggingMap<const ANGLES: usize> {
     numbers: Numbers,
 }
 
-/// What is computed from a table once.
+/// The numbers of a table, computed once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 struct Numbers {
@@ -100,7 +100,7 @@ impl Numbers {
 
 /// Bound on the magnitude of the mean of a piecewise linear table, clipped at any level, in its units.
 ///
-/// The means `A` above zero and `B` below it of what is clipped grow with the level and are concave. So between two
+/// The means `A` above zero and `B` below it of the clipped table grow with the level and are concave. So between two
 /// levels `A - B` is at most `A` on the line through the two levels before, less `B` on its chord: no more than at
 /// the lower level, or than this line and `B` at the upper one.
 const fn clipped_mean(units: &[i16]) -> u32 {
@@ -173,7 +173,7 @@ const fn clipped(from: i64, to: i64, level: i64) -> i64 {
     (twice_area(high, level) - twice_area(low, level)) / (2 * (high - low))
 }
 
-/// Twice the integral from 0 to `value` of what is clipped to `0..=level`.
+/// Twice the integral from 0 to `value` of a number clipped to `0..=level`.
 const fn twice_area(value: i64, level: i64) -> i64 {
     let inside = min(if value < 0 { 0 } else { value }, level);
     inside * inside + 2 * level * (if value > level { value - level } else { 0 })
