@@ -48,7 +48,10 @@ pub mod stm32;
 pub const BAUD: u32 = 460_800;
 
 /// The output mode of a program, by default latched.
+#[cfg(not(all(target_os = "none", feature = "board-qemu")))]
 pub type ProgramMode<M = crate::servo::Latched> = M;
+#[cfg(all(target_os = "none", feature = "board-qemu"))]
+pub use qemu::Mode as ProgramMode;
 
 /// Makes a program of a certified scene.
 ///

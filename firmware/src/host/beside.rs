@@ -345,6 +345,17 @@ pub struct Hosted<const TICKS: usize, const IS_PLAIN: bool> {
     unknown: u32,
 }
 
+impl<const TICKS: usize, const IS_PLAIN: bool> Hosted<TICKS, IS_PLAIN> {
+    /// Gives what the level pays of a torque.
+    #[cold]
+    #[inline(never)]
+    fn refuse(&mut self, wanted: f32) -> f32 {
+        self.given = self.tank.allowed(wanted);
+        self.tank.give(self.given);
+        self.given
+    }
+}
+
 impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_PLAIN> {
     #[cfg(feature = "wire")]
     type IfPresent<T: serde::Serialize + serde::de::DeserializeOwned> = T;
@@ -392,10 +403,13 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     fn tick<N: Number>(&mut self, moved: i32) -> (N, bool) {
         self.tank.book(moved as f32);
         let wanted = self.stream.next();
-        let given = self.tank.allowed(wanted);
-        self.tank.give(given);
-        self.given = given;
-        (N::of_single(given), given != wanted)
+        let cost = self.tank.cost(wanted);
+        if !self.tank.pays(cost) {
+            return (N::of_single(self.refuse(wanted)), true);
+        }
+        self.tank.give_at(wanted, cost);
+        self.given = wanted;
+        (N::of_single(wanted), false)
     }
 
     fn wait(&mut self, may_give: bool) {

@@ -3,10 +3,9 @@
 use heapless::Vec;
 
 use crate::certificate::Parameter;
-use crate::tuning::TUNABLE;
 
-/// The largest number of changes in a set: as many as there are tunable parameters.
-pub const MAX_CHANGES: usize = TUNABLE.len();
+/// The largest number of changes in a set; of a scene with more parameters the first are tunable.
+pub const MAX_CHANGES: usize = 8;
 
 /// Numbers of a scene with their present or requested values, in the units of a scene file. They are applied
 /// together or not at all.

@@ -2,6 +2,7 @@
 
 use haptic_servo::certificate::Parameter;
 use haptic_servo::tuning::{self, TUNABLE};
+use haptic_servo::wire::message::MAX_CHANGES;
 use thiserror::Error;
 
 use super::request::Request;
@@ -40,6 +41,10 @@ pub enum CollectError {
         "{scene} is of the scene and {host} of its host's budget: change one of them, and the other after that"
     )]
     Both { scene: &'static str, host: &'static str },
+    #[error(
+        "{count} parameters are to be changed at once, and a board changes at most {MAX_CHANGES}"
+    )]
+    TooMany { count: usize },
 }
 
 /// One change: `stiffness=30`.
@@ -63,7 +68,7 @@ pub fn change(text: &str) -> Result<(Name, f64), String> {
 /// Collects changes into a request: of the scene, or of its host's budget.
 ///
 /// # Errors
-/// Where a parameter is given twice, or both are changed, which a board does not do at once.
+/// Where a parameter is given twice, both are changed, or more than a board changes at once.
 pub fn collect(changes: &[(Name, f64)]) -> Result<Request, CollectError> {
     let (mut scene, mut host) = (Vec::new(), Vec::new());
     for (i, (name, value)) in changes.iter().enumerate() {
@@ -80,7 +85,7 @@ pub fn collect(changes: &[(Name, f64)]) -> Result<Request, CollectError> {
             Err(CollectError::Both { scene: formatting::name(*scene), host })
         }
         (None, Some(_)) => Ok(Request::Budget(host)),
-        // A set has room for each parameter once.
+        _ if scene.len() > MAX_CHANGES => Err(CollectError::TooMany { count: scene.len() }),
         _ => Ok(Request::Set(scene.into_iter().collect())),
     }
 }
@@ -137,6 +142,10 @@ mod tests {
             ("stiffness = = 3", "not a finite number"),
             ("damping = 1, damping = 1", "damping is given twice"),
             ("stiffness 20", "NAME=VALUE"),
+            (
+                "stiffness=1 damping=1 filter=1 face=1 residual=1 torque=1 count=1 centre=1 mode=1",
+                "at most 8",
+            ),
             ("host.power = 1 host.power = 1", "host.power is given twice"),
             ("host.power = 1, damping = 1", "damping is of the scene and host.power of its host"),
         ] {
