@@ -141,8 +141,7 @@ where
     let previous_fault = read_previous_fault(hardware, reset);
     let fault = previous_fault.map(|previous_fault| previous_fault.fault);
     if reset != ResetCause::PowerOn {
-        // The hand may have got the energy before the reset.
-        rendering.host_mut().cut(true);
+        rendering.host_mut().drain();
     }
     let servo_loop = ServoLoop::new(rendering, &program.options, hardware.period(), fault);
     hardware.start_watchdog();

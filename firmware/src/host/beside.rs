@@ -161,6 +161,8 @@ pub trait BesideServo: Clone + fmt::Debug {
     /// The amplifier was switched off; because of a fault, whose end of the torque no model knows, the tank
     /// is empty.
     fn cut(&mut self, by_fault: bool);
+    /// The amplifier was off, and a hand may have got all of the energy before.
+    fn drain(&mut self);
     /// Takes the last command, if it is new, and reports the tick.
     fn exchange(&mut self, channel: &Self::Channel, tick: TickState);
 
@@ -262,6 +264,9 @@ impl BesideServo for NoHost {
 
     #[inline(always)]
     fn cut(&mut self, _: bool) {}
+
+    #[inline(always)]
+    fn drain(&mut self) {}
 
     #[inline(always)]
     fn exchange(&mut self, (): &(), _: TickState) {}
@@ -451,6 +456,11 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         self.unknown = UNKNOWN;
         self.tank.give_back(false);
         self.tank.forget(FixedDelay::full_of(0.0), by_fault);
+    }
+
+    fn drain(&mut self) {
+        self.cut(true);
+        self.tank.drain();
     }
 
     fn exchange(&mut self, channel: &HostWords, tick: TickState) {

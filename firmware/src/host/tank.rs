@@ -43,6 +43,9 @@ pub trait TankNumber: Number<Coefficient = Self> {
     /// The nearest number.
     fn nearest(value: f64) -> Self;
 
+    /// The number without its sign, in one instruction.
+    fn magnitude(self) -> Self;
+
     /// One over the root of a positive number, by Newton's method, whose results are never above it except by
     /// rounding.
     fn reciprocal_root(self) -> Self;
@@ -55,6 +58,11 @@ macro_rules! tank_number {
 
             fn nearest(value: f64) -> Self {
                 value as Self
+            }
+
+            #[inline(always)]
+            fn magnitude(self) -> Self {
+                self.abs()
             }
 
             fn reciprocal_root(self) -> Self {
@@ -196,10 +204,10 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
     pub fn book(&mut self, moved: R) {
         let y = moved.times(self.speed).minus(self.mean);
         let earned = y.times(y).plus(self.power);
-        let lost = magnitude(moved).times(self.count_error);
+        let lost = moved.magnitude().times(self.count_error);
         let level = self.level.plus(earned).minus(lost);
         // Of a negative level, too, it takes something away.
-        let level = level.minus(magnitude(level).times(self.leak));
+        let level = level.minus(level.magnitude().times(self.leak));
         self.level = level.smaller(self.held.minus(self.to_come()));
     }
 
@@ -273,6 +281,13 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
     /// Whether the level may rise from now on.
     pub(super) fn give_back(&mut self, may_rise: bool) {
         self.held = if may_rise { self.cap } else { self.level.smaller(self.cap) };
+    }
+
+    /// No energy is left, and none for errors of counts.
+    pub(super) fn drain(&mut self) {
+        let owed = self.reserve / self.joules * (1.0 + 8.0 * R::ROUNDOFF);
+        self.level = self.level.smaller(R::nearest(-owed));
+        self.held = self.level;
     }
 
     /// The motor makes no torque from now on. What was paid for torques under way is lost; if they may have
@@ -385,7 +400,7 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
         };
         let begins = self.means.due().unwrap_or(mean);
         // The reserve covers this, so that the level may become negative.
-        let change = magnitude(begins.minus(self.mean));
+        let change = begins.minus(self.mean).magnitude();
         let price = if PLAIN {
             self.count_step.plus(change.times(self.step_price))
         } else {
@@ -442,9 +457,4 @@ impl<R: TankNumber> Spread<R> {
         let of_lag = self.lagging.times(self.lagging).times(lagging);
         of_lag.plus(self.before.times(self.before).times(before))
     }
-}
-
-#[inline(always)]
-fn magnitude<R: Number>(number: R) -> R {
-    number.larger(number.negated())
 }
