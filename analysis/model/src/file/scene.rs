@@ -26,6 +26,7 @@ use super::updates;
 use crate::chain::Chain;
 use crate::device::Hand;
 use crate::disturbance::{Cogging, Disturbance};
+use crate::hand::HandTrajectory;
 
 /// The contents of a scene file.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,6 +69,12 @@ impl SceneFile {
             friction: self.friction.unwrap_or(0.0),
             cogging: self.cogging.unwrap_or_default(),
         }
+    }
+
+    /// The trajectory that demonstrates its environment, in its hand if it has one.
+    pub fn demonstration(&self) -> HandTrajectory {
+        let trajectory = HandTrajectory::for_environment(&self.scene.environment);
+        HandTrajectory { hand: self.hand.unwrap_or(trajectory.hand), ..trajectory }
     }
 }
 
