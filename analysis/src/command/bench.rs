@@ -10,10 +10,15 @@ use haptic_servo::certificate::Parameter;
 use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Scene};
 
+use super::file_program::FileProgram;
 use super::shared_arguments::{DEFAULT_TICKS, JsonOption};
 use super::status::{CommandError, CommandStatus};
+use super::virtual_board_build::VirtualBoardBuild;
 use crate::compare_run::{Backend, Input, run_with_backend};
+use crate::controller::controller;
 use crate::emulator::EmulatorReport;
+use crate::file::SceneFile;
+use crate::lockstep::SimulatedDevice;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
@@ -75,6 +80,8 @@ const INSTANTS: [(&str, Budget); 2] = [
     ("brushed", Budget::of(250.0, "instructions")),
     ("brushless", Budget::of(450.0, "instructions")),
 ];
+/// Of what a magnetic encoder adds to the servo's interrupt.
+const READING: Budget = Budget::of(15.0, "instructions");
 /// Of the free bytes of a motor board's flash with a wall on its bridge.
 const FLASH_LEFT: Budget = Budget { value: 40.0 * 1024.0, unit: "bytes", source: "at least" };
 
@@ -104,7 +111,41 @@ fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     behind_matched(&toolchain, &mut figures)?;
     about_profiles(&toolchain, &mut figures)?;
     about_bridges(&toolchain, &mut figures)?;
+    figures.extend(about_encoders()?);
     Ok(figures)
+}
+
+/// What the readings of an MT6701 add to the servo's interrupt, with the end of their transfer, which is an interrupt
+/// of its own.
+fn about_encoders() -> Result<[Figure; 2], CommandError> {
+    let interrupt = |file: SceneFile, name: &str| {
+        let program = FileProgram::of(&file, name, None, None)?;
+        let built =
+            VirtualBoardBuild::of_file(BoardModel::NucleoG474re, &program, NumberFormat::F32)?;
+        let certified = file.scene.certify();
+        let certified = certified.map_err(|error| CommandError::Refused(Box::new(error)))?;
+        let transducers = file.transducers(None, None);
+        let mut servo = controller::<_, f32>(&certified, &transducers)?;
+        let hand = file.demonstration();
+        let device = SimulatedDevice::new(&file.scene, hand, &transducers)?;
+        let backend = built.backend(file.scene.timing.period);
+        let input = Input::Hand(Box::new(device));
+        let run = run_with_backend(input, servo.as_mut(), Some(backend), DEFAULT_TICKS, || {})?;
+        let stats = run.board.as_ref().map(|board| board.interrupt().clone());
+        stats.ok_or_else(|| CommandError::Failed("the virtual board measured nothing".into()))
+    };
+    let [read, counted] = bench::encoder::walls()?;
+    let [read, counted] =
+        [interrupt(read, "magnetic_wall.toml")?, interrupt(counted, "counted_wall.toml")?];
+    let figure = |what, more| {
+        Figure::within(
+            format!("an MT6701's readings: added to the interrupt, {what}"),
+            more,
+            &READING,
+        )
+    };
+    let most = read.max as f64 - counted.max as f64;
+    Ok([figure("mean", read.mean - counted.mean), figure("most", most)])
 }
 
 /// Ticks behind the matched coupling; no program has only a wall behind it.
@@ -192,6 +233,9 @@ fn on_host(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     let time = bench::verdict_time(&on_target::profiles(), rounds.own);
     let name = "verdict about a torque profile of 64 knots, median";
     figures.push(Figure::within(name, time, &PROFILE));
+    let name = "verdict with [encoder], springs, walls and profiles";
+    let pair = bench::encoder::verdicts(rounds.own);
+    figures.push(Figure::beside(name, pair, "us", "the same without, at most 1.05"));
     figures.extend(maps(rounds));
     spinner.finish_and_clear();
     let spinner = progress::spinner("compiling certificates");

@@ -99,12 +99,16 @@ fn of_file(
 ) -> Result<SimulatedBoard, CommandError> {
     file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
     let Some(board) = board else {
-        return SimulatedBoard::of_file(file, port, Pacing::RealTime).map_err(|error| match error {
-            SimulatedBoardError::Listen { address, source } => {
-                CommandError::Listen { address, source }
-            }
-            error => CommandError::NoBoardProgram { file: source.to_owned(), why: error.to_string() },
-        });
+        return SimulatedBoard::of_file(file, port, Pacing::RealTime).map_err(
+            |error| match error {
+                SimulatedBoardError::Listen { address, source } => {
+                    CommandError::Listen { address, source }
+                }
+                error => {
+                    CommandError::NoBoardProgram { file: source.to_owned(), why: error.to_string() }
+                }
+            },
+        );
     };
     let program = FileProgram::of(file, source, None, None)?;
     let built = VirtualBoardBuild::of_file(board, &program, NumberFormat::F32)?;

@@ -121,9 +121,12 @@ impl EncoderTable {
             let reason = format!("is more than `{}` = {period} s", key::PERIOD.path);
             return Err(top.conflict(&key::WINDOW, reason));
         }
-        let is_read_late = !age.is_zero() || window > 0.0 || !self.lag.is_zero();
-        if is_read_late && latency.actuator_updates > 0 {
-            return beside(&key::READING, &key::ACTUATOR_UPDATES);
+        for (key, is_stated) in
+            [(&key::WINDOW, window > 0.0), (&key::READING_LAG, !self.lag.is_zero())]
+        {
+            if is_stated && latency.actuator_updates > 0 {
+                return beside(key, &key::ACTUATOR_UPDATES);
+            }
         }
         if latency.output_delay.most + age.most > LONGEST_DELAY * period {
             let reason = format!(
