@@ -176,7 +176,9 @@ impl CommandError {
                 | Self::FileNotBuilt { is_certified: false, .. }
                 | Self::LeftOut { .. }
                 | Self::RanAway { .. }
-                | Self::Simulation(SimulationError::Overflow { .. })
+                | Self::Simulation(
+                    SimulationError::Overflow { .. } | SimulationError::Readings { .. }
+                )
         )
     }
 }

@@ -26,13 +26,13 @@ impl Readings {
     pub const NONE: Self =
         Self { count: AtomicU32::new(NONE), failed: AtomicU16::new(0), equal: AtomicU16::new(0) };
 
-    /// Takes a transfer, of which so many in a row may fail, as the scene's certificate says. A failed one is
-    /// replaced by the angle before.
+    /// Takes a transfer, of which so many in a row may fail, as the scene's certificate says; whether it has an angle.
+    /// A failed one is replaced by the angle before.
     ///
     /// # Errors
     /// If more transfers in a row have failed than are allowed, or if the chip has stopped.
     #[inline(always)]
-    pub fn take(&self, chip: &Chip, frame: &Frame, allowed: u16) -> Result<(), ReadingError> {
+    pub fn take(&self, chip: &Chip, frame: &Frame, allowed: u16) -> Result<bool, ReadingError> {
         let count = match (chip.decode)(frame) {
             Ok(count) => count,
             Err(error) => match self.near_zero(chip, error) {
@@ -50,15 +50,15 @@ impl Readings {
             }
         }
         self.count.store(count, Relaxed);
-        Ok(())
+        Ok(true)
     }
 
     #[cold]
     #[inline(never)]
-    fn fail(&self, error: ReadingError, allowed: u16) -> Result<(), ReadingError> {
+    fn fail(&self, error: ReadingError, allowed: u16) -> Result<bool, ReadingError> {
         let failed = self.failed.load(Relaxed).saturating_add(1);
         self.failed.store(failed, Relaxed);
-        if failed > allowed { Err(error) } else { Ok(()) }
+        if failed > allowed { Err(error) } else { Ok(false) }
     }
 
     /// Beside zero a word of equal bits is an angle: a handle may rest there.

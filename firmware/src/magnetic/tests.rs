@@ -45,7 +45,7 @@ fn a_wire_that_is_broken_is_no_angle() {
 fn a_failed_reading_is_an_older_one() {
     let readings = Readings::NONE;
     let word = |angle: u16| frame(&[angle | (angle.count_ones() as u16 % 2) << 15]);
-    let take = |frame| readings.take(&AS5048A, &frame, 2).map(|()| readings.count());
+    let take = |frame| readings.take(&AS5048A, &frame, 2).map(|_| readings.count());
     let lost = frame(&[u16::MAX]);
     assert_eq!(take(word(900)), Ok(900));
     assert_eq!([take(lost), take(lost)], [Ok(900); 2]);
@@ -94,7 +94,7 @@ fn a_word_of_equal_bits_is_an_angle_beside_zero() {
     let takes = |chip: &Chip, first: u16, word: u16| {
         let readings = Readings::NONE;
         let _ = readings.take(chip, &frame(&[first]), 0);
-        readings.take(chip, &frame(&[word]), 0).map(|()| readings.count())
+        readings.take(chip, &frame(&[word]), 0).map(|_| readings.count())
     };
     assert_eq!(takes(&MA702, 200, 0), Ok(0));
     assert_eq!(takes(&MA702, 65_400, 65_535), Ok(65_535));

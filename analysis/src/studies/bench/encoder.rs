@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use haptic_servo::certificate::assess;
+use haptic_servo::certificate::{assess, is_static_at_port};
 use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, EncoderReading, Scene, TimeRange, Timing};
 
@@ -17,9 +17,12 @@ const READING: EncoderReading = EncoderReading {
     age: TimeRange::between(0.0, 1e-5),
     linearity: 0.035,
     noise: 2.0,
-    dropped: 1,
+    // That of any endless profile here.
+    friction: 100.0,
     ..EncoderReading::IDEAL
 };
+/// The same of which one in a row may fail, for laws of one position.
+const DROPPING: EncoderReading = EncoderReading { dropped: 1, ..READING };
 
 /// A wall that a board reads by an MT6701, and the same with a quadrature encoder on the board's timer.
 pub fn walls() -> Result<[SceneFile; 2], FileError> {
@@ -53,7 +56,10 @@ pub fn verdicts(rounds: usize) -> Pair {
     let plain = scenes();
     let read: Vec<_> = plain
         .iter()
-        .map(|scene| Scene { latency: scene.latency.read_by(&READING), ..*scene })
+        .map(|scene| {
+            let reading = if is_static_at_port(scene) { &DROPPING } else { &READING };
+            Scene { latency: scene.latency.read_by(reading), ..*scene }
+        })
         .collect();
     let time = |scenes: &[Scene]| {
         let start = Instant::now();

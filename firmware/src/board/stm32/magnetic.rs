@@ -3,7 +3,8 @@
 //! ```text
 //! TIM6 update ---- DMA 3 writes SPE: selects the chip, and the SPI sends what DMA 2 has put into its buffer
 //!   |              DMA 1 stores each word received
-//! DMA1_CHANNEL1    after the last word: the angle, or the one before [`read`]; pends the servo's interrupt
+//! DMA1_CHANNEL1    after the last word: the angle, or the one before [`read`]; pends the servo's interrupt, or leaves
+//!                  a tick out
 //! TIM6_DAC         the servo's tick, with the count of the update
 //! ```
 //!
@@ -67,6 +68,8 @@ pub struct Setup {
     pub chip: &'static Chip,
     /// Readings in a row that may fail.
     pub dropped: u16,
+    /// Whether their ticks are left out.
+    pub leaves_out: bool,
 }
 
 const DMA: pac::bdma::Dma = pac::DMA1;
@@ -121,8 +124,12 @@ pub fn read(setup: &'static Setup) {
     let words = setup.chip.interface.words;
     end();
     load_again(words);
-    if let Err(error) = MEMORY.readings.take(setup.chip, &received(words), setup.dropped) {
-        fail(error, setup.dropped);
+    match MEMORY.readings.take(setup.chip, &received(words), setup.dropped) {
+        Ok(true) => {}
+        // The next tick finds that a period has been missed.
+        Ok(false) if setup.leaves_out => return,
+        Ok(false) => {}
+        Err(error) => fail(error, setup.dropped),
     }
     NVIC::pend(interrupt::TIM6_DAC);
 }
@@ -277,20 +284,21 @@ fn divider(highest_clock: f64) -> Br {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_encoder {
-    ([], $program:ident) => {
+    ([], $($any:tt)*) => {
         compile_error!(
             "this board reads a magnetic encoder that the program does not state: write `encoder: CHIP` in \
-             scene_program!, or build it without the feature `magnetic`"
+             scene_program! or sweep_program!, or build it without the feature `magnetic`"
         );
     };
-    ([$chip:expr], $program:ident) => {
+    ([$chip:expr], $transducers:expr, $dropped:expr, $leaves_out:expr) => {
         /// The encoder's data of this program.
         #[unsafe(no_mangle)]
         static ENCODER_SETUP: $crate::board::stm32::magnetic::Setup =
             $crate::board::stm32::magnetic::Setup {
                 name: $chip.padded_name(),
                 chip: &$chip,
-                dropped: $program.scene.latency.encoder.dropped,
+                dropped: $dropped,
+                leaves_out: $leaves_out,
             };
 
         const ENCODER: &$crate::board::stm32::magnetic::Setup = &ENCODER_SETUP;
@@ -302,16 +310,5 @@ macro_rules! board_encoder {
                 $crate::board::stm32::magnetic::read(&ENCODER_SETUP);
             }
         }
-    };
-}
-
-/// The program of a sweep, which counts a quadrature encoder.
-#[doc(hidden)]
-#[macro_export]
-macro_rules! board_sweep {
-    ($($any:tt)*) => {
-        compile_error!(
-            "no sweep reads a magnetic encoder: build it without the feature `magnetic`"
-        );
     };
 }
