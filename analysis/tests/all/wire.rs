@@ -257,10 +257,10 @@ fn a_simulated_board_is_there_to_try_things_on() {
 fn a_scene_file_is_a_simulated_board() {
     let knob = concat!(env!("CARGO_MANIFEST_DIR"), "/explore/src/presets/gimbal_knob.toml");
     let board = BoardProcess::start(knob, &["--for", "30"]);
-    let running = answer(&board.haptic(&["tune", "--json", "profile_torque=0.02"]));
+    let running = answer(&board.haptic(&["tune", "--json", "torque=0.02"]));
     let expected = (&Value::Null, &"gimbal knob with MT6701".into());
     assert_eq!((&running["refused"], &running["program"]), expected);
-    assert_eq!(running["parameters"]["profile_torque"], 0.02);
+    assert_eq!(running["parameters"]["torque"], 0.02);
     let refused = haptic(&["board-sim", "none.toml", "--port", &board.port]);
     assert!(complaint(refused).contains("none.toml"));
     let folder = TempDir::new().unwrap();

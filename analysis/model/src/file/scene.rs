@@ -1,7 +1,5 @@
 //! A scene file's tables turned into a [`Scene`].
 
-use std::f64::consts::TAU;
-
 use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
 use haptic_servo::host::HostTorque;
 use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};

@@ -241,8 +241,8 @@ fn failing_readings_give_the_codes_of_a_simulation_s() {
     let armed = bench.armed();
     const SAMPLES: usize = 1500;
     let fails: Vec<_> = Missed::Every(3).ticks().take(SAMPLES).collect();
-    // The transfer of a tick comes at the beginning of the sample after its count.
-    let first = bench.pins().samples.len() - armed - 1;
+    // The chip is selected at the end of the sample that begins now.
+    let first = bench.pins().samples.len() - armed;
     for fail in &fails {
         let chip = bench.board_mut().magnetic.as_mut().unwrap();
         chip.failure = fail.then_some(Failure::Bit(3));
@@ -251,7 +251,7 @@ fn failing_readings_give_the_codes_of_a_simulation_s() {
     bench.board_mut().magnetic.as_mut().unwrap().failure = None;
     bench.run(2);
     let mut samples = bench.pins().samples[armed..].to_vec();
-    let mut last = samples[first].count;
+    let mut last = samples[first - 1].count;
     for (sample, fail) in samples[first..].iter_mut().zip(&fails) {
         sample.count = if *fail { last } else { sample.count };
         last = sample.count;
