@@ -23,8 +23,9 @@ const NEAR: u32 = 256;
 
 impl Readings {
     /// No reading yet.
-    pub const NONE: Self =
-        Self { count: AtomicU32::new(NONE), failed: AtomicU16::new(0), equal: AtomicU16::new(0) };
+    pub const fn none() -> Self {
+        Self { count: AtomicU32::new(NONE), failed: AtomicU16::new(0), equal: AtomicU16::new(0) }
+    }
 
     /// Takes a transfer, of which so many in a row may fail, as the scene's certificate says; whether it has an angle.
     /// A failed one is replaced by the angle before.

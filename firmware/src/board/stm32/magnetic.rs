@@ -95,7 +95,7 @@ static MEMORY: Memory = Memory {
     frame: [const { AtomicU16::new(0) }; LONGEST],
     enabled: AtomicU16::new(0),
     failed: AtomicU32::new(0),
-    readings: Readings::NONE,
+    readings: Readings::none(),
 };
 
 /// The count at the beginning of the period.
