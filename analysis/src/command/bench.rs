@@ -131,7 +131,7 @@ fn about_encoders() -> Result<[Figure; 2], CommandError> {
         let backend = built.backend(file.scene.timing.period);
         let input = Input::Hand(Box::new(device));
         let run = run_with_backend(input, servo.as_mut(), Some(backend), DEFAULT_TICKS, || {})?;
-        let stats = run.board.as_ref().map(|board| board.interrupt().clone());
+        let stats = run.board.as_ref().map(|board| *board.interrupt());
         stats.ok_or_else(|| CommandError::Failed("the virtual board measured nothing".into()))
     };
     let [read, counted] = bench::encoder::walls()?;
