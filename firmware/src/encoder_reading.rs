@@ -48,6 +48,17 @@ impl EncoderReading {
         self.age.is_zero() && is_zero(self.linearity) && is_zero(self.window) && self.dropped == 0
     }
 
+    /// Whether a tick whose reading is dropped is left out, a missed update that the torque lasts through, in a
+    /// servo with this period and this longest time between updates in s. If not, the law gets the reading before.
+    ///
+    /// A law of more than one position would see a handle that stands still and then jumps: its certificate is that
+    /// of missed updates (theory, section 18.1).
+    pub const fn leaves_out(&self, period: f64, worst_period: Option<f64>) -> bool {
+        const ROUNDED: f64 = 1.0 - 1e-9;
+        let held = (self.dropped as f64 + 1.0) * period;
+        matches!(worst_period, Some(worst) if worst >= held * ROUNDED)
+    }
+
     /// The most in s by which an age deviates from the middle of its range.
     pub const fn deviation_of_age(&self) -> f64 {
         0.5 * (self.age.most - self.age.least)

@@ -46,8 +46,8 @@ pub struct Latency {
     /// before the most of this range, which is at most a period. Zero if the torque follows at once.
     pub actuator_response: TimeRange,
     /// Updates of the amplifier's current loop per period; 0: its lag is continuous. At each update the
-    /// torque is that of the lag, and between two updates it changes linearly. The output delay must be a
-    /// whole number of update intervals, and there must be no sensor lag.
+    /// torque is that of the lag, and between two updates it changes linearly. The output delay, without the age
+    /// of a reading, must be a whole number of update intervals, and there must be no sensor lag.
     pub actuator_updates: u16,
     /// The readings of the encoder, whose times are parts of the times above: set by [`Latency::read_by`].
     ///
@@ -128,9 +128,9 @@ impl Latency {
         if self.encoder.age.is_zero() { delay } else { delay - self.encoder.age.middle() }
     }
 
-    /// The whole number of updates nearest to the output delay, at this period in s.
+    /// The whole number of updates nearest to the output delay without the age of a reading, at this period in s.
     pub const fn nearest_update(&self, period: f64) -> u32 {
-        (self.output_delay.most / period * self.actuator_updates as f64 + 0.5) as u32
+        (self.stated_delay() / period * self.actuator_updates as f64 + 0.5) as u32
     }
 
     /// The output delay in s of a number of updates.
@@ -138,9 +138,10 @@ impl Latency {
         update as f64 * period / self.actuator_updates as f64
     }
 
-    /// The output delay in periods of an updated current loop, exactly a whole number of updates.
+    /// The output delay in periods of an updated current loop: exactly a whole number of updates, and the age of a
+    /// reading.
     ///
-    /// `None` if it differs from that by more than a part in a billion, or if a time is stated that such a
+    /// `None` if the delay without the age differs from that by more than a part in a billion, or if a time is stated that such a
     /// loop cannot have.
     #[inline(never)]
     pub const fn delay_in_updates(&self, period: f64) -> Option<Interval> {
@@ -151,8 +152,20 @@ impl Latency {
         }
         let update = self.nearest_update(period);
         let whole = self.delay_at_update(update, period);
-        let is_whole = (self.output_delay.least - whole).abs() <= NEARLY_WHOLE * whole;
-        if is_whole { Some(delay_of_updates(update, self.actuator_updates)) } else { None }
+        if (self.stated_delay() - whole).abs() > NEARLY_WHOLE * whole {
+            return None;
+        }
+        let delay = delay_of_updates(update, self.actuator_updates);
+        if !self.is_between_updates() {
+            return Some(delay);
+        }
+        let age = Interval::decimal(self.encoder.age.middle()).div(Interval::decimal(period));
+        Some(delay.add(age))
+    }
+
+    /// Whether, from the instant of a reading, a torque begins between two updates of the current loop.
+    pub const fn is_between_updates(&self) -> bool {
+        self.actuator_updates > 0 && !self.encoder.age.is_zero()
     }
 
     /// Largest sum in s of the jitters of a scene with this period and an environment that is late by a
@@ -204,7 +217,8 @@ impl Latency {
         let latest = match self.actuator_updates {
             0 => (self.torque_delay().most + self.total_jitter()) / period,
             updates => {
-                self.nearest_update(period) as f64 / updates as f64 + self.total_jitter() / period
+                let late = self.encoder.age.middle() + self.total_jitter();
+                self.nearest_update(period) as f64 / updates as f64 + late / period
             }
         };
         (latest * (1.0 + ROUNDING)) as usize

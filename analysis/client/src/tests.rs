@@ -142,6 +142,32 @@ fn a_scene_file_runs_on_a_board_that_is_tuned_and_watched() {
     assert!(matches!(lost, LinkError::Lost { .. }), "{lost}");
 }
 
+/// The hand moves the gimbal knob over its cogging, and not against a friction that is stronger than the hand.
+#[test]
+fn the_device_of_a_file_cogs_and_rubs() {
+    let text = include_str!("../../explore/src/presets/gimbal_knob.toml");
+    let swing = |text: &str| {
+        let file = parse("gimbal_knob.toml", Format::Toml, text).unwrap();
+        let board = SimulatedBoard::of_file(&file, &loopback(), Pacing::Unthrottled).unwrap();
+        let mut link = Link::open(board.address()).unwrap();
+        assert_eq!(link.arm().unwrap(), RequestResult::Done);
+        let (mut positions, every) = (Vec::new(), NonZeroU32::new(100).unwrap());
+        link.telemetry(Duration::from_secs(60), every, |sample| {
+            positions.push(sample.position);
+            positions.len() < 200
+        })
+        .unwrap();
+        positions.iter().fold(0.0, |most: f64, position| most.max(position.abs()))
+    };
+    let moved = swing(text);
+    assert!(moved > 0.5, "{moved}");
+    let stuck = swing(&text.replace("friction = 0.003", "friction = 30.0"));
+    assert!(stuck < 0.01, "{stuck}");
+    let (weak, strong) = ("cogging = { torque = 0.005", "cogging = { torque = 30.0");
+    let held = swing(&text.replace(weak, strong));
+    assert!(held < std::f64::consts::TAU / 84.0, "{held}");
+}
+
 #[test]
 fn a_scene_that_no_board_renders_does_not_start() {
     let rejected = board(4e3).unwrap_err();

@@ -63,7 +63,8 @@ class Field {
 
   /** A key's name for people. */
   static nameOf(key) {
-    return key.path.split(".").pop().replaceAll("_", " ");
+    // The keys of this table stand among those of the device.
+    return key.path.replace(/^device\.cogging\./, "cogging ").split(".").pop().replaceAll("_", " ");
   }
 
   /** What the reference of scene files says of a key. */

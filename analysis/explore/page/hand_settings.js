@@ -25,15 +25,16 @@ class HandSettings {
 
   /** Buttons for two encoders: that of the scene, and a finer one without noise. */
   #encoders(changed) {
-    const choice = (words, counts) => {
-      const button = make("button", { type: "button" }, words);
+    const choice = (id, words, counts) => {
+      const button = make("button", { type: "button", id }, words);
       button.addEventListener("click", () => {
         this.#fields.counts.field.value = counts;
         changed();
       });
       return button;
     };
-    return make("p", {}, choice("Encoder of the scene", ""), " ", choice("10,000 counts", "10000"));
+    return make("p", {}, choice("handle-own-encoder", "Encoder of the scene", ""), " ",
+      choice("handle-fine-encoder", "10,000 counts", "10000"));
   }
 
   #row(name, changed) {

@@ -1,6 +1,7 @@
-//! Ticks in which the servo does not run, so that the last torque stays (theory, section 8).
+//! Ticks in which the servo does not run, so that the last torque stays (theory, section 8), or in which a reading of
+//! the encoder fails (section 18.1).
 
-/// Which ticks are missed. Sample 0 is never.
+/// Which ticks are missed, or which readings fail. Sample 0 is never.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Missed {
     /// None.

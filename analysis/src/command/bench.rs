@@ -11,13 +11,13 @@ use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Scene};
 
 use super::file_program::FileProgram;
-use super::file_scene::hand_trajectory;
 use super::shared_arguments::{DEFAULT_TICKS, JsonOption};
 use super::status::{CommandError, CommandStatus};
-use crate::compare_run::{Backend, Input, run_with_backend};
-use crate::controller::controller;
-use crate::emulator::EmulatorReport;
-use crate::file::{self, Format};
+use super::virtual_board_build::VirtualBoardBuild;
+use crate::compare_run::{Backend, Input, RunOutcome, run_with_backend};
+use crate::controller::{Controller, controller};
+use crate::emulator::{EmulatorReport, InstructionStats};
+use crate::file::{self, Format, SceneFile};
 use crate::lockstep::SimulatedDevice;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
@@ -89,6 +89,8 @@ const WALL: &str = "device = { inertia = 2.2e-5, damping = 0.022 }\nservo = { pe
     limits = { torque = 1.0, full_scale = 2.0, counts_per_turn = 61440 }\n";
 const HOST: &str =
     "host = { energy = 0.05, power = 0.5, damping = 0.004, torque = 0.5, timeout = 0.05 }\n";
+/// Of what a magnetic encoder adds to the servo's interrupt.
+const READING: Budget = Budget::of(15.0, "instructions");
 /// Of the free bytes of a motor board's flash with a wall on its bridge.
 const FLASH_LEFT: Budget = Budget { value: 40.0 * 1024.0, unit: "bytes", source: "at least" };
 
@@ -119,38 +121,72 @@ fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     beside_host(&toolchain, &mut figures)?;
     about_profiles(&toolchain, &mut figures)?;
     about_bridges(&toolchain, &mut figures)?;
+    figures.extend(about_encoders()?);
     Ok(figures)
 }
 
 /// The same wall with a host and without.
 fn beside_host(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
-    let name = "wall.toml";
-    let interrupt = |text: String| {
-        let file = file::parse(name, Format::Toml, &text)?;
-        let program = FileProgram::of(&file, name, None, None)?;
-        let elf = program.build(toolchain, None, NumberFormat::F32)?.path;
-        let certified = file.scene.certify();
-        let certified =
-            certified.map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
-        let transducers = file.transducers(None, None);
-        let device = SimulatedDevice::new(&file.scene, hand_trajectory(&file), &transducers)?;
-        let outcome = run_with_backend(
-            Input::Hand(Box::new(device)),
-            controller::<_, f32>(&certified, &transducers)?.as_mut(),
-            Some(Backend::Emulator(&elf)),
-            DEFAULT_TICKS,
-            || {},
-        )?;
-        let board = outcome.board.as_ref();
-        Ok::<_, CommandError>(board.map_or(f64::NAN, |board| board.interrupt().mean))
+    let mean = |text: &str| {
+        let file = file::parse("wall.toml", Format::Toml, text)?;
+        Ok::<_, CommandError>(
+            measured(&file, "wall.toml", |program, input, servo| {
+                let elf = program.build(toolchain, None, NumberFormat::F32)?.path;
+                let backend = Some(Backend::Emulator(&elf));
+                Ok(run_with_backend(input, servo, backend, DEFAULT_TICKS, || {})?)
+            })?
+            .mean,
+        )
     };
-    let pair =
-        Pair { ours: interrupt(format!("{WALL}{HOST}"))?, peers: interrupt(WALL.to_owned())? };
+    let pair = Pair { ours: mean(&format!("{WALL}{HOST}"))?, peers: mean(WALL)? };
     let added = pair.ours - pair.peers;
     let name = "wall with a host, f32: whole interrupt, mean";
     figures.push(Figure::beside(name, pair, "instructions", "without a host"));
     figures.push(Figure::within("host, f32: added to a tick, mean", added, &BESIDE_HOST));
     Ok(())
+}
+
+/// What the readings of an MT6701 add to the servo's interrupt, with the end of their transfer, which is an interrupt
+/// of its own.
+fn about_encoders() -> Result<[Figure; 2], CommandError> {
+    let on_virtual_board = |file: SceneFile, name: &str| {
+        measured(&file, name, |program, input, servo| {
+            let built =
+                VirtualBoardBuild::of_file(BoardModel::NucleoG474re, program, NumberFormat::F32)?;
+            let backend = Some(built.backend(file.scene.timing.period));
+            Ok(run_with_backend(input, servo, backend, DEFAULT_TICKS, || {})?)
+        })
+    };
+    let [read, counted] = bench::encoder::walls()?;
+    let read = on_virtual_board(read, "magnetic_wall.toml")?;
+    let counted = on_virtual_board(counted, "counted_wall.toml")?;
+    let figure = |what, more| {
+        Figure::within(
+            format!("an MT6701's readings: added to the interrupt, {what}"),
+            more,
+            &READING,
+        )
+    };
+    let most = read.max as f64 - counted.max as f64;
+    Ok([figure("mean", read.mean - counted.mean), figure("most", most)])
+}
+
+/// The instructions of the whole interrupt of a scene file's program, which runs on a board in the hand that
+/// demonstrates the file.
+fn measured(
+    file: &SceneFile,
+    name: &str,
+    run: impl FnOnce(&FileProgram, Input, &mut dyn Controller) -> Result<RunOutcome, CommandError>,
+) -> Result<InstructionStats, CommandError> {
+    let program = FileProgram::of(file, name, None, None)?;
+    let certified = file.scene.certify();
+    let certified = certified.map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
+    let transducers = file.transducers(None, None);
+    let mut servo = controller::<_, f32>(&certified, &transducers)?;
+    let device = SimulatedDevice::new(&file.scene, file.demonstration(), &transducers)?;
+    let outcome = run(&program, Input::Hand(Box::new(device)), servo.as_mut())?;
+    let board = outcome.board.as_ref().map(|board| *board.interrupt());
+    board.ok_or_else(|| CommandError::Failed("the board measured nothing".into()))
 }
 
 /// Ticks behind the matched coupling; no program has only a wall behind it.
@@ -238,6 +274,9 @@ fn on_host(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
     let time = bench::verdict_time(&on_target::profiles(), rounds.own);
     let name = "verdict about a torque profile of 64 knots, median";
     figures.push(Figure::within(name, time, &PROFILE));
+    let name = "verdict with [encoder], springs, walls and profiles";
+    let pair = bench::encoder::verdicts(rounds.own);
+    figures.push(Figure::beside(name, pair, "us", "the same without, at most 1.05"));
     figures.extend(maps(rounds));
     spinner.finish_and_clear();
     let spinner = progress::spinner("compiling certificates");

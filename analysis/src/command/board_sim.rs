@@ -1,18 +1,23 @@
 //! `haptic board-sim`: a simulated board, to try `tune` and `scope` without hardware.
 
 use std::io::{self, Write};
-use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::Transducers;
 
+use super::file_program::FileProgram;
+use super::file_scene::{is_file, scene_file};
 use super::rebuild_with_scene;
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::seconds;
 use super::virtual_board_build::VirtualBoardBuild;
-use crate::board_sim::{self, DrivingBoard, Pacing, SimulatedBoard};
+use crate::board_sim::{self, DrivingBoard, Pacing, SimulatedBoard, SimulatedBoardError};
+use crate::disturbance::Disturbance;
+use crate::file::SceneFile;
 use crate::hand::HandTrajectory;
 use crate::link::Address;
 use crate::lockstep::SimulatedDevice;
@@ -23,7 +28,8 @@ use crate::toolchain::{BoardModel, NumberFormat};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a scene's program in firmware/src/bin, for example damper_wall
+    /// Name of a program in firmware/src/bin, for example damper_wall, or a scene file, whose table `human` is the
+    /// hand
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Address to listen on: tcp://HOST:PORT, unix:PATH
@@ -45,17 +51,18 @@ const HAND_DURATION: f64 = 3600.0;
 /// Longest time between two polls for the end.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Runs a program in a simulated hand until the time is up, Ctrl-C, or a signal to end.
+/// Runs a program or a scene file in a simulated hand until the time is up, Ctrl-C, or a signal to end.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let name = &arguments.scene;
-    let program = Program::find(name).ok_or_else(|| no_program(name))?;
+    let Arguments { scene: name, port, board, .. } = arguments;
     let enough = terminal::interrupted()?;
-    let trajectory = (program.trajectory)().repeated_until(HAND_DURATION);
-    let built = |board| VirtualBoardBuild::build(board, program, NumberFormat::F32);
-    let built = arguments.board.map(built).transpose()?;
-    let address = &arguments.port;
-    let board = listening(program, built.as_ref(), trajectory, address)?
-        .map_err(|source| CommandError::Listen { address: address.clone(), source })?;
+    let board = match Program::find(name) {
+        Some(program) => of_program(program, *board, port)?,
+        None if is_file(name) => of_file(&scene_file(name)?, name, *board, port)?,
+        None => {
+            let (name, programs) = (name.clone(), rebuild_with_scene::scenes());
+            return Err(CommandError::NoProgram { name, programs });
+        }
+    };
     writeln!(io::stdout(), "{name} listens on {}", board.address())?;
     let end = arguments.duration.map(|duration| Instant::now() + duration);
     let is_over = || enough.load(Ordering::Relaxed) || end.is_some_and(|end| Instant::now() >= end);
@@ -66,34 +73,84 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(CommandStatus::Success)
 }
 
-/// The program behind its port, in a hand.
-fn listening(
-    program: &Program,
-    built: Option<&VirtualBoardBuild>,
-    hand: HandTrajectory,
-    address: &Address,
-) -> Result<io::Result<SimulatedBoard>, CommandError> {
-    let Program { scene, transducers, .. } = program;
-    let Some(built) = built else {
-        let device = Box::new(SimulatedDevice::new(scene, hand, transducers)?);
-        return Ok(program.listen(device, address, Pacing::RealTime));
+/// A program behind its port.
+fn of_program(
+    program: &'static Program,
+    board: Option<BoardModel>,
+    port: &Address,
+) -> Result<SimulatedBoard, CommandError> {
+    let &Program { scene, transducers, .. } = program;
+    let hand = (program.trajectory)().repeated_until(HAND_DURATION);
+    let disturbance = Disturbance::default();
+    let surroundings = Surroundings { scene, transducers, hand, disturbance };
+    let Some(board) = board else {
+        let listening = program.listen(surroundings.device()?, port, Pacing::RealTime);
+        return listening.map_err(not_listening(port));
     };
-    let board = if let Some((board, current_loop)) = built.boot_bridge()? {
-        let shaft = HandHeldShaft::new(scene, hand, transducers, current_loop)?;
-        DrivingBoard::Bridge { board: Box::new(board), shaft: Box::new(shaft) }
-    } else {
-        let plant = Box::new(SimulatedDevice::new(scene, hand, transducers)?);
-        DrivingBoard::Dac { board: built.boot()?, plant, count: None }
-    };
-    let period = scene.timing.period;
-    Ok(board_sim::listen(board, address, period))
+    surroundings.around(&VirtualBoardBuild::build(board, program, NumberFormat::F32)?, port)
 }
 
-/// The error if there is no simulated board of this name, which may be a scene file.
-fn no_program(name: &str) -> CommandError {
-    let (name, programs) = (name.to_owned(), rebuild_with_scene::scenes());
-    match Path::new(&name).is_file() {
-        true => CommandError::FileOnSimulatedBoard { file: name, programs },
-        false => CommandError::NoProgram { name, programs },
+/// A scene file behind its port.
+fn of_file(
+    file: &SceneFile,
+    source: &str,
+    board: Option<BoardModel>,
+    port: &Address,
+) -> Result<SimulatedBoard, CommandError> {
+    file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
+    let Some(board) = board else {
+        return SimulatedBoard::of_file(file, port, Pacing::RealTime).map_err(
+            |error| match error {
+                SimulatedBoardError::Listen { address, source } => {
+                    CommandError::Listen { address, source }
+                }
+                error => {
+                    CommandError::NoBoardProgram { file: source.to_owned(), why: error.to_string() }
+                }
+            },
+        );
+    };
+    let program = FileProgram::of(file, source, None, None)?;
+    let built = VirtualBoardBuild::of_file(board, &program, NumberFormat::F32)?;
+    let (scene, transducers) = (file.scene, file.transducers(None, None));
+    let hand = file.demonstration().repeated_until(HAND_DURATION);
+    Surroundings { scene, transducers, hand, disturbance: file.disturbance() }.around(&built, port)
+}
+
+/// The device and the hand around a board.
+struct Surroundings {
+    scene: Scene,
+    transducers: Transducers,
+    hand: HandTrajectory,
+    disturbance: Disturbance,
+}
+
+impl Surroundings {
+    /// Behind a DAC.
+    fn device(self) -> Result<Box<SimulatedDevice>, CommandError> {
+        let device = SimulatedDevice::new(&self.scene, self.hand, &self.transducers)?;
+        Ok(Box::new(device.with_disturbance(self.disturbance)))
     }
+
+    /// A virtual board with them behind its port.
+    fn around(
+        self,
+        built: &VirtualBoardBuild,
+        port: &Address,
+    ) -> Result<SimulatedBoard, CommandError> {
+        let period = self.scene.timing.period;
+        let board = if let Some((board, current_loop)) = built.boot_bridge()? {
+            let Self { scene, transducers, hand, disturbance } = self;
+            let shaft = HandHeldShaft::new(&scene, hand, &transducers, current_loop)?;
+            let shaft = Box::new(shaft.with_disturbance(disturbance));
+            DrivingBoard::Bridge { board: Box::new(board), shaft }
+        } else {
+            DrivingBoard::Dac { board: built.boot()?, plant: self.device()?, count: None }
+        };
+        board_sim::listen(board, port, period).map_err(not_listening(port))
+    }
+}
+
+fn not_listening(port: &Address) -> impl FnOnce(io::Error) -> CommandError {
+    |source| CommandError::Listen { address: port.clone(), source }
 }

@@ -10,7 +10,9 @@ use super::building::building;
 use super::status::CommandError;
 use crate::file::{DeviceFile, SceneFile, program};
 use crate::program::Program;
-use crate::toolchain::{self, BoardModel, NumberFormat, Sources, Toolchain, TorqueOutput};
+use crate::toolchain::{
+    self, BoardModel, NumberFormat, OtherDevice, Sources, Toolchain, TorqueOutput,
+};
 
 /// The longest name that a board tells its host, in bytes.
 const LONGEST: usize = 32;
@@ -47,12 +49,14 @@ impl FileProgram {
 
     /// A program of the examples with the device of a file in place of the paddle.
     pub fn on_device(name: &str, source: &str, file: &DeviceFile) -> Result<Self, CommandError> {
-        let text = Sources::find()?.on_device(name, &device_module(source, file)?)?;
+        let device = other_device(source, file)?;
+        let text = Sources::find()?.on_device(name, &device)?;
         let scene = Program::find(name).map(|program| program.scene);
         let is_certified =
             scene.is_none_or(|scene| Scene { device: file.device, ..scene }.certify().is_ok());
         let source = name.to_owned();
-        Ok(Self { source, text, is_certified, is_magnetic: false, bridge: None })
+        let is_magnetic = file.chip.is_some();
+        Ok(Self { source, text, is_certified, is_magnetic, bridge: None })
     }
 
     /// What makes its torques.
@@ -91,13 +95,14 @@ impl FileProgram {
     }
 }
 
-/// The module of a program with the device of a file.
-pub fn device_module(source: &str, file: &DeviceFile) -> Result<String, CommandError> {
+/// The device of a file, for a program.
+pub fn other_device(source: &str, file: &DeviceFile) -> Result<OtherDevice, CommandError> {
     let failed = |why| CommandError::NoBoardProgram { file: source.to_owned(), why };
     let transducers = file.transducers.of_board().map_err(failed)?;
     if file.device.passivity.is_some_and(f64::is_nan) {
         let why = "the device has no passivity in a hand, so no scene is certified on it";
         return Err(failed(why.to_owned()));
     }
-    Ok(program::device_module(&file.device, &transducers, source))
+    let module = program::device_module(&file.device, &transducers, file.chip, source);
+    Ok(OtherDevice { module, chip: file.chip })
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use clap::Args;
 
-use super::file_program::{FileProgram, device_module};
+use super::file_program::{FileProgram, other_device};
 use super::file_scene::{is_file, scene_file};
 use super::status::{CommandError, CommandStatus};
 use crate::file;
@@ -47,9 +47,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         }
         (program.text, format!("is the program of {from}, with its numbers as constants:"))
     } else {
-        let device = device.as_ref().map(|file| device_module(file, &file::load_device(file)?));
+        let device = device.as_ref().map(|file| other_device(file, &file::load_device(file)?));
         (
-            sources.copied(name, from, device.transpose()?.as_deref())?,
+            sources.copied(name, from, device.transpose()?.as_ref())?,
             format!("is a copy of {from}: change its environment, and then"),
         )
     };

@@ -38,11 +38,6 @@ pub enum CommandError {
     NoScene { name: String, programs: String },
     #[error("there is no scene {name}: the programs are {programs}")]
     NoProgram { name: String, programs: String },
-    #[error(
-        "{file} is a file; a simulated board needs the name of a scene's program: {programs}; \
-         `cargo haptic new NAME --from {file}` writes one"
-    )]
-    FileOnSimulatedBoard { file: String, programs: String },
     #[error("{file}: {why}")]
     NoBoardProgram { file: String, why: String },
     #[error(
@@ -181,7 +176,9 @@ impl CommandError {
                 | Self::FileNotBuilt { is_certified: false, .. }
                 | Self::LeftOut { .. }
                 | Self::RanAway { .. }
-                | Self::Simulation(SimulationError::Overflow { .. })
+                | Self::Simulation(
+                    SimulationError::Overflow { .. } | SimulationError::Readings { .. }
+                )
         )
     }
 }

@@ -21,5 +21,5 @@ pub use memory::Memory;
 pub use packages::{QEMU, emulator};
 pub use prepare::{SetupError, Tools, prepare, set_up_tool};
 pub use size::Sizes;
-pub use sources::{Sources, SourcesError};
+pub use sources::{OtherDevice, Sources, SourcesError};
 pub use target::Target;

@@ -4,12 +4,28 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use haptic_servo::magnetic::Chip;
+
+use crate::file::program::option_of;
+
 /// The module of the examples' paddle, in the file of a program for it.
 const PADDLE: &str = "mod paddle;";
 /// The call in the file of a scene's program; a file without it is another kind of program.
 const SCENE: &str = "scene_program!";
 /// The call in the file of a sweep's program.
 const SWEEP: &str = "sweep_program!";
+
+/// The options of a sweep that are not followed by a chip.
+const SWEEP_OPTIONS: &str = "sweep_program!(SWEEP, TRANSDUCERS, LIMITS";
+
+/// A device in place of the paddle.
+#[derive(Clone, Debug)]
+pub struct OtherDevice {
+    /// Its module.
+    pub module: String,
+    /// The chip of its magnetic encoder.
+    pub chip: Option<&'static Chip>,
+}
 
 /// The folder of the programs' files.
 #[derive(Clone, Debug)]
@@ -32,6 +48,11 @@ pub enum SourcesError {
     NoProgram { name: String, programs: Vec<String> },
     #[error("{name} has its device in its own file, {}: only programs for the paddle take another", .path.display())]
     OwnDevice { name: String, path: PathBuf },
+    #[error(
+        "the scene of {name} does not cover the readings of the device's `encoder.chip` = \"{chip}\": write a scene \
+         file with that device"
+    )]
+    NoReading { name: String, chip: &'static str },
     #[error("`{name}` is not a valid name of a scene: {why}")]
     Name { name: String, why: String },
     #[error("{} exists already; nothing was changed", .0.display())]
@@ -120,7 +141,7 @@ impl Sources {
         &self,
         name: &str,
         from: &str,
-        device: Option<&str>,
+        device: Option<&OtherDevice>,
     ) -> Result<String, SourcesError> {
         let scenes = self.scenes()?;
         if !scenes.iter().any(|scene| scene == from) {
@@ -138,8 +159,9 @@ impl Sources {
     /// The text of a program for the paddle of the examples, with another module of a device in its place.
     ///
     /// # Errors
-    /// If there is no such program, or if it is for another device.
-    pub fn on_device(&self, name: &str, device: &str) -> Result<String, SourcesError> {
+    /// If there is no such program, if it is for another device, or if it has a scene and the device a chip, whose
+    /// readings no scene of the examples covers.
+    pub fn on_device(&self, name: &str, device: &OtherDevice) -> Result<String, SourcesError> {
         let programs = self.programs()?;
         if !programs.iter().any(|program| program == name) {
             return Err(SourcesError::NoProgram { name: name.into(), programs });
@@ -148,7 +170,15 @@ impl Sources {
         if !self.takes_device(name) {
             return Err(SourcesError::OwnDevice { name: name.into(), path: self.file(name) });
         }
-        Ok(text.replace(PADDLE, device.trim_end()).replace("paddle::", "device::"))
+        let text = text.replace(PADDLE, device.module.trim_end()).replace("paddle::", "device::");
+        match device.chip {
+            None => Ok(text),
+            Some(chip) if text.contains(SWEEP_OPTIONS) => {
+                let options = format!("{SWEEP_OPTIONS}, {}", option_of(chip));
+                Ok(text.replace(SWEEP_OPTIONS, &options))
+            }
+            Some(chip) => Err(SourcesError::NoReading { name: name.into(), chip: chip.name }),
+        }
     }
 
     /// Whether [another device](Self::on_device) may take the place of a program's.
@@ -207,7 +237,17 @@ mod tests {
         fs::create_dir_all(&sources.folder).unwrap();
         fs::write(sources.file("wall"), "mod paddle;\nuse paddle::DEVICE;\n").unwrap();
         fs::write(sources.file("bridge"), "mod bridge_paddle;\n").unwrap();
-        let on = |name| sources.on_device(name, "mod device {}").map_err(|error| error.to_string());
+        let sweep = "mod paddle;\nsweep_program!(SWEEP, TRANSDUCERS, LIMITS);\n";
+        fs::write(sources.file("sweep"), sweep).unwrap();
+        let with = |name, chip| {
+            let device = OtherDevice { module: "mod device {}".to_owned(), chip };
+            sources.on_device(name, &device).map_err(|error| error.to_string())
+        };
+        let on = |name| with(name, None);
+        let chip = Chip::find("mt6701");
+        let options = "LIMITS, encoder: haptic_servo::magnetic::MT6701);";
+        assert!(with("sweep", chip).unwrap().ends_with(&format!("{options}\n")));
+        assert!(with("wall", chip).unwrap_err().contains("`encoder.chip` = \"mt6701\""));
         assert_eq!(on("wall").unwrap(), "mod device {}\nuse device::DEVICE;\n");
         assert!(on("bridge").unwrap_err().contains("has its device in its own file"));
         assert!(on("wrist").unwrap_err().contains("there is no program wrist"));

@@ -254,6 +254,24 @@ fn a_simulated_board_is_there_to_try_things_on() {
 }
 
 #[test]
+fn a_scene_file_is_a_simulated_board() {
+    let knob = concat!(env!("CARGO_MANIFEST_DIR"), "/explore/src/presets/gimbal_knob.toml");
+    let board = BoardProcess::start(knob, &["--for", "30"]);
+    let running = answer(&board.haptic(&["tune", "--json", "torque=0.02"]));
+    let expected = (&Value::Null, &"gimbal knob with MT6701".into());
+    assert_eq!((&running["refused"], &running["program"]), expected);
+    assert_eq!(running["parameters"]["torque"], 0.02);
+    let refused = haptic(&["board-sim", "none.toml", "--port", &board.port]);
+    assert!(complaint(refused).contains("none.toml"));
+    let folder = TempDir::new().unwrap();
+    let steep = folder.path().join("steep.toml");
+    let text = std::fs::read_to_string(knob).unwrap().replace("torque = 0.03", "torque = 3.0");
+    std::fs::write(&steep, text).unwrap();
+    let refused = haptic(&["board-sim", steep.to_str().unwrap(), "--port", &board.port]);
+    assert_eq!(refused.status.code(), Some(1), "{refused:?}");
+}
+
+#[test]
 fn a_simulated_board_that_is_told_to_end_or_killed_is_in_nobodys_way() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("board");

@@ -61,6 +61,25 @@ pub fn the_handle_of_the_page_runs_the_servo_of_the_program() {
     page.assert_silent();
 }
 
+/// The buttons change the counts that the servo reads; the fields of the cogging say so.
+pub fn the_encoder_of_the_handle_is_exchanged() {
+    let (_folder, mut page) =
+        opened(1280, include_str!("../../explore/src/presets/gimbal_knob.toml"));
+    page.click("#handle-settings summary");
+    let counts = "window.haptic.dragged().countsPerTurn";
+    page.wait_for(&format!("{counts} === 16384"));
+    page.click("#handle-fine-encoder");
+    page.wait_for(&format!("{counts} === 10000"));
+    page.click("#handle-own-encoder");
+    page.wait_for(&format!("{counts} === 16384"));
+    for (field, words) in [("torque", "cogging torque"), ("count", "cogging count")] {
+        let label =
+            format!("document.querySelector('[for=field-device-cogging-{field}]').textContent");
+        assert_eq!(page.value(&label), words);
+    }
+    page.assert_silent();
+}
+
 pub fn a_refused_handle_has_no_torque_until_the_check_is_off() {
     let folder = tempfile::tempdir().unwrap();
     let mut page = Page::start(360);

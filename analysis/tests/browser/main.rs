@@ -38,6 +38,7 @@ fn all() -> Vec<(&'static str, fn())> {
         scene_page::on_paper_there_is_nothing_to_operate
         explore::the_root_says_the_verdict_for_programs
         handle::the_handle_of_the_page_runs_the_servo_of_the_program
+        handle::the_encoder_of_the_handle_is_exchanged
         handle::a_refused_handle_has_no_torque_until_the_check_is_off
         serve::a_board_is_watched_tuned_armed_and_recorded
         serve::a_link_is_lost_and_back_and_a_second_page_is_refused

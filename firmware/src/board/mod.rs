@@ -329,10 +329,14 @@ macro_rules! or_default {
 
 /// Makes a program of a sweep, its transducers and the limits of the motion: on a board it plays the sweep
 /// within the limits, on the host it prints the plan. With the [`CurrentLoop`](crate::current::CurrentLoop)
-/// of a motor it also runs on boards with a bridge.
+/// of a motor it also runs on boards with a bridge, and with the [`Chip`](crate::magnetic::Chip) of a magnetic
+/// encoder on a board with the feature `magnetic`.
 #[macro_export]
 macro_rules! sweep_program {
-    ($sweep:ident, $transducers:ident, $limits:ident $(, bridge: $current_loop:ident)?) => {
+    (
+        $sweep:ident, $transducers:ident, $limits:ident
+        $(, bridge: $current_loop:ident)? $(, encoder: $encoder:expr)?
+    ) => {
         /// The limits in counts. Limits that would not stop any motion do not compile.
         pub const GUARD: $crate::excitation::Guard =
             $crate::excitation::Guard::planned(&$limits, &$transducers, $sweep.period());
@@ -350,7 +354,7 @@ macro_rules! sweep_program {
         }
 
         #[cfg(target_os = "none")]
-        $crate::board_sweep!($sweep, $transducers, $limits, [$($current_loop)?]);
+        $crate::board_sweep!($sweep, $transducers, $limits, [$($current_loop)?], [$($encoder)?]);
     };
 }
 

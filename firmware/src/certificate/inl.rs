@@ -57,7 +57,7 @@ impl PassivityProblem {
         let is_delayed = !delay.is_zero();
         let ripple = if is_delayed { ripple_of_mixture(delay, delay) } else { Interval::ZERO };
         let lags = [Interval::ZERO, Interval::ZERO];
-        let pieces = LagIntervals { delay, lags, updates: 0 };
+        let pieces = LagIntervals { delay, lags, updates: 0, between: false };
         let mut memory = Memory { at_rest: Interval::ZERO, moving: Interval::ZERO, ripple };
         each!(piece in 0..pieces.pieces() => {
             let whole = delay.lo().max(0.0) as i32 + piece as i32;

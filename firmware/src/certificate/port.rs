@@ -25,6 +25,7 @@ struct Cells {
     /// Updates of the current loop in a period, and the delay in updates; 0 if the loop is continuous.
     updates: u16,
     delay_in_updates: Interval,
+    between: bool,
 }
 
 impl Cells {
@@ -40,6 +41,7 @@ impl Cells {
                 0 => Interval::ZERO,
                 _ => some!(latency.delay_in_updates(period.midpoint())),
             },
+            between: latency.is_between_updates(),
         })
     }
 
@@ -60,6 +62,7 @@ impl Cells {
                 part(self.sensor, index / delays / actuators).div(period),
             ],
             updates: self.updates,
+            between: self.between,
         }
     }
 }
@@ -107,7 +110,7 @@ impl Corners {
             let whole = self.first_whole + (index - self.ends.len()) as i32;
             Interval::exact(whole as f64)
         };
-        LagIntervals { delay, lags: [Interval::ZERO, Interval::ZERO], updates: 0 }
+        LagIntervals { delay, lags: [Interval::ZERO, Interval::ZERO], updates: 0, between: false }
     }
 }
 

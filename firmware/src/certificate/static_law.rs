@@ -219,7 +219,8 @@ impl Law {
         };
         // Otherwise a dropped reading is a missed update.
         let dropped = if is_static_at_port(scene) { encoder.dropped } else { 0 };
-        let times = Times { latency: &scene.latency, window: encoder.window, dropped };
+        let between = E::MAY_MISREAD && scene.latency.is_between_updates();
+        let times = Times { latency: &scene.latency, window: encoder.window, dropped, between };
         let age = some!(Age::of(&times, n, end));
         let steepest = self.steepest;
         let moved = self.rise.half().add(self.late).add(steepest.mul(age.mean));
@@ -293,8 +294,8 @@ struct Age {
 impl Age {
     const NONE: Self = Self { mean: Interval::ZERO, variance: Interval::ZERO, tick: Interval::ONE };
 
-    /// `None` if no bound is known: for updates that are missed beside two lags, or beside jitter and a lag,
-    /// and for two jitters beside a lag.
+    /// `None` if no bound is known: for updates that are missed beside two lags, or beside a lag with jitter or
+    /// with torques that begin between two updates, and for two jitters beside a lag.
     const fn of(times: &Times<'_>, n: &LoopIntervals, end: End) -> Option<Self> {
         let latency = times.latency;
         if latency.is_none() && times.dropped == 0 {
@@ -325,8 +326,9 @@ impl Age {
                 tick: Interval::ONE,
             });
         }
-        let lag = Tail::of(latency.actuator_lag.most, latency, n, part, end);
-        let filter = Tail::of(latency.sensor_lag.most, &Latency::NONE, n, part, end);
+        let between = times.between;
+        let lag = Tail::of(latency.actuator_lag.most, latency, between, n, part, end);
+        let filter = Tail::of(latency.sensor_lag.most, &Latency::NONE, false, n, part, end);
         let mean = part.add(lag.lag.held).add(filter.lag.held);
         let square = part.add(lag.square(part)).add(filter.square(part));
         let square = match has_lag && has_filter {
@@ -338,7 +340,8 @@ impl Age {
             let variance = variance(square, mean);
             return Some(Self { mean: whole.add(mean), variance, tick: Interval::ONE });
         }
-        if has_lag && has_filter || (has_lag || has_filter) && latency.total_jitter() > 0.0 {
+        let irregular = latency.total_jitter() > 0.0 || times.between;
+        if has_lag && has_filter || (has_lag || has_filter) && irregular {
             return None;
         }
         // The envelope in the rest of a tick that is longer than a period is no larger than at its beginning.
@@ -387,6 +390,8 @@ struct Times<'s> {
     window: f64,
     /// Readings in a row that may be older ones.
     dropped: u16,
+    /// Whether a torque begins between two updates of the current loop.
+    between: bool,
 }
 
 impl Times<'_> {
@@ -437,7 +442,14 @@ impl Tail {
     /// The tail of a time constant in s after `part` of a period. Beside jitter the tick may end between two
     /// updates of a current loop, and `u` is at most that at the update before.
     #[inline(never)]
-    const fn of(tau: f64, latency: &Latency, n: &LoopIntervals, part: Interval, end: End) -> Self {
+    const fn of(
+        tau: f64,
+        latency: &Latency,
+        between: bool,
+        n: &LoopIntervals,
+        part: Interval,
+        end: End,
+    ) -> Self {
         if tau == 0.0 {
             return Self::NONE;
         }
@@ -449,11 +461,12 @@ impl Tail {
                 (lag, lag.unspread)
             }
             updates => {
-                if latency.total_jitter() > 0.0 {
+                let jitters = latency.total_jitter() > 0.0;
+                if jitters {
                     let whole = (over.lo() * updates as f64 * (1.0 - 1e-9)) as u32 as f64;
                     over = Interval::exact(whole).div(Interval::exact(updates as f64));
                 }
-                let lag = Decay::sampled(tau, over, updates);
+                let lag = Decay::sampled(tau, over, updates, between && !jitters);
                 (lag, lag.held.sub(lag.unspread))
             }
         };

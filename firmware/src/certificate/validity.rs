@@ -420,9 +420,6 @@ const fn check_encoder(scene: &Scene) -> Checked {
         );
         return must_be(Parameter::Age, most, bound, Some(limit));
     }
-    if encoder.age.most > 0.0 && latency.actuator_updates != 0 {
-        return must_be(Parameter::Age, most, BESIDE_UPDATES[2], None);
-    }
     let response = latency.actuator_response;
     if encoder.window > 0.0 && (response.least != 0.0 || response.most != encoder.window) {
         return must_be(Parameter::Window, encoder.window, NO_RESPONSE_BESIDE, None);

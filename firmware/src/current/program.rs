@@ -63,10 +63,12 @@ impl CurrentLoop {
     ) {
         let own = self.latency(timing);
         let response = self.response();
+        // Of which the certificate has the middle in the output delay.
+        let age = latency.encoder.age.middle();
         let pairs = [
             ("period", period, response.delay * response.updates as f64),
-            ("output delay", latency.output_delay.least, own.output_delay.least),
-            ("output delay", latency.output_delay.most, own.output_delay.most),
+            ("output delay", latency.output_delay.least - age, own.output_delay.least),
+            ("output delay", latency.output_delay.most - age, own.output_delay.most),
             ("actuator lag", latency.actuator_lag.least, own.actuator_lag.least),
             ("actuator lag", latency.actuator_lag.most, own.actuator_lag.most),
             (

@@ -239,6 +239,8 @@ const fn covered(latency: &Latency, sampling: &Sampling) -> Result<(), HostError
         "readings that may be dropped"
     } else if !latency.actuator_response.is_zero() {
         "an amplifier whose step response is only known to rise between two times"
+    } else if latency.is_between_updates() {
+        "an amplifier that is updated several times in a period beside readings with an age"
     } else if latency.actuator_updates > 0 && latency.delay_in_updates(sampling.period).is_none() {
         "an output delay that is no whole number of the amplifier's updates"
     } else if latency.actuator_updates > 0 && !latency.actuator_lag.is_exact() {
@@ -262,7 +264,7 @@ const fn decay(latency: &Latency, period: f64, part: f64) -> Decay {
     let over = Interval::exact(1.0 - part);
     match latency.actuator_updates {
         0 => Decay::of(tau, over),
-        updates => Decay::sampled(tau, over, updates),
+        updates => Decay::sampled(tau, over, updates, false),
     }
 }
 

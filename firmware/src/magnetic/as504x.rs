@@ -17,6 +17,7 @@ const ERROR: u16 = 1 << 14;
 const ANGLE: u16 = ERROR - 1;
 
 /// The angle of a word.
+#[inline(always)]
 pub fn decode(&[word, ..]: &Frame) -> Result<u32, ReadingError> {
     match word {
         // Both have an even parity.

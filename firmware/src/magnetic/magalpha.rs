@@ -44,6 +44,7 @@ pub const MA732: Chip = Chip {
     ..MA702
 };
 
+#[inline(always)]
 fn decode(&[word, ..]: &Frame) -> Result<u32, ReadingError> {
     match word {
         0 => Err(ReadingError::Zeros),

@@ -26,7 +26,7 @@ pub const MT6701: Chip = Chip {
 };
 
 /// Status: the field is too strong (1), too weak (2), or the track is lost (8). The push button (4) is no error.
-const FIELD: u16 = 0b1011;
+const FIELD: u32 = 0b1011;
 
 /// The remainders of six more bits by x^6 + x + 1, with the first bit first.
 const REMAINDERS: [u8; 64] = {
@@ -41,20 +41,21 @@ const REMAINDERS: [u8; 64] = {
     table
 };
 
+#[inline(always)]
 fn decode(&[first, second, _]: &Frame) -> Result<u32, ReadingError> {
-    match (first, second) {
+    let bits = u32::from(first) << 12 | u32::from(second);
+    if bits == 0 {
         // The checksum of zeros is zero.
-        (0, 0) => return Err(ReadingError::Zeros),
-        (0xFFF, 0xFFF) => return Err(ReadingError::Ones),
-        _ => {}
+        return Err(ReadingError::Zeros);
     }
-    let six = |rest: u8, bits: u16| REMAINDERS[usize::from(rest ^ bits as u8 & 0x3F)];
-    let rest = six(six(six(0, first >> 6), first), second >> 6);
-    if rest != second as u8 & 0x3F {
-        return Err(ReadingError::Checksum);
+    let six = |rest: u8, bits: u32| REMAINDERS[(u32::from(rest) ^ bits & 0x3F) as usize];
+    let rest = six(six(six(0, bits >> 18), bits >> 12), bits >> 6);
+    if u32::from(rest) != bits & 0x3F {
+        // The checksum of ones is none.
+        return Err(if bits == 0xFF_FFFF { ReadingError::Ones } else { ReadingError::Checksum });
     }
-    if second >> 6 & FIELD != 0 {
+    if bits >> 6 & FIELD != 0 {
         return Err(ReadingError::Field);
     }
-    Ok(u32::from(first) << 2 | u32::from(second) >> 10)
+    Ok(bits >> 10)
 }

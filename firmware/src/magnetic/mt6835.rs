@@ -39,6 +39,7 @@ const fn checksum(bits: u32) -> u32 {
     rest
 }
 
+#[inline(always)]
 fn decode(&[_, first, second]: &Frame) -> Result<u32, ReadingError> {
     let bits = u32::from(first) << 16 | u32::from(second);
     match bits {

@@ -43,9 +43,9 @@ fn a_wire_that_is_broken_is_no_angle() {
 /// The angle before takes the place of as many failed ones as are allowed, also again after a good one.
 #[test]
 fn a_failed_reading_is_an_older_one() {
-    let mut readings = Readings::new(2);
+    let readings = Readings::none();
     let word = |angle: u16| frame(&[angle | (angle.count_ones() as u16 % 2) << 15]);
-    let mut take = |frame| readings.take(&AS5048A, &frame).map(|()| readings.count());
+    let take = |frame| readings.take(&AS5048A, &frame, 2).map(|_| readings.count());
     let lost = frame(&[u16::MAX]);
     assert_eq!(take(word(900)), Ok(900));
     assert_eq!([take(lost), take(lost)], [Ok(900); 2]);
@@ -58,8 +58,8 @@ fn a_failed_reading_is_an_older_one() {
 #[test]
 fn only_a_chip_that_is_never_quiet_can_be_told_to_be_frozen() {
     let takes = |chip: &Chip, words: &[u16]| {
-        let mut readings = Readings::new(0);
-        let taken = (0..2000).map(|_| readings.take(chip, &frame(words)));
+        let readings = Readings::none();
+        let taken = (0..2000).map(|_| readings.take(chip, &frame(words), 0));
         taken.take_while(Result::is_ok).count()
     };
     for (chip, words, _) in CASES {
@@ -92,9 +92,9 @@ fn a_scene_states_an_age_that_covers_the_chip_s() {
 #[test]
 fn a_word_of_equal_bits_is_an_angle_beside_zero() {
     let takes = |chip: &Chip, first: u16, word: u16| {
-        let mut readings = Readings::new(0);
-        let _ = readings.take(chip, &frame(&[first]));
-        readings.take(chip, &frame(&[word])).map(|()| readings.count())
+        let readings = Readings::none();
+        let _ = readings.take(chip, &frame(&[first]), 0);
+        readings.take(chip, &frame(&[word]), 0).map(|_| readings.count())
     };
     assert_eq!(takes(&MA702, 200, 0), Ok(0));
     assert_eq!(takes(&MA702, 65_400, 65_535), Ok(65_535));

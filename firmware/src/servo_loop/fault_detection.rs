@@ -56,7 +56,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         hardware: &mut impl Hardware,
         inbox: &mut Incoming<'_, E, N, M>,
     ) {
-        let late = hardware.time_in_period();
+        let late = hardware.lateness_of_count();
         let latest = self.rendering.timing_limits().latest_at_phase();
         let allowed = (latest * self.period as f32) as u32;
         if late > allowed {
@@ -73,7 +73,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         inbox: &mut Incoming<'_, E, N, M>,
     ) {
         let period = self.period as f32;
-        let late = hardware.time_in_period();
+        let late = hardware.lateness_of_count();
         let follows = self.late.tick == self.tick.wrapping_sub(periods);
         let before = if follows { self.late.part } else { 0.0 };
         let allowed = (self.rendering.timing_limits().latest(periods, before) * period) as u32;

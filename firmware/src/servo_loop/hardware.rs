@@ -58,6 +58,11 @@ pub trait Hardware {
     /// Timer counts since the period of this tick began; at least a period once the next one has
     /// begun.
     fn time_in_period(&mut self) -> u32;
+    /// Timer counts from the beginning of the period of this tick to its count: now, unless hardware has taken the
+    /// count at that beginning.
+    fn lateness_of_count(&mut self) -> u32 {
+        self.time_in_period()
+    }
     /// Feeds the watchdog.
     fn feed_watchdog(&mut self);
     /// Keeps a [`FaultRecord`] in memory that survives a reset, or clears it. Rare.

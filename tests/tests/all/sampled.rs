@@ -6,7 +6,7 @@ use haptic_servo::environment::Wall;
 use haptic_servo::parameter::Parameter;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::passivity::lagged::{LagIntervals, SampledResponse, delay_of_updates};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::scene::{Coupling, Device, EncoderReading, Latency, Scene, TimeRange, Timing};
 use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -14,11 +14,13 @@ use tests::scenes::log_uniform;
 
 type C = Complex<f64>;
 
-/// A current loop: updates in a period, those from a count to its torque, and its time constant in periods.
+/// A current loop: updates in a period, those from a count to its torque, the age of a count in update intervals,
+/// and its time constant in periods.
 #[derive(Clone, Copy, Debug)]
 struct CurrentLoop {
     updates: u16,
     delay: u32,
+    age: f64,
     lag: f64,
 }
 
@@ -26,20 +28,27 @@ impl CurrentLoop {
     fn draw(rng: &mut ChaCha8Rng) -> Self {
         let updates = rng.random_range(1..=40);
         let delay = rng.random_range(0..=3 * u32::from(updates));
-        Self { updates, delay, lag: log_uniform(rng, 0.01, 20.0) }
+        let age = if rng.random() { 0.0 } else { rng.random_range(0.01..0.99) };
+        Self { updates, delay, age, lag: log_uniform(rng, 0.01, 20.0) }
     }
 
     fn response(&self) -> SampledResponse {
-        let delay = delay_of_updates(self.delay, self.updates);
-        let lags = [Interval::decimal(self.lag), Interval::ZERO];
-        let lag = LagIntervals { delay, lags, updates: self.updates };
+        let lag = self.of_lags(Interval::decimal(self.lag));
         assert_eq!(lag.pieces(), 1);
         lag.response(0).unwrap()
     }
 
-    /// The torque over a tick of a controller's output `z^k`: at each of its updates, and at its end. From one
-    /// to the next it is a straight line.
-    fn torque(&self, theta: f64) -> Vec<C> {
+    fn of_lags(&self, lag: Interval) -> LagIntervals {
+        let age = Interval::exact(self.age).div(Interval::exact(self.updates.into()));
+        let delay = delay_of_updates(self.delay, self.updates);
+        let between = self.age > 0.0;
+        let delay = if between { delay.add(age) } else { delay };
+        LagIntervals { delay, lags: [lag, Interval::ZERO], updates: self.updates, between }
+    }
+
+    /// The torque over a tick, which begins with a reading, of a controller's output `z^k`: at the tick's ends and
+    /// at each update, with its time in update intervals. From one to the next it is a straight line.
+    fn torque(&self, theta: f64) -> Vec<(f64, C)> {
         let n = self.updates as usize;
         let left = (-1.0 / (f64::from(self.updates) * self.lag)).exp();
         // Until less than a rounding of it is left.
@@ -58,7 +67,15 @@ impl CurrentLoop {
         all.push(torque);
         // The last tick, as that of `z^0`.
         let back = C::from_polar(1.0, -theta * (ticks - 1) as f64);
-        all[n * (ticks - 1)..].iter().map(|torque| torque * back).collect()
+        let at = |time: f64| {
+            let (update, part) = (time.floor() as usize, time.fract());
+            let next = all[(update + 1).min(all.len() - 1)];
+            (time, (all[update] + (next - all[update]) * part) * back)
+        };
+        let begin = (n * (ticks - 1)) as f64;
+        let updates = (0..n).map(|update| begin + update as f64);
+        let ends = [begin - self.age, begin + n as f64 - self.age];
+        ends[..1].iter().copied().chain(updates).chain([ends[1]]).map(at).collect()
     }
 
     /// `z^-whole g` and `D` by the mean of a tick's torque and of its square.
@@ -67,10 +84,11 @@ impl CurrentLoop {
         let share = 1.0 / f64::from(self.updates);
         let (mut mean, mut square) = (C::new(0.0, 0.0), 0.0);
         for ends in torque.windows(2) {
-            let middle = 0.5 * (ends[0] + ends[1]);
+            let [(from, first), (to, last)] = [ends[0], ends[1]];
+            let (middle, share) = (0.5 * (first + last), share * (to - from));
             mean += share * middle;
             // Simpson's rule, which a parabola obeys.
-            let sizes = [ends[0], middle, ends[1]].map(|torque| torque.norm_sqr());
+            let sizes = [first, middle, last].map(|torque| torque.norm_sqr());
             square += share * (sizes[0] + 4.0 * sizes[1] + sizes[2]) / 6.0;
         }
         let step = C::from_polar(1.0, theta) - 1.0;
@@ -109,11 +127,13 @@ fn response_and_ripple_are_those_of_the_torque_over_time() {
 fn many_updates_are_a_continuous_lag() {
     for (delay, lag) in [(0.25_f64, 0.3_f64), (1.5, 0.06), (0.5, 4.0)] {
         let lags = [Interval::decimal(lag), Interval::ZERO];
-        let continuous = LagIntervals { delay: Interval::exact(delay), lags, updates: 0 };
+        let continuous =
+            LagIntervals { delay: Interval::exact(delay), lags, updates: 0, between: false };
         let continuous = continuous.response(0).unwrap();
         for updates in [64_u16, 512, 4096] {
             let n = f64::from(updates);
-            let sampled = CurrentLoop { updates, delay: (delay * n) as u32, lag }.response();
+            let sampled =
+                CurrentLoop { updates, delay: (delay * n) as u32, age: 0.0, lag }.response();
             for theta in [0.2, 1.0, 2.0, 3.0] {
                 let apart = value(&sampled, theta) - value(&continuous, theta);
                 let later = 1.0 / (12.0 * lag * n * n);
@@ -134,9 +154,7 @@ fn a_range_of_the_time_constant_encloses_its_values() {
         let drawn =
             CurrentLoop { lag: log_uniform(&mut rng, 0.05, 2.0), ..CurrentLoop::draw(&mut rng) };
         let to = drawn.lag * rng.random_range(1.0..1.1);
-        let delay = delay_of_updates(drawn.delay, drawn.updates);
-        let lags = [Interval::new(drawn.lag, to), Interval::ZERO];
-        let range = LagIntervals { delay, lags, updates: drawn.updates }.response(0).unwrap();
+        let range = drawn.of_lags(Interval::new(drawn.lag, to)).response(0).unwrap();
         for part in [0.0, 0.4, 1.0] {
             let one = CurrentLoop { lag: drawn.lag + part * (to - drawn.lag), ..drawn };
             let c = rng.random_range(-1.0..0.99_f64);
@@ -161,12 +179,63 @@ fn spring(stiffness: f64, delay: usize, latency: Latency) -> Scene {
 }
 
 fn limit(latency: Latency) -> f64 {
+    largest(|stiffness| spring(stiffness, 1, latency))
+}
+
+fn largest(scene: impl Fn(f64) -> Scene) -> f64 {
     let (mut low, mut high) = (0.0, 1e4);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if certify(&spring(middle, 1, latency)).is_ok() { low = middle } else { high = middle }
+        if certify(&scene(middle)).is_ok() { low = middle } else { high = middle }
     }
     low
+}
+
+/// Readings with an age beside such a loop: the spring by the rule for linear scenes, and the one-sided spring by
+/// that for static laws, have the same limit. With many updates it is that of the continuous lag behind the age, and
+/// behind the matched coupling a spring in contact is certified up to nearly any stiffness.
+#[test]
+fn a_reading_with_an_age_is_that_much_later() {
+    let lag = 6e-5;
+    let read = |latency: Latency, least: f64, most: f64| {
+        let age = TimeRange::between(least, most);
+        let encoder = EncoderReading { age, ..EncoderReading::IDEAL };
+        latency.read_by(Box::leak(Box::new(encoder)))
+    };
+    for (updates, age) in [(1, 3e-5), (4, 1e-5), (4, 2.5e-5), (4, 7.3e-5), (20, 1.13e-4)] {
+        let read = |latency| read(latency, age, age);
+        let latency = read(Latency::sampled(updates, lag, PERIOD));
+        let linear = limit(latency);
+        let one_sided = largest(|stiffness| {
+            let environment = Wall::spring(stiffness, 1).behind(0.0).alone();
+            Scene { environment, ..spring(stiffness, 1, latency) }
+        });
+        assert!((one_sided / linear - 1.0).abs() < 1e-9, "{updates} {age}: {one_sided} {linear}");
+        let begin = PERIOD / f64::from(updates);
+        let continuous = limit(read(Latency::delayed(begin).with_actuator_lag(lag)));
+        let later = (linear / continuous - 1.0).abs();
+        assert!(later < 1.1 / f64::from(updates).powi(2), "{updates} {age}: {later}");
+        let young = limit(Latency::sampled(updates, lag, PERIOD));
+        assert!(linear < 0.99 * young, "{updates} {age}: {linear} {young}");
+        let matched = Scene {
+            coupling: Coupling::Matched,
+            torque_limit: Some(1.0),
+            environment: Wall::spring(1e3, 0).behind(0.0).alone(),
+            ..spring(1.0, 0, latency)
+        };
+        assert!(certify(&matched).is_ok(), "{updates} {age}");
+    }
+    // An age that varies is a jitter as well; a static law counts its largest age.
+    let loop_of = Latency::sampled(4, lag, PERIOD);
+    let one_sided = |latency| {
+        largest(|stiffness| {
+            let environment = Wall::spring(stiffness, 1).behind(0.0).alone();
+            Scene { environment, ..spring(stiffness, 1, latency) }
+        })
+    };
+    let [varying, oldest, older] = [(0.0, 1e-5), (1e-5, 1e-5), (2.5e-5, 2.5e-5)]
+        .map(|(least, most)| one_sided(read(loop_of, least, most)));
+    assert!(older <= varying && varying <= oldest, "{older} {varying} {oldest}");
 }
 
 /// A loop of 2 kHz, four times as fast as a servo at 10 kHz: what its straight lines cost a spring.

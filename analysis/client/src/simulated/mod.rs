@@ -16,7 +16,6 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use haptic_model::file::SceneFile;
-use haptic_model::hand::HandTrajectory;
 use haptic_model::simulation::SimulationError;
 use haptic_servo::board::sim_hardware::SimHardware;
 use haptic_servo::boot::{self, Program};
@@ -104,8 +103,9 @@ impl SimulatedBoard {
         })
     }
 
-    /// Boots a program of a scene file in a simulated hand, and listens there. The sensor and the motor that the
-    /// file does not state are the defaults of a simulation.
+    /// Boots a program of a scene file in a simulated hand, the file's if it has one, and listens there. The device
+    /// has the file's friction and cogging. The sensor and the motor that the file does not state are the defaults
+    /// of a simulation.
     ///
     /// # Errors
     /// No board renders the scene, or the address cannot be listened on.
@@ -120,9 +120,9 @@ impl SimulatedBoard {
         program.check()?;
         tuning::explain::<_, f32, Latched>(&program.scene, &[], &transducers, &rendering)
             .map_err(|reason| not_rendered(reason.step(), reason))?;
-        let hand = HandTrajectory::for_environment(&file.scene.environment);
-        let hand = hand.repeated_until(HAND_DURATION);
-        let plant = Box::new(SimulatedDevice::new(&file.scene, hand, &transducers)?);
+        let hand = file.demonstration().repeated_until(HAND_DURATION);
+        let plant = SimulatedDevice::new(&file.scene, hand, &transducers)?;
+        let plant = Box::new(plant.with_disturbance(file.disturbance()));
         // A board's name is a constant.
         let name = &file.name[..file.name.floor_char_boundary(LONGEST_NAME)];
         let name = Box::leak(name.to_owned().into_boxed_str());

@@ -287,7 +287,8 @@ fn at_period(scene: &Scene, period: f64) -> Scene {
     if scene.latency.actuator_updates > 0 {
         let update = scene.latency.nearest_update(before);
         let delay = scene.latency.delay_at_update(update, period);
-        scene.latency.output_delay = TimeRange::exactly(delay);
+        let age = scene.latency.encoder.age.middle();
+        scene.latency.output_delay = TimeRange::exactly(delay + age);
     }
     scene
 }

@@ -117,6 +117,7 @@ fn last_update(scene: &Scene, time: f64) -> f64 {
     if latency.actuator_updates == 0 {
         return time;
     }
-    let updates = time / period * f64::from(latency.actuator_updates);
-    latency.delay_at_update((updates * (1.0 + ROUNDING)) as u32, period)
+    let age = latency.encoder.age.middle();
+    let updates = (time - age) / period * f64::from(latency.actuator_updates);
+    latency.delay_at_update((updates * (1.0 + ROUNDING)) as u32, period) + age
 }

@@ -1,5 +1,6 @@
 //! A file of a device, or the device of a scene's file.
 
+use haptic_servo::magnetic::Chip;
 use haptic_servo::scene::{Device, TimeRange};
 
 use super::anticogging::anticogging;
@@ -26,6 +27,8 @@ pub struct DeviceFile {
     pub device: Device,
     /// Its encoder and its motor.
     pub transducers: StatedTransducers,
+    /// The chip of its magnetic encoder, which a board reads.
+    pub chip: Option<&'static Chip>,
 }
 
 /// A file of a device is a table, like that of a scene.
@@ -39,12 +42,13 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
     if [key::SERVO, key::ENVIRONMENT].iter().any(|key| top.has(key)) {
         let scene = scene::read(source, root, Purpose::Simulate)?;
         let chain = lagging(source.1, scene.chain.clone(), scene.scene.latency.actuator_lag)?;
-        let transducers = scene.stated(None, None);
+        let (transducers, chip) = (scene.stated(None, None), scene.chip);
         return Ok(DeviceFile {
             name: Some(scene.name),
             chain,
             device: scene.scene.device,
             transducers,
+            chip,
         });
     }
     let name = top.text(&key::NAME);
@@ -57,14 +61,19 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
     // The torque limit may be that of a scene.
     let supply =
         supplied.and_then(|table| table.map(|it| supply(it, Some(f64::INFINITY))).transpose())?;
-    let [torque_limit, encoder_step, full_scale] = limits?;
-    reading.and_then(|table| table.map(encoder).transpose())?;
+    let [torque_limit, limits_step, full_scale] = limits?;
+    let reading = reading.and_then(|table| table.map(encoder).transpose())?;
+    let encoder_step = match &reading {
+        Some(reading) => reading.step(&top, limits_step)?,
+        None => limits_step,
+    };
     learnt.and_then(|table| table.map(anticogging).transpose())?;
+    let chip = reading.and_then(|reading| reading.chip);
     motor.and_then(|table| table.map(super::motor::motor).transpose())?;
     let table = table.and_then(|table| device(table, Purpose::Simulate))?;
     let chain = lagging(source.1, table.chain, table.latency.actuator_lag)?;
     let transducers = StatedTransducers { encoder_step, full_scale, torque_limit, supply };
-    Ok(DeviceFile { name: name?, chain, device: table.device, transducers })
+    Ok(DeviceFile { name: name?, chain, device: table.device, transducers, chip })
 }
 
 /// The chain behind its amplifier. Every lag that was read is valid for it.

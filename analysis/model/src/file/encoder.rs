@@ -1,5 +1,7 @@
 //! The table of an encoder's readings.
 
+use std::f64::consts::TAU;
+
 use haptic_servo::certificate::is_static_at_port;
 use haptic_servo::latency::LONGEST_DELAY;
 use haptic_servo::magnetic::Chip;
@@ -8,6 +10,7 @@ use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 use super::faults::{Read, Reported};
 use super::key;
 use super::section::Section;
+use super::transducers::counts_per_turn_of;
 
 /// The contents of `[encoder]`.
 pub struct EncoderTable {
@@ -58,19 +61,23 @@ pub fn encoder(mut section: Section<'_>) -> Read<EncoderTable> {
 }
 
 impl EncoderTable {
-    /// Checks that the scene covers the readings of its chip; returns the counts of the encoder in a turn.
-    pub fn of_chip(
-        &self,
-        top: &Section<'_>,
-        scene: &Scene,
-        counts: Option<f64>,
-    ) -> Read<Option<f64>> {
-        let Some(chip) = self.chip else { return Ok(counts) };
-        let counts_per_turn = counts.unwrap_or(chip.counts_per_turn());
-        let checked = chip.check(&scene.latency, scene.timing.period, counts_per_turn);
-        checked
-            .map_err(|error| top.conflict(&key::CHIP, format!("has no certificate: {error}")))?;
-        Ok(Some(counts_per_turn))
+    /// The angle of a count in rad: that of the encoder, its chip's, or that of `[limits]`, beside which the encoder
+    /// states none.
+    pub fn step(&self, top: &Section<'_>, of_limits: Option<f64>) -> Read<Option<f64>> {
+        if self.counts_per_turn.is_some() && of_limits.is_some() {
+            let reason = format!("stands beside `{}`: leave out one of them", key::LIMITS.path);
+            return Err(top.conflict(&key::READING_COUNTS, reason));
+        }
+        let own = self.counts_per_turn.or(self.chip.map(Chip::counts_per_turn));
+        Ok(of_limits.or(own.map(|counts| TAU / counts)))
+    }
+
+    /// Checks that the scene covers the readings of its chip.
+    pub fn check_chip(&self, top: &Section<'_>, scene: &Scene, step: Option<f64>) -> Read<()> {
+        let (Some(chip), Some(step)) = (self.chip, step) else { return Ok(()) };
+        let counts = counts_per_turn_of(step);
+        chip.check(&scene.latency, scene.timing.period, counts)
+            .map_err(|error| top.conflict(&key::CHIP, format!("has no certificate: {error}")))
     }
 
     /// The scene read by this encoder, with the device's friction.
@@ -121,9 +128,12 @@ impl EncoderTable {
             let reason = format!("is more than `{}` = {period} s", key::PERIOD.path);
             return Err(top.conflict(&key::WINDOW, reason));
         }
-        let is_read_late = !age.is_zero() || window > 0.0 || !self.lag.is_zero();
-        if is_read_late && latency.actuator_updates > 0 {
-            return beside(&key::READING, &key::ACTUATOR_UPDATES);
+        for (key, is_stated) in
+            [(&key::WINDOW, window > 0.0), (&key::READING_LAG, !self.lag.is_zero())]
+        {
+            if is_stated && latency.actuator_updates > 0 {
+                return beside(key, &key::ACTUATOR_UPDATES);
+            }
         }
         if latency.output_delay.most + age.most > LONGEST_DELAY * period {
             let reason = format!(

@@ -54,8 +54,12 @@ pub fn check(
         };
         return Err(top.conflict(&key::HOST_TORQUE, reason));
     }
-    if driven.is_some_and(|simulation| simulation.missed != Missed::None) {
-        return torques(format!("stands beside `{}`, in which nothing pays", key::MISSED.path));
+    let left_out = driven.and_then(|simulation| {
+        let laws = [(&key::MISSED, simulation.missed), (&key::FAILED, simulation.dropped)];
+        laws.into_iter().find(|(_, law)| *law != Missed::None)
+    });
+    if let Some((key, _)) = left_out {
+        return torques(format!("stands beside `{}`, in which nothing pays", key.path));
     }
     Ok(())
 }

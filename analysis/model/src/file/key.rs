@@ -529,6 +529,19 @@ keys! {
         Optional("`simulation.missed.every` decides"), "0.01";
     /// Seed of the chance: the same seed misses the same ticks.
     MISSED_SEED = other("simulation.missed.seed", "", whole(0, u32::MAX)), Default(0.0), "1";
+    /// Readings of the encoder that fail: every so many, or by chance. The reading before takes their place or, with a
+    /// `servo.worst_period` that is long enough, the tick is missed; more in a row than `encoder.dropped` end the
+    /// simulation with the fault `encoder-reading`.
+    FAILED = other("simulation.dropped", "", TABLE),
+        Optional("no reading fails"), "{ fraction = 0.01, seed = 1 }";
+    /// Number of readings of which the last fails.
+    FAILED_EVERY = other("simulation.dropped.every", "ticks", whole(2, 1_000_000)),
+        Optional("`simulation.dropped.fraction` decides"), "7";
+    /// Probability that a reading fails.
+    FAILED_FRACTION = other("simulation.dropped.fraction", "", FRACTION),
+        Optional("`simulation.dropped.every` decides"), "0.01";
+    /// Seed of the chance.
+    FAILED_SEED = other("simulation.dropped.seed", "", whole(0, u32::MAX)), Default(0.0), "1";
 
     /// A passive hand that holds the device, for `simulate`, `stability` and `run`.
     HUMAN = other("human", "", TABLE),

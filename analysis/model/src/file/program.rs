@@ -43,9 +43,7 @@ pub fn program(
         ),
         _ => (String::new(), "", ["Transducers"].as_slice()),
     };
-    let encoder = file.chip.map_or_else(String::new, |chip| {
-        format!("    encoder: haptic_servo::magnetic::{},\n", chip.name.to_uppercase())
-    });
+    let encoder = file.chip.map_or_else(String::new, |chip| format!("    {},\n", option_of(chip)));
     let host = file.host.map_or("", |_| "    host: HOST,\n");
     let friction = file.friction.map_or_else(String::new, |it| format!("    friction: {it:?},\n"));
     Ok(format!(
@@ -63,6 +61,11 @@ pub fn program(
         imports("haptic_servo::servo", servo),
         constant_of(transducers, file.chip),
     ))
+}
+
+/// The option of a program that reads a chip.
+pub fn option_of(chip: &Chip) -> String {
+    format!("encoder: haptic_servo::magnetic::{}", chip.name.to_uppercase())
 }
 
 /// The constant of encoder and motor.
@@ -109,7 +112,12 @@ fn current_loop_of(drive: &Drive, period: f64) -> String {
 }
 
 /// A module with the device of a file of this name, as the examples have one of the paddle.
-pub fn device_module(device: &Device, transducers: &Transducers, source: &str) -> String {
+pub fn device_module(
+    device: &Device,
+    transducers: &Transducers,
+    chip: Option<&Chip>,
+    source: &str,
+) -> String {
     let items = format!(
         "use haptic_servo::encoder::CounterWidth;\n\
          use haptic_servo::scene::Device;\n\
@@ -117,7 +125,7 @@ pub fn device_module(device: &Device, transducers: &Transducers, source: &str) -
          /// The part that the hand holds: inertia in kg m^2, damping in N m s/rad.\n\
          pub const DEVICE: Device = {device:?};\n\n\
          {}",
-        constant_of(transducers, None)
+        constant_of(transducers, chip)
     );
     let indented = |line: &str| if line.is_empty() { "\n".into() } else { format!("    {line}\n") };
     let items: String = items.lines().map(indented).collect();

@@ -1,7 +1,5 @@
 //! A scene file's tables turned into a [`Scene`].
 
-use std::f64::consts::TAU;
-
 use haptic_servo::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
 use haptic_servo::host::HostTorque;
 use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
@@ -21,12 +19,12 @@ use super::profile::{self, ProfileTable, Shapes};
 use super::section::Section;
 use super::simulation::{self, Simulation};
 use super::supply::{FileSupply, supply};
-use super::transducers::counts_per_turn_of;
 use super::tree::Node;
 use super::updates;
 use crate::chain::Chain;
 use crate::device::Hand;
 use crate::disturbance::{Cogging, Disturbance};
+use crate::hand::HandTrajectory;
 
 /// The contents of a scene file.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +67,12 @@ impl SceneFile {
             friction: self.friction.unwrap_or(0.0),
             cogging: self.cogging.unwrap_or_default(),
         }
+    }
+
+    /// The trajectory that demonstrates its environment, in its hand if it has one.
+    pub fn demonstration(&self) -> HandTrajectory {
+        let trajectory = HandTrajectory::for_environment(&self.scene.environment);
+        HandTrajectory { hand: self.hand.unwrap_or(trajectory.hand), ..trajectory }
     }
 }
 
@@ -132,15 +136,8 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let (mut encoder_step, mut chip) = (encoder_step, None);
     if let Some(reading) = reading {
         scene = reading.read(&top, scene, friction)?;
-        if let Some(counts) = reading.counts_per_turn {
-            if encoder_step.is_some() {
-                let reason = format!("stands beside `{}`: leave out one of them", key::LIMITS.path);
-                return Err(top.conflict(&key::READING_COUNTS, reason));
-            }
-            encoder_step = Some(TAU / counts);
-        }
-        let counts = encoder_step.map(counts_per_turn_of);
-        encoder_step = reading.of_chip(&top, &scene, counts)?.map(|counts| TAU / counts);
+        encoder_step = reading.step(&top, encoder_step)?;
+        reading.check_chip(&top, &scene, encoder_step)?;
         chip = reading.chip;
     }
     if let Some(learnt) = learnt {

@@ -7,7 +7,7 @@ use crate::device::Hand;
 use crate::missed::Missed;
 
 use super::faults::Read;
-use super::key;
+use super::key::{self, Key};
 use super::section::Section;
 
 /// The settings of a simulation, with the torque of the hand.
@@ -27,6 +27,8 @@ pub struct Simulation {
     pub latency: f64,
     /// Ticks in which the servo does not run.
     pub missed: Missed,
+    /// Readings of the encoder that fail.
+    pub dropped: Missed,
     /// Torques in N m that a host wants, one a sample.
     pub host: Option<Vec<f64>>,
 }
@@ -70,9 +72,16 @@ pub fn simulation(mut section: Section<'_>, period: f64, friction: f64) -> Read<
     let host = section.list(&key::HOST_TORQUES);
     let own_friction = section.optional(&key::FRICTION);
     let latency = latency(&mut section, period);
-    let missed = section.table(&key::MISSED);
+    let [missed, dropped] = [
+        (&key::MISSED, [&key::MISSED_EVERY, &key::MISSED_FRACTION, &key::MISSED_SEED]),
+        (&key::FAILED, [&key::FAILED_EVERY, &key::FAILED_FRACTION, &key::FAILED_SEED]),
+    ]
+    .map(|(key, keys)| {
+        section
+            .table(key)
+            .and_then(|table| table.map_or(Ok(Missed::None), |it| missed_of(it, keys)))
+    });
     section.finish();
-    let missed = missed.and_then(|table| table.map_or(Ok(Missed::None), missed_of));
     Ok(Simulation {
         samples: samples?,
         position: position?,
@@ -81,6 +90,7 @@ pub fn simulation(mut section: Section<'_>, period: f64, friction: f64) -> Read<
         friction: own_friction?.unwrap_or(friction),
         latency: latency?,
         missed: missed?,
+        dropped: dropped?,
         host: host?,
     })
 }
@@ -98,14 +108,13 @@ fn latency(section: &mut Section<'_>, period: f64) -> Read<f64> {
     Err(section.conflict(&key::LATENCY, reason))
 }
 
-fn missed_of(mut table: Section<'_>) -> Read<Missed> {
-    let every = table.optional(&key::MISSED_EVERY);
-    let fraction = table.optional(&key::MISSED_FRACTION);
-    let seed = table.optional(&key::MISSED_SEED);
+/// Reads a table with these keys: every so many, a fraction, and the seed of its chance.
+fn missed_of(mut table: Section<'_>, keys: [&'static Key; 3]) -> Read<Missed> {
+    let [every, fraction, seed] = keys.map(|key| table.optional(key));
     let (every, fraction, seed) = match (every, fraction, seed) {
         // Before `finish`, so that a misspelt `fraction` is reported with the intended key.
         (Ok(None), Ok(None), Ok(_)) => {
-            let reported = table.missing(&key::MISSED_FRACTION);
+            let reported = table.missing(keys[1]);
             table.finish();
             return Err(reported);
         }
@@ -118,7 +127,7 @@ fn missed_of(mut table: Section<'_>) -> Read<Missed> {
         (Some(every), None) if seed.is_none() => Ok(Missed::Every(every as u32)),
         (Some(_), _) => {
             let reason = "cannot stand beside `fraction` or `seed`: set one or the other";
-            Err(table.conflict(&key::MISSED_EVERY, reason))
+            Err(table.conflict(keys[0], reason))
         }
         (None, fraction) => Ok(Missed::Random {
             fraction: fraction.unwrap_or(0.0),

@@ -347,7 +347,8 @@ impl PortCurve {
         if updates > 0 {
             delay = scene.latency.delay_in_updates(scene.timing.period)?;
         }
-        let response = LagIntervals { delay, lags: [actuator, sensor], updates }.response(0)?;
+        let (lags, between) = ([actuator, sensor], scene.latency.is_between_updates());
+        let response = LagIntervals { delay, lags, updates, between }.response(0)?;
         Some(Self {
             controller: Response::new(controller),
             path: Response::new(response.transfer(period)),

@@ -62,6 +62,19 @@ pub enum SimulationError {
         /// Its time in s.
         time: f64,
     },
+    /// More readings in a row have failed than the scene allows.
+    #[error(
+        "the fault encoder-reading: at sample {sample}, at {} s, more readings of the encoder in a row have failed \
+         than `encoder.dropped` = {allowed}, and the amplifier is off from there on", significant(*.time, 6)
+    )]
+    Readings {
+        /// The sample, counted from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// Readings in a row that may fail.
+        allowed: u16,
+    },
     /// No eigenvalues were found.
     #[error(
         "the eigenvalues of the closed loop did not converge: its numbers differ too much in \

@@ -38,6 +38,8 @@ pub struct Experiment {
     pub latency: f64,
     /// Ticks in which the servo does not run.
     pub missed: Missed,
+    /// Readings of the encoder that fail.
+    pub dropped: Missed,
     /// A host that adds torques.
     pub host: Option<HostSignal>,
 }
@@ -72,6 +74,7 @@ impl Experiment {
             friction: simulation.friction,
             latency: simulation.latency,
             missed: simulation.missed,
+            dropped: simulation.dropped,
             encoder_step: file.encoder_step,
             host: file.host.map(|budget| HostSignal {
                 budget,
@@ -104,6 +107,7 @@ impl Experiment {
             cogging: Cogging::default(),
             latency: 0.0,
             missed: Missed::None,
+            dropped: Missed::None,
             host: None,
         }
     }
@@ -111,12 +115,16 @@ impl Experiment {
     /// Whether `computed` samples are all that there should be.
     ///
     /// # Errors
-    /// Where the motion has left the range of numbers before.
+    /// Where the motion has left the range of numbers before, or the readings of the encoder were a fault.
     pub fn completed(&self, computed: usize) -> Result<(), SimulationError> {
         if computed >= self.samples {
             return Ok(());
         }
         let time = computed as f64 * self.scene.timing.period;
+        if self.fault() == Some(computed) {
+            let allowed = self.scene.latency.encoder.dropped;
+            return Err(SimulationError::Readings { sample: computed, time, allowed });
+        }
         Err(SimulationError::Overflow { sample: computed, time })
     }
 
@@ -139,6 +147,20 @@ impl Experiment {
             && !anticogs
             && self.disturbance().is_none()
             && self.missed == Missed::None
+            && self.dropped == Missed::None
+    }
+
+    /// The first sample at which more readings in a row have failed than the scene allows.
+    pub(super) fn fault(&self) -> Option<usize> {
+        let (allowed, mut failed) = (self.scene.latency.encoder.dropped, 0);
+        let mut readings = self.dropped.ticks().take(self.samples);
+        if self.dropped == Missed::None {
+            return None;
+        }
+        readings.position(|fails| {
+            failed = if fails { failed + 1 } else { 0 };
+            failed > allowed
+        })
     }
 
     /// The machine with the scene's lags at its two ends.

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use haptic_servo::scene::Timing;
 use haptic_servo::torque::LimitReason;
 use nalgebra::DVector;
 
@@ -26,6 +27,10 @@ pub struct NonlinearLoop {
     machine: Machine,
     reading: Reading,
     missed: Ticks,
+    /// Whether a tick whose reading fails is left out.
+    leaves_out: bool,
+    /// The sample of the fault of the readings.
+    fault: Option<usize>,
     torque: f64,
     host: Option<Hosted>,
     k: usize,
@@ -71,10 +76,14 @@ impl NonlinearLoop {
     /// # Errors
     /// If the scene has no law that can run.
     pub fn new(experiment: &Experiment, integration: Integration) -> Result<Self, SimulationError> {
+        let Timing { period, worst_period } = experiment.scene.timing;
+        let encoder = experiment.scene.latency.encoder;
         Ok(Self {
             servo: UnquantizedServo::new(&experiment.scene)?,
             machine: Machine::new(experiment, integration),
-            reading: Reading::new(experiment.scene.latency.encoder, experiment.encoder_step),
+            reading: Reading::new(encoder, experiment.encoder_step).failing(experiment.dropped),
+            leaves_out: encoder.leaves_out(period, worst_period),
+            fault: experiment.fault(),
             missed: experiment.missed.ticks(),
             torque: 0.0,
             host: Hosted::new(experiment)?,
@@ -98,10 +107,19 @@ impl NonlinearLoop {
         let Columns { position, velocity, torque } = columns;
         let samples = position.iter_mut().zip(velocity).zip(torque).zip(limit).enumerate();
         for (sample, (((position, velocity), torque), status)) in samples {
+            if self.fault == Some(self.k) {
+                // The trajectory ends here.
+                *position = f64::NAN;
+                continue;
+            }
             let state = self.machine.state();
             (*position, *velocity) = (state[POSITION], state[VELOCITY]);
-            let (angle, saturated) = self.reading.of(self.machine.measured());
-            *status = self.run_servo(angle, saturated);
+            let fails = self.reading.fails();
+            let (angle, saturated) = match fails {
+                true => self.reading.shown(self.reading.last()),
+                false => self.reading.of(self.machine.measured()),
+            };
+            *status = self.run_servo(angle, saturated, fails && self.leaves_out);
             *torque = self.torque;
             let mut added = 0.0;
             if let (Some(host), Some(columns)) = (&mut self.host, &mut hosts) {
@@ -117,9 +135,9 @@ impl NonlinearLoop {
         }
     }
 
-    /// The servo's part in a tick that starts with a reading of `angle` rad.
-    fn run_servo(&mut self, angle: f64, saturated: LimitReason) -> TickStatus {
-        if self.missed.next().unwrap_or(false) {
+    /// The servo's part in a tick that starts with a reading of `angle` rad, and may be left out.
+    fn run_servo(&mut self, angle: f64, saturated: LimitReason, left_out: bool) -> TickStatus {
+        if self.missed.next().unwrap_or(false) || left_out {
             return TickStatus::Missed;
         }
         let (torque, limit) = self.servo.tick(angle, saturated);

@@ -3,6 +3,8 @@
 use haptic_servo::scene::EncoderReading;
 use haptic_servo::torque::LimitReason;
 
+use crate::missed::{Missed, Ticks};
+
 /// An encoder.
 #[derive(Clone, Debug)]
 pub struct Reading {
@@ -12,18 +14,42 @@ pub struct Reading {
     /// The angle that the hysteresis holds.
     held: Option<f64>,
     random: fastrand::Rng,
+    /// Which readings fail, and the last that did not.
+    failing: Ticks,
+    last: f64,
 }
 
 impl Reading {
     /// The encoder of a scene with this angle of a count in rad. Its noise is the same in every simulation.
     pub fn new(encoder: &'static EncoderReading, step: Option<f64>) -> Self {
-        Self { encoder, step, held: None, random: fastrand::Rng::with_seed(0) }
+        let (random, failing) = (fastrand::Rng::with_seed(0), Missed::None.ticks());
+        Self { encoder, step, held: None, random, failing, last: 0.0 }
+    }
+
+    /// The same of which some readings fail.
+    pub fn failing(self, failing: Missed) -> Self {
+        Self { failing: failing.ticks(), ..self }
+    }
+
+    /// Whether the next reading fails: the last one that did not takes its place.
+    pub fn fails(&mut self) -> bool {
+        self.failing.next().unwrap_or(false)
+    }
+
+    /// The last angle in rad that was read, before it is floored to a count.
+    pub fn last(&self) -> f64 {
+        self.last
     }
 
     /// The angle in rad that is shown at a position in rad, and the limit if its count is too large for the
     /// servo's 32 bits: the angle then saturates.
     pub fn of(&mut self, position: f64) -> (f64, LimitReason) {
         let angle = self.angle(position);
+        self.shown(angle)
+    }
+
+    /// An angle in rad as it is shown.
+    pub fn shown(&self, angle: f64) -> (f64, LimitReason) {
         let Some(step) = self.step else { return (angle, LimitReason::None) };
         let count = (angle / step).floor();
         let nearest = count.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
@@ -33,6 +59,11 @@ impl Reading {
 
     /// The same angle in rad before it is floored to a count.
     pub fn angle(&mut self, position: f64) -> f64 {
+        self.last = self.read(position);
+        self.last
+    }
+
+    fn read(&mut self, position: f64) -> f64 {
         let EncoderReading { linearity, noise, hysteresis, .. } = *self.encoder;
         // The steepest error of one period in a turn.
         let angle = if linearity == 0.0 { position } else { position + linearity * position.sin() };

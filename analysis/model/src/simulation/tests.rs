@@ -127,6 +127,49 @@ fn missed_ticks_need_the_longest_time_between_updates() {
     assert!(decay(&Experiment { missed: Missed::Every(2), ..spring(525.0) }) > 2.0);
 }
 
+/// A law of one position holds its torque with its reading; one with a damper does so only where its tick is left
+/// out, which takes a longest time between updates.
+#[test]
+fn a_reading_that_fails_is_the_one_before_or_a_missed_tick() {
+    const READING: EncoderReading = EncoderReading { dropped: 1, ..EncoderReading::IDEAL };
+    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+    let moves = |wall: Wall, worst_period, [missed, dropped]: [Missed; 2]| {
+        let plain = scene(device, wall.alone());
+        let timing = Timing { worst_period, ..plain.timing };
+        let scene = Scene { timing, latency: plain.latency.read_by(&READING), ..plain };
+        let experiment = Experiment { missed, dropped, ..moving(&scene, 500, 1e-3) };
+        simulate(&experiment, Integration::default()).unwrap()
+    };
+    let (every, none) = (Missed::Every(3), Missed::None);
+    let (spring, damped) = (Wall::spring(100.0, 0), Wall::damped(100.0, 0.2, 0));
+    let twice = Some(2.0 * scene(device, spring.alone()).timing.period);
+    for (wall, worst, equal) in [(spring, None, true), (damped, None, false), (damped, twice, true)]
+    {
+        let [missed, dropped] = [[every, none], [none, every]].map(|laws| moves(wall, worst, laws));
+        assert_eq!(missed.position == dropped.position, equal, "{wall:?} {worst:?}");
+        let ran = dropped.limit.iter().all(|status| *status == TickStatus::UNLIMITED);
+        assert_eq!(ran, worst.is_none());
+    }
+}
+
+/// Two failed readings in a row, of which the scene allows one.
+#[test]
+fn more_failed_readings_than_allowed_are_a_fault() {
+    const READING: EncoderReading = EncoderReading { dropped: 1, ..EncoderReading::IDEAL };
+    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+    let plain = scene(device, Wall::spring(100.0, 0).alone());
+    let scene = Scene { latency: plain.latency.read_by(&READING), ..plain };
+    let dropped = Missed::Random { fraction: 0.1, seed: 5 };
+    let experiment = Experiment { dropped, ..moving(&scene, 1000, 1e-3) };
+    let fails: Vec<_> = dropped.ticks().take(1000).collect();
+    let second = fails.windows(2).position(|two| two == [true; 2]).unwrap() + 1;
+    let motion = simulate(&experiment, Integration::default()).unwrap();
+    assert_eq!(motion.samples(), second);
+    let error = experiment.completed(second).unwrap_err().to_string();
+    let expected = format!("encoder-reading: at sample {second}, at ");
+    assert!(error.contains(&expected) && error.contains("`encoder.dropped` = 1"), "{error}");
+}
+
 /// Theory, section 8: the limit of the bare device with a latency is b / (T/2 + tau).
 #[test]
 fn latency_moves_the_limit() {

@@ -4,6 +4,7 @@
 //! `figure::Pair` that measures both.
 
 pub mod at_rest;
+pub mod encoder;
 pub(crate) mod figure;
 pub mod on_target;
 mod peer;

@@ -105,7 +105,7 @@ impl VaryingHand {
         let (period, damping) = (scene.timing.period, scene.device.damping);
         let lag = scene.latency.actuator_lag.middle() / period;
         let lags = [Interval::exact(lag), Interval::ZERO];
-        let lagging = LagIntervals { delay: Interval::ZERO, lags, updates: 0 };
+        let lagging = LagIntervals { delay: Interval::ZERO, lags, updates: 0, between: false };
         let response = lagging.response(0).expect("one lag has a response");
         let g = Response::new(response.transfer(Interval::exact(period)));
         let index = |theta: f64| {

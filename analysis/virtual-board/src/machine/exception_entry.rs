@@ -3,7 +3,7 @@
 use unicorn_engine::RegisterARM;
 
 use super::Machine;
-use crate::chip::{FLASH, TICK_INTERRUPT};
+use crate::chip::{FLASH, TICK_INTERRUPT, TRANSFER_INTERRUPT};
 use crate::core::exceptions::{FIRST_INTERRUPT, Number};
 use crate::core::system::FaultStatus;
 use crate::error::BoardError;
@@ -11,6 +11,8 @@ use crate::frame::{self, Frame, THUMB};
 
 /// The servo's interrupt.
 const SERVO: Number = FIRST_INTERRUPT + TICK_INTERRUPT;
+/// That of the end of a transfer, before it.
+const TRANSFER: Number = FIRST_INTERRUPT + TRANSFER_INTERRUPT;
 
 impl Machine {
     /// Begins to serve pending exceptions; returns whether the core waits.
@@ -60,8 +62,10 @@ impl Machine {
         frame::push(&mut self.core, nested);
         let board = self.core.board_mut();
         board.system.exceptions.enter(number);
-        if number == SERVO {
-            board.meter.begin(board.now);
+        match number {
+            SERVO => board.meter.begin(board.now),
+            TRANSFER => board.meter.begin_transfer(board.now),
+            _ => {}
         }
         let vector = match self.diverted {
             Some((diverted, address)) if diverted == number => address | 1,
@@ -78,8 +82,10 @@ impl Machine {
             return self.fault(FaultStatus::State, stack);
         };
         let board = self.core.board_mut();
-        if board.system.exceptions.current() == Some(SERVO) {
-            board.meter.end(board.now);
+        match board.system.exceptions.current() {
+            Some(SERVO) => board.meter.end(board.now),
+            Some(TRANSFER) => board.meter.end_transfer(board.now),
+            _ => {}
         }
         board.system.exceptions.leave();
         frame.pop(&mut self.core);

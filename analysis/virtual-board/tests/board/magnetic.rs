@@ -1,15 +1,19 @@
 //! Magnetic encoders: the drivers against models of the chips, and a wall on a board that reads one.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use analysis::file::{Format, SceneFile, parse, program};
+use analysis::file::{Format, SceneFile, parse, parse_device, program};
 use analysis::hand::HandTrajectory;
 use analysis::lockstep::SimulatedDevice;
-use analysis::toolchain::{BoardModel, NumberFormat, Tools, TorqueOutput, prepare};
+use analysis::missed::Missed;
+use analysis::toolchain::{
+    BoardModel, NumberFormat, OtherDevice, Sources, Tools, TorqueOutput, prepare,
+};
 use haptic_servo::fault::Fault;
 use haptic_servo::magnetic::{Chip, Frame, LONGEST, ReadingError};
 use haptic_servo::servo::{Latched, Transducers};
+use haptic_servo::wire::sweep::SweepRequest;
 use virtual_board::chip::NUCLEO_G474RE;
 use virtual_board::device::{Device, FixedDevice};
 use virtual_board::magnetic_encoder::{Failure, MagneticEncoder};
@@ -121,19 +125,29 @@ fn transducers() -> Transducers {
     file().board_transducers(None, None).unwrap()
 }
 
+/// The file of a program that reads a chip.
+fn built(name: &str, text: &str) -> PathBuf {
+    let toolchain = prepare(Tools::Compiler).unwrap_or_else(|error| panic!("{error}"));
+    let written = toolchain.write_scene(name, text).unwrap();
+    let board = BoardModel::find(NUCLEO_G474RE.name).unwrap();
+    let board = Some((board, TorqueOutput::Dac));
+    let built = toolchain.build_written(&written, board, NumberFormat::F32, true);
+    built.unwrap_or_else(|error| panic!("{error}")).path
+}
+
+fn of_file(name: &str, file: &SceneFile) -> PathBuf {
+    let transducers = file.board_transducers(None, None).unwrap();
+    built(name, &program::program(file, &transducers, None, name).unwrap())
+}
+
 /// A board with the wall's program and its chip at a position.
 fn boot(device: impl Device + Send + 'static, position: i64) -> Bench {
     static ELF: OnceLock<PathBuf> = OnceLock::new();
-    let elf = ELF.get_or_init(|| {
-        let toolchain = prepare(Tools::Compiler).unwrap_or_else(|error| panic!("{error}"));
-        let (file, source) = (file(), "magnetic_wall.toml");
-        let text = program::program(&file, &transducers(), None, source).unwrap();
-        let written = toolchain.write_scene("magnetic_wall", &text).unwrap();
-        let board = BoardModel::find(NUCLEO_G474RE.name).unwrap();
-        let board = Some((board, TorqueOutput::Dac));
-        let built = toolchain.build_written(&written, board, NumberFormat::F32, true);
-        built.unwrap_or_else(|error| panic!("{error}")).path
-    });
+    let elf = ELF.get_or_init(|| of_file("magnetic_wall", &file()));
+    boot_file(elf, device, position)
+}
+
+fn boot_file(elf: &Path, device: impl Device + Send + 'static, position: i64) -> Bench {
     let mut bench = Bench::boot_file(&NUCLEO_G474RE, elf, device);
     bench.board_mut().magnetic = MagneticEncoder::find("mt6701", position);
     bench
@@ -215,6 +229,93 @@ fn a_failed_reading_is_held_and_two_are_a_fault() {
         fail(&mut bench, None, 20);
         bench.armed();
     }
+}
+
+/// Readings fail by the law of a simulation: the codes are those of the readings before.
+#[test]
+fn failing_readings_give_the_codes_of_a_simulation_s() {
+    let (file, transducers) = (file(), transducers());
+    let trajectory = HandTrajectory::for_environment(&file.scene.environment);
+    let device = SimulatedDevice::new(&file.scene, trajectory, &transducers).unwrap();
+    let mut bench = boot(HandHeldDevice::with(device), 0);
+    let armed = bench.armed();
+    const SAMPLES: usize = 1500;
+    let fails: Vec<_> = Missed::Every(3).ticks().take(SAMPLES).collect();
+    // The chip is selected at the end of the sample that begins now.
+    let first = bench.pins().samples.len() - armed;
+    for fail in &fails {
+        let chip = bench.board_mut().magnetic.as_mut().unwrap();
+        chip.failure = fail.then_some(Failure::Bit(3));
+        bench.run(1);
+    }
+    bench.board_mut().magnetic.as_mut().unwrap().failure = None;
+    bench.run(2);
+    let mut samples = bench.pins().samples[armed..].to_vec();
+    let mut last = samples[first - 1].count;
+    for (sample, fail) in samples[first..].iter_mut().zip(&fails) {
+        sample.count = if *fail { last } else { sample.count };
+        last = sample.count;
+    }
+    let codes = with_the_same_cycle::<_, Latched>(file.scene, &transducers, &samples[..SAMPLES]);
+    let wrong =
+        (0..SAMPLES - 2).filter(|&tick| samples[tick + 2].code != Some(codes[tick])).count();
+    assert_eq!((wrong, bench.fault()), (0, None));
+    assert!(codes.iter().filter(|&&code| code != MID_SCALE).count() > 300);
+}
+
+/// A wall with a damper: its certificate is that of missed updates, and the tick is left out.
+#[test]
+fn a_failed_reading_of_a_damped_wall_is_a_missed_update() {
+    let text = WALL.replace("damping = 0.0\n", "damping = 0.001\n");
+    let file = parse("damped.toml", Format::Toml, &text).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(file.scene.timing.worst_period, Some(0.002));
+    let mut bench = boot_file(&of_file("damped", &file), FixedDevice, INTO);
+    bench.armed();
+    bench.run(OPEN);
+    let fail = |bench: &mut Bench, failure, samples| {
+        bench.board_mut().magnetic.as_mut().unwrap().failure = failure;
+        bench.run(samples);
+    };
+    let (code, missed) = (bench.last_code(), bench.status().missed);
+    for _ in 0..5 {
+        fail(&mut bench, Some(Failure::Bit(3)), 1);
+        fail(&mut bench, None, 1);
+    }
+    assert_eq!((bench.fault(), bench.last_code()), (None, code));
+    assert_eq!(bench.status().missed, missed + 5);
+    fail(&mut bench, Some(Failure::Bit(3)), 5);
+    let error = ReadingError::Checksum as u32;
+    let fault = bench.fault();
+    assert_eq!(fault, Some(Fault::EncoderReading { error, allowed: 1 }));
+}
+
+/// The program `identify` for a device with a chip plays its sweep, and ends it at a reading that fails.
+#[test]
+fn a_sweep_reads_the_chip() {
+    let text = "[device]\ninertia = 2.2e-5\ndamping = 0.02\n[encoder]\nchip = \"mt6701\"\nage = [0, 1e-5]\n\
+                [limits]\nfull_scale = 1.0\n";
+    let device =
+        parse_device("knob.toml", Format::Toml, text).unwrap_or_else(|error| panic!("{error}"));
+    let transducers = device.transducers.of_board().unwrap();
+    let module = program::device_module(&device.device, &transducers, device.chip, "knob.toml");
+    let device = OtherDevice { module, chip: device.chip };
+    let text = Sources::find().unwrap().on_device("identify", &device).unwrap();
+    let mut bench = boot_file(&built("magnetic_identify", &text), FixedDevice, INTO);
+    bench.run(50);
+    let sent = |bench: &mut Bench, request: SweepRequest, samples| {
+        bench.board_mut().send(&request.frame());
+        bench.run(samples);
+        String::from_utf8(bench.board_mut().serial.take_sent()).unwrap()
+    };
+    let about = sent(&mut bench, SweepRequest::Describe, 50);
+    assert!(about.starts_with("identify,3,0.001,16384,"), "{about}");
+    let rows = sent(&mut bench, SweepRequest::BEGIN, 100);
+    assert!(rows.starts_with("time,torque,counts\n"), "{rows}");
+    let counts = rows.lines().skip(1).filter_map(|row| row.split(',').nth(2));
+    assert!(counts.clone().count() > 50 && counts.clone().all(|it| it == "300"), "{rows}");
+    bench.board_mut().magnetic.as_mut().unwrap().failure = Some(Failure::Ones);
+    let end = sent(&mut bench, SweepRequest::Listening, 50);
+    assert!(end.contains("end,output-fault,300\n"), "{end}");
 }
 
 /// An MT6701 may be as quiet at rest as if it had stopped, so that this is no fault.

@@ -94,7 +94,7 @@ macro_rules! board_program {
 #[macro_export]
 macro_rules! board_sweep {
     // A simulated device stays within all limits.
-    ($sweep:ident, $transducers:ident, $limits:ident, $bridge:tt) => {
+    ($sweep:ident, $transducers:ident, $limits:ident, $bridge:tt, $encoder:tt) => {
         static ISR_STATE: $crate::board::qemu::SweepCell =
             $crate::board::isr_cell::IsrCell::empty();
 

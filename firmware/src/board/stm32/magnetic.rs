@@ -3,7 +3,8 @@
 //! ```text
 //! TIM6 update ---- DMA 3 writes SPE: selects the chip, and the SPI sends what DMA 2 has put into its buffer
 //!   |              DMA 1 stores each word received
-//! DMA1_CHANNEL1    after the last word: the angle, or the one before [`read`]; pends the servo's interrupt
+//! DMA1_CHANNEL1    after the last word: the angle, or the one before [`read`]; pends the servo's interrupt, or leaves
+//!                  a tick out
 //! TIM6_DAC         the servo's tick, with the count of the update
 //! ```
 //!
@@ -23,7 +24,6 @@ use embassy_stm32::pac::spi::vals::{Br, Cpha, Cpol, Ds, Mstr};
 
 use super::wiring::{BUS, TIMER_CLOCK};
 use crate::board::critical;
-use crate::board::isr_cell::IsrCell;
 use crate::encoder::RawCount;
 use crate::fault::Fault;
 use crate::magnetic::{Chip, Frame, LONGEST, ReadingError, Readings};
@@ -68,6 +68,8 @@ pub struct Setup {
     pub chip: &'static Chip,
     /// Readings in a row that may fail.
     pub dropped: u16,
+    /// Whether their ticks are left out.
+    pub leaves_out: bool,
 }
 
 const DMA: pac::bdma::Dma = pac::DMA1;
@@ -78,47 +80,55 @@ const BEGIN: usize = 2;
 /// TIM6's update among the requests of the DMA.
 const TIM6_UPDATE: u8 = 8;
 
-/// The words of the last transfer.
-static FRAME: [AtomicU16; LONGEST] = [const { AtomicU16::new(0) }; LONGEST];
-/// CR1 of the SPI that begins a transfer.
-static ENABLED: AtomicU16 = AtomicU16::new(0);
-/// The last count.
-static COUNT: AtomicU32 = AtomicU32::new(0);
-/// The error of a failed reading, in the low half and from one on, and how many may fail; 0: none.
-static FAILED: AtomicU32 = AtomicU32::new(0);
-static READINGS: IsrCell<Readings> = IsrCell::empty();
+/// What the interrupt of a transfer uses: in one place, so that one address reaches all of it.
+struct Memory {
+    /// The words of the last transfer.
+    frame: [AtomicU16; LONGEST],
+    /// CR1 of the SPI that begins a transfer.
+    enabled: AtomicU16,
+    /// The error of a failed reading, in the low half and from one on, and how many may fail; 0: none.
+    failed: AtomicU32,
+    readings: Readings,
+}
+
+static MEMORY: Memory = Memory {
+    frame: [const { AtomicU16::new(0) }; LONGEST],
+    enabled: AtomicU16::new(0),
+    failed: AtomicU32::new(0),
+    readings: Readings::none(),
+};
 
 /// The count at the beginning of the period.
 #[inline(always)]
 pub fn count() -> RawCount {
-    RawCount::from(COUNT.load(Ordering::Relaxed))
+    RawCount::from(MEMORY.readings.count())
 }
 
 /// The fault of the readings, if there is one since the last call.
 #[inline(always)]
 pub fn event() -> Option<OutputEvent> {
-    if FAILED.load(Ordering::Relaxed) == 0 { None } else { take_event() }
+    if MEMORY.failed.load(Ordering::Relaxed) == 0 { None } else { take_event() }
 }
 
 #[cold]
 #[inline(never)]
 fn take_event() -> Option<OutputEvent> {
-    let failed = FAILED.swap(0, Ordering::Relaxed);
+    let failed = MEMORY.failed.swap(0, Ordering::Relaxed);
     let (error, allowed) = ((failed & 0xFFFF).checked_sub(1)?, failed >> 16);
     Some(OutputEvent::Fault(Fault::EncoderReading { error, allowed }))
 }
 
-/// The end of a transfer.
-///
-/// # Safety
-/// Only the handler of the receiving channel may call it, after [`set_up`].
+/// The end of a transfer, for the handler of the receiving channel after [`set_up`].
 #[inline(always)]
-pub unsafe fn read(setup: &'static Setup) {
-    let frame = finish(&setup.chip.command, setup.chip.interface.words);
-    // SAFETY: the caller is the only handler, and the cell is filled.
-    let readings = unsafe { READINGS.borrow_mut() };
-    match readings.take(setup.chip, &frame) {
-        Ok(()) => COUNT.store(readings.count(), Ordering::Relaxed),
+pub fn read(setup: &'static Setup) {
+    let words = setup.chip.interface.words;
+    end();
+    load_again(words);
+    match MEMORY.readings.take(setup.chip, &received(words), setup.dropped) {
+        Ok(true) => {}
+        // The next tick finds that a period has been missed.
+        Ok(false) if setup.leaves_out => return,
+        Ok(false) => {}
         Err(error) => fail(error, setup.dropped),
     }
     NVIC::pend(interrupt::TIM6_DAC);
@@ -127,36 +137,37 @@ pub unsafe fn read(setup: &'static Setup) {
 #[cold]
 #[inline(never)]
 fn fail(error: ReadingError, allowed: u16) {
-    FAILED.store(u32::from(allowed) << 16 | (error as u32 + 1), Ordering::Relaxed);
-}
-
-/// Ends a transfer, and prepares the next one.
-#[inline(always)]
-fn finish(next: &'static Frame, words: usize) -> Frame {
-    end();
-    load(next, words);
-    received()
+    MEMORY.failed.store(u32::from(allowed) << 16 | (error as u32 + 1), Ordering::Relaxed);
 }
 
 /// Takes the select away from the chip, whose last word is there.
 #[inline(always)]
 fn end() {
     DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
-    BUS.spi.cr1().write_value(Cr1(u32::from(ENABLED.load(Ordering::Relaxed)) & !SPE));
+    BUS.spi.cr1().write_value(Cr1(u32::from(MEMORY.enabled.load(Ordering::Relaxed)) & !SPE));
 }
 
 /// The words of the last transfer.
 #[inline(always)]
-fn received() -> Frame {
-    core::array::from_fn(|word| FRAME[word].load(Ordering::Relaxed))
+fn received(words: usize) -> Frame {
+    let word = |at: usize| if at < words { MEMORY.frame[at].load(Ordering::Relaxed) } else { 0 };
+    core::array::from_fn(word)
 }
 
 /// SPE of CR1.
 const SPE: u32 = 1 << 6;
 
 /// Has the words of the next transfer put into the buffer of the SPI, as far as they fit.
-#[inline(always)]
 fn load(words: &'static Frame, count: usize) {
+    let channel = DMA.ch(SEND);
+    channel.cr().modify(|w| w.set_en(false));
+    channel.mar().write_value(words.as_ptr() as u32);
+    load_again(count);
+}
+
+/// The same with the words of the last one, which the channel begins again when it is enabled (RM0440, DMA).
+#[inline(always)]
+fn load_again(count: usize) {
     let channel = DMA.ch(SEND);
     let mut control = pac::bdma::regs::Cr(0);
     control.set_dir(Dir::FROM_MEMORY);
@@ -165,7 +176,6 @@ fn load(words: &'static Frame, count: usize) {
     control.set_psize(Size::BITS16);
     channel.cr().write_value(control);
     channel.ndtr().write(|w| w.set_ndt(count as u16));
-    channel.mar().write_value(words.as_ptr() as u32);
     control.set_en(true);
     channel.cr().write_value(control);
 }
@@ -182,13 +192,9 @@ pub fn set_up(setup: &'static Setup) {
     }
     // The first may answer the set-up.
     exchange(&chip.command, words);
-    let mut readings = Readings::new(dropped);
-    if readings.take(chip, &exchange(&chip.command, words)).is_ok() {
-        COUNT.store(readings.count(), Ordering::Relaxed);
-    }
+    // A failure here is one of the first tick's, too.
+    let _ = MEMORY.readings.take(chip, &exchange(&chip.command, words), dropped);
     load(&chip.command, words);
-    // SAFETY: the interrupt that uses the cell comes from a channel that does not request it yet.
-    unsafe { READINGS.init(readings) };
     interrupt::DMA1_CHANNEL1.set_priority(Priority::from(critical::SERVO << 4));
 }
 
@@ -196,18 +202,18 @@ pub fn set_up(setup: &'static Setup) {
 pub fn start() {
     DMA.ch(RECEIVE).cr().modify(|w| w.set_tcie(true));
     DMA.ch(BEGIN).cr().modify(|w| w.set_en(true));
-    // SAFETY: its handler finds its cell filled.
+    // SAFETY: the handler shares nothing but atomics.
     unsafe { interrupt::DMA1_CHANNEL1.enable() };
 }
 
 /// A transfer that the program begins and waits for.
 fn exchange(words: &'static Frame, count: usize) -> Frame {
     load(words, count);
-    BUS.spi.cr1().write_value(Cr1(ENABLED.load(Ordering::Relaxed).into()));
+    BUS.spi.cr1().write_value(Cr1(MEMORY.enabled.load(Ordering::Relaxed).into()));
     while !DMA.isr().read().tcif(RECEIVE) {}
     // A load in between would be sent.
     end();
-    received()
+    received(count)
 }
 
 /// The clocks, the pins, the SPI and the channels.
@@ -225,7 +231,7 @@ fn connect(chip: &Chip) {
     enabled.set_br(divider(interface.highest_clock));
     enabled.set_cpha(Cpha::SECOND_EDGE);
     enabled.set_cpol(if interface.idle_high { Cpol::IDLE_HIGH } else { Cpol::IDLE_LOW });
-    ENABLED.store(enabled.0 as u16, Ordering::Relaxed);
+    MEMORY.enabled.store(enabled.0 as u16, Ordering::Relaxed);
     spi.cr1().write_value(Cr1(enabled.0 & !SPE));
     spi.cr2().write(|w| {
         w.set_ssoe(true);
@@ -243,9 +249,9 @@ fn connect(chip: &Chip) {
         port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::PULL_UP));
     }
     let data = spi.dr16().as_ptr() as u32;
-    channel(RECEIVE, BUS.received, data, FRAME.as_ptr() as u32, interface.words);
+    channel(RECEIVE, BUS.received, data, MEMORY.frame.as_ptr() as u32, interface.words);
     channel(SEND, BUS.wants, data, 0, 0);
-    channel(BEGIN, TIM6_UPDATE, spi.cr1().as_ptr() as u32, ENABLED.as_ptr() as u32, 1);
+    channel(BEGIN, TIM6_UPDATE, spi.cr1().as_ptr() as u32, MEMORY.enabled.as_ptr() as u32, 1);
     DMA.ch(RECEIVE).cr().modify(|w| {
         w.set_minc(true);
         w.set_en(true);
@@ -278,20 +284,21 @@ fn divider(highest_clock: f64) -> Br {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_encoder {
-    ([], $program:ident) => {
+    ([], $($any:tt)*) => {
         compile_error!(
             "this board reads a magnetic encoder that the program does not state: write `encoder: CHIP` in \
-             scene_program!, or build it without the feature `magnetic`"
+             scene_program! or sweep_program!, or build it without the feature `magnetic`"
         );
     };
-    ([$chip:expr], $program:ident) => {
+    ([$chip:expr], $transducers:expr, $dropped:expr, $leaves_out:expr) => {
         /// The encoder's data of this program.
         #[unsafe(no_mangle)]
         static ENCODER_SETUP: $crate::board::stm32::magnetic::Setup =
             $crate::board::stm32::magnetic::Setup {
                 name: $chip.padded_name(),
                 chip: &$chip,
-                dropped: $program.scene.latency.encoder.dropped,
+                dropped: $dropped,
+                leaves_out: $leaves_out,
             };
 
         const ENCODER: &$crate::board::stm32::magnetic::Setup = &ENCODER_SETUP;
@@ -300,20 +307,8 @@ macro_rules! board_encoder {
             /// The end of a transfer.
             #[unsafe(no_mangle)]
             unsafe extern "C" fn DMA1_CHANNEL1() {
-                // SAFETY: this is the handler of the channel.
-                unsafe { $crate::board::stm32::magnetic::read(&ENCODER_SETUP) }
+                $crate::board::stm32::magnetic::read(&ENCODER_SETUP);
             }
         }
-    };
-}
-
-/// The program of a sweep, which counts a quadrature encoder.
-#[doc(hidden)]
-#[macro_export]
-macro_rules! board_sweep {
-    ($($any:tt)*) => {
-        compile_error!(
-            "no sweep reads a magnetic encoder: build it without the feature `magnetic`"
-        );
     };
 }

@@ -22,7 +22,6 @@ mod reset;
 pub mod serial;
 mod start;
 pub(super) mod stop;
-#[cfg(not(feature = "magnetic"))]
 mod sweep;
 
 #[cfg(feature = "feather-stm32f405")]
@@ -51,5 +50,4 @@ pub use start::{
     HostLink, LinkCell, ServoCell, Statics, Task, init_chip, registers, run, width,
     with_board_counter,
 };
-#[cfg(not(feature = "magnetic"))]
 pub use sweep::{Setup, SweepCell, measure};

@@ -103,6 +103,12 @@ impl Hardware for Registers {
         self.pace.elapsed()
     }
 
+    /// The update itself takes the reading.
+    #[cfg(feature = "magnetic")]
+    fn lateness_of_count(&mut self) -> u32 {
+        0
+    }
+
     #[inline(always)]
     fn feed_watchdog(&mut self) {
         pac::IWDG.kr().write(|w| w.set_key(Key::RESET));

@@ -245,7 +245,16 @@ macro_rules! board_program {
 
         $crate::board_output!($bridge);
 
-        $crate::board_encoder!($encoder, $program);
+        $crate::board_encoder!(
+            $encoder,
+            $program.transducers,
+            $program.scene.latency.encoder.dropped,
+            $program
+                .scene
+                .latency
+                .encoder
+                .leaves_out($program.scene.timing.period, $program.scene.timing.worst_period)
+        );
 
         /// The scene, whose delay must be that of the board's DAC; otherwise this does not compile.
         const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, ProgramMode> =
@@ -308,12 +317,12 @@ macro_rules! board_chip {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_encoder {
-    ([], $program:ident) => {
-        $crate::board_filter!($program.transducers);
+    ([], $transducers:expr, $($of_chip:tt)*) => {
+        $crate::board_filter!($transducers);
 
         const ENCODER: $crate::board::input_filter::InputFilter = FILTER;
     };
-    ([$chip:expr], $program:ident) => {
+    ([$chip:expr], $($any:tt)*) => {
         compile_error!(
             "this program reads a magnetic encoder: build it with the feature `magnetic`"
         );

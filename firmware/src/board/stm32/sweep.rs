@@ -15,15 +15,13 @@ use static_cell::StaticCell;
 use super::output;
 use super::registers::Registers;
 use super::serial::Serial;
-use super::start::{init_chip, registers, width};
-use super::wiring::ENCODER;
+use super::start::{EncoderSetup, init_chip, registers};
 use crate::board::ProgramMode;
-use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::IsrCell;
 use crate::boot::Startup;
 use crate::current::TorqueSource;
 use crate::dac::DacCode;
-use crate::encoder::Position;
+use crate::encoder::{CounterWidth, Position};
 use crate::excitation::{Exciter, Guard, MotionLimits, SILENCE, SWEEP_PROTOCOL, Sweep, SweepEnd};
 use crate::output_timing::OutputMode;
 use crate::servo::Transducers;
@@ -44,8 +42,8 @@ pub struct Setup {
     pub limits: MotionLimits,
     /// The limits in counts.
     pub guard: Guard,
-    /// The filter of the encoder's inputs.
-    pub filter: InputFilter,
+    /// The encoder's data: a reading that fails ends the sweep.
+    pub encoder: EncoderSetup,
     /// The output's data of the program.
     pub output: output::Setup,
 }
@@ -158,6 +156,16 @@ impl SweepIsr {
     }
 }
 
+#[cfg(not(feature = "magnetic"))]
+fn counter_width(_: EncoderSetup) -> CounterWidth {
+    super::start::width(super::wiring::ENCODER)
+}
+
+#[cfg(feature = "magnetic")]
+fn counter_width(encoder: EncoderSetup) -> CounterWidth {
+    encoder.chip.width
+}
+
 /// Reports the end of the sweep to the task below, after its last row.
 fn tell_end(end: SweepEnd) {
     ENDED.store(end as u32 + 1, Ordering::Release);
@@ -169,7 +177,7 @@ pub fn measure<const N: usize>(
     setup: &Setup,
     cell: &'static SweepCell,
 ) -> ! {
-    let mut serial = init_chip(setup.filter);
+    let mut serial = init_chip(setup.encoder);
     let mut hardware = registers(setup.output, sweep.period(), <ProgramMode>::TIMING);
     hardware.zero_encoder();
     defmt::info!("last reset: {=str}", hardware.reset_cause().as_str());
@@ -186,7 +194,7 @@ pub fn measure<const N: usize>(
         starting: 0,
         guard: setup.guard,
         tick: 0,
-        position: Position::new(width(ENCODER)),
+        position: Position::new(counter_width(setup.encoder)),
         start: 0,
         last: 0,
         held: DacCode::MID_SCALE,
@@ -312,16 +320,16 @@ impl Writer {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_sweep {
-    ($sweep:ident, $transducers:ident, $limits:ident, $bridge:tt) => {
+    ($sweep:ident, $transducers:ident, $limits:ident, $bridge:tt, $encoder:tt) => {
         $crate::board_chip!();
         $crate::sweep_output!($bridge);
-        $crate::board_filter!($transducers);
+        $crate::board_encoder!($encoder, $transducers, 0, false);
 
         static SETUP: $crate::board::stm32::Setup = $crate::board::stm32::Setup {
             transducers: $transducers,
             limits: $limits,
             guard: GUARD,
-            filter: FILTER,
+            encoder: ENCODER,
             output: OUTPUT,
         };
 

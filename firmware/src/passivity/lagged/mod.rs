@@ -28,9 +28,11 @@ pub struct LagIntervals {
     pub delay: Interval,
     /// Time constants of amplifier and sensor; exactly 0 without a lag.
     pub lags: [Interval; 2],
-    /// Updates of the amplifier's current loop per period, 0 if it is continuous. With updates, the delay is
-    /// [a whole number](delay_of_updates) of update intervals, and there is no second lag.
+    /// Updates of the amplifier's current loop per period, 0 if it is continuous. With updates there is no second
+    /// lag, and the delay is [a whole number](delay_of_updates) of update intervals, unless it ends between two.
     pub updates: u16,
+    /// Whether the delay ends between two updates, as it does from the instant of a reading that is old.
+    pub between: bool,
 }
 
 /// The sampled response of an ideal device to a held torque, `z^-whole g`, and its ripple between the
@@ -48,8 +50,8 @@ pub struct SampledResponse {
     ripple: Series,
 }
 
-/// One lag: its time constant, and the fractions of a step that remain after a tick and after the rest of a
-/// tick.
+/// One lag: its time constant, and the fractions of `held` that remain after a tick and after the rest of a
+/// tick; with an exponential, and at the updates of a current loop, of a step as well.
 #[derive(Clone, Copy)]
 pub(crate) struct Decay {
     pub tau: Interval,
@@ -84,13 +86,14 @@ impl Decay {
         Self { tau, held: tau, unspread: tau.half(), tick, rest, over }
     }
 
-    /// The lag of a current loop with `updates` updates per period. Not inlined: continuous lags do not need
-    /// its frame.
+    /// The lag of a current loop with `updates` updates per period, where the rest of the tick is a whole number
+    /// of update intervals or, with `between`, any time. Not inlined: continuous lags do not need its frame.
     #[inline(never)]
-    pub const fn sampled(tau: Interval, over: Interval, updates: u16) -> Self {
+    pub const fn sampled(tau: Interval, over: Interval, updates: u16, between: bool) -> Self {
         let lag = SampledLag::of(updates, tau);
-        let (tick, rest) = (lag.after(Interval::ONE), lag.after(over));
-        Self { tau, held: lag.held(), unspread: lag.unspread(), tick, rest, over }
+        let (tick, held) = (lag.after(Interval::ONE), lag.held());
+        let rest = if between { lag.held_after(over).div(held) } else { lag.after(over) };
+        Self { tau, held, unspread: lag.unspread(), tick, rest, over }
     }
 
     /// `(1 - rest) z + (rest - tick)`
@@ -144,7 +147,7 @@ impl LagIntervals {
         let over = Interval::ONE.sub(part);
         let first = match self.updates {
             0 => Decay::of(self.lags[0], over),
-            updates => Decay::sampled(self.lags[0], over, updates),
+            updates => Decay::sampled(self.lags[0], over, updates, self.between),
         };
         let second = Decay::of(self.lags[1], over);
         if first.tau.is_zero() {

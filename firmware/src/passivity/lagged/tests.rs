@@ -52,6 +52,7 @@ fn closed_forms_are_the_sums_over_aliases() {
             delay: exact(delay),
             lags: [exact(lags[0]), exact(lags[1])],
             updates: 0,
+            between: false,
         };
         let response = lag.response(0).unwrap();
         // H = 2 (z - 0.25) / (z + 0.5), period 1.
@@ -91,8 +92,8 @@ fn springs_have_their_closed_form() {
         };
         let e = 1.0 + 2.0 * delay + 2.0 * lag;
         let limit = ((e * e + 4.0 * ripple).sqrt() - e) / ripple;
-        let lag =
-            LagIntervals { delay: exact(delay), lags: [exact(lag), Interval::ZERO], updates: 0 };
+        let lags = [exact(lag), Interval::ZERO];
+        let lag = LagIntervals { delay: exact(delay), lags, updates: 0, between: false };
         let response = lag.response(0).unwrap();
         let spring = controller(&[limit], &[1.0]);
         let port = Port::new(&spring, &response, Interval::ONE, Interval::ZERO).unwrap();

@@ -7,20 +7,31 @@ use crate::missed::Missed;
 
 /// `[simulation]`.
 pub fn simulation(lines: &mut Vec<String>, simulation: &Simulation) {
-    let Simulation { samples, position, velocity, torque, friction, latency, missed, host } =
-        simulation;
+    let Simulation {
+        samples,
+        position,
+        velocity,
+        torque,
+        friction,
+        latency,
+        missed,
+        dropped,
+        host,
+    } = simulation;
     lines.push(format!("[simulation]\nsamples = {samples}"));
     lines.push(format!("position = {position:?}\nvelocity = {velocity:?}"));
     lines.extend(hand_torque(torque));
     lines.extend(host.as_ref().map(|torques| format!("host = {torques:?}")));
     lines.push(format!("friction = {friction:?}\nlatency = {latency:?}"));
-    lines.extend(match missed {
-        Missed::None => None,
-        Missed::Every(every) => Some(format!("missed = {{ every = {every} }}")),
-        Missed::Random { fraction, seed } => {
-            Some(format!("missed = {{ fraction = {fraction:?}, seed = {seed} }}"))
-        }
-    });
+    lines.extend([("missed", missed), ("dropped", dropped)].into_iter().filter_map(
+        |(name, law)| match law {
+            Missed::None => None,
+            Missed::Every(every) => Some(format!("{name} = {{ every = {every} }}")),
+            Missed::Random { fraction, seed } => {
+                Some(format!("{name} = {{ fraction = {fraction:?}, seed = {seed} }}"))
+            }
+        },
+    ));
 }
 
 fn hand_torque(torque: &HandTorque) -> Option<String> {

@@ -1,0 +1,71 @@
+//! What a magnetic encoder costs: of a verdict, and of a tick on its board.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use haptic_servo::certificate::{assess, is_static_at_port};
+use haptic_servo::environment::Wall;
+use haptic_servo::scene::{Coupling, EncoderReading, Scene, TimeRange, Timing};
+
+use super::figure::Pair;
+use super::on_target;
+use crate::file::{FileError, Format, SceneFile, parse};
+use crate::program::damper_wall;
+
+/// The reading of an MT6701, as docs/encoders.md states it.
+const READING: EncoderReading = EncoderReading {
+    age: TimeRange::between(0.0, 1e-5),
+    linearity: 0.035,
+    noise: 2.0,
+    // That of any endless profile here.
+    friction: 100.0,
+    ..EncoderReading::IDEAL
+};
+/// The same of which one in a row may fail, for laws of one position.
+const DROPPING: EncoderReading = EncoderReading { dropped: 1, ..READING };
+
+/// A wall that a board reads by an MT6701, and the same with a quadrature encoder on the board's timer.
+pub fn walls() -> Result<[SceneFile; 2], FileError> {
+    const WALL: &str = include_str!("../../../virtual-board/tests/board/magnetic_wall.toml");
+    let wall = parse("magnetic_wall.toml", Format::Toml, WALL)?;
+    let counted = SceneFile { chip: None, ..wall.clone() };
+    Ok([wall, counted])
+}
+
+/// Scenes of devices that people build with such an encoder: springs and one-sided walls without a coupling and
+/// behind one, and torque profiles.
+fn scenes() -> Vec<Scene> {
+    let mut scenes = on_target::profiles();
+    for period in [1e-3, 1e-4] {
+        for stiffness in [2.0, 10.0, 40.0] {
+            let wall = Wall::spring(stiffness, 1);
+            let environments = [wall, wall.behind(0.0), Wall::damped(stiffness, 0.002, 1)];
+            scenes.extend(environments.map(|environment| Scene {
+                environment: environment.alone(),
+                timing: Timing { period, worst_period: None },
+                coupling: Coupling::Rigid,
+                ..damper_wall::SCENE
+            }));
+        }
+    }
+    scenes
+}
+
+/// Times in us of a verdict on these scenes with `[encoder]`, and without.
+pub fn verdicts(rounds: usize) -> Pair {
+    let plain = scenes();
+    let read: Vec<_> = plain
+        .iter()
+        .map(|scene| {
+            let reading = if is_static_at_port(scene) { &DROPPING } else { &READING };
+            Scene { latency: scene.latency.read_by(reading), ..*scene }
+        })
+        .collect();
+    let time = |scenes: &[Scene]| {
+        let start = Instant::now();
+        scenes.iter().for_each(|scene| _ = black_box(assess(black_box(scene))));
+        Ok::<_, std::convert::Infallible>(start.elapsed().as_secs_f64() * 1e6 / scenes.len() as f64)
+    };
+    let Ok(pair) = Pair::in_turns(rounds, || time(&read), || time(&plain));
+    pair
+}
