@@ -58,7 +58,7 @@ fn hosted() -> SimulatedBoard {
     .certified();
     const HOST: HostTorque =
         HostTorque { energy: 0.05, power: 0.5, damping: 0.004, torque: 0.5, timeout: 0.05 };
-    haptic_servo::scene_type!(Hosted: CERTIFIED, host: HOST);
+    haptic_servo::scene_type!(WithHost: CERTIFIED, host: HOST);
     let transducers = Transducers {
         counts_per_turn: 61_440.0,
         counter: CounterWidth::Bits16,
@@ -66,7 +66,7 @@ fn hosted() -> SimulatedBoard {
         largest_speed: 100.0,
     };
     let (rendering, options) = (RenderingOptions::DEFAULT, Options::DEFAULT);
-    let scene = *Typed::<Hosted>::certified().scene();
+    let scene = *Typed::<WithHost>::certified().scene();
     let program = Program { scene, transducers, rendering, options };
     let scene = CERTIFIED.scene();
     let hand = HandTrajectory::for_environment(&scene.environment);
