@@ -34,7 +34,9 @@ struct Numbers {
     steps: [i32; 2],
     /// Torque in N m of a knot at full scale.
     torque: f64,
-    /// Bound on the magnitude of the mean of the table, clipped at any level, in its units.
+    /// Bound on the magnitude of the mean of the table, clipped at any level, in its units. The wire carries neither it
+    /// nor the friction that holds it.
+    #[cfg_attr(feature = "wire", serde(skip))]
     mean: u32,
     #[cfg_attr(feature = "wire", serde(skip))]
     checksum: u32,

@@ -15,8 +15,8 @@ use crate::certificate::Parameter;
 use crate::current::IndexOffset;
 use crate::dac::DacCode;
 use crate::environment::{
-    Canceller, Damper, Drag, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side,
-    Wall,
+    Anticogging, Canceller, Damper, Drag, Ends, Environment, KNOB_MODES, Knots, Parts, Profile,
+    Shape, Side, Wall,
 };
 use crate::fault::Fault;
 use crate::number::Format;
@@ -223,7 +223,8 @@ fn longest_status(fault: FaultCode) -> Status {
 }
 
 fn largest_description() -> Description {
-    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0).snap(1.1)]);
+    // A snap point beside other parts has no certificate.
+    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0)]);
     let mut modes = Profile::of_modes(&KNOB_MODES, 1).modes.unwrap();
     modes.count = u32::MAX;
     let profile = Profile {
