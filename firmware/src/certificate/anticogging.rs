@@ -1,5 +1,5 @@
 //! Anticogging outside of the coupling: a static law at the port with its own part of the passivity, and the scene
-//! with the rest (theory, section 18.6, equation 70).
+//! with the rest (theory, equation 70).
 
 use super::loop_intervals::LoopIntervals;
 use super::static_law::{End, needed_by_profile};

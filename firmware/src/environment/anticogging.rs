@@ -1,7 +1,7 @@
 //! Anticogging: the torque that opposes a motor's cogging, read from a learnt table over a turn of the encoder.
 //!
 //! It acts outside of the coupling, on the measured position: the coupling and the environment behind it know
-//! nothing of it. It is a torque profile without ends, with the profile's arithmetic (theory, section 18.6, equation 71).
+//! nothing of it. It is a torque profile without ends, with the profile's arithmetic (theory, section 18.6).
 
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
@@ -34,7 +34,9 @@ struct Numbers {
     steps: [i32; 2],
     /// Torque in N m of a knot at full scale.
     torque: f64,
-    /// Bound on the magnitude of the mean of the table, clipped at any level, in its units.
+    /// Bound on the magnitude of the mean of the table, clipped at any level, in its units. The wire carries neither it
+    /// nor the friction that holds it.
+    #[cfg_attr(feature = "wire", serde(skip))]
     mean: u32,
     #[cfg_attr(feature = "wire", serde(skip))]
     checksum: u32,
@@ -98,7 +100,8 @@ impl Numbers {
     }
 }
 
-/// Bound on the magnitude of the mean of a piecewise linear table, clipped at any level, in its units.
+/// Bound on the magnitude of the mean of a piecewise linear table, clipped at any level, in its units (theory,
+/// equation 71).
 ///
 /// The means `A` above zero and `B` below it of the clipped table grow with the level and are concave. So between two
 /// levels `A - B` is at most `A` on the line through the two levels before, less `B` on its chord: no more than at

@@ -223,7 +223,8 @@ fn longest_status(fault: FaultCode) -> Status {
 }
 
 fn largest_description() -> Description {
-    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0).snap(1.1)]);
+    // A snap point beside other parts has no certificate.
+    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0)]);
     let mut modes = Profile::of_modes(&KNOB_MODES, 1).modes.unwrap();
     modes.count = u32::MAX;
     let profile = Profile {
