@@ -1,6 +1,9 @@
 //! A file of a device, or the device of a scene's file.
 
-use haptic_servo::scene::{Device, TimeRange};
+use std::f64::consts::TAU;
+
+use haptic_servo::magnetic::Chip;
+use haptic_servo::scene::{Device, EncoderReading, TimeRange};
 
 use super::device::{Purpose, device};
 use super::encoder::encoder;
@@ -13,6 +16,7 @@ use super::supply::supply;
 use super::transducers::StatedTransducers;
 use super::tree::Node;
 use crate::chain::Chain;
+use crate::disturbance::Disturbance;
 
 /// A file that describes a device.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +29,14 @@ pub struct DeviceFile {
     pub device: Device,
     /// Its encoder and its motor.
     pub transducers: StatedTransducers,
+    /// Friction and cogging of the motor.
+    pub disturbance: Disturbance,
+    /// The readings of the encoder.
+    pub reading: EncoderReading,
+    /// The chip that a board reads.
+    pub chip: Option<&'static Chip>,
+    /// Time constant of the filter between encoder and servo.
+    pub sensor_lag: TimeRange,
 }
 
 /// A file of a device is a table, like that of a scene.
@@ -38,11 +50,16 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
         let scene = scene::read(source, root, Purpose::Simulate)?;
         let chain = lagging(source.1, scene.chain.clone(), scene.scene.latency.actuator_lag)?;
         let transducers = scene.stated(None, None);
+        let friction = scene.friction.unwrap_or(0.0);
         return Ok(DeviceFile {
             name: Some(scene.name),
             chain,
             device: scene.scene.device,
             transducers,
+            disturbance: Disturbance { friction, cogging: scene.cogging.unwrap_or_default() },
+            reading: *scene.scene.latency.encoder,
+            chip: scene.chip,
+            sensor_lag: scene.scene.latency.sensor_lag,
         });
     }
     let name = top.text(&key::NAME);
@@ -55,12 +72,25 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
     let supply =
         supplied.and_then(|table| table.map(|it| supply(it, Some(f64::INFINITY))).transpose())?;
     let [torque_limit, encoder_step, full_scale] = limits?;
-    reading.and_then(|table| table.map(encoder).transpose())?;
+    let read = reading.and_then(|table| table.map(encoder).transpose())?;
     motor.and_then(|table| table.map(super::motor::motor).transpose())?;
     let table = table.and_then(|table| device(table, Purpose::Simulate))?;
     let chain = lagging(source.1, table.chain, table.latency.actuator_lag)?;
+    let counts = read.as_ref().map_or(Ok(None), |read| read.counts(&top, encoder_step))?;
+    let encoder_step = counts.map(|counts| TAU / counts).or(encoder_step);
     let transducers = StatedTransducers { encoder_step, full_scale, torque_limit, supply };
-    Ok(DeviceFile { name: name?, chain, device: table.device, transducers })
+    let friction = table.friction.unwrap_or(0.0);
+    let of_encoder = read.as_ref().map_or(TimeRange::ZERO, |read| read.lag);
+    Ok(DeviceFile {
+        name: name?,
+        chain,
+        device: table.device,
+        transducers,
+        disturbance: Disturbance { friction, cogging: table.cogging.unwrap_or_default() },
+        reading: read.as_ref().map_or(EncoderReading::IDEAL, |read| read.reading),
+        chip: read.and_then(|read| read.chip),
+        sensor_lag: table.latency.sensor_lag.followed_by(of_encoder),
+    })
 }
 
 /// The chain behind its amplifier. Every lag that was read is valid for it.

@@ -8,14 +8,16 @@ use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 use super::faults::{Read, Reported};
 use super::key;
 use super::section::Section;
+use super::transducers::counts_per_turn_of;
 
 /// The contents of `[encoder]`.
 pub struct EncoderTable {
-    reading: EncoderReading,
+    /// Its readings, without the device's friction.
+    pub reading: EncoderReading,
     /// Time constant of its filter.
-    lag: TimeRange,
+    pub lag: TimeRange,
     /// Counts in a turn.
-    pub counts_per_turn: Option<f64>,
+    counts_per_turn: Option<f64>,
     /// The chip that the board reads.
     pub chip: Option<&'static Chip>,
 }
@@ -58,19 +60,22 @@ pub fn encoder(mut section: Section<'_>) -> Read<EncoderTable> {
 }
 
 impl EncoderTable {
-    /// Checks that the scene covers the readings of its chip; returns the counts of the encoder in a turn.
-    pub fn of_chip(
-        &self,
-        top: &Section<'_>,
-        scene: &Scene,
-        counts: Option<f64>,
-    ) -> Read<Option<f64>> {
-        let Some(chip) = self.chip else { return Ok(counts) };
-        let counts_per_turn = counts.unwrap_or(chip.counts_per_turn());
-        let checked = chip.check(&scene.latency, scene.timing.period, counts_per_turn);
-        checked
-            .map_err(|error| top.conflict(&key::CHIP, format!("has no certificate: {error}")))?;
-        Ok(Some(counts_per_turn))
+    /// The counts of the encoder in a turn: of this table, of the step in rad that `[limits]` states, or of the
+    /// chip.
+    pub fn counts(&self, top: &Section<'_>, step: Option<f64>) -> Read<Option<f64>> {
+        if self.counts_per_turn.is_some() && step.is_some() {
+            let reason = format!("stands beside `{}`: leave out one of them", key::LIMITS.path);
+            return Err(top.conflict(&key::READING_COUNTS, reason));
+        }
+        let stated = self.counts_per_turn.or(step.map(counts_per_turn_of));
+        Ok(stated.or(self.chip.map(Chip::counts_per_turn)))
+    }
+
+    /// Checks that the scene covers the readings of its chip with these counts in a turn.
+    pub fn covers_chip(&self, top: &Section<'_>, scene: &Scene, counts: Option<f64>) -> Read<()> {
+        let (Some(chip), Some(counts)) = (self.chip, counts) else { return Ok(()) };
+        let checked = chip.check(&scene.latency, scene.timing.period, counts);
+        checked.map_err(|error| top.conflict(&key::CHIP, format!("has no certificate: {error}")))
     }
 
     /// The scene read by this encoder, with the device's friction.

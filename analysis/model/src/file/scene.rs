@@ -20,7 +20,6 @@ use super::profile::{self, ProfileTable, Shapes};
 use super::section::Section;
 use super::simulation::{self, Simulation};
 use super::supply::{FileSupply, supply};
-use super::transducers::counts_per_turn_of;
 use super::tree::Node;
 use super::updates;
 use crate::chain::Chain;
@@ -129,15 +128,9 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let (mut encoder_step, mut chip) = (encoder_step, None);
     if let Some(reading) = reading {
         scene = reading.read(&top, scene, friction)?;
-        if let Some(counts) = reading.counts_per_turn {
-            if encoder_step.is_some() {
-                let reason = format!("stands beside `{}`: leave out one of them", key::LIMITS.path);
-                return Err(top.conflict(&key::READING_COUNTS, reason));
-            }
-            encoder_step = Some(TAU / counts);
-        }
-        let counts = encoder_step.map(counts_per_turn_of);
-        encoder_step = reading.of_chip(&top, &scene, counts)?.map(|counts| TAU / counts);
+        let counts = reading.counts(&top, encoder_step)?;
+        reading.covers_chip(&top, &scene, counts)?;
+        encoder_step = counts.map(|counts| TAU / counts);
         chip = reading.chip;
     }
     let (simulation, hand, host, supply, motor) = (simulation?, hand?, host?, supply?, driven?);

@@ -2,8 +2,10 @@
 //! from a measurement.
 
 mod device_file;
+mod linearity;
 mod port;
 pub mod target;
+mod turns;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -21,7 +23,7 @@ use crate::identify::{
     self, Correction, Disk, Estimate, Identification, Latency, Record, torque_source,
 };
 use crate::link::Address;
-use crate::program::identify::TRANSDUCERS;
+use crate::program::{self, identify::TRANSDUCERS};
 use crate::quantity::significant;
 use target::Origin;
 
@@ -44,13 +46,22 @@ pub struct Arguments {
     /// Write the record to this file, with --port or --target
     #[arg(long, value_name = "FILE.csv", requires = "measured")]
     pub record: Option<PathBuf>,
+    /// The record is of slow whole turns in both directions at three speeds or more, and shows friction and
+    /// cogging. With --port the board runs the program `turns`, with --target it is simulated
+    #[arg(long)]
+    pub turns: bool,
+    /// The record is of whole turns with two encoders on the shaft, in the columns `counts` and `reference`, and
+    /// shows the nonlinearity and the age of the first: counts of the second per turn
+    #[arg(long, value_name = "N", value_parser = positive, conflicts_with_all = ["turns", "measured"],
+          requires = "file", allow_negative_numbers = true)]
+    pub reference_per_rev: Option<f64>,
     #[command(flatten)]
     pub reading: Reading,
     #[command(flatten)]
     pub answer: JsonOption,
     /// Write the device to this file, which a scene file names: `device = "FILE.toml"` at its top; the delay
     /// for the scene's table `servo` is a comment in it. Of a file that exists only the table `device` is
-    /// replaced
+    /// replaced; with --turns or --reference-per-rev only their numbers, in a file that exists
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -176,8 +187,16 @@ struct Report<'a> {
 /// Prints the device; the status is negative if it has no passivity for a certificate, or if a code of the
 /// emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let Measured { record, origin, counts_per_turn, full_scale, torque_source } =
-        measured(arguments)?;
+    if let Some(reference) = arguments.reference_per_rev {
+        let counts = arguments.counts_per_rev.unwrap_or(TRANSDUCERS.counts_per_turn);
+        let file = arguments.file.as_deref().unwrap_or(Path::new("-"));
+        return linearity::run(arguments, file, counts, reference);
+    }
+    let measured = measured(arguments)?;
+    if arguments.turns {
+        return turns::run(arguments, &measured);
+    }
+    let Measured { record, origin, counts_per_turn, full_scale, torque_source } = measured;
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
     let stated = arguments.reading.correction(counts_per_turn, settle);
     let correction = Correction { source: stated.source.or(torque_source), ..stated };
@@ -218,7 +237,7 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
     let (file, stated) = (arguments.file.as_deref(), arguments.counts_per_rev);
     let keep = arguments.record.as_deref();
     if let Some(address) = &arguments.port {
-        let (record, board) = port::measure(address, keep)?;
+        let (record, board) = port::measure(address, keep, arguments.turns)?;
         let is_paddle =
             board.counts_per_turn == TRANSDUCERS.counts_per_turn && board.source.is_none();
         return Ok(Measured {
@@ -229,7 +248,7 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
             torque_source: board.source,
         });
     }
-    if let Some(target) = arguments.target.target {
+    if arguments.target.target.is_some() {
         let device = file.map(|file| file::load_device(&file.to_string_lossy())).transpose()?;
         let device = device.as_ref();
         let of_file = device.map_or(StatedTransducers::default(), |device| device.transducers);
@@ -240,7 +259,16 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
             ..TRANSDUCERS
         };
         let simulated = &arguments.target;
-        let (measured, origin) = target::measure(simulated, target, device, keep, &transducers)?;
+        let (measured, origin) = match arguments.turns {
+            true => {
+                let sweep = program::turns::sweep(&transducers);
+                target::measure(simulated, ("turns", &sweep), device, keep, &transducers)?
+            }
+            false => {
+                let sweep = program::identify::sweep(&transducers);
+                target::measure(simulated, ("identify", &sweep), device, keep, &transducers)?
+            }
+        };
         return Ok(Measured {
             record: measured.record,
             origin: Some(origin),
