@@ -99,5 +99,13 @@ pub fn device_module(source: &str, file: &DeviceFile) -> Result<String, CommandE
         let why = "the device has no passivity in a hand, so no scene is certified on it";
         return Err(failed(why.to_owned()));
     }
+    if let Some(chip) = file.chip {
+        let why = format!(
+            "a program of firmware/src/bin reads a quadrature encoder, not the chip {}: connect the chip's outputs A \
+             and B, and state `encoder.counts_per_turn` of these in place of `encoder.chip`",
+            chip.name
+        );
+        return Err(failed(why));
+    }
     Ok(program::device_module(&file.device, &transducers, source))
 }

@@ -19,7 +19,7 @@ pub const LIMITS: MotionLimits = MotionLimits { travel: 200.0, speed: 40.0 };
 
 /// Slow sines of torque at four amplitudes. At the lowest the torque has to be a little more than friction and
 /// cogging together, or else the device does not move there, and three others remain. Four seconds in each
-/// direction are a turn at 2.5 rad/s.
+/// direction are a turn at 2.5 rad/s. The last is faster, because only changes of speed show the inertia.
 pub static SWEEP: Sweep<4> = sweep(&TRANSDUCERS);
 
 /// The same for another motor, with parts of its torque at full scale.
@@ -29,7 +29,7 @@ pub const fn sweep(transducers: &Transducers) -> Sweep<4> {
         Tone { frequency: 0.125, amplitude: 0.04 * full_scale, settle: 0, measured: 4 },
         Tone { frequency: 0.125, amplitude: 0.06 * full_scale, settle: 0, measured: 4 },
         Tone { frequency: 0.125, amplitude: 0.09 * full_scale, settle: 0, measured: 4 },
-        Tone { frequency: 0.125, amplitude: 0.135 * full_scale, settle: 0, measured: 4 },
+        Tone { frequency: 0.25, amplitude: 0.135 * full_scale, settle: 0, measured: 8 },
     ];
     Sweep::planned(PERIOD, transducers, tones)
 }

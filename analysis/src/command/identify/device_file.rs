@@ -43,7 +43,14 @@ pub fn with_numbers(
     numbers: &[Number],
     counts_per_turn: f64,
 ) -> Result<String, CommandError> {
-    let text = checked(path, counts_per_turn)?;
+    edited(path, &checked(path, counts_per_turn)?, numbers)
+}
+
+/// A text of this file with these numbers in it.
+///
+/// # Errors
+/// If it is not TOML.
+pub fn edited(path: &Path, text: &str, numbers: &[Number]) -> Result<String, CommandError> {
     let failed = |error: TomlError| unchanged(path, &error.to_string());
     let mut document: DocumentMut = text.parse().map_err(failed)?;
     for Number { table, key, value, comment } in numbers {

@@ -8,12 +8,11 @@ use std::path::Path;
 use haptic_servo::scene::TimeRange;
 use serde::Serialize;
 
-use super::Arguments;
 use super::device_file::{Number, with_numbers};
 use super::turns::not_resolved;
+use super::{Arguments, age};
 use crate::command::shared_arguments::write;
 use crate::command::status::{CommandError, CommandStatus};
-use crate::file;
 use crate::identify::turns::{Floor, Harmonic};
 use crate::identify::{self, CONFIDENCE, Estimate, IdentifyError, Linearity, record};
 use crate::quantity::significant;
@@ -51,7 +50,8 @@ pub fn run(
     };
     let pair = pair.map_err(IdentifyError::from)?;
     let found = identify::linearity(&pair, [counts_per_turn, reference])?;
-    let stated = arguments.output.as_deref().map(stated_age).transpose()?.flatten();
+    let written = arguments.output.as_deref().map(Path::to_string_lossy);
+    let stated = written.map(|file| age::stated(&file)).transpose()?.flatten();
     let numbers = numbers(&found);
     if let Some(path) = &arguments.output {
         write(path, &with_numbers(path, &numbers, counts_per_turn)?)?;
@@ -72,12 +72,6 @@ pub fn run(
     Ok(CommandStatus::Success)
 }
 
-/// The age that a file states of its encoder, if it states one.
-fn stated_age(path: &Path) -> Result<Option<TimeRange>, CommandError> {
-    let age = file::load_device(&path.display().to_string())?.reading.age;
-    Ok((!age.is_zero()).then_some(age))
-}
-
 fn numbers(found: &Linearity) -> Vec<Number> {
     let linearity = Number {
         table: "encoder",
@@ -86,19 +80,8 @@ fn numbers(found: &Linearity) -> Vec<Number> {
         value: significant(found.slope.hi * (1.0 + 5e-3), 3),
         comment: "largest slope of the error, at 95 %".into(),
     };
-    let age = found.age.filter(|age| age.hi > 0.0).map(|age| Number {
-        table: "encoder",
-        key: "age",
-        value: range(&age),
-        comment: "s, at 95 %".into(),
-    });
+    let age = found.age.filter(|age| age.hi > 0.0).map(|age| age::number(&age));
     [Some(linearity), age].into_iter().flatten().collect()
-}
-
-/// An age for a file, rounded outwards: no reading is younger than its time.
-fn range(age: &Estimate) -> String {
-    let lo = significant(age.lo.max(0.0) * (1.0 - 5e-3), 3);
-    format!("[{}, {}]", if lo == "0" { "0.0" } else { &lo }, significant(age.hi * (1.0 + 5e-3), 3))
 }
 
 fn text(
@@ -111,26 +94,15 @@ fn text(
         let reach = significant((e.value - e.lo).max(e.hi - e.value), 2);
         format!("{} +- {reach}", significant(e.value, 3))
     };
-    let harmonics =
-        found.harmonics.iter().take(6).map(|harmonic| {
-            format!("{} rad {} times a turn", of(&harmonic.amplitude), harmonic.count)
-        });
+    let harmonics = found
+        .harmonics
+        .iter()
+        .take(3)
+        .map(|harmonic| format!("{}: {}", harmonic.count, of(&harmonic.amplitude)));
     let harmonics: Vec<String> = harmonics.collect();
-    let age = match (&found.age, stated) {
-        (None, _) => "not told: the turns have nearly one speed".to_owned(),
-        (Some(age), None) => format!("{} to {} s", significant(age.lo, 3), significant(age.hi, 3)),
-        (Some(age), Some(stated)) => {
-            let [least, most] = [stated.least, stated.most].map(|time| significant(time, 3));
-            let is_within = stated.least <= age.lo && age.hi <= stated.most;
-            let is_apart = age.hi < stated.least || stated.most < age.lo;
-            let verdict = match (is_within, is_apart) {
-                (true, _) => "within",
-                (_, true) => "which contradicts",
-                _ => "which overlaps",
-            };
-            let [lo, hi] = [age.lo, age.hi].map(|time| significant(time, 3));
-            format!("{lo} to {hi} s, {verdict} the {least} to {most} s that the file stated")
-        }
+    let age = match &found.age {
+        None => "not told: the turns have nearly one speed".to_owned(),
+        Some(age) => age::compared(age, stated),
     };
     let rows = [
         (
@@ -142,7 +114,7 @@ fn text(
             ),
         ),
         ("error", format!("{} rad at most", of(&found.error))),
-        ("harmonics", harmonics.join(", ")),
+        ("harmonics", format!("rad by harmonic: {}", harmonics.join(", "))),
         ("not resolved", not_resolved(&found.floors, "rad")),
         ("age", age),
         ("hysteresis", format!("{} counts", of(&report.hysteresis))),

@@ -89,7 +89,7 @@ fn numbers(found: &SlowTurns) -> Vec<Number> {
         value: significant(0.5 * lo * (1.0 - 5e-3), 3),
         comment: format!("N m, half of the least of {lo_text} to {hi_text} N m at 95 %"),
     });
-    let has_map = found.map.iter().any(|torque| *torque != 0.0);
+    let has_map = !found.harmonics.is_empty();
     let torques: Vec<String> = found.map.iter().map(|torque| significant(*torque, 4)).collect();
     let map = has_map.then(|| {
         let comment = format!("N m, each +- {} N m at 95 %", significant(found.uncertainty, 2));
@@ -106,7 +106,7 @@ fn numbers(found: &SlowTurns) -> Vec<Number> {
 }
 
 /// Largest number of harmonics that the text names.
-const NAMED: usize = 6;
+const NAMED: usize = 3;
 
 fn text(found: &SlowTurns, origin: Option<&Origin>, numbers: &[Number]) -> String {
     let of = |e: &Estimate, unit: &str| {
@@ -136,8 +136,8 @@ fn text(found: &SlowTurns, origin: Option<&Origin>, numbers: &[Number]) -> Strin
     ];
     rows.extend(origin.map(Origin::row));
     let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();
-    let in_file = numbers.iter().filter(|number| number.key != "torque").map(|number| {
-        let Number { table, key, value, comment } = number;
+    let in_file = numbers.iter().map(|Number { table, key, value, comment }| {
+        let value = if *key == "torque" { "[..]" } else { value };
         let comment = if comment.is_empty() { String::new() } else { format!(" # {comment}") };
         format!("{table}.{key} = {value}{comment}\n")
     });
@@ -148,14 +148,17 @@ fn cogging(found: &SlowTurns) -> String {
     let named = found.harmonics.iter().take(NAMED).map(|harmonic| {
         let Estimate { value, lo, hi } = harmonic.amplitude;
         let reach = significant((value - lo).max(hi - value), 2);
-        format!("{} +- {reach} N m {} times a turn", significant(value, 3), harmonic.count)
+        format!("{}: {} +- {reach}", harmonic.count, significant(value, 3))
     });
     let named: Vec<String> = named.collect();
     let more = match found.harmonics.len().saturating_sub(NAMED) {
         0 => String::new(),
-        more => format!(", and {more} weaker"),
+        more => format!(", {more} weaker"),
     };
-    if named.is_empty() { "none stands out".to_owned() } else { named.join(", ") + &more }
+    match named.is_empty() {
+        true => "none stands out".to_owned(),
+        false => format!("N m by harmonic: {}{more}", named.join(", ")),
+    }
 }
 
 fn map(found: &SlowTurns) -> String {
@@ -168,12 +171,12 @@ fn map(found: &SlowTurns) -> String {
     )
 }
 
-/// The amplitudes of harmonics that a record does not show.
+/// The amplitudes of harmonics that a record does not show: in the lowest and in the highest range.
 pub fn not_resolved(floors: &[Floor], unit: &str) -> String {
-    let ranges = floors.iter().map(|floor| {
-        format!("up to {}: below {} {unit}", floor.highest, significant(floor.amplitude, 2))
-    });
-    let highest = floors.last().map_or(0, |floor| floor.highest);
-    let ranges: Vec<String> = ranges.collect();
-    format!("harmonics {}; above {highest}: all", ranges.join(", "))
+    let range = |floor: &Floor| {
+        format!("below {} {unit} up to {} a turn", significant(floor.amplitude, 2), floor.highest)
+    };
+    let ends = floors.first().into_iter().chain(floors.get(1..).and_then(<[Floor]>::last));
+    let ends: Vec<String> = ends.map(range).collect();
+    format!("harmonics {}, and all above", ends.join(", "))
 }

@@ -45,6 +45,9 @@ const PHASE: f64 = 0.5;
 const SAMPLES: u32 = 16;
 /// Fewest samples of a map.
 const LEAST_SAMPLES: u32 = 32;
+/// Factor of the intervals of inertia and cogging: the part of a harmonic that a window leaves is that at a steady
+/// speed, and cogging makes the speed unsteady.
+const SYSTEMATIC: f64 = 2.0;
 /// Part of the largest torque above which an amplifier that clips would show.
 const IS_LOUD: f64 = 0.75;
 /// Part of an added torque that may be missing.
@@ -133,14 +136,17 @@ impl SlowTurns {
     fn of(found: &Expansion, turns: [usize; 2], speeds: [f64; 2]) -> Self {
         let (map, uncertainty) = map(found);
         Self {
-            inertia: estimate(found.number(INERTIA)),
+            inertia: wider(estimate(found.number(INERTIA))),
             damping: estimate(found.number(DAMPING)),
             friction: estimate(found.number(FRICTION)),
             least_friction: least_friction(found, map.len()),
             mean: estimate(opposed(found.number(MEAN))),
             map,
-            uncertainty,
-            harmonics: harmonics(found),
+            uncertainty: SYSTEMATIC * uncertainty,
+            harmonics: harmonics(found)
+                .into_iter()
+                .map(|harmonic| Harmonic { amplitude: wider(harmonic.amplitude), ..harmonic })
+                .collect(),
             friction_harmonics: found.odd.clone(),
             floors: found.floors.clone(),
             turns,
@@ -168,6 +174,12 @@ impl SlowTurns {
             ..self
         }
     }
+}
+
+/// The interval that inertia and cogging are given.
+fn wider(Estimate { value, lo, hi }: Estimate) -> Estimate {
+    let lo = value - SYSTEMATIC * (value - lo);
+    Estimate { value, lo, hi: value + SYSTEMATIC * (hi - value) }
 }
 
 /// An estimate whose interval holds that of another.
@@ -305,7 +317,6 @@ fn least_friction(found: &Expansion, samples: usize) -> Estimate {
 fn harmonics(found: &Expansion) -> Vec<Harmonic> {
     let of = |(index, count): (usize, &u32)| {
         let amplitude = estimate(found.amplitude(index));
-        let amplitude = Estimate { lo: amplitude.lo.max(0.0), ..amplitude };
         Harmonic { count: *count, amplitude }
     };
     let mut harmonics: Vec<Harmonic> = found.even.iter().enumerate().map(of).collect();
