@@ -36,7 +36,7 @@ struct Report<'a> {
 struct Cogging<'a> {
     /// Torque in N m at equally spaced angles of a turn, from 0 on, the mean included.
     torque: &'a [f64],
-    /// Half of the widest interval of these torques in N m.
+    /// Half of the interval of these torques in N m, as a root mean square.
     uncertainty: f64,
     harmonics: &'a [identify::turns::Harmonic],
     /// Amplitudes in N m that would not have been found.

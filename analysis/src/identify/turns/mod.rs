@@ -78,7 +78,7 @@ pub struct SlowTurns {
     /// Cogging and mean in N m at equally spaced angles of a turn, the first at zero: the torque on the device,
     /// positive in the direction of the angle.
     pub map: Vec<f64>,
-    /// Half of the widest interval of the map in N m.
+    /// Half of the interval of the map in N m, as a root mean square over the turn.
     pub uncertainty: f64,
     /// Harmonics of the cogging, the largest first.
     pub harmonics: Vec<Harmonic>,
@@ -156,7 +156,7 @@ impl SlowTurns {
 
     /// The same with intervals that hold those of another fit of the same harmonics.
     fn covering(self, other: &Self) -> Self {
-        let apart = self.map.iter().zip(&other.map).map(|(a, b)| (a - b).abs());
+        let apart = root_mean_square(self.map.iter().zip(&other.map).map(|(a, b)| a - b));
         let same = |count: u32| other.harmonics.iter().find(|harmonic| harmonic.count == count);
         let wider = |harmonic: &Harmonic| Harmonic {
             amplitude: same(harmonic.count)
@@ -169,7 +169,7 @@ impl SlowTurns {
             friction: covering(self.friction, other.friction),
             least_friction: covering(self.least_friction, other.least_friction),
             mean: covering(self.mean, other.mean),
-            uncertainty: self.uncertainty.max(other.uncertainty) + apart.fold(0.0, f64::max),
+            uncertainty: self.uncertainty.max(other.uncertainty) + apart,
             harmonics: self.harmonics.iter().map(wider).collect(),
             ..self
         }
@@ -286,7 +286,12 @@ impl Balance<'_> {
     }
 }
 
-/// The map of the mean and the cogging, and half of its widest interval.
+fn root_mean_square(numbers: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = numbers.len() as f64;
+    (numbers.map(|number| number * number).sum::<f64>() / count).sqrt()
+}
+
+/// The map of the mean and the cogging, and half of its interval, as a root mean square over the turn.
 fn map(found: &Expansion) -> (Vec<f64>, f64) {
     let highest = found.even.iter().max().map_or(0, |order| *order);
     let samples = (SAMPLES * highest).next_power_of_two().max(LEAST_SAMPLES);
@@ -297,8 +302,8 @@ fn map(found: &Expansion) -> (Vec<f64>, f64) {
         [-command, reach]
     };
     let all: Vec<[f64; 2]> = (0..samples).map(at).collect();
-    let widest = all.iter().map(|[_, reach]| *reach).fold(0.0, f64::max);
-    (all.iter().map(|[torque, _]| *torque).collect(), widest)
+    let reach = root_mean_square(all.iter().map(|[_, reach]| *reach));
+    (all.iter().map(|[torque, _]| *torque).collect(), reach)
 }
 
 /// The least friction over the turn.
