@@ -19,8 +19,11 @@ pub mod identify;
 pub mod knob;
 #[path = "../../firmware/src/bin/knob_modes.rs"]
 pub mod knob_modes;
+// The same by slow turns.
 #[path = "../../firmware/src/bin/supervised_spring.rs"]
 pub mod supervised_spring;
+#[path = "../../firmware/src/bin/turns.rs"]
+pub mod turns;
 #[path = "../../firmware/src/bin/undelayed_spring.rs"]
 pub mod undelayed_spring;
 #[path = "../../firmware/src/bin/undelayed_wall.rs"]

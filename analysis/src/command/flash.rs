@@ -99,8 +99,9 @@ fn written(arguments: &Arguments) -> Result<Option<FileProgram>, CommandError> {
             FileProgram::of(&file, name, None, None).map(Some)
         }
         None => {
-            // The program that measures a device has no scene, but the paddle's encoder and motor.
-            let paddle = (name == "identify").then_some(damper_wall::SCENE.device);
+            // The programs that measure a device have no scene, but the paddle's encoder and motor.
+            let paddle = ["identify", "turns"].contains(&name.as_str());
+            let paddle = paddle.then_some(damper_wall::SCENE.device);
             let device = Program::find(name).map(|program| program.scene.device);
             check_device(arguments, device.or(paddle))?;
             Ok(None)

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::left_out::{LEAST_PERIODS, LeftOut, grouped};
+use super::turns::TurnsError;
 use crate::quantity::significant;
 use crate::table::TableError;
 
@@ -12,6 +13,8 @@ use crate::table::TableError;
 pub enum IdentifyError {
     #[error(transparent)]
     Record(#[from] TableError),
+    #[error(transparent)]
+    Turns(#[from] TurnsError),
     #[error(
         "the counter wraps: in row {row}, at {} s, the counts jump from {from} to {to}, the range of a counter \
          of {range} counts ({jumps} such jumps in the record). Add or subtract {range} at each, or record the \

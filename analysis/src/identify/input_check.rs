@@ -1,17 +1,16 @@
 //! Faults of a record that have one cause: a counter that wraps, and a sign that is reversed.
 
 use super::error::IdentifyError;
-use super::record::Record;
-use super::response::{Correction, FrequencyPoint};
+use super::response::FrequencyPoint;
 
 /// Ranges of the counters of timers and encoders.
 const RANGES: [f64; 5] = [4096.0, 16_384.0, 65_536.0, 16_777_216.0, 4_294_967_296.0];
 
-/// Refuses a record whose counts jump by the range of a counter: without these jumps no step between two rows
-/// is as large as a quarter of the range.
-pub fn wraps(record: &Record, correction: &Correction) -> Result<(), IdentifyError> {
-    let turn = (std::f64::consts::TAU / correction.count_angle).round();
-    let steps = || record.counts.windows(2).map(|pair| pair[1] - pair[0]);
+/// Refuses counts that jump by the range of a counter: without these jumps no step between two rows is as large
+/// as a quarter of the range. An encoder with counts of `count_angle` rad is read every `period` s.
+pub fn wraps(counts: &[f64], count_angle: f64, period: f64) -> Result<(), IdentifyError> {
+    let turn = (std::f64::consts::TAU / count_angle).round();
+    let steps = || counts.windows(2).map(|pair| pair[1] - pair[0]);
     let most = steps().fold(0.0, |most: f64, step| most.max(step.abs()));
     let is_wrapped = |range: &f64| {
         let without = |step: f64| step - range * (step / range).round();
@@ -28,9 +27,9 @@ pub fn wraps(record: &Record, correction: &Correction) -> Result<(), IdentifyErr
     let row = jumps().next().map_or(0, |(row, _)| row + 1);
     Err(IdentifyError::Wrapped {
         row: row + 1,
-        time: row as f64 * record.period,
-        from: record.counts[row.saturating_sub(1)],
-        to: record.counts[row],
+        time: row as f64 * period,
+        from: counts[row.saturating_sub(1)],
+        to: counts[row],
         range,
         jumps: jumps().count(),
     })

@@ -21,6 +21,8 @@ const LISTENING: Duration = Duration::from_millis((SILENCE * 200.0) as u64);
 const SETTLE: Duration = Duration::from_millis(200);
 /// Longest line in bytes: the description of a bridge has less than half of it.
 const LONGEST_LINE: usize = 512;
+/// Limit of travel in rad above which a sweep is of slow turns: a handle that drifts needs three turns.
+const TURNING: f64 = 100.0;
 const HEADING: &str = "time,torque,counts";
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -78,6 +80,12 @@ pub enum PortError {
     TooLong { address: Address, ticks: u64 },
     #[error("the sweep ended with `{}` after {rows} of {ticks} rows: {}", .end.as_str(), remedy(*.end, .travel, .speed))]
     Ended { end: SweepEnd, rows: u64, ticks: u64, travel: f64, speed: f64 },
+    #[error(
+        "the board on {address} runs the program `{runs}`, which {}: flash `{needed}`, or {} --turns",
+        if *.needed == "turns" { "makes no whole turns" } else { "turns slowly, and plays no fast sines" },
+        if *.needed == "turns" { "leave out" } else { "add" }
+    )]
+    Program { address: Address, runs: &'static str, needed: &'static str },
     #[error("the board ended the sweep with the unknown word `{word}`: flash `identify` again")]
     Word { word: String },
 }
@@ -164,6 +172,17 @@ impl SweepPort {
 
     pub fn description(&self) -> &Description {
         &self.description
+    }
+
+    /// Refuses a board whose sweep is not the one that is needed, by how far it lets the device turn.
+    pub fn check_program(&self, turns: bool) -> Result<(), PortError> {
+        const PROGRAMS: [&str; 2] = ["identify", "turns"];
+        let makes_turns = self.description.travel > TURNING;
+        if makes_turns == turns {
+            return Ok(());
+        }
+        let [runs, needed] = [makes_turns, turns].map(|is_turns| PROGRAMS[usize::from(is_turns)]);
+        Err(PortError::Program { address: self.address.clone(), runs, needed })
     }
 
     fn ask(&mut self) -> Result<(), PortError> {

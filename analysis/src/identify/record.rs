@@ -31,6 +31,8 @@ pub const LEAST_ROWS: usize = 16;
 const TIME: Column = Column { names: &["time", "t"], bound: "a finite number of seconds" };
 const TORQUE: Column = Column { names: &["torque"], bound: "a finite number in N m" };
 const COUNTS: Column = Column { names: &["counts", "count"], bound: "a whole number below 2^53" };
+const REFERENCE: Column =
+    Column { names: &["reference"], bound: "a whole number of counts below 2^53" };
 const ANGLE: Column = Column { names: &["angle", "position"], bound: "a finite angle" };
 const FREQUENCY: Column =
     Column { names: &["frequency"], bound: "a finite number of Hz, 0 or more" };
@@ -136,6 +138,38 @@ fn read<R: Read>(mut table: Table<R>, count_angle: f64) -> Result<Record, TableE
     table.at_least(LEAST_ROWS)?;
     record.period = times.period();
     Ok(record)
+}
+
+/// Counts of two encoders on one shaft, over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// Sampling period in s.
+    pub period: f64,
+    /// Counts of the encoder that is measured.
+    pub counts: Vec<f64>,
+    /// Counts of the encoder that it is compared with.
+    pub reference: Vec<f64>,
+}
+
+/// Reads the columns `time`, `counts` and `reference` in the same way.
+///
+/// # Errors
+/// As [`load`].
+pub fn pair<R: Read>(mut table: Table<R>) -> Result<Pair, TableError> {
+    let time = table.column_in(TIME, SECONDS)?;
+    let [counts, reference] = [table.column_in(COUNTS, WHOLE)?, table.column_in(REFERENCE, WHOLE)?];
+    let whole = |count: &f64| count.fract() == 0.0 && count.abs() <= LARGEST_COUNT;
+    let mut times = Times::default();
+    let mut pair = Pair { period: 0.0, counts: vec![], reference: vec![] };
+    while let Some(row) = table.row()? {
+        times.add(&row, time)?;
+        pair.counts.push(row.number(counts, whole)?);
+        pair.reference.push(row.number(reference, whole)?);
+    }
+    times.check_gaps(table.file())?;
+    table.at_least(LEAST_ROWS)?;
+    pair.period = times.period();
+    Ok(pair)
 }
 
 /// The times so far, which must be those of evenly spaced ticks.

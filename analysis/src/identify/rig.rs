@@ -1,14 +1,17 @@
-//! A rig that measures a simulated device, with the errors of a real measurement: an encoder of
-//! whole counts, unrecorded torque noise, records that are skewed in time, torques that are late.
+//! A rig that measures a simulated device, with the errors of a real measurement: friction and cogging of the
+//! motor, the errors of an encoder, unrecorded torque noise, records that are skewed in time, torques that are
+//! late. The device and its encoder are those of every other simulation.
 
-use std::collections::VecDeque;
+use std::f64::consts::TAU;
 
-use nalgebra::DVector;
+use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 
 use crate::device::SimulatedEncoder;
-use crate::simulation::SimulationError;
-use crate::simulation::discrete_plant::{DiscretePlant, Discretization};
+use crate::disturbance::{Cogging, Disturbance};
+use crate::program::damper_wall;
 use crate::simulation::plant::{POSITION, Plant};
+use crate::simulation::torque_signal::TorqueSignal;
+use crate::simulation::{Experiment, Integration, Machine, Reading, SimulationError};
 
 /// How a device is driven and measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,9 +20,15 @@ pub struct Sensing {
     pub period: f64,
     /// Counts of the encoder in one turn.
     pub counts_per_turn: f64,
+    /// Errors of its readings.
+    pub encoder: EncoderReading,
+    /// Time constant of the filter between the encoder and its counts.
+    pub sensor_lag: TimeRange,
+    /// Friction and cogging of the motor.
+    pub disturbance: Disturbance,
     /// Standard deviation in N m of the torque noise, which acts but is not recorded, new in every tick.
     pub torque_noise: f64,
-    /// Time in s, less than the period, by which the counts of a row are older than its time.
+    /// Time in s by which the counts of a row are older than its time, besides the age of the readings.
     pub skew: f64,
     /// Time in s by which the torque of a row is applied later than its time, periods and parts.
     pub output_delay: f64,
@@ -27,80 +36,82 @@ pub struct Sensing {
     pub seed: u64,
 }
 
+impl Sensing {
+    /// Without noise and errors but the steps of the encoder.
+    pub const fn ideal(period: f64, counts_per_turn: f64) -> Self {
+        Self {
+            period,
+            counts_per_turn,
+            encoder: EncoderReading::IDEAL,
+            sensor_lag: TimeRange::ZERO,
+            disturbance: Disturbance {
+                friction: 0.0,
+                cogging: Cogging { torque: 0.0, count: 0.0 },
+            },
+            torque_noise: 0.0,
+            skew: 0.0,
+            output_delay: 0.0,
+            seed: 1,
+        }
+    }
+}
+
 /// A simulated device between motor and encoder, at rest at zero to begin with.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct MeasuredDevice {
-    /// A tick in pieces, in their order.
-    pieces: Vec<Piece>,
-    /// The latest torques, the newest first: as many as the delay reaches back to.
-    torques: VecDeque<f64>,
-    state: DVector<f64>,
-    /// Angle in rad that the encoder sees.
-    seen: f64,
+    machine: Machine,
+    reading: Reading,
     encoder: SimulatedEncoder,
     torque_noise: f64,
     noise: fastrand::Rng,
-}
-
-/// A piece of a tick, in which the torque does not change.
-#[derive(Clone, Debug)]
-struct Piece {
-    plant: DiscretePlant,
-    /// Ticks by which the torque that acts is older than the newest.
-    age: usize,
-    /// Whether the next row's counts are taken at its end.
-    counts: bool,
-}
-
-/// The pieces of a tick: it is cut where the late torque changes, and where the counts are taken.
-fn pieces(plant: &Plant, sensing: &Sensing) -> Result<Vec<Piece>, SimulationError> {
-    let &Sensing { period, skew, output_delay, .. } = sensing;
-    let whole = (output_delay / period).floor();
-    let (change, count) = ((output_delay - whole * period).max(0.0), period - skew);
-    let cuts = [0.0, change.min(count), change.max(count), period];
-    let long = cuts.windows(2).filter(|ends| ends[1] > ends[0]);
-    long.map(|ends| {
-        let discretization = Discretization::exact(ends[1] - ends[0]);
-        Ok(Piece {
-            plant: DiscretePlant::checked(plant, &discretization, 0.0)?,
-            age: whole as usize + usize::from(ends[0] < change),
-            counts: ends[1] == count,
-        })
-    })
-    .collect()
+    /// Ticks so far.
+    ticks: usize,
 }
 
 impl MeasuredDevice {
-    /// A device that is driven and measured in this way.
+    /// A device that is driven and measured in this way. Counts that are late are counts in time of a device
+    /// whose torque is as much later.
+    ///
+    /// # Errors
+    /// If the device is too fast for its motion over a period to be computed.
     pub fn new(plant: &Plant, sensing: &Sensing) -> Result<Self, SimulationError> {
-        let pieces = pieces(plant, sensing)?;
-        let oldest = pieces.iter().map(|piece| piece.age).max().unwrap_or(0);
+        // A scene refers to its encoder, as to the table of a torque profile.
+        let encoder: &EncoderReading = Box::leak(Box::new(sensing.encoder));
+        let late = TimeRange::exactly(sensing.output_delay + sensing.skew);
+        let stated =
+            Latency { output_delay: late, sensor_lag: sensing.sensor_lag, ..Latency::NONE };
+        let mut scene = Scene { latency: stated.read_by(encoder), ..damper_wall::SCENE };
+        scene.timing.period = sensing.period;
+        let Disturbance { friction, cogging } = sensing.disturbance;
+        let still = Experiment::still(&scene);
+        let experiment = Experiment { plant: plant.clone(), friction, cogging, ..still };
+        let integration = Integration::default();
+        experiment.tick(integration)?;
         Ok(Self {
-            pieces,
-            torques: VecDeque::from(vec![0.0; oldest + 1]),
-            state: plant.state_at(0.0, 0.0),
-            seen: 0.0,
+            machine: Machine::new(&experiment, integration),
+            reading: Reading::new(encoder, Some(TAU / sensing.counts_per_turn)),
             encoder: SimulatedEncoder::new(sensing.counts_per_turn),
             torque_noise: sensing.torque_noise,
             noise: fastrand::Rng::with_seed(sensing.seed),
+            ticks: 0,
         })
     }
 
-    /// The counter's content of this tick.
-    pub fn count(&self) -> i32 {
-        self.encoder.read(self.seen)
+    /// The counter's content of this tick, which is read once in it.
+    pub fn count(&mut self) -> i32 {
+        self.encoder.read(self.reading.angle(self.machine.measured()))
+    }
+
+    /// Angle in rad of the motor's mass: what an encoder without errors would show.
+    pub fn angle(&self) -> f64 {
+        self.machine.state()[POSITION]
     }
 
     /// Holds a torque in N m until the next tick, both of them later by the output's delay.
     pub fn hold(&mut self, torque: f64) {
-        self.torques.pop_back();
-        self.torques.push_front(torque + self.torque_noise * normal(&mut self.noise));
-        for piece in &self.pieces {
-            self.state = piece.plant.end(&self.state, self.torques[piece.age], 0.0);
-            if piece.counts {
-                self.seen = self.state[POSITION];
-            }
-        }
+        let torque = torque + self.torque_noise * normal(&mut self.noise);
+        self.machine.tick(self.ticks, &TorqueSignal::Free, torque);
+        self.ticks += 1;
     }
 }
 

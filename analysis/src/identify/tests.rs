@@ -10,14 +10,7 @@ use crate::simulation::plant::Plant;
 const PADDLE: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
 const KNOB: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
-const SENSING: Sensing = Sensing {
-    period: 1e-3,
-    counts_per_turn: 61_440.0,
-    torque_noise: 0.0,
-    skew: 0.0,
-    output_delay: 0.0,
-    seed: 1,
-};
+const SENSING: Sensing = Sensing::ideal(1e-3, 61_440.0);
 
 /// One sine: its frequency in Hz, its amplitude in N m, its duration in s.
 #[derive(Clone, Copy, Debug)]

@@ -62,14 +62,8 @@ impl Board {
     }
 
     fn play(&self, host: &mut UnixStream) -> std::io::Result<()> {
-        let sensing = Sensing {
-            period: PERIOD,
-            counts_per_turn: TRANSDUCERS.counts_per_turn,
-            torque_noise: 0.002,
-            skew: 0.0,
-            output_delay: 0.0,
-            seed: 1,
-        };
+        let ideal = Sensing::ideal(PERIOD, TRANSDUCERS.counts_per_turn);
+        let sensing = Sensing { torque_noise: 0.002, ..ideal };
         let plant = Plant::rigid(damper_wall::SCENE.device);
         let mut device = MeasuredDevice::new(&plant, &sensing).unwrap();
         let mut exciter = Exciter::new(&SWEEP);

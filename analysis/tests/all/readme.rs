@@ -81,6 +81,7 @@ fn play(guide: &str, files: &[&str], blocks: &[&str]) {
 fn commands_of_the_guides_answer_what_the_guides_show() {
     play("docs/torque-profiles.md", &["knob.toml"], &["design"]);
     play("docs/first-hour.md", &["knob.toml", "wall.toml"], &["verdict", "measured", "stiffest"]);
+    play("docs/gimbal-knob.md", &["knob.toml"], &["turns"]);
     play("docs/power-stage.md", &[], &["motor"]);
     let printed = block("docs/first-hour.md", "stiffest");
     for line in block("README.md", "stiffest").lines() {

@@ -1,7 +1,7 @@
 //! A file of a device, or the device of a scene's file.
 
 use haptic_servo::magnetic::Chip;
-use haptic_servo::scene::{Device, TimeRange};
+use haptic_servo::scene::{Device, EncoderReading, TimeRange};
 
 use super::anticogging::anticogging;
 use super::device::{Purpose, device};
@@ -15,6 +15,7 @@ use super::supply::supply;
 use super::transducers::StatedTransducers;
 use super::tree::Node;
 use crate::chain::Chain;
+use crate::disturbance::Disturbance;
 
 /// A file that describes a device.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,8 +28,14 @@ pub struct DeviceFile {
     pub device: Device,
     /// Its encoder and its motor.
     pub transducers: StatedTransducers,
+    /// Friction and cogging of the motor.
+    pub disturbance: Disturbance,
+    /// The readings of the encoder.
+    pub reading: EncoderReading,
     /// The chip of its magnetic encoder, which a board reads.
     pub chip: Option<&'static Chip>,
+    /// Time constant of the filter between encoder and servo.
+    pub sensor_lag: TimeRange,
 }
 
 /// A file of a device is a table, like that of a scene.
@@ -43,12 +50,16 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
         let scene = scene::read(source, root, Purpose::Simulate)?;
         let chain = lagging(source.1, scene.chain.clone(), scene.scene.latency.actuator_lag)?;
         let (transducers, chip) = (scene.stated(None, None), scene.chip);
+        let (disturbance, latency) = (scene.disturbance(), &scene.scene.latency);
         return Ok(DeviceFile {
             name: Some(scene.name),
             chain,
             device: scene.scene.device,
             transducers,
+            disturbance,
+            reading: *latency.encoder,
             chip,
+            sensor_lag: latency.sensor_lag,
         });
     }
     let name = top.text(&key::NAME);
@@ -68,12 +79,22 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
         None => limits_step,
     };
     learnt.and_then(|table| table.map(anticogging).transpose())?;
-    let chip = reading.and_then(|reading| reading.chip);
     motor.and_then(|table| table.map(super::motor::motor).transpose())?;
     let table = table.and_then(|table| device(table, Purpose::Simulate))?;
     let chain = lagging(source.1, table.chain, table.latency.actuator_lag)?;
     let transducers = StatedTransducers { encoder_step, full_scale, torque_limit, supply };
-    Ok(DeviceFile { name: name?, chain, device: table.device, transducers, chip })
+    let friction = table.friction.unwrap_or(0.0);
+    let of_encoder = reading.as_ref().map_or(TimeRange::ZERO, |reading| reading.lag);
+    Ok(DeviceFile {
+        name: name?,
+        chain,
+        device: table.device,
+        transducers,
+        disturbance: Disturbance { friction, cogging: table.cogging.unwrap_or_default() },
+        reading: reading.as_ref().map_or(EncoderReading::IDEAL, |reading| reading.reading),
+        chip: reading.and_then(|reading| reading.chip),
+        sensor_lag: table.latency.sensor_lag.followed_by(of_encoder),
+    })
 }
 
 /// The chain behind its amplifier. Every lag that was read is valid for it.

@@ -14,11 +14,12 @@ use super::transducers::counts_per_turn_of;
 
 /// The contents of `[encoder]`.
 pub struct EncoderTable {
-    reading: EncoderReading,
+    /// Its readings, without the device's friction.
+    pub reading: EncoderReading,
     /// Time constant of its filter.
-    lag: TimeRange,
+    pub lag: TimeRange,
     /// Counts in a turn.
-    pub counts_per_turn: Option<f64>,
+    counts_per_turn: Option<f64>,
     /// The chip that the board reads.
     pub chip: Option<&'static Chip>,
 }

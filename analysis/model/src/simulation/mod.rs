@@ -47,6 +47,7 @@ pub use error::SimulationError;
 pub(crate) use error::unbuildable;
 pub use experiment::{Experiment, HostSignal, Integration};
 pub use nonlinear_loop::Machine;
+pub use reading::Reading;
 pub use trajectory::{Columns, Trajectory};
 
 use closed_loop::ClosedLoop;

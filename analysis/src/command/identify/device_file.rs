@@ -3,6 +3,8 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
+use toml_edit::{DocumentMut, Item, TomlError, Value};
+
 use crate::command::status::CommandError;
 use crate::file::{self, Format};
 
@@ -12,21 +14,83 @@ use crate::file::{self, Format};
 /// If the file is not valid, if it states another encoder than that of the record, or if it has no such table to
 /// replace.
 pub fn replaced(path: &Path, table: &str, counts_per_turn: f64) -> Result<String, CommandError> {
-    let name = path.display().to_string();
-    let failed =
-        |why: String| CommandError::Failed(format!("{name}: {why}; nothing was changed").into());
+    let text = checked(path, counts_per_turn)?;
+    let text = with_table(&text, table);
+    let is_valid = |text: &String| is_valid(path, text);
+    text.filter(is_valid).ok_or_else(|| {
+        unchanged(path, "the file has no table [device] that could be replaced: name a new file")
+    })
+}
+
+/// A number of a device's file.
+pub struct Number {
+    /// Its table.
+    pub table: &'static str,
+    /// Its key.
+    pub key: &'static str,
+    /// The number, or a list, as TOML.
+    pub value: String,
+    /// A comment behind it.
+    pub comment: String,
+}
+
+/// The text of a file with these numbers in it, in place of its own.
+///
+/// # Errors
+/// If the file is not valid, or if it states another encoder than that of the record.
+pub fn with_numbers(
+    path: &Path,
+    numbers: &[Number],
+    counts_per_turn: f64,
+) -> Result<String, CommandError> {
+    edited(path, &checked(path, counts_per_turn)?, numbers)
+}
+
+/// A text of this file with these numbers in it.
+///
+/// # Errors
+/// If it is not TOML.
+pub fn edited(path: &Path, text: &str, numbers: &[Number]) -> Result<String, CommandError> {
+    let failed = |error: TomlError| unchanged(path, &error.to_string());
+    let mut document: DocumentMut = text.parse().map_err(failed)?;
+    for Number { table, key, value, comment } in numbers {
+        let mut value: Value = value.parse().map_err(failed)?;
+        let entry = document.entry(table).or_insert_with(toml_edit::table);
+        let Some(of) = entry.as_table_like_mut() else {
+            return Err(unchanged(path, &format!("`{table}` is not a table")));
+        };
+        // There is no comment within the braces of an inline table.
+        let old = of.get(key).and_then(Item::as_value).map(|old| old.decor().clone());
+        *value.decor_mut() = old.unwrap_or_default();
+        if !entry.is_inline_table() && !comment.is_empty() {
+            value.decor_mut().set_suffix(format!(" # {comment}"));
+        }
+        entry[key] = Item::Value(value);
+    }
+    Ok(document.to_string())
+}
+
+/// The text of a file with a device and the encoder of the record.
+fn checked(path: &Path, counts_per_turn: f64) -> Result<String, CommandError> {
     let unreadable = |source| CommandError::Unwritable { path: path.to_owned(), source };
     let text = std::fs::read_to_string(path).map_err(unreadable)?;
-    let step = file::load_device(&name)?.transducers.encoder_step;
+    let step = file::load_device(&path.display().to_string())?.transducers.encoder_step;
     let stated = step.map(|step| (TAU / step).round());
-    if let Some(stated) = stated.filter(|stated| (stated - counts_per_turn).abs() > 0.5) {
-        let counts = format!("{stated} counts a turn, and the record is of {counts_per_turn}");
-        return Err(failed(format!("the file states {counts}")));
+    match stated.filter(|stated| (stated - counts_per_turn).abs() > 0.5) {
+        Some(stated) => {
+            let counts = format!("{stated} counts a turn, and the record is of {counts_per_turn}");
+            Err(unchanged(path, &format!("the file states {counts}")))
+        }
+        None => Ok(text),
     }
-    let text = with_table(&text, table);
-    text.filter(|text| file::parse_device(&name, Format::Toml, text).is_ok()).ok_or_else(|| {
-        failed("the file has no table [device] that could be replaced: name a new file".into())
-    })
+}
+
+fn is_valid(path: &Path, text: &str) -> bool {
+    file::parse_device(&path.display().to_string(), Format::Toml, text).is_ok()
+}
+
+fn unchanged(path: &Path, why: &str) -> CommandError {
+    CommandError::Failed(format!("{}: {why}; nothing was changed", path.display()).into())
 }
 
 /// The text with another table of the device, and with all but that table and its tables. A comment directly

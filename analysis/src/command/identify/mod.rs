@@ -1,9 +1,12 @@
 //! `haptic identify`: a device's inertia, damping and passivity, and the lag and the delay of its torque,
 //! from a measurement.
 
+mod age;
 mod device_file;
+mod linearity;
 mod port;
 pub mod target;
+mod turns;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -21,8 +24,10 @@ use crate::identify::{
     self, Correction, Disk, Estimate, Identification, Latency, Record, torque_source,
 };
 use crate::link::Address;
-use crate::program::identify::TRANSDUCERS;
+use crate::program;
+use crate::program::identify::{PERIOD, TRANSDUCERS};
 use crate::quantity::significant;
+use age::KnownDelays;
 use target::Origin;
 
 #[derive(Debug, Args)]
@@ -44,13 +49,22 @@ pub struct Arguments {
     /// Write the record to this file, with --port or --target
     #[arg(long, value_name = "FILE.csv", requires = "measured")]
     pub record: Option<PathBuf>,
+    /// The record is of slow whole turns in both directions at three speeds or more, and shows friction and
+    /// cogging. With --port the board runs the program `turns`, with --target it is simulated
+    #[arg(long)]
+    pub turns: bool,
+    /// The record is of whole turns with two encoders on the shaft, in the columns `counts` and `reference`, and
+    /// shows the nonlinearity and the age of the first: counts of the second per turn
+    #[arg(long, value_name = "N", value_parser = positive, conflicts_with_all = ["turns", "measured"],
+          requires = "file", allow_negative_numbers = true)]
+    pub reference_per_rev: Option<f64>,
     #[command(flatten)]
     pub reading: Reading,
     #[command(flatten)]
     pub answer: JsonOption,
     /// Write the device to this file, which a scene file names: `device = "FILE.toml"` at its top; the delay
     /// for the scene's table `servo` is a comment in it. Of a file that exists only the table `device` is
-    /// replaced
+    /// replaced; with --turns or --reference-per-rev only their numbers, in a file that exists
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -159,6 +173,8 @@ struct Report<'a> {
     /// Whether the responses exclude a lag alone or a delay alone.
     told_apart: bool,
     no_latency: Option<String>,
+    /// Age of a reading in s, where the delay of the torque is declared.
+    age: Option<Estimate>,
     taken_out: TakenOut,
     /// The board's own current loop, if there is one.
     current_loop: Option<TorqueSource>,
@@ -176,25 +192,40 @@ struct Report<'a> {
 /// Prints the device; the status is negative if it has no passivity for a certificate, or if a code of the
 /// emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let Measured { record, origin, counts_per_turn, full_scale, torque_source } =
-        measured(arguments)?;
+    if let Some(reference) = arguments.reference_per_rev {
+        let counts = arguments.counts_per_rev.unwrap_or(TRANSDUCERS.counts_per_turn);
+        let file = arguments.file.as_deref().unwrap_or(Path::new("-"));
+        return linearity::run(arguments, file, counts, reference);
+    }
+    let measured = measured(arguments)?;
+    if arguments.turns {
+        return turns::run(arguments, &measured);
+    }
+    let Measured { record, origin, counts_per_turn, full_scale, torque_source } = measured;
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
     let stated = arguments.reading.correction(counts_per_turn, settle);
     let correction = Correction { source: stated.source.or(torque_source), ..stated };
     let found = identify::identify(&record, &correction)?;
     let notes = notes(&found);
-    let table = match arguments.output.as_deref().filter(|path| path.exists()) {
-        Some(path) => device_file::replaced(path, &device_table(&found), counts_per_turn)?,
-        None => device_file(&found, counts_per_turn, full_scale),
+    let delays = KnownDelays::of(arguments)?;
+    let age = found.latency.ok().and_then(|latency| delays.age(&latency));
+    let table = device_table(&found, &delays);
+    let mut table = match arguments.output.as_deref().filter(|path| path.exists()) {
+        Some(path) => device_file::replaced(path, &table, counts_per_turn)?,
+        None => device_file(&table, counts_per_turn, full_scale),
     };
+    if let Some(age) = age {
+        let path = arguments.output.as_deref().unwrap_or(Path::new("the device"));
+        table = device_file::edited(path, &table, &[age::number(&age)])?;
+    }
     if let Some(path) = &arguments.output {
         write(path, &table)?;
     }
     let taken_out = TakenOut::of(&record, &correction);
-    let report = report(&found, taken_out, &notes, origin.as_ref());
+    let report = Report { age, ..report(&found, taken_out, &notes, origin.as_ref()) };
     arguments
         .answer
-        .print(&report, |report| text(&found, report, &notes, origin.as_ref()) + "\n" + &table)?;
+        .print(&report, |report| text(&found, report, &delays, origin.as_ref()) + "\n" + &table)?;
     let differs = origin.and_then(|origin| origin.difference);
     if let Some(difference) = differs {
         eprintln!("{difference}");
@@ -218,7 +249,7 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
     let (file, stated) = (arguments.file.as_deref(), arguments.counts_per_rev);
     let keep = arguments.record.as_deref();
     if let Some(address) = &arguments.port {
-        let (record, board) = port::measure(address, keep)?;
+        let (record, board) = port::measure(address, keep, arguments.turns)?;
         let is_paddle =
             board.counts_per_turn == TRANSDUCERS.counts_per_turn && board.source.is_none();
         return Ok(Measured {
@@ -229,7 +260,7 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
             torque_source: board.source,
         });
     }
-    if let Some(target) = arguments.target.target {
+    if arguments.target.target.is_some() {
         let device = file.map(|file| file::load_device(&file.to_string_lossy())).transpose()?;
         let device = device.as_ref();
         let of_file = device.map_or(StatedTransducers::default(), |device| device.transducers);
@@ -240,7 +271,16 @@ fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
             ..TRANSDUCERS
         };
         let simulated = &arguments.target;
-        let (measured, origin) = target::measure(simulated, target, device, keep, &transducers)?;
+        let (measured, origin) = match arguments.turns {
+            true => {
+                let sweep = program::turns::sweep(&transducers);
+                target::measure(simulated, ("turns", &sweep), device, keep, &transducers)?
+            }
+            false => {
+                let sweep = program::identify::sweep(&transducers);
+                target::measure(simulated, ("identify", &sweep), device, keep, &transducers)?
+            }
+        };
         return Ok(Measured {
             record: measured.record,
             origin: Some(origin),
@@ -300,6 +340,7 @@ fn report<'a>(
         latency: found.latency.ok(),
         told_apart: found.latency.is_ok_and(|latency| latency.is_told_apart()),
         no_latency: found.latency.err().map(|reason| reason.to_string()),
+        age: None,
         taken_out,
         current_loop: found.model.source,
         bias: found.bias,
@@ -333,7 +374,7 @@ fn notes(found: &Identification) -> Vec<String> {
     if !found.is_rigid() {
         notes.push(format!(
             "inertia and damping do not explain the responses (residuals {} times the noise): the \
-             device is not one rigid mass. Its passivity in a hand cannot be measured at the motor \
+             device is not one rigid mass, or its motor cogs, which slow turns show (--turns). Its passivity in a hand cannot be measured at the motor \
              alone, because a hand that holds the far end takes the damping of that end away. \
              Describe it as masses and links, and use `haptic device`",
             significant(found.misfit.sqrt(), 2),
@@ -393,7 +434,7 @@ fn split(found: &Identification, latency: &Latency) -> String {
 
 /// The ranges of lag and delay for a scene file: the lag is in the table of the device; the delay belongs in
 /// the table of the servo, which a device file does not have.
-fn latency_lines(found: &Identification) -> String {
+fn latency_lines(found: &Identification, delays: &KnownDelays) -> String {
     let latency = match &found.latency {
         Ok(latency) => latency,
         Err(reason) => return format!("# actuator_lag, output_delay: none; {reason}\n"),
@@ -410,12 +451,12 @@ fn latency_lines(found: &Identification) -> String {
         range(latency.lag_range()),
         significant(sum.lo, 4),
         significant(sum.hi, 4),
-        range(latency.delay_range()),
+        range(delays.output_delay(latency)),
     )
 }
 
 /// The device file: the device, its encoder, and its motor if that is known.
-fn device_file(found: &Identification, counts_per_turn: f64, full_scale: Option<f64>) -> String {
+fn device_file(table: &str, counts_per_turn: f64, full_scale: Option<f64>) -> String {
     let step = std::f64::consts::TAU / counts_per_turn;
     let full_scale = match full_scale {
         Some(torque) => format!("full_scale = {torque:?} # N m, as the program states it"),
@@ -424,12 +465,11 @@ fn device_file(found: &Identification, counts_per_turn: f64, full_scale: Option<
         }
     };
     format!(
-        "{}\n[limits]\nencoder_step = {step:?} # rad, {counts_per_turn} counts per turn\n{full_scale}\n",
-        device_table(found)
+        "{table}\n[limits]\nencoder_step = {step:?} # rad, {counts_per_turn} counts per turn\n{full_scale}\n"
     )
 }
 
-fn device_table(found: &Identification) -> String {
+fn device_table(found: &Identification, delays: &KnownDelays) -> String {
     let range = |e: &Estimate| format!("{} to {}", significant(e.lo, 4), significant(e.hi, 4));
     let less = match found.motion_loss() {
         loss if loss > 0.0 => format!(" less {} by the current loop", significant(loss, 3)),
@@ -444,7 +484,7 @@ fn device_table(found: &Identification) -> String {
         ),
         None => "# passivity: none; do not certify with this device\n".to_owned(),
     };
-    let latency = latency_lines(found);
+    let latency = latency_lines(found, delays);
     let at_least = 0.5 * found.friction.lo;
     let friction = match found.tells_friction && at_least > 0.0 {
         // Rounded down.
@@ -468,7 +508,7 @@ fn device_table(found: &Identification) -> String {
 fn text(
     found: &Identification,
     report: &Report<'_>,
-    notes: &[String],
+    delays: &KnownDelays,
     origin: Option<&Origin>,
 ) -> String {
     let estimate = |e: &Estimate, unit: &str| {
@@ -505,10 +545,12 @@ fn text(
             |e: &Estimate| format!("{} to {} s", significant(e.lo, 3), significant(e.hi, 3));
         rows.extend([("lag", range(actuator_lag)), ("delay", range(output_delay))]);
     }
+    let age = found.latency.ok().and_then(|latency| delays.row(&latency));
+    rows.extend(age.map(|age| ("age", age)));
     rows.push(("taken out", report.taken_out.row()));
     rows.extend(found.model.source.map(|source| ("current loop", current_loop_row(&source))));
     rows.extend(origin.map(Origin::row));
-    rows.extend(notes.iter().map(|note| ("note", note.clone())));
+    rows.extend(report.notes.iter().map(|note| ("note", note.clone())));
     let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();
     format!("{rows}\n{}", points(found))
 }

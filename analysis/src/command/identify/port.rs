@@ -9,13 +9,15 @@ use crate::identify::{IdentifyError, Record, record};
 use crate::link::Address;
 use crate::progress;
 
-/// Lets the board measure its device; returns the record and the board's description. An incomplete record is
+/// Lets the board measure its device, by slow turns or by sines; returns the record and the board's description. An incomplete record is
 /// also kept, for inspection.
 pub fn measure(
     address: &Address,
     keep: Option<&Path>,
+    turns: bool,
 ) -> Result<(Record, Description), CommandError> {
     let port = SweepPort::open(address)?;
+    port.check_program(turns)?;
     let bar = progress::bar(port.description().ticks, "identify");
     let recording = port.record(progress::stepper(&bar))?;
     bar.finish_and_clear();

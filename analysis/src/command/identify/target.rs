@@ -5,6 +5,7 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
+use haptic_servo::excitation::Sweep;
 use haptic_servo::servo::Transducers;
 use serde::Serialize;
 
@@ -16,7 +17,7 @@ use crate::identify::measurement::{self, Measurement};
 use crate::identify::rig::{MeasuredDevice, Sensing};
 use crate::lockstep::Difference;
 use crate::program::damper_wall;
-use crate::program::identify::{self, PERIOD};
+use crate::program::identify::PERIOD;
 use crate::progress;
 use crate::simulation::plant::Plant;
 use crate::toolchain::NumberFormat;
@@ -31,6 +32,9 @@ pub enum Target {
     Qemu,
 }
 
+/// Torque noise as a part of the motor's full scale.
+const TORQUE_NOISE: f64 = 0.0025;
+
 /// A simulated measurement.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "With --target")]
@@ -39,11 +43,12 @@ pub struct Simulated {
     /// board
     #[arg(long, value_enum, group = "measured")]
     pub target: Option<Target>,
-    /// Standard deviation of the torque noise in N m, new in every tick and not recorded
-    #[arg(long, value_name = "TORQUE", default_value_t = 0.005, value_parser = not_negative, allow_negative_numbers = true,
+    /// Standard deviation of the torque noise in N m, new in every tick and not recorded; default: 0.0025 of the
+    /// motor's full scale
+    #[arg(long, value_name = "TORQUE", value_parser = not_negative, allow_negative_numbers = true,
           requires = "target")]
-    pub torque_noise: f64,
-    /// Time by which the simulated counts are late, in s; less than a period
+    pub torque_noise: Option<f64>,
+    /// Time by which the simulated counts are late besides the age of the file's encoder, in s; less than a period
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = skew,
           allow_negative_numbers = true, requires = "target")]
     pub skew: f64,
@@ -77,32 +82,38 @@ impl Origin {
     }
 }
 
-/// Measures the device of a file with its encoder and its motor, or those of the paddle.
-pub fn measure(
+/// Measures the device of a file with its encoder and its motor, or those of the paddle, by the program of this
+/// name, which plays this sweep.
+pub fn measure<const N: usize>(
     arguments: &Simulated,
-    target: Target,
+    (program, sweep): (&str, &Sweep<N>),
     file: Option<&DeviceFile>,
     keep: Option<&Path>,
     transducers: &Transducers,
 ) -> Result<(Measurement, Origin), CommandError> {
+    let target = arguments.target.unwrap_or(Target::Host);
     let plant = match file {
         Some(file) => Plant::of(&file.chain),
         None => Plant::rigid(damper_wall::SCENE.device),
     };
     let &Simulated { torque_noise, skew, output_delay, seed, .. } = arguments;
-    let (period, counts_per_turn) = (PERIOD, transducers.counts_per_turn);
-    let sweep = identify::sweep(transducers);
-    let sensing = Sensing { period, counts_per_turn, torque_noise, skew, output_delay, seed };
+    let torque_noise = torque_noise.unwrap_or(TORQUE_NOISE * transducers.full_scale_torque);
+    let ideal = Sensing::ideal(PERIOD, transducers.counts_per_turn);
+    let mut sensing = Sensing { torque_noise, skew, output_delay, seed, ..ideal };
+    if let Some(file) = file {
+        let &DeviceFile { disturbance, reading: encoder, sensor_lag, .. } = file;
+        sensing = Sensing { disturbance, encoder, sensor_lag, ..sensing };
+    }
     let elf = match target {
         Target::Host => None,
         // The program computes its codes in `f32` for every format of the scenes. They are parts of full scale, of
         // any motor.
-        Target::Qemu => Some(emulated("identify", NumberFormat::F32)?),
+        Target::Qemu => Some(emulated(program, NumberFormat::F32)?),
     };
     let mut device = MeasuredDevice::new(&plant, &sensing)?;
     let bar = progress::bar(sweep.ticks(), "identify");
     let stepper = progress::stepper(&bar);
-    let measured = measurement::measure(&sweep, &mut device, elf.as_deref(), stepper)?;
+    let measured = measurement::measure(sweep, &mut device, elf.as_deref(), stepper)?;
     bar.finish_and_clear();
     if let Some(path) = keep {
         let unwritable = |source| CommandError::Unwritable { path: path.to_owned(), source };

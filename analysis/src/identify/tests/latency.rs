@@ -124,17 +124,6 @@ impl From<Output> for Model {
 }
 
 #[test]
-fn a_late_torque_is_seen_as_late_counts_are() {
-    let sines = sines(KNOB, &[8.0, 64.0], 0.02);
-    let rig = |skew, output_delay| rig(KNOB, Sensing { skew, output_delay, ..SENSING });
-    let counts = |rig: Rig| rig.measure(&sines).counts;
-    assert_eq!(counts(rig(3e-4, 0.0)), counts(rig(0.0, 3e-4)));
-    assert_eq!(counts(rig(5e-4, 0.0)), counts(rig(2e-4, 3e-4)));
-    let whole = counts(rig(0.0, 2e-3));
-    assert_eq!(whole[2..], counts(rig(0.0, 0.0))[..whole.len() - 2]);
-}
-
-#[test]
 fn a_lag_alone_and_a_delay_alone_are_said_to_be_alike() {
     let found = measured(KNOB, Output { lag: 0.0, delay: 2e-5 }, 1);
     let latency = found.latency.unwrap();

@@ -1,0 +1,182 @@
+//! `haptic identify --turns`: friction and cogging from slow whole turns in both directions.
+
+use serde::Serialize;
+
+use super::device_file::{Number, with_numbers};
+use super::target::Origin;
+use super::{Arguments, Measured};
+use crate::command::shared_arguments::write;
+use crate::command::status::{CommandError, CommandStatus};
+use crate::identify::turns::Floor;
+use crate::identify::{self, CONFIDENCE, Estimate, SlowTurns};
+use crate::quantity::significant;
+
+#[derive(Serialize)]
+struct Report<'a> {
+    inertia: Estimate,
+    damping: Estimate,
+    /// Mean over the turn in N m.
+    friction: Estimate,
+    /// Least over the turn in N m.
+    least_friction: Estimate,
+    /// Harmonics of the friction over the angle.
+    friction_harmonics: &'a [u32],
+    /// Torque in N m that is the same at all angles and in both directions.
+    mean: Estimate,
+    cogging: Cogging<'a>,
+    /// Turns forward and back.
+    turns: [usize; 2],
+    /// Least and largest mean speed of a turn in rad/s.
+    speeds: [f64; 2],
+    confidence: f64,
+    measured: Option<&'a Origin>,
+}
+
+#[derive(Serialize)]
+struct Cogging<'a> {
+    /// Torque in N m at equally spaced angles of a turn, from 0 on, the mean included.
+    torque: &'a [f64],
+    /// Half of the interval of these torques in N m, as a root mean square.
+    uncertainty: f64,
+    harmonics: &'a [identify::turns::Harmonic],
+    /// Amplitudes in N m that would not have been found.
+    not_resolved: &'a [Floor],
+}
+
+/// Prints what the turns of a record show, and writes it to a file of the device.
+pub fn run(arguments: &Arguments, measured: &Measured) -> Result<CommandStatus, CommandError> {
+    let Measured { record, origin, counts_per_turn, .. } = measured;
+    let correction = arguments.reading.correction(*counts_per_turn, 0.0);
+    let found = identify::slow_turns(record, &correction)?;
+    let numbers = numbers(&found);
+    if let Some(path) = &arguments.output {
+        write(path, &with_numbers(path, &numbers, *counts_per_turn)?)?;
+    }
+    let report = report(&found, origin.as_ref());
+    arguments.answer.print(&report, |_| text(&found, origin.as_ref(), &numbers))?;
+    Ok(CommandStatus::Success)
+}
+
+fn report<'a>(found: &'a SlowTurns, measured: Option<&'a Origin>) -> Report<'a> {
+    Report {
+        inertia: found.inertia,
+        damping: found.damping,
+        friction: found.friction,
+        least_friction: found.least_friction,
+        friction_harmonics: &found.friction_harmonics,
+        mean: found.mean,
+        cogging: Cogging {
+            torque: &found.map,
+            uncertainty: found.uncertainty,
+            harmonics: &found.harmonics,
+            not_resolved: &found.floors,
+        },
+        turns: found.turns,
+        speeds: found.speeds,
+        confidence: CONFIDENCE,
+        measured,
+    }
+}
+
+/// The numbers of the device's file.
+fn numbers(found: &SlowTurns) -> Vec<Number> {
+    let Estimate { lo, hi, .. } = found.least_friction;
+    let [lo_text, hi_text] = [lo, hi].map(|torque| significant(torque, 3));
+    let friction = (lo > 0.0).then(|| Number {
+        table: "device",
+        key: "friction",
+        // Rounded down.
+        value: significant(0.5 * lo * (1.0 - 5e-3), 3),
+        comment: format!("N m, half of the least of {lo_text} to {hi_text} N m at 95 %"),
+    });
+    let has_map = !found.harmonics.is_empty();
+    let torques: Vec<String> = found.map.iter().map(|torque| significant(*torque, 4)).collect();
+    let map = has_map.then(|| {
+        let comment = format!("N m, each +- {} N m at 95 %", significant(found.uncertainty, 2));
+        let value = format!("[{}]", torques.join(", "));
+        Number { table: "anticogging", key: "torque", value, comment }
+    });
+    let share = has_map.then(|| Number {
+        table: "anticogging",
+        key: "share",
+        value: "1.0".into(),
+        comment: String::new(),
+    });
+    [friction, map, share].into_iter().flatten().collect()
+}
+
+/// Largest number of harmonics that the text names.
+const NAMED: usize = 3;
+
+fn text(found: &SlowTurns, origin: Option<&Origin>, numbers: &[Number]) -> String {
+    let of = |e: &Estimate, unit: &str| {
+        let reach = significant((e.value - e.lo).max(e.hi - e.value), 2);
+        format!("{} +- {reach} {unit}", significant(e.value, 4))
+    };
+    let [least, most] = found.speeds.map(|speed| significant(speed, 3));
+    let [forward, back] = found.turns;
+    let range = |e: &Estimate| format!("{} to {} N m", significant(e.lo, 3), significant(e.hi, 3));
+    let friction = match found.friction_harmonics.is_empty() {
+        true => format!("{}, the same over the turn", range(&found.least_friction)),
+        false => format!(
+            "{} where it is least, {} in the mean",
+            range(&found.least_friction),
+            range(&found.friction)
+        ),
+    };
+    let mut rows = vec![
+        ("turns", format!("{forward} forward, {back} back, at {least} to {most} rad/s")),
+        ("friction", friction),
+        ("damping", of(&found.damping, "N m s/rad")),
+        ("inertia", of(&found.inertia, "kg m^2")),
+        ("mean", of(&found.mean, "N m, of a load or the amplifier's offset")),
+        ("cogging", cogging(found)),
+        ("map", map(found)),
+        ("not resolved", not_resolved(&found.floors, "N m")),
+    ];
+    rows.extend(origin.map(Origin::row));
+    let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();
+    let in_file = numbers.iter().map(|Number { table, key, value, comment }| {
+        let value = if *key == "torque" { "[..]" } else { value };
+        let comment = if comment.is_empty() { String::new() } else { format!(" # {comment}") };
+        format!("{table}.{key} = {value}{comment}\n")
+    });
+    format!("{rows}\n{}", in_file.collect::<String>())
+}
+
+fn cogging(found: &SlowTurns) -> String {
+    let named = found.harmonics.iter().take(NAMED).map(|harmonic| {
+        let Estimate { value, lo, hi } = harmonic.amplitude;
+        let reach = significant((value - lo).max(hi - value), 2);
+        format!("{}: {} +- {reach}", harmonic.count, significant(value, 3))
+    });
+    let named: Vec<String> = named.collect();
+    let more = match found.harmonics.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(", {more} weaker"),
+    };
+    match named.is_empty() {
+        true => "none stands out".to_owned(),
+        false => format!("N m by harmonic: {}{more}", named.join(", ")),
+    }
+}
+
+fn map(found: &SlowTurns) -> String {
+    let most = found.map.iter().fold(0.0, |most: f64, torque| most.max(torque.abs()));
+    format!(
+        "{} samples a turn, up to {} N m, each +- {} N m",
+        found.map.len(),
+        significant(most, 3),
+        significant(found.uncertainty, 2)
+    )
+}
+
+/// The amplitudes of harmonics that a record does not show: in the lowest and in the highest range.
+pub fn not_resolved(floors: &[Floor], unit: &str) -> String {
+    let range = |floor: &Floor| {
+        format!("below {} {unit} up to {} a turn", significant(floor.amplitude, 2), floor.highest)
+    };
+    let ends = floors.first().into_iter().chain(floors.get(1..).and_then(<[Floor]>::last));
+    let ends: Vec<String> = ends.map(range).collect();
+    format!("harmonics {}, and all above", ends.join(", "))
+}
