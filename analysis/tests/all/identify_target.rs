@@ -64,3 +64,44 @@ fn the_board_measures_damping_within_two_percent_and_plays_the_hosts_codes() {
         assert!(svg.contains(words), "{words}");
     }
 }
+
+/// A shaft that turns at two speeds both ways, read by an encoder that is 80 us late, and whose error has a slope of
+/// 0.01, and by one without errors.
+#[test]
+fn a_second_encoder_shows_linearity_and_age_for_the_file() {
+    use std::f64::consts::TAU;
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (record, file) = (path("both.csv"), path("knob.toml"));
+    let mut text = "time,counts,reference\n".to_owned();
+    let (mut from, mut row) = (0.3, 0_u32);
+    for speed in [6.0, -6.0, 12.0, -12.0_f64] {
+        let ticks = (3.3 * TAU / speed.abs() / 1e-3) as usize;
+        for tick in 0..ticks {
+            let at = |time: f64| from + speed * time;
+            let (time, old) = (1e-3 * tick as f64, at(1e-3 * tick as f64 - 8e-5));
+            // Noise of a count, as an encoder has it.
+            let noise = f64::from(row * 7919 % 1000) / 500.0 - 1.0;
+            let count = |angle: f64, counts: f64| (angle / TAU * counts + noise).floor();
+            let (shown, reference) = (old + 0.01 * old.sin(), at(time));
+            text += &format!(
+                "{},{},{}\n",
+                1e-3 * f64::from(row),
+                count(shown, 16_384.0),
+                count(reference, 40_000.0)
+            );
+            row += 1;
+        }
+        from += speed * 1e-3 * ticks as f64;
+    }
+    std::fs::write(&record, text).unwrap();
+    let device =
+        "[device]\ninertia = 3e-5\ndamping = 0.001\n[encoder]\nage = [0.0, 1e-4] # stated\n";
+    std::fs::write(&file, device).unwrap();
+    let counts = ["--counts-per-rev", "16384", "--reference-per-rev", "40000"];
+    let output = haptic(&[&["identify", &record, "-o", &file], &counts[..]].concat());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains(" s, within the 0 to 0.0001 s that the file states"), "{said}");
+    let written = std::fs::read_to_string(&file).unwrap();
+    assert!(written.contains("linearity = 0.010") && written.contains("age = [7."), "{written}");
+}

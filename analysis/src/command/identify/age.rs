@@ -9,7 +9,7 @@ use crate::file;
 use crate::identify::{Estimate, Latency};
 use crate::quantity::significant;
 
-/// What is known of the delays besides the record.
+/// The delays that are known without the record.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct KnownDelays {
     /// The age in s that a file states of its encoder, or of its chip.

@@ -4,8 +4,10 @@ use std::f64::consts::TAU;
 
 use thiserror::Error;
 
-use super::whole::LEAST_SPREAD;
 use crate::quantity::significant;
+
+/// Smallest ratio of the largest speed to the smallest at which they tell numbers apart.
+pub const LEAST_SPREAD: f64 = 1.5;
 
 /// Why a record of turns shows nothing.
 #[derive(Clone, Debug, PartialEq, Error)]

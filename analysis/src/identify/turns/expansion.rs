@@ -170,7 +170,7 @@ impl Expansion {
             let shares = shares_of(rows, &residuals, found.without.len());
             let spectrum = Spectrum::of(rows, &residuals, &shares, lowest..=highest);
             floor = spectrum.floor();
-            let (more_even, more_odd) = spectrum.new(&found, highest_odd);
+            let (more_even, more_odd) = spectrum.besides(&found, highest_odd);
             let (mut even, mut odd) = (found.even.clone(), found.odd.clone());
             even.extend(&more_even);
             odd.extend(&more_odd);
@@ -397,7 +397,7 @@ impl Spectrum {
     }
 
     /// The harmonics of a round, besides those found before.
-    fn new(&self, found: &Expansion, highest_odd: u32) -> (Vec<u32>, Vec<u32>) {
+    fn besides(&self, found: &Expansion, highest_odd: u32) -> (Vec<u32>, Vec<u32>) {
         let stands_out = |peak: &&Peak| peak.amplitude > peak.threshold;
         let is_new = |known: &[u32], peak: &Peak| !known.contains(&peak.order);
         let even = self.even.iter().filter(|peak| is_new(&found.even, peak)).filter(stands_out);

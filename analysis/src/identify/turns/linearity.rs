@@ -6,9 +6,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::error::TurnsError;
+use super::error::{LEAST_SPREAD, TurnsError};
 use super::expansion::{Expansion, Floor, Part, Row, Sought};
-use super::whole::{LEAST_SPREAD, Motion};
+use super::whole::Motion;
 use super::{COUNTS, HIGHEST, Harmonic, estimate, harmonics};
 use crate::identify::estimate::Estimate;
 use crate::identify::record::Pair;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::error::TurnsError;
+use super::error::{LEAST_SPREAD, TurnsError};
 
 /// Time in s to either side of a row over which its motion is looked at.
 const LOOK: f64 = 0.01;
@@ -15,8 +15,6 @@ const FLICKER: f64 = 0.005;
 const APART: f64 = 1.1;
 /// Fewest speeds in each direction.
 const SPEEDS: usize = 3;
-/// Smallest ratio of the largest speed to the smallest.
-pub const LEAST_SPREAD: f64 = 1.5;
 
 /// A whole turn.
 #[derive(Clone, Debug, PartialEq)]
