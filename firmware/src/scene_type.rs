@@ -128,7 +128,11 @@ impl<N: Number, S: SceneType> Discretize<N> for Typed<S> {
 impl<N: Number, S: SceneType> Rendering<N> for Typed<S> {
     type Memory = S::Memory<N>;
     type Host = S::Host;
-    const HOST: Option<HostTorque> = S::HOST;
+
+    #[inline(always)]
+    fn host(&self) -> Option<HostTorque> {
+        S::HOST
+    }
 }
 
 // With late torques, its numbers decide, which are checked with the timing of the scene.

@@ -243,6 +243,18 @@ pub struct Hosted<const TICKS: usize, const IS_PLAIN: bool> {
     unknown: u32,
 }
 
+impl<const TICKS: usize, const IS_PLAIN: bool> Hosted<TICKS, IS_PLAIN> {
+    /// Torque in N m that the host wants in the present tick.
+    pub(super) const fn wanted(&self) -> f32 {
+        self.stream.wanted
+    }
+
+    /// Level of the tank in J.
+    pub(super) fn energy(&self) -> f64 {
+        self.tank.energy()
+    }
+}
+
 impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_PLAIN> {
     #[cfg(feature = "wire")]
     type IfPresent<T: serde::Serialize + serde::de::DeserializeOwned> = T;

@@ -166,7 +166,7 @@ where
     check_returned(&scene, transducers, options).map_err(|_| Step::Servo)?;
     let rendering = PreparedServo::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
     let mut margin = timed.margin_with(options.injection.unwrap_or(0.0));
-    if let Some(host) = E::HOST {
+    if let Some(host) = scene.environment.host() {
         check_host(&host, &scene, transducers, margin).map_err(|_| Step::Servo)?;
         margin -= host.damping;
     }
@@ -198,7 +198,7 @@ where
     N: Number,
     M: OutputMode,
 {
-    let Some(host) = E::HOST else { return Ok(E::Host::silent()) };
+    let Some(host) = scene.environment.host() else { return Ok(E::Host::silent()) };
     let servo = ServoNumbers {
         latency: &scene.latency,
         timing: scene.timing,
@@ -248,7 +248,7 @@ where
     let timed = certify_scene(changed, N::FORMAT)?.time()?;
     check_returned(&changed, transducers, options)?;
     PreparedServo::<E, N, M>::build(&timed, transducers, options)?;
-    if let Some(host) = E::HOST {
+    if let Some(host) = changed.environment.host() {
         let margin = timed.margin_with(options.injection.unwrap_or(0.0));
         check_host(&host, &changed, transducers, margin)?;
     }

@@ -242,7 +242,7 @@ where
     /// for them.
     fn report_to_host(&mut self) {
         let report = if E::Host::is_budget_due(&mut self.reported) {
-            E::HOST.map(HostReport::Budget)
+            self.program.scene.environment.host().map(HostReport::Budget)
         } else {
             let Program { transducers, scene, .. } = &self.program;
             let count_a_tick =
