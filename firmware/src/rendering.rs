@@ -1,7 +1,7 @@
 //! What a servo needs of a scene: the law of its environment, and the memory of its coupling.
 
-use crate::coupling_memory::{AnyMemory, CouplingMemory, NoMemory};
 use crate::build_error::BuildError;
+use crate::coupling_memory::{AnyMemory, CouplingMemory, NoMemory};
 use crate::environment::{
     Delayed, Discretize, Environment, EnvironmentModel, LawContext, Memory, PartSet, ProfileUse,
     StatedEnvironment, sealed,

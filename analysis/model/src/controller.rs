@@ -60,6 +60,20 @@ impl<E: Rendering<N>, N: Number> Controller for Servo<E, N> {
     }
 }
 
+impl<C: Controller + ?Sized> Controller for &mut C {
+    fn tick(&mut self, raw: i32) -> Tick {
+        (**self).tick(raw)
+    }
+
+    fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
+        (**self).tick_at(angle)
+    }
+
+    fn code_beside(&self, torque: f32) -> u16 {
+        (**self).code_beside(torque)
+    }
+}
+
 /// Builds the servo of a certified scene in the format `N`.
 pub fn controller<E, N>(
     scene: &Certified<Scene<E>>,

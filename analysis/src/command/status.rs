@@ -43,6 +43,14 @@ pub enum CommandError {
          `cargo haptic new NAME --from {file}` writes one"
     )]
     FileOnSimulatedBoard { file: String, programs: String },
+    #[error(
+        "{scene} takes no torque of a host: --host is for a scene file with the table [host], and for \
+         hosted_wall (docs/host-torque.md)"
+    )]
+    NoHost { scene: String },
+    /// Exit status 1, because the input was valid.
+    #[error("{why}")]
+    HostRefused { why: String },
     #[error("{file}: {why}")]
     NoBoardProgram { file: String, why: String },
     #[error(
@@ -178,6 +186,7 @@ impl CommandError {
         matches!(
             self,
             Self::Refused(_)
+                | Self::HostRefused { .. }
                 | Self::FileNotBuilt { is_certified: false, .. }
                 | Self::LeftOut { .. }
                 | Self::RanAway { .. }

@@ -3,10 +3,12 @@
 
 mod energy;
 mod law;
+mod run;
 mod servo;
 #[cfg(test)]
 mod tests;
 
 pub use energy::HostEnergy;
 pub use law::{HostLaw, HostSender, HostileHost, Reading};
+pub use run::HostRun;
 pub use servo::{HostTick, HostedServo, unlimited};

@@ -32,8 +32,8 @@ pub struct HostTick {
 
 /// A servo with a host beside it: the codes of both together. The host's commands come from a
 /// [`HostSender`], or by [`HostedServo::send`].
-pub struct HostedServo {
-    servo: Box<dyn Controller>,
+pub struct HostedServo<'a> {
+    servo: Box<dyn Controller + 'a>,
     host: AnyHosted,
     channel: HostWords,
     sender: Option<HostSender>,
@@ -45,14 +45,14 @@ pub struct HostedServo {
     tick: HostTick,
 }
 
-impl HostedServo {
+impl<'a> HostedServo<'a> {
     /// A full tank beside the servo of a scene in this format, with torques that are put out at the next count or
     /// at their own.
     ///
     /// # Errors
     /// If there is no proof for the host beside this servo.
     pub fn new(
-        servo: Box<dyn Controller>,
+        servo: Box<dyn Controller + 'a>,
         host: &HostTorque,
         scene: &Scene,
         transducers: &Transducers,
@@ -111,7 +111,7 @@ impl HostedServo {
     }
 }
 
-impl Controller for HostedServo {
+impl Controller for HostedServo<'_> {
     fn tick(&mut self, raw: i32) -> Tick {
         let mut tick = self.servo.tick(raw);
         let count = tick.count as i32;

@@ -25,10 +25,10 @@ fn most_taken(file: &SceneFile, law: HostLaw, output: OutputTiming, has_tank: bo
     let transducers = file.transducers(None, None);
     let budget = if has_tank { host } else { unlimited(&host) };
     let servo = controller::<_, f32>(&scene.certify().unwrap(), &transducers).unwrap();
-    let hosted = HostedServo::new(servo, &budget, scene, &transducers, output, Format::F32).unwrap();
+    let hosted =
+        HostedServo::new(servo, &budget, scene, &transducers, output, Format::F32).unwrap();
     let law = HostileHost::new(law, host.torque);
-    let mut hosted =
-        hosted.driven_by(HostSender::new(law, scene.timing.period, &transducers, 0));
+    let mut hosted = hosted.driven_by(HostSender::new(law, scene.timing.period, &transducers, 0));
     let hand = HandTrajectory::push_and_let_go();
     let mut device = DeviceInHand::new(scene, hand.hand, &transducers).unwrap();
     let period = scene.timing.period;
@@ -90,7 +90,8 @@ fn each_law_sends_what_it_says() {
     let mut square = HostileHost::new(HostLaw::Square, 0.5);
     assert_eq!([0.0, 0.03, 0.05].map(|t| square.torque(&at(0.0, 0.0, t))), [0.5, -0.5, 0.5]);
     let mut noise = HostileHost::new(HostLaw::Noise, 0.5);
-    let sent: Vec<_> = (0..10_000).map(|k| noise.torque(&at(0.0, 0.0, f64::from(k) * 1e-3))).collect();
+    let sent: Vec<_> =
+        (0..10_000).map(|k| noise.torque(&at(0.0, 0.0, f64::from(k) * 1e-3))).collect();
     let mean = sent.iter().sum::<f64>() / 1e4;
     let square = sent.iter().map(|x| x * x).sum::<f64>() / 1e4;
     // Of a uniform distribution: a third of the square, to six deviations of a mean of ten thousand.
