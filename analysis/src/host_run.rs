@@ -118,8 +118,7 @@ impl BesideHost<'_> {
         match board {
             Backend::Emulator(elf) => {
                 let mut emulator = Emulator::boot(elf)?;
-                emulator.arm_and_wait()?;
-                let port = UnixStream::connect(emulator.port()).map_err(EmulatorError::Serial)?;
+                let port = emulator.arm_and_wait()?;
                 port.set_nonblocking(true).map_err(EmulatorError::Serial)?;
                 let output = OutputTiming::Simultaneous;
                 let mut board = EmulatorWithPort { emulator, port };
@@ -161,7 +160,9 @@ impl BesideHost<'_> {
                     states.push(state);
                 }
             }
-            if let Some(torque) = sender.after(count).filter(|_| ran.len() + silent < ticks) {
+            // As the client of a board, the host waits for the report of its command before it sends the next.
+            let may_send = states.len() == torques.len() && ran.len() + silent < ticks;
+            if let Some(torque) = sender.after(count).filter(|_| may_send) {
                 let number = torques.len() as u16;
                 torques.push(torque);
                 bytes = frame(&ToBoard::Torque(HostCommand { number, torque, ramp: 0 }));

@@ -36,13 +36,6 @@ pub enum CommandError {
     File(#[from] FileError),
     #[error("there is no scene {name}: the programs are {programs}, and there is no such file")]
     NoScene { name: String, programs: String },
-    #[error("there is no scene {name}: the programs are {programs}")]
-    NoProgram { name: String, programs: String },
-    #[error(
-        "{file} is a file; a simulated board needs the name of a scene's program: {programs}; \
-         `cargo haptic new NAME --from {file}` writes one"
-    )]
-    FileOnSimulatedBoard { file: String, programs: String },
     #[error(
         "{scene} takes no torque of a host: --host is for a scene file with the table [host], and for \
          hosted_wall (docs/host-torque.md)"

@@ -82,6 +82,7 @@ fn commands_of_the_guides_answer_what_the_guides_show() {
     play("docs/torque-profiles.md", &["knob.toml"], &["design"]);
     play("docs/first-hour.md", &["knob.toml", "wall.toml"], &["verdict", "measured", "stiffest"]);
     play("docs/power-stage.md", &[], &["motor"]);
+    play("docs/host-torque.md", &["wheel.toml"], &["host"]);
     let printed = block("docs/first-hour.md", "stiffest");
     for line in block("README.md", "stiffest").lines() {
         assert!(printed.contains(line), "{line}");

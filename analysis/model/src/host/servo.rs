@@ -50,7 +50,8 @@ impl<'a> HostedServo<'a> {
     /// at their own.
     ///
     /// # Errors
-    /// If there is no proof for the host beside this servo.
+    /// If there is no proof for the host beside this servo, or its torque and the scene's are together above full
+    /// scale.
     pub fn new(
         servo: Box<dyn Controller + 'a>,
         host: &HostTorque,
@@ -59,6 +60,7 @@ impl<'a> HostedServo<'a> {
         output: OutputTiming,
         format: Format,
     ) -> Result<Self, HostError> {
+        host.check_range(scene.torque_limit, transducers.full_scale_torque)?;
         let numbers = ServoNumbers {
             latency: &scene.latency,
             timing: scene.timing,

@@ -15,7 +15,7 @@ use crate::simulation::device_in_hand::DeviceInHand;
 fn file() -> SceneFile {
     file_on_paddle(
         "[coupling]\nstiffness = 44.0\n[environment]\ntype = \"damper-wall\"\nstiffness = 10.0\ndamping = 0.002\n\
-         delay = 1\n[host]\nenergy = 0.05\npower = 0.1\ndamping = 0.004\ntorque = 0.5\ntimeout = 0.05\n",
+         delay = 1\n[host]\nenergy = 0.05\npower = 0.1\ndamping = 0.004\ntorque = 0.5\ntimeout = 0.05\n[limits]\ntorque = 1.0\n",
     )
 }
 
