@@ -26,11 +26,11 @@ use crate::virtual_board::VirtualBoard;
 const SILENT: f64 = 0.05;
 
 /// A servo, and the host that stands beside it.
-pub struct BesideHost<'a> {
+pub struct BesideHost {
     /// The scene, certified with the host's share.
-    pub scene: &'a Scene,
+    pub scene: Scene,
     /// Encoder and motor.
-    pub transducers: &'a Transducers,
+    pub transducers: Transducers,
     /// What the host may do.
     pub budget: HostTorque,
     /// Its law.
@@ -39,31 +39,34 @@ pub struct BesideHost<'a> {
     pub has_tank: bool,
     /// The servo's number format.
     pub format: Format,
+    /// Whether a board's own bridge drives the motor.
+    pub has_bridge: bool,
 }
 
-impl BesideHost<'_> {
+impl BesideHost {
     /// The host beside the servo of the scene.
     ///
     /// # Errors
     /// If there is no proof for it.
-    fn servo<'c>(
+    pub fn servo<'c>(
         &self,
         controller: &'c mut dyn Controller,
         output: OutputTiming,
     ) -> Result<HostedServo<'c>, HostError> {
         let budget = if self.has_tank { self.budget } else { unlimited(&self.budget) };
-        let Self { scene, transducers, format, .. } = self;
-        HostedServo::new(Box::new(controller), &budget, scene, transducers, output, *format)
+        let Self { scene, transducers, .. } = self;
+        let kind = (self.format, self.has_bridge);
+        HostedServo::new(Box::new(controller), &budget, scene, transducers, output, kind)
     }
 
     fn sender(&self) -> HostSender {
         let host = HostileHost::new(self.law, self.budget.torque);
-        HostSender::new(host, self.scene.timing.period, self.transducers, 0)
+        HostSender::new(host, self.scene.timing.period, &self.transducers, 0)
     }
 
     fn energy(&self, output: OutputTiming) -> HostEnergy {
         let ticks = usize::from(output == OutputTiming::Latched);
-        let Scene { latency, timing, .. } = self.scene;
+        let Scene { latency, timing, .. } = &self.scene;
         HostEnergy::new(&self.budget, latency, timing.period, ticks)
     }
 

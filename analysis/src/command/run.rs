@@ -11,7 +11,7 @@ use haptic_model::host::{HostLaw, HostRun, HostTick};
 use haptic_servo::host::HostTorque;
 use haptic_servo::number::{Format, Number};
 use haptic_servo::scene::Scene;
-use haptic_servo::servo::Transducers;
+use haptic_servo::servo::{OutputTiming, Transducers};
 use serde::Serialize;
 
 use super::building::{emulated, set_up};
@@ -135,6 +135,8 @@ struct RunSetup {
     program: RunProgram,
     /// What a host may do.
     budget: Option<HostTorque>,
+    /// Whether a board's own bridge drives the motor.
+    has_bridge: bool,
 }
 
 /// The program for a board.
@@ -199,8 +201,10 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         )?;
     }
     let counts = recording.map(|recording| recording.counts);
-    if arguments.host.is_some() {
-        setup.check_host()?;
+    if let Some(law) = arguments.host {
+        // Refused before anything is built.
+        let host = setup.host((law, true), arguments.format)?;
+        host.servo(setup.controller.as_mut(), OutputTiming::Simultaneous)?;
     }
     let built = build(&setup, arguments)?;
     let ticks = match &counts {
@@ -296,7 +300,6 @@ pub fn beside_host(scene: &str, law: HostLaw) -> Result<HostRuns, CommandError> 
     };
     let run = |has_tank| {
         let mut setup = fresh()?;
-        setup.check_host()?;
         let ticks = ticks_of_hand(setup.scene.timing.period);
         let law = (law, has_tank);
         ran_beside_host(&mut setup, &arguments, law, &Built::Nothing, ticks, || {})
@@ -310,37 +313,41 @@ pub fn beside_host(scene: &str, law: HostLaw) -> Result<HostRuns, CommandError> 
 fn ran_beside_host(
     setup: &mut RunSetup,
     arguments: &Arguments,
-    (law, has_tank): (HostLaw, bool),
+    law: (HostLaw, bool),
     built: &Built,
     ticks: usize,
     progress: impl FnMut(),
 ) -> Result<RunOutcome, CommandError> {
-    let budget = setup.budget.ok_or_else(|| CommandError::NoHost { scene: setup.name.clone() })?;
-    let RunSetup { scene, transducers, trajectory, disturbance, controller, .. } = setup;
+    let beside = setup.host(law, arguments.format)?;
+    let RunSetup { scene, transducers, trajectory, disturbance, .. } = setup;
     let device = SimulatedDevice::new(scene, trajectory.clone(), transducers)?;
     let device = device.with_disturbance(*disturbance);
-    let format = match arguments.format {
-        NumberFormat::F32 => Format::F32,
-        NumberFormat::Fixed => <fixed::types::I8F24 as Number>::FORMAT,
-    };
-    let beside = BesideHost { scene, transducers, budget, law, has_tank, format };
-    let controller = controller.as_mut();
-    Ok(match built.backend(scene.timing.period) {
+    let controller = setup.controller.as_mut();
+    Ok(match built.backend(beside.scene.timing.period) {
         None => beside.run(controller, device, ticks, progress).map_err(RunError::from)?,
         Some(backend) => beside.run_on(backend, controller, device, ticks, progress)?,
     })
 }
 
 impl RunSetup {
-    /// Checks that a host may stand beside the scene.
-    fn check_host(&self) -> Result<(), CommandError> {
-        if self.budget.is_none() {
+    /// The host beside the scene, with its tank or without.
+    fn host(
+        &self,
+        (law, has_tank): (HostLaw, bool),
+        format: NumberFormat,
+    ) -> Result<BesideHost, CommandError> {
+        let Some(budget) = self.budget else {
             return Err(CommandError::NoHost { scene: self.name.clone() });
-        }
+        };
         if self.report.verdict != Verdict::Certified {
             return Err(CommandError::HostRefused { why: self.report.message.clone() });
         }
-        Ok(())
+        let format = match format {
+            NumberFormat::F32 => Format::F32,
+            NumberFormat::Fixed => <fixed::types::I8F24 as Number>::FORMAT,
+        };
+        let &Self { scene, transducers, has_bridge, .. } = self;
+        Ok(BesideHost { scene, transducers, budget, law, has_tank, format, has_bridge })
     }
 }
 
@@ -383,6 +390,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
         controller: program.controller(format, &transducers)?,
         program: RunProgram::Named(program),
         budget: (program.host)(),
+        has_bridge: program.bridge.is_some(),
     })
 }
 
@@ -401,10 +409,10 @@ fn of_file(file: SceneFile, arguments: &Arguments) -> Result<RunSetup, CommandEr
     };
     let (report, trajectory) = (judge_file(&file, Format::F64), hand_trajectory(&file));
     let disturbance = file.disturbance();
-    let (name, scene, budget) = (file.name, file.scene, file.host);
+    let (scene, budget, has_bridge) = (file.scene, file.host, file.motor.is_some());
     let program = RunProgram::OfFile(program);
     Ok(RunSetup {
-        name,
+        name: file.name,
         report,
         scene,
         transducers,
@@ -413,6 +421,7 @@ fn of_file(file: SceneFile, arguments: &Arguments) -> Result<RunSetup, CommandEr
         controller,
         program,
         budget,
+        has_bridge,
     })
 }
 

@@ -150,6 +150,7 @@ passed_on! {
     crate::toolchain::SourcesError,
     crate::toolchain::probe::ProbeError,
     crate::virtual_board::VirtualBoardError,
+    haptic_servo::host::HostError,
     haptic_servo::servo::BuildError,
 }
 

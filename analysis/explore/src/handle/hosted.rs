@@ -58,7 +58,8 @@ impl Hosted {
         let period = scene.timing.period;
         let host = HostileHost::new(law, budget.torque);
         let sender = HostSender::new(host, period, transducers, count);
-        let servo = HostedServo::new(servo, &given, scene, transducers, output, Format::F32);
+        let kind = (Format::F32, file.motor.is_some());
+        let servo = HostedServo::new(servo, &given, scene, transducers, output, kind);
         let servo = servo.map_err(|error| error.to_string())?;
         Ok(Self {
             servo: servo.driven_by(sender).standing_at(count),

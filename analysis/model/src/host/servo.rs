@@ -47,7 +47,7 @@ pub struct HostedServo<'a> {
 
 impl<'a> HostedServo<'a> {
     /// A full tank beside the servo of a scene in this format, with torques that are put out at the next count or
-    /// at their own.
+    /// at their own, and whether a board's own bridge drives the motor.
     ///
     /// # Errors
     /// If there is no proof for the host beside this servo, or its torque and the scene's are together above full
@@ -58,7 +58,7 @@ impl<'a> HostedServo<'a> {
         scene: &Scene,
         transducers: &Transducers,
         output: OutputTiming,
-        format: Format,
+        (format, has_bridge): (Format, bool),
     ) -> Result<Self, HostError> {
         host.check_range(scene.torque_limit, transducers.full_scale_torque)?;
         let numbers = ServoNumbers {
@@ -67,7 +67,7 @@ impl<'a> HostedServo<'a> {
             output,
             radians_per_count: TAU / transducers.counts_per_turn,
             format,
-            has_bridge: false,
+            has_bridge,
         };
         let host = AnyHosted::beside(host, &numbers)?;
         let level = host.energy();

@@ -26,7 +26,8 @@ fn most_taken(file: &SceneFile, law: HostLaw, output: OutputTiming, has_tank: bo
     let budget = if has_tank { host } else { unlimited(&host) };
     let servo = controller::<_, f32>(&scene.certify().unwrap(), &transducers).unwrap();
     let hosted =
-        HostedServo::new(servo, &budget, scene, &transducers, output, Format::F32).unwrap();
+        HostedServo::new(servo, &budget, scene, &transducers, output, (Format::F32, false))
+            .unwrap();
     let law = HostileHost::new(law, host.torque);
     let mut hosted = hosted.driven_by(HostSender::new(law, scene.timing.period, &transducers, 0));
     let hand = HandTrajectory::push_and_let_go();
