@@ -22,8 +22,8 @@ use crate::link::Message;
 use crate::lockstep::{PlantIo, Run, SimulatedDevice};
 use crate::virtual_board::VirtualBoard;
 
-/// Time in s at the end of a run on a board in which the host is silent, so that all reports arrive.
-const SILENT: f64 = 0.05;
+/// Largest number of ticks after a run on a board in which the last report arrives.
+const MOST_TICKS: usize = 100_000;
 
 /// A servo, and the host that stands beside it.
 pub struct BesideHost {
@@ -105,8 +105,8 @@ impl BesideHost {
         Ok(outcome(run, &device, host, None))
     }
 
-    /// Runs the scene's program on a board, whose host sends its commands over the serial port. Then the servo on
-    /// this machine gets the same counts, and each command in the tick in which the board took it.
+    /// Runs the scene's program on a board, whose host sends its commands over the serial port. Then the servo
+    /// on this machine gets the same counts, and each command in the tick in which the board took it.
     ///
     /// # Errors
     /// If the board stops or does not report all commands.
@@ -147,9 +147,8 @@ impl BesideHost {
         ticks: usize,
         mut progress: impl FnMut(),
     ) -> Result<Recorded, RunError> {
-        let silent = (SILENT / self.scene.timing.period).ceil() as usize;
         let (mut sender, mut bytes) = (self.sender(), Vec::new());
-        let mut decoder = Decoder::<{ LONGEST_TO_HOST + CHECKSUM }>::new();
+        let mut decoder = FromBoard::new();
         let (mut ran, mut torques, mut states) = (Vec::new(), Vec::new(), Vec::new());
         while ran.len() < ticks
             && let Some(count) = device.count()
@@ -158,13 +157,9 @@ impl BesideHost {
             let before = device.motion().position;
             device.hold(code);
             let moved = device.motion().position - before;
-            for message in heard.into_iter().filter_map(|byte| decoder.push(byte)) {
-                if let Message::Host(HostReport::State(state)) = message {
-                    states.push(state);
-                }
-            }
+            states.extend(heard.into_iter().filter_map(|byte| reported(&mut decoder, byte)));
             // As the client of a board, the host waits for the report of its command before it sends the next.
-            let may_send = states.len() == torques.len() && ran.len() + silent < ticks;
+            let may_send = states.len() == torques.len();
             if let Some(torque) = sender.after(count).filter(|_| may_send) {
                 let number = torques.len() as u16;
                 torques.push(torque);
@@ -172,6 +167,14 @@ impl BesideHost {
             }
             ran.push(Exchanged { count, code, moved });
             progress();
+        }
+        let at_rest = ran.last().map_or(0, |ran| ran.count);
+        for _ in 0..MOST_TICKS {
+            if states.len() == torques.len() {
+                break;
+            }
+            let (_, heard) = board.exchange(at_rest, &std::mem::take(&mut bytes))?;
+            states.extend(heard.into_iter().filter_map(|byte| reported(&mut decoder, byte)));
         }
         Ok(Recorded { ran, torques, states, device })
     }
@@ -199,6 +202,17 @@ impl BesideHost {
             run.add(count, tick, code);
         }
         Ok(outcome(run, &recorded.device, host, Some(board)))
+    }
+}
+
+/// The decoder of a board's messages.
+type FromBoard = Decoder<{ LONGEST_TO_HOST + CHECKSUM }>;
+
+/// The report of a command, if it ends with this byte.
+fn reported(decoder: &mut FromBoard, byte: u8) -> Option<HostState> {
+    match decoder.push(byte) {
+        Some(Message::Host(HostReport::State(state))) => Some(state),
+        _ => None,
     }
 }
 
@@ -246,18 +260,20 @@ impl Recorded {
         }
         let mut commands = vec![None; self.ran.len()];
         let Some(first) = self.states.first() else { return Ok((0, commands)) };
-        let place = |state: &HostState, begin: u32| {
-            let tick = state.tick.wrapping_sub(begin) as usize;
-            self.ran.get(tick).filter(|ran| ran.count == state.count).map(|_| tick)
+        let tick_of = |state: &HostState, begin: u32| state.tick.wrapping_sub(begin) as usize;
+        // The last command may be taken after the run.
+        let fits = |state: &HostState, begin: u32| {
+            let ran = self.ran.get(tick_of(state, begin));
+            ran.is_none_or(|ran| ran.count == state.count)
         };
         // The number of the run's first tick, by the counts.
         let begin = (0..self.ran.len())
             .map(|tick| first.tick.wrapping_sub(tick as u32))
-            .find(|&begin| self.states.iter().all(|state| place(state, begin).is_some()))
+            .find(|&begin| self.states.iter().all(|state| fits(state, begin)))
             .ok_or(unreported)?;
         for (state, torque) in self.states.iter().zip(&self.torques) {
-            if let Some(tick) = place(state, begin) {
-                commands[tick] = Some(*torque);
+            if let Some(command) = commands.get_mut(tick_of(state, begin)) {
+                *command = Some(*torque);
             }
         }
         // A board's first tick has the number 1.

@@ -44,7 +44,8 @@ pub struct Simulated {
     /// The hand's set-point in rad; the device's angle without a hand.
     setpoint: f64,
     push: Option<Push>,
-    /// Counts and codes of the servo from its first tick on; later ones are dropped when it is full.
+    /// Counts and codes of the servo, beside its host, from its first tick on; later ones are dropped when it is
+    /// full.
     record: Vec<(i32, u16)>,
     watch: Watch,
 }
@@ -180,7 +181,13 @@ impl Simulated {
         let law = (law, self.settings.has_no_tank);
         match Hosted::new(servo, file, &self.transducers, law, count) {
             Ok(hosted) => self.hosted = Some(hosted),
-            Err(refusal) => self.host_refusal = Some(refusal),
+            Err(refusal) => {
+                self.host_refusal = Some(refusal);
+                // The scene's servo alone.
+                self.rendered = Rendered::of(file, &self.transducers, self.settings.is_checked);
+                self.record.clear();
+                self.settle();
+            }
         }
     }
 
