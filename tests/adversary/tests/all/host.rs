@@ -154,7 +154,9 @@ impl Wish {
             _ => {
                 let law = HostLaw::ALL.get(kind).copied().unwrap_or(HostLaw::Square);
                 let half_period = PERIOD * if kind == 4 { 1.0 } else { length };
-                Self::Law(HostileHost { half_period, ..HostileHost::new(law, size) })
+                let mut host = HostileHost::new(law, size);
+                host.half_period = half_period;
+                Self::Law(host)
             }
         }
     }
