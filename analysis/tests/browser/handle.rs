@@ -98,6 +98,7 @@ pub fn a_refused_handle_has_no_torque_until_the_check_is_off() {
 pub fn a_hostile_host_gives_its_budget_and_without_a_tank_more() {
     let host = "energy = 0.05\npower = 0.1\ndamping = 0.004\ntorque = 0.5\ntimeout = 0.05";
     let soft = WALL.replace("stiffness = 22.0", "stiffness = 10.0");
+    let soft = soft.replace("damping = 0.01", "damping = 0.002");
     let scene = format!("{soft}[limits]\ntorque = 1.0\n[host]\n{host}\n");
     let (_folder, mut page) = opened(1280, &scene);
     let taken = "document.getElementById('handle-taken')";

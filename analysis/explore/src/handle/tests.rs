@@ -191,6 +191,7 @@ fn what_is_wrong_is_named_and_changes_nothing() {
 /// What the hand took of a host beside a soft wall in a second, over the budget, and the part that was refused.
 fn taken(law: &str, has_no_tank: bool) -> (f64, f64) {
     let mut scene: Value = serde_json::from_str(&wall(10.0)).unwrap();
+    scene["environment"]["damping"] = 0.002.into();
     scene["limits"] = json!({ "torque": 1.0, "full_scale": 2.0 });
     scene["host"] =
         json!({ "energy": 0.05, "power": 0.1, "damping": 0.004, "torque": 0.5, "timeout": 0.05 });
