@@ -37,10 +37,10 @@ class Handle {
   #settings = new HandSettings(() => this.#hold());
   #parts = {};
 
-  constructor(engine, store) {
+  constructor(engine, store, laws) {
     [this.#engine, this.#store] = [engine, store];
     this.#section = document.getElementById("handle");
-    this.#build();
+    this.#build(laws);
     this.#drawing = new HandleDrawing(this.#canvas);
     this.#input = new HandInput(this.#canvas, this.#drawing, this, (words) => say(this.#parts.news, words));
     new IntersectionObserver((entries) => { this.#isSeen = entries.at(-1).isIntersecting; })
@@ -108,7 +108,7 @@ class Handle {
 
   // The elements.
 
-  #build() {
+  #build(laws) {
     const parts = this.#parts;
     parts.state = make("p", { id: "handle-state", role: "status" });
     parts.news = make("p", { id: "handle-news", role: "status" });
@@ -124,7 +124,7 @@ class Handle {
     parts.taken = make("p", { id: "handle-taken" });
     this.#section.append(
       parts.state, parts.error, this.#canvas, this.#bar.element, parts.words, parts.oscillation,
-      this.#buttons(), this.#host(), parts.news, this.#settings.element, parts.energy);
+      this.#buttons(), this.#host(laws), parts.news, this.#settings.element, parts.energy);
     const lines = [
       { name: "motor torque", unit: "N m", least: 0.01 }, { name: "device", unit: "rad", least: 0.01 },
       { name: "hand", unit: "rad", dash: [4, 4] },
@@ -165,10 +165,10 @@ class Handle {
   }
 
   /** The switch for a host that wants energy, of scenes that may have one. */
-  #host() {
+  #host(laws) {
     const parts = this.#parts;
-    const laws = ["", "pump", "noise", "late-spring", "square"].map((law) => new Option(law || "none", law));
-    parts.law = make("select", { id: "handle-host" }, ...laws);
+    const options = ["", ...laws].map((law) => new Option(law || "none", law));
+    parts.law = make("select", { id: "handle-host" }, ...options);
     parts.tank = make("input", { type: "checkbox", id: "handle-tank", checked: true });
     for (const part of [parts.law, parts.tank]) part.addEventListener("change", () => this.#hold());
     parts.host = make("div", { id: "handle-hosted", hidden: true },
@@ -374,8 +374,8 @@ class Handle {
 }
 
 /** Shows the handle, and lets other programs ask it. */
-function showHandle(engine, store) {
-  const handle = new Handle(engine, store);
+function showHandle(engine, store, laws) {
+  const handle = new Handle(engine, store, laws);
   window.haptic.handle = (scene, counts, countsPerTurn) => handle.codes(scene, counts, countsPerTurn);
   window.haptic.dragged = () => handle.dragged();
   handle.start();
