@@ -243,6 +243,13 @@ fn a_scene_file_with_a_host_takes_the_torques_of_a_stream() {
     let mut link = Link::open(board.address()).unwrap();
     assert_eq!(link.arm().unwrap(), RequestResult::Done);
     let mut ticks = Vec::new();
+    let stiffer = [(Parameter::Stiffness, 10.0), (Parameter::Damping, 0.01)];
+    let refused = link.set(Changes::from_slice(&stiffer).unwrap()).unwrap();
+    let RequestResult::Refused(why) = refused else { panic!("{refused:?}") };
+    assert!(
+        why.contains("the host's share of damping is 0.004 N m s/rad, and must be below"),
+        "{why}"
+    );
     let streamed = link.stream(500.0, false, |tick| {
         ticks.push(*tick);
         let torque = if tick.velocity >= 0.0 { 0.5 } else { -0.5 };

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use haptic_model::board::client::{self, Event};
 use haptic_model::board::history::History;
-use haptic_model::board::request::{Request, in_words, names};
+use haptic_model::board::request::Request;
 use haptic_model::board::sample::{Sample, Scale};
 use haptic_model::board::timing::stream_every;
 use haptic_servo::tuning::RenderError;
@@ -99,12 +99,11 @@ impl Client {
     /// # Errors
     /// The reason for which the board would refuse them.
     pub fn judge(&self, changes: &Changes) -> Result<(), String> {
-        let running = self.wire.description.as_ref().zip(self.wire.parameters.as_ref());
-        let (description, parameters) =
-            running.ok_or("the board has not said yet which scene runs there")?;
-        match description.explain(names(parameters), changes) {
+        let running = self.wire.running();
+        let running = running.ok_or("the board has not said yet which scene runs there")?;
+        match running.explain(changes) {
             Ok(()) | Err(RenderError::OtherMode { .. }) => Ok(()),
-            Err(reason) => Err(in_words(&reason, changes, description, parameters)),
+            Err(reason) => Err(running.in_words(&reason, changes)),
         }
     }
 

@@ -15,7 +15,7 @@ use crate::certificate::{Parameter, certify_scene, scene_data, timing_checked};
 use crate::current::{Push, ReturnedEnergy};
 use crate::environment::{EnvironmentModel, SupportsTiming};
 use crate::host::{BesideServo, HostError, HostTorque, ServoNumbers};
-use crate::number::Number;
+use crate::number::{Format, Number};
 use crate::output_timing::OutputMode;
 use crate::rendering::Rendering;
 use crate::scene::Scene;
@@ -252,6 +252,27 @@ where
         let margin = timed.margin_with(options.injection.unwrap_or(0.0));
         check_host(&host, &changed, transducers, margin)?;
     }
+    Ok(())
+}
+
+/// The reason why a board refuses a changed scene because of its host, if nothing else is wrong with it.
+///
+/// # Errors
+/// The error of the set.
+pub fn explain_host<E, M>(
+    host: &HostTorque,
+    scene: &Scene<E>,
+    transducers: &Transducers,
+    options: &RenderingOptions,
+    format: Format,
+) -> Result<(), RenderError>
+where
+    E: EnvironmentModel + SupportsTiming<M>,
+    M: OutputMode,
+{
+    let timed = certify_scene(*scene, format)?.time()?;
+    let margin = timed.margin_with(options.injection.unwrap_or(0.0));
+    check_host(host, scene, transducers, margin)?;
     Ok(())
 }
 

@@ -7,6 +7,7 @@ use super::changes::Changes;
 use crate::build_error::BuildError;
 use crate::certificate::{Parameter, Rejection};
 use crate::environment::{Environment, Wall};
+use crate::host::HostTorque;
 use crate::number::{Format, Number};
 use crate::scene::Scene;
 use crate::servo::{
@@ -54,6 +55,33 @@ impl Description {
         match self.other_mode(changes) {
             None => self.judge(changes),
             Some(mode) => self.judge_without(mode, changes),
+        }
+    }
+
+    /// The reason why the board refuses changes of the running scene because of its host, if nothing else is wrong
+    /// with them. With an output at a phase none is known here.
+    ///
+    /// # Errors
+    /// The reason.
+    pub fn explain_host(
+        &self,
+        host: &HostTorque,
+        changes: &[(Parameter, f64)],
+    ) -> Result<(), RenderError> {
+        let Self { scene, transducers, rendering, format, .. } = self;
+        let scene = &tuning::apply(scene, changes)?;
+        match self.timing {
+            OutputTiming::Latched => {
+                tuning::explain_host::<_, Latched>(host, scene, transducers, rendering, *format)
+            }
+            OutputTiming::Simultaneous => tuning::explain_host::<_, Simultaneous>(
+                host,
+                scene,
+                transducers,
+                rendering,
+                *format,
+            ),
+            OutputTiming::AtPhase(_) => Ok(()),
         }
     }
 

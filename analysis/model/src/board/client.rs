@@ -18,7 +18,7 @@ use haptic_servo::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest
 use thiserror::Error;
 
 use super::OtherProtocol;
-use super::request::{Reply, Request, RequestResult, refusal_in_words};
+use super::request::{Reply, Request, RequestResult, RunningScene};
 use super::timing::{QUERY, REQUEST, SILENCE, STATUS_INTERVAL};
 
 /// A board that has identified itself.
@@ -94,6 +94,8 @@ pub struct Client {
     pub parameters: Option<ActiveParameters>,
     /// The running scene, once it is known.
     pub description: Option<Description>,
+    /// What a host may do beside it.
+    host: Option<HostTorque>,
     pending: Option<Pending>,
 }
 
@@ -140,8 +142,15 @@ impl Client {
             status: None,
             parameters: None,
             description: None,
+            host: None,
             pending: None,
         }
+    }
+
+    /// The running scene with its parameters, once both are known.
+    pub fn running(&self) -> Option<RunningScene<'_>> {
+        let (description, parameters) = self.description.as_ref().zip(self.parameters.as_ref())?;
+        Some(RunningScene { description, parameters, host: self.host.as_ref() })
     }
 
     /// Address of the board.
@@ -299,7 +308,7 @@ impl Client {
                     let Greeting { previous_fault, budget, .. } = *greeting;
                     let connected = Connected { program, units, previous_fault, budget };
                     self.events.push_back(Event::Connected(connected));
-                    (self.greeting, self.heard) = (None, now);
+                    (self.greeting, self.heard, self.host) = (None, now, budget);
                 }
             }
             _ => {}
@@ -363,10 +372,9 @@ impl Client {
     /// remedies that a board has no room to look for.
     fn explain(&mut self) {
         if let Some(Pending { request, refused: Some(step), .. }) = &self.pending
-            && let Some((description, parameters)) =
-                self.description.as_ref().zip(self.parameters.as_ref())
+            && let Some(running) = self.running()
         {
-            let result = refusal_in_words(*step, &request.changes(), description, parameters);
+            let result = running.refusal_in_words(*step, &request.changes());
             self.answer(result);
         }
     }

@@ -1,5 +1,6 @@
 //! Requests to a board and their results, in words.
 
+use haptic_servo::host::HostTorque;
 use haptic_servo::number::Format;
 use haptic_servo::parameter::Parameter;
 use haptic_servo::servo::Step;
@@ -106,51 +107,59 @@ impl From<Outcome> for RequestResult {
     }
 }
 
-/// Why a board has refused changes at this step: the host judges them again, with the remedies that a board
-/// has no room to look for.
-pub fn refusal_in_words(
-    step: Step,
-    changes: &Changes,
-    description: &Description,
-    parameters: &ActiveParameters,
-) -> RequestResult {
-    if let Err(reason) = description.explain(names(parameters), changes)
-        && reason.step() == step
-    {
-        return RequestResult::Refused(in_words(&reason, changes, description, parameters));
-    }
-    if let Some(mode) = description.other_mode(changes) {
-        return RequestResult::Refused(RenderError::OtherMode { mode }.to_string());
-    }
-    Outcome::Refused(Refusal::Set(step)).into()
+/// The scene that runs on a board.
+#[derive(Clone, Copy, Debug)]
+pub struct RunningScene<'a> {
+    /// Its description.
+    pub description: &'a Description,
+    /// Its parameters.
+    pub parameters: &'a ActiveParameters,
+    /// What a host may do beside it.
+    pub host: Option<&'a HostTorque>,
 }
 
-/// The reason of a refusal, with the changes of one number that the board would take instead.
-pub fn in_words(
-    reason: &RenderError,
-    changes: &Changes,
-    description: &Description,
-    parameters: &ActiveParameters,
-) -> String {
-    let Ok(scene) = tuning::apply(&description.scene, changes) else { return reason.to_string() };
-    let passes = |parameter: Parameter, value: f64| {
-        let others = changes.iter().filter(|(other, _)| *other != parameter).copied();
-        let mut changes: Changes = others.collect();
-        changes.push((parameter, value)).is_ok()
-            && description.explain(names(parameters), &changes).is_ok()
-    };
-    let search = RemedySearch { scene: &scene, passes };
-    match reason {
-        RenderError::Rejected(rejection) => {
-            let found = search.behind(&rejection.remedies());
-            rejection.reason_in(Format::F64).as_str().to_owned() + &would_pass(None, &found)
+impl RunningScene<'_> {
+    /// The reason why the board refuses changes.
+    ///
+    /// # Errors
+    /// The reason.
+    pub fn explain(&self, changes: &Changes) -> Result<(), RenderError> {
+        let has = self.parameters.values.iter().map(|(parameter, _)| *parameter);
+        self.description.explain(Parameters::of(has), changes)?;
+        self.host.map_or(Ok(()), |host| self.description.explain_host(host, changes))
+    }
+
+    /// The refusal of the board's step in words.
+    pub fn refusal_in_words(&self, step: Step, changes: &Changes) -> RequestResult {
+        if let Err(reason) = self.explain(changes)
+            && reason.step() == step
+        {
+            return RequestResult::Refused(self.in_words(&reason, changes));
         }
-        RenderError::Timing(error) => error.to_string() + &would_pass(None, &search.searched()),
-        other => other.to_string(),
+        if let Some(mode) = self.description.other_mode(changes) {
+            return RequestResult::Refused(RenderError::OtherMode { mode }.to_string());
+        }
+        Outcome::Refused(Refusal::Set(step)).into()
     }
-}
 
-/// The parameters that can be changed.
-pub fn names(parameters: &ActiveParameters) -> Parameters {
-    Parameters::of(parameters.values.iter().map(|(parameter, _)| *parameter))
+    /// The reason of a refusal, with the changes of one number that the board would take instead.
+    pub fn in_words(&self, reason: &RenderError, changes: &Changes) -> String {
+        let Ok(scene) = tuning::apply(&self.description.scene, changes) else {
+            return reason.to_string();
+        };
+        let passes = |parameter: Parameter, value: f64| {
+            let others = changes.iter().filter(|(other, _)| *other != parameter).copied();
+            let mut changes: Changes = others.collect();
+            changes.push((parameter, value)).is_ok() && self.explain(&changes).is_ok()
+        };
+        let search = RemedySearch { scene: &scene, passes };
+        match reason {
+            RenderError::Rejected(rejection) => {
+                let found = search.behind(&rejection.remedies());
+                rejection.reason_in(Format::F64).as_str().to_owned() + &would_pass(None, &found)
+            }
+            RenderError::Timing(error) => error.to_string() + &would_pass(None, &search.searched()),
+            other => other.to_string(),
+        }
+    }
 }
