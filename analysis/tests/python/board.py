@@ -140,7 +140,7 @@ def streams():
 
 
 def pushes():
-    """A stream to a simulated board moves the device in its hand, and what is no torque ends it."""
+    """A stream to a simulated board moves the device in its hand; a torque that is not finite ends it."""
     host = {"energy": 0.05, "power": 0.5, "damping": 0.004, "torque": 0.5, "timeout": 0.05}
     scene = {**SCENE, "environment": {**SCENE["environment"], "stiffness": 1.0}, "host": host}
     sides = {1: [], -1: []}
