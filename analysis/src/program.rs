@@ -59,7 +59,7 @@ pub struct Program {
     /// The current loop of the board's own bridge that makes its torques; none where a DAC does.
     pub bridge: &'static Option<CurrentLoop>,
     /// What a host may do beside it.
-    pub host: fn() -> Option<HostTorque>,
+    pub host: Option<HostTorque>,
     /// The hand's trajectory that demonstrates it.
     pub trajectory: fn() -> HandTrajectory,
     /// The size of its servo's state, in a format.
@@ -170,10 +170,7 @@ macro_rules! program {
             scene: $module::SCENE,
             transducers: $module::TRANSDUCERS,
             bridge: &$module::BRIDGE,
-            host: || {
-                let certified = $module::Rendered::certified();
-                ::haptic_servo::rendering::Rendering::<f32>::host(&certified.scene().environment)
-            },
+            host: <$module::Rendered as ::haptic_servo::rendering::Rendering<f32>>::HOST,
             trajectory: || {
                 $crate::hand::HandTrajectory::for_environment(&$module::SCENE.environment)
             },

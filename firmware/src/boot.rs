@@ -9,8 +9,9 @@ use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::environment::SupportsTiming;
 use crate::fault::{Fault, FaultRecord};
-use crate::number::Number;
-use crate::output_timing::OutputMode;
+use crate::host::{BesideServo, HostResponse, HostTimes, HostTorque, ServoNumbers};
+use crate::number::{Format, Number};
+use crate::output_timing::{OutputMode, OutputTiming};
 use crate::period;
 use crate::rendering::Rendering;
 use crate::reset::ResetCause;
@@ -18,6 +19,7 @@ use crate::scene::Scene;
 use crate::servo::{PreparedServo, RenderingOptions};
 use crate::servo_loop::{Arming, Hardware, Options, Reason, Requests, ServoLoop};
 use crate::step::Step;
+use crate::text::or_refuse;
 use crate::transducers::Transducers;
 use crate::tuning::{self, Prepared, Tunable};
 
@@ -75,6 +77,23 @@ impl<E: Copy> Program<E> {
             Err(error) => error.refuse(),
         }
     }
+
+    /// For constants: a compile error if this host may not stand beside the scene, which leaves a margin in
+    /// N m s/rad over, with this output in this number format.
+    #[track_caller]
+    pub const fn check_host(
+        &self,
+        host: Option<HostTorque>,
+        margin: f64,
+        times: (OutputTiming, Format),
+    ) {
+        let Some(host) = host else { return };
+        let Self { scene, transducers, rendering, .. } = self;
+        // Transducers that no board can have are another error.
+        if let Ok(servo) = ServoNumbers::of(scene, Some(margin), transducers, rendering, times) {
+            or_refuse!(HostResponse::beside(&host, &servo, HostTimes::of(&scene.latency)));
+        }
+    }
 }
 
 /// A board whose servo may run.
@@ -121,9 +140,11 @@ where
     let reset = hardware.reset_cause();
     let previous_fault = read_previous_fault(hardware, reset);
     let fault = previous_fault.map(|previous_fault| previous_fault.fault);
-    let host = tuning::host::<E, N, M>(&scene, &program.transducers, &program.rendering);
-    let servo_loop = ServoLoop::new(rendering, &program.options, hardware.period(), fault)
-        .with_host(host.map_err(|_| Step::Servo)?);
+    if reset != ResetCause::PowerOn {
+        // The hand may have got the energy before the reset.
+        rendering.host_mut().cut(true);
+    }
+    let servo_loop = ServoLoop::new(rendering, &program.options, hardware.period(), fault);
     hardware.start_watchdog();
     let arms_because = reason_to_arm(&program.options, reset, previous_fault);
     if arms_because.is_some() {

@@ -32,6 +32,12 @@ sentences! {
     Turn { counts: f64, largest: f64 } => (
         "a turn has " {counts} " encoder counts, and a torque profile that repeats for ever needs a whole \
          number of them, up to " {largest} ": give it end stops, or count at the shaft that it is on"),
+    Anticogging { torque: f64, limit: f64, full_scale: f64 } => (
+        "the " {torque} " N m that oppose the cogging and the scene's limit of " {limit} " N m are together above \
+         the DAC's full scale of " {full_scale} " N m, which would clip their sum: lower the torque limit"),
+    CoggingMap { found: u32, expected: u32 } => (
+        "the cogging map in flash has the checksum " {found} ", and was compiled with " {expected}
+        ": flash the program again"),
     Hysteresis { hysteresis: f64, count: f64 } => (
         "from a snap point the knob goes back " {hysteresis} " rad to snap back, and that must be more than \
          an encoder count of " {count} " rad: put the snap point farther from the centre, or take fewer \

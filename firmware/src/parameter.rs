@@ -21,6 +21,8 @@ pub enum Range {
     NotNegative,
     /// At least zero and less than one.
     Fraction,
+    /// From zero to one.
+    Share,
     /// A whole number from the first to the second, both included.
     Whole(u32, u32),
 }
@@ -39,6 +41,7 @@ impl Range {
             Self::Positive => bits != 0 && bits < INFINITE,
             Self::NotNegative => bits < INFINITE || bits == MINUS_ZERO,
             Self::Fraction => bits < 1.0_f64.to_bits() || bits == MINUS_ZERO,
+            Self::Share => bits <= 1.0_f64.to_bits() || bits == MINUS_ZERO,
             Self::Whole(least, most) => {
                 value as u32 as f64 == value && value as u32 >= least && value as u32 <= most
             }
@@ -121,12 +124,13 @@ parameters! {
     Hysteresis: "encoder.hysteresis", "hysteresis of the encoder", "counts", Range::NotNegative;
     Dropped: "encoder.dropped", "number of readings that may be dropped", "", Range::Whole(0, MAX_DELAY as u32);
     Drag: "environment.drag", "drag", "N m s/rad", Range::Finite;
+    Anticogging: "anticogging.share", "anticogging", "", Range::Share;
 }
 
 /// The parameters that may be changed while the servo runs, with their names for users.
 ///
 /// No message can change the device; period and delay are fixed at compile time and by the board's set-up.
-pub const TUNABLE: [(&str, Parameter); 12] = [
+pub const TUNABLE: [(&str, Parameter); 13] = [
     ("stiffness", Parameter::Stiffness),
     ("damping", Parameter::Damping),
     ("filter", Parameter::Filter),
@@ -139,6 +143,7 @@ pub const TUNABLE: [(&str, Parameter); 12] = [
     ("centre", Parameter::Centre),
     ("mode", Parameter::Mode),
     ("drag", Parameter::Drag),
+    ("anticogging", Parameter::Anticogging),
 ];
 
 /// A type with named parameters.

@@ -5,18 +5,19 @@
 //! changed while the servo runs.
 
 use crate::build_error::BuildError;
-use crate::certificate::Certified;
+use crate::certificate::{Certified, scene_data};
 use crate::coupling::Coupling;
 use crate::coupling_memory::CouplingMemory;
 use crate::environment::{
-    Canceller, Delayed, Discretize, Environment, EnvironmentModel, LawContext, LawOf, Memory,
-    PartSet, Parts, Profile, ProfileUse, Side, SupportsTiming, Wall, sealed,
+    Anticogging, Canceller, Compensation, Delayed, Discretize, Environment, EnvironmentModel,
+    LawContext, LawOf, Memory, PartSet, Parts, Profile, ProfileUse, Side, SupportsTiming, Wall,
+    sealed,
 };
 use crate::host::{BesideServo, HostTorque};
 use crate::number::Number;
 use crate::output_timing::AtPhase;
 use crate::parameter::{NamedParameters, Parameter};
-use crate::rendering::Rendering;
+use crate::rendering::{Rendering, context_beside_anticogging};
 use crate::scene::Scene;
 
 /// The structure of a scene. [`scene_type!`](crate::scene_type!) makes one.
@@ -31,23 +32,30 @@ pub trait SceneType: Copy + core::fmt::Debug + PartialEq + 'static {
     type Law<N: Number>: LawOf<N, Parts>;
     /// The torques that the coupling stores.
     type Memory<N: Number>: CouplingMemory<N>;
+    /// The anticogging, or none.
+    type Anticogging<N: Number>: Compensation<N>;
     /// What a host beside the servo may do.
     const HOST: Option<HostTorque>;
     /// That host, or none.
-    type Host: BesideServo;
+    type Host: BesideServo<Budget = Self::Budget>;
+    /// What it may do, as a type.
+    type Budget: Copy + core::fmt::Debug + PartialEq;
+    /// What it may do.
+    const BUDGET: Self::Budget;
 }
 
 /// An environment whose parts are known statically: the numbers of a program's scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Typed<S: SceneType> {
     numbers: S::Numbers,
+    budget: S::Budget,
 }
 
 impl<S: SceneType> Typed<S> {
     /// The structure's parts.
     const LIKE: Parts = *S::CERTIFIED.scene().environment.parts();
     /// With the structure's numbers.
-    pub(crate) const ENVIRONMENT: Self = Self { numbers: S::NUMBERS };
+    pub(crate) const ENVIRONMENT: Self = Self { numbers: S::NUMBERS, budget: S::BUDGET };
     /// Where each parameter is among the numbers.
     const PLACES: Places = places(S::CERTIFIED.scene().environment);
 
@@ -82,7 +90,7 @@ impl<S: SceneType> Typed<S> {
     /// The parts with their present numbers. All but the numbers is that of the structure, so that the compiler
     /// leaves out what the scene does not have.
     fn parts(&self) -> Parts {
-        let Parts { canceller, wall, profile, drag } = Self::LIKE;
+        let Parts { canceller, wall, profile, drag, anticogging } = Self::LIKE;
         // If both have them, these names are the wall's.
         let of_wall =
             |it| wall.is_some() && matches!(it, Parameter::Stiffness | Parameter::Damping);
@@ -93,6 +101,7 @@ impl<S: SceneType> Typed<S> {
                 like.with_numbers(|it| if of_wall(it) { None } else { self.number(it) })
             }),
             drag: drag.map(|like| like.with_numbers(|it| self.number(it))),
+            anticogging: anticogging.map(|like| like.with_numbers(|it| self.number(it))),
         }
     }
 }
@@ -127,11 +136,28 @@ impl<N: Number, S: SceneType> Discretize<N> for Typed<S> {
 
 impl<N: Number, S: SceneType> Rendering<N> for Typed<S> {
     type Memory = S::Memory<N>;
+    type Anticogging = S::Anticogging<N>;
     type Host = S::Host;
+    const HOST: Option<HostTorque> = S::HOST;
 
-    #[inline(always)]
-    fn host(&self) -> Option<HostTorque> {
-        S::HOST
+    fn budget(&self) -> S::Budget {
+        self.budget
+    }
+
+    fn with_budget(self, budget: S::Budget) -> Self {
+        Self { budget, ..self }
+    }
+
+    fn anticogging(&self) -> Option<(Anticogging, usize)> {
+        Self::LIKE.anticogging?;
+        self.parts().late_anticogging()
+    }
+
+    fn context(scene: &Scene<Self>) -> LawContext {
+        match Self::LIKE.anticogging {
+            None => scene.context(),
+            Some(_) => context_beside_anticogging(&scene_data(scene), N::FORMAT),
+        }
     }
 }
 
@@ -175,6 +201,10 @@ pub struct Structure {
     pub drags: usize,
     /// The drag's delay.
     pub drag_delay: usize,
+    /// Whether it opposes the cogging of the motor.
+    pub has_anticogging: bool,
+    /// The delay of what opposes it.
+    pub anticogging_delay: usize,
     /// Whether the coupling stores torques.
     pub is_matched: bool,
     /// The whole samples of output delay.
@@ -191,10 +221,10 @@ impl Structure {
     /// # Panics
     /// If its environment is not a sum of parts; in a constant this is a compile error.
     pub const fn of(scene: &Scene) -> Self {
-        let Environment::Parts(Parts { canceller, wall, profile, drag }) = &scene.environment
-        else {
+        let Environment::Parts(parts) = &scene.environment else {
             panic!("a board renders sums of parts, and no rational environment");
         };
+        let Parts { canceller, wall, profile, drag, anticogging } = parts;
         let (latency, is_matched) = (&scene.latency, matches!(scene.coupling, Coupling::Matched));
         let as_wall = or!(*wall, Wall::spring(0.0, 0));
         Self {
@@ -223,6 +253,8 @@ impl Structure {
                 Some(drag) => drag.delay,
                 None => 0,
             },
+            has_anticogging: anticogging.is_some(),
+            anticogging_delay: parts.is_late() as usize,
             is_matched,
             whole: if is_matched { latency.whole_samples(scene.timing.period) } else { 0 },
             lags: latency.trails(),
@@ -380,12 +412,19 @@ macro_rules! scene_type {
                     >,
                     NoMemory,
                 >;
+                type Anticogging<N: Number> = Either<
+                    { OF.has_anticogging },
+                    Option<AnticoggingLaw<N, FixedDelay<N, { OF.anticogging_delay }>>>,
+                    NoAnticogging,
+                >;
                 const HOST: Option<HostTorque> = OF_HOST;
                 type Host = Either<
                     { OF_HOST.is_some() },
                     Hosted<{ TIMES.ticks }, { TIMES.is_plain }>,
                     NoHost,
                 >;
+                type Budget = <Self::Host as BesideServo>::Budget;
+                const BUDGET: Self::Budget = ($($host)?);
             }
         };
     };
@@ -410,10 +449,11 @@ pub mod names {
     pub use crate::certificate::Certified;
     pub use crate::coupling_memory::{MatchedMemory, NoMemory};
     pub use crate::environment::{
-        AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, DragLaw, Environment, Face,
-        FixedDelay, NoDamping, NoSnap, ProfileLaw, Snap, SumLaw, WallLaw, Washout,
+        AnticoggingLaw, AnySnap, CancellerLaw, Cell, Centred, Difference, Displaced, DragLaw,
+        Environment, Face, FixedDelay, NoAnticogging, NoDamping, NoSnap, ProfileLaw, Snap, SumLaw,
+        WallLaw, Washout,
     };
-    pub use crate::host::{HostTimes, HostTorque, Hosted, NoHost};
+    pub use crate::host::{BesideServo, HostTimes, HostTorque, Hosted, NoHost};
     pub use crate::number::Number;
     pub use crate::scene::Scene;
 

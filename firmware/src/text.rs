@@ -11,7 +11,7 @@ pub struct Text<const N: usize> {
 }
 
 /// A sentence about a scene.
-pub type Sentence = Text<800>;
+pub type Sentence = Text<816>;
 
 /// Appends pieces to a [`Text`]: literals, and strings and numbers in braces.
 macro_rules! push {

@@ -134,6 +134,12 @@ impl<N: Number> Limiter<N> {
         self.level >= self.bound
     }
 
+    /// Steps until it is open.
+    pub(crate) fn steps_to_open(&self) -> u32 {
+        // The cast rounds down and saturates.
+        (self.bound.minus(self.level).to_f64() / self.step.to_f64()) as u32
+    }
+
     /// Closes by a step; returns whether it is now shut.
     pub(crate) fn close(&mut self) -> bool {
         self.set(self.level.minus(self.step).positive_part());

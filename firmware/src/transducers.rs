@@ -5,6 +5,7 @@ use core::f64::consts::TAU;
 use crate::build_error::BuildError;
 use crate::dac::DacCode;
 use crate::encoder::CounterWidth;
+use crate::environment::Anticogging;
 use crate::number::Number;
 use crate::scene::Timing;
 use crate::torque::{LimitReason, Limiter};
@@ -82,6 +83,22 @@ impl Transducers {
             return Err(BuildError::TorqueLimit { limit: bound, full_scale });
         }
         Ok(bound)
+    }
+
+    /// Checks that the anticogging beside a scene with this torque limit is within full scale: clipped by the DAC, the
+    /// sum of both would have no certificate.
+    pub(crate) const fn check_anticogging(
+        &self,
+        anticogging: &Anticogging,
+        limit: Option<f64>,
+    ) -> Result<(), BuildError> {
+        let (torque, full_scale) = (anticogging.largest(), self.full_scale_torque);
+        let limit = ok!(self.bound(limit));
+        // Written so that NaN is refused.
+        if torque + limit <= full_scale {
+            return Ok(());
+        }
+        Err(BuildError::Anticogging { torque, limit, full_scale })
     }
 
     /// The limiter of a scene's torque limit, or otherwise of the DAC's range.

@@ -104,7 +104,9 @@ pub fn as_it_runs(scene: &Scene, format: Format) -> Option<Exact> {
         let (numerator, denominator) = washout(&(q(drag.damping) / &period), &Q::one(), format);
         (numerator, denominator.raised(drag.delay))
     };
-    let Parts { canceller, wall: beside, profile: None, drag } = scene.environment.parts() else {
+    let Parts { canceller, wall: beside, profile: None, drag, anticogging: None } =
+        scene.environment.parts()
+    else {
         return None;
     };
     let parts = [

@@ -75,7 +75,7 @@ impl Link {
     /// The link is lost, or there is no answer in time.
     pub fn request(&mut self, request: Request) -> Result<RequestResult, LinkError> {
         let what = match request {
-            Request::Set(_) => "the change of its parameters",
+            Request::Set(_) | Request::Budget(_) => "the change of its parameters",
             Request::Arm => "the request to arm",
             Request::Align => "the request to align the motor",
             Request::Disarm => "the request to disarm",
@@ -87,7 +87,10 @@ impl Link {
         let mut reply = client.request(request, now).err();
         loop {
             match reply {
-                Some(Reply::Answered(result)) => return Ok(result),
+                Some(Reply::Answered(result)) => {
+                    self.board.budget = self.wire.client.budget;
+                    return Ok(result);
+                }
                 None | Some(Reply::Asked) => {}
                 Some(_) => return Err(self.wire.unanswered(what, REQUEST.end)),
             }

@@ -7,7 +7,7 @@ use haptic_model::board::client::Event;
 use haptic_model::board::timing::QUERY;
 use haptic_servo::servo_loop::State;
 use haptic_servo::torque::LimitReason;
-use haptic_servo::wire::host::{HostCommand, HostState};
+use haptic_servo::wire::host::{HostCommand, HostRequest, HostState};
 use haptic_servo::wire::message::{BoardUnits, ToBoard};
 use thiserror::Error;
 
@@ -124,7 +124,7 @@ fn carry<E: From<StreamError>>(
 }
 
 fn send(wire: &mut Wire, command: HostCommand) -> Result<(), LinkError> {
-    wire.client.send(&ToBoard::Torque(command));
+    wire.client.send(&ToBoard::Host(HostRequest::Torque(command)));
     wire.flush()
 }
 

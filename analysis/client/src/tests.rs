@@ -11,7 +11,7 @@ use haptic_servo::host::HostTorque;
 use haptic_servo::parameter::Parameter;
 use haptic_servo::servo_loop::State;
 use haptic_servo::torque::LimitReason;
-use haptic_servo::wire::host::{HostReport, HostState};
+use haptic_servo::wire::host::{HostReport, HostRequest, HostState};
 use haptic_servo::wire::message::{BoardUnits, Changes, LONGEST_TO_BOARD, ToBoard, ToHost};
 use haptic_servo::wire::{CHECKSUM, Decoder, PROTOCOL, encode};
 
@@ -155,7 +155,7 @@ fn answers(asked: &ToBoard, torques: &mut Vec<f32>) -> Vec<ToHost<&'static str>>
             ToHost::Host(HostReport::Budget(budget)),
             ToHost::Board(units),
         ],
-        ToBoard::Torque(command) => {
+        ToBoard::Host(HostRequest::Torque(command)) => {
             let tick = torques.len() as u32;
             torques.push(command.torque);
             vec![ToHost::Host(HostReport::State(HostState {

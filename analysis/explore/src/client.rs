@@ -6,11 +6,11 @@ use std::time::Duration;
 
 use haptic_model::board::client::{self, Event};
 use haptic_model::board::history::History;
-use haptic_model::board::request::Request;
+use haptic_model::board::request::{self, Request};
 use haptic_model::board::sample::{Sample, Scale};
 use haptic_model::board::timing::stream_every;
 use haptic_servo::tuning::RenderError;
-use haptic_servo::wire::message::{ActiveParameters, Changes, Id, Status};
+use haptic_servo::wire::message::{ActiveParameters, Id, Status};
 
 /// Duration of the kept curves in s.
 pub const WINDOW: f64 = 5.0;
@@ -85,8 +85,8 @@ impl Client {
     /// Sends a request. A set is certified here first.
     pub fn request(&mut self, request: Request, now: Duration) -> Result<(), String> {
         self.wire.check_free(&request).map_err(|reply| reply.line(&request))?;
-        if let Request::Set(changes) = &request {
-            self.judge(changes)?;
+        if matches!(request, Request::Set(_) | Request::Budget(_)) {
+            self.judge(&request)?;
         }
         self.wire.request(request.clone(), now).map_err(|reply| reply.line(&request))?;
         self.take_replies();
@@ -98,12 +98,13 @@ impl Client {
     ///
     /// # Errors
     /// The reason for which the board would refuse them.
-    pub fn judge(&self, changes: &Changes) -> Result<(), String> {
-        let running = self.wire.running();
-        let running = running.ok_or("the board has not said yet which scene runs there")?;
-        match running.explain(changes) {
-            Ok(()) | Err(RenderError::OtherMode { .. }) => Ok(()),
-            Err(reason) => Err(running.in_words(&reason, changes)),
+    pub fn judge(&self, request: &Request) -> Result<(), String> {
+        let running = self.wire.description.as_ref().zip(self.wire.parameters.as_ref());
+        let (description, parameters) =
+            running.ok_or("the board has not said yet which scene runs there")?;
+        match request::judge(request, self.wire.budget, description, parameters) {
+            Ok(()) | Err((RenderError::OtherMode { .. }, _)) => Ok(()),
+            Err((_, words)) => Err(words),
         }
     }
 

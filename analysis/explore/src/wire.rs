@@ -123,7 +123,7 @@ pub fn request(question: &str, _: &mut Vec<f64>) -> PageResult {
         serde_json::from_str(question).map_err(|error| error.to_string())?;
     let now = time(now)?;
     let request = match request.as_str() {
-        "set" => Request::Set(change::line(&changes)?),
+        "set" => change::line(&changes)?,
         "arm" => Request::Arm,
         "disarm" => Request::Disarm,
         "align" => Request::Align,
@@ -144,10 +144,10 @@ pub fn request(question: &str, _: &mut Vec<f64>) -> PageResult {
 
 /// Judges changes as they are typed, with the board's running scene. A refusal is the reason.
 pub fn judge(changes: &str, _: &mut Vec<f64>) -> PageResult {
-    let changes = change::line(changes)?;
+    let request = change::line(changes)?;
     WIRE.with_borrow(|wire| match &wire.client {
-        Some(client) => client.judge(&changes).map(|()| String::new()),
-        None => Err(Reply::NoLink.line(&Request::Set(changes))),
+        Some(client) => client.judge(&request).map(|()| String::new()),
+        None => Err(Reply::NoLink.line(&request)),
     })
 }
 

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use haptic_servo::environment::{Anticogging, CoggingError};
+
 /// Cogging: the torque `-A sin(N x)` of the magnets on the rotor, which no current makes. It takes no energy in
 /// a turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,6 +26,16 @@ impl Cogging {
             return 0.0;
         }
         self.torque / self.count * (1.0 - (self.count * angle).cos())
+    }
+
+    /// All of it opposed, from a map of so many angles.
+    ///
+    /// # Errors
+    /// If there is no such map.
+    pub fn learnt(&self, angles: usize) -> Result<Anticogging, CoggingError> {
+        let torques = (0..angles).map(|i| self.at(TAU * i as f64 / angles as f64));
+        let units = Box::leak(vec![0; angles].into_boxed_slice());
+        Anticogging::learnt(&torques.collect::<Vec<_>>(), units)
     }
 
     /// Steepest slope in N m/rad.

@@ -6,6 +6,7 @@
 use haptic_servo::environment::{Ends, Environment, FULL_SCALE, Profile, Rational};
 use haptic_servo::matched::MatchedCoupling;
 use haptic_servo::number::Format;
+use haptic_servo::rendering::context_beside_anticogging;
 use haptic_servo::scene::{Coupling, Scene};
 
 use crate::snap_branches;
@@ -18,7 +19,8 @@ pub fn compliance(scene: &Scene) -> Option<f64> {
         Coupling::Rigid => (0.0, 0.0),
         Coupling::Spring { stiffness } => (1.0 / stiffness, 1.0 / stiffness),
         Coupling::Matched => {
-            let (timing, delta) = (scene.timing, scene.device.passivity());
+            let delta = context_beside_anticogging(scene, Format::F64).passivity;
+            let timing = scene.timing;
             let matched = MatchedCoupling::of(
                 timing.period,
                 timing.worst_period,

@@ -10,11 +10,10 @@ use haptic_client::{
 };
 use haptic_model::board::sample::Sample;
 use haptic_model::board::timing::stream_every;
-use haptic_model::board::{Report, formatting};
+use haptic_model::board::{Report, budget, formatting};
 use haptic_model::file::Purpose;
 use haptic_servo::servo_loop::State;
 use haptic_servo::torque::LimitReason;
-use haptic_servo::tuning;
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyDict};
 use thiserror::Error;
@@ -142,18 +141,21 @@ impl Connection {
     }
 
     fn parameters(&self, py: Python<'_>) -> Result<Vec<(&'static str, f64)>, BoardFailure> {
-        let running = self.with(py, |link| Ok(link.parameters()?))?;
-        let named = |(parameter, value): &(_, f64)| (formatting::name(*parameter), *value);
-        Ok(running.values.iter().map(named).collect())
+        self.with(py, |link| {
+            let running = link.parameters()?;
+            let named = |(parameter, value): &(_, f64)| (formatting::name(*parameter), *value);
+            let budget = link.board().budget.map(budget::numbers).into_iter().flatten();
+            Ok(running.values.iter().map(named).chain(budget).collect())
+        })
     }
 
     /// Changes parameters, all or none.
     fn set(&self, py: Python<'_>, changes: Vec<(String, f64)>) -> Result<(), BoardFailure> {
         let known = self.parameters(py)?;
         let each = changes.into_iter().map(|(name, value)| {
-            let parameter =
-                tuning::parameter(&name).filter(|_| known.iter().any(|(known, _)| *known == name));
-            let Some(parameter) = parameter else {
+            let found =
+                change::Name::find(&name).filter(|_| known.iter().any(|(known, _)| *known == name));
+            let Some(found) = found else {
                 let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
                 let names = names.join(", ");
                 return Err(BoardFailure::Parameter(format!(
@@ -165,12 +167,12 @@ impl Connection {
                     "`{name}` = {value} is out of bounds; it must be a finite number"
                 )));
             }
-            Ok((parameter, value))
+            Ok((found, value))
         });
         let changes = each.collect::<Result<Vec<_>, _>>()?;
-        let changes = change::collect(&changes)
-            .map_err(|twice| BoardFailure::Parameter(twice.to_string()))?;
-        self.ask(py, Request::Set(changes))
+        let request = change::collect(&changes)
+            .map_err(|error| BoardFailure::Parameter(error.to_string()))?;
+        self.ask(py, request)
     }
 
     fn arm(&self, py: Python<'_>) -> Result<(), BoardFailure> {

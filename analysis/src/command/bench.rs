@@ -10,10 +10,15 @@ use haptic_servo::certificate::Parameter;
 use haptic_servo::environment::Wall;
 use haptic_servo::scene::{Coupling, Scene};
 
+use super::file_program::FileProgram;
+use super::file_scene::hand_trajectory;
 use super::shared_arguments::{DEFAULT_TICKS, JsonOption};
 use super::status::{CommandError, CommandStatus};
 use crate::compare_run::{Backend, Input, run_with_backend};
+use crate::controller::controller;
 use crate::emulator::EmulatorReport;
+use crate::file::{self, Format};
+use crate::lockstep::SimulatedDevice;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
@@ -75,6 +80,15 @@ const INSTANTS: [(&str, Budget); 2] = [
     ("brushed", Budget::of(250.0, "instructions")),
     ("brushless", Budget::of(450.0, "instructions")),
 ];
+/// Of what a host adds to a tick.
+const BESIDE_HOST: Budget = Budget::of(40.0, "instructions");
+/// A wall, and what a host may do beside it.
+const WALL: &str = "device = { inertia = 2.2e-5, damping = 0.022 }\nservo = { period = 0.001 }\n\
+    coupling = { stiffness = 44.0 }\n\
+    environment = { type = \"damper-wall\", stiffness = 10.0, damping = 0.002, delay = 1 }\n\
+    limits = { torque = 1.0, full_scale = 2.0, counts_per_turn = 61440 }\n";
+const HOST: &str =
+    "host = { energy = 0.05, power = 0.5, damping = 0.004, torque = 0.5, timeout = 0.05 }\n";
 /// Of the free bytes of a motor board's flash with a wall on its bridge.
 const FLASH_LEFT: Budget = Budget { value: 40.0 * 1024.0, unit: "bytes", source: "at least" };
 
@@ -102,9 +116,41 @@ fn everything(arguments: &Arguments) -> Result<Vec<Figure>, CommandError> {
         figures.extend(memory(program, bare));
     }
     behind_matched(&toolchain, &mut figures)?;
+    beside_host(&toolchain, &mut figures)?;
     about_profiles(&toolchain, &mut figures)?;
     about_bridges(&toolchain, &mut figures)?;
     Ok(figures)
+}
+
+/// The same wall with a host and without.
+fn beside_host(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
+    let name = "wall.toml";
+    let interrupt = |text: String| {
+        let file = file::parse(name, Format::Toml, &text)?;
+        let program = FileProgram::of(&file, name, None, None)?;
+        let elf = program.build(toolchain, None, NumberFormat::F32)?.path;
+        let certified = file.scene.certify();
+        let certified =
+            certified.map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
+        let transducers = file.transducers(None, None);
+        let device = SimulatedDevice::new(&file.scene, hand_trajectory(&file), &transducers)?;
+        let outcome = run_with_backend(
+            Input::Hand(Box::new(device)),
+            controller::<_, f32>(&certified, &transducers)?.as_mut(),
+            Some(Backend::Emulator(&elf)),
+            DEFAULT_TICKS,
+            || {},
+        )?;
+        let board = outcome.board.as_ref();
+        Ok::<_, CommandError>(board.map_or(f64::NAN, |board| board.interrupt().mean))
+    };
+    let pair =
+        Pair { ours: interrupt(format!("{WALL}{HOST}"))?, peers: interrupt(WALL.to_owned())? };
+    let added = pair.ours - pair.peers;
+    let name = "wall with a host, f32: whole interrupt, mean";
+    figures.push(Figure::beside(name, pair, "instructions", "without a host"));
+    figures.push(Figure::within("host, f32: added to a tick, mean", added, &BESIDE_HOST));
+    Ok(())
 }
 
 /// Ticks behind the matched coupling; no program has only a wall behind it.

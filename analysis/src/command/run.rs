@@ -389,7 +389,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
         disturbance: Disturbance::default(),
         controller: program.controller(format, &transducers)?,
         program: RunProgram::Named(program),
-        budget: (program.host)(),
+        budget: program.host,
         has_bridge: program.bridge.is_some(),
     })
 }

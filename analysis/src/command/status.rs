@@ -139,7 +139,7 @@ passed_on! {
     crate::identify::port::PortError,
     crate::board_sim::SimulatedBoardError,
     crate::link::LinkError,
-    crate::link::change::DuplicateParameter,
+    crate::link::change::CollectError,
     crate::number::DoesNotFit,
     crate::run_csv::RunCsvError,
     crate::serve::ServeError,

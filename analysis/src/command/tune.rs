@@ -5,14 +5,13 @@ use std::thread;
 use std::time::Duration;
 
 use clap::Args;
-use haptic_model::board::Report;
-use haptic_servo::certificate::Parameter;
+use haptic_model::board::{Report, budget};
 use haptic_servo::servo_loop::State;
-use haptic_servo::wire::message::{ActiveParameters, Changes, FaultCode, Status};
+use haptic_servo::wire::message::{ActiveParameters, FaultCode, Status};
 
 use super::shared_arguments::{JsonOption, json};
 use super::status::{CommandError, CommandStatus};
-use crate::link::change::{change, collect};
+use crate::link::change::{Name, change, collect};
 use crate::link::{self, Address, Link, Request};
 use crate::scope::{Power, formatting, modes};
 
@@ -26,9 +25,10 @@ pub struct Arguments {
     #[arg(long, value_name = "PORT")]
     pub port: Address,
     /// Parameters to change together, in SI units: stiffness=30 damping=0.01. A set that does not
-    /// certify changes nothing. Without parameters: print the running ones
+    /// certify changes nothing. The budget of a host changes alone: host.energy=0.1 host.power=0. Without
+    /// parameters: print the running ones
     #[arg(value_name = "NAME=VALUE", value_parser = change)]
-    pub changes: Vec<(Parameter, f64)>,
+    pub changes: Vec<(Name, f64)>,
     /// Switch the amplifier on after the change; clears a fault
     #[arg(long, conflicts_with = "disarm")]
     pub arm: bool,
@@ -51,7 +51,8 @@ const POLL: Duration = Duration::from_millis(200);
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let changes = collect(&arguments.changes)?;
     let mut link = Link::open(&arguments.port)?;
-    let swaps = !changes.is_empty() && !arguments.disarm && link.status()?.state.is_armed();
+    let swaps =
+        !arguments.changes.is_empty() && !arguments.disarm && link.status()?.state.is_armed();
     let outcome = request(&mut link, arguments, changes)?;
     let refused = match &outcome {
         link::RequestResult::Done => None,
@@ -73,14 +74,14 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 fn request(
     link: &mut Link,
     arguments: &Arguments,
-    changes: Changes,
+    changes: Request,
 ) -> Result<link::RequestResult, CommandError> {
     let mut outcome = link::RequestResult::Done;
     if arguments.disarm {
         outcome = link.disarm()?;
     }
-    if outcome == link::RequestResult::Done && !changes.is_empty() {
-        outcome = link.set(changes)?;
+    if outcome == link::RequestResult::Done && !arguments.changes.is_empty() {
+        outcome = link.request(changes)?;
     }
     if outcome == link::RequestResult::Done && arguments.align {
         outcome = align(link)?;
@@ -122,6 +123,7 @@ fn print(
     lines.extend(status.fault.map(|fault| format!("stopped: {fault}")));
     lines.extend(link.board().previous_fault.as_ref().map(formatting::previous_fault));
     lines.extend([formatting::reset(status), formatting::numbers(running)]);
+    lines.extend(link.board().budget.map(|host| formatting::named(budget::numbers(host))));
     lines.extend(modes::modes(&link.board().program, running));
     lines.push(formatting::reserves(running, status, board, None));
     lines.push(formatting::energy(status, board));

@@ -56,7 +56,7 @@ impl Control {
         match key {
             Key::Escape => return Action::None,
             Key::Enter => match change::line(&line) {
-                Ok(changes) => return Action::Request(Request::Set(changes)),
+                Ok(request) => return Action::Request(request),
                 Err(why) => self.message = Some(why),
             },
             Key::Backspace => drop(line.pop()),

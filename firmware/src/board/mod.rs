@@ -48,7 +48,10 @@ pub mod stm32;
 pub const BAUD: u32 = 460_800;
 
 /// The output mode of a program, by default latched.
+#[cfg(not(all(target_os = "none", feature = "board-qemu")))]
 pub type ProgramMode<M = crate::servo::Latched> = M;
+#[cfg(all(target_os = "none", feature = "board-qemu"))]
+pub use qemu::Mode as ProgramMode;
 
 /// Makes a program of a certified scene.
 ///
@@ -113,9 +116,6 @@ macro_rules! scene_program {
         const RENDERED: $crate::certificate::Certified<$crate::scene::Scene<Rendered>> =
             Rendered::certified();
 
-        const _: $crate::host::HostTorque =
-            $host.checked_beside(&RENDERED).checked_range(&RENDERED, &$transducers);
-
         $crate::scene_program! {
             scene: $scene: Rendered,
             certified: RENDERED,
@@ -170,7 +170,22 @@ macro_rules! scene_program {
 
         // A board that refuses the scene itself reports more.
         const _: () = match CERTIFIED_AS_IT_RUNS.time::<$crate::servo::Simultaneous>() {
-            Ok(timed) => PROGRAM.rendering.checked_beside(timed.injectable_damping()),
+            Ok(timed) => {
+                PROGRAM.rendering.checked_beside(timed.injectable_damping());
+                let injected = match PROGRAM.rendering.injection {
+                    Some(damping) => damping,
+                    None => 0.0,
+                };
+                type Number = $crate::chosen_number!($float, $fixed);
+                PROGRAM.check_host(
+                    <$environment as $crate::rendering::Rendering<Number>>::HOST,
+                    timed.margin_with(injected),
+                    (
+                        <$crate::board::ProgramMode<$($mode)?> as $crate::servo::OutputMode>::TIMING,
+                        <Number as $crate::number::Number>::FORMAT,
+                    ),
+                );
+            }
             Err(_) => (),
         };
 

@@ -3,6 +3,7 @@
 
 use core::fmt;
 
+use super::anticogging::passivity_for_anticogging;
 use super::assessment::Assessment;
 use super::endless::mean_torque;
 use super::linearity::is_nonlinear;
@@ -45,6 +46,8 @@ pub enum Assumption {
     StatedModel { index: Option<f64> },
     /// The wall acts on one side only, and this bound decides.
     OneSided { bound: Option<f64> },
+    /// A share of the learnt cogging is opposed: the passivity that it takes, and the friction on which it relies.
+    Anticogging { share: f64, taken: f64, mean: f64 },
     /// The torque is limited between environment and coupling, and the DAC's full scale, if stated, is not below that.
     Limited { torque: f64, full_scale: Option<f64> },
     /// The scene has no torque limit, and the DAC has one: the bound with which it would pass with a limit, `None` if it
@@ -102,6 +105,7 @@ impl Assumption {
             | Self::Latency(_)
             | Self::Encoder(_)
             | Self::Endless { .. }
+            | Self::Anticogging { .. }
             | Self::WorstPeriod { .. }
             | Self::Delay { .. }
             | Self::StatedModel { .. }
@@ -145,6 +149,24 @@ impl fmt::Display for Assumption {
                  through the nonlinear encoder does not exceed",
                 RoundUp3(*mean)
             ),
+            Self::Anticogging { share, taken, mean } => {
+                write!(
+                    f,
+                    "the torque that opposes {} % of the learnt cogging takes {} N m s/rad of delta; the angle of the \
+                     encoder has the same zero as when it was learnt",
+                    ShortF64(100.0 * share),
+                    RoundUp3(*taken)
+                )?;
+                match mean {
+                    0.0 => Ok(()),
+                    mean => write!(
+                        f,
+                        "; the device has {} N m of Coulomb friction or more, which the mean torque of what repeats \
+                         in each turn does not exceed",
+                        RoundUp3(*mean)
+                    ),
+                }
+            }
             Self::WorstPeriod { longest, delta, .. } => write!(
                 f,
                 "no two counts are more than {longest} s apart: the servo stops otherwise; judged \
@@ -326,7 +348,7 @@ fn write_time(f: &mut fmt::Formatter<'_>, time: TimeRange) -> fmt::Result {
     write!(f, "a constant {} to {} s", ShortF64(time.least), ShortF64(time.most))
 }
 
-const MOST: usize = 13;
+const MOST: usize = 14;
 
 /// The assumptions of a scene's verdict.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -348,6 +370,7 @@ impl Assumptions {
         let encoder = latency.encoder;
         list.push((*encoder != EncoderReading::IDEAL).then_some(Assumption::Encoder(*encoder)));
         list.push(endless(scene, assessment));
+        list.push(anticogging(scene, assessment));
         list.push(worst.map(|longest| Assumption::WorstPeriod {
             longest,
             delta: assessment.delta.midpoint(),
@@ -390,9 +413,22 @@ impl Assumptions {
 /// Of an endless profile, the friction that a nonlinear encoder makes it need.
 fn endless(scene: &Scene, assessment: &Assessment) -> Option<Assumption> {
     let _ = scene.environment.profile().filter(|profile| profile.ends.is_none())?;
+    if scene.environment.parts().anticogging.is_some() {
+        // It states the sum of both.
+        return None;
+    }
     let numbers = LoopIntervals::of(scene, assessment.format);
     let mean = mean_torque::<Environment>(scene, &numbers).map(Interval::hi);
     Some(Assumption::Endless { mean })
+}
+
+/// What the anticogging takes; `None` without one, or if it is not known.
+fn anticogging(scene: &Scene, assessment: &Assessment) -> Option<Assumption> {
+    let anticogging = scene.environment.parts().anticogging?;
+    let taken = passivity_for_anticogging(scene, assessment.format)?;
+    let numbers = LoopIntervals::of(scene, assessment.format);
+    let mean = mean_torque::<Environment>(scene, &numbers).map_or(0.0, Interval::hi);
+    Some(Assumption::Anticogging { share: anticogging.share, taken, mean })
 }
 
 fn stated(environment: &Environment) -> Option<Assumption> {

@@ -47,7 +47,7 @@ use super::loop_intervals::LoopIntervals;
 use crate::environment::{Canceller, Parts, Profile, Wall};
 use crate::number::Format;
 use crate::parameter::Parameter;
-use crate::scene::Scene;
+use crate::scene::{Coupling, Scene};
 
 /// The verdict on the values between two passing values.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -71,6 +71,11 @@ pub(super) const fn between(
 ) -> Between {
     let n = LoopIntervals::of(scene, format);
     let parts = scene.environment.parts();
+    if matches!(parameter, Parameter::Anticogging) {
+        // With less of it more passivity is left, for which a matched coupling is designed anew.
+        let is_rigid = matches!(scene.coupling, Coupling::Rigid);
+        return if is_rigid { Between::PassesDownToZero } else { Between::Unknown };
+    }
     match &parts.profile {
         Some(profile) if parts.count() == 1 => return between_profiles(profile, &n, parameter),
         Some(_) => return between_sums(parts, parameter),

@@ -27,6 +27,7 @@
 //! assert!(rejection.to_string().contains("it would pass with stiffness <= 23.9 N m/rad"));
 //! ```
 
+mod anticogging;
 mod assessment;
 mod assumption;
 mod between;
@@ -48,6 +49,7 @@ mod rejection;
 mod remedy;
 mod remedy_search;
 mod rules;
+mod scene_intervals;
 mod secant;
 mod static_law;
 mod timed;
@@ -55,6 +57,8 @@ mod validity;
 mod varied;
 mod window;
 
+pub use anticogging::passivity_for_anticogging;
+pub(crate) use anticogging::passivity_left;
 pub use assessment::{Assessment, assess, assess_in};
 pub use assumption::{Assumption, AssumptionStatus, Assumptions};
 pub use linearity::is_static_at_port;

@@ -1,5 +1,6 @@
 //! A scene that can be judged, and the answers of the two rules without their numbers.
 
+use super::anticogging::passivity_for_anticogging;
 use super::endless::{mean_torque, turns_by_inl};
 use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
@@ -93,6 +94,13 @@ impl PassivityProblem {
     #[inline(never)]
     pub(super) const fn pose(&mut self, scene: &Scene) -> Result<(), Rejection> {
         let numbers = &self.numbers;
+        if scene.environment.parts().anticogging.is_some() && !numbers.delta.is_positive() {
+            let (needed, delta) =
+                (passivity_for_anticogging(scene, numbers.format), scene.device.passivity());
+            if delta > 0.0 {
+                return Err(Rejection::Anticogging { needed, delta, remedies: Remedies::NONE });
+            }
+        }
         if !numbers.delta.is_positive() {
             return Err(Rejection::NoPassivity { delta: numbers.delta });
         }
@@ -105,7 +113,8 @@ impl PassivityProblem {
             && let Some(mean) = mean_torque::<Environment>(scene, numbers)
         {
             let EncoderReading { linearity, friction, .. } = *scene.latency.encoder;
-            return Err(Rejection::MotorByInl { linearity, mean, friction });
+            let anticogs = scene.environment.parts().anticogging.is_some();
+            return Err(Rejection::MotorByInl { linearity, mean, friction, anticogs });
         }
         // Its bound in a sum with a profile does not detect this.
         if let Parts { wall: Some(Wall { stiffness, .. }), profile: Some(_), .. } =

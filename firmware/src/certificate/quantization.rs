@@ -19,11 +19,11 @@ use super::linearity::is_nonlinear;
 use super::loop_intervals::LoopIntervals;
 use super::model::LoopTransfers;
 use super::part::{Washout, canceller, damper, jump_at_face, peak_gain_beside};
-use super::profile::{peak_gain, step_of_part};
+use super::profile::{ExtremeSlopes, peak_gain, step_of_part};
 use crate::current::CurrentResolution;
 use crate::dac::DacCode;
 use crate::encoder_reading::EncoderReading;
-use crate::environment::{Parts, Rational};
+use crate::environment::{Environment, Parts, Rational};
 use crate::matched::{MatchedCoupling, Trail};
 use crate::number::Format;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
@@ -109,9 +109,10 @@ impl QuantizationBound {
     pub fn of(scene: &Scene, format: Format, steps: &Resolution) -> Option<Self> {
         let Peak { norm: peak, in_any_motion } = peak(scene, format)?;
         let steps = &steps.read_by(scene.latency.encoder);
+        let anticogging = Anticogged::of(scene, format);
         let found = Self {
-            encoder: steps.encoder.map(|step| 0.5 * step * peak),
-            numbers: numbers(scene, format, steps, peak)?,
+            encoder: steps.encoder.map(|step| 0.5 * step * (peak + anticogging.slope)),
+            numbers: numbers(scene, format, steps, peak)? + anticogging.numbers,
             converter: steps.converter().map(|step| 0.5 * step),
             current: steps.current,
             crossing: steps.crossing,
@@ -204,6 +205,32 @@ impl fmt::Display for QuantizationBound {
             return Ok(());
         }
         f.write_str("; while the device moves through a face the error is larger, in proportion to its speed")
+    }
+}
+
+/// The anticogging of a scene, outside of its coupling.
+struct Anticogged {
+    /// Its steepest slope in N m/rad.
+    slope: f64,
+    /// Torque error in N m of its arithmetic: that of an angle within a turn, of a place and of a knot, each a whole
+    /// part of a cell, and of a product and a sum.
+    numbers: f64,
+}
+
+impl Anticogged {
+    fn of(scene: &Scene, format: Format) -> Self {
+        let Some((anticogging, delay)) = scene.environment.parts().late_anticogging() else {
+            return Self { slope: 0.0, numbers: 0.0 };
+        };
+        let n = LoopIntervals::timed(scene.timing, format);
+        let profile = anticogging.profile(delay);
+        let slope = ExtremeSlopes::of_table::<Environment>(&profile, &n).steepest().hi();
+        let torque =
+            format.rounding_error(scene.torque_limit.unwrap_or(0.0) + anticogging.largest());
+        let numbers = slope * format.rounding_error(TAU) * roundings(format, 2.0, 1.0)
+            + 2.0 * step_of_part(&profile, &n)
+            + torque * roundings(format, 1.0, 1.0);
+        Self { slope, numbers }
     }
 }
 

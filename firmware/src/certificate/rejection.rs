@@ -23,9 +23,11 @@ pub enum Rejection {
     NoPassivity { delta: Interval },
     /// The mean of a torque profile is not zero, or no springs keep the device within its ends.
     Motor { mean: f64 },
-    /// A nonlinear encoder makes an endless torque profile a motor, and the stated friction does not hold the bound on
-    /// its mean torque.
-    MotorByInl { linearity: f64, mean: Interval, friction: f64 },
+    /// A nonlinear encoder makes an endless torque profile a motor, or what opposes the cogging has a mean (`anticogs`),
+    /// and the stated friction does not hold the bound on this mean torque.
+    MotorByInl { linearity: f64, mean: Interval, friction: f64, anticogs: bool },
+    /// What opposes the cogging needs all of the passivity; `None` if no bound is known for these times.
+    Anticogging { needed: Option<f64>, delta: f64, remedies: Remedies },
     /// A torque limit would make the torque profile a motor.
     Uneven,
     /// A torque profile without delay is steeper than its coupling for the torque of the same tick.
@@ -92,7 +94,10 @@ impl Rejection {
         match self {
             Self::Invalid(_) | Self::IllPosed { .. } | Self::Steep { .. } => "ill_posed",
             Self::Improper => "improper",
-            Self::NoPassivity { .. } | Self::Shortage { .. } | Self::Missed { .. } => "shortage",
+            Self::NoPassivity { .. }
+            | Self::Shortage { .. }
+            | Self::Missed { .. }
+            | Self::Anticogging { needed: Some(_), .. } => "shortage",
             Self::UnstablePole { .. } => "unstable_pole",
             Self::RepeatedUnitPole { .. } => "repeated_unit_pole",
             Self::ResidueAngle { .. } | Self::HiddenMode { .. } => "residue_angle",
@@ -101,13 +106,13 @@ impl Rejection {
             | Self::MotorByInl { .. }
             | Self::Uneven => "negative_residue",
             Self::Coupling { .. } => "coupling",
-            Self::Undecided { .. } => "undecided",
+            Self::Undecided { .. } | Self::Anticogging { needed: None, .. } => "undecided",
         }
     }
 
     /// Whether this is [`Rejection::Undecided`].
     pub const fn is_undecided(&self) -> bool {
-        matches!(self, Self::Undecided { .. })
+        matches!(self, Self::Undecided { .. } | Self::Anticogging { needed: None, .. })
     }
 
     /// Changes of one number with which the scene passes; each is certified.
@@ -117,6 +122,7 @@ impl Rejection {
             | Self::Steep { remedies, .. }
             | Self::Shortage { remedies, .. }
             | Self::Missed { remedies, .. }
+            | Self::Anticogging { remedies, .. }
             | Self::Coupling { remedies, .. }
             | Self::Undecided { remedies, .. } => *remedies,
             _ => Remedies::NONE,
@@ -167,7 +173,18 @@ impl Rejection {
             Self::Motor { mean } => push!(t,
                 "the torque profile repeats for ever, and its mean is " {*mean}
                 " N m instead of 0: it would turn the device as a motor does"),
-            Self::MotorByInl { linearity, mean, friction } => push!(t,
+            Self::MotorByInl { mean, friction, anticogs: true, .. } => push!(t,
+                "what repeats in each turn has a mean of up to " {mean.hi()} " N m over the angle of the device, by its \
+                 learnt mean, by clipping, and by the linearity of the encoder: the device needs that much Coulomb \
+                 friction against being turned, and states " {*friction} " N m"),
+            Self::Anticogging { needed: Some(needed), delta, .. } => push!(t,
+                "what opposes the cogging needs " {*needed} " N m s/rad of damping, and the device has delta = "
+                {*delta} " N m s/rad"),
+            Self::Anticogging { needed: None, .. } => push!(
+                t,
+                "no proof is known for what opposes the cogging beside these lags, jitters and missed updates"
+            ),
+            Self::MotorByInl { linearity, mean, friction, .. } => push!(t,
                 "the torque profile repeats for ever, and read by an encoder with a linearity of " {*linearity}
                 " its mean is up to " {mean.hi()} " N m, by which it would turn the device as a motor does: the device \
                  needs that much Coulomb friction, and states " {*friction}
@@ -269,6 +286,7 @@ mod tests {
             remedy(Parameter::OutputDelay, RANGE),
             remedy(Parameter::ActuatorLag, RANGE),
             remedy(Parameter::SensorLag, RANGE),
+            remedy(Parameter::Anticogging, RANGE),
         ];
         let of_profile = Remedies::of(all);
         let mut of_sum = all;
@@ -284,7 +302,7 @@ mod tests {
         let shortage =
             |remedies| Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies };
         let doubt = UndecidedReason::ResidueSign;
-        let last = "1.23e-22 <= sensor lag <= 1.24e-22 s";
+        let last = "1.23e-22 <= anticogging <= 1.24e-22";
         let range = "1.23e-22 <= stiffness <= 1.24e-22 N m/rad";
         for (rejection, end) in [
             (

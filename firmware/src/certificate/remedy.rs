@@ -52,7 +52,7 @@ impl fmt::Display for Remedy {
     }
 }
 
-pub(super) const CANDIDATES: usize = 10;
+pub(super) const CANDIDATES: usize = 11;
 
 /// The parameters of the search, in the order of printing. For the device it is the damping, if the passivity
 /// is not declared. A torque profile, which has no residual, has its torque in that place; an environment
@@ -68,6 +68,7 @@ pub(super) const ORDER: [Parameter; CANDIDATES] = [
     Parameter::OutputDelay,
     Parameter::ActuatorLag,
     Parameter::SensorLag,
+    Parameter::Anticogging,
 ];
 
 /// The values of one number, infinite if a [`Remedy`] has no end.

@@ -1,5 +1,6 @@
 //! The search for remedies: inverts the condition of a rejection for one number at a time.
 
+use super::anticogging::passivity_for_anticogging;
 use super::between::passes_upwards;
 use super::digits::{Digits, Side};
 use super::loop_intervals::LoopIntervals;
@@ -23,6 +24,7 @@ pub(super) const fn with_remedies(
         Rejection::Shortage { remedies, .. }
         | Rejection::Steep { remedies, .. }
         | Rejection::Missed { remedies, .. }
+        | Rejection::Anticogging { remedies, .. }
         | Rejection::Coupling { remedies, .. }
         | Rejection::Undecided { remedies, .. } => *remedies = search(scene, format),
         Rejection::UnstablePole { of_coupling: true, remedies, behind_standard, .. } => {
@@ -157,8 +159,9 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
         return None;
     }
     let varied = Varied { scene, format, parameter };
-    match varied.certified(Digits::of(needed * scale, Side::Above), Side::Above) {
-        Some(value) if passes_upwards(scene, &numbers, value / scale) => {
+    let taken = or!(passivity_for_anticogging(scene, format), 0.0);
+    match varied.certified(Digits::of(needed * scale + taken, Side::Above), Side::Above) {
+        Some(value) if passes_upwards(scene, &numbers, (value - taken) / scale) => {
             Some(Remedy::at_least(parameter, value))
         }
         Some(value) => Some(Remedy::exactly(parameter, value)),

@@ -83,6 +83,19 @@ pub(super) const fn needed_at_port<E: EnvironmentModel>(
     law.needed::<E>(scene, n, reading, end)
 }
 
+/// One end of the index at the port of a torque profile by itself, in N m s/rad, scaled to the worst period.
+#[inline(never)]
+pub(super) const fn needed_by_profile<E: EnvironmentModel>(
+    profile: &Profile,
+    scene: &Scene,
+    n: &LoopIntervals,
+    end: End,
+) -> Option<f64> {
+    let law = Law::of_slopes(profile, &ExtremeSlopes::of_table::<E>(profile, n));
+    let law = if E::MAY_MISREAD { law.steepened(scene.latency.encoder) } else { law };
+    law.needed::<E>(scene, n, 0.0, end)
+}
+
 /// The passivity that a switched damper takes at most beside a static law, over the damper: the geometric mean
 /// of the longest times between two counts and between two torques, in periods (theory, section 16.3). At least
 /// one of them is 1, unless torques and counts jitter: the arithmetic mean is then not less.
@@ -238,16 +251,21 @@ impl Law {
         if is_motor(profile) || E::PROFILE.snaps && profile.snap.is_some() {
             return None;
         }
-        let slopes = ExtremeSlopes::of_table::<E>(profile, n);
-        let steepest = slopes.steepest();
+        let law = Self::of_slopes(profile, &ExtremeSlopes::of_table::<E>(profile, n));
         let damping = damper::<E>(profile, n).abs();
-        Some(Self {
+        let is_spring_somewhere = law.is_spring_somewhere && damping.is_zero();
+        Some(Self { damping, is_spring_somewhere, ..law })
+    }
+
+    const fn of_slopes(profile: &Profile, slopes: &ExtremeSlopes) -> Self {
+        let steepest = slopes.steepest();
+        Self {
             rise: slopes.rise,
             steepest,
             late: steepest.mul(Interval::exact(profile.delay as f64)),
-            damping,
-            is_spring_somewhere: slopes.rise.hi() >= steepest.hi() && damping.is_zero(),
-        })
+            damping: Interval::ZERO,
+            is_spring_somewhere: slopes.rise.hi() >= steepest.hi(),
+        }
     }
 
     /// The sum, of which nothing is known to be necessary.

@@ -72,6 +72,7 @@ const fn requirement(range: Range) -> &'static str {
         Range::Positive => "finite and greater than 0",
         Range::NotNegative => "finite and not below 0",
         Range::Fraction => "at least 0 and below 1",
+        Range::Share => "from 0 to 1",
         Range::Whole(..) => "a whole number up to 8",
     }
 }

@@ -89,7 +89,7 @@ const fn pushed(scene: &Scene, push: &Push) -> Option<Interval> {
     let torque = Interval::decimal(push.torque);
     let Some(coupling) = compliance(scene) else { return None };
     let parts = scene.environment.parts();
-    if parts.others() > 0 {
+    if parts.others() > 0 || parts.anticogging.is_some() {
         return None;
     }
     let Parts { profile, wall, canceller, .. } = parts;

@@ -1,5 +1,6 @@
 //! Any environment as data: for scenes that come from a file or over the wire, and for the certificate.
 
+use super::anticogging::Anticogging;
 use super::parts::{Parts, for_each_part};
 use super::rational::Rational;
 use super::stated::StatedModel;
@@ -87,6 +88,17 @@ impl Environment {
                 Some(&mut rational.delay)
             }
         }
+    }
+}
+
+impl Environment {
+    /// The same with the cogging of the motor opposed; a rational or a stated environment stays as it is.
+    pub const fn beside(self, anticogging: Anticogging) -> Self {
+        let mut out = self;
+        if let Self::Parts(parts) = &mut out {
+            parts.anticogging = Some(anticogging);
+        }
+        out
     }
 }
 

@@ -9,6 +9,7 @@
 //! [`Discretize`] turns an environment into its [`Law`], which the servo runs. Another crate can define a
 //! [`StatedEnvironment`].
 
+mod anticogging;
 mod any;
 mod any_law;
 mod canceller;
@@ -29,6 +30,9 @@ mod velocity;
 mod wall;
 mod wall_law;
 
+pub use anticogging::{
+    Anticogging, AnticoggingLaw, CoggingError, CoggingMap, Compensation, NoAnticogging,
+};
 pub use any::Environment;
 pub use any_law::AnyLaw;
 pub use canceller::{Canceller, CancellerLaw};

@@ -1,5 +1,6 @@
 //! The numbers of any environment by name.
 
+use super::anticogging::Anticogging;
 use super::any::Environment;
 use super::canceller::Canceller;
 use super::drag::Drag;
@@ -127,6 +128,7 @@ impl Environment {
                 profile: Some(Profile { modes: Some(ModeSelection { mode: value, .. }), .. }), ..
             }),
         Drag: Self::Parts(Parts { drag: Some(Drag { damping: value, .. }), .. }),
+        Anticogging: Self::Parts(Parts { anticogging: Some(Anticogging { share: value, .. }), .. }),
         StatedGain: Self::Stated(StatedModel::Bounded { bound: StatedBound { gain: value, .. }, .. }),
     }
 }

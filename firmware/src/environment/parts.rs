@@ -12,6 +12,7 @@
 
 use core::fmt::Debug;
 
+use super::anticogging::Anticogging;
 use super::canceller::Canceller;
 use super::drag::Drag;
 use super::profile::Profile;
@@ -29,6 +30,8 @@ pub struct Parts {
     pub profile: Option<Profile>,
     /// A damper that acts everywhere.
     pub drag: Option<Drag>,
+    /// Opposes the cogging of the motor, outside of the coupling. It is no part of the sum.
+    pub anticogging: Option<Anticogging>,
 }
 
 /// Gives a macro all parts, in the order in which their torques are added: a type parameter for the law, the
@@ -49,10 +52,7 @@ macro_rules! parts {
     ($($law:ident $part:ident: $data:ty,)+) => {
         impl Parts {
             /// No part: no torque.
-            pub const NONE: Self = Self { $($part: None),+ };
-
-            /// The number of kinds of parts.
-            pub const KINDS: usize = [$(stringify!($part)),+].len();
+            pub const NONE: Self = Self { $($part: None,)+ anticogging: None };
 
             /// The number of parts.
             pub const fn count(&self) -> usize {
@@ -107,13 +107,16 @@ macro_rules! parts {
         pub struct PartSet {$(
             #[doc = concat!("Whether it may have a ", stringify!($part), ".")]
             pub $part: bool,
-        )+}
+        )+
+            /// Whether it may oppose the cogging of the motor.
+            pub anticogging: bool,
+        }
 
         impl PartSet {
             /// None.
             pub const NONE: Self = Self::of(&Parts::NONE);
             /// All.
-            pub const ALL: Self = Self { $($part: true),+ };
+            pub const ALL: Self = Self { $($part: true,)+ anticogging: true };
 
             /// Whether there may be another part than a wall and a torque profile, whose torque is a line at all
             /// positions.
@@ -123,7 +126,7 @@ macro_rules! parts {
 
             /// Those of a program's environment.
             pub(crate) const fn of(parts: &Parts) -> Self {
-                Self { $($part: parts.$part.is_some()),+ }
+                Self { $($part: parts.$part.is_some(),)+ anticogging: parts.anticogging.is_some() }
             }
         }
     };
@@ -161,6 +164,13 @@ impl Parts {
         parts
     }
 
+    /// The anticogging, and its delay in whole samples: one where all parts are late, because the torque of such an
+    /// environment may be latched.
+    pub const fn late_anticogging(&self) -> Option<(Anticogging, usize)> {
+        let anticogging = some!(self.anticogging);
+        Some((anticogging, self.is_late() as usize))
+    }
+
     /// The number of parts besides a canceller, a wall and a torque profile: proofs about these that do not
     /// add part by part do not cover others.
     pub const fn others(&self) -> usize {
@@ -182,7 +192,7 @@ impl Parts {
 
     /// Whether the torque depends on a velocity.
     pub const fn is_damped(&self) -> bool {
-        let Self { canceller, wall, profile, drag } = self;
+        let Self { canceller, wall, profile, drag, .. } = self;
         canceller.is_some()
             || matches!(wall, Some(wall) if wall.damping() != 0.0)
             || matches!(profile, Some(profile) if profile.damping() != 0.0)

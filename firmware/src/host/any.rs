@@ -46,6 +46,7 @@ impl BesideServo for AnyHosted {
     type IfPresent<T: serde::Serialize + serde::de::DeserializeOwned> = T;
     type Channel = HostWords;
     type Reported = Reported;
+    type Budget = HostTorque;
     const IS_PRESENT: bool = true;
 
     fn silent() -> Self {
@@ -66,8 +67,45 @@ impl BesideServo for AnyHosted {
         each!(self, hosted => hosted.tick(moved))
     }
 
-    fn rest(&mut self) {
-        each!(self, hosted => hosted.rest());
+    fn host(budget: &HostTorque) -> Option<HostTorque> {
+        Some(*budget)
+    }
+
+    fn budget(host: HostTorque) -> HostTorque {
+        host
+    }
+
+    fn wait(&mut self, may_give: bool) {
+        each!(self, hosted => hosted.wait(may_give));
+    }
+
+    fn fade_out(&mut self, steps: u32) {
+        each!(self, hosted => hosted.fade_out(steps));
+    }
+
+    fn is_at_rest(&self) -> bool {
+        each!(self, hosted => hosted.is_at_rest())
+    }
+
+    fn may_pass_to(&self, next: &Self) -> bool {
+        match (self, next) {
+            (Self::Prompt(last), Self::Prompt(next)) => last.may_pass_to(next),
+            (Self::PromptLagging(last), Self::PromptLagging(next)) => last.may_pass_to(next),
+            (Self::Latched(last), Self::Latched(next)) => last.may_pass_to(next),
+            (Self::LatchedLagging(last), Self::LatchedLagging(next)) => last.may_pass_to(next),
+            _ => false,
+        }
+    }
+
+    fn take_over(&mut self, last: &Self) {
+        match (self, last) {
+            (Self::Prompt(next), Self::Prompt(last)) => next.take_over(last),
+            (Self::PromptLagging(next), Self::PromptLagging(last)) => next.take_over(last),
+            (Self::Latched(next), Self::Latched(last)) => next.take_over(last),
+            (Self::LatchedLagging(next), Self::LatchedLagging(last)) => next.take_over(last),
+            // It may not pass to a host of another type.
+            _ => {}
+        }
     }
 
     fn cut(&mut self, by_fault: bool) {
@@ -84,6 +122,18 @@ impl BesideServo for AnyHosted {
 
     fn report(channel: &HostWords, reported: &mut Reported) -> Option<Taken> {
         Hosted::<0, true>::report(channel, reported)
+    }
+
+    fn ask(reported: &mut Reported, id: u16, budget: HostTorque) {
+        Hosted::<0, true>::ask(reported, id, budget);
+    }
+
+    fn asking(reported: &Reported) -> Option<u16> {
+        Hosted::<0, true>::asking(reported)
+    }
+
+    fn asked(reported: &mut Reported) -> Option<(u16, HostTorque)> {
+        Hosted::<0, true>::asked(reported)
     }
 
     fn request_budget(reported: &mut Reported) {

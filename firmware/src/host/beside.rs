@@ -4,12 +4,15 @@ use core::fmt;
 
 use super::channel::{HostChannel, HostWords};
 use super::stream::Stream;
-use super::{HostError, HostResponse, HostTorque, Sampling, Tank};
+use super::{HostError, HostResponse, HostTorque, Tank};
+use crate::build_error::BuildError;
 use crate::environment::FixedDelay;
 use crate::latency::Latency;
 use crate::number::{Format, Number};
-use crate::output_timing::{OutputTiming, READ_WITHIN};
-use crate::scene::Timing;
+use crate::output_timing::OutputTiming;
+use crate::scene::{Scene, Timing};
+use crate::servo::RenderingOptions;
+use crate::transducers::Transducers;
 
 /// Ticks after the amplifier was switched off in which the device's motion gives nothing back: the rest
 /// of the torque is not known then.
@@ -38,9 +41,10 @@ pub struct Taken {
     pub invalid: u16,
 }
 
-/// The reports that the task has sent.
+/// What the task knows of a host: a budget that it wants, and the reports that were sent.
 #[derive(Clone, Debug, Default)]
 pub struct Reported {
+    requested: Option<(u16, HostTorque)>,
     budget_due: bool,
     number: u32,
     tick: u32,
@@ -54,8 +58,9 @@ pub struct TickState {
     pub tick: u32,
     /// The position in counts.
     pub count: i32,
-    /// Whether the servo runs: in any other state it gives no torque of the host.
-    pub is_running: bool,
+    /// Ticks until the scene's torque limit is open, 0 in a servo that runs; `None` in one that takes no
+    /// commands.
+    pub opening: Option<u32>,
     /// The servo's state as a number.
     pub state: u32,
 }
@@ -67,6 +72,14 @@ pub struct ServoNumbers<'a> {
     pub latency: &'a Latency,
     /// Its timing.
     pub timing: Timing,
+    /// Its torque limit in N m.
+    pub torque_limit: Option<f64>,
+    /// The damping in N m s/rad that it leaves over without a host, as far as that is known.
+    pub margin: Option<f64>,
+    /// Torque of the motor in N m at full scale.
+    pub full_scale: f64,
+    /// Time in s in which the scene's torque limit opens and closes.
+    pub fade: f64,
     /// When a torque is put out.
     pub output: OutputTiming,
     /// An encoder count in rad.
@@ -77,6 +90,33 @@ pub struct ServoNumbers<'a> {
     pub has_bridge: bool,
 }
 
+impl<'a> ServoNumbers<'a> {
+    /// Of a scene with this margin in N m s/rad, and of its servo.
+    ///
+    /// # Errors
+    /// If the encoder has no count.
+    pub const fn of<E>(
+        scene: &'a Scene<E>,
+        margin: Option<f64>,
+        transducers: &Transducers,
+        options: &RenderingOptions,
+        (output, format): (OutputTiming, Format),
+    ) -> Result<Self, BuildError> {
+        Ok(Self {
+            latency: &scene.latency,
+            timing: scene.timing,
+            torque_limit: scene.torque_limit,
+            margin,
+            full_scale: transducers.full_scale_torque,
+            fade: options.fade,
+            output,
+            radians_per_count: ok!(transducers.radians_per_count()),
+            format,
+            has_bridge: options.returned.is_some(),
+        })
+    }
+}
+
 /// The host beside a servo, or none: [`NoHost`] has no code in a tick.
 pub trait BesideServo: Clone + fmt::Debug {
     /// A value in a program with a host, and no value in others.
@@ -85,8 +125,10 @@ pub trait BesideServo: Clone + fmt::Debug {
         + serde::de::DeserializeOwned;
     /// Its part of the mailbox.
     type Channel: HostChannel;
-    /// What the task has sent of its reports.
+    /// What the task knows of it.
     type Reported: Default;
+    /// What it may do.
+    type Budget: Copy + fmt::Debug + PartialEq;
     /// Whether there is one.
     const IS_PRESENT: bool;
 
@@ -96,12 +138,26 @@ pub trait BesideServo: Clone + fmt::Debug {
     ///
     /// # Errors
     /// If there is no proof for it beside this servo.
-    fn beside(host: &HostTorque, servo: &ServoNumbers<'_>) -> Result<Self, HostError>;
+    fn beside(budget: &Self::Budget, servo: &ServoNumbers<'_>) -> Result<Self, HostError>;
+    /// A budget as data.
+    fn host(budget: &Self::Budget) -> Option<HostTorque>;
+    /// A budget from data.
+    fn budget(host: HostTorque) -> Self::Budget;
     /// Ends a tick in which the position moved by so many counts; returns the host's torque in N m, and
     /// whether it is less than wanted.
     fn tick<N: Number>(&mut self, moved: i32) -> (N, bool);
-    /// Wants no torque until the next command to a running servo.
-    fn rest(&mut self);
+    /// A tick that is not a usual one; unless the host may give a torque in it, it wants none until the next
+    /// command.
+    fn wait(&mut self, may_give: bool);
+    /// Fades the torque out, like the scene's with so many steps of its limit in a tick.
+    fn fade_out(&mut self, steps: u32);
+    /// Whether the host wants no torque and gives none.
+    fn is_at_rest(&self) -> bool;
+    /// Whether this host may be replaced by another: the energy that is left pays for the torques under way
+    /// at the other's price, too.
+    fn may_pass_to(&self, next: &Self) -> bool;
+    /// Takes the level and the torques under way of the host before, which may pass to this one.
+    fn take_over(&mut self, last: &Self);
     /// The amplifier was switched off; because of a fault, whose end of the torque no model knows, the tank
     /// is empty.
     fn cut(&mut self, by_fault: bool);
@@ -112,6 +168,12 @@ pub trait BesideServo: Clone + fmt::Debug {
     fn send(channel: &Self::Channel, number: u16, torque: f32, ramp: u16);
     /// The next report: for the task.
     fn report(channel: &Self::Channel, reported: &mut Self::Reported) -> Option<Taken>;
+    /// Requests that this budget becomes the one in force.
+    fn ask(reported: &mut Self::Reported, id: u16, budget: HostTorque);
+    /// The number of a request that was not taken yet.
+    fn asking(reported: &Self::Reported) -> Option<u16>;
+    /// Takes the request.
+    fn asked(reported: &mut Self::Reported) -> Option<(u16, HostTorque)>;
     /// Requests the budget.
     fn request_budget(reported: &mut Self::Reported);
     /// Whether the budget is due.
@@ -154,6 +216,7 @@ impl BesideServo for NoHost {
     type IfPresent<T: serde::Serialize + serde::de::DeserializeOwned> = Nothing;
     type Channel = ();
     type Reported = ();
+    type Budget = ();
     const IS_PRESENT: bool = false;
 
     #[inline(always)]
@@ -161,9 +224,17 @@ impl BesideServo for NoHost {
         Self
     }
 
-    fn beside(_: &HostTorque, _: &ServoNumbers<'_>) -> Result<Self, HostError> {
+    fn beside((): &(), _: &ServoNumbers<'_>) -> Result<Self, HostError> {
         Ok(Self)
     }
+
+    #[inline(always)]
+    fn host((): &()) -> Option<HostTorque> {
+        None
+    }
+
+    #[inline(always)]
+    fn budget(_: HostTorque) {}
 
     #[inline(always)]
     fn tick<N: Number>(&mut self, _: i32) -> (N, bool) {
@@ -171,7 +242,23 @@ impl BesideServo for NoHost {
     }
 
     #[inline(always)]
-    fn rest(&mut self) {}
+    fn wait(&mut self, _: bool) {}
+
+    #[inline(always)]
+    fn fade_out(&mut self, _: u32) {}
+
+    #[inline(always)]
+    fn is_at_rest(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn may_pass_to(&self, _: &Self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn take_over(&mut self, _: &Self) {}
 
     #[inline(always)]
     fn cut(&mut self, _: bool) {}
@@ -184,6 +271,19 @@ impl BesideServo for NoHost {
 
     #[inline(always)]
     fn report((): &(), (): &mut ()) -> Option<Taken> {
+        None
+    }
+
+    #[inline(always)]
+    fn ask((): &mut (), _: u16, _: HostTorque) {}
+
+    #[inline(always)]
+    fn asking((): &()) -> Option<u16> {
+        None
+    }
+
+    #[inline(always)]
+    fn asked((): &mut ()) -> Option<(u16, HostTorque)> {
         None
     }
 
@@ -236,6 +336,8 @@ pub struct Hosted<const TICKS: usize, const IS_PLAIN: bool> {
     /// J for a level of 1.
     joules: f32,
     reserve: f32,
+    /// Ticks per N m in which the torque fades out at one step of the scene's limit in a tick.
+    fade: f32,
     /// The number of the last command.
     taken: u32,
     invalid: u16,
@@ -253,6 +355,15 @@ impl<const TICKS: usize, const IS_PLAIN: bool> Hosted<TICKS, IS_PLAIN> {
     pub(super) fn energy(&self) -> f64 {
         self.tank.energy()
     }
+
+    /// Gives what the level pays of a torque.
+    #[cold]
+    #[inline(never)]
+    fn refuse(&mut self, wanted: f32) -> f32 {
+        self.given = self.tank.allowed(wanted);
+        self.tank.give(self.given);
+        self.given
+    }
 }
 
 impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_PLAIN> {
@@ -260,6 +371,7 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     type IfPresent<T: serde::Serialize + serde::de::DeserializeOwned> = T;
     type Channel = HostWords;
     type Reported = Reported;
+    type Budget = HostTorque;
     const IS_PRESENT: bool = true;
 
     fn silent() -> Self {
@@ -271,6 +383,7 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
             given: 0.0,
             joules: 0.0,
             reserve: 0.0,
+            fade: 0.0,
             taken: 0,
             invalid: 0,
             unknown: 0,
@@ -278,53 +391,66 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     }
 
     fn beside(host: &HostTorque, servo: &ServoNumbers<'_>) -> Result<Self, HostError> {
-        let not_covered = |time| Err(HostError::NotCovered { time });
-        if !matches!(servo.format, Format::F32 | Format::F64) {
-            return not_covered("a servo in a fixed-point format");
-        }
-        if servo.has_bridge || servo.latency.actuator_updates > 0 {
-            return not_covered("the heat and the supply of a board's own bridge");
-        }
-        let Timing { period, worst_period } = servo.timing;
-        if host.timeout < 2.0 * period {
-            return Err(HostError::Timeout { timeout: host.timeout, least: 2.0 * period });
-        }
-        let (ticks, reading) = match servo.output {
-            OutputTiming::Simultaneous => (0, 0.0),
-            OutputTiming::Latched => (1, READ_WITHIN),
-            OutputTiming::AtPhase(_) => (0, READ_WITHIN),
-        };
-        let count = servo.radians_per_count;
-        let sampling = Sampling { period, worst_period, count, ticks, reading };
-        let mut response = HostResponse::of(host, servo.latency, &sampling)?;
-        if IS_PLAIN {
-            response = response.without_memory(host)?;
-        }
-        if response.whole != TICKS || response.is_plain != IS_PLAIN {
-            return not_covered("an output at another time than that of the program's board");
-        }
+        let times = HostTimes { ticks: TICKS, is_plain: IS_PLAIN };
+        let response = HostResponse::beside(host, servo, times)?;
+        let (count, period) = (servo.radians_per_count, servo.timing.period);
         let tank = Tank::new(host, &response, count, [count, 1.0])?;
         let [joules, reserve] = tank.joules().map(|number| number as f32);
         let stream = Stream::new(host, period);
-        Ok(Self { tank, stream, joules, reserve, ..Self::silent() })
+        let fade = (servo.fade / period / host.torque) as f32;
+        Ok(Self { tank, stream, joules, reserve, fade, ..Self::silent() })
+    }
+
+    fn host(budget: &HostTorque) -> Option<HostTorque> {
+        Some(*budget)
+    }
+
+    fn budget(host: HostTorque) -> HostTorque {
+        host
     }
 
     #[inline(always)]
     fn tick<N: Number>(&mut self, moved: i32) -> (N, bool) {
         self.tank.book(moved as f32);
         let wanted = self.stream.next();
-        let given = self.tank.allowed(wanted);
-        self.tank.give(given);
-        self.given = given;
-        (N::of_single(given), given != wanted)
+        let cost = self.tank.cost(wanted);
+        if !self.tank.pays(cost) {
+            return (N::of_single(self.refuse(wanted)), true);
+        }
+        self.tank.give_at(wanted, cost);
+        self.given = wanted;
+        (N::of_single(wanted), false)
     }
 
-    fn rest(&mut self) {
-        self.stream.rest();
+    fn wait(&mut self, may_give: bool) {
+        if !may_give {
+            self.stream.rest();
+        }
         if self.unknown > 0 {
             self.unknown -= 1;
             self.tank.give_back(self.unknown == 0);
         }
+    }
+
+    fn fade_out(&mut self, steps: u32) {
+        let ticks = self.stream.wanted.abs() * self.fade / steps as f32;
+        // The cast saturates.
+        self.stream.fade((ticks as u32).saturating_add(1));
+    }
+
+    fn is_at_rest(&self) -> bool {
+        self.stream.is_at_rest() && self.given == 0.0
+    }
+
+    fn may_pass_to(&self, next: &Self) -> bool {
+        // Of an amplifier that was just switched off no tail is known.
+        self.unknown == 0 && next.tank.pays_for(&self.tank)
+    }
+
+    #[inline(never)]
+    fn take_over(&mut self, last: &Self) {
+        self.tank.take_over(&last.tank);
+        (self.taken, self.invalid) = (last.taken, last.invalid);
     }
 
     #[cold]
@@ -348,7 +474,8 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         if !wanted.is_finite() {
             self.invalid = self.invalid.saturating_add(1);
         }
-        let refused = if tick.is_running { self.stream.wanted - self.given } else { torque };
+        let wanted = if tick.opening == Some(0) { self.stream.wanted } else { torque };
+        let refused = wanted - self.given;
         channel.publish(
             sent,
             [
@@ -362,8 +489,8 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
                 u32::from(self.invalid),
             ],
         );
-        if tick.is_running {
-            self.stream.take(torque, (rest >> 16) as u16);
+        if let Some(opening) = tick.opening {
+            self.stream.take(torque, (rest >> 16) as u16, opening);
         }
     }
 
@@ -391,6 +518,18 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
             state: state as usize,
             invalid: invalid as u16,
         })
+    }
+
+    fn ask(reported: &mut Reported, id: u16, budget: HostTorque) {
+        reported.requested = Some((id, budget));
+    }
+
+    fn asking(reported: &Reported) -> Option<u16> {
+        reported.requested.map(|(id, _)| id)
+    }
+
+    fn asked(reported: &mut Reported) -> Option<(u16, HostTorque)> {
+        reported.requested.take()
     }
 
     fn request_budget(reported: &mut Reported) {

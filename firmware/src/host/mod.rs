@@ -29,11 +29,6 @@ pub use error::HostError;
 pub use response::{HostResponse, Sampling};
 pub use tank::{Tank, TankNumber};
 
-use crate::certificate::Certified;
-use crate::scene::Scene;
-use crate::text::or_refuse;
-use crate::transducers::Transducers;
-
 /// What a host may do.
 ///
 /// ```
@@ -62,30 +57,6 @@ pub struct HostTorque {
 }
 
 impl HostTorque {
-    /// For constants: the same host, or a compile error if it may not stand beside this scene.
-    ///
-    /// # Panics
-    /// If a number has no meaning, or the share of damping is not below the scene's margin; in a constant this
-    /// is a compile error.
-    #[track_caller]
-    pub const fn checked_beside<S>(self, scene: &Certified<S>) -> Self {
-        or_refuse!(self.check());
-        or_refuse!(self.check_share(scene.assessment().margin(scene.as_data())));
-        self
-    }
-
-    /// For constants: the same host, or a compile error if its torque and the scene's are together above
-    /// full scale.
-    #[track_caller]
-    pub const fn checked_range<E>(
-        self,
-        scene: &Certified<Scene<E>>,
-        transducers: &Transducers,
-    ) -> Self {
-        or_refuse!(self.check_range(scene.scene().torque_limit, transducers.full_scale_torque));
-        self
-    }
-
     /// Checks the numbers alone.
     ///
     /// # Errors

@@ -20,8 +20,10 @@
 //!
 //! The parts of the share are chosen to make the coefficient of `h^2` least.
 
-use super::{HostError, HostTorque};
+use super::{HostError, HostTimes, HostTorque, ServoNumbers};
 use crate::latency::Latency;
+use crate::number::Format;
+use crate::output_timing::{OutputTiming, READ_WITHIN};
 use crate::passivity::interval::Interval;
 use crate::passivity::lagged::Decay;
 use crate::scene::Timing;
@@ -95,13 +97,13 @@ impl HostResponse {
     ///
     /// # Errors
     /// If a time of the scene is not covered, or the energy is less than counts can cost.
-    pub fn of(
+    pub const fn of(
         host: &HostTorque,
         latency: &Latency,
         sampling: &Sampling,
     ) -> Result<Self, HostError> {
-        host.check()?;
-        covered(latency, sampling)?;
+        ok!(host.check());
+        ok!(covered(latency, sampling));
         let period = sampling.period;
         let delay = in_periods(latency, period);
         let whole = delay.midpoint() as usize;
@@ -160,13 +162,54 @@ impl HostResponse {
         })
     }
 
+    /// The response beside a servo whose commands act at these times.
+    ///
+    /// # Errors
+    /// If a number has no meaning, or there is no proof for it.
+    pub const fn beside(
+        host: &HostTorque,
+        servo: &ServoNumbers<'_>,
+        times: HostTimes,
+    ) -> Result<Self, HostError> {
+        ok!(host.check());
+        ok!(host.check_share(servo.margin));
+        ok!(host.check_range(servo.torque_limit, servo.full_scale));
+        if !matches!(servo.format, Format::F32 | Format::F64) {
+            return Err(HostError::NotCovered { time: "a servo in a fixed-point format" });
+        }
+        if servo.has_bridge || servo.latency.actuator_updates > 0 {
+            let time = "the heat and the supply of a board's own bridge";
+            return Err(HostError::NotCovered { time });
+        }
+        let Timing { period, worst_period } = servo.timing;
+        let (ticks, reading) = match servo.output {
+            OutputTiming::Simultaneous => (0, 0.0),
+            OutputTiming::Latched => (1, READ_WITHIN),
+            OutputTiming::AtPhase(_) => (0, READ_WITHIN),
+        };
+        let count = servo.radians_per_count;
+        let sampling = Sampling { period, worst_period, count, ticks, reading };
+        let mut response = ok!(Self::of(host, servo.latency, &sampling));
+        if host.timeout < 2.0 * period {
+            return Err(HostError::Timeout { timeout: host.timeout, least: 2.0 * period });
+        }
+        if times.is_plain {
+            response = ok!(response.without_memory(host));
+        }
+        if response.whole != times.ticks || response.is_plain != times.is_plain {
+            let time = "an output at another time than that of the program's board";
+            return Err(HostError::NotCovered { time });
+        }
+        Ok(response)
+    }
+
     /// For a motor without a lag: the steps of the torque are debited when they reach the motor, and not
     /// with the command. Their cost cannot be known to be payable then, so the reserve has it: of the steps
     /// under way and of those to zero, each up to twice the largest torque that the energy pays.
     ///
     /// # Errors
     /// If the energy is less than this reserve.
-    pub fn without_memory(self, host: &HostTorque) -> Result<Self, HostError> {
+    pub const fn without_memory(self, host: &HostTorque) -> Result<Self, HostError> {
         let of_steps = self.tail[1];
         let has_lag = self.is_late || self.tail[0] != 0.0 || self.pull[0] != 0.0;
         if of_steps == 0.0 || has_lag {
@@ -185,8 +228,8 @@ impl HostResponse {
     }
 }
 
-fn covered(latency: &Latency, sampling: &Sampling) -> Result<(), HostError> {
-    let time = if sampling.worst_period.is_some_and(|worst| worst != sampling.period) {
+const fn covered(latency: &Latency, sampling: &Sampling) -> Result<(), HostError> {
+    let time = if or!(sampling.worst_period, sampling.period) != sampling.period {
         "updates that may be missed"
     } else if !latency.sensor_lag.is_zero() || latency.encoder.window > 0.0 {
         "a filter of the encoder"
@@ -207,14 +250,14 @@ fn covered(latency: &Latency, sampling: &Sampling) -> Result<(), HostError> {
 }
 
 /// The output delay in periods.
-fn in_periods(latency: &Latency, period: f64) -> Interval {
+const fn in_periods(latency: &Latency, period: f64) -> Interval {
     match latency.actuator_updates {
         0 => Interval::exact(latency.output_delay.middle() / period),
-        _ => latency.delay_in_updates(period).unwrap_or(Interval::ZERO),
+        _ => or!(latency.delay_in_updates(period), Interval::ZERO),
     }
 }
 
-fn decay(latency: &Latency, period: f64, part: f64) -> Decay {
+const fn decay(latency: &Latency, period: f64, part: f64) -> Decay {
     let tau = Interval::exact(latency.actuator_lag.middle() / period);
     let over = Interval::exact(1.0 - part);
     match latency.actuator_updates {
@@ -228,7 +271,7 @@ fn decay(latency: &Latency, period: f64, part: f64) -> Decay {
 /// A count that deviates changes the work of a step of the mean torque as a torque that deviates does, and the
 /// steps of the means are no larger than those of the commands in the sum of their squares. If both deviate,
 /// the roots of their energies add.
-fn deviations(latency: &Latency, sampling: &Sampling) -> (f64, f64) {
+const fn deviations(latency: &Latency, sampling: &Sampling) -> (f64, f64) {
     let range = 0.5 * (latency.output_delay.most - latency.output_delay.least);
     // With one jitter alone it is of the counts or of the torques, not of both.
     let counts = latency.deviation_of_counts().max(sampling.reading);
@@ -238,6 +281,6 @@ fn deviations(latency: &Latency, sampling: &Sampling) -> (f64, f64) {
 }
 
 /// The root of a number that is not negative.
-fn root(square: f64) -> f64 {
+const fn root(square: f64) -> f64 {
     if square > 0.0 { Interval::exact(square).sqrt().midpoint() } else { 0.0 }
 }

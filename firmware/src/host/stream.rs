@@ -64,10 +64,27 @@ impl Stream {
         }
     }
 
-    /// Takes a command: a torque within the host's largest.
-    pub fn take(&mut self, torque: f32, ramp: u16) {
-        let ticks = u32::from(ramp).clamp(1, self.half);
-        self.ramp(torque, ticks, Then::Hold((self.half - ticks).max(1)));
+    /// Takes a command: a torque within the host's largest. It is not reached before the scene's torque limit is
+    /// open, in `opening` ticks.
+    pub fn take(&mut self, torque: f32, ramp: u16, opening: u32) {
+        let ticks = u32::from(ramp).max(opening).clamp(1, self.half);
+        let way = torque - self.wanted;
+        let target = if opening > ticks {
+            self.wanted + way * (ticks as f32 / opening as f32)
+        } else {
+            torque
+        };
+        self.ramp(target, ticks, Then::Hold((self.half - ticks).max(1)));
+    }
+
+    /// A line to zero in so many ticks.
+    pub fn fade(&mut self, ticks: u32) {
+        self.ramp(0.0, ticks.clamp(1, LONGEST_RAMP), Then::Rest);
+    }
+
+    /// Whether nothing is wanted until the next command.
+    pub fn is_at_rest(&self) -> bool {
+        self.then == Then::Rest && self.wanted == 0.0 && self.step == 0.0
     }
 
     /// A line that stays short of its target until its last tick, so that rounding never leads beyond it.
@@ -99,7 +116,7 @@ mod tests {
     fn a_stale_torque_is_zero_after_the_timeout() {
         for ramp in [0, 1, 4, 10, u16::MAX] {
             let mut stream = stream();
-            stream.take(1.0, ramp);
+            stream.take(1.0, ramp, 0);
             let torques: std::vec::Vec<_> = (0..40).map(|_| stream.next()).collect();
             let reached = torques.iter().position(|torque| *torque == 1.0).unwrap();
             assert_eq!(reached, usize::from(ramp.clamp(1, 10)) - 1, "{ramp}");
@@ -113,9 +130,9 @@ mod tests {
     #[test]
     fn the_last_command_wins() {
         let mut stream = stream();
-        stream.take(1.0, 4);
+        stream.take(1.0, 4, 0);
         stream.next();
-        stream.take(-0.5, 0);
+        stream.take(-0.5, 0, 0);
         assert_eq!(stream.next(), -0.5);
         stream.rest();
         assert!((0..100).all(|_| stream.next() == 0.0));

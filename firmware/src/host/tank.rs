@@ -203,6 +203,35 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
         self.level = level.smaller(self.held.minus(self.to_come()));
     }
 
+    /// Whether what is left of another tank of the same response pays for its torques under way here, too.
+    pub(super) fn pays_for(&self, last: &Self) -> bool {
+        last.to_come() == R::ZERO || self.level_of(last) >= R::ZERO
+    }
+
+    /// Takes the energy and the torques under way of another tank, which differs in its budget alone: torques
+    /// have the same unit in both, and levels another. The energy is at most that of this tank.
+    pub(super) fn take_over(&mut self, last: &Self) {
+        self.level = self.level_of(last).smaller(self.cap.minus(last.to_come()));
+        self.held = self.cap;
+        (self.mean, self.unfinished) = (last.mean, last.unfinished.clone());
+        (self.means, self.energies) = (last.means.clone(), last.energies.clone());
+        let Spread { lagging, before, rest, unfinished, .. } = last.memory;
+        self.memory = Spread { lagging, before, rest, unfinished, ..self.memory };
+    }
+
+    /// The level at which this tank has no more energy than another, with the torques under way at its price.
+    fn level_of(&self, last: &Self) -> R {
+        let (level, to_come) = (last.level.to_f64(), last.to_come().to_f64());
+        // With a torque at the motor the last step of the position is known within that tank's reserve only.
+        let is_at_rest = last.mean == R::ZERO && to_come == 0.0;
+        let unknown = if is_at_rest { 0.0 } else { last.reserve };
+        let energy = (level + to_come) * last.joules + last.reserve - unknown;
+        let scaled = (energy - self.reserve) / self.joules;
+        // Above the rounding of the sums here and of the number format.
+        let rounded = 8.0 * R::ROUNDOFF * (scaled.abs() + to_come + self.reserve / self.joules);
+        R::nearest(scaled - to_come - rounded)
+    }
+
     /// An empty tank that never has any energy, with these lines at rest.
     pub(super) fn empty(means: D, energies: D) -> Self {
         let zero = R::ZERO;
@@ -285,12 +314,18 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
     /// The torque that the motor gets of a wanted torque in [range](Self::in_range).
     #[inline(always)]
     pub fn allowed(&self, wanted: R) -> R {
-        if self.cost(wanted) <= self.level { wanted } else { self.affordable(wanted) }
+        if self.pays(self.cost(wanted)) { wanted } else { self.affordable(wanted) }
+    }
+
+    /// Whether the level pays for a command that costs this much.
+    #[inline(always)]
+    pub(super) fn pays(&self, cost: R) -> bool {
+        cost <= self.level
     }
 
     /// What the command costs until the end of its response.
     #[inline(always)]
-    fn cost(&self, command: R) -> R {
+    pub(super) fn cost(&self, command: R) -> R {
         let pulled = if PLAIN { command } else { command.plus(self.pull()).plus(self.pull()) };
         command.times(pulled)
     }
@@ -336,28 +371,34 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
     /// tick is [booked](Self::book).
     #[inline(always)]
     pub fn give(&mut self, command: R) {
-        let paid = self.level.minus(self.cost(command));
+        self.give_at(command, self.cost(command));
+    }
+
+    /// The same with its cost.
+    #[inline(always)]
+    pub(super) fn give_at(&mut self, command: R, cost: R) {
+        let paid = self.level.minus(cost);
         let (mean, energy) = if PLAIN {
-            (command.times(self.memory.first[0]), command.times(command))
+            (command.times(self.memory.first[0]), cost)
         } else {
-            self.spread(command)
+            self.spread(command, cost)
         };
         let begins = self.means.due().unwrap_or(mean);
         // The reserve covers this, so that the level may become negative.
-        let change = begins.minus(self.mean);
-        let step = magnitude(change).times(self.count_step);
-        self.level = paid.minus(step);
-        if PLAIN {
-            self.level = self.level.minus(change.times(change).times(self.step_price));
-        }
+        let change = magnitude(begins.minus(self.mean));
+        let price = if PLAIN {
+            self.count_step.plus(change.times(self.step_price))
+        } else {
+            self.count_step
+        };
+        self.level = paid.minus(change.times(price));
         self.mean = begins;
         self.means.push(mean);
         self.energies.push(energy);
     }
 
     /// The mean torque of the tick in which a command begins, and the energy of the command's period.
-    fn spread(&mut self, command: R) -> (R, R) {
-        let cost = self.cost(command);
+    fn spread(&mut self, command: R, cost: R) -> (R, R) {
         let memory = &mut self.memory;
         let energy = cost.plus(memory.tail());
         let step = memory.lagging.minus(command);

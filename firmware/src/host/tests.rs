@@ -98,17 +98,45 @@ struct Attack<'a> {
 }
 
 impl Attack<'_> {
-    fn run<R: TankNumber>(mut self, ticks: usize) -> (f64, f64) {
+    fn run<R: TankNumber>(self, ticks: usize) -> (f64, f64) {
+        let (most, excess, _) = self.run_to::<R>(ticks, None);
+        (most, excess)
+    }
+
+    /// The same with another budget from some tick on, and the least energy that was left in parts of the host's.
+    fn run_to<R: TankNumber>(
+        mut self,
+        ticks: usize,
+        mut next: Option<(usize, HostTorque)>,
+    ) -> (f64, f64, f64) {
         let mut tank = tank::<R>(&self.host, &self.latency, &self.sampling);
-        let HostTorque { energy, power, damping, .. } = self.host;
+        let HostTorque { mut energy, mut power, mut damping, .. } = self.host;
+        let (first, mut least) = (energy, f64::INFINITY);
         let (mut taken, mut most, mut excess) = (0.0_f64, 0.0_f64, f64::NEG_INFINITY);
         let (mut left, mut position, mut moved) = (energy, 0.37 * self.sampling.count, 0.0);
         let latched = self.sampling.ticks;
         let response = HostResponse::of(&self.host, &self.latency, &self.sampling);
-        let reserve = response.unwrap().reserve;
+        let mut reserve = response.unwrap().reserve;
         self.motor.commands.resize(latched, 0.0);
         for tick in 0..ticks {
-            let wanted = tank.in_range(R::nearest((self.wanted)(tick, moved)));
+            let mut wanted = tank.in_range(R::nearest((self.wanted)(tick, moved)));
+            if let Some((at, host)) = next
+                && tick > at
+            {
+                let mut other = self::tank::<R>(&host, &self.latency, &self.sampling);
+                // The servo fades the host's torque out before it swaps a set in.
+                if tick > at + 1 && other.pays_for(&tank) {
+                    other.take_over(&tank);
+                    tank = other;
+                    HostTorque { energy, power, damping, .. } = host;
+                    let response = HostResponse::of(&host, &self.latency, &self.sampling);
+                    reserve = response.unwrap().reserve;
+                    left = left.min(energy);
+                    next = None;
+                } else {
+                    wanted = R::ZERO;
+                }
+            }
             let command = tank.allowed(wanted);
             tank.give(command);
             self.motor.commands.push(command.to_f64());
@@ -135,9 +163,10 @@ impl Attack<'_> {
             left = (left - out + power * PERIOD).min(full);
             most = most.max(taken / (energy + power * PERIOD * (tick + 1) as f64));
             // Between two counts the level is known within the reserve; it is read to the digits of the format.
-            excess = excess.max((tank.energy() - reserve - left) / energy);
+            excess = excess.max((tank.energy() - reserve - left) / first);
+            least = least.min(left / first);
         }
-        (most, excess)
+        (most, excess, least)
     }
 }
 
@@ -244,6 +273,35 @@ fn the_level_is_never_above_what_is_left() {
                 if run % 2 == 0 { attack.run::<f64>(300) } else { attack.run::<f32>(300) };
             assert!(most <= 1.0 && excess <= 1e-6, "{name}, {run}: {most}, {excess}");
         }
+    }
+}
+
+/// A budget that changes while torques are under way gives no energy, whatever its numbers are: of what is left
+/// the torques that still come are paid at the new price.
+#[test]
+fn another_budget_gives_no_energy() {
+    let mut random = Random(11);
+    for run in 0..200_usize {
+        let mut any = |least: f64| least * 10_f64.powf(1.5 + 1.5 * random.next());
+        let next = HostTorque { energy: any(0.005), damping: any(0.0005), ..HOST };
+        let (name, latency, ticks, motor) = responses().swap_remove(run % 12);
+        let mut hand = Random(run as u64);
+        let attack = Attack {
+            host: HOST,
+            latency,
+            sampling: Sampling { ticks, ..sampling() },
+            motor,
+            wanted: &mut |_, _| 1e3,
+            step: &mut |mean| greedy(mean) * (1.0 + hand.next()),
+            jitter: &mut || 0,
+        };
+        let at = 1 + run % 40;
+        let (_, excess, least) = if run % 2 == 0 {
+            attack.run_to::<f64>(300, Some((at, next)))
+        } else {
+            attack.run_to::<f32>(300, Some((at, next)))
+        };
+        assert!(excess <= 1e-6 && least >= -1e-6, "{name}, {run}, {next:?}: {excess}, {least}");
     }
 }
 

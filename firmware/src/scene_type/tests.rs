@@ -41,7 +41,7 @@ const SOFT: Wall = Wall::damped(5.0, 0.002, 1);
 const LATE: Wall = Wall::damped(3.0, 0.001, 2);
 
 const fn free_mode(residual: f64, wall: Option<Wall>, profile: Option<Profile>) -> Environment {
-    Parts { canceller: Some(Canceller::to(residual)), wall, profile, drag: None }.sum()
+    Parts { canceller: Some(Canceller::to(residual)), wall, profile, ..Parts::NONE }.sum()
 }
 
 const fn beside(wall: Wall, profile: Profile) -> Environment {

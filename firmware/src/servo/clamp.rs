@@ -4,7 +4,7 @@ use super::Servo;
 use crate::build_error::BuildError;
 use crate::coupling_memory::CouplingMemory;
 use crate::current::HeatStep;
-use crate::environment::Law;
+use crate::environment::{Compensation, Law};
 use crate::number::Number;
 use crate::rendering::Rendering;
 use crate::torque::Limiter;
@@ -25,12 +25,12 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
 
     /// Moves the open clamp by a step, because of the heat of the torque output.
     pub(crate) fn step_by_heat(&mut self, step: HeatStep) {
-        self.limiter.step_by_heat(step, self.torque);
+        self.limiter.step_by_heat(step, self.anticogging.or_larger(self.torque));
     }
 
     /// Lowers the clamp to the held torque, so that the next step reduces the torque at once.
     pub(crate) fn clamp_to_held_torque(&mut self) {
-        self.limiter.clamp_to_held_torque(self.torque);
+        self.limiter.clamp_to_held_torque(self.anticogging.or_larger(self.torque));
     }
 
     /// Replaces the held torque, for tests with NaN, which no input causes.
@@ -54,6 +54,7 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
         let (x, _) = N::angle(count, self.angle_scale);
         self.torque = N::ZERO;
         self.law.rest_at(x);
+        self.anticogging.rest_at(self.position.count(), self.angle_scale);
         self.memory.rest();
         x
     }

@@ -19,7 +19,7 @@ use crate::coupling_memory::CouplingMemory;
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
-use crate::environment::{EnvironmentModel, Law};
+use crate::environment::{Compensation, EnvironmentModel, Law};
 use crate::number::{Number, OutOfRange};
 use crate::rendering::Rendering;
 use crate::scene::Scene;
@@ -66,6 +66,7 @@ pub struct Servo<E: Rendering<N>, N: Number> {
     angle_scale: N::Coefficient,
     law: E::Law,
     memory: E::Memory,
+    anticogging: E::Anticogging,
     solver: Solver<N>,
     limiter: Limiter<N>,
     code_scale: N::Coefficient,
@@ -95,7 +96,8 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
     pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let radians_per_count = transducers.radians_per_count()?;
         let codes_per_torque = transducers.codes_per_torque()?;
-        let context = scene.setting()?;
+        scene.setting()?;
+        let context = E::context(scene);
         let memory = E::Memory::of(&context)?;
         let mut law = scene.environment.law(&context)?;
         if let Some(turn) = law.turn() {
@@ -106,6 +108,12 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
             return Err(BuildError::Hysteresis { hysteresis, count: radians_per_count });
         }
         let compliance = scene.coupling.compliance(memory.compliance())?;
+        let limiter = transducers.limiter(scene.torque_limit)?;
+        let anticogging = scene.environment.anticogging();
+        if let Some((anticogging, _)) = &anticogging {
+            transducers.check_anticogging(anticogging, scene.torque_limit)?;
+        }
+        let anticogging = E::Anticogging::of(anticogging, &context, transducers.counts_per_turn)?;
         Ok(Self {
             position: Position::new(transducers.counter),
             angle_scale: N::angle_scale(radians_per_count)
@@ -113,7 +121,8 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
             solver: Solver::new(compliance, law.slopes())?,
             law,
             memory,
-            limiter: transducers.limiter(scene.torque_limit)?,
+            anticogging,
+            limiter,
             code_scale: N::code_scale(codes_per_torque)
                 .map_err(|reason| BuildError::Unrepresentable { name: "codes per N m", reason })?,
             torque: N::ZERO,
@@ -153,6 +162,7 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
     #[inline(always)]
     fn tick_zero_delay(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, standing_still) = self.angle(raw, action);
+        self.compensate(false);
         let x = x.minus(self.memory.deflection_after(self.torque));
         let offer = action.add_to(self.law.evaluate(x));
         let output = self.solve_to_code(offer, standing_still);
@@ -166,6 +176,7 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
     #[inline(always)]
     fn tick_latched(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, standing_still) = self.angle(raw, action);
+        self.compensate(true);
         let x = x.minus(self.memory.lasting_deflection());
         // The previous tick computed the torque of this tick.
         self.memory.remember(self.torque);
@@ -180,12 +191,20 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
     /// # Errors
     /// If the format cannot represent the angle.
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
+        self.anticogging.tick_at(angle, &self.limiter);
         let angle = self.law.turn().map_or(angle, |turn| turn.wrapped(angle));
         let x = N::from_f64(angle)?;
         let x = x.minus(self.memory.deflection_after(self.torque));
         self.solve_to_code(self.law.evaluate(x), LimitReason::None);
         self.update_environment(x, &mut NoAction);
         Ok(self.torque_nm())
+    }
+
+    /// The torque against the cogging at this tick's count, of which the coupling knows nothing.
+    #[inline(always)]
+    fn compensate(&mut self, latched: bool) {
+        let count = self.position.low();
+        self.anticogging.tick(count, self.angle_scale, latched, &self.limiter);
     }
 
     /// Ends the tick with the device at `x` (rad), less the lasting deflection, under this tick's torque.
@@ -231,6 +250,7 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
         let (torque, limit) = self.limited(offer, standing_still);
         self.torque = torque;
         // The motor pushes against the coupling's deflection.
+        let torque = self.anticogging.add_to(torque);
         let code = torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale);
         Output { code: DacCode::from_low_bits(code), limit }
     }
@@ -240,7 +260,7 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
     /// positions alone.
     #[inline(always)]
     pub fn code_beside(&self, host: N) -> DacCode {
-        let torque = self.torque.minus(host);
+        let torque = self.anticogging.add_to(self.torque).minus(host);
         DacCode::from_low_bits(torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale))
     }
 
@@ -293,9 +313,9 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
         self.position.count() as f64 * self.radians_per_count
     }
 
-    /// Coupling torque `F` of the last tick in N m; the motor applies `-F`.
+    /// Coupling torque `F` of the last tick in N m, with what opposes the cogging; the motor applies `-F`.
     pub fn torque_nm(&self) -> f64 {
-        self.torque.to_f64()
+        self.anticogging.add_to(self.torque).to_f64()
     }
 }
 

@@ -9,6 +9,7 @@ use crate::certificate::{TimingChecked, timing_checked};
 use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
 use crate::environment::{EnvironmentModel, SupportsTiming};
+use crate::host::BesideServo;
 use crate::number::Number;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN};
 use crate::rendering::Rendering;
@@ -64,6 +65,7 @@ pub struct PreparedServo<E: Rendering<N>, N: Number, M> {
     servo: Servo<E, N>,
     injector: Option<Injector<N>>,
     pace: TimingLimits,
+    host: E::Host,
     mode: PhantomData<M>,
 }
 
@@ -139,7 +141,12 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
             Some(damping) => return Err(BuildError::Injection { damping, room }),
         };
         let pace = TimingLimits::new(scene, transducers)?;
-        Ok(Self { servo, injector, pace, mode: PhantomData })
+        Ok(Self { servo, injector, pace, host: E::Host::silent(), mode: PhantomData })
+    }
+
+    /// The same servo with this host in place of a silent one.
+    pub(crate) fn with_host(self, host: E::Host) -> Self {
+        Self { host, ..self }
     }
 
     /// One tick: returns the code to be written now. During a deficit of energy it injects damping if the
@@ -161,6 +168,15 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
 
     pub(crate) const fn servo_mut(&mut self) -> &mut Servo<E, N> {
         &mut self.servo
+    }
+
+    /// The host beside the servo.
+    pub const fn host(&self) -> &E::Host {
+        &self.host
+    }
+
+    pub(crate) const fn host_mut(&mut self) -> &mut E::Host {
+        &mut self.host
     }
 
     /// Resets the servo at the present position with the clamp shut, as if the device had always been there.

@@ -197,7 +197,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.detected_fault = Some(fault);
         self.fault_free_ticks = 0;
         // Also disarmed: a step over missed ticks must not count as one of a tick.
-        self.host.cut(true);
+        self.rendering.host_mut().cut(true);
         if self.state.is_armed() {
             self.stop(fault, hardware, inbox);
         }
@@ -212,7 +212,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     ) {
         hardware.write(DacCode::MID_SCALE);
         hardware.amplifier(false);
-        self.host.cut(true);
+        self.rendering.host_mut().cut(true);
         self.rendering.servo_mut().clamp().shut();
         self.state = State::Faulted;
         self.fault = Some(fault);

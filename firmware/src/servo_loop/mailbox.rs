@@ -279,6 +279,11 @@ impl<R: Exchanged> Inbox<'_, R> {
         self.sets.ready()
     }
 
+    /// The waiting set.
+    pub(super) fn waiting_set(&self) -> Option<&R> {
+        self.sets.peek()
+    }
+
     /// Takes the waiting set; [`Inbox::swapped`] follows.
     pub(super) fn set(&mut self) -> Option<R> {
         self.sets.dequeue()

@@ -71,7 +71,6 @@ struct MissedUpdates {
 #[derive(Clone, Debug)]
 pub struct ServoLoop<E: Rendering<N>, N: Number, M> {
     rendering: PreparedServo<E, N, M>,
-    host: E::Host,
     energy: EnergyMonitor,
     state: State,
     after_fade: AfterFade,
@@ -125,7 +124,6 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         let deadline = phase.map_or(period, |phase| (phase * f64::from(period)) as u32);
         Self {
             rendering,
-            host: E::Host::silent(),
             energy: phase.map_or_else(EnergyMonitor::default, EnergyMonitor::with_phase),
             state: State::Disarmed,
             after_fade: AfterFade::Release,
@@ -146,11 +144,6 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             link_deadline: link_timeout,
             link_lost: false,
         }
-    }
-
-    /// The same loop with this host in place of a silent one.
-    pub fn with_host(self, host: E::Host) -> Self {
-        Self { host, ..self }
     }
 
     /// One interrupt.
@@ -188,7 +181,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         let mut pending = inbox.pending();
         let (mut code, mut limit) = (output.code, output.limit);
         if E::Host::IS_PRESENT {
-            let (torque, is_refused) = self.host.tick(step);
+            let (torque, is_refused) = self.rendering.host_mut().tick(step);
             code = self.rendering.servo().code_beside(torque);
             if is_refused {
                 limit = LimitReason::Energy;

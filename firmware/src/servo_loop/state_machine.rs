@@ -40,18 +40,29 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             State::Disarmed | State::Faulted => self.idle(inbox),
             State::Aligning => self.wait_for_alignment(hardware, inbox),
         }
-        let is_running = self.state == State::Running;
-        if !is_running {
-            self.host.rest();
-        }
         if E::Host::IS_PRESENT {
-            let (tick, count) = (self.tick, self.rendering.servo().low_count());
-            let tick = TickState { tick, count, is_running, state: self.state as u32 };
-            self.host.exchange(inbox.host(), tick);
+            self.serve_host(inbox);
         }
         if let Some(number) = requests.status {
             inbox.reply_with_status(number, &self.status(dropped));
         }
+    }
+
+    /// The work for a host beside the servo.
+    fn serve_host(&mut self, inbox: &Incoming<'_, E, N, M>) {
+        let opening = match self.state {
+            State::Running => Some(0),
+            State::FadingIn => {
+                let steps = self.rendering.servo_mut().clamp().steps_to_open();
+                Some(steps.div_ceil(self.ramp))
+            }
+            _ => None,
+        };
+        let (tick, count) = (self.tick, self.rendering.servo().low_count());
+        let tick = TickState { tick, count, opening, state: self.state as u32 };
+        let host = self.rendering.host_mut();
+        host.wait(opening.is_some() || self.state == State::FadingOut);
+        host.exchange(inbox.host(), tick);
     }
 
     fn arm(&mut self, hardware: &mut impl Hardware) -> Reply {
@@ -130,6 +141,7 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.after_fade = after_fade;
         self.state = State::FadingOut;
         self.rendering.servo_mut().clamp_to_held_torque();
+        self.rendering.host_mut().fade_out(self.ramp);
     }
 
     fn fade_in(&mut self, inbox: &Incoming<'_, E, N, M>) {
@@ -144,21 +156,28 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     }
 
     fn fade_out(&mut self, hardware: &mut impl Hardware, inbox: &mut Incoming<'_, E, N, M>) {
-        // The clamp was shut before this tick, so this tick's code was mid-scale, or a host's torque alone.
+        // The clamp was shut before this tick, so this tick's code was mid-scale, or a host's torque alone,
+        // which fades as fast.
         if !self.rendering.servo_mut().clamp().is_shut() {
             for _ in 0..self.ramp {
                 self.rendering.servo_mut().clamp().close();
             }
             return;
         }
+        if !self.rendering.host().is_at_rest() {
+            return;
+        }
         match self.after_fade {
             AfterFade::Render => {
+                if self.waits_for_host(inbox) {
+                    return;
+                }
                 self.swap(inbox);
                 self.begin_settling(SETTLING);
             }
             AfterFade::Release => {
                 hardware.amplifier(false);
-                self.host.cut(false);
+                self.rendering.host_mut().cut(false);
                 self.state = State::Disarmed;
                 inbox.off();
             }

@@ -64,12 +64,22 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// Replaces the running set by the waiting set, as a whole and between two ticks. The clamps of both sets
     /// are shut.
     pub(super) fn swap(&mut self, inbox: &mut Incoming<'_, E, N, M>) -> bool {
+        if self.waits_for_host(inbox) {
+            return false;
+        }
         let Some(mut set) = inbox.set() else { return false };
         set.servo_mut().take_position_from(self.rendering.servo());
+        set.host_mut().take_over(self.rendering.host());
         set.rest_here();
         self.rendering = set;
         inbox.swapped();
         true
+    }
+
+    /// Whether a waiting set has to wait until the amplifier has given more of a host's torque.
+    pub(super) fn waits_for_host(&self, inbox: &Incoming<'_, E, N, M>) -> bool {
+        let may_pass = |set: &PreparedServo<E, N, M>| self.rendering.host().may_pass_to(set.host());
+        E::Host::IS_PRESENT && !inbox.waiting_set().is_none_or(may_pass)
     }
 
     /// Keeps the clamp shut for so many ticks: until a new set has samples of the device's motion, or a torque

@@ -14,8 +14,8 @@ use crate::build_error::BuildError;
 use crate::certificate::{Parameter, certify_scene, scene_data, timing_checked};
 use crate::current::{Push, ReturnedEnergy};
 use crate::environment::{EnvironmentModel, SupportsTiming};
-use crate::host::{BesideServo, HostError, HostTorque, ServoNumbers};
-use crate::number::{Format, Number};
+use crate::host::{BesideServo, HostResponse, HostTimes, ServoNumbers};
+use crate::number::Number;
 use crate::output_timing::OutputMode;
 use crate::rendering::Rendering;
 use crate::scene::Scene;
@@ -165,49 +165,30 @@ where
     let timed = timing_checked(scene, N::FORMAT)?;
     check_returned(&scene, transducers, options).map_err(|_| Step::Servo)?;
     let rendering = PreparedServo::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
-    let mut margin = timed.margin_with(options.injection.unwrap_or(0.0));
-    if let Some(host) = scene.environment.host() {
-        check_host(&host, &scene, transducers, margin).map_err(|_| Step::Servo)?;
-        margin -= host.damping;
-    }
-    Ok(Prepared { scene, margin: Some(margin), rendering })
+    let margin = timed.margin_with(options.injection.unwrap_or(0.0));
+    let prepared = Prepared { scene, margin: Some(margin), rendering };
+    if E::Host::IS_PRESENT { beside_host(prepared, transducers, options) } else { Ok(prepared) }
 }
 
-/// Checks the program's host against the scene's margin in N m s/rad and its torque limit.
-fn check_host<E>(
-    host: &HostTorque,
-    scene: &Scene<E>,
-    transducers: &Transducers,
-    margin: f64,
-) -> Result<(), HostError> {
-    host.check_share(Some(margin))?;
-    host.check_range(scene.torque_limit, transducers.full_scale_torque)
-}
-
-/// The host beside a program's servo, with a full tank.
-///
-/// # Errors
-/// If there is no proof for it.
-pub fn host<E, N, M>(
-    scene: &Scene<E>,
+/// The set with its host, whose tank is full and whose share is taken from the margin.
+fn beside_host<E, N, M>(
+    set: Prepared<E, N, M>,
     transducers: &Transducers,
     options: &RenderingOptions,
-) -> Result<E::Host, RenderError>
+) -> Result<Prepared<E, N, M>, Step>
 where
     E: Tunable<N>,
     N: Number,
     M: OutputMode,
 {
-    let Some(host) = scene.environment.host() else { return Ok(E::Host::silent()) };
-    let servo = ServoNumbers {
-        latency: &scene.latency,
-        timing: scene.timing,
-        output: M::TIMING,
-        radians_per_count: transducers.radians_per_count()?,
-        format: N::FORMAT,
-        has_bridge: options.returned.is_some(),
-    };
-    Ok(E::Host::beside(&host, &servo)?)
+    let Prepared { scene, margin, rendering } = set;
+    let budget = scene.environment.budget();
+    let times = (M::TIMING, N::FORMAT);
+    let servo = ServoNumbers::of(&scene, margin, transducers, options, times);
+    let host = E::Host::beside(&budget, &servo.map_err(|_| Step::Servo)?);
+    let rendering = rendering.with_host(host.map_err(|_| Step::Servo)?);
+    let share = E::Host::host(&budget).map_or(0.0, |host| host.damping);
+    Ok(Prepared { scene, margin: margin.map(|margin| margin - share), rendering })
 }
 
 /// Whether the program may be for a board's own bridge. The programs of other boards have no code for the energy
@@ -248,31 +229,12 @@ where
     let timed = certify_scene(changed, N::FORMAT)?.time()?;
     check_returned(&changed, transducers, options)?;
     PreparedServo::<E, N, M>::build(&timed, transducers, options)?;
-    if let Some(host) = changed.environment.host() {
-        let margin = timed.margin_with(options.injection.unwrap_or(0.0));
-        check_host(&host, &changed, transducers, margin)?;
+    if let Some(host) = E::Host::host(&changed.environment.budget()) {
+        let margin = Some(timed.margin_with(options.injection.unwrap_or(0.0)));
+        let times = (M::TIMING, N::FORMAT);
+        let servo = ServoNumbers::of(&changed, margin, transducers, options, times)?;
+        HostResponse::beside(&host, &servo, HostTimes::of(&changed.latency))?;
     }
-    Ok(())
-}
-
-/// The reason why a board refuses a changed scene because of its host, if nothing else is wrong with it.
-///
-/// # Errors
-/// The error of the set.
-pub fn explain_host<E, M>(
-    host: &HostTorque,
-    scene: &Scene<E>,
-    transducers: &Transducers,
-    options: &RenderingOptions,
-    format: Format,
-) -> Result<(), RenderError>
-where
-    E: EnvironmentModel + SupportsTiming<M>,
-    M: OutputMode,
-{
-    let timed = certify_scene(*scene, format)?.time()?;
-    let margin = timed.margin_with(options.injection.unwrap_or(0.0));
-    check_host(host, scene, transducers, margin)?;
     Ok(())
 }
 

@@ -1,7 +1,9 @@
 use super::*;
 use crate::certificate::Certified;
 use crate::encoder::CounterWidth;
-use crate::environment::{Canceller, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Wall};
+use crate::environment::{
+    Anticogging, Canceller, CoggingMap, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Wall,
+};
 use crate::scene::Coupling;
 use crate::scene_type::Typed;
 use crate::servo::Latched;
@@ -66,6 +68,7 @@ fn every_scene_has_the_parameters_of_its_parts() {
     );
 }
 
+static COGGING: CoggingMap<8> = CoggingMap::of(&[1e-3, -1e-3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
 static DETENTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.02)]);
 
 fn changes_one<E: NamedParameters + Copy>(before: Scene<E>, wanted: Parameter, value: f64) {
@@ -84,6 +87,7 @@ fn a_change_is_made_where_it_belongs_and_nowhere_else() {
         assert_eq!(super::name(wanted), Some(name));
         let filtered = Wall::damped(2.0, 0.01, 1).filtered(0.5);
         let wall = free_mode_wall(0.02, filtered.behind(0.1)).with(Parameter::Drag, 0.01).unwrap();
+        let wall = wall.beside(Anticogging::of(&COGGING, 1.0));
         let value = 0.125 + i as f64;
         // No scene has the numbers of both, and those of several modes have no number but the mode's.
         match wanted {
@@ -153,7 +157,8 @@ fn what_cannot_be_changed_is_refused_in_a_sentence() {
     assert_eq!(
         refusal(&[(Parameter::Period, 0.002)]),
         "the period is fixed while the program runs; the tunable parameters are stiffness, damping, \
-         filter, face, residual, coupling.stiffness, torque_limit, torque, count, centre, mode, drag"
+         filter, face, residual, coupling.stiffness, torque_limit, torque, count, centre, mode, drag, \
+         anticogging"
     );
     assert!(refusal(&[(Parameter::DeviceDamping, 1.0)]).starts_with("the device damping is fixed"));
     let twice = [(Parameter::Face, 0.1), (Parameter::Stiffness, 1.0), (Parameter::Face, 0.1)];

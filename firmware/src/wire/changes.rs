@@ -4,7 +4,7 @@ use heapless::Vec;
 
 use crate::certificate::Parameter;
 
-/// The largest number of changes in a set: more than any scene has.
+/// The largest number of changes in a set; of a scene with more parameters the first are tunable.
 pub const MAX_CHANGES: usize = 8;
 
 /// Numbers of a scene with their present or requested values, in the units of a scene file. They are applied

@@ -7,7 +7,7 @@ use super::changes::Changes;
 use crate::build_error::BuildError;
 use crate::certificate::{Parameter, Rejection};
 use crate::environment::{Environment, Wall};
-use crate::host::HostTorque;
+use crate::host::{HostResponse, HostTimes, HostTorque, ServoNumbers};
 use crate::number::{Format, Number};
 use crate::scene::Scene;
 use crate::servo::{
@@ -41,7 +41,7 @@ fn with_spring(scene: &Scene) -> Scene {
 impl Description {
     /// The reason why the board refuses changes of the running scene, computed from the same numbers with the
     /// same code, because the board has no room for the text. `has` lists the parameters that can be changed
-    /// there.
+    /// there, and `host` is the budget of a host beside the scene.
     ///
     /// # Errors
     /// The reason. `Ok` if the changes can run, or if the servo cannot be built in one of the rarer number
@@ -49,39 +49,16 @@ impl Description {
     pub fn explain(
         &self,
         has: Parameters,
+        host: Option<&HostTorque>,
         changes: &[(Parameter, f64)],
     ) -> Result<(), RenderError> {
         tuning::check(has, changes)?;
         match self.other_mode(changes) {
-            None => self.judge(changes),
-            Some(mode) => self.judge_without(mode, changes),
-        }
-    }
-
-    /// The reason why the board refuses changes of the running scene because of its host, if nothing else is wrong
-    /// with them. With an output at a phase none is known here.
-    ///
-    /// # Errors
-    /// The reason.
-    pub fn explain_host(
-        &self,
-        host: &HostTorque,
-        changes: &[(Parameter, f64)],
-    ) -> Result<(), RenderError> {
-        let Self { scene, transducers, rendering, format, .. } = self;
-        let scene = &tuning::apply(scene, changes)?;
-        match self.timing {
-            OutputTiming::Latched => {
-                tuning::explain_host::<_, Latched>(host, scene, transducers, rendering, *format)
+            None => {
+                self.judge(changes)?;
+                host.map_or(Ok(()), |host| self.judge_host(host, changes))
             }
-            OutputTiming::Simultaneous => tuning::explain_host::<_, Simultaneous>(
-                host,
-                scene,
-                transducers,
-                rendering,
-                *format,
-            ),
-            OutputTiming::AtPhase(_) => Ok(()),
+            Some(mode) => self.judge_without(mode, changes),
         }
     }
 
@@ -104,6 +81,23 @@ impl Description {
             ) => Err(reason),
             _ => Err(RenderError::OtherMode { mode }),
         }
+    }
+
+    /// The reason why a host is refused beside the scene with these changes.
+    fn judge_host(
+        &self,
+        host: &HostTorque,
+        changes: &[(Parameter, f64)],
+    ) -> Result<(), RenderError> {
+        let Self { transducers, rendering, format, timing, .. } = self;
+        let certified = tuning::apply(&self.scene, changes)?.certify_in(*format)?;
+        let (scene, injected) = (certified.as_data(), rendering.injection.unwrap_or(0.0));
+        let margin = certified.assessment().margin_injecting(scene, injected);
+        let servo = ServoNumbers::of(scene, margin, transducers, rendering, (*timing, *format))?;
+        let is_plain = HostTimes::of(&scene.latency).is_plain;
+        let ticks = usize::from(*timing == OutputTiming::Latched);
+        HostResponse::beside(host, &servo, HostTimes { ticks, is_plain })?;
+        Ok(())
     }
 
     /// The reason why the scene with these changes is refused.

@@ -1,10 +1,11 @@
 //! The torque of a host on the wire: a command, and the board's report of the tick that took it.
 //!
-//! A line of 460,800 bit/s carries 46 bytes in a millisecond each way. A command takes at most 18 of them, and
+//! A line of 460,800 bit/s carries 46 bytes in a millisecond each way. A command takes at most 19 of them, and
 //! its report 43, with frame and checksum: a stream at 1 kHz fits, and a slower one leaves room for telemetry.
 
 use serde::{Deserialize, Serialize};
 
+use super::message::Id;
 use crate::host::{HostTorque, Taken};
 use crate::servo_loop::State;
 use crate::torque::LimitReason;
@@ -20,10 +21,26 @@ pub struct HostCommand {
     pub ramp: u16,
 }
 
+/// What a host wants.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum HostRequest {
+    /// A torque. Answered by [`HostReport::State`] of the tick that takes it.
+    Torque(HostCommand),
+    /// Another budget, under the rules of other parameters. The tank keeps its energy, as far as the new one
+    /// has room for it. Answered by [`Answer`](super::message::ToHostWith::Answer) once it is in force, after a
+    /// [`HostReport::Budget`].
+    Budget {
+        /// Comes back with the answer.
+        id: Id,
+        /// The budget.
+        budget: HostTorque,
+    },
+}
+
 /// What a host may do, and what became of its torque.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum HostReport {
-    /// The budget; part of the greeting of a program that takes torques.
+    /// The budget in force: part of the greeting of a program that takes torques, and sent when it changes.
     Budget(HostTorque),
     /// The tick that took a command.
     State(HostState),
@@ -92,10 +109,11 @@ mod tests {
             invalid: u16::MAX,
         };
         let mut buffer = [0; 64];
-        let command = encode(&ToBoard::Torque(command), &mut buffer).unwrap().len();
+        let command =
+            encode(&ToBoard::Host(HostRequest::Torque(command)), &mut buffer).unwrap().len();
         let report = ToHost::<&str>::Host(HostReport::State(state));
         let report = encode(&report, &mut buffer).unwrap().len();
-        assert_eq!((command, report), (18, 43));
+        assert_eq!((command, report), (19, 43));
         // A byte has ten bits on the line.
         assert!(report * 10 * 1000 <= BAUD as usize);
     }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub use super::changes::{Changes, MAX_CHANGES};
 use super::decoder::Discarded;
 use super::description::Description;
-use super::host::{HostCommand, HostReport};
+use super::host::{HostReport, HostRequest};
 use super::telemetry::Batch;
 use crate::fault::{Fault, FaultRecord};
 use crate::power_reading::PowerReading;
@@ -22,7 +22,7 @@ use crate::servo_loop::State;
 
 /// Version of the messages. Board and host must have the same; [`ToBoard::Hello`] and [`ToHost::Welcome`]
 /// have the same beginning in all versions, so that each side can report its version.
-pub const PROTOCOL: u16 = 11;
+pub const PROTOCOL: u16 = 12;
 
 /// Longest message to a board, in bytes: the longest set.
 pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;
@@ -33,12 +33,12 @@ pub const LONGEST_TO_HOST: usize = 372;
 pub type Id = u16;
 
 /// Requests of a host.
-pub type ToBoard = ToBoardWith<HostCommand>;
+pub type ToBoard = ToBoardWith<HostRequest>;
 
 /// Replies and telemetry. `S` is text.
 pub type ToHost<S> = ToHostWith<S, HostReport>;
 
-/// Requests to a program that takes commands `C` from a host; a program without a host takes none.
+/// Requests to a program that takes requests `C` of a host for torques; a program without a host takes none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToBoardWith<C> {
     /// Requests the identity of the board. Answered by [`ToHost::Welcome`], [`ToHost::PreviousFault`] if
@@ -75,8 +75,8 @@ pub enum ToBoardWith<C> {
         /// Comes back with the answer.
         id: Id,
     },
-    /// The torque that the host wants. Answered by [`HostReport::State`] of the tick that takes it.
-    Torque(C),
+    /// A torque that the host wants, or another budget for them.
+    Host(C),
 }
 
 /// Replies and telemetry of a program with reports `R` to a host. `S` is text.

@@ -144,7 +144,8 @@ impl Errors {
     /// The torque of the environment, at the position where it is: a wall that switches or is
     /// clipped included. `None`: of another environment.
     pub fn alone(scene: &Scene, format: Format, bound: f64) -> Option<Self> {
-        let Environment::Parts(Parts { canceller, wall, profile, drag }) = &scene.environment
+        let Environment::Parts(Parts { canceller, wall, profile, drag, anticogging: None }) =
+            &scene.environment
         else {
             return None;
         };

@@ -414,6 +414,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
                 wall: (which < 2).then_some(beside),
                 profile: Some(profile),
                 drag: None,
+                ..Parts::NONE
             }
             .sum();
             Knob::Gain

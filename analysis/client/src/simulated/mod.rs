@@ -137,7 +137,6 @@ impl SimulatedBoard {
         let program = Program { scene, transducers, rendering, options };
         program.check()?;
         tuning::explain::<_, f32, Latched>(&program.scene, &[], &transducers, &rendering)
-            .and_then(|()| tuning::host::<_, f32, Latched>(&scene, &transducers, &rendering))
             .map_err(|reason| not_rendered(reason.step(), reason))?;
         let hand = HandTrajectory::for_environment(&file.scene.environment);
         let hand = hand.repeated_until(HAND_DURATION);

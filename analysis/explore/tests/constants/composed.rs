@@ -15,6 +15,7 @@ pub const SCENE: Scene = Scene {
         drag: Some(Drag { damping: 0.0005, delay: 1 }),
         wall: Some(Wall::damped(2.0, 0.001, 1).behind(1.2)),
         profile: Some(Profile::of(&KNOTS, 1)),
+        ..Parts::NONE
     }
     .sum(),
     latency: Latency::NONE,

@@ -18,7 +18,7 @@ use haptic_servo::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest
 use thiserror::Error;
 
 use super::OtherProtocol;
-use super::request::{Reply, Request, RequestResult, RunningScene};
+use super::request::{Reply, Request, RequestResult, no_host, refusal_in_words};
 use super::timing::{QUERY, REQUEST, SILENCE, STATUS_INTERVAL};
 
 /// A board that has identified itself.
@@ -94,8 +94,8 @@ pub struct Client {
     pub parameters: Option<ActiveParameters>,
     /// The running scene, once it is known.
     pub description: Option<Description>,
-    /// What a host may do beside it.
-    host: Option<HostTorque>,
+    /// What its host may do now, if it has one.
+    pub budget: Option<HostTorque>,
     pending: Option<Pending>,
 }
 
@@ -103,7 +103,6 @@ pub struct Client {
 struct Greeting {
     program: Option<String>,
     previous_fault: Option<PreviousFault>,
-    budget: Option<HostTorque>,
     again: Duration,
     end: Duration,
 }
@@ -129,7 +128,7 @@ impl Client {
     /// Greets the board at an address. `id` should not have been used by an earlier client.
     pub fn start(address: String, id: Id, now: Duration) -> Self {
         let (again, end) = (now + QUERY.again, now + QUERY.end);
-        let greeting = Greeting { program: None, previous_fault: None, budget: None, again, end };
+        let greeting = Greeting { program: None, previous_fault: None, again, end };
         Self {
             address,
             decoder: Decoder::new(),
@@ -142,15 +141,9 @@ impl Client {
             status: None,
             parameters: None,
             description: None,
-            host: None,
+            budget: None,
             pending: None,
         }
-    }
-
-    /// The running scene with its parameters, once both are known.
-    pub fn running(&self) -> Option<RunningScene<'_>> {
-        let (description, parameters) = self.description.as_ref().zip(self.parameters.as_ref())?;
-        Some(RunningScene { description, parameters, host: self.host.as_ref() })
     }
 
     /// Address of the board.
@@ -235,9 +228,12 @@ impl Client {
     pub fn request(&mut self, request: Request, now: Duration) -> Result<(), Reply> {
         self.check_free(&request)?;
         self.give_up();
-        self.last_id = self.last_id.wrapping_add(1);
-        let id = self.last_id;
-        self.send(&request.message(id));
+        let id = self.last_id.wrapping_add(1);
+        let Some(message) = request.message(id, self.budget) else {
+            return Err(Reply::Answered(no_host()));
+        };
+        self.last_id = id;
+        self.send(&message);
         self.events.push_back(Event::Reply(request.clone(), Reply::Asked));
         let (again, end) = (now + REQUEST.again, now + REQUEST.end);
         self.pending = Some(Pending { id, request, again, end, refused: None });
@@ -287,8 +283,8 @@ impl Client {
             pending.again = now + QUERY.again;
             self.send_missing();
         } else {
-            let message = pending.request.message(pending.id);
-            self.send(&message);
+            let message = pending.request.message(pending.id, self.budget);
+            message.iter().for_each(|message| self.send(message));
         }
     }
 
@@ -301,14 +297,14 @@ impl Client {
                 return Err(OtherProtocol { address, program, theirs }.into());
             }
             ToHost::PreviousFault(fault) => greeting.previous_fault = Some(fault),
-            ToHost::Host(HostReport::Budget(budget)) => greeting.budget = Some(budget),
+            ToHost::Host(HostReport::Budget(budget)) => self.budget = Some(budget),
             // The last part of the greeting.
             ToHost::Board(units) => {
                 if let Some(program) = greeting.program.take() {
-                    let Greeting { previous_fault, budget, .. } = *greeting;
+                    let (previous_fault, budget) = (greeting.previous_fault, self.budget);
                     let connected = Connected { program, units, previous_fault, budget };
                     self.events.push_back(Event::Connected(connected));
-                    (self.greeting, self.heard, self.host) = (None, now, budget);
+                    (self.greeting, self.heard) = (None, now);
                 }
             }
             _ => {}
@@ -346,11 +342,9 @@ impl Client {
             }
             ToHost::Answer { id, outcome } => self.take_answer(id, outcome, now),
             ToHost::Host(HostReport::State(state)) => self.events.push_back(Event::Host(state)),
+            ToHost::Host(HostReport::Budget(budget)) => self.budget = Some(budget),
             // Replies to a repeated hello.
-            ToHost::Welcome { .. }
-            | ToHost::PreviousFault(_)
-            | ToHost::Board(_)
-            | ToHost::Host(HostReport::Budget(_)) => {}
+            ToHost::Welcome { .. } | ToHost::PreviousFault(_) | ToHost::Board(_) => {}
         }
     }
 
@@ -372,9 +366,10 @@ impl Client {
     /// remedies that a board has no room to look for.
     fn explain(&mut self) {
         if let Some(Pending { request, refused: Some(step), .. }) = &self.pending
-            && let Some(running) = self.running()
+            && let Some((description, parameters)) =
+                self.description.as_ref().zip(self.parameters.as_ref())
         {
-            let result = running.refusal_in_words(*step, &request.changes());
+            let result = refusal_in_words(*step, request, self.budget, description, parameters);
             self.answer(result);
         }
     }

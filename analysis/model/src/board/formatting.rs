@@ -15,7 +15,12 @@ pub fn numbers(parameters: &ActiveParameters) -> String {
 
 /// Parameters as they are typed.
 pub fn changes(changes: &Changes) -> String {
-    let each = changes.iter().map(|(parameter, value)| format!("{}={value}", name(*parameter)));
+    named(changes.iter().map(|(parameter, value)| (name(*parameter), *value)).collect::<Vec<_>>())
+}
+
+/// The same by their names.
+pub fn named(changes: impl AsRef<[(&'static str, f64)]>) -> String {
+    let each = changes.as_ref().iter().map(|(name, value)| format!("{name}={value}"));
     each.collect::<Vec<_>>().join(" ")
 }
 

@@ -1,6 +1,7 @@
 //! A running board in words and units, the same on a terminal and in a browser. The transport of its messages
 //! is elsewhere.
 
+pub mod budget;
 pub mod change;
 pub mod client;
 pub mod formatting;

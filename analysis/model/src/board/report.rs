@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::client::Connected;
-use super::{Power, formatting};
+use super::{Power, budget, formatting};
 
 /// The state of a board.
 #[derive(Clone, Debug, Serialize)]
@@ -49,13 +49,15 @@ impl<'a> Report<'a> {
         let named = |(parameter, value): &(Parameter, f64)| {
             (formatting::name(*parameter).to_owned(), (*value).into())
         };
+        let budget = board.budget.map(budget::numbers).into_iter().flatten();
+        let budget = budget.map(|(name, value)| (name.to_owned(), value.into()));
         Self {
             program: &board.program,
             refused,
             sets: running.sets,
             margin: running.margin,
             longest_gap: units.longest_gap,
-            parameters: running.values.iter().map(named).collect(),
+            parameters: running.values.iter().map(named).chain(budget).collect(),
             state: status.state.as_str(),
             fault: status.fault.map(|fault| fault.to_string()),
             remembered: board.previous_fault.as_ref().map(formatting::previous_fault),

@@ -6,9 +6,10 @@ use haptic_servo::parameter::Parameter;
 use haptic_servo::servo::Step;
 use haptic_servo::tuning::{self, Parameters, RenderError};
 use haptic_servo::wire::description::Description;
+use haptic_servo::wire::host::HostRequest;
 use haptic_servo::wire::message::{ActiveParameters, Changes, Id, Outcome, Refusal, ToBoard};
 
-use super::formatting;
+use super::{budget, formatting};
 use crate::remedy_search::{RemedySearch, would_pass};
 
 /// A request to a board.
@@ -16,6 +17,8 @@ use crate::remedy_search::{RemedySearch, would_pass};
 pub enum Request {
     /// Other parameters, all or none.
     Set(Changes),
+    /// Other numbers of its host's budget, by their names.
+    Budget(Vec<(&'static str, f64)>),
     /// Switch the amplifier on; clears a fault.
     Arm,
     /// Fade the torque out and switch the amplifier off.
@@ -25,13 +28,24 @@ pub enum Request {
 }
 
 impl Request {
-    /// Its message to the board.
-    pub fn message(&self, id: Id) -> ToBoard {
-        match self {
+    /// Its message to a board with this budget in force; `None` if it needs a host, which the board has not.
+    pub fn message(&self, id: Id, host: Option<HostTorque>) -> Option<ToBoard> {
+        Some(match self {
             Self::Set(changes) => ToBoard::Set { id, changes: changes.clone() },
+            Self::Budget(_) => {
+                ToBoard::Host(HostRequest::Budget { id, budget: self.budget(host)? })
+            }
             Self::Arm => ToBoard::Arm { id },
             Self::Disarm => ToBoard::Disarm { id },
             Self::Align => ToBoard::Align { id },
+        })
+    }
+
+    /// The budget after it, of that in force.
+    pub fn budget(&self, host: Option<HostTorque>) -> Option<HostTorque> {
+        match self {
+            Self::Budget(changes) => host.map(|host| budget::changed(host, changes)),
+            Self::Set(_) | Self::Arm | Self::Disarm | Self::Align => host,
         }
     }
 
@@ -39,7 +53,7 @@ impl Request {
     pub fn changes(&self) -> Changes {
         match self {
             Self::Set(changes) => changes.clone(),
-            Self::Arm | Self::Disarm | Self::Align => Changes::new(),
+            Self::Budget(_) | Self::Arm | Self::Disarm | Self::Align => Changes::new(),
         }
     }
 
@@ -47,6 +61,7 @@ impl Request {
     pub fn words(&self) -> String {
         match self {
             Self::Set(changes) => formatting::changes(changes),
+            Self::Budget(changes) => formatting::named(changes),
             Self::Arm => "arm".to_owned(),
             Self::Disarm => "disarm".to_owned(),
             Self::Align => "align".to_owned(),
@@ -107,59 +122,77 @@ impl From<Outcome> for RequestResult {
     }
 }
 
-/// The scene that runs on a board.
-#[derive(Clone, Copy, Debug)]
-pub struct RunningScene<'a> {
-    /// Its description.
-    pub description: &'a Description,
-    /// Its parameters.
-    pub parameters: &'a ActiveParameters,
-    /// What a host may do beside it.
-    pub host: Option<&'a HostTorque>,
+/// The refusal of another budget by a program without a host.
+pub fn no_host() -> RequestResult {
+    let names = budget::NAMES.join(", ");
+    RequestResult::Refused(format!("this program takes no torques of a host: it has no {names}"))
 }
 
-impl RunningScene<'_> {
-    /// The reason why the board refuses changes.
-    ///
-    /// # Errors
-    /// The reason.
-    pub fn explain(&self, changes: &Changes) -> Result<(), RenderError> {
-        let has = self.parameters.values.iter().map(|(parameter, _)| *parameter);
-        self.description.explain(Parameters::of(has), changes)?;
-        self.host.map_or(Ok(()), |host| self.description.explain_host(host, changes))
+/// Why a board has refused a request at this step, with its budget then: the host judges them again, with the remedies that a board
+/// has no room to look for.
+pub fn refusal_in_words(
+    step: Step,
+    request: &Request,
+    budget: Option<HostTorque>,
+    description: &Description,
+    parameters: &ActiveParameters,
+) -> RequestResult {
+    let changes = request.changes();
+    if let Err((reason, words)) = judge(request, budget, description, parameters)
+        && reason.step() == step
+    {
+        return RequestResult::Refused(words);
     }
+    if let Some(mode) = description.other_mode(&changes) {
+        return RequestResult::Refused(RenderError::OtherMode { mode }.to_string());
+    }
+    Outcome::Refused(Refusal::Set(step)).into()
+}
 
-    /// The refusal of the board's step in words.
-    pub fn refusal_in_words(&self, step: Step, changes: &Changes) -> RequestResult {
-        if let Err(reason) = self.explain(changes)
-            && reason.step() == step
-        {
-            return RequestResult::Refused(self.in_words(&reason, changes));
-        }
-        if let Some(mode) = self.description.other_mode(changes) {
-            return RequestResult::Refused(RenderError::OtherMode { mode }.to_string());
-        }
-        Outcome::Refused(Refusal::Set(step)).into()
-    }
+/// Judges a request like the board that has this budget.
+///
+/// # Errors
+/// The reason of a refusal; and in words, with the changes of one number that the board would take instead.
+pub fn judge(
+    request: &Request,
+    budget: Option<HostTorque>,
+    description: &Description,
+    parameters: &ActiveParameters,
+) -> Result<(), (RenderError, String)> {
+    let (changes, host) = (request.changes(), request.budget(budget));
+    let explained = description.explain(names(parameters), host.as_ref(), &changes);
+    explained.map_err(|reason| {
+        let words = in_words(&reason, &changes, host.as_ref(), description, parameters);
+        (reason, words)
+    })
+}
 
-    /// The reason of a refusal, with the changes of one number that the board would take instead.
-    pub fn in_words(&self, reason: &RenderError, changes: &Changes) -> String {
-        let Ok(scene) = tuning::apply(&self.description.scene, changes) else {
-            return reason.to_string();
-        };
-        let passes = |parameter: Parameter, value: f64| {
-            let others = changes.iter().filter(|(other, _)| *other != parameter).copied();
-            let mut changes: Changes = others.collect();
-            changes.push((parameter, value)).is_ok() && self.explain(&changes).is_ok()
-        };
-        let search = RemedySearch { scene: &scene, passes };
-        match reason {
-            RenderError::Rejected(rejection) => {
-                let found = search.behind(&rejection.remedies());
-                rejection.reason_in(Format::F64).as_str().to_owned() + &would_pass(None, &found)
-            }
-            RenderError::Timing(error) => error.to_string() + &would_pass(None, &search.searched()),
-            other => other.to_string(),
+fn in_words(
+    reason: &RenderError,
+    changes: &Changes,
+    host: Option<&HostTorque>,
+    description: &Description,
+    parameters: &ActiveParameters,
+) -> String {
+    let Ok(scene) = tuning::apply(&description.scene, changes) else { return reason.to_string() };
+    let passes = |parameter: Parameter, value: f64| {
+        let others = changes.iter().filter(|(other, _)| *other != parameter).copied();
+        let mut changes: Changes = others.collect();
+        changes.push((parameter, value)).is_ok()
+            && description.explain(names(parameters), host, &changes).is_ok()
+    };
+    let search = RemedySearch { scene: &scene, passes };
+    match reason {
+        RenderError::Rejected(rejection) => {
+            let found = search.behind(&rejection.remedies());
+            rejection.reason_in(Format::F64).as_str().to_owned() + &would_pass(None, &found)
         }
+        RenderError::Timing(error) => error.to_string() + &would_pass(None, &search.searched()),
+        other => other.to_string(),
     }
+}
+
+/// The parameters that can be changed.
+pub fn names(parameters: &ActiveParameters) -> Parameters {
+    Parameters::of(parameters.values.iter().map(|(parameter, _)| *parameter))
 }

@@ -8,6 +8,7 @@ use haptic_servo::number::Format;
 use haptic_servo::output_timing::{READ_WITHIN, SHORTEST_PHASE};
 use haptic_servo::parameter::Parameter;
 use haptic_servo::period;
+use haptic_servo::rendering::context_beside_anticogging;
 use haptic_servo::scene::{Coupling, EncoderReading, Latency, Scene, TimeRange};
 
 use super::edge::{Edge, edge, inward};
@@ -327,7 +328,8 @@ impl Search {
             Kind::Matched => Coupling::Matched,
             Kind::Spring => {
                 let longest = scene.timing.worst_period.unwrap_or(period);
-                let standard = 2.0 * scene.device.passivity() / longest;
+                let left = context_beside_anticogging(&scene, Format::F64).passivity;
+                let standard = 2.0 * left / longest;
                 Coupling::Spring { stiffness: inward(standard, 2.0).next()? }
             }
         };

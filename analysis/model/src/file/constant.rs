@@ -5,7 +5,8 @@ pub mod layout;
 use std::collections::BTreeSet;
 
 use haptic_servo::environment::{
-    Canceller, Coefficients, Damper, Environment, Parts, Profile, Rational, Shape, Side, Wall,
+    Anticogging, Canceller, Coefficients, Damper, Environment, Parts, Profile, Rational, Shape,
+    Side, Wall,
 };
 use haptic_servo::scene::{EncoderReading, Latency, TimeRange};
 
@@ -41,11 +42,15 @@ pub fn constants(file: &SceneFile) -> Written {
 pub fn of(file: &SceneFile) -> Result<Constants, String> {
     let SceneFile { scene, shapes, .. } = file;
     let shapes = shapes.as_ref();
-    let environment = environment(&scene.environment, shapes)?;
-    let knots = match (scene.environment.profile(), shapes) {
+    let mut environment = environment(&scene.environment, shapes)?;
+    let mut knots = match (scene.environment.profile(), shapes) {
         (Some(profile), Some(shapes)) => knots(shapes, profile.outline().knots) + "\n",
         _ => String::new(),
     };
+    if let Some(learnt) = &scene.environment.parts().anticogging {
+        knots += &(cogging(learnt) + "\n");
+        environment += &format!(".beside(Anticogging::of(&COGGING, {:?}))", learnt.share);
+    }
     let names: BTreeSet<_> = types(&knots).chain(types(&environment)).collect();
     let names = Vec::from_iter(names);
     let mut of_scene = vec!["Coupling", "Device", "Latency", "Scene", "Timing"];
@@ -193,8 +198,7 @@ fn environment(environment: &Environment, shapes: Option<&Shapes>) -> Written {
         }
         some.push(format!("{name}: Some({part})"));
     }
-    let rest = if parts.count() == Parts::KINDS { "" } else { ", ..Parts::NONE" };
-    Ok(format!("Parts {{ {}{rest} }}.sum()", some.join(", ")))
+    Ok(format!("Parts {{ {}, ..Parts::NONE }}.sum()", some.join(", ")))
 }
 
 fn canceller(canceller: &Canceller) -> String {
@@ -273,6 +277,19 @@ fn knots(shapes: &Shapes, cells: u32) -> String {
     format!(
         "/// Torque over angle: a table, which stays in flash.\n{start}{};\n",
         layout::after(start.len(), &table)
+    )
+}
+
+/// The learnt cogging, which stays in flash.
+fn cogging(learnt: &Anticogging) -> String {
+    let torques: Vec<_> = learnt.torques().map(|torque| format!("{torque:?}")).collect();
+    let lines: Vec<_> =
+        torques.chunks(4).map(|line| format!("    {},\n", line.join(", "))).collect();
+    format!(
+        "/// Cogging torque of the motor over a turn of the encoder in N m: a table, which stays in flash.\n\
+         static COGGING: CoggingMap<{}> = CoggingMap::of(&[\n{}]);\n",
+        torques.len(),
+        lines.concat()
     )
 }
 

@@ -2,6 +2,7 @@
 
 use haptic_servo::scene::{Device, TimeRange};
 
+use super::anticogging::anticogging;
 use super::device::{Purpose, device};
 use super::encoder::encoder;
 use super::faults::{Faults, Read};
@@ -28,8 +29,9 @@ pub struct DeviceFile {
 }
 
 /// A file of a device is a table, like that of a scene.
-const ROOT: Key =
-    Key::root("a table of [device], and perhaps `name`, [encoder], [limits], [supply] and [motor]");
+const ROOT: Key = Key::root(
+    "a table of [device], and perhaps `name`, [encoder], [anticogging], [limits], [supply] and [motor]",
+);
 
 /// Reads a device file, or the device of a scene file, which is checked as a whole.
 pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
@@ -47,8 +49,9 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
     }
     let name = top.text(&key::NAME);
     let table = top.needed_table(&key::DEVICE);
-    let [reading, limits, supplied, motor] =
-        [&key::READING, &key::LIMITS, &key::SUPPLY, &key::MOTOR].map(|key| top.table(key));
+    let [reading, learnt, limits, supplied, motor] =
+        [&key::READING, &key::ANTICOGGING, &key::LIMITS, &key::SUPPLY, &key::MOTOR]
+            .map(|key| top.table(key));
     top.finish();
     let limits = limits.and_then(|table| table.map_or(Ok([None; 3]), scene::limits_of));
     // The torque limit may be that of a scene.
@@ -56,6 +59,7 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
         supplied.and_then(|table| table.map(|it| supply(it, Some(f64::INFINITY))).transpose())?;
     let [torque_limit, encoder_step, full_scale] = limits?;
     reading.and_then(|table| table.map(encoder).transpose())?;
+    learnt.and_then(|table| table.map(anticogging).transpose())?;
     motor.and_then(|table| table.map(super::motor::motor).transpose())?;
     let table = table.and_then(|table| device(table, Purpose::Simulate))?;
     let chain = lagging(source.1, table.chain, table.latency.actuator_lag)?;

@@ -38,8 +38,8 @@ pub fn toml(name: &str) -> Option<String> {
     })?;
     let mut lines = vec![format!("name = \"{name} example\"")];
     for table in key::ALL.iter().filter(|key| key.table().is_empty() && **key != &key::NAME) {
-        // A supply or a host that is stated needs values, and most scenes have neither.
-        let is_rare = [&key::SUPPLY, &key::HOST, &key::MOTOR].contains(table);
+        // A map, a supply or a host that is stated needs values, and most scenes have neither.
+        let is_rare = [&key::ANTICOGGING, &key::SUPPLY, &key::HOST, &key::MOTOR].contains(table);
         let comment = if is_rare { "# " } else { "" };
         let header = format!("{comment}[{}]", table.path);
         lines.push("".to_owned());
@@ -49,7 +49,7 @@ pub fn toml(name: &str) -> Option<String> {
         match table.path {
             "environment" => environment(&mut lines, kind, name == COMPOSED),
             "device" => device(&mut lines, keys(), is_chain),
-            "supply" | "host" | "motor" => {
+            "anticogging" | "supply" | "host" | "motor" => {
                 keys().for_each(|key| line(&mut lines, key, key.example, false))
             }
             _ => keys().for_each(|key| line(&mut lines, key, key.example, is_set(key))),

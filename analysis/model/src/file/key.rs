@@ -61,6 +61,7 @@ impl Bound {
             Self::Number(Range::Finite) => format!("a finite number{}", unit_phrase(&unit)),
             Self::Number(Range::Positive) => format!("a finite number greater than 0{unit}"),
             Self::Number(Range::NotNegative) => format!("a finite number, 0{unit} or more"),
+            Self::Number(Range::Share) => "a number from 0 to 1".to_owned(),
             Self::Number(Range::Fraction) => "a number of at least 0 and less than 1".to_owned(),
             Self::Number(Range::Whole(least, most)) => {
                 format!("a whole number from {least} to {most}{unit}")
@@ -292,6 +293,19 @@ keys! {
     /// Readings in a row that may fail their check. The reading before takes their place, and more are a fault.
     /// With a damper or a coupling the torque is held meanwhile: `servo.worst_period` is then as much longer.
     DROPPED = of(Parameter::Dropped), Default(0.0), "1";
+
+    /// The motor's learnt cogging, which the servo opposes outside of the coupling; a device file may have this table,
+    /// too. What opposes it takes a part of the passivity, and the scene certifies with the rest.
+    ANTICOGGING = other("anticogging", "", TABLE), Optional("nothing opposes the cogging"), "";
+    /// Cogging torque, positive in the direction of the angle, at equally spaced angles of a turn of the encoder, the
+    /// first at its zero. Their learnt mean is kept.
+    ANTICOGGING_TORQUE = other("anticogging.torque", "N m", Bound::Other(
+        Form::Numbers,
+        "a list of finite numbers in N m, a power of two of them from 8 to 65536, not all of them 0"
+    )),
+        Needed, "[0.0, -0.002, 0.0, 0.002, 0.0, -0.002, 0.0, 0.002]";
+    /// Share of it that the servo opposes.
+    ANTICOGGING_SHARE = of(Parameter::Anticogging), Default(1.0), "1.0";
 
     /// When the servo runs.
     SERVO = other("servo", "", TABLE), Needed, "";

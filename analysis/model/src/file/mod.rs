@@ -7,6 +7,7 @@
 //! A scene file may name a file with its device, which is read as if it stood in the scene file
 //! ([`key::DEVICE`]).
 
+mod anticogging;
 #[cfg(test)]
 mod any_text;
 pub mod bridge;

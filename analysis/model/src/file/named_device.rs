@@ -10,8 +10,15 @@ use super::texts::Texts;
 use super::tree::{Entry, Node, Value};
 
 /// The keys of a device file, which are those of a scene file. Its name is not that of the scene.
-pub const KEYS: [&Key; 6] =
-    [&key::NAME, &key::DEVICE, &key::READING, &key::LIMITS, &key::SUPPLY, &key::MOTOR];
+pub const KEYS: [&Key; 7] = [
+    &key::NAME,
+    &key::DEVICE,
+    &key::READING,
+    &key::ANTICOGGING,
+    &key::LIMITS,
+    &key::SUPPLY,
+    &key::MOTOR,
+];
 
 /// The scene with the tables of the device file that it names, whose text is added to `texts`. A name is
 /// relative to the scene's folder, or to the working folder.

@@ -8,6 +8,7 @@ use haptic_servo::latency::{LONGEST_DELAY, LONGEST_LAG};
 use haptic_servo::magnetic::Chip;
 use haptic_servo::scene::{Coupling, Latency, Scene, TimeRange, Timing};
 
+use super::anticogging;
 use super::device::{self, DeviceTable, Purpose};
 use super::encoder;
 use super::faults::{Faults, Read, all};
@@ -77,8 +78,9 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let name = top.needed_text(&key::NAME);
     let [device, servo, environment] =
         [&key::DEVICE, &key::SERVO, &key::ENVIRONMENT].map(|key| top.needed_table(key));
-    let [reading, coupling, simulation, human, limits, host, supplied, driven] = [
+    let [reading, learnt, coupling, simulation, human, limits, host, supplied, driven] = [
         &key::READING,
+        &key::ANTICOGGING,
         &key::COUPLING,
         &key::SIMULATION,
         &key::HUMAN,
@@ -91,6 +93,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     top.finish();
     let device = device.and_then(|table| device::device(table, purpose));
     let reading = reading.and_then(|table| table.map(encoder::encoder).transpose());
+    let learnt = learnt.and_then(|table| table.map(anticogging::anticogging).transpose());
     let servo = servo.and_then(servo_of);
     let coupling = coupling.and_then(|table| table.map_or(Ok(Coupling::Rigid), coupling_of));
     let environment = environment.and_then(environment_of);
@@ -106,7 +109,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let supply = supplied.and_then(|table| table.map(|it| supply(it, largest)).transpose());
     let host = host.and_then(|table| table.map(host::host).transpose());
     let driven = driven.and_then(|table| table.map(motor).transpose());
-    let (name, table, reading) = (name?, device?, reading?);
+    let (name, table, reading, learnt) = (name?, device?, reading?, learnt?);
     let [torque_limit, encoder_step, full_scale] = limits?;
     let (servo, coupling, environment) = (servo?, coupling?, environment?);
     let (environment, shapes) = match environment {
@@ -139,6 +142,9 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         let counts = encoder_step.map(counts_per_turn_of);
         encoder_step = reading.of_chip(&top, &scene, counts)?.map(|counts| TAU / counts);
         chip = reading.chip;
+    }
+    if let Some(learnt) = learnt {
+        scene = anticogging::beside(&top, scene, learnt, friction, full_scale)?;
     }
     let (simulation, hand, host, supply, motor) = (simulation?, hand?, host?, supply?, driven?);
     host::check(&top, host.as_ref(), [torque_limit, full_scale], simulation.as_ref())?;

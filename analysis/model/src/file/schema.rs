@@ -108,6 +108,7 @@ fn property(key: &Key) -> Value {
         Bound::Number(Range::Fraction) => {
             json!({ "type": "number", "minimum": 0, "exclusiveMaximum": 1 })
         }
+        Bound::Number(Range::Share) => json!({ "type": "number", "minimum": 0, "maximum": 1 }),
         Bound::Number(Range::Whole(least, most)) => {
             json!({ "type": "integer", "minimum": least, "maximum": most })
         }

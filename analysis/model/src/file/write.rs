@@ -50,6 +50,11 @@ pub fn toml(file: &SceneFile) -> String {
     let jitter = less(scene.latency.count_jitter, scene.latency.encoder.deviation_of_age());
     time(&mut lines, "count_jitter", TimeRange::exactly(jitter));
     encoder(&mut lines, scene.latency.encoder, *chip);
+    if let Some(learnt) = &scene.environment.parts().anticogging {
+        let torques: Vec<_> = learnt.torques().collect();
+        lines.push(format!("[anticogging]\ntorque = {torques:?}"));
+        number(&mut lines, "share", Some(learnt.share).filter(|share| *share != 1.0));
+    }
     match scene.coupling {
         Coupling::Rigid => {}
         Coupling::Spring { stiffness } => {

@@ -7,7 +7,7 @@ use haptic_servo::host::{
 };
 use haptic_servo::number::{Format, OutOfRange};
 use haptic_servo::scene::Scene;
-use haptic_servo::servo::{OutputTiming, Transducers};
+use haptic_servo::servo::{OutputTiming, RenderingOptions, Transducers};
 use haptic_servo::servo_loop::State;
 use haptic_servo::torque::LimitReason;
 
@@ -60,23 +60,38 @@ impl<'a> HostedServo<'a> {
         output: OutputTiming,
         (format, has_bridge): (Format, bool),
     ) -> Result<Self, HostError> {
-        host.check_range(scene.torque_limit, transducers.full_scale_torque)?;
+        // A scene that does not certify has no margin.
+        let certified = scene.certify_in(format).ok();
+        let margin = certified.and_then(|it| it.assessment().margin_injecting(it.as_data(), 0.0));
         let numbers = ServoNumbers {
             latency: &scene.latency,
             timing: scene.timing,
+            torque_limit: scene.torque_limit,
+            margin,
+            full_scale: transducers.full_scale_torque,
+            fade: RenderingOptions::DEFAULT.fade,
             output,
             radians_per_count: TAU / transducers.counts_per_turn,
             format,
             has_bridge,
         };
-        let host = AnyHosted::beside(host, &numbers)?;
+        Self::beside(servo, host, &numbers)
+    }
+
+    /// The same by the servo's numbers.
+    pub(super) fn beside(
+        servo: Box<dyn Controller + 'a>,
+        host: &HostTorque,
+        numbers: &ServoNumbers<'_>,
+    ) -> Result<Self, HostError> {
+        let host = AnyHosted::beside(host, numbers)?;
         let level = host.energy();
         Ok(Self {
             servo,
             host,
             channel: HostWords::EMPTY,
             sender: None,
-            held: (output == OutputTiming::Latched).then_some(0.0),
+            held: (numbers.output == OutputTiming::Latched).then_some(0.0),
             count: 0,
             number: 0,
             tick: HostTick { wanted: 0.0, given: 0.0, level },
@@ -130,7 +145,7 @@ impl Controller for HostedServo<'_> {
             level: self.host.energy(),
         };
         let state = State::Running as u32;
-        let taken = TickState { tick: self.number, count, is_running: true, state };
+        let taken = TickState { tick: self.number, count, opening: Some(0), state };
         self.host.exchange(&self.channel, taken);
         if let Some(torque) = self.sender.as_mut().and_then(|sender| sender.after(count)) {
             self.send(torque, 0);

@@ -1,7 +1,10 @@
 //! Each law beside a certified wall, in a hand that pushes and lets go, with a tank and without.
 
+use std::f64::consts::TAU;
+
+use haptic_servo::host::ServoNumbers;
 use haptic_servo::number::Format;
-use haptic_servo::scene::Latency;
+use haptic_servo::scene::{Latency, Scene};
 use haptic_servo::servo::OutputTiming;
 
 use super::*;
@@ -24,10 +27,23 @@ fn most_taken(file: &SceneFile, law: HostLaw, output: OutputTiming, has_tank: bo
     let (scene, host) = (&file.scene, file.host.unwrap());
     let transducers = file.transducers(None, None);
     let budget = if has_tank { host } else { unlimited(&host) };
-    let servo = controller::<_, f32>(&scene.certify().unwrap(), &transducers).unwrap();
-    let hosted =
-        HostedServo::new(servo, &budget, scene, &transducers, output, (Format::F32, false))
-            .unwrap();
+    // Beside any servo the tank holds; this one is certified without a lag only.
+    let prompt = Scene { latency: Latency::NONE, ..*scene }.certify().unwrap();
+    let servo = controller::<_, f32>(&prompt, &transducers).unwrap();
+    let numbers = ServoNumbers {
+        latency: &scene.latency,
+        timing: scene.timing,
+        torque_limit: scene.torque_limit,
+        // With a lag it is not known here.
+        margin: Some(0.005),
+        full_scale: transducers.full_scale_torque,
+        fade: 0.1,
+        output,
+        radians_per_count: TAU / transducers.counts_per_turn,
+        format: Format::F32,
+        has_bridge: false,
+    };
+    let hosted = HostedServo::beside(servo, &budget, &numbers).unwrap();
     let law = HostileHost::new(law, host.torque);
     let mut hosted = hosted.driven_by(HostSender::new(law, scene.timing.period, &transducers, 0));
     let hand = HandTrajectory::push_and_let_go();

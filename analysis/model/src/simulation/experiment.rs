@@ -131,10 +131,12 @@ impl Experiment {
         let centred = wall.is_none_or(|wall| !wall.is_one_sided() && wall.face() == 0.0);
         let unlimited =
             self.host.is_none() && self.scene.torque_limit.is_none() && self.encoder_step.is_none();
+        let anticogs = self.scene.environment.parts().anticogging.is_some();
         let reads_linearly = self.scene.latency.encoder.linearity == 0.0;
         centred
             && unlimited
             && reads_linearly
+            && !anticogs
             && self.disturbance().is_none()
             && self.missed == Missed::None
     }

@@ -1,12 +1,18 @@
-use haptic_servo::certificate::{Assumption, Assumptions, QuantizationBound, Resolution, assess};
+use haptic_servo::certificate::{
+    Assumption, Assumptions, QuantizationBound, Resolution, assess, certify,
+    passivity_for_anticogging,
+};
 use haptic_servo::environment::{Canceller, Coefficients, Environment, Parts, Rational, Wall};
 use haptic_servo::number::Format;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange};
+use haptic_servo::scene::{Coupling, Device, EncoderReading, Latency, Scene, TimeRange, Timing};
 use haptic_servo::torque::LimitReason;
+
+use std::f64::consts::TAU;
 
 use super::method::Method;
 use super::*;
 use crate::device::{Hand, Motion};
+use crate::disturbance::Cogging;
 use crate::fixture::{STANDARD, on_paddle};
 use crate::missed::Missed;
 
@@ -427,5 +433,109 @@ fn stability_ends_where_an_eigenvalue_reaches_the_circle() {
         let all = output_delay.middle() + actuator_lag.middle() + sensor_lag.middle();
         let should = 0.5 / (1.5e-3 + all);
         assert!(case.matched || (critical / should - 1.0).abs() < 0.03, "{critical} {should}");
+    }
+}
+
+/// A gimbal motor at 10 kHz whose cogging the servo opposes, with nothing else to feel.
+fn gimbal(cogging: Cogging, damping: f64, encoder: &'static EncoderReading) -> Scene {
+    let learnt = cogging.learnt(2048).unwrap();
+    Scene {
+        device: Device { inertia: 3e-5, damping, passivity: None },
+        timing: Timing { period: 1e-4, worst_period: None },
+        coupling: Coupling::Rigid,
+        environment: Wall::spring(0.0, 1).alone().beside(learnt),
+        latency: Latency::NONE.with_actuator_lag(8e-5).read_by(encoder),
+        torque_limit: Some(0.1),
+    }
+}
+
+const GIMBAL: Cogging = Cogging { torque: 0.005, count: 84.0 };
+const AGED: EncoderReading =
+    EncoderReading { age: TimeRange::exactly(1e-5), ..EncoderReading::IDEAL };
+
+/// At a slow speed `v` the torque over a turn is what the mean age of the torque and an encoder's count leave of the
+/// cogging: up to `M (abar v + q)` (theory, section 18.6).
+#[test]
+fn a_slow_hand_feels_what_age_and_counts_leave_of_the_cogging() {
+    const INERTIA: f64 = 1e-2;
+    let scene = gimbal(GIMBAL, 0.0, &AGED);
+    let (speed, step) = (1.0, TAU / 16384.0);
+    // The velocity over a turn of a hand so heavy that it hardly changes.
+    let bump = |share: f64, encoder_step| {
+        let environment = match scene.environment.parts().anticogging {
+            Some(learnt) => scene.environment.beside(learnt.sharing(share)),
+            None => unreachable!(),
+        };
+        let scene = Scene { environment, ..scene };
+        let mut experiment = Experiment {
+            samples: (TAU / speed / 1e-4) as usize,
+            start: Motion { position: 0.0, velocity: speed },
+            cogging: GIMBAL,
+            encoder_step,
+            ..Experiment::still(&scene)
+        };
+        let hand = Hand { inertia: INERTIA - 3e-5, damping: 0.0, stiffness: 0.0 };
+        experiment.plant = experiment.plant.with_hand(hand);
+        let motion = simulate(&experiment, Integration::default()).unwrap();
+        // Less the drift of its mean over a period of the cogging.
+        let period = (TAU / GIMBAL.count / speed / 1e-4) as usize;
+        let ripples = motion.velocity[1000..].windows(period).map(|window| {
+            let least = window.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+            window.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b)) - least
+        });
+        // A sine of torque A at the rate N v is a ripple of 2 A / (J N v) of the velocity.
+        0.5 * ripples.fold(0.0, f64::max) * INERTIA * GIMBAL.count * speed
+    };
+    let felt = bump(0.0, None);
+    assert!((felt / GIMBAL.torque - 1.0).abs() < 0.02, "{felt}");
+    assert!((bump(0.5, None) / felt - 0.5).abs() < 0.02);
+    let abar = 1e-4 + 1e-5 + 8e-5 + 0.5e-4;
+    let left = GIMBAL.slope() * abar * speed;
+    let compensated = bump(1.0, None);
+    assert!((0.8..1.15).contains(&(compensated / left)), "{compensated} {left}");
+    // An encoder rounds down: up to a count.
+    let counted = bump(1.0, Some(step));
+    assert!(counted < left + GIMBAL.slope() * step, "{counted} {left}");
+    assert!(counted < 0.06 * felt, "{counted} {felt}");
+}
+
+/// Where the motor does not cog as the map says, the map is all that a hand feels: in a heavy hand that it swings,
+/// it gains nothing on a device with what the certificate asks for, and it swings ever farther with less.
+#[test]
+fn no_hand_gains_energy_from_a_certified_map_and_one_does_from_less() {
+    for (cogging, encoder) in [
+        (GIMBAL, &AGED),
+        (Cogging { torque: 0.03, count: 168.0 }, &AGED),
+        (Cogging { torque: 0.015, count: 36.0 }, &EncoderReading::IDEAL),
+    ] {
+        let needed =
+            passivity_for_anticogging(&gimbal(cogging, 1.0, encoder), Format::F64).unwrap();
+        let grows = |part: f64, inertia: f64, cogs: bool, stiffness: f64| {
+            let scene = gimbal(cogging, part * needed, encoder);
+            assert_eq!(certify(&scene).is_ok(), part > 1.0);
+            // At the steepest place of the map where it pushes back: half a period from zero.
+            let rest = 0.5 * cogging.pitch();
+            let mut experiment = Experiment {
+                samples: 300_000,
+                start: Motion { position: rest + 0.002 * cogging.pitch(), velocity: 0.0 },
+                cogging: if cogs { cogging } else { Cogging::default() },
+                ..Experiment::still(&scene)
+            };
+            let hand = Hand { inertia, damping: 0.0, stiffness };
+            experiment.plant = experiment.plant.with_hand(hand);
+            let motion = simulate(&experiment, Integration::default()).unwrap();
+            let swing = |part: &[f64]| {
+                let least = part.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+                part.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b)) - least
+            };
+            let tenth = motion.position.len() / 10;
+            swing(&motion.position[9 * tenth..]) / swing(&motion.position[..tenth])
+        };
+        for inertia in [3e-5, 3e-4, 3e-3] {
+            assert!(grows(1.0 / 0.98, inertia, false, 0.0) < 1.0, "{cogging:?} {inertia}");
+            // Against the true cogging the hand's own spring swings.
+            assert!(grows(1.0 / 0.98, inertia, true, 5.0) < 1.0, "{cogging:?} {inertia}");
+        }
+        assert!(grows(0.9, 3e-3, false, 0.0) > 1.0, "{cogging:?}");
     }
 }

@@ -4,7 +4,9 @@
 
 use haptic_servo::coupling::Solver;
 use haptic_servo::coupling_memory::{AnyMemory, CouplingMemory};
-use haptic_servo::environment::{AnyLaw, Discretize, Law};
+use haptic_servo::environment::{AnyLaw, Compensation, Discretize, Environment, Law};
+use haptic_servo::number::Format;
+use haptic_servo::rendering::{Rendering, context_beside_anticogging};
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::BuildError;
 use haptic_servo::torque::{LimitReason, Limiter};
@@ -14,6 +16,7 @@ use haptic_servo::torque::{LimitReason, Limiter};
 pub struct UnquantizedServo {
     law: AnyLaw<f64>,
     memory: AnyMemory<f64>,
+    anticogging: <Environment as Rendering<f64>>::Anticogging,
     solver: Solver<f64>,
     limiter: Limiter<f64>,
     torque: f64,
@@ -26,7 +29,7 @@ impl UnquantizedServo {
     /// Where coupling and environment have no unique solution, or the environment needs samples
     /// from the future.
     pub fn new(scene: &Scene) -> Result<Self, BuildError> {
-        let context = scene.context();
+        let context = context_beside_anticogging(scene, Format::F64);
         let memory = AnyMemory::of(&context)?;
         let law = Discretize::<f64>::law(&scene.environment, &context)?;
         let compliance = scene.coupling.compliance(memory.compliance())?;
@@ -34,18 +37,22 @@ impl UnquantizedServo {
         // There is no DAC range here.
         let bound = scene.torque_limit.unwrap_or(f64::INFINITY);
         let limiter = Limiter::new(bound, LimitReason::Torque);
-        Ok(Self { law, memory, solver, limiter, torque: 0.0 })
+        let parts = scene.environment.parts();
+        // Angles here are no counts: any number of them fits a turn.
+        let anticogging = Compensation::of(parts.late_anticogging(), &context, 1.0)?;
+        Ok(Self { law, memory, anticogging, solver, limiter, torque: 0.0 })
     }
 
     /// One tick with the encoder at `x` rad: the coupling torque `F` in N m, limited before the
-    /// coupling is solved, and the reason if it was limited; `otherwise` if not. The motor applies
-    /// `-F`.
+    /// coupling is solved, with what opposes the cogging, and the reason if it was limited;
+    /// `otherwise` if not. The motor applies `-F`.
     pub fn tick(&mut self, x: f64, otherwise: LimitReason) -> (f64, LimitReason) {
+        self.anticogging.tick_at(x, &self.limiter);
         let x = x - self.memory.deflection_after(self.torque);
         let wanted = self.solver.torque(self.law.evaluate(x));
         let (torque, limit) = self.limiter.limit(wanted, otherwise);
         self.law.update(self.solver.environment_position(x, torque));
         self.torque = torque;
-        (torque, limit)
+        (self.anticogging.add_to(torque), limit)
     }
 }

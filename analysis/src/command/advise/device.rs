@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use clap::Args;
-use haptic_servo::certificate::QuantizationBound;
-use haptic_servo::environment::Wall;
+use haptic_servo::certificate::{QuantizationBound, passivity_for_anticogging};
+use haptic_servo::environment::{MOST_KNOTS, Wall};
 use haptic_servo::number::Format;
 use haptic_servo::scene::{Coupling, Scene};
 use serde::Serialize;
@@ -16,7 +16,7 @@ use crate::command::shared_arguments::{JsonOption, warned};
 use crate::command::status::{CommandError, CommandStatus};
 use crate::command::value_parsers::positive;
 use crate::design::stiffest::{Search, Wall as StiffestWall};
-use crate::design::{Choice, Judge, Quantity, Terms, largest};
+use crate::design::{Choice, Judge, Terms};
 use crate::file::{self, SceneFile};
 use crate::quantity::{rounded, significant};
 use crate::text_table::table_of;
@@ -137,7 +137,9 @@ fn load(arguments: &Arguments) -> Result<SceneFile, CommandError> {
 
 /// The device with a wall of springs, latched at the next sample.
 fn with_wall(mut file: SceneFile) -> SceneFile {
-    file.scene.environment = Wall::damped(1.0, 0.0, 1).alone();
+    let learnt = file.scene.environment.parts().anticogging;
+    let wall = Wall::damped(1.0, 0.0, 1).alone();
+    file.scene.environment = learnt.map_or(wall, |learnt| wall.beside(learnt));
     file.scene.coupling = Coupling::Rigid;
     file.shapes = None;
     file
@@ -191,13 +193,31 @@ fn detents(file: &SceneFile, slope: f64) -> Option<(f64, f64)> {
     (count >= 1.0).then(|| (count, slope / count))
 }
 
-/// The part of the cogging whose compensation, a late spring as steep as the cogging, certifies with all of the
-/// device's passivity.
+/// The part of the cogging that can be opposed with all of the device's passivity: of the learnt map, or of the
+/// stated cogging on a map that has 16 angles or more in a period of it.
 fn compensated(file: &SceneFile) -> Option<f64> {
-    let slope = file.cogging?.slope();
-    let scene = Scene { torque_limit: None, ..file.scene };
-    let limit = largest(&scene, Quantity::Stiffness, &Terms::KEPT).value_and_result().0;
-    (slope > 0.0).then(|| (limit.unwrap_or(0.0) / slope).min(1.0))
+    let learnt = match (file.scene.environment.parts().anticogging, file.cogging) {
+        (Some(learnt), _) => learnt,
+        (None, Some(cogging)) => {
+            let angles = (16 * cogging.count as usize).next_power_of_two();
+            cogging.learnt(angles.min(MOST_KNOTS as usize)).ok()?
+        }
+        (None, None) => return None,
+    };
+    let passes = |share: f64| {
+        let environment = Wall::spring(0.0, 1).alone().beside(learnt.sharing(share));
+        let needed = passivity_for_anticogging(&Scene { environment, ..file.scene }, Format::F64);
+        needed.is_some_and(|needed| needed < file.scene.device.passivity())
+    };
+    if passes(1.0) {
+        return Some(1.0);
+    }
+    let (mut most, mut beyond) = (0.0, 1.0);
+    for _ in 0..32 {
+        let share = 0.5 * (most + beyond);
+        if passes(share) { most = share } else { beyond = share }
+    }
+    Some(most)
 }
 
 /// The curves of the chart.

@@ -3,7 +3,7 @@
 use analysis::link::Message;
 use haptic_servo::dac::DacCode;
 use haptic_servo::servo_loop::State;
-use haptic_servo::wire::host::{HostCommand, HostReport};
+use haptic_servo::wire::host::{HostCommand, HostReport, HostRequest};
 use haptic_servo::wire::message::ToBoard;
 use virtual_board::chip::NUCLEO_G474RE;
 use virtual_board::device::FixedDevice;
@@ -24,7 +24,8 @@ fn a_stream_at_1_khz_loses_no_tick_and_no_report() {
     let mut states = Vec::new();
     let torque = |number: u16| 0.3 * (f32::from(number) * 0.02).sin();
     for number in 1..=1000 {
-        bench.say(&ToBoard::Torque(HostCommand { number, torque: torque(number), ramp: 0 }));
+        let command = HostCommand { number, torque: torque(number), ramp: 0 };
+        bench.say(&ToBoard::Host(HostRequest::Torque(command)));
         bench.run(1);
         states.extend(bench.hear().into_iter().filter_map(|message| match message {
             Message::Host(HostReport::State(state)) => Some(state),

@@ -215,7 +215,8 @@ const fn limited<E: EnvironmentModel>(
     if E::PROFILE.exists && is_uneven::<E>(&scene.environment) {
         return None;
     }
-    if E::PROFILE.exists && E::MAY_MISREAD && is_turned_by_inl::<E>(scene, is_late, format) {
+    let repeats = E::PROFILE.exists && E::MAY_MISREAD || E::PARTS.anticogging;
+    if repeats && is_turned_by_inl::<E>(scene, is_late, format) {
         return None;
     }
     if E::MEMORY.may_be_uncoupled() && matches!(scene.coupling, Coupling::Rigid) {

@@ -74,7 +74,7 @@ impl Profile {
         Self::of_mode(&modes[0], ModeSelection::of(modes, 0.0), delay)
     }
 
-    const fn of_table(
+    pub(in crate::environment) const fn of_table(
         units: &'static [i16],
         cells: &'static [Cell],
         outline: Outline,

@@ -114,7 +114,7 @@ impl Reference {
             Part { sum: Sum::Linear(response), delay: drag.delay, given: Vec::new() }
         };
         let parts = match scene.environment {
-            Environment::Parts(Parts { canceller, wall: data, profile: None, drag }) => {
+            Environment::Parts(Parts { canceller, wall: data, profile: None, drag, .. }) => {
                 let free = canceller.map(|canceller| free(canceller.residual, canceller.delay));
                 let parts = [free, data.map(wall), drag.map(damper)];
                 parts.into_iter().flatten().collect()

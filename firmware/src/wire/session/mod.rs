@@ -27,10 +27,10 @@ use super::PROTOCOL;
 use super::decoder::Decoder;
 use super::description::Description;
 use super::frame::CHECKSUM;
-use super::host::{HostCommand, HostReport, HostState};
+use super::host::{HostCommand, HostReport, HostRequest, HostState};
 use super::message::{
-    ActiveParameters, BoardUnits, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal,
-    Status, ToBoardWith, ToHostWith,
+    ActiveParameters, BoardUnits, Changes, FaultCode, Id, LONGEST_TO_BOARD, MAX_CHANGES, Outcome,
+    Refusal, Status, ToBoardWith, ToHostWith,
 };
 use crate::boot::Program;
 use crate::certificate::scene_data;
@@ -178,7 +178,7 @@ where
         self.outbox.sent(bytes);
     }
 
-    fn on_message(&mut self, message: ToBoardWith<IfHost<E, N, HostCommand>>) {
+    fn on_message(&mut self, message: ToBoardWith<IfHost<E, N, HostRequest>>) {
         match message {
             ToBoardWith::Hello => self.replies.greet(),
             ToBoardWith::Get => self.replies.parameters = true,
@@ -196,12 +196,22 @@ where
                 Some(open) if open == id => {}
                 Some(_) => self.replies.refuse(id, Refusal::Busy),
             },
-            ToBoardWith::Torque(command) => {
-                let HostCommand { number, torque, ramp } = E::Host::value(command);
+            ToBoardWith::Host(request) => self.on_host_request(E::Host::value(request)),
+        }
+    }
+
+    fn on_host_request(&mut self, request: HostRequest) {
+        match request {
+            HostRequest::Torque(HostCommand { number, torque, ramp }) => {
                 E::Host::send(self.requests.host(), number, torque, ramp);
                 // After the command, for the interrupt that takes it.
                 self.requests.host_alive();
             }
+            HostRequest::Budget { id, budget } => match self.open_set() {
+                None => E::Host::ask(&mut self.reported, id, budget),
+                Some(open) if open == id => {}
+                Some(_) => self.replies.refuse(id, Refusal::Busy),
+            },
         }
     }
 
@@ -209,7 +219,8 @@ where
     fn open_set(&self) -> Option<Id> {
         let requested = self.requested.as_ref().map(|(id, _)| *id);
         let submitted = self.submitted.as_ref().map(|submitted| submitted.id);
-        requested.or(submitted).or(self.replies.set.map(|(id, _)| id))
+        let asking = E::Host::asking(&self.reported);
+        requested.or(asking).or(submitted).or(self.replies.set.map(|(id, _)| id))
     }
 
     /// Compares what the servo has published with what was requested.
@@ -233,6 +244,7 @@ where
         {
             self.active = set;
             self.revision = swapped;
+            E::Host::request_budget(&mut self.reported);
             self.replies.set = Some((id, Outcome::Done));
         }
     }
@@ -242,7 +254,7 @@ where
     /// for them.
     fn report_to_host(&mut self) {
         let report = if E::Host::is_budget_due(&mut self.reported) {
-            self.program.scene.environment.host().map(HostReport::Budget)
+            E::Host::host(&self.active.scene.environment.budget()).map(HostReport::Budget)
         } else {
             let Program { transducers, scene, .. } = &self.program;
             let count_a_tick =
@@ -313,9 +325,20 @@ where
 
     /// Certifies the requested set and submits it to the servo, or refuses it and changes nothing.
     fn prepare_set(&mut self) {
-        let Some((id, changes)) = self.requested.take() else { return };
+        let mut budgeted = None;
+        let (id, changes) = if let Some(requested) = self.requested.take() {
+            requested
+        } else if let Some((id, host)) = E::Host::asked(&mut self.reported) {
+            let scene = self.active.scene;
+            let environment = scene.environment.with_budget(E::Host::budget(host));
+            budgeted = Some(Scene { environment, ..scene });
+            (id, Changes::new())
+        } else {
+            return;
+        };
+        let scene = budgeted.as_ref().unwrap_or(&self.active.scene);
         let Program { transducers, rendering, .. } = &self.program;
-        let refusal = match tuning::prepare(&self.active.scene, &changes, transducers, rendering) {
+        let refusal = match tuning::prepare(scene, &changes, transducers, rendering) {
             Ok(prepared) => {
                 let set = Set { scene: prepared.scene, margin: prepared.margin };
                 match self.requests.submit(prepared.rendering) {
@@ -353,7 +376,7 @@ where
     fn parameters(&self) -> ActiveParameters {
         let Set { scene, margin } = &self.active;
         let named = |parameter| tuning::get(scene, parameter).map(|value| (parameter, value));
-        let values = tuning::parameters(scene).iter().filter_map(named).collect();
+        let values = tuning::parameters(scene).iter().filter_map(named).take(MAX_CHANGES).collect();
         ActiveParameters { sets: self.revision, margin: *margin, values }
     }
 

@@ -15,8 +15,8 @@ use crate::certificate::Parameter;
 use crate::current::IndexOffset;
 use crate::dac::DacCode;
 use crate::environment::{
-    Canceller, Damper, Drag, Ends, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Side,
-    Wall,
+    Anticogging, Canceller, Damper, Drag, Ends, Environment, KNOB_MODES, Knots, Parts, Profile,
+    Shape, Side, Wall,
 };
 use crate::fault::Fault;
 use crate::number::Format;
@@ -141,7 +141,7 @@ impl Bench {
         let [ToHost::Described(description)] = said.as_slice() else { panic!("{said:?}") };
         let values = self.running().values;
         let has = tuning::Parameters::of(values.iter().map(|(parameter, _)| *parameter));
-        description.explain(has, changes).unwrap_err().to_string()
+        description.explain(has, None, changes).unwrap_err().to_string()
     }
 
     fn running(&mut self) -> ActiveParameters {
@@ -235,11 +235,15 @@ fn largest_description() -> Description {
         stiffness: 1.0,
         damper: Some(Damper { damping: 1.0, filter: Some(1.0) }),
         side: Side::Face(1.0),
-        delay: usize::MAX,
+        delay: 8,
     };
     let canceller = Some(Canceller::to(1.0));
     let drag = Some(Drag::of(1.0, 8));
-    let environment = Parts { canceller, wall: Some(wall), profile: Some(profile), drag }.sum();
+    let environment =
+        Parts { canceller, wall: Some(wall), profile: Some(profile), drag, ..Parts::NONE }.sum();
+    let torques: Vec<_> = (0..2048).map(|i| f64::from(i % 2)).collect();
+    let learnt = Anticogging::learnt(&torques, vec![0; 2048].leak()).unwrap();
+    let environment = environment.beside(learnt);
     Description {
         scene: Scene {
             device: Device { passivity: Some(1.0), ..SCENE.device },

@@ -106,6 +106,7 @@ fn every_variant_is_there_with_its_number() {
     for (path, name, heading, fields) in [
         (MESSAGES, "ToBoardWith", "## To the board", Some(2)),
         (MESSAGES, "ToHostWith", "## To the host", Some(2)),
+        (HOST, "HostRequest", "### HostRequest", Some(2)),
         (HOST, "HostReport", "### HostReport", Some(2)),
         ("firmware/src/wire/sweep.rs", "SweepRequest", "## A sweep", Some(2)),
         (MESSAGES, "Outcome", "### Outcome", None),
@@ -127,7 +128,7 @@ fn every_variant_is_there_with_its_number() {
         if let Some(place) = fields {
             // A program with a host has these in place of the parameters of the types.
             let with_host = |fields| match fields {
-                "C" => "HostCommand",
+                "C" => "HostRequest",
                 "R" => "HostReport",
                 other => other,
             };
