@@ -43,7 +43,7 @@ pub fn run_on_bridge(
         }
     };
     let board = Some(BoardMeasurement::Virtual(board.finish()?));
-    Ok(RunOutcome { run, energy, final_speed, board })
+    Ok(RunOutcome { run, energy, final_speed, board, host: None })
 }
 
 /// Runs from the current period on.

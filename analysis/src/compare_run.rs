@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use haptic_model::host::HostRun;
+use haptic_servo::host::HostError;
 use thiserror::Error;
 
 use crate::controller::Controller;
@@ -78,6 +80,8 @@ pub struct RunOutcome {
     pub final_speed: Option<f64>,
     /// The board's measurement.
     pub board: Option<BoardMeasurement>,
+    /// The host, in a run with one.
+    pub host: Option<HostRun>,
 }
 
 impl RunOutcome {
@@ -96,6 +100,13 @@ impl RunOutcome {
 pub enum RunError {
     #[error("at tick {tick}: {source}")]
     EmulatedBoard { tick: usize, source: EmulatorError },
+    #[error(
+        "the board reported {reported} of the host's {sent} commands with the numbers and counts that it got, so \
+         that its codes cannot be compared"
+    )]
+    Unreported { sent: usize, reported: usize },
+    #[error(transparent)]
+    Host(#[from] HostError),
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
     #[error(transparent)]
@@ -150,7 +161,7 @@ fn run_lockstep(
             (run, Some(BoardMeasurement::Virtual(board.finish()?)))
         }
     };
-    Ok(RunOutcome { run, energy: None, final_speed: None, board })
+    Ok(RunOutcome { run, energy: None, final_speed: None, board, host: None })
 }
 
 impl RemoteServo for Emulator {

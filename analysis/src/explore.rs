@@ -56,10 +56,10 @@ const WORKER: &[&str] = &[source!("engine.js"), source!("map_worker.js")];
 pub fn page(module: &[u8], scene: &Value) -> io::Result<String> {
     let start = json!({ "scene": scene, "version": env!("CARGO_PKG_VERSION") });
     let parts = [
-        ("/*STYLE*/", STYLE.to_owned()),
+        ("/*STYLE*/", without_comments(&[STYLE])),
         ("/*BEGIN*/", source!("start.js").to_owned()),
-        ("<!--PROGRAM-->", packed(PROGRAM.concat().as_bytes())?),
-        ("<!--WORKER-->", packed(WORKER.concat().as_bytes())?),
+        ("<!--PROGRAM-->", packed(without_comments(PROGRAM).as_bytes())?),
+        ("<!--WORKER-->", packed(without_comments(WORKER).as_bytes())?),
         ("<!--START-->", start.to_string().replace('<', "\\u003c")),
         ("<!--MODULE-->", packed(module)?),
     ];
@@ -68,6 +68,20 @@ pub fn page(module: &[u8], scene: &Value) -> io::Result<String> {
         page = page.replacen(place, &part, 1);
     }
     Ok(page)
+}
+
+/// Sources without indentation, and without their comments, each of which has lines of its own: a tenth of the
+/// page that the browser does not need.
+fn without_comments(sources: &[&str]) -> String {
+    let mut is_within = false;
+    let lines = sources.iter().flat_map(|source| source.lines()).map(str::trim_start);
+    let kept = lines.filter(|line| {
+        is_within |= line.starts_with("/*");
+        let is_comment = is_within || line.starts_with("//");
+        is_within &= !line.ends_with("*/");
+        !is_comment && !line.is_empty()
+    });
+    kept.flat_map(|line| [line, "\n"]).collect()
 }
 
 /// The bytes, compressed and in the letters of a page.
@@ -122,6 +136,21 @@ mod tests {
             row.extend((0..bits).map(|bit| (number >> bit & 1) as u8));
         }
         row.chunks_exact(8).map(|byte| (0..8).map(|bit| byte[bit] << bit).sum()).collect()
+    }
+
+    /// A comment that shares a line with code, or a text of several lines, would not survive this.
+    #[test]
+    fn only_comments_are_left_out() {
+        let lean = without_comments(&["a();\n  /** b\n   * c */\n  // d\n\n  e(`f // g`);\n"]);
+        assert_eq!(lean, "a();\ne(`f // g`);\n");
+        for source in [PROGRAM, WORKER].into_iter().flatten() {
+            for line in source.lines().map(str::trim) {
+                let begins = line.starts_with("/*") || line.starts_with("* ");
+                assert!(!begins || !line.contains("*/") || line.ends_with("*/"), "{line}");
+                let is_comment = begins || line.starts_with("//");
+                assert!(is_comment || line.matches('`').count() % 2 == 0, "{line}");
+            }
+        }
     }
 
     #[test]

@@ -20,6 +20,7 @@ mod bridge_run;
 pub mod compare_run;
 mod counts_csv;
 mod felt_turn;
+mod host_run;
 pub mod identify;
 pub mod program;
 

@@ -9,6 +9,8 @@ pub mod delayed_spring;
 #[allow(unexpected_cfgs)]
 #[path = "../../firmware/src/bin/free_mode.rs"]
 pub mod free_mode;
+#[path = "../../firmware/src/bin/hosted_wall.rs"]
+pub mod hosted_wall;
 // The device of the other examples.
 #[path = "../../firmware/src/bin/brushless_shaft/mod.rs"]
 mod brushless_shaft;
@@ -33,6 +35,7 @@ use std::io;
 use std::sync::OnceLock;
 
 use haptic_servo::current::CurrentLoop;
+use haptic_servo::host::HostTorque;
 use haptic_servo::number::Number;
 use haptic_servo::rendering::Rendering;
 use haptic_servo::scene::{Device, Scene};
@@ -58,6 +61,8 @@ pub struct Program {
     pub transducers: Transducers,
     /// The current loop of the board's own bridge that makes its torques; none where a DAC does.
     pub bridge: &'static Option<CurrentLoop>,
+    /// What a host may do beside it.
+    pub host: Option<HostTorque>,
     /// The hand's trajectory that demonstrates it.
     pub trajectory: fn() -> HandTrajectory,
     /// The size of its servo's state, in a format.
@@ -122,10 +127,13 @@ impl Program {
 
     /// The program of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
-        Self::every().chain([&KNOB_MODES]).chain(MORE.get()).find(|program| program.name == name)
+        Self::every()
+            .chain([&KNOB_MODES, &HOSTED])
+            .chain(MORE.get())
+            .find(|program| program.name == name)
     }
 
-    /// All programs of this build but [`KNOB_MODES`], including the program that needs a host and those whose
+    /// All programs of this build but [`KNOB_MODES`] and [`HOSTED`], including the program that needs a host and those whose
     /// torques are not latched.
     pub fn every() -> impl Iterator<Item = &'static Self> {
         ALL.iter().chain([&SUPERVISED, &UNDELAYED, &STIFFEST])
@@ -165,6 +173,7 @@ macro_rules! program {
             scene: $module::SCENE,
             transducers: $module::TRANSDUCERS,
             bridge: &$module::BRIDGE,
+            host: <$module::Rendered as ::haptic_servo::rendering::Rendering<f32>>::HOST,
             trajectory: || {
                 $crate::hand::HandTrajectory::for_environment(&$module::SCENE.environment)
             },
@@ -217,6 +226,9 @@ programs!(delayed_spring, damper_wall, free_mode, knob);
 /// The program whose modes are selected while it runs. Not among the others: with the first of its modes it
 /// turns freely.
 pub static KNOB_MODES: Program = crate::program!(knob_modes);
+
+/// The program that takes the torques of a host. Not among the others, which run without one.
+pub static HOSTED: Program = crate::program!(hosted_wall);
 
 /// The program that shows the effect of the options. Not among the others: it releases the device without a
 /// host, and a simulation has no host.

@@ -1,13 +1,16 @@
 //! What a servo needs of a scene: the law of its environment, and the memory of its coupling.
 
+use crate::build_error::BuildError;
 use crate::certificate::passivity_left;
 use crate::coupling_memory::{AnyMemory, CouplingMemory, NoMemory};
 use crate::environment::{
-    Anticogging, AnticoggingLaw, Compensation, Discretize, Environment, LawContext, NoAnticogging,
-    StatedEnvironment, VariableDelay,
+    Anticogging, AnticoggingLaw, Compensation, Delayed, Discretize, Environment, EnvironmentModel,
+    LawContext, Memory, NoAnticogging, PartSet, ProfileUse, StatedEnvironment, VariableDelay,
+    sealed,
 };
-use crate::host::{BesideServo, HostTorque, NoHost};
+use crate::host::{AnyHosted, BesideServo, HostTorque, NoHost};
 use crate::number::{Format, Number};
+use crate::parameter::{NamedParameters, Parameter};
 use crate::scene::Scene;
 
 /// An environment that a servo renders in the number format `N`.
@@ -79,3 +82,63 @@ impl<N: Number, E: StatedEnvironment + Discretize<N>> Rendering<N> for E {
         self
     }
 }
+
+/// An environment with a host beside its servo, both known at run time only: those of a scene file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnvironmentBesideHost {
+    /// The environment.
+    pub environment: Environment,
+    /// What the host may do.
+    pub host: HostTorque,
+}
+
+impl<N: Number> Rendering<N> for EnvironmentBesideHost {
+    type Memory = AnyMemory<N>;
+    type Anticogging = <Environment as Rendering<N>>::Anticogging;
+    type Host = AnyHosted;
+
+    fn budget(&self) -> HostTorque {
+        self.host
+    }
+
+    fn with_budget(self, host: HostTorque) -> Self {
+        Self { host, ..self }
+    }
+
+    fn anticogging(&self) -> Option<(Anticogging, usize)> {
+        <Environment as Rendering<N>>::anticogging(&self.environment)
+    }
+
+    fn context(scene: &Scene<Self>) -> LawContext {
+        context_beside_anticogging(&scene.in_environment(scene.environment.environment), N::FORMAT)
+    }
+}
+
+impl<N: Number> Discretize<N> for EnvironmentBesideHost {
+    type Law = <Environment as Discretize<N>>::Law;
+
+    fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
+        self.environment.law(context)
+    }
+}
+
+impl sealed::Sealed for EnvironmentBesideHost {}
+
+impl EnvironmentModel for EnvironmentBesideHost {
+    const PARTS: PartSet = Environment::PARTS;
+    const PROFILE: ProfileUse = Environment::PROFILE;
+    const MEMORY: Memory = Environment::MEMORY;
+
+    fn as_data(&self, _: &LawContext) -> Environment {
+        self.environment
+    }
+}
+
+impl NamedParameters for EnvironmentBesideHost {
+    fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        self.environment.value(parameter)
+    }
+}
+
+// Its numbers decide, which are checked with the timing of the scene.
+impl Delayed for EnvironmentBesideHost {}

@@ -32,6 +32,11 @@ fn loopback() -> Address {
 
 /// The board of a scene file with a wall of this stiffness.
 fn board(stiffness: f64) -> Result<SimulatedBoard, String> {
+    board_with(stiffness, "")
+}
+
+/// The same with other tables.
+fn board_with(stiffness: f64, tables: &str) -> Result<SimulatedBoard, String> {
     let text = format!(
         r#"
         name = "wall"
@@ -39,7 +44,8 @@ fn board(stiffness: f64) -> Result<SimulatedBoard, String> {
         servo = {{ period = 0.001 }}
         coupling = {{ stiffness = 44.0 }}
         environment = {{ type = "damper-wall", stiffness = {stiffness}, damping = 0.005, delay = 1 }}
-        limits = {{ torque = 1.0 }}"#
+        limits = {{ torque = 1.0 }}
+        {tables}"#
     );
     let file = parse("wall.toml", Format::Toml, &text).unwrap();
     SimulatedBoard::of_file(&file, &loopback(), Pacing::RealTime).map_err(|error| error.to_string())
@@ -310,4 +316,37 @@ fn a_stream_without_a_board_or_a_rate_has_a_reason() {
     let mut link = Link::open(board.address()).unwrap();
     let error = link.stream(100.0, true, until_5_ms(0.1)).unwrap_err().to_string();
     assert!(error.contains("the program wall takes no torque from a host"), "{error}");
+}
+
+/// A host that pushes along the velocity is limited by the tank; a torque that is no number is none.
+#[test]
+fn a_scene_file_with_a_host_takes_the_torques_of_a_stream() {
+    let host = |damping: f64| {
+        format!(
+            "host = {{ energy = 0.01, power = 0.1, damping = {damping}, torque = 0.5, timeout = 0.05 }}"
+        )
+    };
+    let greedy = board_with(5.0, &host(0.05)).unwrap_err();
+    assert!(greedy.contains("the host's share of damping is 0.05 N m s/rad"), "{greedy}");
+    let board = board_with(5.0, &host(0.004)).unwrap();
+    let mut link = Link::open(board.address()).unwrap();
+    assert_eq!(link.arm().unwrap(), RequestResult::Done);
+    let mut ticks = Vec::new();
+    let stiffer = [(Parameter::Stiffness, 10.0), (Parameter::Damping, 0.01)];
+    let refused = link.set(Changes::from_slice(&stiffer).unwrap()).unwrap();
+    let RequestResult::Refused(why) = refused else { panic!("{refused:?}") };
+    assert!(
+        why.contains("the host's share of damping is 0.004 N m s/rad, and must be below"),
+        "{why}"
+    );
+    let streamed = link.stream(500.0, false, |tick| {
+        ticks.push(*tick);
+        let torque = if tick.velocity >= 0.0 { 0.5 } else { -0.5 };
+        Ok::<_, StreamError>((tick.time < 1.0).then_some(torque))
+    });
+    streamed.unwrap();
+    let running = ticks.iter().filter(|tick| tick.state == State::Running);
+    let limited = running.clone().filter(|tick| tick.limit == LimitReason::Energy).count();
+    assert!(running.clone().any(|tick| tick.torque.abs() > 0.1) && limited > 10, "{limited}");
+    assert!(running.clone().all(|tick| tick.torque.abs() <= 0.5 && tick.energy <= 0.01));
 }

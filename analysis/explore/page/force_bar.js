@@ -1,7 +1,9 @@
 // The torque of the motor as a bar, which is as long as the largest torque that there was.
 
 /** The reasons of a limit, by number, as a board names them. */
-const LIMITS = ["", "torque limit", "converter's full scale", "angle out of range", "not a number", "ramp"];
+const LIMITS = [
+  "", "torque limit", "converter's full scale", "angle out of range", "not a number", "ramp", "heat", "energy of the host",
+];
 
 class ForceBar {
   /** The least part of the torque limit that the bar shows. */

@@ -25,6 +25,7 @@ class Handle {
   #tickCost = HANDLE.cost;
   #said = 0;
   #turn;
+  #limit;
   #isSeen = true;
   #section;
   #canvas;
@@ -36,10 +37,10 @@ class Handle {
   #settings = new HandSettings(() => this.#hold());
   #parts = {};
 
-  constructor(engine, store) {
+  constructor(engine, store, laws) {
     [this.#engine, this.#store] = [engine, store];
     this.#section = document.getElementById("handle");
-    this.#build();
+    this.#build(laws);
     this.#drawing = new HandleDrawing(this.#canvas);
     this.#input = new HandInput(this.#canvas, this.#drawing, this, (words) => say(this.#parts.news, words));
     new IntersectionObserver((entries) => { this.#isSeen = entries.at(-1).isIntersecting; })
@@ -107,7 +108,7 @@ class Handle {
 
   // The elements.
 
-  #build() {
+  #build(laws) {
     const parts = this.#parts;
     parts.state = make("p", { id: "handle-state", role: "status" });
     parts.news = make("p", { id: "handle-news", role: "status" });
@@ -120,9 +121,10 @@ class Handle {
     parts.words = make("p", { id: "handle-words" });
     parts.oscillation = make("p", { id: "handle-oscillation" });
     parts.energy = make("p", { id: "handle-energy" });
+    parts.taken = make("p", { id: "handle-taken" });
     this.#section.append(
       parts.state, parts.error, this.#canvas, this.#bar.element, parts.words, parts.oscillation,
-      this.#buttons(), parts.news, this.#settings.element, parts.energy);
+      this.#buttons(), this.#host(laws), parts.news, this.#settings.element, parts.energy);
     const lines = [
       { name: "motor torque", unit: "N m", least: 0.01 }, { name: "device", unit: "rad", least: 0.01 },
       { name: "hand", unit: "rad", dash: [4, 4] },
@@ -162,6 +164,18 @@ class Handle {
       parts.push, parts.hold, parts.sound, parts.volume, staysLabel, checkLabel);
   }
 
+  /** The switch for a host that wants energy, of scenes that may have one. */
+  #host(laws) {
+    const parts = this.#parts;
+    const options = ["", ...laws].map((law) => new Option(law || "none", law));
+    parts.law = make("select", { id: "handle-host" }, ...options);
+    parts.tank = make("input", { type: "checkbox", id: "handle-tank", checked: true });
+    for (const part of [parts.law, parts.tank]) part.addEventListener("change", () => this.#hold());
+    parts.host = make("div", { id: "handle-hosted", hidden: true },
+      make("label", {}, "Hostile host: ", parts.law), " ", make("label", {}, parts.tank, " Tank of energy"), parts.taken);
+    return parts.host;
+  }
+
   // The scene.
 
   /** Takes the scene that the page shows into the hand. */
@@ -177,7 +191,8 @@ class Handle {
     }
     const scene = this.#store.text();
     const question = {
-      scene, counts_per_turn: counts, hand, is_checked: parts.check.checked,
+      scene, counts_per_turn: counts, hand, is_checked: parts.check.checked, host: parts.law.value || null,
+      has_no_tank: !parts.tank.checked,
     };
     try {
       this.#held = this.#engine.json("handle_hold", JSON.stringify(question));
@@ -186,11 +201,12 @@ class Handle {
       return;
     }
     say(parts.error, "");
-    if (scene !== this.#text) {
-      this.#turn = undefined;
-      this.#bar.begin(this.#held.torque_limit);
-    }
+    const { torque_limit: limit } = this.#held;
+    if (scene !== this.#text) this.#turn = undefined;
+    if (scene !== this.#text || limit !== this.#limit) this.#bar.begin(limit);
+    this.#limit = limit;
     this.#text = scene;
+    parts.host.hidden = !this.#held.has_host;
     this.#drawing.show(this.#held);
     this.#canvas.setAttribute("aria-valuemin", (-this.span).toFixed(3));
     this.#canvas.setAttribute("aria-valuemax", this.span.toFixed(3));
@@ -321,10 +337,22 @@ class Handle {
     const more = energy.got_back > energy.given ? ", more than it gave" : "";
     const [given, back] = [energy.given, energy.got_back].map(millijoules);
     say(parts.energy, `The hand gave ${given} and got back ${back}${more}.`);
+    this.#sayTaken(moved.host, millijoules);
     say(parts.hold, this.#isHeld ? "Let go" : "Hold");
     say(parts.push, moved.is_pushing ? "Pushing" : "Push");
     this.#canvas.setAttribute("aria-valuenow", this.#target.toFixed(3));
     this.#canvas.setAttribute("aria-valuetext", `${hand}, motor torque ${mean.toFixed(2)} N m`);
+  }
+
+  /** What the hand has taken of a host's budget. */
+  #sayTaken(host, millijoules) {
+    const { taken } = this.#parts;
+    const isAbove = Boolean(host && host.taken > host.budget);
+    taken.classList.toggle("error", isAbove);
+    const budget = host && `${millijoules(host.taken)} of a budget of ${millijoules(host.budget)}`;
+    say(taken, host
+      ? `The hand took ${budget}${isAbove ? ", more than that" : ""}; ${plotNumber(100 * host.refused, 2)} % refused.`
+      : this.#held.host_refusal ?? "");
   }
 
   #push() {
@@ -346,8 +374,8 @@ class Handle {
 }
 
 /** Shows the handle, and lets other programs ask it. */
-function showHandle(engine, store) {
-  const handle = new Handle(engine, store);
+function showHandle(engine, store, laws) {
+  const handle = new Handle(engine, store, laws);
   window.haptic.handle = (scene, counts, countsPerTurn) => handle.codes(scene, counts, countsPerTurn);
   window.haptic.dragged = () => handle.dragged();
   handle.start();

@@ -10,7 +10,7 @@ async function main() {
   const table = engine.json("keys");
   window.haptic = forPrograms(engine, store);
   showVerdict(store);
-  showHandle(engine, store);
+  showHandle(engine, store, table.hosts);
   showPictures(engine, store, module, worker);
   showBoard(engine, store);
   store.judge();

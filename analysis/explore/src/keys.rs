@@ -3,6 +3,7 @@
 use haptic_model::file::key::{self, Bound, Form, Key, Presence};
 use haptic_model::file::kind::{self, Kind};
 use haptic_model::file::{self, Format, shape};
+use haptic_model::host::HostLaw;
 use haptic_servo::parameter::Range;
 use serde_json::{Map, Value, json};
 
@@ -10,7 +11,7 @@ use crate::PageResult;
 use crate::presets::{self, Preset};
 
 /// All keys with unit, bound, default and text; the keys of each type of environment and each shape, with a
-/// value of each required key; and scenes to start from.
+/// value of each required key; scenes to start from; and the laws of hostile hosts.
 pub fn keys(_: &str, _: &mut Vec<f64>) -> PageResult {
     let kinds = kind::ALL.iter().map(|kind| {
         let needed: Vec<_> = kind.needed.iter().map(|key| key.path).collect();
@@ -31,6 +32,7 @@ pub fn keys(_: &str, _: &mut Vec<f64>) -> PageResult {
         "kinds": kinds.collect::<Vec<_>>(),
         "shapes": shapes.collect::<Vec<_>>(),
         "presets": presets.collect::<Vec<_>>(),
+        "hosts": HostLaw::ALL.map(HostLaw::as_str),
     })
     .to_string())
 }

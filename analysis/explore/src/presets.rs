@@ -22,6 +22,7 @@ pub const ALL: &[Preset] = presets![
     "damper wall" in "damper_wall.toml",
     "free mode" in "free_mode.toml",
     "knob" in "knob.toml",
+    "torque of a host" in "host.toml",
     "undelayed wall behind a lag" in "undelayed_wall.toml",
     "beyond the limit" in "beyond_the_limit.toml",
 ];

@@ -34,6 +34,7 @@ mod beside_host;
 pub mod closed_form;
 pub mod design;
 pub mod felt;
+pub mod host;
 pub mod latency_limits;
 pub mod limits;
 pub mod nyquist;

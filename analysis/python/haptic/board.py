@@ -201,6 +201,8 @@ def connect(port: str) -> Board:
 def simulated_board(scene: Scene) -> SimulatedBoard:
     """Start a board without hardware: the servo of this scene, its device, and a hand that moves it to and fro.
 
+    A scene with the table ``host`` takes the torques of :meth:`Board.stream` within its budget.
+
     It runs in this process at the rate of a real board. A scene that does not certify or that no board renders
     raises :class:`SceneError`. Encoder and motor are those of the scene, or the defaults of a simulation.
     """

@@ -4,6 +4,7 @@
 mod axis;
 mod base;
 pub mod bode;
+pub mod budget;
 pub mod cell_polygons;
 pub mod data;
 pub mod detents;

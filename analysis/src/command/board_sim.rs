@@ -10,12 +10,11 @@ use haptic_servo::scene::Scene;
 use haptic_servo::servo::Transducers;
 
 use super::file_program::FileProgram;
-use super::file_scene::{is_file, scene_file};
-use super::rebuild_with_scene;
+use super::file_scene::scene_file;
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::seconds;
 use super::virtual_board_build::VirtualBoardBuild;
-use crate::board_sim::{self, DrivingBoard, Pacing, SimulatedBoard, SimulatedBoardError};
+use crate::board_sim::{self, DrivingBoard, Pacing, SimulatedBoard};
 use crate::disturbance::Disturbance;
 use crate::file::SceneFile;
 use crate::hand::HandTrajectory;
@@ -57,11 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let enough = terminal::interrupted()?;
     let board = match Program::find(name) {
         Some(program) => of_program(program, *board, port)?,
-        None if is_file(name) => of_file(&scene_file(name)?, name, *board, port)?,
-        None => {
-            let (name, programs) = (name.clone(), rebuild_with_scene::scenes());
-            return Err(CommandError::NoProgram { name, programs });
-        }
+        None => of_file(&scene_file(name)?, name, *board, port)?,
     };
     writeln!(io::stdout(), "{name} listens on {}", board.address())?;
     let end = arguments.duration.map(|duration| Instant::now() + duration);
@@ -99,16 +94,7 @@ fn of_file(
 ) -> Result<SimulatedBoard, CommandError> {
     file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
     let Some(board) = board else {
-        return SimulatedBoard::of_file(file, port, Pacing::RealTime).map_err(
-            |error| match error {
-                SimulatedBoardError::Listen { address, source } => {
-                    CommandError::Listen { address, source }
-                }
-                error => {
-                    CommandError::NoBoardProgram { file: source.to_owned(), why: error.to_string() }
-                }
-            },
-        );
+        return Ok(SimulatedBoard::of_file(file, port, Pacing::RealTime)?);
     };
     let program = FileProgram::of(file, source, None, None)?;
     let built = VirtualBoardBuild::of_file(board, &program, NumberFormat::F32)?;

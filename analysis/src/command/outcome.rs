@@ -1,6 +1,8 @@
 //! The result of a run as text.
 
+use haptic_model::host::HostRun;
 use haptic_servo::dac::DacCode;
+use haptic_servo::host::HostTorque;
 use haptic_servo::text::RoundUp3;
 
 use crate::compare_run::RunOutcome;
@@ -32,7 +34,32 @@ pub fn text(outcome: &RunOutcome) -> String {
         let text = format!("{compute}{whole} on average in the whole interrupt");
         rows.push(("instructions per tick", text));
     }
-    rows.iter().map(|(label, value)| format!("{label}: {value}\n")).collect()
+    let rows: String = rows.iter().map(|(label, value)| format!("{label}: {value}\n")).collect();
+    rows + &outcome.host.as_ref().map_or_else(String::new, of_host)
+}
+
+/// What a host wanted, and what the hand took of its budget.
+fn of_host(host: &HostRun) -> String {
+    let HostRun { law, budget: HostTorque { energy, power, torque, .. }, .. } = host;
+    let ((refused, ticks), (most, time)) = (host.refused(), host.most());
+    let percent = |part: f64| significant(100.0 * part, 3);
+    let millijoules = |joules: f64| significant(1e3 * joules, 4);
+    let mut shown = format!(
+        "host: {law}, at most {torque} N m; budget {energy} J and {power} W\n\
+         refused: {} % of the torque that it wanted, in {ticks} of {} ticks\n\
+         energy taken from the host, and the budget:\n",
+        percent(refused),
+        host.ticks.len()
+    );
+    for tick in host.rows() {
+        let [time, taken, budget] = [
+            significant(host.time(tick), 4),
+            millijoules(host.taken[tick]),
+            millijoules(host.budget_at(tick)),
+        ];
+        shown += &format!("  {:>10} {taken:>9} mJ of {budget} mJ\n", format!("{time} s"));
+    }
+    shown + &format!("most of the budget: {} % at {} s\n", percent(most), significant(time, 4))
 }
 
 /// The output for a scene that ran on a board: its verdict and its motion.

@@ -7,9 +7,11 @@ use std::str::FromStr;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
-use haptic_servo::number::Format;
+use haptic_model::host::{HostLaw, HostRun, HostTick};
+use haptic_servo::host::HostTorque;
+use haptic_servo::number::{Format, Number};
 use haptic_servo::scene::Scene;
-use haptic_servo::servo::Transducers;
+use haptic_servo::servo::{OutputTiming, Transducers};
 use serde::Serialize;
 
 use super::building::{emulated, set_up};
@@ -28,7 +30,8 @@ use crate::device::Energy;
 use crate::disturbance::Disturbance;
 use crate::file::SceneFile;
 use crate::hand::HandTrajectory;
-use crate::lockstep::{Difference, Run, SimulatedDevice};
+use crate::host_run::BesideHost;
+use crate::lockstep::{Difference, SimulatedDevice};
 use crate::program::Program;
 use crate::progress;
 use crate::shaft::{HandHeldShaft, RecordedShaft};
@@ -107,8 +110,12 @@ pub struct Arguments {
     #[arg(long, value_name = "N",
           value_parser = RangedU64ValueParser::<usize>::new().range(1..=MAX_TICKS))]
     pub ticks: Option<usize>,
+    /// Add the torques of a host that wants energy, within the budget of the scene: pump, noise, late-spring,
+    /// square
+    #[arg(long, value_name = "LAW", conflicts_with = "replay")]
+    pub host: Option<HostLaw>,
     /// Print one row for each tick: tick,count,angle,torque,code,limit. The torque is the coupling
-    /// torque; the motor applies its negative
+    /// torque; the motor applies its negative. With --host also wanted,given (N m), level,taken,budget (J)
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]
@@ -126,6 +133,10 @@ struct RunSetup {
     disturbance: Disturbance,
     controller: Box<dyn Controller>,
     program: RunProgram,
+    /// What a host may do.
+    budget: Option<HostTorque>,
+    /// Whether a board's own bridge drives the motor.
+    has_bridge: bool,
 }
 
 /// The program for a board.
@@ -150,6 +161,22 @@ struct Summary<'a> {
     codes_equal: Option<usize>,
     difference: Option<Difference>,
     instructions: Option<Instructions>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    host: Option<HostSummary>,
+}
+
+/// What a host wanted, and what the hand took.
+#[derive(Serialize)]
+struct HostSummary {
+    law: &'static str,
+    /// Part of the wanted torque that was refused, and the ticks in which some was.
+    refused: f64,
+    limited_ticks: usize,
+    /// The largest part of the budget that was taken, and the time in s of that.
+    most_of_budget: f64,
+    most_at: f64,
+    /// Time in s, energy taken in J, budget in J.
+    over_time: Vec<[f64; 3]>,
 }
 
 #[derive(Serialize)]
@@ -174,13 +201,22 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         )?;
     }
     let counts = recording.map(|recording| recording.counts);
+    if let Some(law) = arguments.host {
+        // Refused before anything is built.
+        let host = setup.host((law, true), arguments.format)?;
+        host.servo(setup.controller.as_mut(), OutputTiming::Simultaneous)?;
+    }
     let built = build(&setup, arguments)?;
     let ticks = match &counts {
         Some(counts) => arguments.ticks.map_or(counts.len(), |ticks| ticks.min(counts.len())),
         None => arguments.ticks.unwrap_or_else(|| ticks_of_hand(period)),
     };
     let bar = progress::bar(ticks as u64, &setup.name);
-    let outcome = ran(&mut setup, &built, counts.as_deref(), ticks, progress::stepper(&bar))?;
+    let stepper = progress::stepper(&bar);
+    let outcome = match arguments.host {
+        Some(law) => ran_beside_host(&mut setup, arguments, (law, true), &built, ticks, stepper)?,
+        None => ran(&mut setup, &built, counts.as_deref(), ticks, stepper)?,
+    };
     bar.finish_and_clear();
     print(arguments, &setup, &outcome, gaps)?;
     Ok(CommandStatus::of(outcome.run.difference.is_none()))
@@ -230,10 +266,102 @@ fn ran(
     Ok(run_with_backend(input, controller, backend, ticks, progress)?)
 }
 
+/// Two runs of a scene on this machine in the same hand, with the same host.
+pub struct HostRuns {
+    /// The scene's name.
+    pub name: String,
+    /// With the host's tank, and without.
+    pub runs: [RunOutcome; 2],
+    /// The hand.
+    pub hand: HandTrajectory,
+}
+
+/// Runs a scene with a host and its tank, and without the tank.
+pub fn beside_host(scene: &str, law: HostLaw) -> Result<HostRuns, CommandError> {
+    let arguments = Arguments {
+        scene: scene.to_owned(),
+        target: Target::Host,
+        replay: None,
+        counts_per_rev: None,
+        full_scale: None,
+        format: NumberFormat::F32,
+        ticks: None,
+        host: Some(law),
+        csv: false,
+        answer: JsonOption { json: false },
+    };
+    let file = match Program::find(scene) {
+        Some(_) => None,
+        None => Some(scene_file(scene)?),
+    };
+    let fresh = || match file.clone() {
+        Some(file) => of_file(file, &arguments),
+        None => setup(&arguments),
+    };
+    let run = |has_tank| {
+        let mut setup = fresh()?;
+        let ticks = ticks_of_hand(setup.scene.timing.period);
+        let law = (law, has_tank);
+        ran_beside_host(&mut setup, &arguments, law, &Built::Nothing, ticks, || {})
+    };
+    let runs = [run(true)?, run(false)?];
+    let RunSetup { name, trajectory, .. } = fresh()?;
+    Ok(HostRuns { name, runs, hand: trajectory })
+}
+
+/// Runs it in a hand with a host beside it, and its tank or none.
+fn ran_beside_host(
+    setup: &mut RunSetup,
+    arguments: &Arguments,
+    law: (HostLaw, bool),
+    built: &Built,
+    ticks: usize,
+    progress: impl FnMut(),
+) -> Result<RunOutcome, CommandError> {
+    let beside = setup.host(law, arguments.format)?;
+    let RunSetup { scene, transducers, trajectory, disturbance, .. } = setup;
+    let device = SimulatedDevice::new(scene, trajectory.clone(), transducers)?;
+    let device = device.with_disturbance(*disturbance);
+    let controller = setup.controller.as_mut();
+    Ok(match built.backend(beside.scene.timing.period) {
+        None => beside.run(controller, device, ticks, progress).map_err(RunError::from)?,
+        Some(backend) => beside.run_on(backend, controller, device, ticks, progress)?,
+    })
+}
+
+impl RunSetup {
+    /// The host beside the scene, with its tank or without.
+    fn host(
+        &self,
+        (law, has_tank): (HostLaw, bool),
+        format: NumberFormat,
+    ) -> Result<BesideHost, CommandError> {
+        let Some(budget) = self.budget else {
+            return Err(CommandError::NoHost { scene: self.name.clone() });
+        };
+        if self.report.verdict != Verdict::Certified {
+            return Err(CommandError::HostRefused { why: self.report.message.clone() });
+        }
+        let format = match format {
+            NumberFormat::F32 => Format::F32,
+            NumberFormat::Fixed => <fixed::types::I8F24 as Number>::FORMAT,
+        };
+        let &Self { scene, transducers, has_bridge, .. } = self;
+        Ok(BesideHost { scene, transducers, budget, law, has_tank, format, has_bridge })
+    }
+}
+
 fn setup(arguments: &Arguments) -> Result<RunSetup, CommandError> {
     match Program::find(&arguments.scene) {
         Some(program) => of_program(program, arguments),
-        None => of_file(arguments),
+        None => {
+            let file = scene_file(&arguments.scene)?;
+            let setup = of_file(file.clone(), arguments)?;
+            for note in unused(&file, arguments) {
+                writeln!(io::stderr(), "note: {note}")?;
+            }
+            Ok(setup)
+        }
     }
 }
 
@@ -261,11 +389,12 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
         disturbance: Disturbance::default(),
         controller: program.controller(format, &transducers)?,
         program: RunProgram::Named(program),
+        budget: program.host,
+        has_bridge: program.bridge.is_some(),
     })
 }
 
-fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
-    let file = scene_file(&arguments.scene)?;
+fn of_file(file: SceneFile, arguments: &Arguments) -> Result<RunSetup, CommandError> {
     let certified =
         file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
     let (counts, full_scale) = (arguments.counts_per_rev, arguments.full_scale);
@@ -278,20 +407,28 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
         NumberFormat::F32 => controller::<_, f32>(&certified, &transducers)?,
         NumberFormat::Fixed => controller::<_, fixed::types::I8F24>(&certified, &transducers)?,
     };
-    for note in unused(&file, arguments.replay.is_some()) {
-        writeln!(io::stderr(), "note: {note}")?;
-    }
     let (report, trajectory) = (judge_file(&file, Format::F64), hand_trajectory(&file));
     let disturbance = file.disturbance();
-    let (name, scene) = (file.name, file.scene);
+    let (scene, budget, has_bridge) = (file.scene, file.host, file.motor.is_some());
     let program = RunProgram::OfFile(program);
-    Ok(RunSetup { name, report, scene, transducers, trajectory, disturbance, controller, program })
+    Ok(RunSetup {
+        name: file.name,
+        report,
+        scene,
+        transducers,
+        trajectory,
+        disturbance,
+        controller,
+        program,
+        budget,
+        has_bridge,
+    })
 }
 
 /// The parts of a scene file that a run does not use, as text: the servo runs on a rigid device in a hand's
 /// trajectory, with the currents of a bridge's motor, or on recorded counts.
-fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
-    let mut notes = Vec::new();
+fn unused(file: &SceneFile, arguments: &Arguments) -> Vec<String> {
+    let (mut notes, is_replay) = (Vec::new(), arguments.replay.is_some());
     if is_replay {
         if file.hand.is_some() {
             notes.push("[human] is not used: the counts are those of the recording".to_owned());
@@ -310,10 +447,11 @@ fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
     }
     let encoder = file.scene.latency.encoder;
     let misreads = is_replay && (!encoder.is_ideal() || encoder.steps() > 1.0);
-    for (table, is_there) in [("host", file.host.is_some()), ("encoder", misreads)] {
-        if is_there {
-            notes.push(format!("[{table}] is not used; `haptic simulate` uses it"));
-        }
+    if file.host.is_some() && arguments.host.is_none() {
+        notes.push("[host] is not used without --host; `haptic simulate` uses it".to_owned());
+    }
+    if misreads {
+        notes.push("[encoder] is not used; `haptic simulate` uses it".to_owned());
     }
     notes
 }
@@ -363,7 +501,7 @@ fn print(
 ) -> Result<(), CommandError> {
     let mut out = io::BufWriter::new(io::stdout().lock());
     if arguments.csv {
-        rows(&mut out, &outcome.run)?;
+        rows(&mut out, outcome)?;
     } else if arguments.answer.json {
         json(&mut out, &summary(arguments, setup, outcome, gaps))?;
     } else if let (Target::Board(_), &RunProgram::Named(program)) =
@@ -406,22 +544,40 @@ fn summary<'a>(
             interrupt_mean: board.interrupt().mean,
             interrupt_max: board.interrupt().max,
         }),
+        host: outcome.host.as_ref().map(host_summary),
     }
 }
 
+fn host_summary(host: &HostRun) -> HostSummary {
+    let ((refused, limited_ticks), (most_of_budget, most_at)) = (host.refused(), host.most());
+    let row = |tick| [host.time(tick), host.taken[tick], host.budget_at(tick)];
+    let over_time = host.rows().map(row).collect();
+    let law = host.law.as_str();
+    HostSummary { law, refused, limited_ticks, most_of_budget, most_at, over_time }
+}
+
 /// The rows of a run as CSV.
-fn rows(out: &mut impl Write, run: &Run) -> Result<(), CommandError> {
+fn rows(out: &mut impl Write, outcome: &RunOutcome) -> Result<(), CommandError> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(["tick", "count", "angle", "torque", "code", "limit"])?;
-    for (number, tick) in run.ticks.iter().enumerate() {
-        writer.write_record(&[
+    let host = outcome.host.as_ref();
+    let header = ["tick", "count", "angle", "torque", "code", "limit"];
+    let of_host = host.map_or(&[][..], |_| &["wanted", "given", "level", "taken", "budget"]);
+    writer.write_record(header.iter().chain(of_host))?;
+    for (number, tick) in outcome.run.ticks.iter().enumerate() {
+        let mut row = vec![
             number.to_string(),
             tick.count.to_string(),
             tick.angle.to_string(),
             tick.torque.to_string(),
             tick.code.to_string(),
             tick.limit.to_string(),
-        ])?;
+        ];
+        if let Some(host) = host {
+            let HostTick { wanted, given, level } = host.ticks[number];
+            let (taken, budget) = (host.taken[number], host.budget_at(number));
+            row.extend([wanted, given, level, taken, budget].map(|number| number.to_string()));
+        }
+        writer.write_record(&row)?;
     }
     Ok(writer.flush()?)
 }

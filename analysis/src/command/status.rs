@@ -36,8 +36,14 @@ pub enum CommandError {
     File(#[from] FileError),
     #[error("there is no scene {name}: the programs are {programs}, and there is no such file")]
     NoScene { name: String, programs: String },
-    #[error("there is no scene {name}: the programs are {programs}")]
-    NoProgram { name: String, programs: String },
+    #[error(
+        "{scene} takes no torque of a host: --host is for a scene file with the table [host], and for \
+         hosted_wall (docs/host-torque.md)"
+    )]
+    NoHost { scene: String },
+    /// Exit status 1, because the input was valid.
+    #[error("{why}")]
+    HostRefused { why: String },
     #[error("{file}: {why}")]
     NoBoardProgram { file: String, why: String },
     #[error(
@@ -144,6 +150,7 @@ passed_on! {
     crate::toolchain::SourcesError,
     crate::toolchain::probe::ProbeError,
     crate::virtual_board::VirtualBoardError,
+    haptic_servo::host::HostError,
     haptic_servo::servo::BuildError,
 }
 
@@ -173,6 +180,7 @@ impl CommandError {
         matches!(
             self,
             Self::Refused(_)
+                | Self::HostRefused { .. }
                 | Self::FileNotBuilt { is_certified: false, .. }
                 | Self::LeftOut { .. }
                 | Self::RanAway { .. }

@@ -138,7 +138,8 @@ impl Emulator {
     }
 
     /// Arms the servo and holds the device still at zero until its clamp is open.
-    pub fn arm_and_wait(&mut self) -> Result<(), EmulatorError> {
+    /// Returns the connection to its serial port.
+    pub fn arm_and_wait(&mut self) -> Result<UnixStream, EmulatorError> {
         self.arm_and_observe(|_| ())
     }
 
@@ -146,7 +147,7 @@ impl Emulator {
     pub fn arm_and_observe(
         &mut self,
         mut see: impl FnMut(TickOutput),
-    ) -> Result<(), EmulatorError> {
+    ) -> Result<UnixStream, EmulatorError> {
         const AT_REST: TickInput = TickInput { count: 0, missed: 0 };
         // The port is open after the first tick.
         see(self.tick(AT_REST)?);
@@ -158,7 +159,7 @@ impl Emulator {
             let output = self.tick(AT_REST)?;
             see(output);
             if output.state == State::Running {
-                return Ok(());
+                return Ok(port);
             }
         }
         Err(EmulatorError::NotArmed)

@@ -83,6 +83,7 @@ fn commands_of_the_guides_answer_what_the_guides_show() {
     play("docs/first-hour.md", &["knob.toml", "wall.toml"], &["verdict", "measured", "stiffest"]);
     play("docs/gimbal-knob.md", &["knob.toml"], &["turns"]);
     play("docs/power-stage.md", &[], &["motor"]);
+    play("docs/host-torque.md", &["wheel.toml"], &["host"]);
     let printed = block("docs/first-hour.md", "stiffest");
     for line in block("README.md", "stiffest").lines() {
         assert!(printed.contains(line), "{line}");

@@ -100,4 +100,4 @@ macro_rules! sessions {
     )*};
 }
 
-sessions! { boards certify charts design encoder files filters identify profiles programs simulate }
+sessions! { boards certify charts design encoder files filters host identify profiles programs simulate }

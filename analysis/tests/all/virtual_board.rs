@@ -113,3 +113,27 @@ fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
     assert!(refused["refused"].to_string().contains("J to the supply"), "{refused}");
     assert_eq!(tuned(&board, &[]).1["parameters"]["stiffness"], 15.0);
 }
+
+/// A host that wants energy sends its commands over the serial port. The servo on this machine gets each in the
+/// tick in which the board took it.
+#[test]
+#[ignore = "builds for minutes"]
+fn beside_a_host_a_board_has_the_codes_of_this_machine() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/pictures/host.toml");
+    for (scene, target) in [
+        ("hosted_wall", "qemu"),
+        ("hosted_wall", "board:nucleo-g474re"),
+        (file, "qemu"),
+        (file, "board:nucleo-g474re"),
+    ] {
+        for law in ["pump", "late-spring"] {
+            let options = ["--target", target, "--host", law, "--ticks", "1500", "--json"];
+            let run = answer(&haptic(&[&["run", scene], &options[..]].concat()));
+            assert_eq!((&run["codes_equal"], &run["difference"]), (&1500.into(), &Value::Null));
+            let host = &run["host"];
+            assert!(host["limited_ticks"].as_u64().unwrap() > 100, "{scene} {target}: {host}");
+            let most = host["most_of_budget"].as_f64().unwrap();
+            assert!((0.2..=1.0).contains(&most), "{scene} {target}: {host}");
+        }
+    }
+}

@@ -111,3 +111,34 @@ pub fn a_refused_handle_has_no_torque_until_the_check_is_off() {
     assert!(words.as_str().unwrap().starts_with("Oscillates: "), "{words}");
     page.assert_silent();
 }
+
+/// Of a host that pushes along the velocity the hand takes no more than the budget; without the tank, the same
+/// hand takes more.
+pub fn a_hostile_host_gives_its_budget_and_without_a_tank_more() {
+    let host = "energy = 0.05\npower = 0.1\ndamping = 0.004\ntorque = 0.5\ntimeout = 0.05";
+    let soft = WALL.replace("stiffness = 22.0", "stiffness = 10.0");
+    let soft = soft.replace("damping = 0.01", "damping = 0.002");
+    let scene = format!("{soft}[limits]\ntorque = 1.0\n[host]\n{host}\n");
+    let (_folder, mut page) = opened(1280, &scene);
+    let taken = "document.getElementById('handle-taken')";
+    assert_eq!(page.value(&format!("{taken}.textContent")), "");
+    page.value(
+        "(() => { const law = document.getElementById('handle-host'); law.value = 'pump'; \
+         law.dispatchEvent(new Event('change')); })()",
+    );
+    page.click("#handle-push");
+    // The budget rises by 0.1 W: after a second it is more than 150 mJ.
+    let budget = format!("Number({taken}.textContent.match(/budget of ([0-9.]+) mJ/)?.[1] ?? 0)");
+    page.wait_for(&format!("{budget} > 150"));
+    let said = page.value(&format!("{taken}.textContent"));
+    assert!(said.as_str().unwrap().starts_with("The hand took "), "{said}");
+    assert_eq!(page.value(&format!("{taken}.classList.contains('error')")), false, "{said}");
+    page.click("#handle-tank");
+    page.wait_for(&format!("{taken}.classList.contains('error')"));
+    let said = page.value(&format!("{taken}.textContent"));
+    assert!(said.as_str().unwrap().contains("more than that; 0 % refused"), "{said}");
+    // A scene without a budget has no switch.
+    let (_folder, mut page_without) = opened(1280, WALL);
+    assert_eq!(page_without.value("document.getElementById('handle-hosted').hidden"), true);
+    page.assert_silent();
+}

@@ -40,6 +40,7 @@ fn all() -> Vec<(&'static str, fn())> {
         handle::the_handle_of_the_page_runs_the_servo_of_the_program
         handle::the_encoder_of_the_handle_is_exchanged
         handle::a_refused_handle_has_no_torque_until_the_check_is_off
+        handle::a_hostile_host_gives_its_budget_and_without_a_tank_more
         serve::a_board_is_watched_tuned_armed_and_recorded
         serve::a_link_is_lost_and_back_and_a_second_page_is_refused
         serve::a_foreign_page_does_not_reach_the_board

@@ -139,6 +139,39 @@ def streams():
         refuses(haptic.LinkLostError, "is lost: ", lambda: board.stream(spring, 1000.0))
 
 
+def pushes():
+    """A stream to a simulated board moves the device in its hand; a torque that is not finite ends it."""
+    host = {"energy": 0.05, "power": 0.5, "damping": 0.004, "torque": 0.5, "timeout": 0.05}
+    scene = {**SCENE, "environment": {**SCENE["environment"], "stiffness": 1.0}, "host": host}
+    sides = {1: [], -1: []}
+
+    def square(position, velocity, time):
+        side = 1 if time % 0.2 < 0.1 else -1
+        if 0.05 < time % 0.1:
+            sides[side].append(position)
+        return 0.3 * side
+
+    with haptic.simulated_board(scene) as simulated, haptic.connect(simulated.port) as board:
+        board.arm()
+        while board.status()["state"] != "running":
+            time.sleep(0.01)
+        board.stream(square, rate=200.0, duration=4.0)
+        # The hand's spring of 6 N m/rad, that of the wall, and 0.3 N m to both sides.
+        moved = np.mean(sides[1]) - np.mean(sides[-1])
+        assert len(sides[1]) > 100 and 0.05 < moved < 0.11, (len(sides[1]), moved)
+        refuses(haptic.StreamError, "returned a torque of NaN", lambda: board.stream(lambda *_: math.nan, 100))
+        refuses(haptic.RefusedError, "share of damping", lambda: board.parameters.update(stiffness=10, damping=0.01))
+        assert board.status()["state"] == "running"
+        board.disarm()
+    greedy = {**scene, "host": {**host, "damping": 0.03}}
+    try:
+        haptic.simulated_board(greedy)
+    except haptic.SceneError as error:
+        assert "share of damping is 0.03 N m s/rad" in str(error), error
+    else:
+        raise AssertionError("it was not refused")
+
+
 class HostBoard(threading.Thread):
     """A board that takes torques, by PROTOCOL.md: it moves by a count, 0.1 rad, in each tick that takes one."""
 
@@ -229,4 +262,4 @@ def unframed(encoded):
     return checked[:-4]
 
 
-{test.__name__: test for test in (tunes, records, is_no_board, is_lost, streams)}[sys.argv[1]]()
+{test.__name__: test for test in (tunes, records, is_no_board, is_lost, streams, pushes)}[sys.argv[1]]()

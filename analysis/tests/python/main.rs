@@ -26,7 +26,7 @@ use self::picture::Picture;
 const AGREE: [&str; 5] = ["certify", "simulate", "index", "stability_map", "refusals"];
 
 /// The tests of `board.py`, each a process.
-const BOARD: [&str; 5] = ["tunes", "records", "is_no_board", "is_lost", "streams"];
+const BOARD: [&str; 6] = ["tunes", "records", "is_no_board", "is_lost", "streams", "pushes"];
 
 /// The packages for the build of the package, and for its example.
 const FROM_PYPI: [&str; 3] = ["maturin>=1.9,<2", "numpy", "matplotlib"];
@@ -46,6 +46,7 @@ fn main() -> ExitCode {
             .push((test, Box::new(move || drop(alone("analysis/tests/python/board.py", &[test])))));
     }
     tests.push(("the_example_tunes_a_board", Box::new(the_example_tunes_a_board)));
+    tests.push(("the_guide_of_a_host_runs", Box::new(the_guide_of_a_host_runs)));
     tests.push(("the_example_draws_its_map", Box::new(the_example_draws_its_map)));
     tests
         .push(("peers_are_measured_in_the_same_run", Box::new(peers_are_measured_in_the_same_run)));
@@ -98,9 +99,30 @@ fn the_example_tunes_a_board() {
     assert_eq!(alone("analysis/python/examples/board.py", &[]), shown("board"));
 }
 
+/// Its blocks of Python, one after the other beside its scene file, print the text that it shows.
+fn the_guide_of_a_host_runs() {
+    let guide = common::read(root().join("docs/host-torque.md"));
+    let blocks = |language: &str| {
+        let begin = format!("```{language}\n");
+        let blocks = guide.split(&begin).skip(1).map(|rest| rest.split_once("```").unwrap().0);
+        blocks.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    std::fs::write(file("wheel.toml"), &blocks("toml")[0]).unwrap();
+    std::fs::write(file("guide.py"), blocks("python").join("\n")).unwrap();
+    let guide_py = file("guide.py");
+    let printed = python(folder.path(), guide_py.to_str().unwrap(), &[]);
+    assert_eq!(printed, shown_in("docs/host-torque.md", "printed"));
+}
+
 /// The text that the guide shows under this mark.
 fn shown(mark: &str) -> String {
-    let guide = common::read(root().join("docs/python.md"));
+    shown_in("docs/python.md", mark)
+}
+
+fn shown_in(guide: &str, mark: &str) -> String {
+    let guide = common::read(root().join(guide));
     let (_, shown) =
         guide.split_once(&format!("<!-- {mark} -->\n```text\n")).expect("the guide shows it");
     shown.split_once("```").unwrap().0.to_owned()

@@ -351,6 +351,16 @@ pub struct Hosted<const TICKS: usize, const IS_PLAIN: bool> {
 }
 
 impl<const TICKS: usize, const IS_PLAIN: bool> Hosted<TICKS, IS_PLAIN> {
+    /// Torque in N m that the host wants in the present tick.
+    pub(super) const fn wanted(&self) -> f32 {
+        self.stream.wanted
+    }
+
+    /// Level of the tank in J.
+    pub(super) fn energy(&self) -> f64 {
+        self.tank.energy()
+    }
+
     /// Gives what the level pays of a torque.
     #[cold]
     #[inline(never)]

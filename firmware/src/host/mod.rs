@@ -8,6 +8,7 @@
 //! The scene must certify with a part of the device's damping less, the host's *share*. That share pays for
 //! the torque of a tick before its motion is known, so no bound on the speed is needed.
 
+mod any;
 mod beside;
 mod channel;
 mod error;
@@ -17,6 +18,7 @@ mod tank;
 #[cfg(test)]
 mod tests;
 
+pub use any::AnyHosted;
 #[cfg(feature = "wire")]
 pub use beside::Nothing;
 pub use beside::{

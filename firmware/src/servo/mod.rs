@@ -259,7 +259,7 @@ impl<E: Rendering<N>, N: Number> Servo<E, N> {
     /// It is not in the torque that the coupling is solved with: the scene's torque follows from the
     /// positions alone.
     #[inline(always)]
-    pub(crate) fn code_beside(&self, host: N) -> DacCode {
+    pub fn code_beside(&self, host: N) -> DacCode {
         let torque = self.anticogging.add_to(self.torque).minus(host);
         DacCode::from_low_bits(torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale))
     }

@@ -19,8 +19,9 @@ use haptic_model::file::SceneFile;
 use haptic_model::simulation::SimulationError;
 use haptic_servo::board::sim_hardware::SimHardware;
 use haptic_servo::boot::{self, Program};
-use haptic_servo::environment::Environment;
 use haptic_servo::number::Number;
+use haptic_servo::rendering::EnvironmentBesideHost;
+use haptic_servo::scene::Scene;
 use haptic_servo::servo::{
     BuildError, Latched, OutputMode, RenderingOptions, Step, SupportsTiming,
 };
@@ -103,9 +104,9 @@ impl SimulatedBoard {
         })
     }
 
-    /// Boots a program of a scene file in a simulated hand, the file's if it has one, and listens there. The device
-    /// has the file's friction and cogging. The sensor and the motor that the file does not state are the defaults
-    /// of a simulation.
+    /// Boots a program of a scene file in a simulated hand, the file's if it has one, and listens there, with the
+    /// host of the file beside its servo, if it has one. The device has the file's friction and cogging. The sensor
+    /// and the motor that the file does not state are the defaults of a simulation.
     ///
     /// # Errors
     /// No board renders the scene, or the address cannot be listened on.
@@ -114,9 +115,26 @@ impl SimulatedBoard {
         address: &Address,
         pacing: Pacing,
     ) -> Result<Self, SimulatedBoardError> {
+        let Some(host) = file.host else {
+            return Self::of_scene(file, file.scene, address, pacing);
+        };
+        let environment = EnvironmentBesideHost { environment: file.scene.environment, host };
+        Self::of_scene(file, file.scene.in_environment(environment), address, pacing)
+    }
+
+    /// The same with the scene as a program has it.
+    fn of_scene<E>(
+        file: &SceneFile,
+        scene: Scene<E>,
+        address: &Address,
+        pacing: Pacing,
+    ) -> Result<Self, SimulatedBoardError>
+    where
+        E: Tunable<f32> + SupportsTiming<Latched> + Send + 'static,
+    {
         let transducers = file.transducers(None, None);
         let (rendering, options) = (RenderingOptions::DEFAULT, Options::DEFAULT);
-        let program = Program { scene: file.scene, transducers, rendering, options };
+        let program = Program { scene, transducers, rendering, options };
         program.check()?;
         tuning::explain::<_, f32, Latched>(&program.scene, &[], &transducers, &rendering)
             .map_err(|reason| not_rendered(reason.step(), reason))?;
@@ -126,7 +144,7 @@ impl SimulatedBoard {
         // A board's name is a constant.
         let name = &file.name[..file.name.floor_char_boundary(LONGEST_NAME)];
         let name = Box::leak(name.to_owned().into_boxed_str());
-        Self::start::<Environment, f32, Latched>(name, program, plant, address, pacing)
+        Self::start::<E, f32, Latched>(name, program, plant, address, pacing)
             .map_err(|source| SimulatedBoardError::Listen { address: address.clone(), source })
     }
 

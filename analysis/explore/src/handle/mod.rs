@@ -6,6 +6,7 @@
 //! scene's output delay and lags. A board with latched codes computes each code one tick earlier, from the
 //! same counts, without a difference for motor and device.
 
+mod hosted;
 mod oscillation;
 mod push;
 mod rim;

@@ -13,6 +13,12 @@ pub struct Settings {
     pub hand: Hand,
     /// Whether only a certified scene has torque.
     pub is_checked: bool,
+    /// The law of a host that wants energy; default: none. A scene without the table `host` has none.
+    #[serde(default)]
+    pub host: Option<String>,
+    /// Whether the host has no tank, and gets every torque.
+    #[serde(default)]
+    pub has_no_tank: bool,
 }
 
 impl Settings {

@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use haptic_model::controller::Controller;
 use haptic_model::device::{Energy, HandSetpoint};
+use haptic_model::file::SceneFile;
 use haptic_model::simulation::device_in_hand::DeviceInHand;
 use haptic_servo::dac::DacCode;
 use haptic_servo::environment::Wall;
@@ -10,10 +12,12 @@ use haptic_servo::scene::{EncoderReading, Scene};
 use haptic_servo::servo::Transducers;
 use serde::{Deserialize, Serialize};
 
+use super::hosted::{HostMoved, Hosted};
 use super::oscillation::{Oscillation, Watch};
 use super::push::Push;
 use super::servo::{Rendered, Rendering};
 use super::settings::Settings;
+use super::unchecked::Unchecked;
 use crate::scene_text::read;
 
 /// Largest number of ticks in which a servo settles before it takes over.
@@ -31,11 +35,17 @@ pub struct Simulated {
     scene: Scene,
     transducers: Transducers,
     rendered: Rendered,
+    /// The servo with a host beside it, in place of the rendered one.
+    hosted: Option<Hosted>,
+    /// The reason if there is no host that the page wanted.
+    host_refusal: Option<String>,
+    has_host: bool,
     device: DeviceInHand,
     /// The hand's set-point in rad; the device's angle without a hand.
     setpoint: f64,
     push: Option<Push>,
-    /// Counts and codes of the servo from its first tick on; later ones are dropped when it is full.
+    /// Counts and codes of the servo, beside its host, from its first tick on; later ones are dropped when it is
+    /// full.
     record: Vec<(i32, u16)>,
     watch: Watch,
 }
@@ -59,6 +69,10 @@ pub struct Held<'a> {
     face: Option<f64>,
     /// Whether it pushes in one direction only.
     one_sided: bool,
+    /// Whether the scene may have a host.
+    has_host: bool,
+    /// The reason if there is no host that the page wanted.
+    host_refusal: Option<&'a str>,
 }
 
 /// The motion of the hand over the next ticks.
@@ -107,6 +121,8 @@ pub struct Moved {
     pub energy: Energy,
     /// The torque's oscillation while the hand rests.
     pub oscillation: Option<Oscillation>,
+    /// What the hand takes from a host.
+    pub host: Option<HostMoved>,
 }
 
 impl Simulated {
@@ -140,6 +156,9 @@ impl Simulated {
         let step = transducers.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
         let mut simulated = Self {
             rendered: Rendered::of(&file, &transducers, settings.is_checked),
+            hosted: None,
+            host_refusal: None,
+            has_host: file.host.is_some(),
             setpoint: before.map_or(0.0, |before| before.setpoint),
             settings,
             scene: file.scene,
@@ -149,8 +168,27 @@ impl Simulated {
             record: Vec::new(),
             watch: Watch::new(period, step, TAU / counts),
         };
-        simulated.settle();
+        let count = simulated.settle();
+        simulated.add_host(&file, count);
         Ok(simulated)
+    }
+
+    /// Puts the host of the settings beside the servo, if the scene may have it.
+    fn add_host(&mut self, file: &SceneFile, count: i32) {
+        let Some(law) = self.settings.host.as_deref().filter(|_| self.has_host) else { return };
+        let off = Unchecked::off(&self.transducers);
+        let servo = std::mem::replace(&mut self.rendered.servo, Box::new(off));
+        let law = (law, self.settings.has_no_tank);
+        match Hosted::new(servo, file, &self.transducers, law, count) {
+            Ok(hosted) => self.hosted = Some(hosted),
+            Err(refusal) => {
+                self.host_refusal = Some(refusal);
+                // The scene's servo alone.
+                self.rendered = Rendered::of(file, &self.transducers, self.settings.is_checked);
+                self.record.clear();
+                self.settle();
+            }
+        }
     }
 
     /// Whether it renders the scene of these settings, in any hand.
@@ -173,6 +211,7 @@ impl Simulated {
     pub fn held(&self) -> Held<'_> {
         let (environment, full_scale) =
             (&self.scene.environment, self.transducers.full_scale_torque);
+        let of_host = self.hosted.as_ref().map_or(0.0, Hosted::largest);
         let is_paddle = environment.wall().is_some() && environment.profile().is_none();
         Held {
             rendering: self.rendered.rendering,
@@ -180,10 +219,12 @@ impl Simulated {
             period: self.scene.timing.period,
             counts_per_turn: self.transducers.counts_per_turn,
             full_scale,
-            torque_limit: self.scene.torque_limit.unwrap_or(full_scale),
+            torque_limit: self.scene.torque_limit.unwrap_or(full_scale) + of_host,
             is_knob: !is_paddle,
             face: environment.wall().map(Wall::face),
             one_sided: environment.wall().is_some_and(Wall::is_one_sided),
+            has_host: self.has_host,
+            host_refusal: self.host_refusal.as_deref(),
         }
     }
 
@@ -230,16 +271,25 @@ impl Simulated {
             setpoint: self.setpoint,
             energy: self.device.energy(),
             oscillation: self.watch.oscillation(),
+            host: self.hosted.as_ref().map(Hosted::moved),
         }
     }
 
     fn tick(&mut self, setpoint: Option<HandSetpoint>, numbers: &mut Vec<f64>) {
         let raw = self.device.count();
-        let tick = self.rendered.servo.tick(raw);
+        let mut tick = match &mut self.hosted {
+            Some(hosted) => hosted.servo.tick(raw),
+            None => self.rendered.servo.tick(raw),
+        };
         self.keep(raw, tick.code);
-        let torque = self.device.torque(tick.code);
+        let (torque, before) = (self.device.torque(tick.code), self.device.motion().position);
         self.device.push(torque, setpoint.unwrap_or_default(), setpoint.is_some());
         let position = self.device.motion().position;
+        if let Some(hosted) = &mut self.hosted {
+            hosted.add(position - before);
+            // The motor's torque is that of both.
+            tick.torque = -torque;
+        }
         self.setpoint = setpoint.map_or(position, |setpoint| setpoint.to);
         let rests = setpoint.is_none_or(|setpoint| setpoint.from == setpoint.to);
         self.watch.add(tick.torque, position, rests);
@@ -260,8 +310,9 @@ impl Simulated {
         }
     }
 
-    /// Runs the servo with the device at its present angle until the servo's memory has settled.
-    fn settle(&mut self) {
+    /// Runs the servo with the device at its present angle until the servo's memory has settled. Returns the
+    /// count of that angle.
+    fn settle(&mut self) -> i32 {
         let count = self.device.count();
         let (mut code, mut same) = (DacCode::MID_SCALE.get(), 0);
         for _ in 0..MOST_SETTLING {
@@ -273,5 +324,6 @@ impl Simulated {
                 break;
             }
         }
+        count
     }
 }

@@ -187,3 +187,38 @@ fn what_is_wrong_is_named_and_changes_nothing() {
     assert!(motion(&many, &mut Vec::new()).unwrap_err().contains("50001 ticks"));
     assert!((moved(1, 0.1, true).1[0][6] - row[6]).abs() < 1e-4);
 }
+
+/// What the hand took of a host beside a soft wall in a second, over the budget, and the part that was refused.
+fn taken(law: &str, has_no_tank: bool) -> (f64, f64) {
+    let mut scene: Value = serde_json::from_str(&wall(10.0)).unwrap();
+    scene["environment"]["damping"] = 0.002.into();
+    scene["limits"] = json!({ "torque": 1.0, "full_scale": 2.0 });
+    scene["host"] =
+        json!({ "energy": 0.05, "power": 0.1, "damping": 0.004, "torque": 0.5, "timeout": 0.05 });
+    let mut settings: Value = serde_json::from_str(&settings(&scene.to_string(), true)).unwrap();
+    settings["host"] = law.into();
+    settings["has_no_tank"] = has_no_tank.into();
+    let held: Value =
+        serde_json::from_str(&hold(&settings.to_string(), &mut Vec::new()).unwrap()).unwrap();
+    assert_eq!((&held["has_host"], &held["host_refusal"]), (&true.into(), &Value::Null), "{held}");
+    assert_eq!(held["torque_limit"], 1.5);
+    let (moved, _) = moved(1000, 0.05, true);
+    let number = |key: &str| moved["host"][key].as_f64().unwrap();
+    (number("taken") / number("budget"), number("refused"))
+}
+
+#[test]
+fn a_hand_takes_no_more_than_the_budget_from_a_host_and_without_its_tank_more() {
+    for law in ["pump", "square"] {
+        let (with, refused) = taken(law, false);
+        assert!((0.5..=1.0).contains(&with) && refused > 0.1, "{law}: {with} {refused}");
+        let (without, refused) = taken(law, true);
+        assert!(without > 2.0 && refused == 0.0, "{law}: {without} {refused}");
+    }
+    // A scene without a budget has no host.
+    let mut settings: Value = serde_json::from_str(&settings(&wall(10.0), true)).unwrap();
+    settings["host"] = "pump".into();
+    let held = hold(&settings.to_string(), &mut Vec::new()).unwrap();
+    assert!(held.contains("\"has_host\":false"), "{held}");
+    assert_eq!(moved(10, 0.0, true).0["host"], Value::Null);
+}

@@ -566,7 +566,7 @@ keys! {
         Optional("`limits.encoder_step` states it"), "4096.0";
     /// Torque of the motor at the largest code of the DAC.
     FULL_SCALE = other("limits.full_scale", "N m", POSITIVE),
-        Optional("not known: `run` takes the torque limit, or 5 N m"), "2.0";
+        Optional("not known: `run` takes the torque limit, and that of a host, or 5 N m"), "2.0";
 
     /// A host that adds any torque to the scene's, within a budget: whatever it sends, the hand gets from it at
     /// most the energy at once and the power on average. Programs for boards have it, and `simulate` reads it.

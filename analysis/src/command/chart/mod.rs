@@ -1,6 +1,7 @@
 //! `haptic chart`: pictures of scenes, one module each.
 
 pub mod bode;
+pub mod budget;
 pub mod failures;
 pub mod identify;
 pub mod latency;
@@ -45,6 +46,9 @@ pub enum Kind {
     Latency(latency::Arguments),
     /// Draw angle, velocity and torque of a simulation or a recorded run, shaded where limited
     Trace(trace::Arguments),
+    /// Draw the energy that a hand takes from a hostile host over time, beside the budget, with the tank and
+    /// without
+    Budget(budget::Arguments),
     /// Draw the measured responses of a device in the disk of its passivity, with the fitted device
     Identify(identify::Arguments),
     /// Draw the stability limit of methods of integration over their steps in a tick
@@ -63,6 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         Kind::Limits(of) => of.output.write(|| limits::draw(of)),
         Kind::Latency(of) => of.output.write(|| latency::draw(of)),
         Kind::Trace(of) => trace::run(of),
+        Kind::Budget(of) => of.output.write(|| budget::draw(of)),
         Kind::Identify(of) => of.output.write(|| identify::draw(of)),
         Kind::Failures(of) => of.output.write(failures::draw),
         Kind::Tradeoff(of) => tradeoff::run(of),

@@ -4,6 +4,7 @@
 //! energy in mass and spring of the hand is counted, and so is all that the spring of the scene could give. With
 //! a debit of the tank switched off the same search finds a run above the budget.
 
+use haptic_model::host::{HostLaw, HostileHost, Reading};
 use haptic_servo::environment::VariableDelay;
 use haptic_servo::host::{HostResponse, HostTorque, Sampling, Tank};
 use haptic_servo::scene::{Latency, Timing};
@@ -128,26 +129,44 @@ impl Case {
 }
 
 /// What a host wants.
-struct Wish {
-    kind: u32,
-    size: f64,
-    length: usize,
-    /// Resonance in rad per period.
-    omega: f64,
+enum Wish {
+    Law(HostileHost),
+    /// The hand's resonance, in rad per period.
+    Resonance {
+        size: f64,
+        omega: f64,
+    },
+    /// A damper below zero.
+    Damper {
+        size: f64,
+    },
 }
 
 impl Wish {
-    fn torque(&self, random: &mut ChaCha8Rng, tick: usize, before: f64, moved: f64) -> f64 {
-        let up = |is_up: bool| if is_up { self.size } else { -self.size };
-        match self.kind {
-            0 => up(moved >= 0.0),
-            1 => self.size * random.random_range(-1.0..1.0),
-            2 => self.size * (self.omega * tick as f64).sin(),
-            // A stiff spring that is late, and a damper below zero.
-            3 => -30.0 * self.size * before,
-            4 => 0.03 * self.size * moved / PERIOD,
-            5 => up((tick / self.length).is_multiple_of(2)),
-            _ => up(tick.is_multiple_of(2)),
+    fn draw(random: &mut ChaCha8Rng, omega: f64) -> Self {
+        let kind = random.random_range(0..7);
+        let size = 10_f64.powf(random.random_range(-1.0..2.0));
+        let length = f64::from(random.random_range(1..40));
+        match kind {
+            5 => Self::Resonance { size, omega },
+            6 => Self::Damper { size },
+            // The fifth is a square wave that alternates each tick.
+            _ => {
+                let law = HostLaw::ALL.get(kind).copied().unwrap_or(HostLaw::Square);
+                let half_period = PERIOD * if kind == 4 { 1.0 } else { length };
+                let mut host = HostileHost::new(law, size);
+                host.half_period = half_period;
+                Self::Law(host)
+            }
+        }
+    }
+
+    fn torque(&mut self, tick: usize, position: f64, moved: f64) -> f64 {
+        let (time, velocity) = (tick as f64 * PERIOD, moved / PERIOD);
+        match self {
+            Self::Law(host) => host.torque(&Reading { position, velocity, time }),
+            Self::Resonance { size, omega } => *size * (*omega * tick as f64).sin(),
+            Self::Damper { size } => 0.03 * *size * velocity,
         }
     }
 }
@@ -158,12 +177,7 @@ fn run(random: &mut ChaCha8Rng, without: Option<Debit>) -> f64 {
     let Some(mut tank) = case.tank(without) else { return 0.0 };
     let Case { inertia, stiffness, .. } = case;
     let motion = transition(inertia, stiffness, case.lag);
-    let wish = Wish {
-        kind: random.random_range(0..7),
-        size: 10_f64.powf(random.random_range(-1.0..2.0)),
-        length: random.random_range(1..40),
-        omega: (stiffness / inertia).sqrt() * PERIOD,
-    };
+    let mut wish = Wish::draw(random, (stiffness / inertia).sqrt() * PERIOD);
     let (mut state, mut before, mut most) = ([0.0; 5], 0.0, 0.0_f64);
     for tick in 0..TICKS {
         let x = case.counted(state[0]);
@@ -171,7 +185,7 @@ fn run(random: &mut ChaCha8Rng, without: Option<Debit>) -> f64 {
         if tick > 0 {
             tank.book(moved);
         }
-        let command = tank.allowed(tank.in_range(wish.torque(random, tick, before, moved)));
+        let command = tank.allowed(tank.in_range(wish.torque(tick, x, moved)));
         tank.give(command);
         (before, state[3]) = (x, command);
         let next: State = std::array::from_fn(|i| (0..5).map(|j| motion[i][j] * state[j]).sum());

@@ -7,7 +7,7 @@ use super::{read, regex, sources};
 const DOCUMENT: &str = "firmware/TROUBLESHOOTING.md";
 
 /// The kinds of refusals, and where they are.
-const KINDS: [(&str, &str); 9] = [
+const KINDS: [(&str, &str); 10] = [
     ("Rejection", "firmware/src/certificate/rejection.rs"),
     ("UndecidedReason", "firmware/src/passivity/poles.rs"),
     ("TimingError", "firmware/src/certificate/timed/mod.rs"),
@@ -15,6 +15,7 @@ const KINDS: [(&str, &str); 9] = [
     ("TuningError", "firmware/src/tuning/error.rs"),
     ("Refusal", "firmware/src/wire/message.rs"),
     ("LinkError", "analysis/client/src/error.rs"),
+    ("StreamError", "analysis/client/src/stream.rs"),
     ("ServeError", "analysis/src/serve/mod.rs"),
     ("PageRefusal", "analysis/src/serve/refusal.rs"),
 ];

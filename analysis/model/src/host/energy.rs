@@ -1,0 +1,67 @@
+//! The energy that a hand takes from a host, from the motion alone: nothing here knows of a tank.
+
+use std::collections::VecDeque;
+
+use haptic_servo::host::HostTorque;
+use haptic_servo::scene::Latency;
+
+/// The energy that a passive hand has taken from a host: at least the work of the host's torque at the motor, less
+/// what the host's share of the damping takes (theory, section 19).
+///
+/// With `d` the step of the position in a period `T`, `m` the mean of the torque and `rho` its ripple, a motion
+/// takes `integral (F v - delta' v^2) <= m d - delta' d^2/T + rho/(4 delta')`. Without a lag, `rho` is zero but
+/// in periods in which the torque changes.
+#[derive(Clone, Debug)]
+pub struct HostEnergy {
+    damping: f64,
+    period: f64,
+    /// Time in s from the begin of a period to the change of the torque.
+    part: f64,
+    /// Time constant of the amplifier in s.
+    lag: f64,
+    /// Torques in N m that have not acted yet, the newest first.
+    commands: VecDeque<f64>,
+    /// The motor's torque in N m of the host.
+    torque: f64,
+    taken: f64,
+}
+
+impl HostEnergy {
+    /// For a servo with this period in s, from whose count to the output are whole `ticks` and the latency of the
+    /// scene, with the middle of each time.
+    pub fn new(host: &HostTorque, latency: &Latency, period: f64, ticks: usize) -> Self {
+        let delay = latency.output_delay.middle() / period;
+        Self {
+            damping: host.damping,
+            period,
+            part: delay.fract() * period,
+            lag: latency.actuator_lag.middle(),
+            commands: VecDeque::from(vec![0.0; ticks + delay as usize + 1]),
+            torque: 0.0,
+            taken: 0.0,
+        }
+    }
+
+    /// A period in which the position moves by so many rad, with the host's torque in N m that its tick gives.
+    /// Returns the energy in J that was taken so far.
+    pub fn tick(&mut self, given: f64, moved: f64) -> f64 {
+        self.commands.push_front(given);
+        let before = self.commands.pop_back().unwrap_or(0.0);
+        let after = self.commands.back().copied().unwrap_or(0.0);
+        let (mut once, mut twice) = (0.0, 0.0);
+        for (command, length) in [(before, self.part), (after, self.period - self.part)] {
+            let gap = self.torque - command;
+            let left = if self.lag > 0.0 { (-length / self.lag).exp() } else { 0.0 };
+            let first = gap * self.lag * (1.0 - left);
+            once += command * length + first;
+            twice += command * (command * length + 2.0 * first);
+            twice += 0.5 * gap * gap * self.lag * (1.0 - left * left);
+            self.torque = command + gap * left;
+        }
+        let mean = once / self.period;
+        let ripple = (twice - mean * once).max(0.0);
+        self.taken += mean * moved - self.damping * moved * moved / self.period;
+        self.taken += 0.25 * ripple / self.damping;
+        self.taken
+    }
+}

@@ -1,0 +1,164 @@
+//! A servo with a host beside it, tick by tick as on a board.
+
+use std::f64::consts::TAU;
+
+use haptic_servo::host::{
+    AnyHosted, BesideServo, HostChannel, HostError, HostTorque, HostWords, ServoNumbers, TickState,
+};
+use haptic_servo::number::{Format, OutOfRange};
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::{OutputTiming, RenderingOptions, Transducers};
+use haptic_servo::servo_loop::State;
+use haptic_servo::torque::LimitReason;
+
+use super::law::HostSender;
+use crate::controller::{Controller, Tick};
+
+/// A host without a budget: the same, with more energy than any motor has.
+pub const fn unlimited(host: &HostTorque) -> HostTorque {
+    HostTorque { energy: 1e12, ..*host }
+}
+
+/// What the host did in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HostTick {
+    /// Torque in N m that it wanted, within its largest.
+    pub wanted: f64,
+    /// Torque in N m that it got.
+    pub given: f64,
+    /// Level of its tank in J after that.
+    pub level: f64,
+}
+
+/// A servo with a host beside it: the codes of both together. The host's commands come from a
+/// [`HostSender`], or by [`HostedServo::send`].
+pub struct HostedServo<'a> {
+    servo: Box<dyn Controller + 'a>,
+    host: AnyHosted,
+    channel: HostWords,
+    sender: Option<HostSender>,
+    /// The torque that acts from the next count on, if torques are latched.
+    held: Option<f32>,
+    count: i32,
+    /// Ticks so far.
+    number: u32,
+    tick: HostTick,
+}
+
+impl<'a> HostedServo<'a> {
+    /// A full tank beside the servo of a scene in this format, with torques that are put out at the next count or
+    /// at their own, and whether a board's own bridge drives the motor.
+    ///
+    /// # Errors
+    /// If there is no proof for the host beside this servo, or its torque and the scene's are together above full
+    /// scale.
+    pub fn new(
+        servo: Box<dyn Controller + 'a>,
+        host: &HostTorque,
+        scene: &Scene,
+        transducers: &Transducers,
+        output: OutputTiming,
+        (format, has_bridge): (Format, bool),
+    ) -> Result<Self, HostError> {
+        // A scene that does not certify has no margin.
+        let certified = scene.certify_in(format).ok();
+        let margin = certified.and_then(|it| it.assessment().margin_injecting(it.as_data(), 0.0));
+        let numbers = ServoNumbers {
+            latency: &scene.latency,
+            timing: scene.timing,
+            torque_limit: scene.torque_limit,
+            margin,
+            full_scale: transducers.full_scale_torque,
+            fade: RenderingOptions::DEFAULT.fade,
+            output,
+            radians_per_count: TAU / transducers.counts_per_turn,
+            format,
+            has_bridge,
+        };
+        Self::beside(servo, host, &numbers)
+    }
+
+    /// The same by the servo's numbers.
+    pub(super) fn beside(
+        servo: Box<dyn Controller + 'a>,
+        host: &HostTorque,
+        numbers: &ServoNumbers<'_>,
+    ) -> Result<Self, HostError> {
+        let host = AnyHosted::beside(host, numbers)?;
+        let level = host.energy();
+        Ok(Self {
+            servo,
+            host,
+            channel: HostWords::EMPTY,
+            sender: None,
+            held: (numbers.output == OutputTiming::Latched).then_some(0.0),
+            count: 0,
+            number: 0,
+            tick: HostTick { wanted: 0.0, given: 0.0, level },
+        })
+    }
+
+    /// The same with the commands of a sender, each of which the servo takes in the tick after.
+    pub fn driven_by(self, sender: HostSender) -> Self {
+        Self { sender: Some(sender), ..self }
+    }
+
+    /// The same beside a servo that stands at this count.
+    pub fn standing_at(self, count: i32) -> Self {
+        Self { count, ..self }
+    }
+
+    /// What the host did in the last tick.
+    pub const fn last(&self) -> HostTick {
+        self.tick
+    }
+
+    /// Ticks without a motion and a command, as before a run.
+    pub fn rest(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            let _: (f32, bool) = self.host.tick(0);
+        }
+        self.number = ticks;
+    }
+
+    /// Sends a command, which the next tick takes and the tick after that begins to give: a torque in N m, to
+    /// which the servo moves over so many ticks.
+    pub fn send(&self, torque: f32, ramp: u16) {
+        AnyHosted::send(&self.channel, 0, torque, ramp);
+    }
+}
+
+impl Controller for HostedServo<'_> {
+    fn tick(&mut self, raw: i32) -> Tick {
+        let mut tick = self.servo.tick(raw);
+        let count = tick.count as i32;
+        let moved = count.wrapping_sub(std::mem::replace(&mut self.count, count));
+        let (given, is_refused): (f32, bool) = self.host.tick(moved);
+        let acting = self.held.as_mut().map_or(given, |held| std::mem::replace(held, given));
+        tick.code = self.servo.code_beside(acting);
+        if is_refused {
+            tick.limit = LimitReason::Energy;
+        }
+        self.tick = HostTick {
+            wanted: f64::from(self.host.wanted()),
+            given: f64::from(given),
+            level: self.host.energy(),
+        };
+        let state = State::Running as u32;
+        let taken = TickState { tick: self.number, count, opening: Some(0), state };
+        self.host.exchange(&self.channel, taken);
+        if let Some(torque) = self.sender.as_mut().and_then(|sender| sender.after(count)) {
+            self.send(torque, 0);
+        }
+        self.number = self.number.wrapping_add(1);
+        tick
+    }
+
+    fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
+        self.servo.tick_at(angle)
+    }
+
+    fn code_beside(&self, torque: f32) -> u16 {
+        self.servo.code_beside(torque)
+    }
+}

@@ -1,0 +1,316 @@
+//! A run with a host that wants energy: what it was refused, and what the hand has taken of the budget.
+
+use std::io::{ErrorKind, Read, Write};
+use std::os::unix::net::UnixStream;
+
+use haptic_model::board::client::frame;
+use haptic_model::host::{
+    HostEnergy, HostLaw, HostRun, HostSender, HostedServo, HostileHost, unlimited,
+};
+use haptic_servo::host::{HostError, HostTorque};
+use haptic_servo::number::Format;
+use haptic_servo::scene::Scene;
+use haptic_servo::servo::{OutputTiming, Transducers};
+use haptic_servo::wire::host::{HostCommand, HostReport, HostState};
+use haptic_servo::wire::message::{LONGEST_TO_HOST, ToBoard};
+use haptic_servo::wire::{CHECKSUM, Decoder};
+
+use crate::compare_run::{Backend, BoardMeasurement, RunError, RunOutcome};
+use crate::controller::Controller;
+use crate::emulator::{Emulator, EmulatorError};
+use crate::link::Message;
+use crate::lockstep::{PlantIo, Run, SimulatedDevice};
+use crate::virtual_board::VirtualBoard;
+
+/// Largest number of ticks after a run on a board in which the last report arrives.
+const MOST_TICKS: usize = 100_000;
+
+/// A servo, and the host that stands beside it.
+pub struct BesideHost {
+    /// The scene, certified with the host's share.
+    pub scene: Scene,
+    /// Encoder and motor.
+    pub transducers: Transducers,
+    /// What the host may do.
+    pub budget: HostTorque,
+    /// Its law.
+    pub law: HostLaw,
+    /// Whether the budget holds; without a tank the servo gives every torque.
+    pub has_tank: bool,
+    /// The servo's number format.
+    pub format: Format,
+    /// Whether a board's own bridge drives the motor.
+    pub has_bridge: bool,
+}
+
+impl BesideHost {
+    /// The host beside the servo of the scene.
+    ///
+    /// # Errors
+    /// If there is no proof for it.
+    pub fn servo<'c>(
+        &self,
+        controller: &'c mut dyn Controller,
+        output: OutputTiming,
+    ) -> Result<HostedServo<'c>, HostError> {
+        let budget = if self.has_tank { self.budget } else { unlimited(&self.budget) };
+        let Self { scene, transducers, .. } = self;
+        let kind = (self.format, self.has_bridge);
+        HostedServo::new(Box::new(controller), &budget, scene, transducers, output, kind)
+    }
+
+    fn sender(&self) -> HostSender {
+        let host = HostileHost::new(self.law, self.budget.torque);
+        HostSender::new(host, self.scene.timing.period, &self.transducers, 0)
+    }
+
+    fn energy(&self, output: OutputTiming) -> HostEnergy {
+        let ticks = usize::from(output == OutputTiming::Latched);
+        let Scene { latency, timing, .. } = &self.scene;
+        HostEnergy::new(&self.budget, latency, timing.period, ticks)
+    }
+
+    fn host_run(&self) -> HostRun {
+        let (law, budget, period) = (self.law, self.budget, self.scene.timing.period);
+        HostRun { law, budget, period, ticks: Vec::new(), taken: Vec::new() }
+    }
+
+    /// Runs a servo on this machine for so many ticks, with each torque at its count.
+    ///
+    /// # Errors
+    /// If there is no proof for the host.
+    pub fn run(
+        &self,
+        controller: &mut dyn Controller,
+        mut device: SimulatedDevice,
+        ticks: usize,
+        mut progress: impl FnMut(),
+    ) -> Result<RunOutcome, HostError> {
+        let output = OutputTiming::Simultaneous;
+        let mut servo = self.servo(controller, output)?.driven_by(self.sender());
+        let mut energy = self.energy(output);
+        let (mut run, mut host) = (Run::default(), self.host_run());
+        while run.ticks.len() < ticks
+            && let Some(count) = device.count()
+        {
+            let tick = servo.tick(count);
+            let before = device.motion().position;
+            device.hold(tick.code);
+            host.ticks.push(servo.last());
+            let moved = device.motion().position - before;
+            host.taken.push(energy.tick(servo.last().given, moved));
+            run.add(count, tick, tick.code);
+            progress();
+        }
+        Ok(outcome(run, &device, host, None))
+    }
+
+    /// Runs the scene's program on a board, whose host sends its commands over the serial port. Then the servo
+    /// on this machine gets the same counts, and each command in the tick in which the board took it.
+    ///
+    /// # Errors
+    /// If the board stops or does not report all commands.
+    pub fn run_on(
+        &self,
+        board: Backend<'_>,
+        controller: &mut dyn Controller,
+        device: SimulatedDevice,
+        ticks: usize,
+        progress: impl FnMut(),
+    ) -> Result<RunOutcome, RunError> {
+        match board {
+            Backend::Emulator(elf) => {
+                let mut emulator = Emulator::boot(elf)?;
+                let port = emulator.arm_and_wait()?;
+                port.set_nonblocking(true).map_err(EmulatorError::Serial)?;
+                let output = OutputTiming::Simultaneous;
+                let mut board = EmulatorWithPort { emulator, port };
+                let recorded = self.record(&mut board, device, ticks, progress)?;
+                let report = BoardMeasurement::Emulated(Box::new(board.emulator.finish()?));
+                self.replayed(recorded, controller, output, report)
+            }
+            Backend::VirtualBoard { program, board, elf, period } => {
+                let mut board = VirtualBoard::boot(program, board, elf, None)?;
+                board.arm_and_wait(period)?;
+                let delay = self.scene.latency.output_delay.middle();
+                let recorded = self.record(&mut board, device, ticks, progress)?;
+                let report = BoardMeasurement::Virtual(board.finish()?);
+                self.replayed(recorded, controller, OutputTiming::of_delay(delay), report)
+            }
+        }
+    }
+
+    fn record(
+        &self,
+        board: &mut impl BoardWithHost,
+        mut device: SimulatedDevice,
+        ticks: usize,
+        mut progress: impl FnMut(),
+    ) -> Result<Recorded, RunError> {
+        let (mut sender, mut bytes) = (self.sender(), Vec::new());
+        let mut decoder = FromBoard::new();
+        let (mut ran, mut torques, mut states) = (Vec::new(), Vec::new(), Vec::new());
+        while ran.len() < ticks
+            && let Some(count) = device.count()
+        {
+            let (code, heard) = board.exchange(count, &std::mem::take(&mut bytes))?;
+            let before = device.motion().position;
+            device.hold(code);
+            let moved = device.motion().position - before;
+            states.extend(heard.into_iter().filter_map(|byte| reported(&mut decoder, byte)));
+            // As the client of a board, the host waits for the report of its command before it sends the next.
+            let may_send = states.len() == torques.len();
+            if let Some(torque) = sender.after(count).filter(|_| may_send) {
+                let number = torques.len() as u16;
+                torques.push(torque);
+                bytes = frame(&ToBoard::Torque(HostCommand { number, torque, ramp: 0 }));
+            }
+            ran.push(Exchanged { count, code, moved });
+            progress();
+        }
+        let at_rest = ran.last().map_or(0, |ran| ran.count);
+        for _ in 0..MOST_TICKS {
+            if states.len() == torques.len() {
+                break;
+            }
+            let (_, heard) = board.exchange(at_rest, &std::mem::take(&mut bytes))?;
+            states.extend(heard.into_iter().filter_map(|byte| reported(&mut decoder, byte)));
+        }
+        Ok(Recorded { ran, torques, states, device })
+    }
+
+    fn replayed(
+        &self,
+        recorded: Recorded,
+        controller: &mut dyn Controller,
+        output: OutputTiming,
+        board: BoardMeasurement,
+    ) -> Result<RunOutcome, RunError> {
+        let (begin, commands) = recorded.commands()?;
+        let mut servo = self.servo(controller, output)?;
+        servo.rest(begin);
+        let (mut run, mut host, mut energy) =
+            (Run::default(), self.host_run(), self.energy(output));
+        for (exchanged, command) in recorded.ran.iter().zip(commands) {
+            let &Exchanged { count, code, moved } = exchanged;
+            if let Some(torque) = command {
+                servo.send(torque, 0);
+            }
+            let tick = servo.tick(count);
+            host.ticks.push(servo.last());
+            host.taken.push(energy.tick(servo.last().given, moved));
+            run.add(count, tick, code);
+        }
+        Ok(outcome(run, &recorded.device, host, Some(board)))
+    }
+}
+
+/// The decoder of a board's messages.
+type FromBoard = Decoder<{ LONGEST_TO_HOST + CHECKSUM }>;
+
+/// The report of a command, if it ends with this byte.
+fn reported(decoder: &mut FromBoard, byte: u8) -> Option<HostState> {
+    match decoder.push(byte) {
+        Some(Message::Host(HostReport::State(state))) => Some(state),
+        _ => None,
+    }
+}
+
+fn outcome(
+    run: Run,
+    device: &SimulatedDevice,
+    host: HostRun,
+    board: Option<BoardMeasurement>,
+) -> RunOutcome {
+    RunOutcome {
+        run,
+        energy: Some(device.energy()),
+        final_speed: Some(device.motion().velocity.abs()),
+        board,
+        host: Some(host),
+    }
+}
+
+/// A tick of a board.
+struct Exchanged {
+    count: i32,
+    code: u16,
+    /// Step of the position in rad in the period that begins with the count.
+    moved: f64,
+}
+
+/// A run on a board.
+struct Recorded {
+    ran: Vec<Exchanged>,
+    /// The torques of the commands, in N m.
+    torques: Vec<f32>,
+    /// The ticks that took them.
+    states: Vec<HostState>,
+    device: SimulatedDevice,
+}
+
+impl Recorded {
+    /// The board's ticks before the run, and for each tick of the run the torque of the command that it took.
+    fn commands(&self) -> Result<(u32, Vec<Option<f32>>), RunError> {
+        let (sent, reported) = (self.torques.len(), self.states.len());
+        let numbers = self.states.iter().map(|state| state.number);
+        let unreported = RunError::Unreported { sent, reported };
+        if sent != reported || !numbers.eq((0..sent).map(|number| number as u16)) {
+            return Err(unreported);
+        }
+        let mut commands = vec![None; self.ran.len()];
+        let Some(first) = self.states.first() else { return Ok((0, commands)) };
+        let tick_of = |state: &HostState, begin: u32| state.tick.wrapping_sub(begin) as usize;
+        // The last command may be taken after the run.
+        let fits = |state: &HostState, begin: u32| {
+            let ran = self.ran.get(tick_of(state, begin));
+            ran.is_none_or(|ran| ran.count == state.count)
+        };
+        // The number of the run's first tick, by the counts.
+        let begin = (0..self.ran.len())
+            .map(|tick| first.tick.wrapping_sub(tick as u32))
+            .find(|&begin| self.states.iter().all(|state| fits(state, begin)))
+            .ok_or(unreported)?;
+        for (state, torque) in self.states.iter().zip(&self.torques) {
+            if let Some(command) = commands.get_mut(tick_of(state, begin)) {
+                *command = Some(*torque);
+            }
+        }
+        // A board's first tick has the number 1.
+        Ok((begin.saturating_sub(1), commands))
+    }
+}
+
+/// A board in lockstep, with its serial port.
+trait BoardWithHost {
+    /// The board's code for a count, with bytes to its port and from it.
+    fn exchange(&mut self, count: i32, bytes: &[u8]) -> Result<(u16, Vec<u8>), RunError>;
+}
+
+impl BoardWithHost for VirtualBoard {
+    fn exchange(&mut self, count: i32, bytes: &[u8]) -> Result<(u16, Vec<u8>), RunError> {
+        self.answer(count, bytes)?;
+        let sample = self.sample()?;
+        Ok((sample.applied_code(), sample.sent))
+    }
+}
+
+/// An emulated board, and the socket that is its port.
+struct EmulatorWithPort {
+    emulator: Emulator,
+    port: UnixStream,
+}
+
+impl BoardWithHost for EmulatorWithPort {
+    fn exchange(&mut self, count: i32, bytes: &[u8]) -> Result<(u16, Vec<u8>), RunError> {
+        self.port.write_all(bytes).map_err(EmulatorError::Serial)?;
+        let code = self.emulator.exchange(count)?;
+        let mut heard = vec![0; 1024];
+        match self.port.read(&mut heard) {
+            Ok(length) => heard.truncate(length),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => heard.clear(),
+            Err(error) => return Err(EmulatorError::Serial(error).into()),
+        }
+        Ok((code, heard))
+    }
+}
