@@ -103,8 +103,8 @@ impl Client {
         let (description, parameters) =
             running.ok_or("the board has not said yet which scene runs there")?;
         match request::judge(request, self.wire.budget, description, parameters) {
-            Ok(()) | Err((RenderError::OtherMode { .. }, _)) => Ok(()),
-            Err((_, words)) => Err(words),
+            Err(refused) if !matches!(refused.0, RenderError::OtherMode { .. }) => Err(refused.1),
+            Ok(()) | Err(_) => Ok(()),
         }
     }
 

@@ -58,8 +58,7 @@ pub struct TickState {
     pub tick: u32,
     /// The position in counts.
     pub count: i32,
-    /// Ticks until the scene's torque limit is open, 0 in a servo that runs; `None` in one that takes no
-    /// commands.
+    /// Ticks until the scene's torque limit is open, 0 in a servo that runs; `None` if it takes no commands.
     pub opening: Option<u32>,
     /// The servo's state as a number.
     pub state: u32,

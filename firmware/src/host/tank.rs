@@ -211,7 +211,7 @@ impl<R: TankNumber, D: DelayLine<R>, const PLAIN: bool> Tank<R, D, PLAIN> {
         self.level = level.smaller(self.held.minus(self.to_come()));
     }
 
-    /// Whether what is left of another tank of the same response pays for its torques under way here, too.
+    /// Whether the energy left in another tank of the same response pays for its torques under way here, too.
     pub(super) fn pays_for(&self, last: &Self) -> bool {
         last.to_come() == R::ZERO || self.level_of(last) >= R::ZERO
     }

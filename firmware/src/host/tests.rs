@@ -276,7 +276,7 @@ fn the_level_is_never_above_what_is_left() {
     }
 }
 
-/// A budget that changes while torques are under way gives no energy, whatever its numbers are: of what is left
+/// A budget that changes while torques are under way gives no energy, whatever its numbers are: of the energy left
 /// the torques that still come are paid at the new price.
 #[test]
 fn another_budget_gives_no_energy() {

@@ -4,6 +4,9 @@ use heapless::Vec;
 
 use crate::certificate::Parameter;
 
+/// The host's number for a request; the answer has the same number.
+pub type Id = u16;
+
 /// The largest number of changes in a set; of a scene with more parameters the first are tunable.
 pub const MAX_CHANGES: usize = 8;
 

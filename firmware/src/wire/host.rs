@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::message::Id;
+use super::changes::Id;
 use crate::host::{HostTorque, Taken};
 use crate::servo_loop::State;
 use crate::torque::LimitReason;

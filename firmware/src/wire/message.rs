@@ -9,7 +9,7 @@ use core::num::NonZeroU32;
 
 use serde::{Deserialize, Serialize};
 
-pub use super::changes::{Changes, MAX_CHANGES};
+pub use super::changes::{Changes, Id, MAX_CHANGES};
 use super::decoder::Discarded;
 use super::description::Description;
 use super::host::{HostReport, HostRequest};
@@ -28,9 +28,6 @@ pub const PROTOCOL: u16 = 12;
 pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;
 /// Longest message to the host, in bytes: a full batch of ticks, or the description of a program.
 pub const LONGEST_TO_HOST: usize = 372;
-
-/// The host's number for a request; the answer has the same number.
-pub type Id = u16;
 
 /// Requests of a host.
 pub type ToBoard = ToBoardWith<HostRequest>;

@@ -138,10 +138,10 @@ pub fn refusal_in_words(
     parameters: &ActiveParameters,
 ) -> RequestResult {
     let changes = request.changes();
-    if let Err((reason, words)) = judge(request, budget, description, parameters)
-        && reason.step() == step
+    if let Err(refused) = judge(request, budget, description, parameters)
+        && refused.0.step() == step
     {
-        return RequestResult::Refused(words);
+        return RequestResult::Refused(refused.1);
     }
     if let Some(mode) = description.other_mode(&changes) {
         return RequestResult::Refused(RenderError::OtherMode { mode }.to_string());
@@ -158,12 +158,12 @@ pub fn judge(
     budget: Option<HostTorque>,
     description: &Description,
     parameters: &ActiveParameters,
-) -> Result<(), (RenderError, String)> {
+) -> Result<(), Box<(RenderError, String)>> {
     let (changes, host) = (request.changes(), request.budget(budget));
     let explained = description.explain(names(parameters), host.as_ref(), &changes);
     explained.map_err(|reason| {
         let words = in_words(&reason, &changes, host.as_ref(), description, parameters);
-        (reason, words)
+        Box::new((reason, words))
     })
 }
 

@@ -43,14 +43,14 @@ impl Run {
         Self { bench, reported: Reported::default(), number: 0 }
     }
 
-    /// One with the device at [`FREE`].
+    /// The same with the device at [`FREE`].
     fn moved() -> Self {
         let mut run = Self::booted(Board::new());
         (FREE..=0).rev().step_by(800).for_each(|count| run.bench.stand(count, 1));
         run
     }
 
-    /// One that runs there.
+    /// A servo that runs there.
     fn new() -> Self {
         let mut run = Self::moved();
         run.bench.requests.arm();
