@@ -11,7 +11,7 @@ use haptic_servo::host::{HostError, HostTorque};
 use haptic_servo::number::Format;
 use haptic_servo::scene::Scene;
 use haptic_servo::servo::{OutputTiming, Transducers};
-use haptic_servo::wire::host::{HostCommand, HostReport, HostState};
+use haptic_servo::wire::host::{HostCommand, HostReport, HostRequest, HostState};
 use haptic_servo::wire::message::{LONGEST_TO_HOST, ToBoard};
 use haptic_servo::wire::{CHECKSUM, Decoder};
 
@@ -163,7 +163,11 @@ impl BesideHost {
             if let Some(torque) = sender.after(count).filter(|_| may_send) {
                 let number = torques.len() as u16;
                 torques.push(torque);
-                bytes = frame(&ToBoard::Torque(HostCommand { number, torque, ramp: 0 }));
+                bytes = frame(&ToBoard::Host(HostRequest::Torque(HostCommand {
+                    number,
+                    torque,
+                    ramp: 0,
+                })));
             }
             ran.push(Exchanged { count, code, moved });
             progress();
