@@ -31,7 +31,7 @@ impl Reading {
         Self { failing: failing.ticks(), ..self }
     }
 
-    /// Whether the next reading fails: the last one that did not takes its place.
+    /// Whether the next reading fails: the last good one takes its place.
     pub fn fails(&mut self) -> bool {
         self.failing.next().unwrap_or(false)
     }
