@@ -265,7 +265,7 @@ fn a_scene_file_is_a_simulated_board() {
     assert!(complaint(refused).contains("none.toml"));
     let folder = TempDir::new().unwrap();
     let steep = folder.path().join("steep.toml");
-    let text = std::fs::read_to_string(knob).unwrap().replace("torque = 0.03", "torque = 3.0");
+    let text = std::fs::read_to_string(knob).unwrap().replace("count = 24", "count = 400");
     std::fs::write(&steep, text).unwrap();
     let refused = haptic(&["board-sim", steep.to_str().unwrap(), "--port", &board.port]);
     assert_eq!(refused.status.code(), Some(1), "{refused:?}");
