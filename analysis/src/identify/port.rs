@@ -174,7 +174,7 @@ impl SweepPort {
         &self.description
     }
 
-    /// Refuses a board whose sweep is not the one that is needed, by how far it lets the device turn.
+    /// Refuses a board with the other of two sweeps, by how far it lets the device turn.
     pub fn check_program(&self, turns: bool) -> Result<(), PortError> {
         const PROGRAMS: [&str; 2] = ["identify", "turns"];
         let makes_turns = self.description.travel > TURNING;
