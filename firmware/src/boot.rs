@@ -9,8 +9,8 @@ use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::environment::SupportsTiming;
 use crate::fault::{Fault, FaultRecord};
-use crate::host::{BesideServo, HostResponse, HostTimes, HostTorque, ServoNumbers};
-use crate::number::{Format, Number};
+use crate::host::{BesideServo, HostResponse, HostTimes, ServoNumbers};
+use crate::number::Number;
 use crate::output_timing::{OutputMode, OutputTiming};
 use crate::period;
 use crate::rendering::Rendering;
@@ -78,19 +78,18 @@ impl<E: Copy> Program<E> {
         }
     }
 
-    /// For constants: a compile error if this host may not stand beside the scene, which leaves a margin in
-    /// N m s/rad over, with this output in this number format.
+    /// For constants: a compile error if the scene's host may not stand beside it, which leaves a margin in N m s/rad
+    /// over, with this output in the number format `N`.
     #[track_caller]
-    pub const fn check_host(
-        &self,
-        host: Option<HostTorque>,
-        margin: f64,
-        times: (OutputTiming, Format),
-    ) {
-        let Some(host) = host else { return };
+    pub const fn check_host<N: Number>(&self, margin: f64, output: OutputTiming)
+    where
+        E: Rendering<N>,
+    {
+        let Some(host) = E::HOST else { return };
         let Self { scene, transducers, rendering, .. } = self;
+        let (cogging, margin, times) = (E::AGAINST_COGGING, Some(margin), (output, N::FORMAT));
         // Transducers that no board can have are another error.
-        if let Ok(servo) = ServoNumbers::of(scene, Some(margin), transducers, rendering, times) {
+        if let Ok(servo) = ServoNumbers::of(scene, cogging, margin, transducers, rendering, times) {
             or_refuse!(HostResponse::beside(&host, &servo, HostTimes::of(&scene.latency)));
         }
     }

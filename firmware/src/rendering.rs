@@ -23,6 +23,8 @@ pub trait Rendering<N: Number>: Discretize<N> {
     type Host: BesideServo;
     /// What that host may do in the program.
     const HOST: Option<HostTorque> = None;
+    /// Largest torque in N m that opposes cogging in the program.
+    const AGAINST_COGGING: f64 = 0.0;
     /// What it may do now.
     fn budget(&self) -> <Self::Host as BesideServo>::Budget;
     /// The same environment with another budget of the host.

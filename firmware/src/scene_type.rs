@@ -139,6 +139,7 @@ impl<N: Number, S: SceneType> Rendering<N> for Typed<S> {
     type Anticogging = S::Anticogging<N>;
     type Host = S::Host;
     const HOST: Option<HostTorque> = S::HOST;
+    const AGAINST_COGGING: f64 = Self::LIKE.against_cogging();
 
     fn budget(&self) -> S::Budget {
         self.budget

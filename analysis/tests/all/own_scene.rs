@@ -86,7 +86,7 @@ fn a_new_file_is_all_that_the_commands_need() {
 }
 
 /// A scene file, with its device in a file of its own, is all that a board needs, and the program that begins
-/// with it is the same scene. What opposes the cogging gives a torque where the device stands before it runs.
+/// with it is the same scene, with what opposes its cogging.
 #[test]
 #[ignore = "builds for minutes"]
 fn a_scene_file_runs_on_boards_and_becomes_a_program() {
@@ -139,9 +139,8 @@ const KNOB: &str = "\
 [device]
 inertia = 3e-5
 damping = 0.003
-friction = 0.002
 [anticogging]
-torque = [0.001, 0.002, 0.001, -0.0005, -0.001, -0.002, -0.001, 0.0005]
+torque = [0, 0.001, 0.002, 0.001, 0, -0.001, -0.002, -0.001]
 share = 0.75
 [limits]
 encoder_step = 0.0015339807878856412

@@ -217,14 +217,14 @@ class HostBoard(threading.Thread):
                 bytes([8, 0]) + struct.pack("<5d", 0.05, 0.5, 0.004, 0.5, 0.05),
                 bytes([1]) + struct.pack("<d", 1e-3) + varint(1000) + struct.pack("<4d", 20 * math.pi, 2, 1e-6, 0),
             ]
-        if message[0] != 9:
+        if message[:2] != bytes([9, 0]):
             return []
         # The command's number is as many bytes as say that another follows, and one.
-        end = next(at for at in range(1, 4) if message[at] < 0x80) + 1
+        end = next(at for at in range(2, 5) if message[at] < 0x80) + 1
         self.torques.append(struct.unpack_from("<f", message, end)[0])
         self.ticks += 1
         state = varint(self.ticks) + varint(2 * self.ticks) + struct.pack("<4f", 100.0, 0.04, 0.0, 0.0)
-        return [bytes([8, 1]) + message[1:end] + state + bytes([0, 2, 0])]
+        return [bytes([8, 1]) + message[2:end] + state + bytes([0, 2, 0])]
 
     def wait_for(self, torques):
         end = time.monotonic() + 10

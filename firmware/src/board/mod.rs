@@ -177,13 +177,9 @@ macro_rules! scene_program {
                     None => 0.0,
                 };
                 type Number = $crate::chosen_number!($float, $fixed);
-                PROGRAM.check_host(
-                    <$environment as $crate::rendering::Rendering<Number>>::HOST,
+                PROGRAM.check_host::<Number>(
                     timed.margin_with(injected),
-                    (
-                        <$crate::board::ProgramMode<$($mode)?> as $crate::servo::OutputMode>::TIMING,
-                        <Number as $crate::number::Number>::FORMAT,
-                    ),
+                    <$crate::board::ProgramMode<$($mode)?> as $crate::servo::OutputMode>::TIMING,
                 );
             }
             Err(_) => (),

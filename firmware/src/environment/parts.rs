@@ -164,6 +164,14 @@ impl Parts {
         parts
     }
 
+    /// Largest torque in N m that opposes cogging.
+    pub const fn against_cogging(&self) -> f64 {
+        match &self.anticogging {
+            Some(anticogging) => anticogging.largest(),
+            None => 0.0,
+        }
+    }
+
     /// The anticogging, and its delay in whole samples: one where all parts are late, because the torque of such an
     /// environment may be latched.
     pub const fn late_anticogging(&self) -> Option<(Anticogging, usize)> {

@@ -71,7 +71,7 @@ pub struct ServoNumbers<'a> {
     pub latency: &'a Latency,
     /// Its timing.
     pub timing: Timing,
-    /// Its torque limit in N m.
+    /// Its torque limit in N m, with the largest torque that opposes cogging.
     pub torque_limit: Option<f64>,
     /// The damping in N m s/rad that it leaves over without a host, as far as that is known.
     pub margin: Option<f64>,
@@ -90,12 +90,14 @@ pub struct ServoNumbers<'a> {
 }
 
 impl<'a> ServoNumbers<'a> {
-    /// Of a scene with this margin in N m s/rad, and of its servo.
+    /// Of a scene with this margin in N m s/rad, of its servo, and of the largest torque in N m that opposes
+    /// cogging.
     ///
     /// # Errors
     /// If the encoder has no count.
     pub const fn of<E>(
         scene: &'a Scene<E>,
+        against_cogging: f64,
         margin: Option<f64>,
         transducers: &Transducers,
         options: &RenderingOptions,
@@ -104,7 +106,10 @@ impl<'a> ServoNumbers<'a> {
         Ok(Self {
             latency: &scene.latency,
             timing: scene.timing,
-            torque_limit: scene.torque_limit,
+            torque_limit: match scene.torque_limit {
+                Some(limit) => Some(limit + against_cogging),
+                None => None,
+            },
             margin,
             full_scale: transducers.full_scale_torque,
             fade: options.fade,

@@ -170,6 +170,11 @@ where
     if E::Host::IS_PRESENT { beside_host(prepared, transducers, options) } else { Ok(prepared) }
 }
 
+/// Largest torque in N m that opposes cogging.
+fn against_cogging<E: Rendering<N>, N: Number>(scene: &Scene<E>) -> f64 {
+    scene.environment.anticogging().map_or(0.0, |(anticogging, _)| anticogging.largest())
+}
+
 /// The set with its host, whose tank is full and whose share is taken from the margin.
 fn beside_host<E, N, M>(
     set: Prepared<E, N, M>,
@@ -184,7 +189,8 @@ where
     let Prepared { scene, margin, rendering } = set;
     let budget = scene.environment.budget();
     let times = (M::TIMING, N::FORMAT);
-    let servo = ServoNumbers::of(&scene, margin, transducers, options, times);
+    let cogging = against_cogging::<E, N>(&scene);
+    let servo = ServoNumbers::of(&scene, cogging, margin, transducers, options, times);
     let host = E::Host::beside(&budget, &servo.map_err(|_| Step::Servo)?);
     let rendering = rendering.with_host(host.map_err(|_| Step::Servo)?);
     let share = E::Host::host(&budget).map_or(0.0, |host| host.damping);
@@ -232,7 +238,8 @@ where
     if let Some(host) = E::Host::host(&changed.environment.budget()) {
         let margin = Some(timed.margin_with(options.injection.unwrap_or(0.0)));
         let times = (M::TIMING, N::FORMAT);
-        let servo = ServoNumbers::of(&changed, margin, transducers, options, times)?;
+        let cogging = against_cogging::<E, N>(&changed);
+        let servo = ServoNumbers::of(&changed, cogging, margin, transducers, options, times)?;
         HostResponse::beside(&host, &servo, HostTimes::of(&changed.latency))?;
     }
     Ok(())

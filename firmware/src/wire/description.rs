@@ -93,7 +93,9 @@ impl Description {
         let certified = tuning::apply(&self.scene, changes)?.certify_in(*format)?;
         let (scene, injected) = (certified.as_data(), rendering.injection.unwrap_or(0.0));
         let margin = certified.assessment().margin_injecting(scene, injected);
-        let servo = ServoNumbers::of(scene, margin, transducers, rendering, (*timing, *format))?;
+        let cogging = scene.environment.parts().against_cogging();
+        let times = (*timing, *format);
+        let servo = ServoNumbers::of(scene, cogging, margin, transducers, rendering, times)?;
         let is_plain = HostTimes::of(&scene.latency).is_plain;
         let ticks = usize::from(*timing == OutputTiming::Latched);
         HostResponse::beside(host, &servo, HostTimes { ticks, is_plain })?;

@@ -28,7 +28,8 @@ pub fn host(mut section: Section<'_>) -> Read<HostTorque> {
     })
 }
 
-/// Checks a host against the scene's torque limit and the motor's full scale, both in N m, and a simulation.
+/// Checks a host against the scene's torques, the motor's full scale, both in N m, and a simulation. The scene's
+/// torques are its limit and what opposes cogging.
 pub fn check(
     top: &Section<'_>,
     host: Option<&HostTorque>,
@@ -46,9 +47,10 @@ pub fn check(
         && host.check_range(limit, full_scale).is_err()
     {
         let (limit_key, full_key) = (key::TORQUE_LIMIT.path, key::FULL_SCALE.path);
+        let cogging = key::ANTICOGGING.path;
         let reason = match limit {
             Some(limit) => format!(
-                "and `{limit_key}` = {limit} N m are together above `{full_key}` = {full_scale} N m"
+                "and the {limit} N m of the scene, `{limit_key}` and `{cogging}`, are together above `{full_key}` = {full_scale} N m"
             ),
             None => format!("needs `{limit_key}`, or the scene takes all of `{full_key}`"),
         };

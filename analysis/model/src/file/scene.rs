@@ -144,7 +144,8 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         scene = anticogging::beside(&top, scene, learnt, friction, full_scale)?;
     }
     let (simulation, hand, host, supply, motor) = (simulation?, hand?, host?, supply?, driven?);
-    host::check(&top, host.as_ref(), [torque_limit, full_scale], simulation.as_ref())?;
+    let taken = torque_limit.map(|limit| limit + scene.environment.parts().against_cogging());
+    host::check(&top, host.as_ref(), [taken, full_scale], simulation.as_ref())?;
     Ok(SceneFile {
         name,
         scene,

@@ -66,7 +66,9 @@ impl<'a> HostedServo<'a> {
         let numbers = ServoNumbers {
             latency: &scene.latency,
             timing: scene.timing,
-            torque_limit: scene.torque_limit,
+            torque_limit: scene
+                .torque_limit
+                .map(|limit| limit + scene.environment.parts().against_cogging()),
             margin,
             full_scale: transducers.full_scale_torque,
             fade: RenderingOptions::DEFAULT.fade,
