@@ -16,7 +16,7 @@ sentences! {
          it from: where torques lag, a limited scene has none"),
     Range { torque: f64, limit: f64, full_scale: f64 } => (
         "the host's largest torque of " {torque} " N m and the " {limit} " N m of the scene, its torque limit \
-         and what opposes cogging, are together above the full scale of " {full_scale} " N m: lower one of them"),
+         with what opposes cogging, are together above the full scale of " {full_scale} " N m: lower one of them"),
     Unlimited { torque: f64, full_scale: f64 } => (
         "the scene has no torque limit and takes the full scale of " {full_scale} " N m, which leaves no \
          room for the host's largest torque of " {torque} " N m: limit the scene's torque"),

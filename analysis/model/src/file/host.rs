@@ -50,7 +50,7 @@ pub fn check(
         let cogging = key::ANTICOGGING.path;
         let reason = match limit {
             Some(limit) => format!(
-                "and the {limit} N m of the scene, `{limit_key}` and `{cogging}`, are together above `{full_key}` = {full_scale} N m"
+                "and the {limit} N m of the scene, `{limit_key}` with any `{cogging}`, are together above `{full_key}` = {full_scale} N m"
             ),
             None => format!("needs `{limit_key}`, or the scene takes all of `{full_key}`"),
         };
