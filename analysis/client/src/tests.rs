@@ -42,7 +42,7 @@ fn board_with(stiffness: f64, tables: &str) -> Result<SimulatedBoard, String> {
         name = "wall"
         device = {{ inertia = 2.2e-5, damping = 0.022 }}
         servo = {{ period = 0.001 }}
-        coupling = {{ stiffness = 44.0 }}
+        coupling = {{ stiffness = 43.0 }}
         environment = {{ type = "damper-wall", stiffness = {stiffness}, damping = 0.005, delay = 1 }}
         limits = {{ torque = 1.0 }}
         {tables}"#
@@ -118,6 +118,23 @@ fn the_budget_of_a_host_changes_while_its_board_runs() {
         }
     }
     assert_eq!(budget(&link), changed);
+}
+
+/// A host's torque and what opposes the cogging are both beside the scene's limit: more of one is refused where
+/// there is no room for all three.
+#[test]
+fn a_host_keeps_its_room_beside_what_opposes_cogging() {
+    let tables = r#"
+        host = { energy = 0.05, power = 0.5, damping = 0.001, torque = 0.5, timeout = 0.05 }
+        anticogging = { torque = [0, 0.01, 0.02, 0.01, 0, -0.01, -0.02, -0.01], share = 0.5 }"#;
+    let board = board_with(5.0, tables).unwrap();
+    let mut link = Link::open(board.address()).unwrap();
+    let mut share = |share| link.request(change::line(share).unwrap()).unwrap();
+    let RequestResult::Refused(why) = share("anticogging=0.6") else {
+        panic!("it was not refused")
+    };
+    assert!(why.contains("the 1.012 N m of the scene") && why.contains("1.51 N m"), "{why}");
+    assert_eq!(share("anticogging=0.4"), RequestResult::Done);
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub struct StatedTransducers {
     pub encoder_step: Option<f64>,
     /// Torque of the motor in N m at the DAC's largest code.
     pub full_scale: Option<f64>,
-    /// The torque limit of the scene in N m, with the largest torque of a host.
+    /// The torque limit of the scene in N m, with the largest torques of a host and of what opposes cogging.
     pub torque_limit: Option<f64>,
     /// The supply of a bridge.
     pub supply: Option<FileSupply>,
@@ -96,10 +96,11 @@ impl SceneFile {
         full_scale: Option<f64>,
     ) -> StatedTransducers {
         let of_host = self.host.map_or(0.0, |host| host.torque);
+        let beside = of_host + self.scene.environment.parts().against_cogging();
         StatedTransducers {
             encoder_step: counts_per_turn.map(|counts| TAU / counts).or(self.encoder_step),
             full_scale: full_scale.or(self.full_scale),
-            torque_limit: self.scene.torque_limit.map(|limit| limit + of_host),
+            torque_limit: self.scene.torque_limit.map(|limit| limit + beside),
             supply: self.supply,
         }
     }

@@ -2,7 +2,7 @@
 //! harmonics stand out of the noise, their amplitudes, and their uncertainty.
 //!
 //! Over a whole turn the harmonics are orthogonal to each other and to all that does not depend on the angle,
-//! where each row counts by the angle that it stands for. Noise and what is not modelled differ from turn to
+//! where each row counts by the angle that it stands for. Noise and effects without a model differ from turn to
 //! turn, so the uncertainty is that of leaving out one turn at a time (the jackknife), without an assumption
 //! about the noise within a turn.
 
@@ -85,7 +85,7 @@ pub struct Floor {
     pub amplitude: f64,
 }
 
-/// What is looked for.
+/// The quantities of the fit.
 #[derive(Clone, Copy, Debug)]
 pub struct Sought<'a> {
     /// Number of numbers beside the series.
