@@ -83,7 +83,7 @@ const INSTANTS: [(&str, Budget); 2] = [
 /// Of what a host adds to a tick.
 const BESIDE_HOST: Budget = Budget::of(40.0, "instructions");
 /// A wall, and what a host may do beside it.
-const WALL: &str = "device = { inertia = 2.2e-5, damping = 0.022 }\nservo = { period = 0.001 }\n\
+const WALL: &str = "name = \"wall\"\ndevice = { inertia = 2.2e-5, damping = 0.022 }\nservo = { period = 0.001 }\n\
     coupling = { stiffness = 44.0 }\n\
     environment = { type = \"damper-wall\", stiffness = 10.0, damping = 0.002, delay = 1 }\n\
     limits = { torque = 1.0, full_scale = 2.0, counts_per_turn = 61440 }\n";
