@@ -54,7 +54,7 @@ fn run(
     ticks: usize,
     mut progress: impl FnMut(),
 ) -> Result<Run, VirtualBoardError> {
-    let mut run = Run::default();
+    let mut run = Run::from_rest(controller);
     while run.ticks.len() < ticks {
         let count = board.count();
         run.add(count, controller.tick(count), board.code());

@@ -6,7 +6,7 @@ use haptic_model::host::HostRun;
 use haptic_servo::host::HostError;
 use thiserror::Error;
 
-use crate::controller::{Controller, Tick};
+use crate::controller::Controller;
 use crate::device::Energy;
 use crate::emulator::{Emulator, EmulatorError, EmulatorReport, InstructionStats};
 use crate::hand::HandTrajectory;
@@ -113,9 +113,6 @@ pub enum RunError {
     VirtualBoard(#[from] VirtualBoardError),
 }
 
-/// Ticks at rest before a run, in which what a coupling stores of a constant torque settles.
-const STANDING: usize = 1000;
-
 /// Runs a servo for at most `ticks` ticks and, with a backend, its program on that board as well.
 /// `progress` is called after each tick.
 pub fn run_with_backend(
@@ -145,10 +142,6 @@ fn run_lockstep(
     ticks: usize,
     progress: impl FnMut(),
 ) -> Result<RunOutcome, RunError> {
-    // A board has stood at this count before its servo runs: a torque that the scene gives there is held.
-    for _ in 0..STANDING {
-        let _: Tick = controller.tick(0);
-    }
     let (run, board) = match board {
         None => {
             let Ok(run) = run::<NoRemote>(plant, controller, None, ticks, progress);

@@ -87,9 +87,9 @@ impl BesideHost {
         mut progress: impl FnMut(),
     ) -> Result<RunOutcome, HostError> {
         let output = OutputTiming::Simultaneous;
+        let mut run = Run::from_rest(controller);
         let mut servo = self.servo(controller, output)?.driven_by(self.sender());
-        let mut energy = self.energy(output);
-        let (mut run, mut host) = (Run::default(), self.host_run());
+        let (mut host, mut energy) = (self.host_run(), self.energy(output));
         while run.ticks.len() < ticks
             && let Some(count) = device.count()
         {
@@ -191,10 +191,10 @@ impl BesideHost {
         board: BoardMeasurement,
     ) -> Result<RunOutcome, RunError> {
         let (begin, commands) = recorded.commands()?;
+        let mut run = Run::from_rest(controller);
         let mut servo = self.servo(controller, output)?;
         servo.rest(begin);
-        let (mut run, mut host, mut energy) =
-            (Run::default(), self.host_run(), self.energy(output));
+        let (mut host, mut energy) = (self.host_run(), self.energy(output));
         for (exchanged, command) in recorded.ran.iter().zip(commands) {
             let &Exchanged { count, code, moved } = exchanged;
             if let Some(torque) = command {

@@ -7,6 +7,9 @@ pub use haptic_client::simulated::{PlantIo, SimulatedDevice};
 
 use crate::controller::{Controller, Tick};
 
+/// Ticks at rest before a run, in which what a coupling stores of a constant torque settles.
+const STANDING: usize = 1000;
+
 /// A recording: the DAC code changes nothing.
 pub struct Recording<'a> {
     counts: std::slice::Iter<'a, i32>,
@@ -76,6 +79,15 @@ impl Run {
         self.ticks.iter().fold(0.0, |peak, tick| tick.torque.abs().max(peak))
     }
 
+    /// Begins a run of a servo that has stood at count 0, as a board has before its servo runs: a torque that the
+    /// scene gives there is held.
+    pub fn from_rest(controller: &mut dyn Controller) -> Self {
+        for _ in 0..STANDING {
+            let _: Tick = controller.tick(0);
+        }
+        Self::default()
+    }
+
     /// The host's next tick, of this count, beside the code that the remote servo gave.
     pub fn add(&mut self, count: i32, tick: Tick, target: u16) {
         if target == tick.code {
@@ -97,7 +109,7 @@ pub fn run<T: RemoteServo>(
     ticks: usize,
     mut progress: impl FnMut(),
 ) -> Result<Run, T::Error> {
-    let mut run = Run::default();
+    let mut run = Run::from_rest(controller);
     while run.ticks.len() < ticks
         && let Some(count) = plant.count()
     {
