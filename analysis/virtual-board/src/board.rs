@@ -318,16 +318,19 @@ impl VirtualBoard {
 
     /// The next move of the DMA, whose memory is the core's.
     pub(crate) fn next_move(&mut self) -> Option<Move> {
-        let (received, wanted) = (self.spi.requests_taking(), self.spi.requests_word());
-        let update = self.update_requested;
-        let next = self.dma.next(|request| match request {
-            TIM6_UPDATE => update,
-            RECEIVED => received,
-            WANTED => wanted,
-            _ => false,
-        })?;
+        let requests = self.requests();
+        let next = self.dma.next(|request| requests.contains(&Some(request)))?;
         self.update_requested &= next.request != TIM6_UPDATE;
         Some(next)
+    }
+
+    /// The requests of units to the DMA.
+    fn requests(&self) -> [Option<u32>; 3] {
+        [
+            self.update_requested.then_some(TIM6_UPDATE),
+            self.spi.requests_taking().then_some(RECEIVED),
+            self.spi.requests_word().then_some(WANTED),
+        ]
     }
 
     /// Turns the encoder, which counts if the program has configured its pins as wired.
@@ -399,7 +402,7 @@ impl VirtualBoard {
         self.stopped.is_some()
             || self.bus_error.is_some()
             || self.system.reset_requested
-            || self.spi.requests_word() && self.dma.serves(WANTED)
+            || self.dma.is_due(|request| self.requests().contains(&Some(request)))
     }
 }
 

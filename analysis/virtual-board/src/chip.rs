@@ -138,7 +138,7 @@ pub struct Chip {
 
 /// TIM6 with the DAC's underrun: the servo's interrupt.
 pub const TICK_INTERRUPT: u16 = 54;
-/// The first channel of DMA1: the end of a magnetic encoder's transfer.
+/// The first channel of DMA1: the end of a magnetic encoder's transfer, which is the servo's interrupt then.
 pub const TRANSFER_INTERRUPT: u16 = 11;
 /// Requests of the DMA: TIM6's update, and SPI2's received word and word to send.
 pub const TIM6_UPDATE: u32 = 8;
