@@ -28,34 +28,55 @@ pub const MT6701: Chip = Chip {
 /// Status: the field is too strong (1), too weak (2), or the track is lost (8). The push button (4) is no error.
 const FIELD: u32 = 0b1011;
 
-/// The remainders of six more bits by x^6 + x + 1, with the first bit first.
-const REMAINDERS: [u8; 64] = {
-    let mut table = [0; 64];
-    each!(bits in 0..64 => {
-        let mut rest = bits as u8;
-        each!(_bit in 0..6 => {
-            rest = rest << 1 ^ if rest & 0x20 != 0 { 0x43 } else { 0 };
-        });
-        table[bits] = rest;
+/// The remainder by x^6 + x + 1 of 18 bits, of which the last are these, with the checksum's six zeros behind them.
+const fn remainder(bits: u32) -> u8 {
+    let mut rest = bits << 6;
+    each!(bit in 0..18 => {
+        if rest & (1 << 23) >> bit != 0 {
+            rest ^= (0x43 << 17) >> bit;
+        }
+    });
+    rest as u8
+}
+
+/// Of the first word of 12 bits the remainder, and of the second the remainder that goes with it, or [`NO_ANGLE`]: 8 kB,
+/// so that a transfer is checked by one comparison.
+static REMAINDERS: [[u8; 1 << 12]; 2] = {
+    let mut table = [[0; 1 << 12]; 2];
+    each!(word in 0..1 << 12 => {
+        let bits = word as u32;
+        table[0][word] = remainder(bits << 6);
+        let is_angle = bits >> 6 & FIELD == 0;
+        table[1][word] = if is_angle { remainder(bits >> 6) ^ (bits & 0x3F) as u8 } else { NO_ANGLE };
     });
     table
 };
 
+/// No remainder.
+const NO_ANGLE: u8 = 0xFF;
+
 #[inline(always)]
 fn decode(&[first, second, _]: &Frame) -> Result<u32, ReadingError> {
+    let [of_first, of_second] = &REMAINDERS;
+    let at = |word: u16| usize::from(word) & 0xFFF;
+    if of_first[at(first)] != of_second[at(second)] {
+        return Err(failure(first, second));
+    }
+    // The status of the push button may be beside a zero.
+    match u32::from(first) << 2 | u32::from(second) >> 10 {
+        0 if second == 0 => Err(ReadingError::Zeros),
+        angle => Ok(angle),
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn failure(first: u16, second: u16) -> ReadingError {
     let bits = u32::from(first) << 12 | u32::from(second);
-    if bits == 0 {
-        // The checksum of zeros is zero.
-        return Err(ReadingError::Zeros);
+    let is_checked = remainder(bits >> 6) == (bits & 0x3F) as u8;
+    match bits {
+        0xFF_FFFF => ReadingError::Ones,
+        _ if is_checked => ReadingError::Field,
+        _ => ReadingError::Checksum,
     }
-    let six = |rest: u8, bits: u32| REMAINDERS[(u32::from(rest) ^ bits & 0x3F) as usize];
-    let rest = six(six(six(0, bits >> 18), bits >> 12), bits >> 6);
-    if u32::from(rest) != bits & 0x3F {
-        // The checksum of ones is none.
-        return Err(if bits == 0xFF_FFFF { ReadingError::Ones } else { ReadingError::Checksum });
-    }
-    if bits >> 6 & FIELD != 0 {
-        return Err(ReadingError::Field);
-    }
-    Ok(bits >> 10)
 }
