@@ -28,7 +28,7 @@ pub const MT6701: Chip = Chip {
 /// Status: the field is too strong (1), too weak (2), or the track is lost (8). The push button (4) is no error.
 const FIELD: u32 = 0b1011;
 
-/// The remainder by x^6 + x + 1 of 18 bits, of which the last are these, with the checksum's six zeros behind them.
+/// The remainder by x^6 + x + 1 of 18 bits, with six zeros behind them.
 const fn remainder(bits: u32) -> u8 {
     let mut rest = bits << 6;
     each!(bit in 0..18 => {
@@ -39,44 +39,55 @@ const fn remainder(bits: u32) -> u8 {
     rest as u8
 }
 
-/// Of the first word of 12 bits the remainder, and of the second the remainder that goes with it, or [`NO_ANGLE`]: 8 kB,
-/// so that a transfer is checked by one comparison.
-static REMAINDERS: [[u8; 1 << 12]; 2] = {
-    let mut table = [[0; 1 << 12]; 2];
-    each!(word in 0..1 << 12 => {
-        let bits = word as u32;
-        table[0][word] = remainder(bits << 6);
-        let is_angle = bits >> 6 & FIELD == 0;
-        table[1][word] = if is_angle { remainder(bits >> 6) ^ (bits & 0x3F) as u8 } else { NO_ANGLE };
+/// Angles in a turn.
+const ANGLES: usize = 1 << 14;
+
+/// The checksum of each angle without a status, so that one comparison checks a transfer: 16 kB. Of the angle zero it is
+/// [`NO_CHECKSUM`], because its words may be those of a broken wire.
+static CHECKSUMS: [u8; ANGLES] = {
+    let mut table = [0; ANGLES];
+    each!(angle in 1..ANGLES => {
+        // The remainder of a sum is the sum of the remainders.
+        let lowest = 1 << angle.trailing_zeros();
+        table[angle] = table[angle ^ lowest] ^ remainder((lowest as u32) << 4);
+    });
+    table[0] = NO_CHECKSUM;
+    table
+};
+
+/// The same of each status.
+const OF_STATUS: [u8; 16] = {
+    let mut table = [0; 16];
+    each!(status in 0..16 => {
+        table[status] = remainder(status as u32);
     });
     table
 };
 
-/// No remainder.
-const NO_ANGLE: u8 = 0xFF;
+/// More than a checksum and a status have.
+const NO_CHECKSUM: u8 = 0xFF;
 
 #[inline(always)]
 fn decode(&[first, second, _]: &Frame) -> Result<u32, ReadingError> {
-    let [of_first, of_second] = &REMAINDERS;
-    let at = |word: u16| usize::from(word) & 0xFFF;
-    if of_first[at(first)] != of_second[at(second)] {
-        return Err(failure(first, second));
-    }
-    // The status of the push button may be beside a zero.
-    match u32::from(first) << 2 | u32::from(second) >> 10 {
-        0 if second == 0 => Err(ReadingError::Zeros),
-        angle => Ok(angle),
-    }
+    let bits = u32::from(first) << 12 | u32::from(second);
+    let angle = (bits >> 10) as usize % ANGLES;
+    if u16::from(CHECKSUMS[angle]) == second & 0x3FF { Ok(angle as u32) } else { unusual(bits) }
 }
 
+/// The angle of a transfer with a status, or of zeros.
 #[cold]
 #[inline(never)]
-fn failure(first: u16, second: u16) -> ReadingError {
-    let bits = u32::from(first) << 12 | u32::from(second);
-    let is_checked = remainder(bits >> 6) == (bits & 0x3F) as u8;
+fn unusual(bits: u32) -> Result<u32, ReadingError> {
+    let (angle, status) = (bits >> 10, bits >> 6 & 0xF);
+    let of_angle = if angle == 0 { 0 } else { CHECKSUMS[angle as usize % ANGLES] };
     match bits {
-        0xFF_FFFF => ReadingError::Ones,
-        _ if is_checked => ReadingError::Field,
-        _ => ReadingError::Checksum,
+        // The checksum of zeros is zero; that of ones is none.
+        0 => Err(ReadingError::Zeros),
+        0xFF_FFFF => Err(ReadingError::Ones),
+        _ if u32::from(of_angle ^ OF_STATUS[status as usize]) != bits & 0x3F => {
+            Err(ReadingError::Checksum)
+        }
+        _ if status & FIELD != 0 => Err(ReadingError::Field),
+        _ => Ok(angle),
     }
 }

@@ -99,21 +99,23 @@ const GENERATOR: usize = 0;
 const GENERATED: u8 = 1;
 /// Writes of CR1 that end a transfer, of which the last takes SPE away: half a clock after its last bit is sampled the
 /// SPI is busy with it (RM0440, SPI: SPE goes off when BSY is), and each of these writes takes some clocks.
-const ENDING: usize = 4;
+const ENDING: usize = 8;
 
-/// What the DMA moves from and to.
+/// What a transfer and its reading use: in one place, so that one address reaches all of it.
 struct Memory {
     /// The words of the last transfer.
     frame: [AtomicU16; LONGEST],
     /// CR1 of the SPI that begins a transfer, and those that end it.
     begins: AtomicU16,
     ends: [AtomicU16; ENDING],
+    reader: IsrCell<Reader>,
 }
 
 static MEMORY: Memory = Memory {
     frame: [const { AtomicU16::new(0) }; LONGEST],
     begins: AtomicU16::new(0),
     ends: [const { AtomicU16::new(0) }; ENDING],
+    reader: IsrCell::empty(),
 };
 
 /// The readings, for the one interrupt that takes them.
@@ -124,13 +126,11 @@ struct Reader {
     setup: &'static Setup,
 }
 
-static READER: IsrCell<Reader> = IsrCell::empty();
-
 /// The readings.
 #[inline(always)]
 fn reader() -> &'static mut Reader {
     // SAFETY: only the interrupt that takes readings uses them, after the set-up, which is before it is enabled.
-    unsafe { READER.borrow_mut() }
+    unsafe { MEMORY.reader.borrow_mut() }
 }
 
 /// The count at the beginning of the period.
@@ -268,7 +268,7 @@ pub fn set_up(setup: &'static Setup) {
     let mut readings = Readings::none();
     let _ = readings.take(chip, &exchange(&chip.command, words), dropped);
     // SAFETY: the interrupt that uses it is not enabled yet.
-    unsafe { READER.init(Reader { readings, fault: None, setup }) };
+    unsafe { MEMORY.reader.init(Reader { readings, fault: None, setup }) };
     connect_channels(chip);
 }
 
