@@ -333,6 +333,7 @@ fn a_device_at_rest_is_no_fault() {
 const CHANNELS: [u32; 4] = [0x4002_0008, 0x4002_001C, 0x4002_0030, 0x4002_0044];
 const RECEIVES: usize = 0;
 const BEGINS: usize = 2;
+const ENDS: usize = 3;
 /// The data register of SPI2.
 const DATA: u32 = 0x4000_380C;
 
@@ -345,7 +346,7 @@ fn enable(bench: &mut Bench, channel: usize, is: bool) {
 /// Without the end of a transfer there is no tick, and the watchdog takes the torque away.
 #[test]
 fn a_transfer_that_never_ends_resets_the_board() {
-    for channel in 0..CHANNELS.len() {
+    for channel in RECEIVES..=BEGINS {
         let mut bench = in_the_wall();
         enable(&mut bench, channel, false);
         let now = bench.now();
@@ -355,6 +356,16 @@ fn a_transfer_that_never_ends_resets_the_board() {
         let resets: Vec<_> = bench.machine.resets().iter().map(|(_, cause)| *cause).collect();
         assert_eq!(resets, [Cause::Watchdog], "{channel}");
     }
+}
+
+/// A chip that is not released gives no angle.
+#[test]
+fn a_chip_that_stays_selected_is_a_fault() {
+    let mut bench = in_the_wall();
+    enable(&mut bench, ENDS, false);
+    bench.run(5);
+    let error = ReadingError::Ones as u32;
+    assert_eq!(bench.fault(), Some(Fault::EncoderReading { error, allowed: 1 }));
 }
 
 /// An update whose request is lost: the scene tolerates no missed update.
