@@ -388,8 +388,7 @@ fn a_word_that_is_lost_is_a_fault_and_the_next_transfers_are_in_step() {
     let mut bench = in_the_wall();
     bench.run_to_update();
     enable(&mut bench, RECEIVES, false);
-    let is_there = |bench: &mut Bench| bench.board().spi.requests_taking();
-    assert!(bench.run_until(20, 2000, is_there));
+    bench.machine.run_until("a word", 2000, |board| board.spi.requests_taking()).unwrap();
     bench.board_mut().read(DATA, 2);
     enable(&mut bench, RECEIVES, true);
     bench.run(3);
