@@ -71,18 +71,24 @@ const NO_CHECKSUM: u8 = 0xFF;
 fn decode(&[first, second, _]: &Frame) -> Result<u32, ReadingError> {
     let bits = u32::from(first) << 12 | u32::from(second);
     let angle = (bits >> 10) as usize % ANGLES;
-    if u16::from(CHECKSUMS[angle]) == second & 0x3FF { Ok(angle as u32) } else { unusual(bits) }
+    if u16::from(CHECKSUMS[angle]) == second & 0x3FF {
+        Ok(angle as u32)
+    } else if bits == 0 {
+        // A handle may rest there.
+        Err(ReadingError::Zeros)
+    } else {
+        unusual(bits)
+    }
 }
 
-/// The angle of a transfer with a status, or of zeros.
+/// The angle of a transfer with a status.
 #[cold]
 #[inline(never)]
 fn unusual(bits: u32) -> Result<u32, ReadingError> {
     let (angle, status) = (bits >> 10, bits >> 6 & 0xF);
     let of_angle = if angle == 0 { 0 } else { CHECKSUMS[angle as usize % ANGLES] };
     match bits {
-        // The checksum of zeros is zero; that of ones is none.
-        0 => Err(ReadingError::Zeros),
+        // Their checksum is none.
         0xFF_FFFF => Err(ReadingError::Ones),
         _ if u32::from(of_angle ^ OF_STATUS[status as usize]) != bits & 0x3F => {
             Err(ReadingError::Checksum)

@@ -72,8 +72,8 @@ impl Readings {
     #[inline(always)]
     fn near_zero(&self, chip: &Chip, error: ReadingError) -> Option<u32> {
         let (turn, near) = (chip.width.mask(), chip.width.mask() / NEAR);
-        let last = self.count & !FAILED;
-        if last == NONE || last.wrapping_add(near) & turn > 2 * near {
+        // Without an angle before, the sum is above any turn.
+        if self.count.wrapping_add(near) & (turn | NONE) > 2 * near {
             return None;
         }
         match error {
