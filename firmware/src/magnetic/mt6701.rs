@@ -42,8 +42,8 @@ const fn remainder(bits: u32) -> u8 {
 /// Angles in a turn.
 const ANGLES: usize = 1 << 14;
 
-/// The checksum of each angle without a status, so that one comparison checks a transfer: 16 kB. Of the angle zero it is
-/// [`NO_CHECKSUM`], because its words may be those of a broken wire.
+/// The checksum of each angle without a status, so that one comparison checks a transfer: 16 kB. Of the angle zero it
+/// is [`NO_CHECKSUM`], because its words may be those of a broken wire.
 static CHECKSUMS: [u8; ANGLES] = {
     let mut table = [0; ANGLES];
     each!(angle in 1..ANGLES => {

@@ -299,8 +299,8 @@ mod tests {
     const BEGINS: u32 = 8;
     const WANTED: u32 = 13;
 
-    /// Channel 0 serves a request and makes an event, on which channel 1 may move two words, and a generator has channel
-    /// 2 move three.
+    /// Channel 0 serves a request and makes an event, on which channel 1 may move two words, and a generator has
+    /// channel 2 move three.
     fn chained() -> Dma {
         let mut dma = Dma::default();
         let event = FIRST_EVENT;

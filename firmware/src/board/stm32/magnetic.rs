@@ -5,8 +5,8 @@
 //!   its event         ---- DMA 2 may move as many words to the SPI as a transfer has
 //!                          DMA 1 stores each word received
 //!   its event after the last one ---- DMA 4 writes CR1 until SPE is off: releases the chip
-//! DMA1_CHANNEL1       the last word is there: the servo's tick, with the count of the update, or [`take`] by whoever
-//!                     needs the position
+//! DMA1_CHANNEL1       the last word is there: the servo's tick, with the count of the update, or [`take`] by another
+//!                     interrupt that needs the position
 //! ```
 //!
 //! An event of one channel of the multiplexer is the synchronisation of another, or triggers a generator of requests
@@ -204,9 +204,9 @@ fn acknowledge() {
     DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
 }
 
-/// A tick after a missed one may have begun in the transfer of the next update, with words of two transfers. Waits for
-/// its end, and takes it. If it does not end in its time, or if the words are out of step, the reading is a fault, however
-/// many may fail: the last angle is lost. `elapsed` has the clock's counts since the update.
+/// A tick after a missed tick may have begun in the transfer of the next update, with words of two transfers. Waits for
+/// its end, and takes it. If it does not end in its time, or if the words are out of step, the reading is a fault,
+/// however many may fail: the last angle is lost. `elapsed` has the clock's counts since the update.
 #[cold]
 #[inline(never)]
 pub fn take_again(elapsed: impl Fn() -> u32) {
