@@ -2,16 +2,23 @@
 
 use super::current_loop::CurrentLoop;
 use super::design::OVER_CURRENT;
+use super::drive::DriveError;
 use super::regeneration::{Bus, Push};
+use crate::encoder_reading::EncoderReading;
 use crate::latency::Latency;
+use crate::magnetic::{Chip, Transfers};
 use crate::output_timing::OutputTiming;
 use crate::passivity::interval::Interval;
 use crate::scene::{Device, Scene};
-use crate::text::{Sentence, push};
+use crate::text::{Sentence, or_refuse, push};
 use crate::transducers::Transducers;
 
 /// Relative tolerance of times that should be equal.
 const SAME: f64 = 1e-9;
+
+/// Largest part of an electrical turn that the phase may turn in the age of a reading: 0.1 rad, which reduces the
+/// torque by 0.5 per cent.
+const LARGEST_TURN: f64 = 1.0 / 64.0;
 
 impl CurrentLoop {
     /// The latency of a scene with this current loop, for a program's output timing.
@@ -97,6 +104,34 @@ impl CurrentLoop {
         }
         self.check_device(device);
         self.check_acceleration(device, transducers.largest_speed);
+        or_refuse!(self.check_age(latency.encoder, period, transducers.largest_speed));
+    }
+
+    /// The transfers of a chip on the board of this loop, which are at its updates.
+    pub const fn transfers(&self, chip: &Chip) -> Transfers {
+        let clock = 2.0 * self.timer_counts() as f64 / self.instant();
+        Transfers::before_update(chip, self.instant(), clock)
+    }
+
+    /// Checks that the phase of the motor is known well enough from readings of this encoder, at a period and a
+    /// largest speed in s and rad/s.
+    ///
+    /// # Errors
+    /// If it turns too far in their age.
+    pub const fn check_age(
+        &self,
+        encoder: &EncoderReading,
+        period: f64,
+        speed: f64,
+    ) -> Result<(), DriveError> {
+        let age = encoder.age.most + encoder.dropped as f64 * period;
+        let frequency = self.winding().pole_pairs() as f64 * speed / core::f64::consts::TAU;
+        let turned = frequency * age;
+        if turned <= LARGEST_TURN {
+            return Ok(());
+        }
+        let largest = LARGEST_TURN / frequency;
+        Err(DriveError::Age { age, turned, most: LARGEST_TURN, largest })
     }
 
     /// For constants: checks that the supply of this loop stays below its fault level after a push into a

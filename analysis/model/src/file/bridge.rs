@@ -69,8 +69,13 @@ impl SceneFile {
             bandwidth: 1.0 / (TAU * lag),
             largest_temperature: B_G431B_ESC1.largest_temperature,
         };
-        let transducers = Transducers { counter: CounterWidth::Bits16, ..*transducers };
+        // TIM4, or a chip.
+        let counter = self.chip.map_or(CounterWidth::Bits16, |chip| chip.width);
+        let transducers = Transducers { counter, ..*transducers };
         let current_loop = CurrentLoop::design(&drive, &B_G431B_ESC1, &transducers, period)
+            .map_err(|error| error.to_string())?;
+        current_loop
+            .check_age(latency.encoder, period, transducers.largest_speed)
             .map_err(|error| error.to_string())?;
         let response = current_loop.response();
         let phase = latency.stated_delay() - response.delay;
