@@ -77,7 +77,8 @@ fn a_scene_states_an_age_that_covers_the_chip_s() {
         let encoder = EncoderReading { age, ..EncoderReading::IDEAL };
         let latency = Latency::NONE.read_by(Box::leak(Box::new(encoder)));
         let transfers = Transfers::at_count(1e-4);
-        chip.check(&latency, &transfers, 16384.0).map_err(|error| error.sentence().as_str().to_owned())
+        chip.check(&latency, &transfers, 16384.0)
+            .map_err(|error| error.sentence().as_str().to_owned())
     };
     assert_eq!(check(&MT6701, 0.0, 1e-5), Ok(()));
     let error = check(&MT6701, 0.0, 9e-6).unwrap_err();
