@@ -47,6 +47,9 @@ pub const BUS: Bus = Bus {
     output: BusPin { port: pac::GPIOB, pin: 15, function: 5 },
     received: 12,
     wants: 13,
+    // TIM6's update.
+    begins: 8,
+    enable: || pac::RCC.apb1enr1().modify(|w| w.set_spi2en(true)),
 };
 
 bind_interrupts!(struct Interrupts {

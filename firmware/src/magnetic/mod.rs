@@ -52,6 +52,8 @@ words! {
     Field "the magnet is too weak, too strong or lost",
     /// A chip whose readings are never at rest reads the same for long.
     Frozen "it does not change, not even by its noise",
+    /// No transfer has ended in the period.
+    Missing "its transfer has not ended",
     }
 }
 

@@ -54,9 +54,13 @@ impl Readings {
         Ok(true)
     }
 
+    /// The same for a transfer without an angle.
+    ///
+    /// # Errors
+    /// If more transfers in a row have failed than are allowed.
     #[cold]
     #[inline(never)]
-    fn fail(&self, error: ReadingError, allowed: u16) -> Result<bool, ReadingError> {
+    pub fn fail(&self, error: ReadingError, allowed: u16) -> Result<bool, ReadingError> {
         let failed = self.failed.load(Relaxed).saturating_add(1);
         self.failed.store(failed, Relaxed);
         if failed > allowed { Err(error) } else { Ok(false) }

@@ -26,7 +26,7 @@ use super::wiring::{BUS, TIMER_CLOCK};
 use crate::board::critical;
 use crate::encoder::RawCount;
 use crate::fault::Fault;
-use crate::magnetic::{Chip, Frame, LONGEST, ReadingError, Readings};
+use crate::magnetic::{Chip, Frame, Interface, LONGEST, ReadingError, Readings};
 use crate::servo_loop::OutputEvent;
 
 /// A pin of the bus, and the alternate function that connects it.
@@ -56,6 +56,10 @@ pub struct Bus {
     pub received: u8,
     /// The request for a word to send.
     pub wants: u8,
+    /// The request that begins a transfer: an event of the timer that paces the position.
+    pub begins: u8,
+    /// Gives the SPI its clock.
+    pub enable: fn(),
 }
 
 /// The data of a program that the encoder needs.
@@ -77,8 +81,6 @@ const DMA: pac::bdma::Dma = pac::DMA1;
 const RECEIVE: usize = 0;
 const SEND: usize = 1;
 const BEGIN: usize = 2;
-/// TIM6's update among the requests of the DMA.
-const TIM6_UPDATE: u8 = 8;
 
 /// What the interrupt of a transfer uses: in one place, so that one address reaches all of it.
 struct Memory {
@@ -132,6 +134,23 @@ pub fn read(setup: &'static Setup) {
         Err(error) => fail(error, setup.dropped),
     }
     NVIC::pend(interrupt::TIM6_DAC);
+}
+
+/// Takes the transfer that has ended since the last call; without one the reading has failed.
+///
+/// # Errors
+/// If more readings in a row have failed than are allowed.
+#[cfg(feature = "bridge")]
+#[inline(always)]
+pub fn take(setup: &'static Setup) -> Result<bool, ReadingError> {
+    let words = setup.chip.interface.words;
+    let has_ended = DMA.isr().read().tcif(RECEIVE);
+    end();
+    if !has_ended {
+        return MEMORY.readings.fail(ReadingError::Missing, setup.dropped);
+    }
+    load_again(words);
+    MEMORY.readings.take(setup.chip, &received(words), setup.dropped)
 }
 
 #[cold]
@@ -200,8 +219,12 @@ pub fn set_up(setup: &'static Setup) {
 
 /// From now on each update of the pacing timer begins a transfer, whose end is the tick.
 pub fn start() {
-    DMA.ch(RECEIVE).cr().modify(|w| w.set_tcie(true));
     DMA.ch(BEGIN).cr().modify(|w| w.set_en(true));
+    // The updates of a bridge take their transfers themselves.
+    if cfg!(feature = "bridge") {
+        return;
+    }
+    DMA.ch(RECEIVE).cr().modify(|w| w.set_tcie(true));
     // SAFETY: the handler shares nothing but atomics.
     unsafe { interrupt::DMA1_CHANNEL1.enable() };
 }
@@ -219,7 +242,7 @@ fn exchange(words: &'static Frame, count: usize) -> Frame {
 /// The clocks, the pins, the SPI and the channels.
 fn connect(chip: &Chip) {
     let (spi, interface) = (BUS.spi, chip.interface);
-    pac::RCC.apb1enr1().modify(|w| w.set_spi2en(true));
+    (BUS.enable)();
     pac::RCC.ahb1enr().modify(|w| {
         w.set_dma1en(true);
         w.set_dmamux1en(true);
@@ -228,7 +251,7 @@ fn connect(chip: &Chip) {
     let _ = pac::RCC.ahb1enr().read();
     let mut enabled = Cr1(SPE);
     enabled.set_mstr(Mstr::MASTER);
-    enabled.set_br(divider(interface.highest_clock));
+    enabled.set_br(divider(interface));
     enabled.set_cpha(Cpha::SECOND_EDGE);
     enabled.set_cpol(if interface.idle_high { Cpol::IDLE_HIGH } else { Cpol::IDLE_LOW });
     MEMORY.enabled.store(enabled.0 as u16, Ordering::Relaxed);
@@ -251,7 +274,7 @@ fn connect(chip: &Chip) {
     let data = spi.dr16().as_ptr() as u32;
     channel(RECEIVE, BUS.received, data, MEMORY.frame.as_ptr() as u32, interface.words);
     channel(SEND, BUS.wants, data, 0, 0);
-    channel(BEGIN, TIM6_UPDATE, spi.cr1().as_ptr() as u32, MEMORY.enabled.as_ptr() as u32, 1);
+    channel(BEGIN, BUS.begins, spi.cr1().as_ptr() as u32, MEMORY.enabled.as_ptr() as u32, 1);
     DMA.ch(RECEIVE).cr().modify(|w| {
         w.set_minc(true);
         w.set_en(true);
@@ -274,10 +297,9 @@ fn channel(number: usize, request: u8, peripheral: u32, memory: u32, count: usiz
     });
 }
 
-/// The smallest divider of the bus's clock, a power of two, for at most this clock in Hz.
-fn divider(highest_clock: f64) -> Br {
-    let fits = |bits: &u8| TIMER_CLOCK / f64::from(2_u32 << bits) <= highest_clock;
-    Br::from_bits((0..7).find(fits).unwrap_or(7))
+/// The divider of the bus's clock.
+fn divider(interface: Interface) -> Br {
+    Br::from_bits((interface.divider(TIMER_CLOCK) - 1) as u8)
 }
 
 /// The encoder of a program, and the handler of its readings.
@@ -290,19 +312,40 @@ macro_rules! board_encoder {
              scene_program! or sweep_program!, or build it without the feature `magnetic`"
         );
     };
-    ([$chip:expr], $transducers:expr, $dropped:expr, $leaves_out:expr) => {
+    ([$chip:expr], $bridge:tt, $transducers:expr, $reading:expr, $period:expr, $leaves_out:expr) => {
         /// The encoder's data of this program.
         #[unsafe(no_mangle)]
         static ENCODER_SETUP: $crate::board::stm32::magnetic::Setup =
             $crate::board::stm32::magnetic::Setup {
                 name: $chip.padded_name(),
                 chip: &$chip,
-                dropped: $dropped,
+                dropped: $crate::may_fail!($chip, $bridge, $reading, $period),
                 leaves_out: $leaves_out,
             };
 
         const ENCODER: &$crate::board::stm32::magnetic::Setup = &ENCODER_SETUP;
 
+        $crate::transfer_handler!($bridge);
+    };
+}
+
+/// Readings in a row that may fail: those of a bridge's updates, or those of the servo's periods.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! may_fail {
+    ($chip:expr, [], $reading:expr, $period:expr) => {
+        $reading.dropped
+    };
+    ($chip:expr, [$current_loop:ident], $reading:expr, $period:expr) => {
+        $current_loop.transfers(&$chip).may_fail(&$chip, $reading, $period)
+    };
+}
+
+/// The handler of the end of a transfer, which a bridge does not need.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! transfer_handler {
+    ([]) => {
         $crate::in_fast_memory! {
             /// The end of a transfer.
             #[unsafe(no_mangle)]
@@ -311,4 +354,5 @@ macro_rules! board_encoder {
             }
         }
     };
+    ([$current_loop:ident]) => {};
 }

@@ -72,7 +72,7 @@ impl Hardware for Registers {
         self.output.event()
     }
 
-    #[cfg(feature = "magnetic")]
+    #[cfg(all(feature = "magnetic", not(feature = "bridge")))]
     #[inline(always)]
     fn output_event(&mut self) -> Option<OutputEvent> {
         magnetic::event()
@@ -131,7 +131,7 @@ impl Startup for Registers {
 
     #[cfg(feature = "magnetic")]
     fn absolute_count(&mut self) -> Option<RawCount> {
-        Some(output::count())
+        Some(magnetic::count())
     }
 
     fn start_watchdog(&mut self) {

@@ -247,8 +247,10 @@ macro_rules! board_program {
 
         $crate::board_encoder!(
             $encoder,
+            $bridge,
             $program.transducers,
-            $program.scene.latency.encoder.dropped,
+            $program.scene.latency.encoder,
+            $program.scene.timing.period,
             $program
                 .scene
                 .latency
@@ -317,7 +319,7 @@ macro_rules! board_chip {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_encoder {
-    ([], $transducers:expr, $($of_chip:tt)*) => {
+    ([], $bridge:tt, $transducers:expr, $($of_chip:tt)*) => {
         $crate::board_filter!($transducers);
 
         const ENCODER: $crate::board::input_filter::InputFilter = FILTER;
