@@ -325,15 +325,21 @@ impl VirtualBoard {
 
     /// The next move of the DMA, whose memory is the core's.
     pub(crate) fn next_move(&mut self) -> Option<Move> {
-        let Bus { received, wanted, begins, .. } = self.chip.bus?;
-        let requests = [
-            (begins, self.transfer_requested),
-            (received, self.spi.requests_taking()),
-            (wanted, self.spi.requests_word()),
-        ];
-        let next = self.dma.next(|request| requests.contains(&(request, true)))?;
-        self.transfer_requested &= next.request != begins;
+        let requests = self.requests();
+        let next = self.dma.next(|request| requests.contains(&Some(request)))?;
+        let begins = self.chip.bus.map(|bus| bus.begins);
+        self.transfer_requested &= begins != Some(next.request);
         Some(next)
+    }
+
+    /// The requests of units to the DMA.
+    fn requests(&self) -> [Option<u32>; 3] {
+        let Some(Bus { received, wanted, begins, .. }) = self.chip.bus else { return [None; 3] };
+        [
+            self.transfer_requested.then_some(begins),
+            self.spi.requests_taking().then_some(received),
+            self.spi.requests_word().then_some(wanted),
+        ]
     }
 
     /// Turns the encoder, which counts if the program has configured its pins as wired.
@@ -405,8 +411,7 @@ impl VirtualBoard {
         self.stopped.is_some()
             || self.bus_error.is_some()
             || self.system.reset_requested
-            || self.spi.requests_word()
-                && self.chip.bus.is_some_and(|bus| self.dma.serves(bus.wanted))
+            || self.dma.is_due(|request| self.requests().contains(&Some(request)))
     }
 }
 

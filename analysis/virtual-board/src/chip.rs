@@ -153,7 +153,7 @@ pub struct Chip {
 
 /// TIM6 with the DAC's underrun: the servo's interrupt.
 pub const TICK_INTERRUPT: u16 = 54;
-/// The first channel of DMA1: the end of a magnetic encoder's transfer.
+/// The first channel of DMA1: the end of a magnetic encoder's transfer, which is the servo's interrupt then.
 pub const TRANSFER_INTERRUPT: u16 = 11;
 /// ADC1 and ADC2: the current loop's interrupt.
 pub const CONVERSION_INTERRUPT: u16 = 18;

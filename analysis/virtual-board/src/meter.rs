@@ -36,9 +36,6 @@ pub struct Meter {
     /// The times at which the interrupt began and read the encoder.
     began: Option<u64>,
     read: Option<u64>,
-    /// The time at which the interrupt of a transfer began, and the instructions of the last one.
-    transfer: u64,
-    transferred: u64,
 }
 
 impl Meter {
@@ -47,23 +44,14 @@ impl Meter {
         self.compute
     }
 
-    /// From the interrupt's first instruction to its last, with those of the transfer of a magnetic encoder before it.
+    /// From the interrupt's first instruction to its last.
     pub fn interrupt(&self) -> InstructionStats {
         self.interrupt
     }
 
     /// The servo's interrupt begins.
     pub(crate) fn begin(&mut self, now: u64) {
-        (self.began, self.read) = (Some(now - std::mem::take(&mut self.transferred)), None);
-    }
-
-    /// The interrupt of a transfer begins, and ends.
-    pub(crate) fn begin_transfer(&mut self, now: u64) {
-        self.transfer = now;
-    }
-
-    pub(crate) fn end_transfer(&mut self, now: u64) {
-        self.transferred = now - self.transfer;
+        (self.began, self.read) = (Some(now), None);
     }
 
     /// The encoder is read.

@@ -47,7 +47,7 @@ pub const BUS: Bus = Bus {
     output: BusPin { port: pac::GPIOB, pin: 15, function: 5 },
     received: 12,
     wants: 13,
-    // TIM6's update.
+    // TIM6's.
     begins: 8,
     enable: || pac::RCC.apb1enr1().modify(|w| w.set_spi2en(true)),
 };

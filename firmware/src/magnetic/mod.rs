@@ -156,11 +156,11 @@ impl Chip {
     /// The age of a reading at the instant of its count, by the board's transfers.
     pub const fn age_in(&self, transfers: &Transfers) -> TimeRange {
         let TimeRange { least, most } = self.age;
-        let Transfers { interval, lead, within } = *transfers;
+        let Transfers { interval, begins, ends } = *transfers;
         if self.is_period_late {
-            return TimeRange::between(least + interval - within, most + interval);
+            return TimeRange::between(least + interval + ends.least, most + interval + ends.most);
         }
-        TimeRange::between(least + lead.least, most + lead.most)
+        TimeRange::between(least + begins.least, most + begins.most)
     }
 
     /// Checks that a scene's certificate covers its readings by these transfers, with `counts` in a turn.

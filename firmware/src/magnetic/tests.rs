@@ -91,8 +91,8 @@ fn a_scene_states_an_age_that_covers_the_chip_s() {
     assert_eq!(error, "the encoder has 16384 counts in a turn, and ma702 has 65536");
 }
 
-/// By hand: 24 bits of an MT6701 at 170 MHz/32 are 768 counts, and a us more are 938; an AS5048A was released at the
-/// update before, or half an update after it.
+/// By hand: 24 bits of an MT6701 at 170 MHz/32 are 768 counts, and a us more are 938; an AS5048A was released
+/// within a us before the update before.
 #[test]
 fn a_transfer_before_an_update_adds_to_the_age() {
     let near = |is: TimeRange, [least, most]: [f64; 2]| {
@@ -101,7 +101,7 @@ fn a_transfer_before_an_update_adds_to_the_age() {
     let transfers = |chip| Transfers::before_update(chip, 2.5e-5, 170e6);
     assert_eq!(Transfers::lead_counts(&MT6701, 170e6), 939);
     near(MT6701.age_in(&transfers(&MT6701)), [768.0 / 170e6, 1e-5 + 939.0 / 170e6]);
-    near(AS5048A.age_in(&transfers(&AS5048A)), [9.1e-5 + 1.25e-5, 1.99e-4 + 2.5e-5]);
+    near(AS5048A.age_in(&transfers(&AS5048A)), [9.1e-5 + 2.5e-5, 1.99e-4 + 2.5e-5 + 171.0 / 170e6]);
     // What the scene states beyond that: 25.6 us are one update, and a dropped reading 40 of them.
     for (most, dropped, may) in [(1.56e-5, 0, 0), (4.12e-5, 0, 1), (4.12e-5, 1, 41)] {
         let age = TimeRange::between(0.0, most);

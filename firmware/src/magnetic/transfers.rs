@@ -10,9 +10,9 @@ pub struct Transfers {
     /// Time in s from one to the next.
     pub interval: f64,
     /// Time in s from the beginning of one, where the chip is selected, to the instant of its count.
-    pub lead: TimeRange,
-    /// Time in s after that instant within which it has ended, and the chip is released.
-    pub within: f64,
+    pub begins: TimeRange,
+    /// Time in s from its end, where the chip is released, to that instant; negative for an end after it.
+    pub ends: TimeRange,
 }
 
 /// The longest time in s of a transfer that begins at its count.
@@ -24,16 +24,16 @@ const MARGIN: f64 = 1e-6;
 impl Transfers {
     /// One in each period in s of the servo, from its count on.
     pub const fn at_count(period: f64) -> Self {
-        Self { interval: period, lead: TimeRange::ZERO, within: LONGEST }
+        Self { interval: period, begins: TimeRange::ZERO, ends: TimeRange::between(-LONGEST, 0.0) }
     }
 
     /// One before each update of a current loop, which are `interval` s apart, at an SPI with this clock in Hz:
     /// the current interrupt finds it ended.
     pub const fn before_update(chip: &Chip, interval: f64, clock: f64) -> Self {
         let bits = chip.interface.clocks(clock) as f64 / clock;
-        let lead = TimeRange::between(bits, Self::lead_counts(chip, clock) as f64 / clock);
-        // An interrupt that is later than half an update is a fault.
-        Self { interval, lead, within: 0.5 * interval }
+        let lead = Self::lead_counts(chip, clock) as f64 / clock;
+        let ends = TimeRange::between(0.0, lead - bits);
+        Self { interval, begins: TimeRange::between(bits, lead), ends }
     }
 
     /// Counts of a timer with the SPI's clock in Hz by which such a transfer begins before its update.

@@ -107,8 +107,8 @@ impl VirtualBoard {
                 Ok(())
             }
             Target::System(offset) => {
-                // With a bridge. Otherwise a sample has ended at the pacing timer's update.
-                if pends(offset, value, TICK_INTERRUPT) && self.power_stage.timer.runs() {
+                // With a bridge.
+                if pends(offset, value, TICK_INTERRUPT) {
                     self.end_sample();
                 }
                 self.system.write(offset, value)
@@ -169,7 +169,7 @@ impl VirtualBoard {
             Unit::Serial => self.serial.read(offset),
             Unit::Spi => self.spi.read(offset),
             Unit::Dma => self.dma.read(offset),
-            Unit::DmaMultiplexer => self.dma.read_request(offset),
+            Unit::DmaMultiplexer => self.dma.read_multiplexer(offset),
             Unit::Watchdog => self.watchdog.read(offset),
             Unit::Stage(unit) => {
                 self.advance_power_stage();
@@ -234,7 +234,7 @@ impl VirtualBoard {
                 spi.write(offset, value, (now, bus_divider), wired(magnetic, ports, chip))
             }
             Unit::Dma => self.dma.write(offset, value),
-            Unit::DmaMultiplexer => self.dma.set_request(offset, value),
+            Unit::DmaMultiplexer => self.dma.write_multiplexer(offset, value),
             Unit::Watchdog => self.watchdog.write(offset, value, now, self.clock.core()),
             Unit::Stage(unit) => {
                 let Self { power_stage, ports, chip, clock, .. } = self;

@@ -11,7 +11,7 @@ use crate::frame::{self, Frame, THUMB};
 
 /// The servo's interrupt.
 const SERVO: Number = FIRST_INTERRUPT + TICK_INTERRUPT;
-/// That of the end of a transfer, before it.
+/// The same with a magnetic encoder.
 const TRANSFER: Number = FIRST_INTERRUPT + TRANSFER_INTERRUPT;
 
 impl Machine {
@@ -62,10 +62,8 @@ impl Machine {
         frame::push(&mut self.core, nested);
         let board = self.core.board_mut();
         board.system.exceptions.enter(number);
-        match number {
-            SERVO => board.meter.begin(board.now),
-            TRANSFER => board.meter.begin_transfer(board.now),
-            _ => {}
+        if let SERVO | TRANSFER = number {
+            board.meter.begin(board.now);
         }
         let vector = match self.diverted {
             Some((diverted, address)) if diverted == number => address | 1,
@@ -82,10 +80,8 @@ impl Machine {
             return self.fault(FaultStatus::State, stack);
         };
         let board = self.core.board_mut();
-        match board.system.exceptions.current() {
-            Some(SERVO) => board.meter.end(board.now),
-            Some(TRANSFER) => board.meter.end_transfer(board.now),
-            _ => {}
+        if let Some(SERVO | TRANSFER) = board.system.exceptions.current() {
+            board.meter.end(board.now);
         }
         board.system.exceptions.leave();
         frame.pop(&mut self.core);

@@ -1,7 +1,7 @@
 //! DMA1 and its multiplexer (RM0440, 12.6 and 13.6): channels that move halfwords between a unit and the memory.
 
 use super::registers::{Registers, Table};
-use super::{Access, Unmodelled};
+use super::{Access, Unmodelled, only};
 
 const ISR: u32 = 0x00;
 const IFCR: u32 = 0x04;
@@ -24,11 +24,35 @@ const HALFWORDS: u32 = 0b0101 << 8;
 const PRIORITY: u32 = 0b11 << 12;
 const MODELLED: u32 = ENABLE | INTERRUPT | FROM_MEMORY | CIRCLE | INCREMENT | HALFWORDS | PRIORITY;
 
+/// TCIF of each channel in ISR and IFCR.
+const ENDED: [u32; NUMBER] = [1, 5, 9, 13, 17, 21];
+
 const CHANNEL: Table =
     &[(CONTROL, 0, MODELLED), (COUNT, 0, 0xFFFF), (PERIPHERAL, 0, u32::MAX), (MEMORY, 0, u32::MAX)];
 
-/// Modelled channels.
-const NUMBER: usize = 3;
+/// Channels, as many as the smallest of the chips has.
+const NUMBER: usize = 6;
+/// Channels of the multiplexer whose events are inputs of others, and generators of requests.
+const EVENTS: usize = 4;
+
+/// CCR of a channel of the multiplexer: the request; events; synchronised, at rising edges of an input; requests of a
+/// count, less one.
+const REQUEST: u32 = 0x7F;
+const MAKES_EVENTS: u32 = 1 << 9;
+const SYNCHRONISED: u32 = 1 << 16;
+const RISING: u32 = 1 << 17;
+const MULTIPLEXER: u32 = REQUEST | MAKES_EVENTS | SYNCHRONISED | RISING | 0x1F << 19 | 0x1F << 24;
+/// RGCR of a generator: its input; enabled; at rising edges; requests at an edge, less one.
+const GENERATORS: u32 = 0x100;
+const GENERATES: u32 = 1 << 16;
+const GENERATOR: u32 = 0x1F | GENERATES | RISING | 0x1F << 19;
+/// The input that is the event of the first channel.
+const FIRST_EVENT: u32 = 16;
+
+/// The number of requests in a register of the multiplexer.
+fn requests(control: u32) -> u32 {
+    (control >> 19 & 0x1F) + 1
+}
 
 /// A move of a halfword.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,17 +70,28 @@ pub struct Move {
 #[derive(Clone, Debug)]
 struct Channel {
     registers: Registers,
-    request: u32,
+    /// Its register of the multiplexer, requests left of a count, and whether they pass.
+    multiplexer: u32,
+    counted: u32,
+    is_connected: bool,
     /// Moves of a circle, and those that are left.
     length: u32,
     left: u32,
     ended: bool,
 }
 
+/// A generator of requests: its register, and requests that were not served yet.
+#[derive(Clone, Copy, Debug, Default)]
+struct Generator {
+    control: u32,
+    left: u32,
+}
+
 /// The unit with its multiplexer.
 #[derive(Clone, Debug)]
 pub struct Dma {
     channels: [Channel; NUMBER],
+    generators: [Generator; EVENTS],
 }
 
 impl Default for Dma {
@@ -64,44 +99,116 @@ impl Default for Dma {
     fn default() -> Self {
         let channel = || Channel {
             registers: Registers::new(CHANNEL),
-            request: 0,
+            multiplexer: 0,
+            counted: 0,
+            is_connected: false,
             length: 0,
             left: 0,
             ended: false,
         };
-        Self { channels: std::array::from_fn(|_| channel()) }
+        let generators = [Generator::default(); EVENTS];
+        Self { channels: std::array::from_fn(|_| channel()), generators }
+    }
+}
+
+impl Channel {
+    fn request(&self) -> u32 {
+        self.multiplexer & REQUEST
+    }
+
+    fn runs(&self) -> bool {
+        let passes = self.multiplexer & SYNCHRONISED == 0 || self.is_connected;
+        passes && self.registers.has(CONTROL, ENABLE) && self.left > 0
+    }
+
+    /// Its next move.
+    fn step(&mut self) -> Move {
+        let registers = &self.registers;
+        let passed = self.length - self.left;
+        let next = Move {
+            request: self.request(),
+            peripheral: registers.get(PERIPHERAL),
+            memory: registers.get(MEMORY)
+                + if registers.has(CONTROL, INCREMENT) { 2 * passed } else { 0 },
+            from_memory: registers.has(CONTROL, FROM_MEMORY),
+        };
+        self.left -= 1;
+        if self.left == 0 {
+            self.ended = true;
+            self.left = if registers.has(CONTROL, CIRCLE) { self.length } else { 0 };
+        }
+        next
+    }
+
+    /// A request is served: at the end of a count the channel disconnects, and whether it makes an event.
+    fn count(&mut self) -> bool {
+        if self.multiplexer & (SYNCHRONISED | MAKES_EVENTS) == 0 {
+            return false;
+        }
+        if self.counted > 1 {
+            self.counted -= 1;
+            return false;
+        }
+        self.counted = requests(self.multiplexer);
+        self.is_connected = false;
+        self.multiplexer & MAKES_EVENTS != 0
     }
 }
 
 impl Dma {
-    /// The first channel whose request is made, with its move.
+    /// The channel that moves next, where units make these requests.
+    fn due(&self, is_requested: impl Fn(u32) -> bool) -> Option<usize> {
+        let runs = |it: &Channel| it.runs() && self.is_requested(it.request(), &is_requested);
+        self.channels.iter().position(runs)
+    }
+
+    fn is_requested(&self, request: u32, of_units: impl Fn(u32) -> bool) -> bool {
+        match request as usize {
+            generated @ 1..=EVENTS => self.generators[generated - 1].left > 0,
+            _ => of_units(request),
+        }
+    }
+
+    /// Whether a move is due.
+    pub fn is_due(&self, is_requested: impl Fn(u32) -> bool) -> bool {
+        self.due(is_requested).is_some()
+    }
+
+    /// The move of the first channel whose request is made.
     pub fn next(&mut self, is_requested: impl Fn(u32) -> bool) -> Option<Move> {
-        let runs = |it: &&mut Channel| {
-            it.registers.has(CONTROL, ENABLE) && it.left > 0 && is_requested(it.request)
-        };
-        let channel = self.channels.iter_mut().find(runs)?;
-        let registers = &channel.registers;
-        let step =
-            if registers.has(CONTROL, INCREMENT) { 2 * (channel.length - channel.left) } else { 0 };
-        let next = Move {
-            request: channel.request,
-            peripheral: registers.get(PERIPHERAL),
-            memory: registers.get(MEMORY) + step,
-            from_memory: registers.has(CONTROL, FROM_MEMORY),
-        };
-        channel.left -= 1;
-        if channel.left == 0 {
-            channel.ended = true;
-            channel.left = if registers.has(CONTROL, CIRCLE) { channel.length } else { 0 };
+        let at = self.due(&is_requested)?;
+        let next = self.channels[at].step();
+        if let generated @ 1..=EVENTS = next.request as usize {
+            self.generators[generated - 1].left -= 1;
+        }
+        if self.channels[at].count() && at < EVENTS {
+            self.event(FIRST_EVENT + at as u32, is_requested);
         }
         Some(next)
     }
 
+    /// An edge at an input of the multiplexer. One without a waiting request synchronises nothing; one before a count
+    /// has ended changes nothing (RM0440, DMAMUX: an overrun).
+    fn event(&mut self, input: u32, is_requested: impl Fn(u32) -> bool) {
+        for at in 0..NUMBER {
+            let (control, request) = (self.channels[at].multiplexer, self.channels[at].request());
+            let waits = control & SYNCHRONISED != 0
+                && control & RISING != 0
+                && control >> 24 == input
+                && self.is_requested(request, &is_requested);
+            self.channels[at].is_connected |= waits;
+        }
+        for Generator { control, left } in &mut self.generators {
+            let listens = *control & GENERATES != 0 && *control & RISING != 0;
+            if listens && *control & 0x1F == input && *left == 0 {
+                *left = requests(*control);
+            }
+        }
+    }
+
     /// Whether a channel serves this request.
     pub fn serves(&self, request: u32) -> bool {
-        self.channels
-            .iter()
-            .any(|it| it.request == request && it.registers.has(CONTROL, ENABLE) && it.left > 0)
+        self.channels.iter().any(|it| it.request() == request && it.runs())
     }
 
     /// The level of the first channel's interrupt line.
@@ -120,7 +227,7 @@ impl Dma {
     pub fn read(&mut self, offset: u32) -> Access<u32> {
         if offset == ISR {
             let ended = self.channels.iter().map(|channel| u32::from(channel.ended));
-            return Ok(ended.zip([1, 5, 9]).map(|(ended, bit)| ended << bit).sum());
+            return Ok(ended.zip(ENDED).map(|(ended, bit)| ended << bit).sum());
         }
         let (channel, register) = self.channel(offset)?;
         if register == COUNT { Ok(channel.left) } else { channel.registers.read(register) }
@@ -129,7 +236,7 @@ impl Dma {
     /// Writes.
     pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
         if offset == IFCR {
-            for (channel, bit) in self.channels.iter_mut().zip([1, 5, 9]) {
+            for (channel, bit) in self.channels.iter_mut().zip(ENDED) {
                 channel.ended &= value >> bit & 1 == 0;
             }
             return Ok(());
@@ -146,16 +253,35 @@ impl Dma {
         Ok(())
     }
 
+    /// The register of the multiplexer at an offset.
+    fn multiplexer(&mut self, offset: u32) -> Option<&mut u32> {
+        match offset.checked_sub(GENERATORS) {
+            Some(at) => Some(&mut self.generators.get_mut(at as usize / 4)?.control),
+            None => Some(&mut self.channels.get_mut(offset as usize / 4)?.multiplexer),
+        }
+    }
+
     /// Reads the multiplexer.
-    pub fn read_request(&self, offset: u32) -> Access<u32> {
-        let channel = self.channels.get(offset as usize / 4);
-        Ok(channel.ok_or(Unmodelled::Register)?.request)
+    pub fn read_multiplexer(&mut self, offset: u32) -> Access<u32> {
+        self.multiplexer(offset).copied().ok_or(Unmodelled::Register)
     }
 
     /// Writes the multiplexer.
-    pub fn set_request(&mut self, offset: u32, request: u32) -> Access<()> {
-        let channel = self.channels.get_mut(offset as usize / 4);
-        channel.ok_or(Unmodelled::Register)?.request = request;
+    pub fn write_multiplexer(&mut self, offset: u32, value: u32) -> Access<()> {
+        let [modelled, active] = match offset {
+            ..GENERATORS => [MULTIPLEXER, SYNCHRONISED | MAKES_EVENTS],
+            _ => [GENERATOR, GENERATES],
+        };
+        only(value, modelled)?;
+        let register = self.multiplexer(offset).ok_or(Unmodelled::Register)?;
+        // The number of requests does not change while they are counted.
+        if *register & active != 0 && requests(*register) != requests(value) {
+            return Err(Unmodelled::Bits(value));
+        }
+        *register = value;
+        if let Some(channel) = self.channels.get_mut(offset as usize / 4) {
+            channel.counted = requests(value);
+        }
         Ok(())
     }
 }

@@ -8,6 +8,7 @@ use crate::magnetic_encoder::MagneticEncoder;
 
 const CR1: u32 = 0x00;
 const CR2: u32 = 0x04;
+const SR: u32 = 0x08;
 /// The data register.
 pub const DATA: u32 = 0x0C;
 
@@ -21,6 +22,11 @@ const SIZE: u32 = 0xF << 8;
 const SELECTS: u32 = 1 << 2;
 const SENDS: u32 = 1 << 1;
 const RECEIVES: u32 = 1;
+
+/// SR: a received word; room for a word to send; a word on the wires or before it.
+const RECEIVED: u32 = 1;
+const ROOM: u32 = 1 << 1;
+const BUSY: u32 = 1 << 7;
 
 const REGISTERS: Table =
     &[(CR1, 0, ENABLE | MASTER | DIVIDER | MODE), (CR2, 0x0700, SIZE | SELECTS | SENDS | RECEIVES)];
@@ -98,14 +104,26 @@ impl Spi {
 
     /// Whether it requests a word to send.
     pub fn requests_word(&self) -> bool {
+        self.registers.has(CR2, SENDS) && self.has_room()
+    }
+
+    fn has_room(&self) -> bool {
         // The word on the wires has left the buffer.
-        let waiting = self.sent.len() - usize::from(self.done.is_some());
-        self.registers.has(CR2, SENDS) && waiting < BUFFER
+        self.sent.len() - usize::from(self.done.is_some()) < BUFFER
+    }
+
+    fn is_busy(&self) -> bool {
+        self.registers.has(CR1, ENABLE) && !self.sent.is_empty()
     }
 
     /// Reads.
     pub fn read(&mut self, offset: u32) -> Access<u32> {
         match offset {
+            SR => {
+                let flag = |is: bool, bit| if is { bit } else { 0 };
+                let received = flag(!self.received.is_empty(), RECEIVED);
+                Ok(received | flag(self.has_room(), ROOM) | flag(self.is_busy(), BUSY))
+            }
             DATA => Ok(self.received.pop_front().ok_or(Unmodelled::Register)?.into()),
             _ => self.registers.read(offset),
         }
@@ -125,6 +143,10 @@ impl Spi {
             return Ok(());
         }
         let was = self.registers.has(CR1, ENABLE);
+        // Not while it is busy (RM0440, SPI: how to disable it).
+        if offset == CR1 && self.is_busy() && value & ENABLE == 0 {
+            return Err(Unmodelled::Bits(ENABLE));
+        }
         self.registers.write(offset, value)?;
         let is = self.registers.has(CR1, ENABLE);
         if let Some(chip) = chip

@@ -1,29 +1,34 @@
-//! A magnetic absolute encoder on SPI, whose transfer the pacing timer's update begins without a program.
+//! A magnetic absolute encoder on SPI, whose transfers hardware begins and ends without a program.
 //!
 //! ```text
-//! TIM6 update ---- DMA 3 writes SPE: selects the chip, and the SPI sends what DMA 2 has put into its buffer
-//!   |              DMA 1 stores each word received
-//! DMA1_CHANNEL1    after the last word: the angle, or the one before [`read`]; pends the servo's interrupt, or leaves
-//!                  a tick out
-//! TIM6_DAC         the servo's tick, with the count of the update
+//! the timer's update  ---- DMA 3 writes SPE: selects the chip
+//!   its event         ---- DMA 2 may move as many words to the SPI as a transfer has
+//!                          DMA 1 stores each word received
+//!   its event after the last one ---- DMA 4 writes CR1 until SPE is off: releases the chip
+//! DMA1_CHANNEL1       the last word is there: the servo's tick, with the count of the update, or [`take`] by whoever
+//!                     needs the position, as the updates of a bridge do
 //! ```
 //!
-//! The chip is selected within some clocks of the update (RM0440, SPI: a master begins when it is enabled with data in
-//! its buffer). So the transfer takes time of the tick and adds nothing to the age of the reading.
+//! An event of one channel of the multiplexer is the synchronisation of another, or triggers a generator of requests
+//! (RM0440, DMAMUX). All channels move in circles, so that no program sets them up again.
+//!
+//! The chip is selected within some clocks of the update. So the transfer takes time of the tick and adds nothing to
+//! the age of the reading.
+//!
+//! Not read in the manual [M]: that an event of a channel is as good an edge for a synchronisation as another input
+//! (tables of the multiplexer's inputs list it).
 
 use core::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
-use cortex_m::peripheral::NVIC;
-use embassy_stm32::interrupt;
-use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::pac;
 use embassy_stm32::pac::bdma::vals::{Dir, Pl, Size};
+use embassy_stm32::pac::dmamux::regs::Ccr;
+use embassy_stm32::pac::dmamux::vals::Pol;
 use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr, Pupdr};
 use embassy_stm32::pac::spi::regs::Cr1;
 use embassy_stm32::pac::spi::vals::{Br, Cpha, Cpol, Ds, Mstr};
 
 use super::wiring::{BUS, TIMER_CLOCK};
-use crate::board::critical;
 use crate::encoder::RawCount;
 use crate::fault::Fault;
 use crate::magnetic::{Chip, Frame, Interface, LONGEST, ReadingError, Readings};
@@ -52,11 +57,11 @@ pub struct Bus {
     pub input: BusPin,
     /// MOSI.
     pub output: BusPin,
-    /// The request with a received word.
+    /// The request with a received word, among those of the DMA.
     pub received: u8,
     /// The request for a word to send.
     pub wants: u8,
-    /// The request that begins a transfer: an event of the timer that paces the position.
+    /// The request that begins a transfer: the update of the timer that paces the position.
     pub begins: u8,
     /// Gives the SPI its clock.
     pub enable: fn(),
@@ -77,17 +82,27 @@ pub struct Setup {
 }
 
 const DMA: pac::bdma::Dma = pac::DMA1;
-/// Channels, from zero: stores received words, sends words, enables the SPI.
+/// Channels, from zero: stores received words, sends words, begins a transfer, ends it.
 const RECEIVE: usize = 0;
 const SEND: usize = 1;
 const BEGIN: usize = 2;
+const END: usize = 3;
+/// The event of a channel among the multiplexer's inputs for synchronisation and for generators.
+const EVENT_OF: u8 = 16;
+/// The generator of requests, and its request.
+const GENERATOR: usize = 0;
+const GENERATED: u8 = 1;
+/// Writes of CR1 that end a transfer, of which the last takes SPE away: half a clock after its last bit is sampled the
+/// SPI is busy with it (RM0440, SPI: SPE goes off when BSY is), and each of these writes takes some clocks.
+const ENDING: usize = 4;
 
 /// What the interrupt of a transfer uses: in one place, so that one address reaches all of it.
 struct Memory {
     /// The words of the last transfer.
     frame: [AtomicU16; LONGEST],
-    /// CR1 of the SPI that begins a transfer.
-    enabled: AtomicU16,
+    /// CR1 of the SPI that begins a transfer, and those that end it.
+    begins: AtomicU16,
+    ends: [AtomicU16; ENDING],
     /// The error of a failed reading, in the low half and from one on, and how many may fail; 0: none.
     failed: AtomicU32,
     readings: Readings,
@@ -95,7 +110,8 @@ struct Memory {
 
 static MEMORY: Memory = Memory {
     frame: [const { AtomicU16::new(0) }; LONGEST],
-    enabled: AtomicU16::new(0),
+    begins: AtomicU16::new(0),
+    ends: [const { AtomicU16::new(0) }; ENDING],
     failed: AtomicU32::new(0),
     readings: Readings::none(),
 };
@@ -120,37 +136,41 @@ fn take_event() -> Option<OutputEvent> {
     Some(OutputEvent::Fault(Fault::EncoderReading { error, allowed }))
 }
 
-/// The end of a transfer, for the handler of the receiving channel after [`set_up`].
+/// Takes the reading of the transfer that has ended since the last call; whether there is a tick with it. For any
+/// interrupt; without such a transfer the reading has failed.
 #[inline(always)]
-pub fn read(setup: &'static Setup) {
-    let words = setup.chip.interface.words;
-    end();
-    load_again(words);
-    match MEMORY.readings.take(setup.chip, &received(words), setup.dropped) {
-        Ok(true) => {}
-        // The next tick finds that a period has been missed.
-        Ok(false) if setup.leaves_out => return,
-        Ok(false) => {}
-        Err(error) => fail(error, setup.dropped),
+pub fn take(setup: &'static Setup) -> bool {
+    let has_ended = DMA.isr().read().tcif(RECEIVE);
+    acknowledge();
+    if !has_ended {
+        return note(MEMORY.readings.fail(ReadingError::Missing, setup.dropped), setup);
     }
-    NVIC::pend(interrupt::TIM6_DAC);
+    take_ended(setup)
 }
 
-/// Takes the transfer that has ended since the last call; without one the reading has failed.
-///
-/// # Errors
-/// If more readings in a row have failed than are allowed.
-#[cfg(feature = "bridge")]
+/// The same at the end of a transfer.
 #[inline(always)]
-pub fn take(setup: &'static Setup) -> Result<bool, ReadingError> {
-    let words = setup.chip.interface.words;
-    let has_ended = DMA.isr().read().tcif(RECEIVE);
-    end();
-    if !has_ended {
-        return MEMORY.readings.fail(ReadingError::Missing, setup.dropped);
+pub fn take_ended(setup: &'static Setup) -> bool {
+    let frame = received(setup.chip.interface.words);
+    note(MEMORY.readings.take(setup.chip, &frame, setup.dropped), setup)
+}
+
+/// Whether a reading has a tick. Without one, the next tick finds that a period has been missed.
+#[inline(always)]
+fn note(taken: Result<bool, ReadingError>, setup: &'static Setup) -> bool {
+    match taken {
+        Ok(is_new) => is_new || !setup.leaves_out,
+        Err(error) => {
+            fail(error, setup.dropped);
+            true
+        }
     }
-    load_again(words);
-    MEMORY.readings.take(setup.chip, &received(words), setup.dropped)
+}
+
+/// Acknowledges the end of a transfer.
+#[inline(always)]
+pub fn acknowledge() {
+    DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
 }
 
 #[cold]
@@ -159,44 +179,14 @@ fn fail(error: ReadingError, allowed: u16) {
     MEMORY.failed.store(u32::from(allowed) << 16 | (error as u32 + 1), Ordering::Relaxed);
 }
 
-/// Takes the select away from the chip, whose last word is there.
-#[inline(always)]
-fn end() {
-    DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
-    BUS.spi.cr1().write_value(Cr1(u32::from(MEMORY.enabled.load(Ordering::Relaxed)) & !SPE));
-}
+/// SPE of CR1.
+const SPE: u32 = 1 << 6;
 
 /// The words of the last transfer.
 #[inline(always)]
 fn received(words: usize) -> Frame {
     let word = |at: usize| if at < words { MEMORY.frame[at].load(Ordering::Relaxed) } else { 0 };
     core::array::from_fn(word)
-}
-
-/// SPE of CR1.
-const SPE: u32 = 1 << 6;
-
-/// Has the words of the next transfer put into the buffer of the SPI, as far as they fit.
-fn load(words: &'static Frame, count: usize) {
-    let channel = DMA.ch(SEND);
-    channel.cr().modify(|w| w.set_en(false));
-    channel.mar().write_value(words.as_ptr() as u32);
-    load_again(count);
-}
-
-/// The same with the words of the last one, which the channel begins again when it is enabled (RM0440, DMA).
-#[inline(always)]
-fn load_again(count: usize) {
-    let channel = DMA.ch(SEND);
-    let mut control = pac::bdma::regs::Cr(0);
-    control.set_dir(Dir::FROM_MEMORY);
-    control.set_minc(true);
-    control.set_msize(Size::BITS16);
-    control.set_psize(Size::BITS16);
-    channel.cr().write_value(control);
-    channel.ndtr().write(|w| w.set_ndt(count as u16));
-    control.set_en(true);
-    channel.cr().write_value(control);
 }
 
 /// Connects the chip, sets it up, and reads its angle; nothing paces its transfers yet.
@@ -213,33 +203,38 @@ pub fn set_up(setup: &'static Setup) {
     exchange(&chip.command, words);
     // A failure here is one of the first tick's, too.
     let _ = MEMORY.readings.take(chip, &exchange(&chip.command, words), dropped);
-    load(&chip.command, words);
-    interrupt::DMA1_CHANNEL1.set_priority(Priority::from(critical::SERVO << 4));
+    connect_channels(chip);
 }
 
-/// From now on each update of the pacing timer begins a transfer, whose end is the tick.
-pub fn start() {
-    DMA.ch(BEGIN).cr().modify(|w| w.set_en(true));
-    // The updates of a bridge take their transfers themselves.
-    if cfg!(feature = "bridge") {
-        return;
+/// From now on each update of the timer begins a transfer; whether its end is an interrupt.
+pub fn start(interrupts: bool) {
+    DMA.ch(RECEIVE).cr().modify(|w| w.set_tcie(interrupts));
+    for number in [RECEIVE, SEND, END, BEGIN] {
+        DMA.ch(number).cr().modify(|w| w.set_en(true));
     }
-    DMA.ch(RECEIVE).cr().modify(|w| w.set_tcie(true));
-    // SAFETY: the handler shares nothing but atomics.
-    unsafe { interrupt::DMA1_CHANNEL1.enable() };
+    BUS.spi.cr2().modify(|w| {
+        w.set_rxdmaen(true);
+        w.set_txdmaen(true);
+    });
 }
 
-/// A transfer that the program begins and waits for.
-fn exchange(words: &'static Frame, count: usize) -> Frame {
-    load(words, count);
-    BUS.spi.cr1().write_value(Cr1(MEMORY.enabled.load(Ordering::Relaxed).into()));
-    while !DMA.isr().read().tcif(RECEIVE) {}
-    // A load in between would be sent.
-    end();
-    received(count)
+/// A transfer that the program makes.
+fn exchange(words: &Frame, count: usize) -> Frame {
+    let (spi, begins) = (BUS.spi, u32::from(MEMORY.begins.load(Ordering::Relaxed)));
+    spi.cr1().write_value(Cr1(begins));
+    let mut frame = [0; LONGEST];
+    for (word, received) in words.iter().zip(&mut frame).take(count) {
+        while !spi.sr().read().txe() {}
+        spi.dr16().write_value(*word);
+        while !spi.sr().read().rxne() {}
+        *received = spi.dr16().read();
+    }
+    while spi.sr().read().bsy() {}
+    spi.cr1().write_value(Cr1(begins & !SPE));
+    frame
 }
 
-/// The clocks, the pins, the SPI and the channels.
+/// The clocks, the pins and the SPI.
 fn connect(chip: &Chip) {
     let (spi, interface) = (BUS.spi, chip.interface);
     (BUS.enable)();
@@ -249,18 +244,20 @@ fn connect(chip: &Chip) {
     });
     // Reads back, so that the units have their clocks.
     let _ = pac::RCC.ahb1enr().read();
-    let mut enabled = Cr1(SPE);
-    enabled.set_mstr(Mstr::MASTER);
-    enabled.set_br(divider(interface));
-    enabled.set_cpha(Cpha::SECOND_EDGE);
-    enabled.set_cpol(if interface.idle_high { Cpol::IDLE_HIGH } else { Cpol::IDLE_LOW });
-    MEMORY.enabled.store(enabled.0 as u16, Ordering::Relaxed);
-    spi.cr1().write_value(Cr1(enabled.0 & !SPE));
+    let mut begins = Cr1(SPE);
+    begins.set_mstr(Mstr::MASTER);
+    begins.set_br(divider(interface));
+    begins.set_cpha(Cpha::SECOND_EDGE);
+    begins.set_cpol(if interface.idle_high { Cpol::IDLE_HIGH } else { Cpol::IDLE_LOW });
+    MEMORY.begins.store(begins.0 as u16, Ordering::Relaxed);
+    for (at, ends) in MEMORY.ends.iter().enumerate() {
+        let last = if at + 1 == ENDING { SPE } else { 0 };
+        ends.store((begins.0 & !last) as u16, Ordering::Relaxed);
+    }
+    spi.cr1().write_value(Cr1(begins.0 & !SPE));
     spi.cr2().write(|w| {
         w.set_ssoe(true);
         w.set_ds(Ds::from_bits(interface.word_bits - 1));
-        w.set_rxdmaen(true);
-        w.set_txdmaen(true);
     });
     for pin in [BUS.select, BUS.clock, BUS.input, BUS.output] {
         let BusPin { port, pin, function } = pin;
@@ -271,30 +268,60 @@ fn connect(chip: &Chip) {
     for BusPin { port, pin, .. } in [BUS.select, BUS.input] {
         port.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::PULL_UP));
     }
-    let data = spi.dr16().as_ptr() as u32;
-    channel(RECEIVE, BUS.received, data, MEMORY.frame.as_ptr() as u32, interface.words);
-    channel(SEND, BUS.wants, data, 0, 0);
-    channel(BEGIN, BUS.begins, spi.cr1().as_ptr() as u32, MEMORY.enabled.as_ptr() as u32, 1);
-    DMA.ch(RECEIVE).cr().modify(|w| {
-        w.set_minc(true);
-        w.set_en(true);
-    });
-    DMA.ch(BEGIN).cr().modify(|w| w.set_dir(Dir::FROM_MEMORY));
 }
 
-/// A channel that moves halfwords in a circle at a request.
-fn channel(number: usize, request: u8, peripheral: u32, memory: u32, count: usize) {
-    pac::DMAMUX1.ccr(number).write(|w| w.set_dmareq_id(request));
+/// The channels, which move nothing yet.
+fn connect_channels(chip: &'static Chip) {
+    let words = chip.interface.words;
+    let (control, data) = (BUS.spi.cr1().as_ptr() as u32, BUS.spi.dr16().as_ptr() as u32);
+    let [frame, ends] = [MEMORY.frame.as_ptr() as u32, MEMORY.ends.as_ptr() as u32];
+    channel(RECEIVE, Dir::FROM_PERIPHERAL, data, frame, words);
+    channel(SEND, Dir::FROM_MEMORY, data, chip.command.as_ptr() as u32, words);
+    channel(BEGIN, Dir::FROM_MEMORY, control, MEMORY.begins.as_ptr() as u32, 1);
+    channel(END, Dir::FROM_MEMORY, control, ends, ENDING);
+    let of_transfer = words as u8 - 1;
+    request(RECEIVE, BUS.received, of_transfer, |w| w.set_ege(true));
+    request(SEND, BUS.wants, of_transfer, |w| {
+        w.set_sync_id(EVENT_OF + BEGIN as u8);
+        w.set_spol(Pol::RISING_EDGE);
+        w.set_se(true);
+    });
+    request(BEGIN, BUS.begins, 0, |w| w.set_ege(true));
+    request(END, GENERATED, 0, |_| {});
+    let generator = pac::DMAMUX1.rgcr(GENERATOR);
+    generator.write(|w| {
+        w.set_sig_id(EVENT_OF + RECEIVE as u8);
+        w.set_gpol(Pol::RISING_EDGE);
+        w.set_gnbreq(ENDING as u8 - 1);
+    });
+    generator.modify(|w| w.set_ge(true));
+}
+
+/// A channel that moves halfwords in a circle.
+fn channel(number: usize, direction: Dir, peripheral: u32, memory: u32, count: usize) {
     let channel = DMA.ch(number);
     channel.par().write_value(peripheral);
     channel.mar().write_value(memory);
     channel.ndtr().write(|w| w.set_ndt(count as u16));
     channel.cr().write(|w| {
         w.set_circ(true);
+        w.set_minc(true);
+        w.set_dir(direction);
         w.set_msize(Size::BITS16);
         w.set_psize(Size::BITS16);
         w.set_pl(Pl::HIGH);
     });
+}
+
+/// The request of a channel; so many more than one are counted, before its events or its synchronisation are enabled
+/// (RM0440, DMAMUX: the number may not be written after that).
+fn request(number: usize, request: u8, more: u8, enable: impl FnOnce(&mut Ccr)) {
+    let multiplexer = pac::DMAMUX1.ccr(number);
+    multiplexer.write(|w| {
+        w.set_dmareq_id(request);
+        w.set_nbreq(more);
+    });
+    multiplexer.modify(enable);
 }
 
 /// The divider of the bus's clock.
@@ -324,8 +351,6 @@ macro_rules! board_encoder {
             };
 
         const ENCODER: &$crate::board::stm32::magnetic::Setup = &ENCODER_SETUP;
-
-        $crate::transfer_handler!($bridge);
     };
 }
 
@@ -341,18 +366,24 @@ macro_rules! may_fail {
     };
 }
 
-/// The handler of the end of a transfer, which a bridge does not need.
+/// The handler of the servo's interrupt, the end of a transfer, for the state in `ISR_STATE`.
+#[cfg(not(feature = "bridge"))]
 #[doc(hidden)]
 #[macro_export]
-macro_rules! transfer_handler {
-    ([]) => {
+macro_rules! board_tick {
+    () => {
         $crate::in_fast_memory! {
-            /// The end of a transfer.
+            /// A tick.
             #[unsafe(no_mangle)]
             unsafe extern "C" fn DMA1_CHANNEL1() {
-                $crate::board::stm32::magnetic::read(&ENCODER_SETUP);
+                if $crate::board::stm32::magnetic::take_ended(&ENCODER_SETUP) {
+                    // SAFETY: this is the handler of the interrupt that is enabled after the cell is filled, and no
+                    // interrupt interrupts itself.
+                    unsafe { ISR_STATE.borrow_mut() }.tick();
+                } else {
+                    $crate::board::stm32::magnetic::acknowledge();
+                }
             }
         }
     };
-    ([$current_loop:ident]) => {};
 }

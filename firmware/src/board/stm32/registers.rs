@@ -45,7 +45,7 @@ impl Registers {
     /// Starts the timers. The servo's interrupt must be enabled within a period.
     pub fn start(&mut self, timing: OutputTiming) {
         #[cfg(feature = "magnetic")]
-        magnetic::start();
+        magnetic::start(cfg!(not(feature = "bridge")));
         self.output.start(&mut self.pace, timing);
     }
 }

@@ -3,7 +3,6 @@
 use core::task::Poll;
 
 use embassy_executor::{Executor, SpawnError, SpawnToken};
-use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::pac;
 use static_cell::StaticCell;
@@ -32,6 +31,13 @@ use crate::servo::{OutputMode, OutputTiming, SupportsTiming};
 use crate::servo_loop::{Endpoints, Reason, ServoIsr};
 use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Link, Session};
+
+/// The servo's interrupt, which a bridge pends.
+#[cfg(any(feature = "bridge", not(feature = "magnetic")))]
+pub const TICK: pac::Interrupt = pac::Interrupt::TIM6_DAC;
+/// The servo's interrupt: the end of a transfer.
+#[cfg(all(feature = "magnetic", not(feature = "bridge")))]
+pub const TICK: pac::Interrupt = pac::Interrupt::DMA1_CHANNEL1;
 
 /// The state of the servo's interrupt.
 pub type ServoCell<E, N, M> = IsrCell<ServoIsr<Registers, E, N, M>>;
@@ -124,7 +130,7 @@ where
     // SAFETY: the interrupt that uses the cell is not enabled yet.
     unsafe { statics.servo.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
     // SAFETY: its handler finds its cell filled.
-    unsafe { interrupt::TIM6_DAC.enable() };
+    unsafe { TICK.enable() };
     log_banner(name);
     log_reset(reset, previous_fault, arms_because);
     let info = BoardInfo {
@@ -187,7 +193,7 @@ pub fn init_chip(encoder: EncoderSetup) -> Serial {
     super::ccm_sram::load();
     let mut core = cortex_m::Peripherals::take().expect("the core is taken once");
     critical::lower_all(&mut core.NVIC);
-    interrupt::TIM6_DAC.set_priority(Priority::from(critical::SERVO << 4));
+    TICK.set_priority(Priority::from(critical::SERVO << 4));
     let port = wiring::connect_pins(chip);
     output::stop();
     #[cfg(not(feature = "magnetic"))]
@@ -345,7 +351,8 @@ macro_rules! board_filter {
     };
 }
 
-/// The handler of the pacing timer's interrupt, for the state in `ISR_STATE`.
+/// The handler of the servo's interrupt, for the state in `ISR_STATE`.
+#[cfg(any(feature = "bridge", not(feature = "magnetic")))]
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_tick {

@@ -7,7 +7,6 @@
 use core::fmt::Write;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
 use heapless::String;
 use static_cell::StaticCell;
@@ -15,7 +14,7 @@ use static_cell::StaticCell;
 use super::output;
 use super::registers::Registers;
 use super::serial::Serial;
-use super::start::{EncoderSetup, init_chip, registers};
+use super::start::{EncoderSetup, TICK, init_chip, registers};
 use crate::board::ProgramMode;
 use crate::board::isr_cell::IsrCell;
 use crate::boot::Startup;
@@ -205,7 +204,7 @@ pub fn measure<const N: usize>(
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { cell.init(player) };
     // SAFETY: its handler finds its place filled.
-    unsafe { interrupt::TIM6_DAC.enable() };
+    unsafe { TICK.enable() };
     let step = sweep.full_scale_torque() / f64::from(DacCode::CODES_TO_FULL_SCALE);
     let mut writer = Writer { period: sweep.period(), step, line: String::new(), count: 0 };
     let (mut receiver, mut describe) = (SweepReceiver::new(), false);

@@ -159,9 +159,11 @@ pub fn count() -> RawCount {
 /// Acknowledges the tick, whose period may count as begun now.
 #[inline(always)]
 pub fn period_began() -> u32 {
-    // Nothing waits for the flag where a transfer paces the ticks.
+    // The flag of the update, or of the end of its transfer.
     #[cfg(not(feature = "magnetic"))]
     TIMER.sr().write(|w| w.set_uif(false));
+    #[cfg(feature = "magnetic")]
+    crate::board::stm32::magnetic::acknowledge();
     now()
 }
 

@@ -6,7 +6,7 @@
 //!           \      /  \      /
 //! channel 4  x    /    x    /          on the way down: DMA enables the SPI, which selects the chip
 //!            |\  /     |\  /
-//! update     | \/      | \/            the interrupt takes the words, and releases the chip
+//! update     | \/      | \/            the interrupt takes the words
 //! SPI        |==|      |==|
 //! ```
 //!
@@ -17,21 +17,23 @@ use super::super::{off, pwm, tell};
 use crate::board::stm32::magnetic::{self, Setup};
 use crate::board::stm32::wiring::TIMER_CLOCK;
 use crate::encoder::RawCount;
-use crate::fault::Fault;
 use crate::magnetic::Transfers;
+use crate::servo_loop::OutputEvent;
 
 /// Has TIM1 begin a transfer before each update, once it counts.
 pub fn pace(setup: &'static Setup) {
     pwm::request_before_update(Transfers::lead_counts(setup.chip, TIMER_CLOCK));
 }
 
-/// The angle at the last update: that of the last transfer, or for some failed ones the angle before.
+/// The angle at the last update: that of the last transfer, or for some failed ones the angle before. If more have
+/// failed, the gates are off.
 #[inline(always)]
 pub fn position(setup: &'static Setup) -> RawCount {
-    if let Err(error) = magnetic::take(setup) {
+    magnetic::take(setup);
+    if let Some(OutputEvent::Fault(fault)) = magnetic::event() {
         core::hint::cold_path();
         off();
-        tell(Fault::EncoderReading { error: error as u32, allowed: setup.dropped.into() });
+        tell(fault);
     }
     magnetic::count()
 }
