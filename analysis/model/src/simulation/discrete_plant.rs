@@ -274,11 +274,11 @@ mod tests {
                 let before = if k == 0 { 0.0 } else { commands[k - 1] };
                 let old = &tick.transition * &states + &tick.previous * before;
                 states = old + &tick.motor * command;
-                for us in 0..1000 {
+                for us in 0..1000_usize {
                     let now = 1000 * k + us;
                     let since = (now as f64 - age * 1e6).rem_euclid(250.0);
                     if since.min(250.0 - since) < 0.5 {
-                        let due = f64::from(us) * 1e-6 >= age + BETWEEN - 5e-7;
+                        let due = us as f64 * 1e-6 >= age + BETWEEN - 5e-7;
                         let wanted = if due { command } else { before };
                         slope = (1.0 - left) / BETWEEN * (wanted - motion[2]);
                     }
