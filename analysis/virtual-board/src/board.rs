@@ -217,6 +217,7 @@ impl VirtualBoard {
         timers
             .into_iter()
             .chain([self.serial.due(), self.watchdog.due(), self.power_stage.due(), self.spi.due()])
+            .chain([self.move_due()])
             .flatten()
             .min()
             .unwrap_or(u64::MAX)
@@ -326,10 +327,16 @@ impl VirtualBoard {
     /// The next move of the DMA, whose memory is the core's.
     pub(crate) fn next_move(&mut self) -> Option<Move> {
         let requests = self.requests();
-        let next = self.dma.next(|request| requests.contains(&Some(request)))?;
+        let next = self.dma.next(self.now, |request| requests.contains(&Some(request)))?;
         let begins = self.chip.bus.map(|bus| bus.begins);
         self.transfer_requested &= begins != Some(next.request);
         Some(next)
+    }
+
+    /// When the DMA moves next.
+    fn move_due(&self) -> Option<u64> {
+        let requests = self.requests();
+        self.dma.due(|request| requests.contains(&Some(request)))
     }
 
     /// The requests of units to the DMA.
@@ -411,7 +418,7 @@ impl VirtualBoard {
         self.stopped.is_some()
             || self.bus_error.is_some()
             || self.system.reset_requested
-            || self.dma.is_due(|request| self.requests().contains(&Some(request)))
+            || self.move_due().is_some_and(|due| due <= self.now)
     }
 }
 

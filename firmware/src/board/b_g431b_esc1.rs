@@ -87,6 +87,10 @@ pub const BUS: Bus = Bus {
     // TIM1's channel 4.
     begins: 45,
     enable: || pac::RCC.apb1enr1().modify(|w| w.set_spi3en(true)),
+    reset: || {
+        pac::RCC.apb1rstr1().modify(|w| w.set_spi3rst(true));
+        pac::RCC.apb1rstr1().modify(|w| w.set_spi3rst(false));
+    },
 };
 
 #[cfg(not(feature = "magnetic"))]

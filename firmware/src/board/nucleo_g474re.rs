@@ -50,6 +50,10 @@ pub const BUS: Bus = Bus {
     // TIM6's.
     begins: 8,
     enable: || pac::RCC.apb1enr1().modify(|w| w.set_spi2en(true)),
+    reset: || {
+        pac::RCC.apb1rstr1().modify(|w| w.set_spi2rst(true));
+        pac::RCC.apb1rstr1().modify(|w| w.set_spi2rst(false));
+    },
 };
 
 bind_interrupts!(struct Interrupts {

@@ -22,7 +22,7 @@ pub use magalpha::{MA600, MA702, MA732};
 pub use mt6701::MT6701;
 pub use mt6835::MT6835;
 pub use readings::Readings;
-pub use transfers::Transfers;
+pub use transfers::{TRANSFER_WITHIN, Transfers};
 
 use crate::encoder::CounterWidth;
 use crate::latency::Latency;

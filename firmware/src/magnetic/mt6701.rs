@@ -28,34 +28,66 @@ pub const MT6701: Chip = Chip {
 /// Status: the field is too strong (1), too weak (2), or the track is lost (8). The push button (4) is no error.
 const FIELD: u32 = 0b1011;
 
-/// The remainders of six more bits by x^6 + x + 1, with the first bit first.
-const REMAINDERS: [u8; 64] = {
-    let mut table = [0; 64];
-    each!(bits in 0..64 => {
-        let mut rest = bits as u8;
-        each!(_bit in 0..6 => {
-            rest = rest << 1 ^ if rest & 0x20 != 0 { 0x43 } else { 0 };
-        });
-        table[bits] = rest;
+/// The remainder by x^6 + x + 1 of 18 bits, with six zeros behind them.
+const fn remainder(bits: u32) -> u8 {
+    let mut rest = bits << 6;
+    each!(bit in 0..18 => {
+        if rest & (1 << 23) >> bit != 0 {
+            rest ^= (0x43 << 17) >> bit;
+        }
+    });
+    rest as u8
+}
+
+/// Angles in a turn.
+const ANGLES: usize = 1 << 14;
+
+/// The checksum of each angle without a status, so that one comparison checks a transfer: 16 kB. Of the angle zero it is
+/// [`NO_CHECKSUM`], because its words may be those of a broken wire.
+static CHECKSUMS: [u8; ANGLES] = {
+    let mut table = [0; ANGLES];
+    each!(angle in 1..ANGLES => {
+        // The remainder of a sum is the sum of the remainders.
+        let lowest = 1 << angle.trailing_zeros();
+        table[angle] = table[angle ^ lowest] ^ remainder((lowest as u32) << 4);
+    });
+    table[0] = NO_CHECKSUM;
+    table
+};
+
+/// The same of each status.
+const OF_STATUS: [u8; 16] = {
+    let mut table = [0; 16];
+    each!(status in 0..16 => {
+        table[status] = remainder(status as u32);
     });
     table
 };
 
+/// More than a checksum and a status have.
+const NO_CHECKSUM: u8 = 0xFF;
+
 #[inline(always)]
 fn decode(&[first, second, _]: &Frame) -> Result<u32, ReadingError> {
     let bits = u32::from(first) << 12 | u32::from(second);
-    if bits == 0 {
-        // The checksum of zeros is zero.
-        return Err(ReadingError::Zeros);
+    let angle = (bits >> 10) as usize % ANGLES;
+    if u16::from(CHECKSUMS[angle]) == second & 0x3FF { Ok(angle as u32) } else { unusual(bits) }
+}
+
+/// The angle of a transfer with a status, or of zeros.
+#[cold]
+#[inline(never)]
+fn unusual(bits: u32) -> Result<u32, ReadingError> {
+    let (angle, status) = (bits >> 10, bits >> 6 & 0xF);
+    let of_angle = if angle == 0 { 0 } else { CHECKSUMS[angle as usize % ANGLES] };
+    match bits {
+        // The checksum of zeros is zero; that of ones is none.
+        0 => Err(ReadingError::Zeros),
+        0xFF_FFFF => Err(ReadingError::Ones),
+        _ if u32::from(of_angle ^ OF_STATUS[status as usize]) != bits & 0x3F => {
+            Err(ReadingError::Checksum)
+        }
+        _ if status & FIELD != 0 => Err(ReadingError::Field),
+        _ => Ok(angle),
     }
-    let six = |rest: u8, bits: u32| REMAINDERS[(u32::from(rest) ^ bits & 0x3F) as usize];
-    let rest = six(six(six(0, bits >> 18), bits >> 12), bits >> 6);
-    if u32::from(rest) != bits & 0x3F {
-        // The checksum of ones is none.
-        return Err(if bits == 0xFF_FFFF { ReadingError::Ones } else { ReadingError::Checksum });
-    }
-    if bits >> 6 & FIELD != 0 {
-        return Err(ReadingError::Field);
-    }
-    Ok(bits >> 10)
 }

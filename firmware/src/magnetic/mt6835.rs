@@ -28,15 +28,29 @@ pub const MT6835: Chip = Chip {
 /// Status: the field is too weak. The others are too fast a turn (1) and too low a supply (4).
 const FIELD: u32 = 0b010;
 
-/// The checksum by x^8 + x^2 + x + 1 of 24 bits.
-const fn checksum(bits: u32) -> u32 {
-    let mut rest = bits << 8;
-    each!(bit in 0..24 => {
-        if rest & (1_u32 << 31) >> bit != 0 {
-            rest ^= (0x107_u32 << 23) >> bit;
-        }
+/// The checksums by x^8 + x^2 + x + 1 of the bytes of 24 bits, each with the bytes behind it zero.
+static CHECKSUMS: [[u8; 256]; 3] = {
+    let mut table = [[0; 256]; 3];
+    each!(place in 0..3 => {
+        each!(byte in 0..256 => {
+            let mut rest = (byte as u32) << (24 - 8 * place);
+            each!(bit in 0..24 => {
+                if rest & (1_u32 << 31) >> bit != 0 {
+                    rest ^= (0x107_u32 << 23) >> bit;
+                }
+            });
+            table[place][byte] = rest as u8;
+        });
     });
-    rest
+    table
+};
+
+/// The checksum of 24 bits.
+#[inline(always)]
+fn checksum(content: u32) -> u32 {
+    let [_, first, second, third] = content.to_be_bytes();
+    let of = |place: usize, byte: u8| CHECKSUMS[place][usize::from(byte)];
+    (of(0, first) ^ of(1, second) ^ of(2, third)).into()
 }
 
 #[inline(always)]

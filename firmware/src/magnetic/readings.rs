@@ -1,22 +1,22 @@
 //! The readings of a chip, tick by tick: the angle, or for some failed transfers the angle before.
 
-use core::sync::atomic::{AtomicU16, AtomicU32, Ordering::Relaxed};
-
 use super::{Chip, Frame, ReadingError};
 
-/// The last angle, and what has come since. One interrupt takes transfers; others may read the angle.
-#[derive(Debug)]
+/// The last angle, and what has come since.
+#[derive(Clone, Debug)]
 pub struct Readings {
-    /// The last angle in counts, or [`NONE`].
-    count: AtomicU32,
-    /// Failed transfers in a row.
-    failed: AtomicU16,
+    /// The last angle in counts, with [`FAILED`] or [`NONE`].
+    count: u32,
+    /// Failed transfers in a row, if the angle says that one has failed: so a good one has nothing to reset.
+    failed: u16,
     /// Equal angles in a row.
-    equal: AtomicU16,
+    equal: u16,
 }
 
-/// In place of the last angle: there was none yet. No chip has as many bits, and in a turn of any chip it is zero.
+/// Beside the last angle: there was none yet. No chip has as many bits, and in a turn of any chip it is zero.
 const NONE: u32 = 1 << 31;
+/// Beside it: the last transfer has failed.
+const FAILED: u32 = 1 << 30;
 
 /// The part of a turn to either side of zero in which words of equal bits are angles.
 const NEAR: u32 = 256;
@@ -24,7 +24,7 @@ const NEAR: u32 = 256;
 impl Readings {
     /// No reading yet.
     pub const fn none() -> Self {
-        Self { count: AtomicU32::new(NONE), failed: AtomicU16::new(0), equal: AtomicU16::new(0) }
+        Self { count: NONE, failed: 0, equal: 0 }
     }
 
     /// Takes a transfer, of which so many in a row may fail, as the scene's certificate says; whether it has an angle.
@@ -33,7 +33,7 @@ impl Readings {
     /// # Errors
     /// If more transfers in a row have failed than are allowed, or if the chip has stopped.
     #[inline(always)]
-    pub fn take(&self, chip: &Chip, frame: &Frame, allowed: u16) -> Result<bool, ReadingError> {
+    pub fn take(&mut self, chip: &Chip, frame: &Frame, allowed: u16) -> Result<bool, ReadingError> {
         let count = match (chip.decode)(frame) {
             Ok(count) => count,
             Err(error) => match self.near_zero(chip, error) {
@@ -41,16 +41,17 @@ impl Readings {
                 None => return self.fail(error, allowed),
             },
         };
-        self.failed.store(0, Relaxed);
         if let Some(most) = chip.frozen_after {
-            let is_equal = count == self.count();
-            let equal = if is_equal { self.equal.load(Relaxed).saturating_add(1) } else { 0 };
-            self.equal.store(equal, Relaxed);
-            if equal >= most {
-                return Err(ReadingError::Frozen);
+            if count == self.count & !FAILED {
+                self.equal = self.equal.saturating_add(1);
+                if self.equal >= most {
+                    return Err(ReadingError::Frozen);
+                }
+            } else {
+                self.equal = 0;
             }
         }
-        self.count.store(count, Relaxed);
+        self.count = count;
         Ok(true)
     }
 
@@ -60,18 +61,18 @@ impl Readings {
     /// If more transfers in a row have failed than are allowed.
     #[cold]
     #[inline(never)]
-    pub fn fail(&self, error: ReadingError, allowed: u16) -> Result<bool, ReadingError> {
-        let failed = self.failed.load(Relaxed).saturating_add(1);
-        self.failed.store(failed, Relaxed);
-        if failed > allowed { Err(error) } else { Ok(false) }
+    pub fn fail(&mut self, error: ReadingError, allowed: u16) -> Result<bool, ReadingError> {
+        let before = if self.count & FAILED == 0 { 0 } else { self.failed };
+        self.failed = before.saturating_add(1);
+        self.count |= FAILED;
+        if self.failed > allowed { Err(error) } else { Ok(false) }
     }
 
     /// Beside zero a word of equal bits is an angle: a handle may rest there.
-    #[cold]
-    #[inline(never)]
+    #[inline(always)]
     fn near_zero(&self, chip: &Chip, error: ReadingError) -> Option<u32> {
         let (turn, near) = (chip.width.mask(), chip.width.mask() / NEAR);
-        let last = self.count();
+        let last = self.count & !FAILED;
         if last == NONE || last.wrapping_add(near) & turn > 2 * near {
             return None;
         }
@@ -82,9 +83,9 @@ impl Readings {
         }
     }
 
-    /// The last angle in counts; in a turn of the chip zero if there was none yet.
+    /// The last angle in counts, in a turn of the chip; there zero if there was none yet.
     #[inline(always)]
-    pub fn count(&self) -> u32 {
-        self.count.load(Relaxed)
+    pub const fn count(&self) -> u32 {
+        self.count
     }
 }

@@ -15,8 +15,8 @@ pub struct Transfers {
     pub ends: TimeRange,
 }
 
-/// The longest time in s of a transfer that begins at its count.
-const LONGEST: f64 = 1e-5;
+/// The longest time in s of a transfer that begins at its count, from there to its end.
+pub const TRANSFER_WITHIN: f64 = 1e-5;
 
 /// Time in s in which the DMA and the SPI begin and end a transfer, besides its bits: an estimate from above.
 const MARGIN: f64 = 1e-6;
@@ -24,7 +24,11 @@ const MARGIN: f64 = 1e-6;
 impl Transfers {
     /// One in each period in s of the servo, from its count on.
     pub const fn at_count(period: f64) -> Self {
-        Self { interval: period, begins: TimeRange::ZERO, ends: TimeRange::between(-LONGEST, 0.0) }
+        Self {
+            interval: period,
+            begins: TimeRange::ZERO,
+            ends: TimeRange::between(-TRANSFER_WITHIN, 0.0),
+        }
     }
 
     /// One before each update of a current loop, which are `interval` s apart, at an SPI with this clock in Hz:

@@ -33,6 +33,9 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if passed == BEGAN_LATE {
             self.tick = self.tick.wrapping_add(1);
         }
+        if let Some(fault) = hardware.reading_fault() {
+            self.fail(fault, hardware, inbox);
+        }
         self.energy.missed::<M>(self.rendering.servo().step_to(raw));
         let missed = periods - 1;
         self.missed = self.missed.wrapping_add(missed);

@@ -55,6 +55,11 @@ pub trait Hardware {
     /// for one period whose tick is late. A simulated board may omit [`BEGAN_LATE`] if its count is always
     /// that of the period's beginning.
     fn periods_since_last(&mut self) -> u32;
+    /// The fault of the encoder's reading of this tick, after [`Self::periods_since_last`] was not 1: a tick with such a
+    /// fault counts as late, so that a usual tick does not ask for it. A counter has none.
+    fn reading_fault(&mut self) -> Option<Fault> {
+        None
+    }
     /// Timer counts since the period of this tick began; at least a period once the next one has
     /// begun.
     fn time_in_period(&mut self) -> u32;
@@ -113,6 +118,11 @@ impl PeriodClock {
         let missed = late / self.counts;
         self.began = next.wrapping_add(missed.wrapping_mul(self.counts.get()));
         if missed == 0 { BEGAN_LATE } else { missed + 1 }
+    }
+
+    /// From now on a tick is in time within the first `in_time` counts of its period; with 0 the next one counts as late.
+    pub const fn set_in_time(&mut self, in_time: u32) {
+        self.in_time = in_time;
     }
 
     /// Clock counts in a period.

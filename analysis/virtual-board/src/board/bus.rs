@@ -167,7 +167,7 @@ impl VirtualBoard {
             }
             Unit::Dac => self.dac.read(offset),
             Unit::Serial => self.serial.read(offset),
-            Unit::Spi => self.spi.read(offset),
+            Unit::Spi => self.spi.read(offset, now),
             Unit::Dma => self.dma.read(offset),
             Unit::DmaMultiplexer => self.dma.read_multiplexer(offset),
             Unit::Watchdog => self.watchdog.read(offset),

@@ -30,6 +30,9 @@ const ENDED: [u32; NUMBER] = [1, 5, 9, 13, 17, 21];
 const CHANNEL: Table =
     &[(CONTROL, 0, MODELLED), (COUNT, 0, 0xFFFF), (PERIPHERAL, 0, u32::MAX), (MEMORY, 0, u32::MAX)];
 
+/// Core clocks of a move, at least [M].
+const MOVE: u64 = 4;
+
 /// Channels, as many as the smallest of the chips has.
 const NUMBER: usize = 6;
 /// Channels of the multiplexer whose events are inputs of others, and generators of requests.
@@ -92,6 +95,8 @@ struct Generator {
 pub struct Dma {
     channels: [Channel; NUMBER],
     generators: [Generator; EVENTS],
+    /// The end of the last move.
+    free: u64,
 }
 
 impl Default for Dma {
@@ -107,7 +112,7 @@ impl Default for Dma {
             ended: false,
         };
         let generators = [Generator::default(); EVENTS];
-        Self { channels: std::array::from_fn(|_| channel()), generators }
+        Self { channels: std::array::from_fn(|_| channel()), generators, free: 0 }
     }
 }
 
@@ -157,7 +162,7 @@ impl Channel {
 
 impl Dma {
     /// The channel that moves next, where units make these requests.
-    fn due(&self, is_requested: impl Fn(u32) -> bool) -> Option<usize> {
+    fn first(&self, is_requested: impl Fn(u32) -> bool) -> Option<usize> {
         let runs = |it: &Channel| it.runs() && self.is_requested(it.request(), &is_requested);
         self.channels.iter().position(runs)
     }
@@ -169,14 +174,15 @@ impl Dma {
         }
     }
 
-    /// Whether a move is due.
-    pub fn is_due(&self, is_requested: impl Fn(u32) -> bool) -> bool {
-        self.due(is_requested).is_some()
+    /// When the next move is due.
+    pub fn due(&self, is_requested: impl Fn(u32) -> bool) -> Option<u64> {
+        self.first(is_requested).map(|_| self.free)
     }
 
     /// The move of the first channel whose request is made.
-    pub fn next(&mut self, is_requested: impl Fn(u32) -> bool) -> Option<Move> {
-        let at = self.due(&is_requested)?;
+    pub fn next(&mut self, now: u64, is_requested: impl Fn(u32) -> bool) -> Option<Move> {
+        let at = self.first(&is_requested).filter(|_| self.free <= now)?;
+        self.free = now + MOVE;
         let next = self.channels[at].step();
         if let generated @ 1..=EVENTS = next.request as usize {
             self.generators[generated - 1].left -= 1;

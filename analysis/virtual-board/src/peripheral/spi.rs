@@ -40,20 +40,24 @@ pub struct Spi {
     registers: Registers,
     sent: VecDeque<u16>,
     received: VecDeque<u16>,
-    /// The end of the word on the wires.
+    /// When the last bit of the word on the wires is sampled.
     done: Option<u64>,
+    /// Until when it is busy with that bit.
+    busy: u64,
+    /// Words that were lost because the unit was disabled while it was busy.
+    pub cut: u32,
 }
 
 impl Default for Spi {
     /// The unit after reset.
     fn default() -> Self {
         let (sent, received) = (VecDeque::new(), VecDeque::new());
-        Self { registers: Registers::new(REGISTERS), sent, received, done: None }
+        Self { registers: Registers::new(REGISTERS), sent, received, done: None, busy: 0, cut: 0 }
     }
 }
 
 impl Spi {
-    /// The end of the word on the wires.
+    /// When the last bit of the word on the wires is sampled.
     pub fn due(&self) -> Option<u64> {
         self.done
     }
@@ -62,10 +66,9 @@ impl Spi {
         (self.registers.get(CR2) >> 8 & 0xF) + 1
     }
 
-    /// Core clocks of a word.
-    fn word_clocks(&self, bus_divider: u64) -> u64 {
-        let divider = 2 << (self.registers.get(CR1) >> 3 & 0b111);
-        u64::from(self.word_bits()) * divider * bus_divider
+    /// Core clocks of half a bit.
+    fn half_bit(&self, bus_divider: u64) -> u64 {
+        bus_divider << (self.registers.get(CR1) >> 3 & 0b111)
     }
 
     /// Moves words at the wires that have ended by now.
@@ -84,7 +87,8 @@ impl Spi {
                 self.received.push_back(received);
             }
             self.done = None;
-            self.begin(done, bus_divider);
+            self.busy = done + self.half_bit(bus_divider);
+            self.begin(self.busy, bus_divider);
         }
         self.begin(now, bus_divider);
     }
@@ -93,7 +97,9 @@ impl Spi {
     fn begin(&mut self, now: u64, bus_divider: u64) {
         let runs = self.registers.has_all(CR1, ENABLE | MASTER);
         if runs && self.done.is_none() && !self.sent.is_empty() {
-            self.done = Some(now + self.word_clocks(bus_divider));
+            // The second edge of the last bit (CPHA).
+            let half_bits = u64::from(2 * self.word_bits() - 1);
+            self.done = Some(now.max(self.busy) + half_bits * self.half_bit(bus_divider));
         }
     }
 
@@ -112,17 +118,17 @@ impl Spi {
         self.sent.len() - usize::from(self.done.is_some()) < BUFFER
     }
 
-    fn is_busy(&self) -> bool {
-        self.registers.has(CR1, ENABLE) && !self.sent.is_empty()
+    fn is_busy(&self, now: u64) -> bool {
+        self.registers.has(CR1, ENABLE) && (!self.sent.is_empty() || now < self.busy)
     }
 
     /// Reads.
-    pub fn read(&mut self, offset: u32) -> Access<u32> {
+    pub fn read(&mut self, offset: u32, now: u64) -> Access<u32> {
         match offset {
             SR => {
                 let flag = |is: bool, bit| if is { bit } else { 0 };
                 let received = flag(!self.received.is_empty(), RECEIVED);
-                Ok(received | flag(self.has_room(), ROOM) | flag(self.is_busy(), BUSY))
+                Ok(received | flag(self.has_room(), ROOM) | flag(self.is_busy(now), BUSY))
             }
             DATA => Ok(self.received.pop_front().ok_or(Unmodelled::Register)?.into()),
             _ => self.registers.read(offset),
@@ -143,9 +149,12 @@ impl Spi {
             return Ok(());
         }
         let was = self.registers.has(CR1, ENABLE);
-        // Not while it is busy (RM0440, SPI: how to disable it).
-        if offset == CR1 && self.is_busy() && value & ENABLE == 0 {
-            return Err(Unmodelled::Bits(ENABLE));
+        // What becomes of a word that is cut off is not in the manual (RM0440, SPI: how to disable it).
+        if offset == CR1 && self.is_busy(now) && value & ENABLE == 0 {
+            self.cut += 1;
+            if self.done.take().is_some() {
+                self.sent.pop_front();
+            }
         }
         self.registers.write(offset, value)?;
         let is = self.registers.has(CR1, ENABLE);

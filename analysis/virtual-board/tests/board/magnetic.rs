@@ -22,6 +22,7 @@ use virtual_board::peripheral::clock::Cause;
 use crate::bench::{Bench, MID_SCALE};
 use crate::device::HandHeldDevice;
 use crate::scenes::with_the_same_cycle;
+use crate::stub::{Masks, hold_up};
 
 /// The wall of docs/encoders.md.
 const WALL: &str = include_str!("magnetic_wall.toml");
@@ -179,6 +180,8 @@ fn the_wall_gives_the_host_s_codes() {
     }
     let pushed = codes.iter().filter(|&&code| code != MID_SCALE).count();
     assert!(pushed > 500, "a torque in {pushed} samples");
+    // The chip is released once its last bit is sampled.
+    assert_eq!(bench.board().spi.cut, 0);
 }
 
 #[test]
@@ -324,4 +327,96 @@ fn a_device_at_rest_is_no_fault() {
     let mut bench = in_the_wall();
     bench.run(2000);
     assert_eq!(bench.fault(), None);
+}
+
+/// Registers of DMA1: those of its channels, which receive, send, begin and end a transfer.
+const CHANNELS: [u32; 4] = [0x4002_0008, 0x4002_001C, 0x4002_0030, 0x4002_0044];
+const RECEIVES: usize = 0;
+const BEGINS: usize = 2;
+/// The data register of SPI2.
+const DATA: u32 = 0x4000_380C;
+
+/// Enables a channel, or disables it, as a failure may.
+fn enable(bench: &mut Bench, channel: usize, is: bool) {
+    let control = bench.board_mut().read(CHANNELS[channel], 4) & !1;
+    bench.board_mut().write(CHANNELS[channel], 4, control | u32::from(is));
+}
+
+/// Without the end of a transfer there is no tick, and the watchdog takes the torque away.
+#[test]
+fn a_transfer_that_never_ends_resets_the_board() {
+    for channel in 0..CHANNELS.len() {
+        let mut bench = in_the_wall();
+        enable(&mut bench, channel, false);
+        let now = bench.now();
+        bench.run(60);
+        let off = bench.amplifier_off(now).unwrap_or_else(|| panic!("{channel}: on"));
+        assert!(off - now < 40 * bench.period(), "{channel}: {}", off - now);
+        let resets: Vec<_> = bench.machine.resets().iter().map(|(_, cause)| *cause).collect();
+        assert_eq!(resets, [Cause::Watchdog], "{channel}");
+    }
+}
+
+/// An update whose request is lost: the scene tolerates no missed update.
+#[test]
+fn a_transfer_that_does_not_begin_is_a_missed_tick() {
+    let mut bench = in_the_wall();
+    bench.run_to_update();
+    let half = bench.period() / 2;
+    bench.run_for(half);
+    enable(&mut bench, BEGINS, false);
+    bench.run_for(2 * half);
+    enable(&mut bench, BEGINS, true);
+    bench.run(3);
+    assert_eq!(bench.fault(), Some(Fault::MissedTick { missed: 1, tolerated: 0 }));
+}
+
+/// The word that comes too much is not taken for that of the next transfer: a fault, and then the readings are right.
+#[test]
+fn a_word_that_is_lost_is_a_fault_and_the_next_transfers_are_in_step() {
+    let mut bench = in_the_wall();
+    bench.run_to_update();
+    enable(&mut bench, RECEIVES, false);
+    let is_there = |bench: &mut Bench| bench.board().spi.requests_taking();
+    assert!(bench.run_until(20, 2000, is_there));
+    bench.board_mut().read(DATA, 2);
+    enable(&mut bench, RECEIVES, true);
+    bench.run(3);
+    let error = ReadingError::Missing as u32;
+    let told = bench.fault();
+    assert!(
+        matches!(told, Some(Fault::EncoderReading { error: it, .. }) if it == error),
+        "{told:?}"
+    );
+    bench.run(20);
+    bench.armed();
+    bench.run(OPEN);
+    assert_eq!((bench.fault(), bench.status().count), (None, INTO));
+}
+
+/// A tick that begins late, at any time of the next transfer, reads that transfer, and is the only one with it.
+#[test]
+fn a_late_tick_reads_the_words_of_one_transfer() {
+    let text = WALL
+        .replace("period = 0.001\n", "period = 0.001\nworst_period = 0.002\n")
+        .replace("dropped = 1\n", "dropped = 0\n");
+    let file = parse("late.toml", Format::Toml, &text).unwrap_or_else(|error| panic!("{error}"));
+    let mut bench = boot_file(&of_file("late", &file), FixedDevice, INTO);
+    bench.armed();
+    bench.run(OPEN);
+    let (period, half) = (bench.period(), bench.period() / 2);
+    let (mut missed, mut count) = (bench.status().missed, INTO);
+    for late in (0..1800).step_by(100) {
+        bench.run_to_update();
+        bench.run_for(half);
+        hold_up(&mut bench, half + period + late, Masks::All);
+        bench.run_for(period);
+        // Between the transfer whose tick is late and that in which it begins.
+        bench.turn(13);
+        bench.run(4);
+        (missed, count) = (missed + 1, count + 13);
+        let status = bench.status();
+        assert_eq!((bench.fault(), status.missed, status.count), (None, missed, count), "{late}");
+    }
+    assert_eq!(bench.board().spi.cut, 0);
 }

@@ -18,8 +18,11 @@
 //! Not read in the manual [M]: that an event of a channel is as good an edge for a synchronisation as another input
 //! (tables of the multiplexer's inputs list it).
 
-use core::sync::atomic::{AtomicU16, AtomicU32, Ordering};
+use core::hint::cold_path;
+use core::sync::atomic::{AtomicU16, Ordering};
 
+use cortex_m::peripheral::NVIC;
+use embassy_stm32::interrupt;
 use embassy_stm32::pac;
 use embassy_stm32::pac::bdma::vals::{Dir, Pl, Size};
 use embassy_stm32::pac::dmamux::regs::Ccr;
@@ -29,10 +32,10 @@ use embassy_stm32::pac::spi::regs::Cr1;
 use embassy_stm32::pac::spi::vals::{Br, Cpha, Cpol, Ds, Mstr};
 
 use super::wiring::{BUS, TIMER_CLOCK};
+use crate::board::isr_cell::IsrCell;
 use crate::encoder::RawCount;
 use crate::fault::Fault;
-use crate::magnetic::{Chip, Frame, Interface, LONGEST, ReadingError, Readings};
-use crate::servo_loop::OutputEvent;
+use crate::magnetic::{Chip, Frame, Interface, LONGEST, ReadingError, Readings, TRANSFER_WITHIN};
 
 /// A pin of the bus, and the alternate function that connects it.
 #[derive(Clone, Copy)]
@@ -65,6 +68,8 @@ pub struct Bus {
     pub begins: u8,
     /// Gives the SPI its clock.
     pub enable: fn(),
+    /// Resets the SPI.
+    pub reset: fn(),
 }
 
 /// The data of a program that the encoder needs.
@@ -94,89 +99,147 @@ const GENERATOR: usize = 0;
 const GENERATED: u8 = 1;
 /// Writes of CR1 that end a transfer, of which the last takes SPE away: half a clock after its last bit is sampled the
 /// SPI is busy with it (RM0440, SPI: SPE goes off when BSY is), and each of these writes takes some clocks.
-const ENDING: usize = 4;
+const ENDING: usize = 8;
 
-/// What the interrupt of a transfer uses: in one place, so that one address reaches all of it.
+/// What a transfer and its reading use: in one place, so that one address reaches all of it.
 struct Memory {
     /// The words of the last transfer.
     frame: [AtomicU16; LONGEST],
     /// CR1 of the SPI that begins a transfer, and those that end it.
     begins: AtomicU16,
     ends: [AtomicU16; ENDING],
-    /// The error of a failed reading, in the low half and from one on, and how many may fail; 0: none.
-    failed: AtomicU32,
-    readings: Readings,
+    reader: IsrCell<Reader>,
 }
 
 static MEMORY: Memory = Memory {
     frame: [const { AtomicU16::new(0) }; LONGEST],
     begins: AtomicU16::new(0),
     ends: [const { AtomicU16::new(0) }; ENDING],
-    failed: AtomicU32::new(0),
-    readings: Readings::none(),
+    reader: IsrCell::empty(),
 };
+
+/// The readings, for the one interrupt that takes them.
+struct Reader {
+    readings: Readings,
+    /// Their fault.
+    fault: Option<Fault>,
+    setup: &'static Setup,
+}
+
+/// The readings.
+#[inline(always)]
+fn reader() -> &'static mut Reader {
+    // SAFETY: only the interrupt that takes readings uses them, after the set-up, which is before it is enabled.
+    unsafe { MEMORY.reader.borrow_mut() }
+}
 
 /// The count at the beginning of the period.
 #[inline(always)]
 pub fn count() -> RawCount {
-    RawCount::from(MEMORY.readings.count())
+    RawCount::from(reader().readings.count())
 }
 
 /// The fault of the readings, if there is one since the last call.
 #[inline(always)]
-pub fn event() -> Option<OutputEvent> {
-    if MEMORY.failed.load(Ordering::Relaxed) == 0 { None } else { take_event() }
+pub fn fault() -> Option<Fault> {
+    reader().fault.take()
 }
 
-#[cold]
-#[inline(never)]
-fn take_event() -> Option<OutputEvent> {
-    let failed = MEMORY.failed.swap(0, Ordering::Relaxed);
-    let (error, allowed) = ((failed & 0xFFFF).checked_sub(1)?, failed >> 16);
-    Some(OutputEvent::Fault(Fault::EncoderReading { error, allowed }))
-}
-
-/// Takes the reading of the transfer that has ended since the last call; whether there is a tick with it. For any
-/// interrupt; without such a transfer the reading has failed.
+/// Takes the reading of the transfer that has ended since the last call, for any interrupt; without such a transfer the
+/// reading has failed. Whether there is a tick with it.
 #[inline(always)]
 pub fn take(setup: &'static Setup) -> bool {
-    let has_ended = DMA.isr().read().tcif(RECEIVE);
-    acknowledge();
-    if !has_ended {
-        return note(MEMORY.readings.fail(ReadingError::Missing, setup.dropped), setup);
+    if DMA.isr().read().tcif(RECEIVE) {
+        return take_ended(setup, || {});
     }
-    take_ended(setup)
+    let missing = reader().readings.fail(ReadingError::Missing, setup.dropped);
+    note(missing, setup, || {})
 }
 
-/// The same at the end of a transfer.
+/// The same at the end of a transfer, with what a fault requires.
 #[inline(always)]
-pub fn take_ended(setup: &'static Setup) -> bool {
+pub fn take_ended(setup: &'static Setup, on_fault: impl FnOnce()) -> bool {
+    acknowledge();
     let frame = received(setup.chip.interface.words);
-    note(MEMORY.readings.take(setup.chip, &frame, setup.dropped), setup)
+    note(reader().readings.take(setup.chip, &frame, setup.dropped), setup, on_fault)
 }
 
 /// Whether a reading has a tick. Without one, the next tick finds that a period has been missed.
 #[inline(always)]
-fn note(taken: Result<bool, ReadingError>, setup: &'static Setup) -> bool {
+fn note(taken: Result<bool, ReadingError>, setup: &'static Setup, on_fault: impl FnOnce()) -> bool {
     match taken {
         Ok(is_new) => is_new || !setup.leaves_out,
         Err(error) => {
-            fail(error, setup.dropped);
+            cold_path();
+            fail(error);
+            on_fault();
             true
         }
     }
 }
 
+#[cold]
+#[inline(never)]
+fn fail(error: ReadingError) {
+    let allowed = reader().setup.dropped.into();
+    reader().fault = Some(Fault::EncoderReading { error: error as u32, allowed });
+}
+
 /// Acknowledges the end of a transfer.
 #[inline(always)]
-pub fn acknowledge() {
+fn acknowledge() {
     DMA.ifcr().write(|w| w.set_tcif(RECEIVE, true));
 }
 
+/// A tick after a missed one may have begun in the transfer of the next update, with words of two transfers. Waits for
+/// its end, and takes it. If it does not end in its time, or if the words are out of step, the reading is a fault, however
+/// many may fail: the last angle is lost. `elapsed` has the clock's counts since the update.
 #[cold]
 #[inline(never)]
-fn fail(error: ReadingError, allowed: u16) {
-    MEMORY.failed.store(u32::from(allowed) << 16 | (error as u32 + 1), Ordering::Relaxed);
+pub fn take_again(elapsed: impl Fn() -> u32) {
+    /// Counts after the update at which the chip is surely selected.
+    const SELECTED: u32 = 64;
+    let Reader { readings, fault, setup } = reader();
+    let (chip, words) = (setup.chip, setup.chip.interface.words);
+    let clock = 2_u32 << divider(chip.interface).to_bits();
+    // Half a word less: the time of any words but all is shorter.
+    let shortest = (2 * words as u32 - 1) * u32::from(chip.interface.word_bits) * clock / 2;
+    let is_in_step = loop {
+        let (now, is_selected) = (elapsed(), BUS.spi.cr1().read().spe());
+        if !is_selected && now > SELECTED {
+            break now > shortest && usize::from(DMA.ch(RECEIVE).ndtr().read().ndt()) == words;
+        }
+        if now > (TRANSFER_WITHIN * TIMER_CLOCK) as u32 {
+            break false;
+        }
+    };
+    acknowledge();
+    NVIC::unpend(interrupt::DMA1_CHANNEL1);
+    *fault = None;
+    if !is_in_step {
+        restart(chip);
+        fail(ReadingError::Missing);
+    } else if let Err(error) = readings.take(chip, &received(words), setup.dropped) {
+        fail(error);
+    }
+}
+
+/// Begins again with the first word of a transfer.
+fn restart(chip: &'static Chip) {
+    let spi = BUS.spi;
+    spi.cr2().modify(|w| {
+        w.set_rxdmaen(false);
+        w.set_txdmaen(false);
+    });
+    for number in [RECEIVE, SEND, END, BEGIN] {
+        DMA.ch(number).cr().modify(|w| w.set_en(false));
+    }
+    // The unit loses its words, those to send, too.
+    let interrupts = DMA.ch(RECEIVE).cr().read().tcie();
+    (BUS.reset)();
+    connect(chip);
+    connect_channels(chip);
+    start(interrupts);
 }
 
 /// SPE of CR1.
@@ -202,7 +265,10 @@ pub fn set_up(setup: &'static Setup) {
     // The first may answer the set-up.
     exchange(&chip.command, words);
     // A failure here is one of the first tick's, too.
-    let _ = MEMORY.readings.take(chip, &exchange(&chip.command, words), dropped);
+    let mut readings = Readings::none();
+    let _ = readings.take(chip, &exchange(&chip.command, words), dropped);
+    // SAFETY: the interrupt that uses it is not enabled yet.
+    unsafe { MEMORY.reader.init(Reader { readings, fault: None, setup }) };
     connect_channels(chip);
 }
 
@@ -376,12 +442,11 @@ macro_rules! board_tick {
             /// A tick.
             #[unsafe(no_mangle)]
             unsafe extern "C" fn DMA1_CHANNEL1() {
-                if $crate::board::stm32::magnetic::take_ended(&ENCODER_SETUP) {
-                    // SAFETY: this is the handler of the interrupt that is enabled after the cell is filled, and no
-                    // interrupt interrupts itself.
-                    unsafe { ISR_STATE.borrow_mut() }.tick();
-                } else {
-                    $crate::board::stm32::magnetic::acknowledge();
+                // SAFETY: this is the handler of the interrupt that is enabled after the cell is filled, and no
+                // interrupt interrupts itself.
+                let isr = unsafe { ISR_STATE.borrow_mut() };
+                if isr.hardware.take_reading(&ENCODER_SETUP) {
+                    isr.tick();
                 }
             }
         }

@@ -16,14 +16,16 @@ use crate::boot::Startup;
 use crate::build_error::BuildError;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
-#[cfg(feature = "bridge")]
+#[cfg(any(feature = "bridge", feature = "magnetic"))]
 use crate::fault::Fault;
 use crate::fault::FaultRecord;
 use crate::output_timing::OutputTiming;
 use crate::period;
 use crate::reset::ResetCause;
+#[cfg(all(feature = "magnetic", not(feature = "bridge")))]
+use crate::servo_loop::BEGAN_LATE;
 use crate::servo_loop::Hardware;
-#[cfg(any(feature = "bridge", feature = "magnetic"))]
+#[cfg(feature = "bridge")]
 use crate::servo_loop::OutputEvent;
 
 /// The registers of the servo's interrupt.
@@ -47,6 +49,13 @@ impl Registers {
         #[cfg(feature = "magnetic")]
         magnetic::start(cfg!(not(feature = "bridge")));
         self.output.start(&mut self.pace, timing);
+    }
+
+    /// Takes the reading of the transfer that has ended; whether there is a tick with it.
+    #[cfg(all(feature = "magnetic", not(feature = "bridge")))]
+    #[inline(always)]
+    pub fn take_reading(&mut self, setup: &'static magnetic::Setup) -> bool {
+        magnetic::take_ended(setup, || self.pace.doubt(true))
     }
 }
 
@@ -73,9 +82,8 @@ impl Hardware for Registers {
     }
 
     #[cfg(all(feature = "magnetic", not(feature = "bridge")))]
-    #[inline(always)]
-    fn output_event(&mut self) -> Option<OutputEvent> {
-        magnetic::event()
+    fn reading_fault(&mut self) -> Option<Fault> {
+        magnetic::fault()
     }
 
     #[cfg(feature = "bridge")]
@@ -95,7 +103,15 @@ impl Hardware for Registers {
 
     #[inline(always)]
     fn periods_since_last(&mut self) -> u32 {
-        self.pace.begun_by(output::period_began())
+        let passed = self.pace.begun_by(output::period_began());
+        #[cfg(all(feature = "magnetic", not(feature = "bridge")))]
+        if passed != 1 {
+            self.pace.doubt(false);
+            if passed != BEGAN_LATE {
+                magnetic::take_again(|| self.pace.elapsed());
+            }
+        }
+        passed
     }
 
     #[inline(always)]

@@ -78,7 +78,8 @@ pub struct SweepIsr {
     last: i32,
     /// The DAC's code since this tick's update.
     held: DacCode,
-    hardware: Registers,
+    /// The board's registers.
+    pub hardware: Registers,
     rows: Frames<'static, ROWS>,
     /// Rows dropped before the sweep's beginning.
     dropped: u32,
@@ -131,7 +132,7 @@ impl SweepIsr {
         let listening = LISTENING.load(Ordering::Relaxed);
         // The task below cannot write between the load and the store.
         LISTENING.store(listening.saturating_sub(1), Ordering::Relaxed);
-        if self.hardware.output_event().is_some() {
+        if self.hardware.output_event().is_some() || self.hardware.reading_fault().is_some() {
             Some(SweepEnd::OutputFault)
         } else if STOP.load(Ordering::Relaxed) || BEGIN.swap(false, Ordering::Relaxed) {
             // A request to begin is not kept for the time after this sweep.

@@ -44,6 +44,19 @@ impl Pace {
         self.clock.begun_by(time)
     }
 
+    /// Counts of a period within which a tick is in time whose count hardware has taken at the period's beginning.
+    #[cfg(feature = "magnetic")]
+    pub const fn in_time_of_hardware(period: u32) -> u32 {
+        period / 2
+    }
+
+    /// Lets the next tick count as late, or none.
+    #[cfg(feature = "magnetic")]
+    pub fn doubt(&mut self, next: bool) {
+        let in_time = if next { 0 } else { Self::in_time_of_hardware(self.counts()) };
+        self.clock.set_in_time(in_time);
+    }
+
     /// Clock counts in a period.
     pub fn counts(&self) -> u32 {
         self.clock.counts()

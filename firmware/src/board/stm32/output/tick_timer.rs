@@ -34,6 +34,7 @@ use crate::build_error::BuildError;
 use crate::encoder::RawCount;
 use crate::output_timing::OutputTiming;
 use crate::period;
+#[cfg(not(feature = "magnetic"))]
 use crate::servo_loop::READ_WITHIN;
 
 /// The pacing timer on all boards: a basic timer, whose update can trigger the DAC of all these chips.
@@ -129,12 +130,11 @@ pub fn prepare(seconds: f64, timing: OutputTiming) -> Result<Pace, BuildError> {
         PHASE_TIMER.cnt().write(|w| w.set_cnt(behind as u16));
     }
     let counts = period.clock_counts();
-    // The casts saturate. The update itself takes the reading of a magnetic encoder, however late its tick is.
-    let in_time = if cfg!(feature = "magnetic") {
-        counts.get() / 2
-    } else {
-        (period.clock * READ_WITHIN) as u32
-    };
+    // The update itself takes the reading of a magnetic encoder, however late its tick is. The cast saturates.
+    #[cfg(feature = "magnetic")]
+    let in_time = Pace::in_time_of_hardware(counts.get());
+    #[cfg(not(feature = "magnetic"))]
+    let in_time = (period.clock * READ_WITHIN) as u32;
     Ok(Pace::new(counts, period.seconds(), in_time))
 }
 
@@ -159,11 +159,9 @@ pub fn count() -> RawCount {
 /// Acknowledges the tick, whose period may count as begun now.
 #[inline(always)]
 pub fn period_began() -> u32 {
-    // The flag of the update, or of the end of its transfer.
+    // Nothing waits for the flag where the end of a transfer paces the ticks.
     #[cfg(not(feature = "magnetic"))]
     TIMER.sr().write(|w| w.set_uif(false));
-    #[cfg(feature = "magnetic")]
-    crate::board::stm32::magnetic::acknowledge();
     now()
 }
 

@@ -18,7 +18,6 @@ use crate::board::stm32::magnetic::{self, Setup};
 use crate::board::stm32::wiring::TIMER_CLOCK;
 use crate::encoder::RawCount;
 use crate::magnetic::Transfers;
-use crate::servo_loop::OutputEvent;
 
 /// Has TIM1 begin a transfer before each update, once it counts.
 pub fn pace(setup: &'static Setup) {
@@ -30,7 +29,7 @@ pub fn pace(setup: &'static Setup) {
 #[inline(always)]
 pub fn position(setup: &'static Setup) -> RawCount {
     magnetic::take(setup);
-    if let Some(OutputEvent::Fault(fault)) = magnetic::event() {
+    if let Some(fault) = magnetic::fault() {
         core::hint::cold_path();
         off();
         tell(fault);
