@@ -15,7 +15,6 @@ use haptic_servo::magnetic::ReadingError;
 use haptic_servo::servo::Transducers;
 use virtual_board::chip::B_G431B_ESC1;
 use virtual_board::magnetic_encoder::{Failure, MagneticEncoder};
-use virtual_board::motor::Winding;
 use virtual_board::peripheral::clock::Cause;
 use virtual_board::power_stage::gate_log::off_since;
 
@@ -31,12 +30,28 @@ const MAGNETS: f64 = 0.7;
 const POLE_PAIRS: f64 = 7.0;
 const COUNTS: f64 = 16_384.0;
 
-/// The scene with its motor, and the file of its program, with or without the phase that the motor has.
+/// The scene with its motor, and the file of its program.
 struct Knob {
     file: SceneFile,
     transducers: Transducers,
     bridge: MotorOnBridge,
-    programs: [PathBuf; 2],
+    program: PathBuf,
+}
+
+impl Knob {
+    fn build(name: &str, text: &str) -> Self {
+        let file = parse(name, Format::Toml, text).unwrap_or_else(|error| panic!("{error}"));
+        let transducers = file.board_transducers(None, None).unwrap();
+        let bridge = file.on_bridge(&transducers).unwrap();
+        let text = program::program(&file, &transducers, Some(&bridge), name).unwrap();
+        let toolchain = prepare(Tools::Compiler).unwrap_or_else(|error| panic!("{error}"));
+        let board = BoardModel::find(B_G431B_ESC1.name).unwrap();
+        let written = toolchain.write_scene(name, &text).unwrap();
+        let output = Some((board, TorqueOutput::Bridge));
+        let built = toolchain.build_written(&written, output, NumberFormat::F32, true);
+        let program = built.unwrap_or_else(|error| panic!("{error}")).path;
+        Self { file, transducers, bridge, program }
+    }
 }
 
 /// What a board tells of the motor: the electrical angle at the angle zero, in counts.
@@ -45,42 +60,24 @@ fn offset() -> IndexOffset {
     IndexOffset { counts, is_reversed: false }
 }
 
-fn knob() -> &'static Knob {
-    static KNOB_BUILT: OnceLock<Knob> = OnceLock::new();
-    KNOB_BUILT.get_or_init(|| {
-        let file = parse("magnetic_knob.toml", Format::Toml, KNOB);
-        let file = file.unwrap_or_else(|error| panic!("{error}"));
-        let transducers = file.board_transducers(None, None).unwrap();
-        let bridge = file.on_bridge(&transducers).unwrap();
-        let text = program::program(&file, &transducers, Some(&bridge), "knob").unwrap();
-        let index = format!(
-            "pub const CURRENT_LOOP: CurrentLoop = UNALIGNED.with_index(\n    \
-             haptic_servo::current::EncoderIndex {{ offset: Some(haptic_servo::current::{:?}) }},\n);\n\n\
-             pub const UNALIGNED: CurrentLoop",
-            offset()
-        );
-        let aligned = text.replace("pub const CURRENT_LOOP: CurrentLoop", &index);
-        assert_ne!(text, aligned);
-        let toolchain = prepare(Tools::Compiler).unwrap_or_else(|error| panic!("{error}"));
-        let board = BoardModel::find(B_G431B_ESC1.name).unwrap();
-        let built = |(name, text): (&str, &String)| {
-            let written = toolchain.write_scene(name, text).unwrap();
-            let output = Some((board, TorqueOutput::Bridge));
-            let built = toolchain.build_written(&written, output, NumberFormat::F32, true);
-            built.unwrap_or_else(|error| panic!("{error}")).path
-        };
-        let programs = [("magnetic_knob", &text), ("aligned_knob", &aligned)].map(built);
-        Knob { file, transducers, bridge, programs }
+/// Without the phase, and with the phase that the motor has.
+fn knobs() -> &'static [Knob; 2] {
+    static KNOBS: OnceLock<[Knob; 2]> = OnceLock::new();
+    KNOBS.get_or_init(|| {
+        let IndexOffset { counts, is_reversed } = offset();
+        let index = format!("index_offset = {{ counts = {counts}, is_reversed = {is_reversed} }}");
+        let aligned = KNOB.replace("[motor]\n", &format!("[motor]\n{index}\n"));
+        [Knob::build("magnetic_knob", KNOB), Knob::build("aligned_knob", &aligned)]
     })
 }
 
-/// A board with one of the programs, whose motor has its magnets there.
-fn boot(program: usize, magnets: f64) -> Held {
-    let Knob { file, transducers, bridge, programs } = knob();
+/// A board with a program, whose motor has its magnets there.
+fn boot(knob: &Knob, magnets: f64) -> Held {
+    let Knob { file, transducers, bridge, program } = knob;
     let drive = bridge.current_loop.drive();
     let hand = Arc::<Mutex<f64>>::default();
     let device = shaft_of(file.scene.device, transducers.counts_per_turn, hand.clone());
-    let mut bench = Bench::boot_file(&B_G431B_ESC1, &programs[program], device);
+    let mut bench = Bench::boot_file(&B_G431B_ESC1, program, device);
     let circuit = circuit(&mut bench);
     circuit.motor = Some(wired_to(drive, [0, 1, 2], magnets));
     circuit.supply = supply(drive);
@@ -96,8 +93,8 @@ fn told(bench: &mut Bench) -> Option<IndexOffset> {
 
 /// A hand leans against the wall, and comes to rest with the torque of its code.
 fn leaning() -> Held {
-    let mut held = boot(1, MAGNETS);
-    check_torque_of(&mut held, &knob().transducers, "by the stated phase");
+    let mut held = boot(&knobs()[1], MAGNETS);
+    check_torque_of(&mut held, &knobs()[0].transducers, "by the stated phase");
     held
 }
 
@@ -105,7 +102,7 @@ fn leaning() -> Held {
 /// turn of the handle either.
 #[test]
 fn a_motor_is_aligned_once() {
-    let mut held = boot(0, MAGNETS);
+    let mut held = boot(&knobs()[0], MAGNETS);
     check_stays_off(&mut held.bench);
     let fault = held.bench.fault().unwrap().to_string();
     assert!(fault.contains("not been aligned with its encoder: align it"), "{fault}");
@@ -113,20 +110,20 @@ fn a_motor_is_aligned_once() {
     let found = told(&mut held.bench).unwrap();
     println!("{found:?} of {:?}", offset());
     assert!(found.counts.abs_diff(offset().counts) < 30 && !found.is_reversed);
-    check_torque_of(&mut held, &knob().transducers, "aligned");
+    check_torque_of(&mut held, &knobs()[0].transducers, "aligned");
     let mut held = leaning();
     assert_eq!(told(&mut held.bench), Some(offset()));
     held.push(0.0);
     held.bench.machine.reset(Cause::Pin);
     held.bench.run(200);
     assert_eq!(told(&mut held.bench), Some(offset()));
-    check_torque_of(&mut held, &knob().transducers, "after a reset");
+    check_torque_of(&mut held, &knobs()[0].transducers, "after a reset");
 }
 
 /// A pulse of torque moves the handle not at all, or the wrong way.
 #[test]
 fn the_phase_of_another_motor_is_found_out() {
-    let mut held = boot(1, MAGNETS + 1.2);
+    let mut held = boot(&knobs()[1], MAGNETS + 1.2);
     held.bench.arm();
     held.bench.run(200);
     let fault = held.bench.fault();
@@ -137,10 +134,10 @@ fn the_phase_of_another_motor_is_found_out() {
 #[test]
 fn the_codes_are_the_host_s() {
     const PERIODS: usize = 4000;
-    let Knob { file, transducers, .. } = knob();
+    let Knob { file, transducers, .. } = &knobs()[1];
     let certified = file.scene.certify().unwrap();
     let mut host = controller::<_, f32>(&certified, transducers).unwrap();
-    let mut held = boot(1, MAGNETS);
+    let mut held = boot(&knobs()[1], MAGNETS);
     assert_eq!(held.bench.arm(), haptic_servo::wire::message::Outcome::Done);
     held.bench.run(600);
     let (mut expected, mut pushed) = (None, 0);
@@ -199,7 +196,7 @@ fn a_failed_transfer_is_held_and_two_are_a_fault() {
 /// No chip at the wires: the pulled-up line is no angle, and no gate is ever high.
 #[test]
 fn a_board_without_its_chip_stays_off() {
-    let mut held = boot(1, MAGNETS);
+    let mut held = boot(&knobs()[1], MAGNETS);
     held.bench.board_mut().magnetic = None;
     held.bench.run(20);
     check_stays_off(&mut held.bench);
