@@ -13,6 +13,7 @@ use haptic_servo::current::IndexOffset;
 use haptic_servo::fault::Fault;
 use haptic_servo::magnetic::ReadingError;
 use haptic_servo::servo::Transducers;
+use haptic_servo::wire::message::Outcome;
 use virtual_board::chip::B_G431B_ESC1;
 use virtual_board::magnetic_encoder::{Failure, MagneticEncoder};
 use virtual_board::peripheral::clock::Cause;
@@ -138,7 +139,7 @@ fn the_codes_are_the_host_s() {
     let certified = file.scene.certify().unwrap();
     let mut host = controller::<_, f32>(&certified, transducers).unwrap();
     let mut held = boot(&knobs()[1], MAGNETS);
-    assert_eq!(held.bench.arm(), haptic_servo::wire::message::Outcome::Done);
+    assert_eq!(held.bench.arm(), Outcome::Done);
     held.bench.run(600);
     let (mut expected, mut pushed) = (None, 0);
     for period in 0..PERIODS {
@@ -162,18 +163,20 @@ fn the_codes_are_the_host_s() {
 /// The stated age leaves room for one transfer that fails: it is held. A second one takes the gates away.
 #[test]
 fn a_failed_transfer_is_held_and_two_are_a_fault() {
+    let mut held = leaning();
+    held.push(0.0);
+    let bench = &mut held.bench;
+    bench.run(1000);
+    let fail = |bench: &mut Bench, failure, instants: u64| {
+        bench.board_mut().magnetic.as_mut().unwrap().failure = failure;
+        bench.run_for(instants * INSTANT);
+    };
     for (failure, error) in [
         (Failure::Bit(3), ReadingError::Checksum),
         (Failure::Zeros, ReadingError::Zeros),
         (Failure::Ones, ReadingError::Ones),
         (Failure::WeakField, ReadingError::Field),
     ] {
-        let mut held = leaning();
-        let bench = &mut held.bench;
-        let fail = |bench: &mut Bench, failure, instants: u64| {
-            bench.board_mut().magnetic.as_mut().unwrap().failure = failure;
-            bench.run_for(instants * INSTANT);
-        };
         run_to_valley(bench);
         for _ in 0..50 {
             fail(bench, Some(failure), 1);
@@ -190,6 +193,10 @@ fn a_failed_transfer_is_held_and_two_are_a_fault() {
         assert!((0..1000).contains(&late), "{late}");
         let error = error as u32;
         assert_eq!(bench.fault(), Some(Fault::EncoderReading { error, allowed: 1 }));
+        fail(bench, None, 1);
+        bench.run(20);
+        assert_eq!(bench.arm(), Outcome::Done);
+        bench.run(600);
     }
 }
 
