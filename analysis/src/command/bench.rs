@@ -146,8 +146,7 @@ fn beside_host(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), C
     Ok(())
 }
 
-/// What the readings of an MT6701 add to the servo's interrupt, with the end of their transfer, which is an interrupt
-/// of its own.
+/// What the readings of an MT6701 add to the servo's interrupt, which is the end of their transfer.
 fn about_encoders() -> Result<[Figure; 2], CommandError> {
     let on_virtual_board = |file: SceneFile, name: &str| {
         measured(&file, name, |program, input, servo| {

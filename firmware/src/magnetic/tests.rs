@@ -10,6 +10,9 @@ fn frame(words: &[u16]) -> Frame {
 /// Chip, words and angle.
 const CASES: &[(&Chip, &[u16], u32)] = &[
     (&MT6701, &[0x0AAF, 0x0019], 0x2abc),
+    // With its push button.
+    (&MT6701, &[0x0AAF, 0x0115], 0x2abc),
+    (&MT6701, &[0x0000, 0x010C], 0),
     (&MT6835, &[0xFFFF, 0xAAAA, 0xA804], 0x155555),
     (&MA702, &[0x1234], 0x1234),
     (&AS5048A, &[0x1235], 0x1235),

@@ -291,3 +291,80 @@ impl Dma {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BEGINS: u32 = 8;
+    const WANTED: u32 = 13;
+
+    /// Channel 0 serves a request and makes an event, on which channel 1 may move two words, and a generator has channel
+    /// 2 move three.
+    fn chained() -> Dma {
+        let mut dma = Dma::default();
+        let event = FIRST_EVENT;
+        for (offset, value) in [
+            (0, BEGINS | MAKES_EVENTS),
+            (4, WANTED | RISING | 1 << 19 | event << 24),
+            (4, WANTED | RISING | SYNCHRONISED | 1 << 19 | event << 24),
+            (8, 1),
+            (GENERATORS, event | RISING | 2 << 19),
+            (GENERATORS, event | RISING | GENERATES | 2 << 19),
+        ] {
+            dma.write_multiplexer(offset, value).unwrap();
+        }
+        for channel in 0..3 {
+            let at = CHANNELS + channel * STRIDE;
+            dma.write(at + COUNT, 5).unwrap();
+            dma.write(at + CONTROL, ENABLE | CIRCLE | FROM_MEMORY | HALFWORDS).unwrap();
+        }
+        dma
+    }
+
+    /// The requests that are served from a time on, while the units make these; with the time of the last.
+    fn served(dma: &mut Dma, asked: &[u32]) -> Vec<u32> {
+        let mut now = dma.free;
+        let mut begins = asked.contains(&BEGINS);
+        let mut served = Vec::new();
+        loop {
+            let next = dma.next(now, |request| match request {
+                BEGINS => begins,
+                _ => asked.contains(&request),
+            });
+            let Some(Move { request, .. }) = next else { return served };
+            begins &= request != BEGINS;
+            served.push(request);
+            assert_eq!(dma.next(now, |_| true), None, "one at a time");
+            now += MOVE;
+        }
+    }
+
+    #[test]
+    fn an_event_lets_a_count_of_requests_pass_and_generates_others() {
+        let mut dma = chained();
+        assert_eq!(served(&mut dma, &[WANTED]), []);
+        for _ in 0..3 {
+            let expected = [BEGINS, WANTED, WANTED, 1, 1, 1];
+            assert_eq!(served(&mut dma, &[BEGINS, WANTED]), expected);
+            assert_eq!(served(&mut dma, &[WANTED]), []);
+        }
+    }
+
+    /// A request that is made after the event waits for the next one.
+    #[test]
+    fn an_event_without_a_waiting_request_lets_none_pass() {
+        let mut dma = chained();
+        assert_eq!(served(&mut dma, &[BEGINS]), [BEGINS, 1, 1, 1]);
+        assert_eq!(served(&mut dma, &[WANTED]), []);
+    }
+
+    #[test]
+    fn a_count_does_not_change_while_it_is_in_use() {
+        let mut dma = chained();
+        let control = WANTED | RISING | SYNCHRONISED | FIRST_EVENT << 24;
+        assert!(dma.write_multiplexer(4, control | 1 << 19).is_ok());
+        assert!(dma.write_multiplexer(4, control | 2 << 19).is_err());
+        assert!(dma.write_multiplexer(4, 1 << 8).is_err(), "an interrupt at an overrun");
+    }
+}

@@ -333,6 +333,7 @@ fn a_device_at_rest_is_no_fault() {
 const CHANNELS: [u32; 4] = [0x4002_0008, 0x4002_001C, 0x4002_0030, 0x4002_0044];
 const RECEIVES: usize = 0;
 const BEGINS: usize = 2;
+const ENDS: usize = 3;
 /// The data register of SPI2.
 const DATA: u32 = 0x4000_380C;
 
@@ -345,7 +346,7 @@ fn enable(bench: &mut Bench, channel: usize, is: bool) {
 /// Without the end of a transfer there is no tick, and the watchdog takes the torque away.
 #[test]
 fn a_transfer_that_never_ends_resets_the_board() {
-    for channel in 0..CHANNELS.len() {
+    for channel in RECEIVES..=BEGINS {
         let mut bench = in_the_wall();
         enable(&mut bench, channel, false);
         let now = bench.now();
@@ -355,6 +356,16 @@ fn a_transfer_that_never_ends_resets_the_board() {
         let resets: Vec<_> = bench.machine.resets().iter().map(|(_, cause)| *cause).collect();
         assert_eq!(resets, [Cause::Watchdog], "{channel}");
     }
+}
+
+/// A chip that is not released gives no angle.
+#[test]
+fn a_chip_that_stays_selected_is_a_fault() {
+    let mut bench = in_the_wall();
+    enable(&mut bench, ENDS, false);
+    bench.run(5);
+    let error = ReadingError::Ones as u32;
+    assert_eq!(bench.fault(), Some(Fault::EncoderReading { error, allowed: 1 }));
 }
 
 /// An update whose request is lost: the scene tolerates no missed update.
@@ -377,8 +388,7 @@ fn a_word_that_is_lost_is_a_fault_and_the_next_transfers_are_in_step() {
     let mut bench = in_the_wall();
     bench.run_to_update();
     enable(&mut bench, RECEIVES, false);
-    let is_there = |bench: &mut Bench| bench.board().spi.requests_taking();
-    assert!(bench.run_until(20, 2000, is_there));
+    bench.machine.run_until("a word", 2000, |board| board.spi.requests_taking()).unwrap();
     bench.board_mut().read(DATA, 2);
     enable(&mut bench, RECEIVES, true);
     bench.run(3);

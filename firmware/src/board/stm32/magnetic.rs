@@ -145,15 +145,28 @@ pub fn fault() -> Option<Fault> {
     reader().fault.take()
 }
 
-/// Takes the reading of the transfer that has ended since the last call, for any interrupt; without such a transfer the
-/// reading has failed. Whether there is a tick with it.
+/// Takes the reading of the transfer that has ended since the last call, for any interrupt. Without such a transfer, or
+/// in the next one, the reading has failed. Whether there is a tick with it.
 #[inline(always)]
 pub fn take(setup: &'static Setup) -> bool {
-    if DMA.isr().read().tcif(RECEIVE) {
+    let words = setup.chip.interface.words;
+    if DMA.isr().read().tcif(RECEIVE) && left() == words {
         return take_ended(setup, || {});
     }
-    let missing = reader().readings.fail(ReadingError::Missing, setup.dropped);
-    note(missing, setup, || {})
+    note(missing(setup), setup, || {})
+}
+
+/// Words left of the transfer that the DMA stores, or of the next one.
+#[inline(always)]
+fn left() -> usize {
+    DMA.ch(RECEIVE).ndtr().read().ndt().into()
+}
+
+#[cold]
+#[inline(never)]
+fn missing(setup: &'static Setup) -> Result<bool, ReadingError> {
+    restart(setup.chip);
+    reader().readings.fail(ReadingError::Missing, setup.dropped)
 }
 
 /// The same at the end of a transfer, with what a fault requires.
@@ -207,7 +220,7 @@ pub fn take_again(elapsed: impl Fn() -> u32) {
     let is_in_step = loop {
         let (now, is_selected) = (elapsed(), BUS.spi.cr1().read().spe());
         if !is_selected && now > SELECTED {
-            break now > shortest && usize::from(DMA.ch(RECEIVE).ndtr().read().ndt()) == words;
+            break now > shortest && left() == words;
         }
         if now > (TRANSFER_WITHIN * TIMER_CLOCK) as u32 {
             break false;
@@ -234,8 +247,9 @@ fn restart(chip: &'static Chip) {
     for number in [RECEIVE, SEND, END, BEGIN] {
         DMA.ch(number).cr().modify(|w| w.set_en(false));
     }
-    // The unit loses its words, those to send, too.
+    acknowledge();
     let interrupts = DMA.ch(RECEIVE).cr().read().tcie();
+    // The unit loses its words, those to send, too.
     (BUS.reset)();
     connect(chip);
     connect_channels(chip);
