@@ -28,20 +28,23 @@ pub struct BridgeBoard {
     board: VirtualBoard,
     current_loop: CurrentLoop,
     transducers: Transducers,
+    /// Whether it reads a magnetic encoder.
+    is_magnetic: bool,
     sample: Option<Sample>,
 }
 
 impl BridgeBoard {
-    /// Boots a board as [`VirtualBoard::boot`] does, with the motor of a current loop.
+    /// Boots a board as [`VirtualBoard::boot`] does, with the motor of a current loop and perhaps a magnetic encoder.
     pub fn boot(
         program: &Path,
         board: BoardModel,
         elf: &Path,
         current_loop: &CurrentLoop,
         transducers: Transducers,
+        is_magnetic: bool,
     ) -> Result<Self, VirtualBoardError> {
         let board = VirtualBoard::boot(program, board, elf, Some(current_loop.drive()))?;
-        Ok(Self { board, current_loop: *current_loop, transducers, sample: None })
+        Ok(Self { board, current_loop: *current_loop, transducers, is_magnetic, sample: None })
     }
 
     /// Runs to the beginning of the next period of the servo, with bytes to the serial port.
@@ -57,9 +60,9 @@ impl BridgeBoard {
         Ok(self.sample.insert(sample))
     }
 
-    /// The count at the beginning of the period.
+    /// The count that the servo reads at the beginning of the period.
     pub fn count(&self) -> i32 {
-        self.board.count()
+        if self.is_magnetic { self.board.count_of_chip() } else { self.board.count() }
     }
 
     /// The code that the current loop follows from there on: that of no torque while the gates are off.

@@ -111,8 +111,9 @@ pub struct VirtualBoard {
     process: Child,
     input: Option<BufWriter<ChildStdin>>,
     output: BufReader<ChildStdout>,
-    /// The encoder's position in counts, as the simulated world has it.
+    /// The encoder's position in counts, as the simulated world has it, and that a period of the modulation before.
     count: i32,
+    before: i32,
 }
 
 impl VirtualBoard {
@@ -137,7 +138,7 @@ impl VirtualBoard {
         let input = process.stdin.take().ok_or_else(missing)?;
         let output = process.stdout.take().ok_or_else(missing)?;
         let (input, output) = (Some(BufWriter::new(input)), BufReader::new(output));
-        Ok(Self { process, input, output, count: 0 })
+        Ok(Self { process, input, output, count: 0, before: 0 })
     }
 
     /// Waits for the end of the sample that runs.
@@ -186,6 +187,12 @@ impl VirtualBoard {
         self.count
     }
 
+    /// That position at the update of the modulation before: a chip's transfer begins before an update, and the
+    /// position changes at updates.
+    pub fn count_of_chip(&self) -> i32 {
+        self.before
+    }
+
     /// Switches it off, and gives its log in a line.
     pub fn last_log(&mut self) -> Result<String, VirtualBoardError> {
         Ok(self.end().map_err(|error| self.stopped(&error))?.log.join("; "))
@@ -212,7 +219,7 @@ impl VirtualBoard {
         let seconds = f64::from_le_bytes(self.bytes()?);
         let ShaftMotion { count, angle, speed } = shaft.turn(torque, seconds);
         let turned = count.wrapping_sub(self.count);
-        self.count = count;
+        (self.before, self.count) = (self.count, count);
         let input = self.input.as_mut().ok_or(io::ErrorKind::BrokenPipe)?;
         input.write_all(&turned.to_le_bytes())?;
         input.write_all(&angle.to_le_bytes())?;

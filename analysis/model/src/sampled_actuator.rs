@@ -34,14 +34,24 @@ impl SampledActuator {
 
     /// Whether a time in s is a whole number of updates, as far as decimals can say.
     pub fn is_whole(&self, time: f64) -> bool {
-        const ROUNDING: f64 = 1e-3;
-        let updates = time / self.between;
-        (updates - updates.round()).abs() <= ROUNDING
+        self.after_update(time) == 0.0
     }
 
-    /// Slope of the torque until the next update in N m/s, for a torque that is 1 N m below its command.
-    pub fn slope(&self) -> f64 {
-        (1.0 - self.left) / self.between
+    /// Time in s since the last update, a time in s after one; zero where decimals cannot tell it from that.
+    pub fn after_update(&self, time: f64) -> f64 {
+        const ROUNDING: f64 = 1e-3;
+        let updates = time / self.between;
+        if (updates - updates.round()).abs() <= ROUNDING {
+            return 0.0;
+        }
+        updates.fract() * self.between
+    }
+
+    /// Slope of the torque until the next update in N m/s, for a torque that is 1 N m below its command now, `since` s
+    /// after the last update. There it was further below, by what the slope has made since.
+    pub fn slope(&self, since: f64) -> f64 {
+        let slope = (1.0 - self.left) / self.between;
+        slope / (1.0 - slope * since)
     }
 
     /// Torque from a command that changes at updates only, at an angular frequency in rad/s that is not 0.

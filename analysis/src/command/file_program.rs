@@ -22,7 +22,8 @@ pub struct FileProgram {
     source: String,
     pub text: String,
     is_certified: bool,
-    is_magnetic: bool,
+    /// Whether it reads a magnetic encoder.
+    pub is_magnetic: bool,
     /// The current loop of the board's own bridge that makes its torques; none where a DAC does.
     pub bridge: Option<(Box<CurrentLoop>, Transducers)>,
 }

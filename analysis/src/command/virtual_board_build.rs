@@ -21,6 +21,7 @@ pub struct VirtualBoardBuild {
     elf: PathBuf,
     /// The current loop of the board's own bridge, with the encoder and the motor behind it.
     bridge: Option<(Box<CurrentLoop>, Transducers)>,
+    is_magnetic: bool,
 }
 
 impl VirtualBoardBuild {
@@ -39,7 +40,7 @@ impl VirtualBoardBuild {
             Ok((elf, toolchain.build_virtual_board()?))
         })?;
         let bridge = program.bridge.map(|bridge| (Box::new(bridge), program.transducers));
-        Ok(Self { executable, board, elf, bridge })
+        Ok(Self { executable, board, elf, bridge, is_magnetic: false })
     }
 
     /// The same with the program of a scene file.
@@ -51,7 +52,8 @@ impl VirtualBoardBuild {
         let toolchain = set_up(Tools::CompilerAndVirtualBoard)?;
         let elf = program.build(&toolchain, Some(board), format)?.path;
         let executable = building("the virtual board", || toolchain.build_virtual_board())?;
-        Ok(Self { executable, board, elf, bridge: program.bridge.clone() })
+        let (bridge, is_magnetic) = (program.bridge.clone(), program.is_magnetic);
+        Ok(Self { executable, board, elf, bridge, is_magnetic })
     }
 
     /// Boots a board whose program drives a DAC.
@@ -62,9 +64,14 @@ impl VirtualBoardBuild {
     /// Boots the board with a motor, if its program drives the board's own bridge.
     pub fn boot_bridge(&self) -> Result<Option<(BridgeBoard, &CurrentLoop)>, VirtualBoardError> {
         let Some((current_loop, transducers)) = &self.bridge else { return Ok(None) };
-        let executable = &self.executable;
-        let board =
-            BridgeBoard::boot(executable, self.board, &self.elf, current_loop, *transducers)?;
+        let board = BridgeBoard::boot(
+            &self.executable,
+            self.board,
+            &self.elf,
+            current_loop,
+            *transducers,
+            self.is_magnetic,
+        )?;
         Ok(Some((board, current_loop)))
     }
 

@@ -3,8 +3,8 @@
 mod bus;
 
 use crate::chip::{
-    BREAKS, CONVERSION_INTERRUPT, Chip, LOCK_UP_BREAKS, RECEIVED, SPI_PINS, TICK_INTERRUPT,
-    TIM6_UPDATE, TORQUE, TRANSFER_INTERRUPT, WANTED,
+    BREAKS, Bus, CONVERSION_INTERRUPT, Chip, LOCK_UP_BREAKS, TICK_INTERRUPT, TORQUE,
+    TRANSFER_INTERRUPT,
 };
 use crate::core::System;
 use crate::core::exceptions::FIRST_INTERRUPT;
@@ -72,8 +72,8 @@ pub struct VirtualBoard {
     pub spi: Spi,
     /// What moves its words.
     pub dma: Dma,
-    /// Whether an update of the pacing timer has made a request that was not served yet.
-    update_requested: bool,
+    /// Whether a timer's request for a transfer was not served yet.
+    transfer_requested: bool,
     /// The DAC.
     pub dac: Dac,
     /// The serial port.
@@ -125,7 +125,7 @@ impl VirtualBoard {
             magnetic: None,
             spi: Spi::default(),
             dma: Dma::default(),
-            update_requested: false,
+            transfer_requested: false,
             dac: Dac::new(chip.dac),
             serial: Serial::new(chip.usart),
             power_stage: PowerStage::default(),
@@ -230,15 +230,15 @@ impl VirtualBoard {
         let divider = self.clock.timer_divider();
         if self.tick_timer.advance(now, divider) {
             self.sample();
-            self.update_requested = self.tick_timer.requests() && self.dma.serves(TIM6_UPDATE);
+            self.request_transfer(self.tick_timer.requests());
         }
         if self.phase_timer.advance(now, divider) && self.phase_timer.triggers() {
             self.dac.trigger(Trigger::Tim7);
         }
         let bus_divider = self.clock.bus_divider();
         self.serial.advance(now, bus_divider);
-        let chip = self.magnetic.as_mut().filter(|_| is_wired(&self.ports, SPI_PINS));
-        self.spi.advance(now, bus_divider, chip);
+        let Self { magnetic, ports, chip, spi, .. } = self;
+        spi.advance(now, bus_divider, wired(magnetic, ports, chip));
         self.update_interrupt_lines();
         self.record_pin_events();
         self.watchdog.due().is_some_and(|due| due <= now)
@@ -299,7 +299,8 @@ impl VirtualBoard {
     }
 
     fn take(&mut self, outcome: Outcome) {
-        let Outcome { turns, gates, floating } = outcome;
+        let Outcome { turns, gates, request, floating } = outcome;
+        self.request_transfer(request);
         for (counts, triggers) in turns {
             self.turn_encoder(counts);
             if triggers {
@@ -317,11 +318,18 @@ impl VirtualBoard {
         }
     }
 
+    /// A timer may make the request for a transfer, which only counts while a channel serves it.
+    fn request_transfer(&mut self, is_made: bool) {
+        let serves = |bus: Bus| self.dma.serves(bus.begins);
+        self.transfer_requested |= is_made && self.chip.bus.is_some_and(serves);
+    }
+
     /// The next move of the DMA, whose memory is the core's.
     pub(crate) fn next_move(&mut self) -> Option<Move> {
         let requests = self.requests();
         let next = self.dma.next(self.now, |request| requests.contains(&Some(request)))?;
-        self.update_requested &= next.request != TIM6_UPDATE;
+        let begins = self.chip.bus.map(|bus| bus.begins);
+        self.transfer_requested &= begins != Some(next.request);
         Some(next)
     }
 
@@ -333,10 +341,11 @@ impl VirtualBoard {
 
     /// The requests of units to the DMA.
     fn requests(&self) -> [Option<u32>; 3] {
+        let Some(Bus { received, wanted, begins, .. }) = self.chip.bus else { return [None; 3] };
         [
-            self.update_requested.then_some(TIM6_UPDATE),
-            self.spi.requests_taking().then_some(RECEIVED),
-            self.spi.requests_word().then_some(WANTED),
+            self.transfer_requested.then_some(begins),
+            self.spi.requests_taking().then_some(received),
+            self.spi.requests_word().then_some(wanted),
         ]
     }
 
@@ -411,6 +420,15 @@ impl VirtualBoard {
             || self.system.reset_requested
             || self.move_due().is_some_and(|due| due <= self.now)
     }
+}
+
+/// The chip at the bus, if the program has connected all its pins.
+fn wired<'c>(
+    magnetic: &'c mut Option<MagneticEncoder>,
+    ports: &[Pins],
+    chip: &Chip,
+) -> Option<&'c mut MagneticEncoder> {
+    magnetic.as_mut().filter(|_| chip.bus.is_some_and(|bus| is_wired(ports, bus.pins)))
 }
 
 /// Whether all of some pins have this alternate function.

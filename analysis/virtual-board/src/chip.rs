@@ -84,6 +84,19 @@ pub const RAM: u32 = 0x2000_0000;
 /// Size of a unit in the map in bytes.
 pub const SPAN: u32 = 0x400;
 
+/// A magnetic encoder's bus.
+#[derive(Clone, Copy, Debug)]
+pub struct Bus {
+    /// NSS, SCK, MISO and MOSI, and their alternate function.
+    pub pins: ([(usize, u32); 4], u32),
+    /// Requests of the DMA: a received word.
+    pub received: u32,
+    /// A word to send.
+    pub wanted: u32,
+    /// What begins a transfer: TIM6's update, or with a bridge channel 4 of TIM1.
+    pub begins: u32,
+}
+
 /// A chip on its board.
 #[derive(Debug)]
 pub struct Chip {
@@ -112,6 +125,8 @@ pub struct Chip {
     pub encoder: ([(usize, u32); 2], u32),
     /// The pin of the encoder's index and the alternate function of its timer's channel 3, if there is one.
     pub index: Option<((usize, u32), u32)>,
+    /// The bus of a magnetic encoder, if it is wired.
+    pub bus: Option<Bus>,
     /// The serial port's two pins and the alternate function that is that port.
     pub serial: ([(usize, u32); 2], u32),
     /// The serial port's interrupt.
@@ -140,14 +155,6 @@ pub struct Chip {
 pub const TICK_INTERRUPT: u16 = 54;
 /// The first channel of DMA1: the end of a magnetic encoder's transfer, which is the servo's interrupt then.
 pub const TRANSFER_INTERRUPT: u16 = 11;
-/// Requests of the DMA: TIM6's update, and SPI2's received word and word to send.
-pub const TIM6_UPDATE: u32 = 8;
-/// The second.
-pub const RECEIVED: u32 = 12;
-/// The third.
-pub const WANTED: u32 = 13;
-/// NSS, SCK, MISO and MOSI of SPI2, PB12 to PB15, and their alternate function.
-pub const SPI_PINS: ([(usize, u32); 4], u32) = ([(1, 12), (1, 13), (1, 14), (1, 15)], 5);
 /// ADC1 and ADC2: the current loop's interrupt.
 pub const CONVERSION_INTERRUPT: u16 = 18;
 /// The pin that the DAC drives: PA4 on both.
@@ -215,8 +222,6 @@ static G4_MAP: &[MapEntry] = &[
     map_entry(0x4000_1000, "TIM6", Unit::TickTimer, 0x58, 0x38, 4),
     map_entry(0x4000_1400, "TIM7", Unit::PhaseTimer, 0x58, 0x38, 5),
     ungated(0x4000_3000, "IWDG", Unit::Watchdog),
-    map_entry(0x4000_3800, "SPI2", Unit::Spi, 0x58, 0x38, 14),
-    map_entry(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
     map_entry(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
     map_entry(0x4001_0000, "SYSCFG", Unit::Configuration, 0x60, 0x40, 0),
     map_entry(0x4002_0000, "DMA1", Unit::Dma, 0x48, 0x28, 0),
@@ -233,6 +238,8 @@ static G4_MAP: &[MapEntry] = &[
     map_entry(0x5000_0800, "DAC1", Unit::Dac, 0x4C, 0x2C, 16),
     ungated(0xE004_2000, "DBGMCU", Unit::Debug),
 ];
+
+const USART2: MapEntry = map_entry(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17);
 
 /// The units of a power stage on an STM32G4.
 static POWER_STAGE: &[MapEntry] = &[
@@ -257,6 +264,8 @@ pub static NUCLEO_G474RE: Chip = Chip {
         &[
             map_entry(0x4000_0000, "TIM2", Unit::Encoder, 0x58, 0x38, 0),
             map_entry(0x4000_0C00, "TIM5", Unit::FreeClock, 0x58, 0x38, 3),
+            map_entry(0x4000_3800, "SPI2", Unit::Spi, 0x58, 0x38, 14),
+            USART2,
         ],
         G4_MAP,
     ],
@@ -266,6 +275,13 @@ pub static NUCLEO_G474RE: Chip = Chip {
     // TIM2_CH1 and TIM2_CH2.
     encoder: ([(0, 0), (0, 1)], 1),
     index: None,
+    // SPI2.
+    bus: Some(Bus {
+        pins: ([(1, 12), (1, 13), (1, 14), (1, 15)], 5),
+        received: 12,
+        wanted: 13,
+        begins: 8,
+    }),
     // USART2_TX and USART2_RX.
     serial: ([(0, 2), (0, 3)], 7),
     serial_interrupt: 38,
@@ -286,6 +302,11 @@ pub static NUCLEO_G474RE: Chip = Chip {
     },
 };
 
+const ESC1_TIMERS: [MapEntry; 2] = [
+    map_entry(0x4000_0000, "TIM2", Unit::FreeClock, 0x58, 0x38, 0),
+    map_entry(0x4000_0800, "TIM4", Unit::Encoder, 0x58, 0x38, 2),
+];
+
 /// STM32G431CB on a B-G431B-ESC1.
 pub static B_G431B_ESC1: Chip = Chip {
     name: "b-g431b-esc1",
@@ -293,14 +314,8 @@ pub static B_G431B_ESC1: Chip = Chip {
     ram: 22 << 10,
     coupled: (10 << 10, true),
     crystal: 8_000_000,
-    map: &[
-        &[
-            map_entry(0x4000_0000, "TIM2", Unit::FreeClock, 0x58, 0x38, 0),
-            map_entry(0x4000_0800, "TIM4", Unit::Encoder, 0x58, 0x38, 2),
-        ],
-        G4_MAP,
-        POWER_STAGE,
-    ],
+    map: &[&ESC1_TIMERS, &[USART2], G4_MAP, POWER_STAGE],
+    bus: None,
     counter: 16,
     amplifier: (0, 15),
     // TIM1_CH1 to CH3 and TIM1_CH1N to CH3N.
@@ -321,6 +336,29 @@ pub static B_G431B_ESC1: Chip = Chip {
     // USART2_TX and USART2_RX.
     serial: ([(1, 3), (1, 4)], 7),
     ..NUCLEO_G474RE
+};
+
+/// The same without R23 and R24, and with a magnetic encoder at SPI3: the serial port is USART1.
+pub static B_G431B_ESC1_MAGNETIC: Chip = Chip {
+    map: &[
+        &ESC1_TIMERS,
+        &[
+            map_entry(0x4000_3C00, "SPI3", Unit::Spi, 0x58, 0x38, 15),
+            map_entry(0x4001_3800, "USART1", Unit::Serial, 0x60, 0x40, 14),
+        ],
+        G4_MAP,
+        POWER_STAGE,
+    ],
+    bus: Some(Bus {
+        pins: ([(0, 15), (1, 3), (1, 4), (1, 5)], 6),
+        received: 14,
+        wanted: 15,
+        begins: 45,
+    }),
+    // USART1_TX and USART1_RX.
+    serial: ([(1, 6), (1, 7)], 7),
+    serial_interrupt: 37,
+    ..B_G431B_ESC1
 };
 
 /// The units of the F405.
@@ -364,6 +402,7 @@ pub static STM32F405: Chip = Chip {
     // TIM3_CH1 and TIM3_CH2.
     encoder: ([(2, 6), (2, 7)], 2),
     index: None,
+    bus: None,
     // USART3_TX and USART3_RX.
     serial: ([(1, 10), (1, 11)], 7),
     serial_interrupt: 39,
@@ -392,6 +431,11 @@ impl Chip {
     /// The chip of the board with this name, if there is a virtual board.
     pub fn find(name: &str) -> Option<&'static Self> {
         Self::BOARDS.into_iter().find(|chip| chip.name == name)
+    }
+
+    /// The same board with its wires for a magnetic encoder.
+    pub fn with_magnetic_encoder(&'static self) -> &'static Self {
+        if self.gates.is_some() { &B_G431B_ESC1_MAGNETIC } else { self }
     }
 
     /// Its peripherals.

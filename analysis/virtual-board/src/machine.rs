@@ -21,6 +21,9 @@ use crate::peripheral::dma::Move;
 use crate::processor::Processor;
 use crate::rtt;
 
+/// The magnetic encoder of a program that reads one, which begins with the chip's name.
+pub const ENCODER: &str = "ENCODER_SETUP";
+
 /// A board with its power on.
 pub struct Machine {
     core: Processor,
@@ -38,7 +41,8 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Boots a board with this program in its flash and this device at its pins.
+    /// Boots a board with this program in its flash and this device at its pins. A program that reads a magnetic
+    /// encoder has the board's wires for one.
     pub fn boot(
         elf: &Path,
         chip: &'static Chip,
@@ -48,6 +52,8 @@ impl Machine {
         let file = std::fs::read(elf).map_err(|source| BootError::File { path: path(), source })?;
         let image =
             Image::of_elf(file).map_err(|source| BootError::Image { path: path(), source })?;
+        let is_magnetic = image.symbol(ENCODER).is_some();
+        let chip = if is_magnetic { chip.with_magnetic_encoder() } else { chip };
         Self::power_on(image, chip, device)
     }
 

@@ -45,7 +45,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use virtual_board::bridge_memory::BridgeMemory;
 use virtual_board::chip::Chip;
 use virtual_board::device::{Device, Motion};
-use virtual_board::machine::Machine;
+use virtual_board::machine::{ENCODER, Machine};
 use virtual_board::magnetic_encoder::MagneticEncoder;
 use virtual_board::meter::InstructionStats;
 
@@ -81,6 +81,7 @@ fn run() -> Result<(), Failure> {
     } else {
         let mut machine = Machine::boot(elf.as_ref(), chip, Box::new(Shaft(host.clone())))?;
         let memory = wire(&mut machine, motor)?;
+        connect_encoder(&mut machine)?;
         while bridge_step(&mut machine, &memory, &host)?.is_none() {}
         machine
     };
@@ -106,7 +107,7 @@ fn wire(machine: &mut Machine, motor: &[String]) -> Result<BridgeMemory, Failure
 /// Connects the magnetic encoder that the program reads, if it reads one, with its zero at the device's.
 fn connect_encoder(machine: &mut Machine) -> Result<(), Failure> {
     const NAME_BYTES: usize = 8;
-    let Some(setup) = machine.image().symbol("ENCODER_SETUP") else { return Ok(()) };
+    let Some(setup) = machine.image().symbol(ENCODER) else { return Ok(()) };
     let bytes = machine.core().memory(setup, NAME_BYTES).unwrap_or_default();
     let name = String::from_utf8_lossy(&bytes);
     let name = name.trim_end_matches('\0');

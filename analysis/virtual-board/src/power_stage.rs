@@ -57,6 +57,8 @@ pub(crate) struct Outcome {
     pub turns: Vec<(i32, bool)>,
     /// Changes of the gates.
     pub gates: Vec<(u64, Gates)>,
+    /// Whether TIM1's channel 4 has made its request.
+    pub request: bool,
     /// A converter that has sampled what nothing drives: which.
     pub floating: Option<usize>,
 }
@@ -242,6 +244,7 @@ impl PowerStage {
         if instant.trigger {
             self.trigger(around);
         }
+        outcome.request |= instant.request;
         let waits = !self.timer.runs() && self.circuit.motor.is_some();
         let steps = instant.valley || waits && now >= self.stepped + LONGEST;
         let counts = if steps { self.step(around, device) } else { 0 };

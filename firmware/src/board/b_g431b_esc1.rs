@@ -6,23 +6,34 @@
 //! With the feature `bridge` the board's own power stage drives the motor. Without the feature the power
 //! stage stays off, with all six inputs of its gate drivers driven low, and the DAC commands an external
 //! current amplifier, although both pins of the DAC have other purposes on this board (see [`connect_pins`]).
+//!
+//! With the feature `magnetic`, and the bridge, the chip of an encoder is at the pads TX, RX and PWM of J3, without the
+//! board's resistors R23 and R24, and the serial port at A+ and B+ of J8.
 
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
-use embassy_stm32::peripherals::USART2;
+#[cfg(feature = "magnetic")]
+use embassy_stm32::peripherals::USART1 as SerialPort;
+#[cfg(not(feature = "magnetic"))]
+use embassy_stm32::peripherals::USART2 as SerialPort;
 use embassy_stm32::rcc::PllPreDiv;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::Timer;
+#[cfg(not(feature = "magnetic"))]
 use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
+use super::stm32::clock_170;
+#[cfg(feature = "magnetic")]
+use super::stm32::magnetic::{Bus, BusPin};
 use super::stm32::output::OutputPin;
-#[cfg(feature = "bridge")]
-use super::stm32::output::bridge::encoder::IndexPin;
+#[cfg(all(feature = "bridge", not(feature = "magnetic")))]
+use super::stm32::output::bridge::encoder::quadrature::IndexPin;
 #[cfg(feature = "bridge")]
 use super::stm32::output::gates::{Gate, Gates};
+#[cfg(not(feature = "magnetic"))]
+use super::stm32::quadrature;
 use super::stm32::serial::{self, Serial};
-use super::stm32::{clock_170, quadrature};
 
 /// The board's name as a feature and for `haptic flash`.
 pub const NAME: &str = "b-g431b-esc1";
@@ -58,11 +69,38 @@ pub const GATES: Gates = Gates([
 
 /// The encoder's index: TIM4_CH3 on PB8, which is the pad Z+ of J8 (alternate function by DS12589). The board
 /// pulls it up like A+ and B+.
-#[cfg(feature = "bridge")]
+#[cfg(all(feature = "bridge", not(feature = "magnetic")))]
 pub const INDEX: IndexPin = IndexPin { port: pac::GPIOB, pin: 8, function: 2 };
 
+/// The bus of a magnetic encoder: SPI3 on the pins of the board's serial port and of the pad PWM (alternate functions
+/// by DS12589, requests of the DMA by RM0440's table of the multiplexer). MOSI's pin switches the dividers of the
+/// back-EMF, which the bridge does not use.
+#[cfg(feature = "magnetic")]
+pub const BUS: Bus = Bus {
+    spi: pac::SPI3,
+    select: BusPin { port: pac::GPIOA, pin: 15, function: 6 },
+    clock: BusPin { port: pac::GPIOB, pin: 3, function: 6 },
+    input: BusPin { port: pac::GPIOB, pin: 4, function: 6 },
+    output: BusPin { port: pac::GPIOB, pin: 5, function: 6 },
+    received: 14,
+    wants: 15,
+    // TIM1's channel 4.
+    begins: 45,
+    enable: || pac::RCC.apb1enr1().modify(|w| w.set_spi3en(true)),
+    reset: || {
+        pac::RCC.apb1rstr1().modify(|w| w.set_spi3rst(true));
+        pac::RCC.apb1rstr1().modify(|w| w.set_spi3rst(false));
+    },
+};
+
+#[cfg(not(feature = "magnetic"))]
 bind_interrupts!(struct Interrupts {
-    USART2 => BufferedInterruptHandler<USART2>;
+    USART2 => BufferedInterruptHandler<SerialPort>;
+});
+
+#[cfg(feature = "magnetic")]
+bind_interrupts!(struct Interrupts {
+    USART1 => BufferedInterruptHandler<SerialPort>;
 });
 
 /// 170 MHz from the board's 8 MHz crystal.
@@ -74,8 +112,13 @@ pub fn clocks() -> Config {
 pub fn connect_pins(chip: Peripherals) -> Serial {
     // The drivers set up clocks and pins and would undo this when dropped; from here on the servo uses the
     // registers.
+    // The magnetic encoder's bus selects its chip with PA15, and takes the pins of the serial port.
+    #[cfg(not(feature = "magnetic"))]
     core::mem::forget((
         Output::new(chip.PA15, Level::Low, Speed::Low),
+        Qei::new(chip.TIM4, chip.PB6, chip.PB7, quadrature::config()),
+    ));
+    core::mem::forget((
         // The gate drivers, high sides and low sides of the phases U, V and W (L6387, UM2516): low is
         // off. In reset the chip leaves them to the drivers' own resistors to ground.
         [
@@ -86,7 +129,6 @@ pub fn connect_pins(chip: Peripherals) -> Serial {
             Output::new(chip.PA12, Level::Low, Speed::Low),
             Output::new(chip.PB15, Level::Low, Speed::Low),
         ],
-        Qei::new(chip.TIM4, chip.PB6, chip.PB7, quadrature::config()),
         Timer::new(chip.TIM2),
         Timer::new(chip.TIM6),
         Timer::new(chip.TIM7),
@@ -96,6 +138,9 @@ pub fn connect_pins(chip: Peripherals) -> Serial {
     // 2's pin PA5 is in the middle of a current sense amplifier.
     #[cfg(not(feature = "bridge"))]
     super::stm32::output::dac::connect(chip.DAC1, chip.PA4);
-    // The virtual serial port of the board's debug probe; without the probe, the pads TX and RX of J3.
-    serial::open(chip.USART2, chip.PB4, chip.PB3, Interrupts)
+    // The virtual serial port of the board's debug probe; without the probe, the pads TX and RX of J3, or of J8.
+    #[cfg(not(feature = "magnetic"))]
+    return serial::open(chip.USART2, chip.PB4, chip.PB3, Interrupts);
+    #[cfg(feature = "magnetic")]
+    serial::open(chip.USART1, chip.PB7, chip.PB6, Interrupts)
 }

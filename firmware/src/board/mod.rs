@@ -199,9 +199,7 @@ macro_rules! scene_program {
 
         $crate::bridge_checked!([$($current_loop)?] [$($mode)?] $scene, GIVEN, $transducers);
 
-        // The readings of its chip, where it has one, are those that the certificate covers.
-        $(const _: &$crate::magnetic::Chip =
-            $encoder.checked(&$scene.latency, $scene.timing.period, $transducers.counts_per_turn);)?
+        $crate::encoder_checked!([$($encoder)?] [$($current_loop)?] $scene, $transducers);
 
         /// The current loop of the board's bridge; `None` with a DAC and an external amplifier.
         #[cfg(not(target_os = "none"))]
@@ -296,6 +294,32 @@ macro_rules! bridge_checked {
             &$transducers,
             PROGRAM.rendering.injection,
         );
+    };
+}
+
+/// The readings of a program's chip, where it has one, are those that the certificate covers.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! encoder_checked {
+    ([] $bridge:tt $($any:tt)*) => {};
+    ([$chip:expr] $bridge:tt $scene:ident, $transducers:ident) => {
+        const _: &$crate::magnetic::Chip = $chip.checked(
+            &$scene.latency,
+            &$crate::transfers_of!($chip, $bridge, $scene.timing.period),
+            $transducers.counts_per_turn,
+        );
+    };
+}
+
+/// When a program's board makes the transfers of its chip, with or without a bridge.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! transfers_of {
+    ($chip:expr, [], $period:expr) => {
+        $crate::magnetic::Transfers::at_count($period)
+    };
+    ($chip:expr, [$current_loop:ident], $period:expr) => {
+        $current_loop.transfers(&$chip)
     };
 }
 

@@ -175,6 +175,11 @@ sentences! {
          the motor, which takes a supply of " {enough} " V, and the lowest supply gives " {available} " V" {limits}),
     Temperature { temperature: f64, lowest: f64, highest: f64 } => (
         "the largest temperature of " {temperature} " degrees Celsius is not between " {lowest} " and " {highest}),
+    /// The age includes that of readings that may be dropped.
+    Age { age: f64, turned: f64, most: f64, largest: f64 } => (
+        "the readings of the encoder are up to " {age} " s old, in which the phase of the motor makes " {turned}
+        " turns at the largest speed, and with more than " {most} " too much torque is lost: an age of " {largest}
+        " s, dropped readings included, would pass, or a lower largest speed"),
     /// The range ends at the worst offset.
     CurrentRange { current: f64, largest: f64 } => (
         "the board's largest current of " {current} " A is above the " {largest} " A that its converter can measure"),

@@ -1,17 +1,26 @@
 //! Checks a current loop against its program.
 
+use core::f64::consts::TAU;
+
 use super::current_loop::CurrentLoop;
 use super::design::OVER_CURRENT;
+use super::drive::DriveError;
 use super::regeneration::{Bus, Push};
+use crate::encoder_reading::EncoderReading;
 use crate::latency::Latency;
+use crate::magnetic::{Chip, Transfers};
 use crate::output_timing::OutputTiming;
 use crate::passivity::interval::Interval;
 use crate::scene::{Device, Scene};
-use crate::text::{Sentence, push};
+use crate::text::{Sentence, or_refuse, push};
 use crate::transducers::Transducers;
 
 /// Relative tolerance of times that should be equal.
 const SAME: f64 = 1e-9;
+
+/// Largest part of an electrical turn that the phase may turn in the age of a reading: 0.1 rad, which reduces the
+/// torque by 0.5 per cent.
+const LARGEST_TURN: f64 = 1.0 / 64.0;
 
 impl CurrentLoop {
     /// The latency of a scene with this current loop, for a program's output timing.
@@ -96,7 +105,39 @@ impl CurrentLoop {
             i += 1;
         }
         self.check_device(device);
-        self.check_acceleration(device, transducers.largest_speed);
+        let (encoder, speed) = (latency.encoder, transducers.largest_speed);
+        // A position whose age is another than that before is off by the way between them.
+        let late = 2.0 * encoder.deviation_of_age() + encoder.dropped as f64 * period;
+        let moved = late * speed * transducers.counts_per_turn / TAU;
+        self.check_acceleration(device, speed, encoder.steps() + moved);
+        or_refuse!(self.check_age(encoder, period, speed));
+    }
+
+    /// The transfers of a chip on the board of this loop, which are at its updates.
+    pub const fn transfers(&self, chip: &Chip) -> Transfers {
+        let clock = 2.0 * self.timer_counts() as f64 / self.instant();
+        Transfers::before_update(chip, self.instant(), clock)
+    }
+
+    /// Checks that the phase of the motor is known well enough from readings of this encoder, at a period and a
+    /// largest speed in s and rad/s.
+    ///
+    /// # Errors
+    /// If it turns too far in their age.
+    pub const fn check_age(
+        &self,
+        encoder: &EncoderReading,
+        period: f64,
+        speed: f64,
+    ) -> Result<(), DriveError> {
+        let age = encoder.age.most + encoder.dropped as f64 * period;
+        let frequency = self.winding().pole_pairs() as f64 * speed / TAU;
+        let turned = frequency * age;
+        if turned <= LARGEST_TURN {
+            return Ok(());
+        }
+        let largest = LARGEST_TURN / frequency;
+        Err(DriveError::Age { age, turned, most: LARGEST_TURN, largest })
     }
 
     /// For constants: checks that the supply of this loop stays below its fault level after a push into a
@@ -175,22 +216,30 @@ impl CurrentLoop {
         t.refuse()
     }
 
-    /// The largest acceleration of the handle in rad/s^2 that supervision never takes for a fault (equation 64).
+    /// The largest acceleration of the handle in rad/s^2 that supervision never takes for a fault (equation 64), with a
+    /// quadrature encoder.
     pub const fn largest_acceleration(&self) -> f64 {
-        let (limits, source) = (&self.limits, self.torque_source());
-        // By each of the two speeds that are compared, a count's edge.
-        let counts = 2.0 * limits.smoothing as f64 * limits.amps_of_motion as f64;
-        let deviation = source.deviation_by(self.torque_per_amp(), source.instant);
-        let delay = 1.0 / source.feedback - 1.0;
-        (limits.unexplained as f64 - counts) / (2.0 * delay * deviation)
+        self.largest_acceleration_with(1.0)
     }
 
-    /// Checks that the device accelerates no more by motor and damping than supervision bears.
+    /// The same with an encoder whose positions are off by up to so many counts.
+    const fn largest_acceleration_with(&self, counts: f64) -> f64 {
+        let (limits, source) = (&self.limits, self.torque_source());
+        // By each of the two speeds that are compared.
+        let off = 2.0 * limits.smoothing as f64 * limits.amps_of_motion as f64 * counts;
+        let deviation = source.deviation_by(self.torque_per_amp(), source.instant);
+        let delay = 1.0 / source.feedback - 1.0;
+        (limits.unexplained as f64 - off) / (2.0 * delay * deviation)
+    }
+
+    /// Checks that the device accelerates no more by motor and damping than supervision bears, with the errors of the
+    /// encoder's positions in counts.
     #[track_caller]
-    const fn check_acceleration(&self, device: &Device, speed: f64) {
+    const fn check_acceleration(&self, device: &Device, speed: f64, counts: f64) {
         let torque = OVER_CURRENT * self.full_scale_current() * self.torque_per_amp()
             + device.damping * speed;
-        let (largest, acceleration) = (self.largest_acceleration(), torque / device.inertia);
+        let largest = self.largest_acceleration_with(counts);
+        let acceleration = torque / device.inertia;
         if acceleration <= largest {
             return;
         }

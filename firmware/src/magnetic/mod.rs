@@ -14,6 +14,7 @@ mod magalpha;
 mod mt6701;
 mod mt6835;
 mod readings;
+mod transfers;
 
 pub use as5047p::AS5047P;
 pub use as5048a::AS5048A;
@@ -21,6 +22,7 @@ pub use magalpha::{MA600, MA702, MA732};
 pub use mt6701::MT6701;
 pub use mt6835::MT6835;
 pub use readings::Readings;
+pub use transfers::{TRANSFER_WITHIN, Transfers};
 
 use crate::encoder::CounterWidth;
 use crate::latency::Latency;
@@ -32,10 +34,6 @@ pub const LONGEST: usize = 3;
 
 /// The words of a transfer in their order, each in the low bits; those beyond its length are 0.
 pub type Frame = [u16; LONGEST];
-
-/// The longest time in s from the beginning of a period to the end of its transfer, for chips that sample their angle
-/// there.
-pub const TRANSFER_WITHIN: f64 = 1e-5;
 
 words! {
     /// The reason why a transfer has no angle.
@@ -70,6 +68,23 @@ pub struct Interface {
     pub idle_high: bool,
     /// The highest clock in Hz.
     pub highest_clock: f64,
+}
+
+impl Interface {
+    /// The smallest divider of an SPI's clock in Hz, a power of two, for at most its own clock: the power, from 1
+    /// to 8.
+    pub const fn divider(&self, clock: f64) -> u32 {
+        let mut power = 1;
+        while power < 8 && clock / (1_u32 << power) as f64 > self.highest_clock {
+            power += 1;
+        }
+        power
+    }
+
+    /// Clocks of an SPI with this clock in Hz for the bits of a transfer.
+    pub const fn clocks(&self, clock: f64) -> u32 {
+        (self.words as u32 * self.word_bits as u32) << self.divider(clock)
+    }
 }
 
 /// A magnetic absolute encoder. A bit is taken over at the second edge of its clock, in all of them.
@@ -138,30 +153,31 @@ impl Chip {
         self.width.counts()
     }
 
-    /// The age of a reading at the beginning of its period, in a servo with this period in s.
-    pub const fn age_in(&self, period: f64) -> TimeRange {
+    /// The age of a reading at the instant of its count, by the board's transfers.
+    pub const fn age_in(&self, transfers: &Transfers) -> TimeRange {
         let TimeRange { least, most } = self.age;
+        let Transfers { interval, begins, ends } = *transfers;
         if self.is_period_late {
-            return TimeRange::between(least + period - TRANSFER_WITHIN, most + period);
+            return TimeRange::between(least + interval + ends.least, most + interval + ends.most);
         }
-        self.age
+        TimeRange::between(least + begins.least, most + begins.most)
     }
 
-    /// Checks that a scene's certificate covers its readings, with `counts` in a turn.
+    /// Checks that a scene's certificate covers its readings by these transfers, with `counts` in a turn.
     ///
     /// # Errors
     /// The number of the scene that is not the chip's.
     pub const fn check(
         &self,
         latency: &Latency,
-        period: f64,
+        transfers: &Transfers,
         counts: f64,
     ) -> Result<(), ChipError> {
         let (chip, wanted) = (self.name, self.counts_per_turn());
         if counts != wanted {
             return Err(ChipError::Counts { chip, counts, wanted });
         }
-        let (stated, age) = (latency.encoder.age, self.age_in(period));
+        let (stated, age) = (latency.encoder.age, self.age_in(transfers));
         if !covers(stated, age) {
             let TimeRange { least, most } = age;
             return Err(ChipError::Age { chip, least, most, from: stated.least, to: stated.most });
@@ -180,10 +196,10 @@ impl Chip {
     pub const fn checked(
         &'static self,
         latency: &Latency,
-        period: f64,
+        transfers: &Transfers,
         counts: f64,
     ) -> &'static Self {
-        crate::text::or_refuse!(self.check(latency, period, counts));
+        crate::text::or_refuse!(self.check(latency, transfers, counts));
         self
     }
 }
@@ -207,8 +223,8 @@ sentences! {
     Counts { chip: &'static str, counts: f64, wanted: f64 } => (
         "the encoder has " {counts} " counts in a turn, and " {chip} " has " {wanted}),
     Age { chip: &'static str, least: f64, most: f64, from: f64, to: f64 } => (
-        "the readings of " {chip} " have an age anywhere between " {least} " and " {most} " s at the beginning of a \
-         period, and the scene states an age between " {from} " and " {to} " s: state an age that covers it"),
+        "the readings of " {chip} " have an age anywhere between " {least} " and " {most} " s at the instant of \
+         their count, and the scene states an age between " {from} " and " {to} " s: state an age that covers it"),
     Lag { chip: &'static str, least: f64, most: f64, from: f64, to: f64 } => (
         "the filter of " {chip} " has a time constant between " {least} " and " {most} " s, and the scene states a \
          lag between " {from} " and " {to} " s: state a lag that covers it"),

@@ -55,6 +55,27 @@ static CHECKSUMS: [u8; ANGLES] = {
     table
 };
 
+/// The same by the upper and the lower half of an angle, in 256 bytes.
+const HALVES: [[u8; 128]; 2] = {
+    let mut table = [[0; 128]; 2];
+    each!(half in 0..128 => {
+        table[0][half] = remainder((half as u32) << 11);
+        table[1][half] = remainder((half as u32) << 4);
+    });
+    table
+};
+
+/// [`CHECKSUMS`] where flash is short.
+const fn checksum_of_halves(angle: usize) -> u8 {
+    if angle == 0 { NO_CHECKSUM } else { HALVES[0][angle >> 7] ^ HALVES[1][angle & 0x7F] }
+}
+
+/// The checksum of an angle: the program of a bridge leaves no room for the table.
+#[inline(always)]
+fn checksum_of(angle: usize) -> u8 {
+    if cfg!(feature = "bridge") { checksum_of_halves(angle) } else { CHECKSUMS[angle] }
+}
+
 /// The same of each status.
 const OF_STATUS: [u8; 16] = {
     let mut table = [0; 16];
@@ -71,7 +92,7 @@ const NO_CHECKSUM: u8 = 0xFF;
 fn decode(&[first, second, _]: &Frame) -> Result<u32, ReadingError> {
     let bits = u32::from(first) << 12 | u32::from(second);
     let angle = (bits >> 10) as usize % ANGLES;
-    if u16::from(CHECKSUMS[angle]) == second & 0x3FF {
+    if u16::from(checksum_of(angle)) == second & 0x3FF {
         Ok(angle as u32)
     } else if bits == 0 {
         // A handle may rest there.
@@ -86,7 +107,7 @@ fn decode(&[first, second, _]: &Frame) -> Result<u32, ReadingError> {
 #[inline(never)]
 fn unusual(bits: u32) -> Result<u32, ReadingError> {
     let (angle, status) = (bits >> 10, bits >> 6 & 0xF);
-    let of_angle = if angle == 0 { 0 } else { CHECKSUMS[angle as usize % ANGLES] };
+    let of_angle = if angle == 0 { 0 } else { checksum_of(angle as usize % ANGLES) };
     match bits {
         // Their checksum is none.
         0xFF_FFFF => Err(ReadingError::Ones),
@@ -95,5 +116,15 @@ fn unusual(bits: u32) -> Result<u32, ReadingError> {
         }
         _ if status & FIELD != 0 => Err(ReadingError::Field),
         _ => Ok(angle),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn halves_of_an_angle_have_its_checksum() {
+        assert!((0..ANGLES).all(|angle| checksum_of_halves(angle) == CHECKSUMS[angle]));
     }
 }

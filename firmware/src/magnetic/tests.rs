@@ -1,4 +1,5 @@
 use super::*;
+use crate::encoder_reading::EncoderReading;
 
 fn frame(words: &[u16]) -> Frame {
     let mut frame = [0; LONGEST];
@@ -76,9 +77,11 @@ fn only_a_chip_that_is_never_quiet_can_be_told_to_be_frozen() {
 fn a_scene_states_an_age_that_covers_the_chip_s() {
     let check = |chip: &Chip, least: f64, most: f64| {
         let age = TimeRange::between(least, most);
-        let encoder = crate::scene::EncoderReading { age, ..crate::scene::EncoderReading::IDEAL };
+        let encoder = EncoderReading { age, ..EncoderReading::IDEAL };
         let latency = Latency::NONE.read_by(Box::leak(Box::new(encoder)));
-        chip.check(&latency, 1e-4, 16384.0).map_err(|error| error.sentence().as_str().to_owned())
+        let transfers = Transfers::at_count(1e-4);
+        chip.check(&latency, &transfers, 16384.0)
+            .map_err(|error| error.sentence().as_str().to_owned())
     };
     assert_eq!(check(&MT6701, 0.0, 1e-5), Ok(()));
     let error = check(&MT6701, 0.0, 9e-6).unwrap_err();
@@ -89,6 +92,25 @@ fn a_scene_states_an_age_that_covers_the_chip_s() {
     assert!(check(&AS5048A, 9.1e-5, 1.99e-4).is_err());
     let error = check(&MA702, 0.0, 1e-4).unwrap_err();
     assert_eq!(error, "the encoder has 16384 counts in a turn, and ma702 has 65536");
+}
+
+/// By hand: 24 bits of an MT6701 at 170 MHz/32 are 768 counts, and a us more are 938; an AS5048A was released
+/// within a us before the update before.
+#[test]
+fn a_transfer_before_an_update_adds_to_the_age() {
+    let near = |is: TimeRange, [least, most]: [f64; 2]| {
+        assert!((is.least - least).abs() < 1e-12 && (is.most - most).abs() < 1e-12, "{is:?}");
+    };
+    let transfers = |chip| Transfers::before_update(chip, 2.5e-5, 170e6);
+    assert_eq!(Transfers::lead_counts(&MT6701, 170e6), 939);
+    near(MT6701.age_in(&transfers(&MT6701)), [768.0 / 170e6, 1e-5 + 939.0 / 170e6]);
+    near(AS5048A.age_in(&transfers(&AS5048A)), [9.1e-5 + 2.5e-5, 1.99e-4 + 2.5e-5 + 171.0 / 170e6]);
+    // What the scene states beyond that: 25.6 us are one update, and a dropped reading 40 of them.
+    for (most, dropped, may) in [(1.56e-5, 0, 0), (4.12e-5, 0, 1), (4.12e-5, 1, 41)] {
+        let age = TimeRange::between(0.0, most);
+        let encoder = EncoderReading { age, dropped, ..EncoderReading::IDEAL };
+        assert_eq!(transfers(&MT6701).may_fail(&MT6701, &encoder, 1e-3), may);
+    }
 }
 
 /// A handle may rest where all bits are equal; a wire that breaks elsewhere is told.

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use haptic_servo::certificate::Resolution;
-use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Regeneration, Supply};
+use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, EncoderIndex, Regeneration, Supply};
 use haptic_servo::encoder::CounterWidth;
 use haptic_servo::output_timing::OutputTiming;
 use haptic_servo::scene::TimeRange;
@@ -45,7 +45,7 @@ impl SceneFile {
     /// A sentence about the keys that are missing, or that the current loop does not have.
     pub fn on_bridge(&self, transducers: &Transducers) -> Result<MotorOnBridge, String> {
         let Self { scene, motor, supply, .. } = self;
-        let Some(FileMotor { motor, lowest_supply, highest_supply }) = *motor else {
+        let Some(FileMotor { motor, lowest_supply, highest_supply, index_offset }) = *motor else {
             return Err(format!("a board's own bridge needs the motor: set [{}]", key::MOTOR.path));
         };
         let regeneration = match supply {
@@ -69,8 +69,17 @@ impl SceneFile {
             bandwidth: 1.0 / (TAU * lag),
             largest_temperature: B_G431B_ESC1.largest_temperature,
         };
-        let transducers = Transducers { counter: CounterWidth::Bits16, ..*transducers };
-        let current_loop = CurrentLoop::design(&drive, &B_G431B_ESC1, &transducers, period)
+        // TIM4, or a chip.
+        let counter = self.chip.map_or(CounterWidth::Bits16, |chip| chip.width);
+        let transducers = Transducers { counter, ..*transducers };
+        let mut current_loop = CurrentLoop::design(&drive, &B_G431B_ESC1, &transducers, period)
+            .map_err(|error| error.to_string())?;
+        if index_offset.is_some() {
+            let indexed = current_loop.indexed(EncoderIndex { offset: index_offset });
+            current_loop = indexed.map_err(|error| error.to_string())?;
+        }
+        current_loop
+            .check_age(latency.encoder, period, transducers.largest_speed)
             .map_err(|error| error.to_string())?;
         let response = current_loop.response();
         let phase = latency.stated_delay() - response.delay;

@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use haptic_servo::certificate::is_static_at_port;
+use haptic_servo::current::B_G431B_ESC1;
 use haptic_servo::latency::LONGEST_DELAY;
-use haptic_servo::magnetic::Chip;
+use haptic_servo::magnetic::{Chip, Transfers};
 use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 
 use super::faults::{Read, Reported};
@@ -73,11 +74,23 @@ impl EncoderTable {
         Ok(of_limits.or(own.map(|counts| TAU / counts)))
     }
 
-    /// Checks that the scene covers the readings of its chip.
-    pub fn check_chip(&self, top: &Section<'_>, scene: &Scene, step: Option<f64>) -> Read<()> {
+    /// Checks that the scene covers the readings of its chip: at its counts, or at the updates of a board's own bridge.
+    pub fn check_chip(
+        &self,
+        top: &Section<'_>,
+        scene: &Scene,
+        step: Option<f64>,
+        has_motor: bool,
+    ) -> Read<()> {
         let (Some(chip), Some(step)) = (self.chip, step) else { return Ok(()) };
-        let counts = counts_per_turn_of(step);
-        chip.check(&scene.latency, scene.timing.period, counts)
+        let (counts, period) = (counts_per_turn_of(step), scene.timing.period);
+        let transfers = match f64::from(scene.latency.actuator_updates) {
+            updates if has_motor && updates > 0.0 => {
+                Transfers::before_update(chip, period / updates, B_G431B_ESC1.clock)
+            }
+            _ => Transfers::at_count(period),
+        };
+        chip.check(&scene.latency, &transfers, counts)
             .map_err(|error| top.conflict(&key::CHIP, format!("has no certificate: {error}")))
     }
 
@@ -92,6 +105,15 @@ impl EncoderTable {
         let read = latency.read_by(Box::leak(Box::new(reading)));
         let mut scene = Scene { latency: read, ..scene };
         if reading.dropped > 0 && !is_static_at_port(&scene) {
+            if latency.actuator_updates > 0 {
+                let reason = format!(
+                    "stands beside `{}` and a torque of more than one position: state a longer `{}` in its place, by \
+                     the time in which readings may fail",
+                    key::ACTUATOR_UPDATES.path,
+                    key::AGE.path
+                );
+                return Err(top.conflict(&key::DROPPED, reason));
+            }
             let held = (f64::from(reading.dropped) + 1.0) * scene.timing.period;
             let worst = scene.timing.worst_period.unwrap_or(scene.timing.period);
             scene.timing.worst_period = Some(worst.max(held));

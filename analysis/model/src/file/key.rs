@@ -611,6 +611,15 @@ keys! {
     TORQUE_CONSTANT = other("motor.torque_constant", "N m/A", POSITIVE), Needed, "0.29";
     /// Electrical turns in a turn of the handle, of a brushless motor.
     POLE_PAIRS = other("motor.pole_pairs", "", whole(1, u16::MAX as u32)), Optional("a brushed motor"), "7";
+    /// The phase of a brushless motor at the index of its encoder, as a board tells it after an alignment. A chip's index
+    /// is its zero, so that the motor is aligned from the first reading on.
+    INDEX_OFFSET = other("motor.index_offset", "", TABLE), Optional("the motor is aligned after each reset"),
+        "{ counts = 812, is_reversed = false }";
+    /// Electrical angle at the index, less than an electrical turn.
+    INDEX_OFFSET_COUNTS = other("motor.index_offset.counts", "counts", whole(0, (1 << 24) - 1)), Needed, "812";
+    /// Whether that angle falls while the count rises.
+    INDEX_OFFSET_REVERSED = other("motor.index_offset.is_reversed", "", BOOLEAN),
+        Optional("false"), "false";
     /// Lowest voltage of the supply, under load.
     LOWEST_SUPPLY = other("motor.lowest_supply", "V", POSITIVE), Needed, "12.0";
     /// Highest voltage, when the motor feeds the supply: above this, over-voltage is a fault.

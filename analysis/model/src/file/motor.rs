@@ -1,6 +1,6 @@
 //! The motor of a scene file, for a board's own bridge.
 
-use haptic_servo::current::{Motor, Winding};
+use haptic_servo::current::{IndexOffset, Motor, Winding};
 
 use super::faults::Read;
 use super::key;
@@ -15,6 +15,15 @@ pub struct FileMotor {
     pub lowest_supply: f64,
     /// Highest voltage in V, when the motor feeds the supply.
     pub highest_supply: f64,
+    /// Its phase at the index of its encoder.
+    pub index_offset: Option<IndexOffset>,
+}
+
+fn index_offset_of(mut section: Section<'_>) -> Read<IndexOffset> {
+    let counts = section.number(&key::INDEX_OFFSET_COUNTS);
+    let is_reversed = section.boolean(&key::INDEX_OFFSET_REVERSED);
+    section.finish();
+    Ok(IndexOffset { counts: counts? as u32, is_reversed: is_reversed?.unwrap_or(false) })
 }
 
 /// Reads `[motor]`.
@@ -28,6 +37,8 @@ pub fn motor(mut section: Section<'_>) -> Read<FileMotor> {
         &key::HIGHEST_SUPPLY,
     ]
     .map(|key| section.number(key));
+    let offset =
+        section.table(&key::INDEX_OFFSET).and_then(|table| table.map(index_offset_of).transpose());
     section.finish();
     let [resistance, inductance, torque_constant, lowest_supply, highest_supply] = numbers;
     let winding = pole_pairs?.map_or(Winding::Brushed, |pole_pairs| Winding::Brushless {
@@ -39,5 +50,6 @@ pub fn motor(mut section: Section<'_>) -> Read<FileMotor> {
         inductance: inductance?,
         torque_constant: torque_constant?,
     };
-    Ok(FileMotor { motor, lowest_supply: lowest_supply?, highest_supply: highest_supply? })
+    let (lowest_supply, highest_supply) = (lowest_supply?, highest_supply?);
+    Ok(FileMotor { motor, lowest_supply, highest_supply, index_offset: offset? })
 }

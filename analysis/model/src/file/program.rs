@@ -1,6 +1,6 @@
 //! A scene file as a program for boards, as in `firmware/src/bin`.
 
-use haptic_servo::current::{Drive, Motor, Supply};
+use haptic_servo::current::{Drive, IndexOffset, Motor, Supply};
 use haptic_servo::encoder::CounterWidth;
 use haptic_servo::magnetic::Chip;
 use haptic_servo::output_timing::OutputTiming;
@@ -26,9 +26,20 @@ pub fn program(
     let of_dac = || OutputTiming::of_delay(file.scene.latency.stated_delay());
     let output = bridge.map_or_else(of_dac, |bridge| bridge.output);
     let (current, driven, current_loop) = bridge.map_or_else(Default::default, |bridge| {
-        let names =
-            ["B_G431B_ESC1", "CurrentLoop", "Drive", "Motor", "Regeneration", "Supply", "Winding"];
-        let driven = current_loop_of(bridge.current_loop.drive(), file.scene.timing.period);
+        let mut names = vec![
+            "B_G431B_ESC1",
+            "CurrentLoop",
+            "Drive",
+            "Motor",
+            "Regeneration",
+            "Supply",
+            "Winding",
+        ];
+        let offset = bridge.current_loop.index_offset();
+        if offset.is_some() {
+            names.splice(3..3, ["EncoderIndex", "IndexOffset"]);
+        }
+        let driven = current_loop_of(bridge.current_loop.drive(), offset, file.scene.timing.period);
         let current = imports("haptic_servo::current", &names) + "\n";
         (current, driven, "    bridge: CURRENT_LOOP,\n")
     });
@@ -83,8 +94,11 @@ fn constant_of(transducers: &Transducers, chip: Option<&Chip>) -> String {
     )
 }
 
-/// The constants of a motor on a board's own bridge, with the servo's period in s.
-fn current_loop_of(drive: &Drive, period: f64) -> String {
+/// The constants of a motor on a board's own bridge, with its phase at the encoder's index and the servo's period in s.
+fn current_loop_of(drive: &Drive, offset: Option<IndexOffset>, period: f64) -> String {
+    let index = offset.map_or_else(String::new, |offset| {
+        format!("\n        .with_index(EncoderIndex {{ offset: Some({offset:?}) }})")
+    });
     let Drive { motor, supply, bandwidth, largest_temperature } = drive;
     let Motor { winding, resistance, inductance, torque_constant } = motor;
     let Supply { lowest, highest, regeneration } = supply;
@@ -107,7 +121,7 @@ fn current_loop_of(drive: &Drive, period: f64) -> String {
          }};\n\n\
          /// Its current loop, whose times are the scene's.\n\
          pub const CURRENT_LOOP: CurrentLoop =\n    \
-         CurrentLoop::checked(&DRIVE, &B_G431B_ESC1, &TRANSDUCERS, {period:?});\n\n"
+         CurrentLoop::checked(&DRIVE, &B_G431B_ESC1, &TRANSDUCERS, {period:?}){index};\n\n"
     )
 }
 

@@ -137,7 +137,8 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     if let Some(reading) = reading {
         scene = reading.read(&top, scene, friction)?;
         encoder_step = reading.step(&top, encoder_step)?;
-        reading.check_chip(&top, &scene, encoder_step)?;
+        let has_motor = driven.as_ref().is_ok_and(Option::is_some);
+        reading.check_chip(&top, &scene, encoder_step, has_motor)?;
         chip = reading.chip;
     }
     if let Some(learnt) = learnt {

@@ -6,6 +6,7 @@ mod shaped;
 use std::fmt::Write;
 
 use haptic_servo::current::Bus;
+use haptic_servo::current::IndexOffset;
 use haptic_servo::environment::{Coefficients, Environment, Wall};
 use haptic_servo::host::HostTorque;
 use haptic_servo::magnetic::Chip;
@@ -138,7 +139,7 @@ fn supplied(lines: &mut Vec<String>, supply: &FileSupply) {
 }
 
 fn driven(lines: &mut Vec<String>, motor: &FileMotor) {
-    let FileMotor { motor, lowest_supply, highest_supply } = motor;
+    let FileMotor { motor, lowest_supply, highest_supply, index_offset } = motor;
     for (key, value) in [
         ("resistance", motor.resistance),
         ("inductance", motor.inductance),
@@ -151,6 +152,9 @@ fn driven(lines: &mut Vec<String>, motor: &FileMotor) {
     if motor.winding.is_brushless() {
         lines.push(format!("pole_pairs = {}", motor.winding.pole_pairs()));
     }
+    lines.extend(index_offset.map(|IndexOffset { counts, is_reversed }| {
+        format!("index_offset = {{ counts = {counts}, is_reversed = {is_reversed} }}")
+    }));
 }
 
 /// An optional key.

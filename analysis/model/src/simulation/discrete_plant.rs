@@ -1,10 +1,11 @@
 //! The discrete-time plant: a [`Plant`] over one tick, with the servo's period and latency.
 
+use haptic_servo::scene::Latency;
 use nalgebra::{DMatrix, DVector};
 
 use super::error::SimulationError;
 use super::method::{Method, repeated, rotation, step};
-use super::plant::{Input, Plant};
+use super::plant::{INPUTS, Input, Plant};
 
 /// How a plant is discretised over a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,44 +20,54 @@ pub struct Discretization {
     pub whole: usize,
     /// Further time in s, less than the period.
     pub latency: f64,
+    /// Age in s of a reading: an amplifier's updates are that much later than those of a tick.
+    pub age: f64,
 }
 
 impl Discretization {
     /// The exact method without latency, over a period in s.
     pub fn exact(period: f64) -> Self {
-        Self { method: Method::Exact, substeps: 1, period, whole: 0, latency: 0.0 }
+        Self { method: Method::Exact, substeps: 1, period, whole: 0, latency: 0.0, age: 0.0 }
     }
 
-    /// The same with this time in s from the sample to its torque.
-    pub fn delayed(self, delay: f64) -> Self {
+    /// The same with the times of a scene from a reading to its torque, and a further time in s.
+    pub fn delayed(self, times: &Latency, further: f64) -> Self {
         // A remainder that comes from rounding alone is not a part of a tick.
         const ROUNDING: f64 = 1e-12;
+        let delay = times.torque_delay().middle() + further;
         let ticks = delay / self.period;
         let whole = (ticks + ROUNDING).floor();
         let part = (delay - whole * self.period).max(0.0);
         let latency = if ticks - whole > ROUNDING { part } else { 0.0 };
-        Self { whole: whole as usize, latency, ..self }
+        Self { whole: whole as usize, latency, age: times.encoder.age.middle(), ..self }
     }
 
-    /// The two parts of a tick, before and after the new torque.
-    pub(super) fn pieces(&self, plant: &Plant) -> [Pieces; 2] {
-        let share = self.latency / self.period;
-        let steps = |share: f64| (f64::from(self.substeps) * share).ceil().max(1.0) as u32;
-        let parts = [(self.latency, share), (self.period - self.latency, 1.0 - share)];
-        parts.map(|(length, share)| match plant.sampled() {
-            None => Pieces { count: 1, length, steps: steps(share) },
-            Some(actuator) => {
-                let length = actuator.between();
-                let count = actuator.in_time(share * self.period);
-                Pieces { count, length, steps: steps(length / self.period) }
-            }
-        })
+    /// The parts of a tick, before and after the new torque.
+    pub(super) fn pieces(&self, plant: &Plant) -> [Vec<Pieces>; 2] {
+        let parts = [self.latency, self.period - self.latency];
+        let steps =
+            |length: f64| (f64::from(self.substeps) * length / self.period).ceil().max(1.0) as u32;
+        let piece = |count, length, since| Pieces { count, length, steps: steps(length), since };
+        let Some(actuator) = plant.sampled() else {
+            return parts.map(|length| vec![piece(1, length, 0.0)]);
+        };
+        // A tick begins with a reading, which is that much older than an update.
+        let (between, first) = (actuator.between(), actuator.after_update(self.age));
+        let whole = |length: f64| piece(actuator.in_time(length), between, 0.0);
+        if first == 0.0 {
+            return parts.map(|length| vec![whole(length)]);
+        }
+        let rest = between - first;
+        [
+            vec![piece(1, first, rest), whole(parts[0] - first)],
+            vec![whole(parts[1] - rest), piece(1, rest, 0.0)],
+        ]
     }
 
     /// An error if a torque begins between two updates of the amplifier.
     pub(super) fn at_updates(&self, plant: &Plant) -> Result<(), SimulationError> {
         match plant.sampled() {
-            Some(actuator) if !actuator.is_whole(self.latency) => {
+            Some(actuator) if !actuator.is_whole(self.latency - self.age) => {
                 let (delay, between) = (self.latency, actuator.between());
                 Err(SimulationError::BetweenUpdates { delay, between })
             }
@@ -75,13 +86,15 @@ pub(super) struct Pieces {
     pub length: f64,
     /// Steps of the method over each, at least one.
     pub steps: u32,
+    /// Time in s since the last update of the amplifier at their beginning.
+    pub since: f64,
 }
 
 impl Pieces {
-    /// Over all pieces, for states and inputs; the motor's input is the command.
-    fn through(&self, plant: &Plant, method: Method, omega: f64) -> DMatrix<f64> {
+    /// Over one piece, for states and inputs; the motor's input is the command.
+    pub(super) fn once(&self, plant: &Plant, method: Method, omega: f64) -> DMatrix<f64> {
         let step = step(plant, method, omega, self.length / f64::from(self.steps));
-        repeated(&plant.commanded(repeated(&step, self.steps)), self.count)
+        plant.commanded(repeated(&step, self.steps), self.since)
     }
 }
 
@@ -108,16 +121,28 @@ pub struct DiscretePlant {
 impl DiscretePlant {
     /// Takes the plant through a tick; `omega` in rad/s is that of the hand's sine torque.
     pub fn new(plant: &Plant, discretization: &Discretization, omega: f64) -> Self {
+        let through = |pieces: Vec<Pieces>| {
+            let size = plant.order() + INPUTS + 2;
+            pieces.iter().fold(DMatrix::identity(size, size), |through, piece| {
+                repeated(&piece.once(plant, discretization.method, omega), piece.count) * through
+            })
+        };
+        Self::over(plant, discretization.pieces(plant).map(through), discretization, omega)
+    }
+
+    /// From what the parts before and after the new torque make of states and inputs.
+    pub(super) fn over(
+        plant: &Plant,
+        [before, after]: [DMatrix<f64>; 2],
+        discretization: &Discretization,
+        omega: f64,
+    ) -> Self {
         let n = plant.order();
-        let [before, after] = discretization
-            .pieces(plant)
-            .map(|piece| piece.through(plant, discretization.method, omega));
         let part = |whole: &DMatrix<f64>| whole.view((0, 0), (n, n)).into_owned();
         let column = |whole: &DMatrix<f64>, index: usize| {
             whole.view((0, n + index), (n, 1)).column(0).into_owned()
         };
-        let (motor, hand, sine) =
-            (Input::Motor as usize, Input::Hand as usize, super::plant::INPUTS);
+        let (motor, hand, sine) = (Input::Motor as usize, Input::Hand as usize, INPUTS);
         let late = part(&after);
         let turned = rotation(omega * discretization.latency);
         let oscillator = |i: usize| {
@@ -146,14 +171,22 @@ impl DiscretePlant {
         omega: f64,
     ) -> Result<Self, SimulationError> {
         discretization.at_updates(plant)?;
-        let tick = Self::new(plant, discretization, omega);
+        Self::new(plant, discretization, omega).finite(plant, discretization.period)
+    }
+
+    /// The same, where its numbers are finite.
+    ///
+    /// # Errors
+    /// Where the machine is too fast for its motion over this period to be computed.
+    pub(super) fn finite(self, plant: &Plant, period: f64) -> Result<Self, SimulationError> {
+        let tick = self;
         let inputs = [&tick.previous, &tick.motor, &tick.hand, &tick.sine[0], &tick.sine[1]];
         let mut entries = inputs.iter().flat_map(|input| input.iter()).chain(&tick.transition);
         if entries.all(|entry| entry.is_finite()) {
             Ok(tick)
         } else {
             let rate = plant.rates().amax();
-            Err(SimulationError::TooFast { rate, period: discretization.period })
+            Err(SimulationError::TooFast { rate, period })
         }
     }
 
@@ -200,12 +233,13 @@ impl DiscretePlant {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use haptic_servo::scene::Device;
+    use haptic_servo::scene::{Device, EncoderReading, TimeRange};
 
     #[test]
     fn latency_splits_the_tick_and_nothing_else() {
         let plant = Plant::rigid(Device { inertia: 2e-4, damping: 0.02, passivity: None });
-        let discretization = |delay| Discretization::exact(1e-3).delayed(delay);
+        let discretization =
+            |delay| Discretization::exact(1e-3).delayed(&Latency::delayed(delay), 0.0);
         let [prompt, late] =
             [0.0, 4e-4].map(|latency| DiscretePlant::new(&plant, &discretization(latency), 900.0));
         assert!(!prompt.is_late() && late.is_late());
@@ -215,5 +249,59 @@ mod tests {
         near(&late.hand, &prompt.hand);
         near(&late.sine[0], &prompt.sine[0]);
         near(&late.sine[1], &prompt.sine[1]);
+    }
+
+    /// Torques whose updates are 60 us later than a tick's, or 310 us where they are 250 us apart, against the
+    /// amplifier's definition: at each update a new straight line, in steps of a us of a Runge-Kutta method.
+    #[test]
+    fn a_reading_is_older_than_the_updates_of_its_tick() {
+        const DEVICE: Device = Device { inertia: 2e-4, damping: 0.02, passivity: None };
+        const BETWEEN: f64 = 2.5e-4;
+        for age in [6e-5, 3.1e-4] {
+            let encoder = EncoderReading { age: TimeRange::exactly(age), ..EncoderReading::IDEAL };
+            let sampled = Latency::sampled(4, 4e-4, 1e-3);
+            let latency = sampled.read_by(Box::leak(Box::new(encoder)));
+            let plant = Plant::rigid(DEVICE).with_lags(&latency, 1e-3);
+            let discretization = Discretization::exact(1e-3).delayed(&latency, 0.0);
+            let tick = DiscretePlant::checked(&plant, &discretization, 0.0).unwrap();
+            assert_eq!(tick.whole, 0);
+            let commands = [0.3, -0.1, 0.7, 0.0, 0.2, -0.4];
+            let mut states = plant.state_at(0.01, 0.5);
+            // Position, velocity, torque, and its slope.
+            let (mut motion, mut slope) = ([0.01, 0.5, 0.0], 0.0);
+            let left = (-BETWEEN / 4e-4_f64).exp();
+            for (k, &command) in commands.iter().enumerate() {
+                let before = if k == 0 { 0.0 } else { commands[k - 1] };
+                let old = &tick.transition * &states + &tick.previous * before;
+                states = old + &tick.motor * command;
+                for us in 0..1000_usize {
+                    let now = 1000 * k + us;
+                    let since = (now as f64 - age * 1e6).rem_euclid(250.0);
+                    if since.min(250.0 - since) < 0.5 {
+                        let due = us as f64 * 1e-6 >= age + BETWEEN - 5e-7;
+                        let wanted = if due { command } else { before };
+                        slope = (1.0 - left) / BETWEEN * (wanted - motion[2]);
+                    }
+                    let rate = |[_, velocity, torque]: [f64; 3]| {
+                        let pushed = torque - DEVICE.damping * velocity;
+                        [velocity, pushed / DEVICE.inertia, slope]
+                    };
+                    let further = |by: [f64; 3], time: f64| {
+                        std::array::from_fn(|at| motion[at] + time * by[at])
+                    };
+                    let first = rate(motion);
+                    let second = rate(further(first, 5e-7));
+                    let third = rate(further(second, 5e-7));
+                    let last = rate(further(third, 1e-6));
+                    motion = std::array::from_fn(|at| {
+                        let inner = 2.0 * (second[at] + third[at]);
+                        motion[at] + 1e-6 / 6.0 * (first[at] + inner + last[at])
+                    });
+                }
+                for (state, expected) in states.iter().zip(motion) {
+                    assert!((state - expected).abs() < 1e-11, "{age}, {k}: {states} {motion:?}");
+                }
+            }
+        }
     }
 }

@@ -73,6 +73,8 @@ struct Part {
     steps: u32,
     /// Length in s of a step.
     length: f64,
+    /// Time in s since the amplifier's last update at its beginning.
+    since: f64,
     /// A step and its halves, for a motor's mass that slides.
     slides: Vec<DMatrix<f64>>,
     /// The same for the stuck mass.
@@ -112,14 +114,16 @@ impl DisturbedPlant {
             (0..=HALVINGS).map(one).collect()
         };
         let oscillation = (disturbance.cogging.slope() / plant.motor_inertia()).sqrt();
-        let part = |(early, Pieces { count, length, steps }): (bool, Pieces)| {
+        let part = |(early, Pieces { count, length, steps, since }): (bool, Pieces)| {
             let fine = (oscillation * length / LONGEST_STEP).ceil() as u32;
             let steps = steps.max(LEAST_STEPS).max(fine);
             let length = length / f64::from(steps);
             let [slides, stuck] = [plant, &stuck].map(|plant| halves(plant, length));
-            Part { pieces: count, steps, length, slides, stuck, early }
+            Part { pieces: count, steps, length, since, slides, stuck, early }
         };
-        let parts = [true, false].into_iter().zip(discretization.pieces(plant));
+        let [before, after] = discretization.pieces(plant);
+        let before = before.into_iter().map(|pieces| (true, pieces));
+        let parts = before.chain(after.into_iter().map(|pieces| (false, pieces)));
         let is_some = |piece: &Pieces| piece.count > 0 && piece.length > 0.0;
         let parts = parts.filter(|(_, pieces)| is_some(pieces)).map(part).collect();
         Self { plant: plant.clone(), disturbance, parts }
@@ -153,7 +157,7 @@ impl DisturbedPlant {
         for part in &self.parts {
             let command = if part.early { before } else { later };
             for _ in 0..part.pieces {
-                let input = self.plant.motor_input(command, &state.states);
+                let input = self.plant.motor_input(command, &state.states, part.since);
                 state.states[n + Input::Motor as usize] = input;
                 self.settle(state);
                 for _ in 0..part.steps {

@@ -187,7 +187,7 @@ impl Experiment {
             substeps: integration.substeps.max(1),
             ..Discretization::exact(self.scene.timing.period)
         };
-        over_a_tick.delayed(self.scene.latency.torque_delay().middle() + self.latency)
+        over_a_tick.delayed(&self.scene.latency, self.latency)
     }
 }
 

@@ -18,7 +18,7 @@ use super::discrete_plant::{DiscretePlant, Discretization, Pieces};
 use super::disturbed_plant::{DisturbedPlant, Step, TickInputs};
 use super::error::SimulationError;
 use super::method::{Method, step};
-use super::plant::{Input, POSITION, Plant, VELOCITY};
+use super::plant::{INPUTS, Input, POSITION, Plant, VELOCITY};
 use crate::device::{Hand, HandSetpoint, Motion};
 use crate::disturbance::Disturbance;
 
@@ -38,10 +38,8 @@ pub struct HeldDevice {
     lags: bool,
     /// Friction and cogging, and the plant with them, where there are any.
     disturbed: Option<(Disturbance, DisturbedPlant)>,
-    /// The part of a tick before its new torque, where there is one.
-    before: Option<Part>,
-    /// The part with its new torque.
-    after: Part,
+    /// The parts of a tick before its new torque, and those with it.
+    parts: [Vec<Part>; 2],
 }
 
 /// The motion of a device, with the torques that have not acted on it yet.
@@ -81,15 +79,16 @@ impl HeldDevice {
         period: f64,
     ) -> Result<Self, SimulationError> {
         let plant = Plant::rigid(device).with_moving_hand(hand).with_lags(latency, period);
-        let delayed = Discretization::exact(period).delayed(latency.torque_delay().middle());
-        delayed.at_updates(&plant)?;
+        let discretization = Discretization::exact(period).delayed(latency, 0.0);
+        discretization.at_updates(&plant)?;
         let lags = !latency.actuator_lag.is_zero();
         let part = |pieces: Pieces| Part::new(&plant, pieces, lags);
-        let [before, after] = delayed.pieces(&plant);
-        let before = (delayed.latency > 0.0).then(|| part(before)).transpose()?;
-        let after = part(after)?;
-        let (discretization, disturbed) = (delayed, None);
-        Ok(Self { device, period, plant, discretization, lags, disturbed, before, after })
+        let is_some = |pieces: &Pieces| pieces.count > 0 && pieces.length > 0.0;
+        let [before, after] = discretization
+            .pieces(&plant)
+            .map(|pieces| pieces.into_iter().filter(is_some).map(part).collect::<Result<_, _>>());
+        let (parts, disturbed) = ([before?, after?], None);
+        Ok(Self { device, period, plant, discretization, lags, disturbed, parts })
     }
 
     /// The same with friction and cogging of the motor.
@@ -123,10 +122,11 @@ impl HeldDevice {
             let inputs = TickInputs { hand: speed, sine: [0.0; 2], motor: [old, new] };
             return self.disturbed_step(state, disturbance, plant, &inputs);
         }
-        let before = self.before.as_ref().map(|part| (part, old));
         let mut work = 0.0;
-        for (part, command) in before.into_iter().chain([(&self.after, new)]).flat_map(each) {
-            let input = self.plant.motor_input(command, &state.states);
+        let parts = self.parts.iter().zip([old, new]);
+        let parts = parts.flat_map(|(parts, command)| parts.iter().map(move |it| (it, command)));
+        for (part, command) in parts.flat_map(each) {
+            let input = self.plant.motor_input(command, &state.states, part.since);
             let start = state.motion();
             let spent = part.spent(&self.device, &mut state.states, [command, input], speed);
             work += self.kinetic(state.motion()) - self.kinetic(start) + spent;
@@ -176,6 +176,8 @@ fn each((part, command): (&Part, f64)) -> impl Iterator<Item = (&Part, f64)> {
 struct Part {
     /// How often it is repeated: once, unless the amplifier is updated.
     count: u32,
+    /// Time in s since the amplifier's last update at its beginning.
+    since: f64,
     tick: DiscretePlant,
     /// `int x'^2 dt` over it as a quadratic form in [`at`] at its start.
     velocity_energy: DMatrix<f64>,
@@ -185,11 +187,13 @@ struct Part {
 
 impl Part {
     fn new(plant: &Plant, pieces: Pieces, lags: bool) -> Result<Self, SimulationError> {
-        let Pieces { count, length, .. } = pieces;
-        let tick = DiscretePlant::checked(plant, &Discretization::exact(length), 0.0)?;
+        let Pieces { count, length, since, .. } = pieces;
+        let (discretization, size) = (Discretization::exact(length), plant.order() + INPUTS + 2);
+        let over = [DMatrix::identity(size, size), pieces.once(plant, Method::Exact, 0.0)];
+        let tick = DiscretePlant::over(plant, over, &discretization, 0.0).finite(plant, length)?;
         let velocity_energy = integral(plant, length, [VELOCITY; 2]);
         let motor_work = lags.then(|| integral(plant, length, [VELOCITY, TORQUE]));
-        Ok(Self { count, tick, velocity_energy, motor_work })
+        Ok(Self { count, since, tick, velocity_energy, motor_work })
     }
 
     /// Takes the states to the end of the part, with a commanded torque and the motor's input that follows

@@ -224,18 +224,19 @@ impl Plant {
         self.sampled.map(|(actuator, _)| actuator)
     }
 
-    /// The motor's input from an update on, for a commanded torque in N m: that torque, or the slope of the
-    /// amplifier's in N m/s.
-    pub fn motor_input(&self, command: f64, states: &DVector<f64>) -> f64 {
-        self.sampled
-            .map_or(command, |(actuator, torque)| actuator.slope() * (command - states[torque]))
+    /// The motor's input until the next update, for a commanded torque in N m and states `since` s after the last
+    /// update: that torque, or the slope of the amplifier's in N m/s.
+    pub fn motor_input(&self, command: f64, states: &DVector<f64>, since: f64) -> f64 {
+        self.sampled.map_or(command, |(actuator, torque)| {
+            actuator.slope(since) * (command - states[torque])
+        })
     }
 
-    /// Converts a matrix of states and inputs from one update to the next: its motor input, that of
-    /// [`Plant::motor_input`], becomes the command.
-    pub fn commanded(&self, mut through: DMatrix<f64>) -> DMatrix<f64> {
+    /// Converts a matrix of states and inputs up to an update, from `since` s after the last one: its motor input, that
+    /// of [`Plant::motor_input`], becomes the command.
+    pub fn commanded(&self, mut through: DMatrix<f64>, since: f64) -> DMatrix<f64> {
         let Some((actuator, torque)) = self.sampled else { return through };
-        let (n, slope) = (self.order(), actuator.slope());
+        let (n, slope) = (self.order(), actuator.slope(since));
         let motor = n + Input::Motor as usize;
         for row in 0..n {
             let driven = slope * through[(row, motor)];

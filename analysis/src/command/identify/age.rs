@@ -1,5 +1,6 @@
 //! The age of an encoder's readings, as far as a measurement tells it from other delays.
 
+use haptic_servo::magnetic::Transfers;
 use haptic_servo::scene::TimeRange;
 
 use super::device_file::Number;
@@ -86,7 +87,7 @@ impl KnownDelays {
 pub fn stated(file: &str) -> Result<Option<TimeRange>, CommandError> {
     let device = file::load_device(file)?;
     let age = device.reading.age;
-    let of_chip = device.chip.map(|chip| chip.age_in(PERIOD));
+    let of_chip = device.chip.map(|chip| chip.age_in(&Transfers::at_count(PERIOD)));
     Ok(if age.is_zero() { of_chip } else { Some(age) })
 }
 

@@ -1,7 +1,7 @@
 //! The board's bus: the reads and writes of a program, and the errors of accesses.
 
-use super::{BusAccess, VirtualBoard, is_wired};
-use crate::chip::{MapEntry, SPI_PINS, Stage, TICK_INTERRUPT, Unit};
+use super::{BusAccess, VirtualBoard, wired};
+use crate::chip::{MapEntry, Stage, TICK_INTERRUPT, Unit};
 use crate::core::System;
 use crate::core::exceptions::Number;
 use crate::core::system::{SYSTEM, pends};
@@ -230,8 +230,8 @@ impl VirtualBoard {
             Unit::Serial => self.serial.write(offset, value),
             Unit::Spi => {
                 let bus_divider = self.clock.bus_divider();
-                let chip = self.magnetic.as_mut().filter(|_| is_wired(&self.ports, SPI_PINS));
-                self.spi.write(offset, value, (now, bus_divider), chip)
+                let Self { magnetic, ports, chip, spi, .. } = self;
+                spi.write(offset, value, (now, bus_divider), wired(magnetic, ports, chip))
             }
             Unit::Dma => self.dma.write(offset, value),
             Unit::DmaMultiplexer => self.dma.write_multiplexer(offset, value),

@@ -1,6 +1,7 @@
 //! The advanced timer TIM1 as the power stage's pulse-width modulator (RM0440, 28.4): it counts up and down
 //! at the core's clock, three channels compare, each drives the two switches of a leg with a dead time
-//! between, and a break takes all six away within the period.
+//! between, and a break takes all six away within the period. The fourth channel has no output: at its match on the
+//! way down it makes a request to the DMA.
 
 use super::pins::Level;
 use super::registers::{Registers, Table};
@@ -8,6 +9,7 @@ use super::{Access, Unmodelled, only};
 
 const CR1: u32 = 0x00;
 const CR2: u32 = 0x04;
+const DIER: u32 = 0x0C;
 const SR: u32 = 0x10;
 const EGR: u32 = 0x14;
 const CCMR1: u32 = 0x18;
@@ -20,6 +22,7 @@ const RCR: u32 = 0x30;
 const CCR1: u32 = 0x34;
 const CCR2: u32 = 0x38;
 const CCR3: u32 = 0x3C;
+const CCR4: u32 = 0x40;
 const BDTR: u32 = 0x44;
 const AF1: u32 = 0x60;
 
@@ -30,6 +33,8 @@ const DOWN: u32 = 1 << 4;
 const CENTRE_ALIGNED: u32 = 0b01 << 5;
 /// CR2: the update is the trigger output.
 const TRIGGER_UPDATE: u32 = 0b010 << 4;
+/// DIER: the match of channel 4 makes a request to the DMA.
+const REQUESTS: u32 = 1 << 12;
 /// SR and EGR: the update.
 const UPDATE: u32 = 1;
 /// SR and EGR: a break by a comparator or by the program.
@@ -60,6 +65,7 @@ const COMPARATOR_BITS: u32 = (1 << 1) | (1 << 2) | (1 << 4);
 const REGISTERS: Table = &[
     (CR1, 0, ENABLE | ONLY_OVERFLOW | CENTRE_ALIGNED),
     (CR2, 0, TRIGGER_UPDATE),
+    (DIER, 0, REQUESTS),
     (SR, 0, 0),
     (CCMR1, 0, CHANNEL | CHANNEL << 8),
     // Channel 3 alone.
@@ -72,6 +78,7 @@ const REGISTERS: Table = &[
     (CCR1, 0, 0xFFFF),
     (CCR2, 0, 0xFFFF),
     (CCR3, 0, 0xFFFF),
+    (CCR4, 0, 0xFFFF),
     (BDTR, 0, DEAD_TIME | OFF_MODES | BREAKS | FILTER | MAIN_OUTPUT),
     (AF1, BREAK_PIN, BREAK_PIN | COMPARATOR_BITS),
 ];
@@ -93,6 +100,8 @@ pub struct Instant {
     pub valley: bool,
     /// The trigger output rises.
     pub trigger: bool,
+    /// Channel 4 makes its request.
+    pub request: bool,
 }
 
 /// The counter.
@@ -144,18 +153,20 @@ impl PwmTimer {
         let dead = self.dead_time();
         let dead_times = self.references.iter().map(|reference| reference.since + dead);
         let counted = match self.count {
-            Count::Stopped(_) => [None; 8],
+            Count::Stopped(_) => [None; 9],
             Count::Running { valley, .. } => self.turns_and_matches(valley).map(Some),
         };
         dead_times.chain(counted.into_iter().flatten()).filter(|&at| at > now).min()
     }
 
     /// When the counter turns around in a period, and when the channels match.
-    fn turns_and_matches(&self, valley: u64) -> [u64; 8] {
+    fn turns_and_matches(&self, valley: u64) -> [u64; 9] {
         let top = u64::from(self.top);
         let [u, v, w] = self.compared.map(|compared| u64::from(compared).min(top));
         let bottom = 2 * top;
-        [top, bottom, u, v, w, bottom - u, bottom - v, bottom - w].map(|count| valley + count)
+        let fourth = bottom - u64::from(self.registers.get(CCR4)).min(top);
+        [top, bottom, u, v, w, bottom - u, bottom - v, bottom - w, fourth]
+            .map(|count| valley + count)
     }
 
     /// Does what happens at a time, which no earlier one may be skipped for.
@@ -167,6 +178,9 @@ impl PwmTimer {
                 self.count = Count::Running { valley, was_at_top: true };
                 instant.trigger |= self.turn_around();
             }
+            // Centre-aligned mode 1: a match counts on the way down.
+            let matches = now == bottom - u64::from(self.registers.get(CCR4)).min(bottom);
+            instant.request = matches && now > top && self.registers.has(DIER, REQUESTS);
             if now >= bottom {
                 self.count = Count::Running { valley: bottom, was_at_top: false };
                 instant.valley = true;
@@ -465,6 +479,22 @@ mod tests {
         (high == Level::High, low == Level::High)
     }
 
+    /// Channel 4 asks for a transfer a stated number of counts before each valley.
+    #[test]
+    fn a_request_comes_before_each_valley() {
+        let mut timer = started();
+        write(&mut timer, START, &[(CCR4, 939), (DIER, REQUESTS)]);
+        let (mut now, mut requests) = (START, Vec::new());
+        let period = 2 * u64::from(TOP);
+        while let Some(next) = timer.next(now).filter(|&next| next <= START + 2 * period) {
+            now = next;
+            if timer.advance(now).request {
+                requests.push(now);
+            }
+        }
+        assert_eq!(requests, [1, 2].map(|periods| START + periods * period - 939));
+    }
+
     #[test]
     fn an_update_comes_once_a_period_at_the_valley() {
         let mut timer = started();
@@ -540,7 +570,7 @@ mod tests {
             (AF1, 1 << 3),
             (BDTR, 1 << 18),
             (0x28, 1),
-            (0x40, 1),
+            (DIER, 1 << 8),
             (0x48, 1),
         ] {
             assert!(timer.write(register, value, START).is_err(), "{register:#x}: {value:#x}");

@@ -5,8 +5,8 @@
 //!   its event         ---- DMA 2 may move as many words to the SPI as a transfer has
 //!                          DMA 1 stores each word received
 //!   its event after the last one ---- DMA 4 writes CR1 until SPE is off: releases the chip
-//! DMA1_CHANNEL1       the last word is there: the servo's tick, with the count of the update, or [`take`] by another
-//!                     interrupt that needs the position
+//! DMA1_CHANNEL1       the last word is there: the servo's tick, with the count of the update, or [`take`] by whoever
+//!                     needs the position, as the updates of a bridge do
 //! ```
 //!
 //! An event of one channel of the multiplexer is the synchronisation of another, or triggers a generator of requests
@@ -35,7 +35,7 @@ use super::wiring::{BUS, TIMER_CLOCK};
 use crate::board::isr_cell::IsrCell;
 use crate::encoder::RawCount;
 use crate::fault::Fault;
-use crate::magnetic::{Chip, Frame, LONGEST, ReadingError, Readings, TRANSFER_WITHIN};
+use crate::magnetic::{Chip, Frame, Interface, LONGEST, ReadingError, Readings, TRANSFER_WITHIN};
 
 /// A pin of the bus, and the alternate function that connects it.
 #[derive(Clone, Copy)]
@@ -214,7 +214,7 @@ pub fn take_again(elapsed: impl Fn() -> u32) {
     const SELECTED: u32 = 64;
     let Reader { readings, fault, setup } = reader();
     let (chip, words) = (setup.chip, setup.chip.interface.words);
-    let clock = 2_u32 << divider(chip.interface.highest_clock).to_bits();
+    let clock = 2_u32 << divider(chip.interface).to_bits();
     // Half a word less: the time of any words but all is shorter.
     let shortest = (2 * words as u32 - 1) * u32::from(chip.interface.word_bits) * clock / 2;
     let is_in_step = loop {
@@ -326,7 +326,7 @@ fn connect(chip: &Chip) {
     let _ = pac::RCC.ahb1enr().read();
     let mut begins = Cr1(SPE);
     begins.set_mstr(Mstr::MASTER);
-    begins.set_br(divider(interface.highest_clock));
+    begins.set_br(divider(interface));
     begins.set_cpha(Cpha::SECOND_EDGE);
     begins.set_cpol(if interface.idle_high { Cpol::IDLE_HIGH } else { Cpol::IDLE_LOW });
     MEMORY.begins.store(begins.0 as u16, Ordering::Relaxed);
@@ -404,10 +404,9 @@ fn request(number: usize, request: u8, more: u8, enable: impl FnOnce(&mut Ccr)) 
     multiplexer.modify(enable);
 }
 
-/// The smallest divider of the bus's clock, a power of two, for at most this clock in Hz.
-fn divider(highest_clock: f64) -> Br {
-    let fits = |bits: &u8| TIMER_CLOCK / f64::from(2_u32 << bits) <= highest_clock;
-    Br::from_bits((0..7).find(fits).unwrap_or(7))
+/// The divider of the bus's clock.
+fn divider(interface: Interface) -> Br {
+    Br::from_bits((interface.divider(TIMER_CLOCK) - 1) as u8)
 }
 
 /// The encoder of a program, and the handler of its readings.
@@ -420,14 +419,14 @@ macro_rules! board_encoder {
              scene_program! or sweep_program!, or build it without the feature `magnetic`"
         );
     };
-    ([$chip:expr], $transducers:expr, $dropped:expr, $leaves_out:expr) => {
+    ([$chip:expr], $bridge:tt, $transducers:expr, $reading:expr, $period:expr, $leaves_out:expr) => {
         /// The encoder's data of this program.
         #[unsafe(no_mangle)]
         static ENCODER_SETUP: $crate::board::stm32::magnetic::Setup =
             $crate::board::stm32::magnetic::Setup {
                 name: $chip.padded_name(),
                 chip: &$chip,
-                dropped: $dropped,
+                dropped: $crate::may_fail!($chip, $bridge, $reading, $period),
                 leaves_out: $leaves_out,
             };
 
@@ -435,7 +434,20 @@ macro_rules! board_encoder {
     };
 }
 
+/// Readings in a row that may fail: those of a bridge's updates, or those of the servo's periods.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! may_fail {
+    ($chip:expr, [], $reading:expr, $period:expr) => {
+        $reading.dropped
+    };
+    ($chip:expr, [$current_loop:ident], $reading:expr, $period:expr) => {
+        $current_loop.transfers(&$chip).may_fail(&$chip, $reading, $period)
+    };
+}
+
 /// The handler of the servo's interrupt, the end of a transfer, for the state in `ISR_STATE`.
+#[cfg(not(feature = "bridge"))]
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_tick {

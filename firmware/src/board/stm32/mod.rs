@@ -39,15 +39,19 @@ pub use super::nucleo_g474re as wiring;
 #[cfg(all(feature = "bridge", not(feature = "b-g431b-esc1")))]
 compile_error!("this board has no bridge: --output bridge is for the b-g431b-esc1");
 
-#[cfg(all(feature = "magnetic", any(feature = "bridge", not(feature = "nucleo-g474re"))))]
+#[cfg(all(
+    feature = "magnetic",
+    not(any(feature = "nucleo-g474re", all(feature = "b-g431b-esc1", feature = "bridge")))
+))]
 compile_error!(
-    "this board reads no magnetic encoder: a program with one is for the nucleo-g474re and its DAC"
+    "this board reads no magnetic encoder with this output: a program with one is for the nucleo-g474re and its \
+     DAC, or for the b-g431b-esc1 and its bridge"
 );
 
 // The logger that carries the bytes to a debug probe; it registers itself.
 use defmt_rtt as _;
 pub use start::{
-    HostLink, LinkCell, ServoCell, Statics, Task, init_chip, registers, run, width,
+    EncoderSetup, HostLink, LinkCell, ServoCell, Statics, Task, init_chip, registers, run, width,
     with_board_counter,
 };
 pub use sweep::{Setup, SweepCell, measure};

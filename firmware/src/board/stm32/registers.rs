@@ -22,7 +22,7 @@ use crate::fault::FaultRecord;
 use crate::output_timing::OutputTiming;
 use crate::period;
 use crate::reset::ResetCause;
-#[cfg(feature = "magnetic")]
+#[cfg(all(feature = "magnetic", not(feature = "bridge")))]
 use crate::servo_loop::BEGAN_LATE;
 use crate::servo_loop::Hardware;
 #[cfg(feature = "bridge")]
@@ -47,12 +47,12 @@ impl Registers {
     /// Starts the timers. The servo's interrupt must be enabled within a period.
     pub fn start(&mut self, timing: OutputTiming) {
         #[cfg(feature = "magnetic")]
-        magnetic::start(true);
+        magnetic::start(cfg!(not(feature = "bridge")));
         self.output.start(&mut self.pace, timing);
     }
 
     /// Takes the reading of the transfer that has ended; whether there is a tick with it.
-    #[cfg(feature = "magnetic")]
+    #[cfg(all(feature = "magnetic", not(feature = "bridge")))]
     #[inline(always)]
     pub fn take_reading(&mut self, setup: &'static magnetic::Setup) -> bool {
         magnetic::take_ended(setup, || self.pace.doubt(true))
@@ -81,7 +81,7 @@ impl Hardware for Registers {
         self.output.event()
     }
 
-    #[cfg(feature = "magnetic")]
+    #[cfg(all(feature = "magnetic", not(feature = "bridge")))]
     fn reading_fault(&mut self) -> Option<Fault> {
         magnetic::fault()
     }
@@ -104,7 +104,7 @@ impl Hardware for Registers {
     #[inline(always)]
     fn periods_since_last(&mut self) -> u32 {
         let passed = self.pace.begun_by(output::period_began());
-        #[cfg(feature = "magnetic")]
+        #[cfg(all(feature = "magnetic", not(feature = "bridge")))]
         if passed != 1 {
             self.pace.doubt(false);
             if passed != BEGAN_LATE {
@@ -147,7 +147,7 @@ impl Startup for Registers {
 
     #[cfg(feature = "magnetic")]
     fn absolute_count(&mut self) -> Option<RawCount> {
-        Some(output::count())
+        Some(magnetic::count())
     }
 
     fn start_watchdog(&mut self) {

@@ -32,11 +32,11 @@ use crate::servo_loop::{Endpoints, Reason, ServoIsr};
 use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Link, Session};
 
-/// The servo's interrupt.
-#[cfg(not(feature = "magnetic"))]
+/// The servo's interrupt, which a bridge pends.
+#[cfg(any(feature = "bridge", not(feature = "magnetic")))]
 pub const TICK: pac::Interrupt = pac::Interrupt::TIM6_DAC;
 /// The servo's interrupt: the end of a transfer.
-#[cfg(feature = "magnetic")]
+#[cfg(all(feature = "magnetic", not(feature = "bridge")))]
 pub const TICK: pac::Interrupt = pac::Interrupt::DMA1_CHANNEL1;
 
 /// The state of the servo's interrupt.
@@ -253,8 +253,10 @@ macro_rules! board_program {
 
         $crate::board_encoder!(
             $encoder,
+            $bridge,
             $program.transducers,
-            $program.scene.latency.encoder.dropped,
+            $program.scene.latency.encoder,
+            $program.scene.timing.period,
             $program
                 .scene
                 .latency
@@ -323,7 +325,7 @@ macro_rules! board_chip {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_encoder {
-    ([], $transducers:expr, $($of_chip:tt)*) => {
+    ([], $bridge:tt, $transducers:expr, $($of_chip:tt)*) => {
         $crate::board_filter!($transducers);
 
         const ENCODER: $crate::board::input_filter::InputFilter = FILTER;
@@ -350,7 +352,7 @@ macro_rules! board_filter {
 }
 
 /// The handler of the servo's interrupt, for the state in `ISR_STATE`.
-#[cfg(not(feature = "magnetic"))]
+#[cfg(any(feature = "bridge", not(feature = "magnetic")))]
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_tick {

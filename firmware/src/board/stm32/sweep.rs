@@ -323,7 +323,14 @@ macro_rules! board_sweep {
     ($sweep:ident, $transducers:ident, $limits:ident, $bridge:tt, $encoder:tt) => {
         $crate::board_chip!();
         $crate::sweep_output!($bridge);
-        $crate::board_encoder!($encoder, $transducers, 0, false);
+        $crate::board_encoder!(
+            $encoder,
+            $bridge,
+            $transducers,
+            $crate::encoder_reading::EncoderReading::ideal(),
+            $sweep.period(),
+            false
+        );
 
         static SETUP: $crate::board::stm32::Setup = $crate::board::stm32::Setup {
             transducers: $transducers,

@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, Mutex};
 
+use haptic_servo::current::Drive;
 use haptic_servo::fault::Fault;
+use haptic_servo::servo::Transducers;
 use haptic_servo::servo_loop::State;
 use haptic_servo::wire::message::{Outcome, ToBoard};
 use virtual_board::motor::{Motor, Winding};
@@ -22,7 +24,7 @@ const LEANS: f64 = 0.07;
 /// A bench with a hand at the shaft.
 pub struct Held {
     pub bench: Bench,
-    hand: Arc<Mutex<f64>>,
+    pub hand: Arc<Mutex<f64>>,
 }
 
 impl Held {
@@ -41,7 +43,12 @@ impl Held {
 
 /// The program's motor, with its magnets anywhere and its wires in this order.
 pub fn wired(wires: [usize; 3], offset: f64) -> Motor {
-    let mut motor = motor(&DRIVE);
+    wired_to(&DRIVE, wires, offset)
+}
+
+/// The same of another drive.
+pub fn wired_to(drive: &Drive, wires: [usize; 3], offset: f64) -> Motor {
+    let mut motor = motor(drive);
     if let Winding::Brushless { pole_pairs, .. } = motor.winding {
         motor.winding = Winding::Brushless { pole_pairs, offset };
     }
@@ -51,13 +58,18 @@ pub fn wired(wires: [usize; 3], offset: f64) -> Motor {
 
 /// A hand that leans against the wall comes to rest: the torque is that of the code, and the hand's.
 pub fn check_torque(held: &mut Held, what: &str) {
+    check_torque_of(held, &TRANSDUCERS, what);
+}
+
+/// The same of another motor.
+pub fn check_torque_of(held: &mut Held, transducers: &Transducers, what: &str) {
     assert_eq!(held.bench.arm(), Outcome::Done, "{what}");
     // After the pulses that check a stated phase.
     held.bench.run(600);
     held.push(LEANS);
     let bench = &mut held.bench;
     bench.run(8000);
-    let wanted = asked_torque(bench, &TRANSDUCERS);
+    let wanted = asked_torque(bench, transducers);
     let made = circuit(bench).mean_torque();
     println!("{what}: {made:.5} N m of {wanted:.5}, {:?}", bench.fault());
     assert!((made / wanted - 1.0).abs() < 0.03, "{what}: {made} N m of {wanted}");
@@ -68,13 +80,17 @@ pub fn check_torque(held: &mut Held, what: &str) {
 #[test]
 fn an_aligned_motor_gives_the_torque_of_its_code() {
     let mut held = Held::new("brushless_wall", wired([1, 0, 2], -2.0));
-    let bench = &mut held.bench;
+    align(&mut held.bench);
+    check_torque(&mut held, "aligned");
+}
+
+/// Aligns the motor.
+pub fn align(bench: &mut Bench) {
     bench.run(200);
     assert_eq!(bench.request(|id| ToBoard::Align { id }), Outcome::Done);
     let has_ended = |bench: &mut Bench| bench.status().state != State::Aligning;
     assert!(bench.run_until(2000, LONGEST, has_ended), "it does not end");
     assert_eq!((bench.fault(), bench.is_on()), (None, false));
-    check_torque(&mut held, "aligned");
 }
 
 /// It is asked to be armed, and no gate is high for it.

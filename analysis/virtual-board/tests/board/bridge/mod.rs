@@ -8,6 +8,7 @@ mod gates;
 mod identify;
 mod index;
 mod load;
+mod magnetic;
 mod paddle;
 mod regeneration;
 mod same;

@@ -90,7 +90,17 @@ pub fn still() -> impl Device + Send + 'static {
 
 /// The shaft of `brushless_wall` with some friction, in a hand with this torque, from the first moment on.
 pub fn shaft(torque: Arc<Mutex<f64>>) -> impl Device + Send + 'static {
-    let mechanics = Mechanics { damping: HAND_DAMPING, ..brushless_wall::SCENE.device };
+    let counts_per_turn = brushless_wall::TRANSDUCERS.counts_per_turn;
+    shaft_of(brushless_wall::SCENE.device, counts_per_turn, torque)
+}
+
+/// The same of another device and encoder.
+pub fn shaft_of(
+    device: Mechanics,
+    counts_per_turn: f64,
+    torque: Arc<Mutex<f64>>,
+) -> impl Device + Send + 'static {
+    let mechanics = Mechanics { damping: HAND_DAMPING, ..device };
     let device = in_hand(mechanics, 0.002, move |_| *torque.lock().unwrap());
-    Driven::new(brushless_wall::TRANSDUCERS.counts_per_turn, device)
+    Driven::new(counts_per_turn, device)
 }

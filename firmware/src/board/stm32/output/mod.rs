@@ -23,7 +23,7 @@ pub use bridge::{Output, Setup, off, power_reading, stop};
 pub use dac::{Output, Setup, off, power_reading, stop};
 pub use pace::Pace;
 
-#[cfg(feature = "magnetic")]
+#[cfg(all(feature = "magnetic", not(feature = "bridge")))]
 pub use super::magnetic::count;
 #[cfg(not(any(feature = "bridge", feature = "magnetic")))]
 pub use tick_timer::count;

@@ -6,15 +6,23 @@ use core::sync::atomic::Ordering;
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
+#[cfg(feature = "magnetic")]
+use super::encoder::chip;
+#[cfg(not(feature = "magnetic"))]
+use super::encoder::quadrature;
 use super::{
     STATE, State, WAITING, encoder, latest, off, over_current, pwm, sense, tell, tell_heat,
 };
+use crate::board::stm32::EncoderSetup;
 use crate::board::stm32::output::pace::now;
 use crate::current::{
     Alignment, AlignmentStep, CurrentController, CurrentLoop, Heating, OffsetCheck, PowerFault,
     Sample, TripSearch,
 };
 use crate::dac::DacCode;
+#[cfg(feature = "magnetic")]
+use crate::encoder::RawCount;
+use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
 
 /// The progress from a request to gates that are driven.
@@ -53,8 +61,16 @@ pub struct CurrentIsr<const BRUSHLESS: bool> {
 
 impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     /// Before the first instant, which is one PWM period after the counter's start.
-    pub fn new(current_loop: &'static CurrentLoop, timing: OutputTiming) -> Self {
-        Self {
+    pub fn new(
+        current_loop: &'static CurrentLoop,
+        timing: OutputTiming,
+        encoder: EncoderSetup,
+    ) -> Self {
+        #[cfg(feature = "magnetic")]
+        chip::pace(encoder);
+        #[cfg(not(feature = "magnetic"))]
+        let _ = encoder;
+        let mut isr = Self {
             controller: CurrentController::new(current_loop),
             current_loop,
             updates: current_loop.updates().into(),
@@ -66,14 +82,33 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             heating: current_loop.heating(),
             alignment: None,
             reference: 0,
+        };
+        isr.know_phase();
+        isr
+    }
+
+    /// An absolute encoder has its index at the angle zero, without a turn of the handle.
+    #[cfg(feature = "magnetic")]
+    fn know_phase(&mut self) {
+        if BRUSHLESS {
+            // The only index is where it was.
+            let _ = self.controller.observe_index(RawCount::from(0_u32));
+            latest::keep_index(self.controller.index_offset());
         }
     }
 
+    #[cfg(not(feature = "magnetic"))]
+    const fn know_phase(&mut self) {}
+
     /// One instant.
     #[inline(always)]
-    pub fn run(&mut self) {
+    pub fn run(&mut self, encoder: EncoderSetup) {
         // Sampling.
-        let (position, now) = (encoder::captured(), now());
+        #[cfg(feature = "magnetic")]
+        let position = chip::position(encoder);
+        #[cfg(not(feature = "magnetic"))]
+        let (position, _) = (quadrature::captured(), encoder);
+        let now = now();
         let begins = self.instant == 0;
         if begins {
             encoder::begin_period(position, now);
@@ -93,7 +128,8 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             cold_path();
             self.otherwise(&sample, since_last);
         }
-        if BRUSHLESS && encoder::has_index() {
+        #[cfg(not(feature = "magnetic"))]
+        if BRUSHLESS && quadrature::has_index() {
             cold_path();
             self.take_index();
         }
@@ -136,10 +172,11 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     }
 
     /// Handles an index that came since the last instant's sample, or just after this instant's sample.
+    #[cfg(not(feature = "magnetic"))]
     #[cold]
     #[inline(never)]
     fn take_index(&mut self) {
-        let observed = self.controller.observe_index(encoder::take_index());
+        let observed = self.controller.observe_index(quadrature::take_index());
         latest::keep_index(self.controller.index_offset());
         if let Err(fault) = observed {
             stop(fault);
@@ -269,6 +306,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
                 }
             }
             Ok(AlignmentStep::Ended(result)) => {
+                self.know_phase();
                 latest::keep_index(self.controller.index_offset());
                 match result {
                     Ok(_) => off(),
@@ -291,5 +329,5 @@ fn reference() -> i16 {
 #[inline(never)]
 fn stop(fault: PowerFault) {
     off();
-    tell(fault);
+    tell(Fault::Power(fault));
 }

@@ -4,7 +4,8 @@
 
 use embassy_stm32::pac;
 
-use super::{encoder, over_current, pwm, sense};
+use super::encoder::quadrature;
+use super::{over_current, pwm, sense};
 use crate::board::stm32::output::gates::Gate;
 use crate::board::stm32::wiring::GATES;
 use crate::current::{CurrentLoop, Duties, PowerFault, Sample, TripCodes, TripSearch};
@@ -24,7 +25,7 @@ impl Load {
         GATES.connect(current_loop.phases());
         over_current::prepare();
         sense::prepare();
-        encoder::capture_counts();
+        quadrature::capture_counts();
         pwm::start();
         Self { current_loop }
     }
@@ -36,7 +37,7 @@ impl Load {
             pwm::acknowledge();
             let currents = sense::currents();
             let (bus, temperature) = sense::bus_and_temperature();
-            Sample { currents, bus, temperature, position: encoder::captured() }
+            Sample { currents, bus, temperature, position: quadrature::captured() }
         })
     }
 

@@ -120,8 +120,9 @@ impl Output {
                  torque is limited after some seconds"
             );
         }
+        #[cfg(not(feature = "magnetic"))]
         if current_loop.has_index() {
-            encoder::capture_index();
+            encoder::quadrature::capture_index();
         }
         (setup.fill)(timing);
         let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
@@ -129,7 +130,8 @@ impl Output {
             is_brushless: current_loop.is_brushless(),
             start_up: current_loop.start_up_ticks(),
         };
-        encoder::capture_counts();
+        #[cfg(not(feature = "magnetic"))]
+        encoder::quadrature::capture_counts();
         let seconds = f64::from(counts.get()) / TIMER_CLOCK;
         // After a PWM period the next capture overwrites the count.
         let in_time = 2 * u32::from(current_loop.timer_counts());
@@ -138,7 +140,8 @@ impl Output {
 
     /// Starts the current interrupt, with the gates low.
     pub fn start(&mut self, pace: &mut Pace, _: OutputTiming) {
-        encoder::forget_index();
+        #[cfg(not(feature = "magnetic"))]
+        encoder::quadrature::forget_index();
         interrupts::ADC1_2.set_priority(Priority::P0);
         // SAFETY: its handler finds its cell filled.
         unsafe { interrupts::ADC1_2.enable() };
@@ -225,8 +228,8 @@ fn tell_heat(step: HeatStep) {
 /// Reports a fault to the servo. The gates are off.
 #[cold]
 #[inline(never)]
-fn tell(fault: PowerFault) {
-    let (code, numbers) = Fault::Power(fault).encode();
+fn tell(fault: Fault) {
+    let (code, numbers) = fault.encode();
     for (place, number) in FAULT_NUMBERS.iter().zip(numbers) {
         place.store(number, Ordering::Relaxed);
     }
@@ -262,7 +265,8 @@ macro_rules! board_output {
         > = $crate::board::isr_cell::IsrCell::empty();
 
         fn fill_current(timing: $crate::output_timing::OutputTiming) {
-            let state = $crate::board::stm32::output::bridge::CurrentIsr::new(&$current_loop, timing);
+            let state =
+                $crate::board::stm32::output::bridge::CurrentIsr::new(&$current_loop, timing, ENCODER);
             // SAFETY: called before the interrupt that uses the cell is enabled.
             unsafe { CURRENT.init(state) };
         }
@@ -279,7 +283,7 @@ macro_rules! board_output {
             unsafe extern "C" fn ADC1_2() {
                 // SAFETY: this is the handler of the interrupt that is enabled after the cell is filled, and
                 // no interrupt interrupts itself.
-                unsafe { CURRENT.borrow_mut() }.run();
+                unsafe { CURRENT.borrow_mut() }.run(ENCODER);
             }
         }
     };

@@ -72,6 +72,14 @@ pub fn prepare(current_loop: &CurrentLoop) {
     TIMER.sr().write(|w| w.0 = 0);
 }
 
+/// Has channel 4, which has no output, make a request of the DMA so many counts before each update: on the way down, as
+/// centre-aligned mode 1 has it. Call it before the start.
+#[cfg(feature = "magnetic")]
+pub fn request_before_update(counts: u16) {
+    TIMER.ccr(3).write(|w| w.set_ccr(counts));
+    TIMER.dier().write(|w| w.set_ccde(3, true));
+}
+
 /// Starts the counter.
 pub fn start() {
     TIMER.cr1().modify(|w| w.set_cen(true));

@@ -1,12 +1,9 @@
-//! The encoder's count at each update of the modulation and at the index, both captured by the encoder's timer, so
+//! The count of a quadrature encoder at each update of the modulation and at the index, both captured by its timer, so
 //! that no late interrupt makes a count late (RM0440, general-purpose timers).
 //!
 //! Channel 4 of TIM4 captures on TRC, which is TIM1's trigger output by the timers' interconnection, and encoder mode
 //! does not use that input. Any channel can capture on TRC; the third has its pin at the encoder's connector, and
-//! captures at the rising edge of the index. The current interrupt passes the count to the servo, which it pends at a
-//! fixed number of updates.
-
-use core::sync::atomic::{AtomicU32, Ordering};
+//! captures at the rising edge of the index.
 
 use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::vals::Moder;
@@ -14,10 +11,6 @@ use embassy_stm32::pac::timer::vals::{CcmrInputCcs, Ts};
 
 use crate::board::stm32::wiring::{ENCODER, INDEX};
 use crate::encoder::RawCount;
-
-/// The clock when the count of the present period was read, and that count.
-static TIME: AtomicU32 = AtomicU32::new(0);
-static COUNT: AtomicU32 = AtomicU32::new(0);
 
 /// TIM1's trigger output among the triggers of TIM4 (RM0440, table of their interconnection).
 const TIM1_TRGO: Ts = Ts::ITR0;
@@ -47,25 +40,6 @@ pub fn capture_counts() {
 #[inline(always)]
 pub fn captured() -> RawCount {
     RawCount::from(ENCODER.ccr(3).read().ccr())
-}
-
-/// Stores the count and the time of a period's beginning.
-#[inline(always)]
-pub fn begin_period(count: RawCount, now: u32) {
-    COUNT.store(count.bits(), Ordering::Relaxed);
-    TIME.store(now, Ordering::Relaxed);
-}
-
-/// The count at the beginning of the period.
-#[inline(always)]
-pub fn count() -> RawCount {
-    RawCount::from(COUNT.load(Ordering::Relaxed) as u16)
-}
-
-/// The clock at the beginning of the period. A tick is late if the interrupt of the current loop missed its update.
-#[inline(always)]
-pub fn period_began() -> u32 {
-    TIME.load(Ordering::Relaxed)
 }
 
 /// Starts the capture at each index, with the filter of the encoder's other inputs, so that the edges of all

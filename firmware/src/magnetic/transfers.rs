@@ -1,0 +1,55 @@
+//! When a board makes the transfers of a chip, and the age that this adds to its readings.
+
+use super::Chip;
+use crate::encoder_reading::EncoderReading;
+use crate::time_range::TimeRange;
+
+/// The times of a board's transfers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transfers {
+    /// Time in s from one to the next.
+    pub interval: f64,
+    /// Time in s from the beginning of one, where the chip is selected, to the instant of its count.
+    pub begins: TimeRange,
+    /// Time in s from its end, where the chip is released, to that instant; negative for an end after it.
+    pub ends: TimeRange,
+}
+
+/// The longest time in s of a transfer that begins at its count, from there to its end.
+pub const TRANSFER_WITHIN: f64 = 1e-5;
+
+/// Time in s in which the DMA and the SPI begin and end a transfer, besides its bits: an estimate from above.
+const MARGIN: f64 = 1e-6;
+
+impl Transfers {
+    /// One in each period in s of the servo, from its count on.
+    pub const fn at_count(period: f64) -> Self {
+        Self {
+            interval: period,
+            begins: TimeRange::ZERO,
+            ends: TimeRange::between(-TRANSFER_WITHIN, 0.0),
+        }
+    }
+
+    /// One before each update of a current loop, which are `interval` s apart, at an SPI with this clock in Hz:
+    /// the current interrupt finds it ended.
+    pub const fn before_update(chip: &Chip, interval: f64, clock: f64) -> Self {
+        let bits = chip.interface.clocks(clock) as f64 / clock;
+        let lead = Self::lead_counts(chip, clock) as f64 / clock;
+        let ends = TimeRange::between(0.0, lead - bits);
+        Self { interval, begins: TimeRange::between(bits, lead), ends }
+    }
+
+    /// Counts of a timer with the SPI's clock in Hz by which such a transfer begins before its update.
+    pub const fn lead_counts(chip: &Chip, clock: f64) -> u16 {
+        (chip.interface.clocks(clock) as f64 + MARGIN * clock) as u16 + 1
+    }
+
+    /// Transfers in a row that may fail in a scene with these readings and this period in s: each that fails makes a
+    /// reading older by an interval, for which the stated age and the readings that may be dropped leave room.
+    pub const fn may_fail(&self, chip: &Chip, encoder: &EncoderReading, period: f64) -> u16 {
+        const ROUNDED: f64 = 1e-6;
+        let stated = encoder.age.most + encoder.dropped as f64 * period;
+        ((stated - chip.age_in(self).most) / self.interval + ROUNDED) as u16
+    }
+}
