@@ -6,7 +6,7 @@ use haptic_model::host::HostRun;
 use haptic_servo::host::HostError;
 use thiserror::Error;
 
-use crate::controller::Controller;
+use crate::controller::{Controller, Tick};
 use crate::device::Energy;
 use crate::emulator::{Emulator, EmulatorError, EmulatorReport, InstructionStats};
 use crate::hand::HandTrajectory;
@@ -174,6 +174,11 @@ impl RemoteServo for Emulator {
     }
 }
 
+/// The status of a tick.
+pub fn status(tick: &Tick) -> TickStatus {
+    if tick.is_left_out { TickStatus::Missed } else { TickStatus::Ran(tick.limit) }
+}
+
 /// The trace of a run, as a picture shows it: position, torque, and the set-point of the hand.
 pub fn trace(title: String, period: f64, run: &Run, trajectory: &HandTrajectory) -> Trace {
     let time = |tick: usize| tick as f64 * period;
@@ -185,7 +190,7 @@ pub fn trace(title: String, period: f64, run: &Run, trajectory: &HandTrajectory)
         position: run.ticks.iter().map(|tick| tick.angle).collect(),
         hand: held.map(|time| trajectory.position(time)).collect(),
         torque: run.ticks.iter().map(|tick| tick.torque).collect(),
-        limit: run.ticks.iter().map(|tick| TickStatus::Ran(tick.limit)).collect(),
+        limit: run.ticks.iter().map(|tick| status(tick)).collect(),
         release: Some(trajectory.release).filter(|&release| release < time(run.ticks.len())),
         ..Trace::default()
     }

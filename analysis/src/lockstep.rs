@@ -113,10 +113,15 @@ pub fn run<T: RemoteServo>(
     while run.ticks.len() < ticks
         && let Some(count) = plant.count()
     {
-        let tick = controller.tick(count);
-        let code = match remote.as_mut() {
-            Some(remote) => remote.exchange(count)?,
-            None => tick.code,
+        // Held: the first reading does not fail.
+        let held = run.ticks.last().filter(|_| plant.is_left_out());
+        let (tick, code) = match (held, remote.as_mut()) {
+            (Some(held), _) => (Tick { is_left_out: true, ..*held }, held.code),
+            (None, Some(remote)) => (controller.tick(count), remote.exchange(count)?),
+            (None, None) => {
+                let tick = controller.tick(count);
+                (tick, tick.code)
+            }
         };
         plant.hold(code);
         run.add(count, tick, code);

@@ -66,7 +66,7 @@ class Fields {
     const { scene } = this.#store;
     const shapes = this.#list("environment.shape").map((shape) => shape?.type);
     const isThere = (path) => this.#store.get(path) !== undefined;
-    const tables = ["device.mass", "device.cogging", "environment.wall", "human"].map(isThere);
+    const tables = ["device.mass", "device.cogging", "environment.wall", "anticogging", "human"].map(isThere);
     return JSON.stringify([scene.environment?.type, this.#coupling(), shapes, tables]);
   }
 
@@ -83,7 +83,7 @@ class Fields {
     this.#fields.clear();
     this.#form.replaceChildren(
       this.#add(this.#keys.get("name")), this.#device(), this.#servo(), this.#couplingGroup(),
-      this.#environment(), this.#limits(), this.#human());
+      this.#environment(), ...this.#anticogging(), this.#limits(), this.#human());
     for (const more of this.#form.querySelectorAll("details")) more.open = open.has(more.id);
     if (focused) document.getElementById(focused)?.focus();
   }
@@ -145,8 +145,9 @@ class Fields {
       this.#exchange("device", word, isChain ? "chain" : "rigid", [...rigid, ...chain], usual);
     }, () => (isChain ? "chain" : "rigid"));
     const others = [...this.#keys.values()].filter(({ path, form }) =>
-      /^device\.\w+$/.test(path) && form !== "table" && ![...rigid, ...chain].includes(path));
-    const cogging = this.#store.get("device.cogging") === undefined ? [] : this.#keysOf("device.cogging");
+      /^device\.\w+$/.test(path) && !form.startsWith?.("table") && ![...rigid, ...chain].includes(path));
+    const cogs = this.#store.get("device.cogging");
+    const cogging = cogs === undefined || Array.isArray(cogs) ? [] : this.#keysOf("device.cogging");
     const paths = [...(isChain ? chain : rigid), ...others.map(({ path }) => path), ...cogging];
     return this.#group("Device", body.row, ...this.#rows("Device", paths));
   }
@@ -288,6 +289,12 @@ class Fields {
       return this.#add(key, `${path}.${own.split(".").pop()}`, !key.needed && key.default === null);
     });
     return this.#group(`Shape ${index + 1}`, this.#enter(type), ...rows, remove);
+  }
+
+  /** The share of a map in the scene; a map has no fields. */
+  #anticogging() {
+    if (this.#store.get("anticogging") === undefined) return [];
+    return [this.#group("Anticogging", this.#add(this.#keys.get("anticogging.share")))];
   }
 
   #limits() {

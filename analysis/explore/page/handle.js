@@ -256,6 +256,10 @@ class Handle {
       ticks, setpoint: this.#target, is_held: this.#isHeld, takes_over: this.#isTakingOver,
     };
     const moved = this.#engine.json("handle_move", JSON.stringify(question));
+    if (moved.fault && this.#held.rendering !== "off") {
+      Object.assign(this.#held, { rendering: "off", refusal: moved.fault });
+      this.#sayState();
+    }
     const numbers = this.#engine.numbers();
     const cost = (performance.now() - begin) / ticks;
     // The first calls are those of a program that is not compiled for speed yet.

@@ -22,6 +22,8 @@ pub struct Tick {
     pub code: u16,
     /// The reason if the torque is limited.
     pub limit: LimitReason,
+    /// Whether the tick was left out, so that all is as before.
+    pub is_left_out: bool,
 }
 
 /// A servo of some certified scene in some number format.
@@ -48,6 +50,7 @@ impl<E: Rendering<N>, N: Number> Controller for Servo<E, N> {
             torque: self.torque_nm(),
             code: output.code.get(),
             limit: output.limit,
+            is_left_out: false,
         }
     }
 

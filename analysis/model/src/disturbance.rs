@@ -4,28 +4,57 @@ use std::f64::consts::TAU;
 
 use haptic_servo::environment::{Anticogging, CoggingError};
 
-/// Cogging: the torque `-A sin(N x)` of the magnets on the rotor, which no current makes. It takes no energy in
-/// a turn.
+/// Cogging: the torque of the magnets on the rotor, which no current makes. It takes no energy in a turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cogging {
+    /// Its harmonics over a turn.
+    pub harmonics: &'static [Sine],
+}
+
+/// The torque `-A sin(N x + p)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sine {
     /// Amplitude `A` in N m.
     pub torque: f64,
     /// Periods `N` in a turn, mostly the least common multiple of slots and poles.
     pub count: f64,
+    /// Phase `p` in rad.
+    pub phase: f64,
 }
 
 impl Cogging {
+    /// Harmonics for the rest of the program: a scene refers to them, as to the table of a torque profile.
+    pub fn of(harmonics: Vec<Sine>) -> Self {
+        Self { harmonics: harmonics.leak() }
+    }
+
     /// Torque in N m at an angle in rad.
     pub fn at(&self, angle: f64) -> f64 {
-        -self.torque * (self.count * angle).sin()
+        self.harmonics.iter().map(|it| -it.torque * (it.count * angle + it.phase).sin()).sum()
     }
 
     /// Energy in J that it takes up on the way from rest at 0 to an angle in rad.
     pub fn energy(&self, angle: f64) -> f64 {
-        if self.torque == 0.0 {
-            return 0.0;
-        }
-        self.torque / self.count * (1.0 - (self.count * angle).cos())
+        let of = |it: &Sine| {
+            let cosine = (it.count * angle + it.phase).cos();
+            it.torque / it.count * (it.phase.cos() - cosine)
+        };
+        self.harmonics.iter().map(of).sum()
+    }
+
+    /// Whether there is none.
+    pub fn is_none(&self) -> bool {
+        self.harmonics.iter().all(|it| it.torque == 0.0)
+    }
+
+    /// Bound in N m on its torque.
+    pub fn torque(&self) -> f64 {
+        self.harmonics.iter().map(|it| it.torque).sum()
+    }
+
+    /// Periods in a turn of its highest harmonic, at least 1.
+    pub fn highest(&self) -> f64 {
+        self.harmonics.iter().fold(1.0, |most, it| most.max(it.count))
     }
 
     /// All of it opposed, from a map of so many angles.
@@ -38,14 +67,14 @@ impl Cogging {
         Anticogging::learnt(&torques.collect::<Vec<_>>(), units)
     }
 
-    /// Steepest slope in N m/rad.
+    /// Bound on its steepest slope in N m/rad.
     pub fn slope(&self) -> f64 {
-        self.torque * self.count
+        self.harmonics.iter().map(|it| it.torque * it.count).sum()
     }
 
-    /// Angle in rad from one stable position to the next.
+    /// Angle in rad of a period of its highest harmonic: from one stable position of a sine to the next.
     pub fn pitch(&self) -> f64 {
-        TAU / self.count
+        TAU / self.highest()
     }
 }
 
@@ -61,6 +90,12 @@ pub struct Disturbance {
 impl Disturbance {
     /// Whether there is neither friction nor cogging.
     pub fn is_none(&self) -> bool {
-        self.friction == 0.0 && self.cogging.torque == 0.0
+        self.friction == 0.0 && self.cogging.is_none()
     }
+}
+
+/// Cogging of one sine, for tests.
+#[cfg(test)]
+pub fn sine(torque: f64, count: f64) -> Cogging {
+    Cogging::of(vec![Sine { torque, count, phase: 0.0 }])
 }

@@ -19,6 +19,18 @@ pub enum Missed {
 }
 
 impl Missed {
+    /// The first of so many ticks in which more in a row than allowed are missed.
+    pub fn fault(self, allowed: u16, ticks: usize) -> Option<usize> {
+        let mut missed = 0;
+        if self == Self::None {
+            return None;
+        }
+        self.ticks().take(ticks).position(|is_missed| {
+            missed = if is_missed { missed + 1 } else { 0 };
+            missed > allowed
+        })
+    }
+
     /// Whether a tick is missed, tick by tick.
     pub fn ticks(self) -> Ticks {
         let seed = if let Self::Random { seed, .. } = self { seed } else { 0 };

@@ -1,7 +1,7 @@
 //! The nominal latency of simulations, responses and curves, for a latency that is known in part: the middle
 //! of each time's range, and no jitter. The certificate covers the whole range.
 
-use haptic_servo::scene::Latency;
+use haptic_servo::scene::{Latency, Scene};
 
 /// The parts of a latency that the model leaves out, as short text; `None` if it is complete.
 pub fn left_out(latency: &Latency) -> Option<&'static str> {
@@ -23,6 +23,18 @@ pub fn left_out(latency: &Latency) -> Option<&'static str> {
         (false, true) => Some("middle of each range of latency"),
         (false, false) => Some("middle of each range of latency, without jitter"),
     }
+}
+
+/// The part of a scene that a linear loop of its environment leaves out: the certificate counts on the slopes of the
+/// map, and its passivity is then not that of the device. `None` if nothing is left out.
+pub fn left_out_of_loop(scene: &Scene) -> Option<&'static str> {
+    scene.environment.parts().anticogging.map(|_| "without [anticogging]")
+}
+
+/// A title of such a loop that names what is left out of it.
+pub fn titled_loop(title: &str, scene: &Scene) -> String {
+    let words = left_out_of_loop(scene).map_or_else(String::new, |words| format!(" ({words})"));
+    titled(title, [&scene.latency]) + &words
 }
 
 /// A title that names the parts left out of the latency of one of the scenes.

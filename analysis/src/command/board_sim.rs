@@ -11,16 +11,19 @@ use haptic_servo::servo::Transducers;
 
 use super::file_program::FileProgram;
 use super::file_scene::scene_file;
+use super::identify;
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::seconds;
 use super::virtual_board_build::VirtualBoardBuild;
 use crate::board_sim::{self, DrivingBoard, Pacing, SimulatedBoard};
 use crate::disturbance::Disturbance;
-use crate::file::SceneFile;
+use crate::file::{self, SceneFile};
 use crate::hand::HandTrajectory;
+use crate::identify::rig::DrivenDevice;
 use crate::link::Address;
 use crate::lockstep::SimulatedDevice;
 use crate::program::Program;
+use crate::program::identify::{PERIOD, TRANSDUCERS};
 use crate::shaft::HandHeldShaft;
 use crate::terminal;
 use crate::toolchain::{BoardModel, NumberFormat};
@@ -28,7 +31,7 @@ use crate::toolchain::{BoardModel, NumberFormat};
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Name of a program in firmware/src/bin, for example damper_wall, or a scene file, whose table `human` is the
-    /// hand
+    /// hand. The programs identify and turns, which measure a device, need --board
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Address to listen on: tcp://HOST:PORT, unix:PATH
@@ -38,6 +41,9 @@ pub struct Arguments {
     /// default: a thread with the same servo
     #[arg(long, value_name = "BOARD", value_parser = BoardModel::find)]
     pub board: Option<BoardModel>,
+    /// With identify or turns: the device, encoder and motor of this file in place of the paddle
+    #[arg(long, value_name = "FILE.toml")]
+    pub device: Option<String>,
     /// End after this number of seconds
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds,
           allow_negative_numbers = true)]
@@ -55,6 +61,14 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let Arguments { scene: name, port, board, .. } = arguments;
     let enough = terminal::interrupted()?;
     let board = match Program::find(name) {
+        _ if MEASURING.contains(&name.as_str()) => measuring(arguments)?,
+        _ if arguments.device.is_some() => {
+            let error = format!(
+                "--device is for the programs that measure it, {}",
+                MEASURING.join(" and ")
+            );
+            return Err(CommandError::Failed(error.into()));
+        }
         Some(program) => of_program(program, *board, port)?,
         None => of_file(&scene_file(name)?, name, *board, port)?,
     };
@@ -66,6 +80,36 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     }
     board.end().map_err(|end| CommandError::Failed(end))?;
     Ok(CommandStatus::Success)
+}
+
+/// The programs that measure a device, by a board's DAC.
+const MEASURING: [&str; 2] = ["identify", "turns"];
+
+/// Such a program on a virtual board with the device that it measures.
+fn measuring(arguments: &Arguments) -> Result<SimulatedBoard, CommandError> {
+    let Arguments { scene: name, port, board, device: source, .. } = arguments;
+    let Some(board) = *board else {
+        let error = format!(
+            "{name} measures a device, which only the flashed program does: add --board NAME"
+        );
+        return Err(CommandError::Failed(error.into()));
+    };
+    let file =
+        source.as_deref().map(|source| Ok::<_, CommandError>((source, file::load_device(source)?)));
+    let file = file.transpose()?;
+    let (built, transducers) = match &file {
+        Some((source, file)) => {
+            let program = FileProgram::on_device(name, source, file)?;
+            let built = VirtualBoardBuild::of_file(board, &program, NumberFormat::F32)?;
+            (built, file.transducers.or_defaults())
+        }
+        None => (VirtualBoardBuild::named(board, name, None, NumberFormat::F32)?, TRANSDUCERS),
+    };
+    let file = file.as_ref().map(|(_, file)| file);
+    let device = identify::target::device(file, &identify::target::sensing(file, &transducers))?;
+    let plant = DrivenDevice { device, full_scale: transducers.full_scale_torque };
+    let board = DrivingBoard::Dac { board: built.boot()?, plant: Box::new(plant), count: None };
+    board_sim::listen(board, port, PERIOD).map_err(not_listening(port))
 }
 
 /// A program behind its port.

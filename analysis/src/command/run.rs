@@ -23,18 +23,20 @@ use super::status::{CommandError, CommandStatus};
 use super::value_parsers::positive;
 use super::virtual_board_build::VirtualBoardBuild;
 use crate::bridge_run::{ShaftInput, run_on_bridge};
-use crate::compare_run::{Backend, Input, RunError, RunOutcome, run_with_backend};
+use crate::compare_run::{Backend, Input, RunError, RunOutcome, run_with_backend, status};
 use crate::controller::{Controller, controller};
 use crate::counts_csv;
 use crate::device::Energy;
 use crate::disturbance::Disturbance;
-use crate::file::SceneFile;
+use crate::file::{SceneFile, key};
 use crate::hand::HandTrajectory;
 use crate::host_run::BesideHost;
 use crate::lockstep::{Difference, SimulatedDevice};
+use crate::missed::Missed;
 use crate::program::Program;
 use crate::progress;
 use crate::shaft::{HandHeldShaft, RecordedShaft};
+use crate::simulation::SimulationError;
 use crate::tick_gaps::TickGaps;
 use crate::toolchain::{BoardModel, NumberFormat, Tools};
 use crate::verdict::{self, Verdict, VerdictReport, judge_file};
@@ -83,7 +85,7 @@ impl fmt::Display for Target {
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Name of a program in firmware/src/bin, for example damper_wall, or a scene file. Its table `human` is
-    /// the hand; its table `simulation` is read by `haptic simulate` only
+    /// the hand; of its table `simulation` a run reads `dropped`
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Target: host, qemu (the emulated board), or board:NAME (the program as flashed, on a virtual
@@ -131,6 +133,8 @@ struct RunSetup {
     trajectory: HandTrajectory,
     /// Friction and cogging of the simulated motor.
     disturbance: Disturbance,
+    /// Readings of the encoder that fail.
+    dropped: Missed,
     controller: Box<dyn Controller>,
     program: RunProgram,
     /// What a host may do.
@@ -206,11 +210,14 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         let host = setup.host((law, true), arguments.format)?;
         host.servo(setup.controller.as_mut(), OutputTiming::Simultaneous)?;
     }
-    let built = build(&setup, arguments)?;
     let ticks = match &counts {
         Some(counts) => arguments.ticks.map_or(counts.len(), |ticks| ticks.min(counts.len())),
         None => arguments.ticks.unwrap_or_else(|| ticks_of_hand(period)),
     };
+    if counts.is_none() {
+        setup.check_dropped(arguments, ticks)?;
+    }
+    let built = build(&setup, arguments)?;
     let bar = progress::bar(ticks as u64, &setup.name);
     let stepper = progress::stepper(&bar);
     let outcome = match arguments.host {
@@ -237,7 +244,7 @@ fn ran(
     ticks: usize,
     progress: impl FnMut(),
 ) -> Result<RunOutcome, CommandError> {
-    let RunSetup { scene, transducers, trajectory, disturbance, .. } = setup;
+    let RunSetup { scene, transducers, trajectory, disturbance, dropped, .. } = setup;
     let controller = setup.controller.as_mut();
     if let Built::Virtual(flashed) = built
         && let Some((board, current_loop)) = flashed.boot_bridge()?
@@ -259,7 +266,8 @@ fn ran(
         Some(counts) => Input::Recording(counts),
         None => {
             let device = SimulatedDevice::new(scene, trajectory.clone(), transducers)?;
-            Input::Hand(Box::new(device.with_disturbance(*disturbance)))
+            let device = device.with_disturbance(*disturbance).failing(*dropped);
+            Input::Hand(Box::new(device))
         }
     };
     let backend = built.backend(scene.timing.period);
@@ -319,9 +327,9 @@ fn ran_beside_host(
     progress: impl FnMut(),
 ) -> Result<RunOutcome, CommandError> {
     let beside = setup.host(law, arguments.format)?;
-    let RunSetup { scene, transducers, trajectory, disturbance, .. } = setup;
+    let RunSetup { scene, transducers, trajectory, disturbance, dropped, .. } = setup;
     let device = SimulatedDevice::new(scene, trajectory.clone(), transducers)?;
-    let device = device.with_disturbance(*disturbance);
+    let device = device.with_disturbance(*disturbance).failing(*dropped);
     let controller = setup.controller.as_mut();
     Ok(match built.backend(beside.scene.timing.period) {
         None => beside.run(controller, device, ticks, progress).map_err(RunError::from)?,
@@ -330,6 +338,37 @@ fn ran_beside_host(
 }
 
 impl RunSetup {
+    /// Refuses readings that fail more often than the scene allows, or where no target here leaves a tick out.
+    fn check_dropped(&self, arguments: &Arguments, ticks: usize) -> Result<(), CommandError> {
+        let Scene { timing, latency, .. } = &self.scene;
+        let allowed = latency.encoder.dropped;
+        let leaves_out = latency.encoder.leaves_out(timing.period, timing.worst_period);
+        if let Some(sample) = self.dropped.fault(allowed, ticks) {
+            let time = sample as f64 * timing.period;
+            return Err(SimulationError::Readings { sample, time, allowed }.into());
+        }
+        let is_on_board = matches!(arguments.target, Target::Board(_));
+        let why = match () {
+            () if self.dropped == Missed::None => return Ok(()),
+            () if is_on_board && self.has_bridge => {
+                "its virtual bridge reads an encoder that does not fail"
+            }
+            () if !leaves_out => return Ok(()),
+            () if is_on_board => {
+                "the virtual board's encoder does not fail, and this scene leaves such ticks out"
+            }
+            () if arguments.host.is_some() => {
+                "this scene leaves such ticks out, which --host does not"
+            }
+            () => return Ok(()),
+        };
+        let key = key::FAILED.path;
+        let error = format!(
+            "`{key}` cannot be used here: {why}; `--target host` and `haptic simulate` use it"
+        );
+        Err(CommandError::Failed(error.into()))
+    }
+
     /// The host beside the scene, with its tank or without.
     fn host(
         &self,
@@ -387,6 +426,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
         transducers,
         trajectory: (program.trajectory)(),
         disturbance: Disturbance::default(),
+        dropped: Missed::None,
         controller: program.controller(format, &transducers)?,
         program: RunProgram::Named(program),
         budget: program.host,
@@ -409,6 +449,7 @@ fn of_file(file: SceneFile, arguments: &Arguments) -> Result<RunSetup, CommandEr
     };
     let (report, trajectory) = (judge_file(&file, Format::F64), hand_trajectory(&file));
     let disturbance = file.disturbance();
+    let dropped = file.simulation.as_ref().map_or(Missed::None, |simulation| simulation.dropped);
     let (scene, budget, has_bridge) = (file.scene, file.host, file.motor.is_some());
     let program = RunProgram::OfFile(program);
     Ok(RunSetup {
@@ -418,6 +459,7 @@ fn of_file(file: SceneFile, arguments: &Arguments) -> Result<RunSetup, CommandEr
         transducers,
         trajectory,
         disturbance,
+        dropped,
         controller,
         program,
         budget,
@@ -437,13 +479,15 @@ fn unused(file: &SceneFile, arguments: &Arguments) -> Vec<String> {
         let rigid = "the device runs as one rigid body, with all of its inertia and damping";
         notes.push(format!("{rigid}; `haptic simulate` includes its masses"));
     }
-    if file.simulation.is_some() {
+    if let Some(simulation) = &file.simulation {
         let instead = if is_replay {
             "the counts are those of the recording".to_owned()
         } else {
             format!("here {}", hand_trajectory(file).description)
         };
-        notes.push(format!("[simulation] is not used: {instead}; `haptic simulate` uses it"));
+        let drops = !is_replay && simulation.dropped != Missed::None;
+        let but = if drops { " but for `dropped`" } else { "" };
+        notes.push(format!("[simulation]{but} is not used: {instead}; `haptic simulate` uses it"));
     }
     let encoder = file.scene.latency.encoder;
     let misreads = is_replay && (!encoder.is_ideal() || encoder.steps() > 1.0);
@@ -570,7 +614,7 @@ fn rows(out: &mut impl Write, outcome: &RunOutcome) -> Result<(), CommandError> 
             tick.angle.to_string(),
             tick.torque.to_string(),
             tick.code.to_string(),
-            tick.limit.to_string(),
+            status(tick).as_str().to_owned(),
         ];
         if let Some(host) = host {
             let HostTick { wanted, given, level } = host.ticks[number];

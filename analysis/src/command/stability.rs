@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::shared_arguments::{IntegrationArguments, JsonOption, SceneArgument};
 use super::status::{CommandError, CommandStatus};
-use crate::nominal_latency::titled;
+use crate::nominal_latency::titled_loop;
 use crate::quantity::significant;
 use crate::simulation::Experiment;
 use crate::stability::{Stability, StabilityVerdict, judge};
@@ -25,7 +25,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let stability = judge(&Experiment::at_rest(&file), arguments.steps.integration())?;
-    let name = titled(&file.name, [&file.scene.latency]);
+    let name = titled_loop(&file.name, &file.scene);
     arguments.answer.print(&stability, |stability| text(&name, stability))?;
     Ok(match stability.verdict {
         StabilityVerdict::Unstable | StabilityVerdict::Undecided => CommandStatus::NegativeVerdict,

@@ -31,15 +31,23 @@ impl VirtualBoardBuild {
         program: &'static Program,
         format: NumberFormat,
     ) -> Result<Self, CommandError> {
-        let name = program.name;
+        let bridge = program.bridge.map(|bridge| (Box::new(bridge), program.transducers));
+        Self::named(board, program.name, bridge, format)
+    }
+
+    /// The same of a program without a scene.
+    pub fn named(
+        board: BoardModel,
+        name: &str,
+        bridge: Option<(Box<CurrentLoop>, Transducers)>,
+        format: NumberFormat,
+    ) -> Result<Self, CommandError> {
         let toolchain = set_up(Tools::CompilerAndVirtualBoard)?;
-        let output =
-            if program.bridge.is_some() { TorqueOutput::Bridge } else { TorqueOutput::Dac };
+        let output = if bridge.is_some() { TorqueOutput::Bridge } else { TorqueOutput::Dac };
         let (elf, executable) = building(&format!("{name} and the virtual board"), || {
             let elf = toolchain.build_for(board, output, &[name], format)?.swap_remove(0).path;
             Ok((elf, toolchain.build_virtual_board()?))
         })?;
-        let bridge = program.bridge.map(|bridge| (Box::new(bridge), program.transducers));
         Ok(Self { executable, board, elf, bridge, is_magnetic: false })
     }
 

@@ -34,9 +34,10 @@ fn growth(spectral_radius: f64, period: f64) -> String {
 }
 
 fn text(name: &str, period: f64, search: &SearchResult) -> String {
-    let SearchResult { worst, oscillates, lighter, tried } = search;
+    let SearchResult { worst, oscillates, lighter, tried, left_out } = search;
     let number = |value: f64| significant(value, 6);
-    let mut text = format!("scene    {name}\nsearched {tried} passive hands\n");
+    let loop_of = left_out.map_or_else(String::new, |words| format!(" ({words})"));
+    let mut text = format!("scene    {name}{loop_of}\nsearched {tried} passive hands\n");
     if !oscillates {
         text += "result   the device oscillates in none of them\n";
         if let Some(held) = lighter {

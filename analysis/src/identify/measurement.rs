@@ -3,11 +3,10 @@
 use std::io;
 use std::path::Path;
 
-use haptic_servo::dac::DacCode;
 use haptic_servo::excitation::{Exciter, Sweep};
 
 use super::record::Record;
-use super::rig::MeasuredDevice;
+use super::rig::{MeasuredDevice, torque_of};
 use crate::compare_run::RunError;
 use crate::emulator::Emulator;
 use crate::lockstep::{Difference, RemoteServo};
@@ -34,7 +33,6 @@ pub fn measure<const N: usize>(
 ) -> Result<Measurement, RunError> {
     let mut board = elf.map(Emulator::boot).transpose()?;
     let mut exciter = Exciter::new(sweep);
-    let torque_per_code = sweep.full_scale_torque() / f64::from(DacCode::CODES_TO_FULL_SCALE);
     let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
     let (mut equal, mut difference) = (0, None);
     for tick in 0..sweep.ticks() as usize {
@@ -49,8 +47,7 @@ pub fn measure<const N: usize>(
         } else if difference.is_none() {
             difference = Some(Difference { tick, count, host, target: code });
         }
-        let offset = f64::from(code) - f64::from(DacCode::MID_SCALE.get());
-        let command = offset * torque_per_code;
+        let command = torque_of(code, sweep.full_scale_torque());
         device.hold(command);
         torque.push(command);
         counts.push(f64::from(count));

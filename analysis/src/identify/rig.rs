@@ -4,10 +4,12 @@
 
 use std::f64::consts::TAU;
 
+use haptic_servo::dac::DacCode;
 use haptic_servo::scene::{EncoderReading, Latency, Scene, TimeRange};
 
 use crate::device::SimulatedEncoder;
 use crate::disturbance::{Cogging, Disturbance};
+use crate::lockstep::PlantIo;
 use crate::program::damper_wall;
 use crate::simulation::plant::{POSITION, Plant};
 use crate::simulation::torque_signal::TorqueSignal;
@@ -44,10 +46,7 @@ impl Sensing {
             counts_per_turn,
             encoder: EncoderReading::IDEAL,
             sensor_lag: TimeRange::ZERO,
-            disturbance: Disturbance {
-                friction: 0.0,
-                cogging: Cogging { torque: 0.0, count: 0.0 },
-            },
+            disturbance: Disturbance { friction: 0.0, cogging: Cogging { harmonics: &[] } },
             torque_noise: 0.0,
             skew: 0.0,
             output_delay: 0.0,
@@ -113,6 +112,31 @@ impl MeasuredDevice {
         self.machine.tick(self.ticks, &TorqueSignal::Free, torque);
         self.ticks += 1;
     }
+}
+
+/// A measured device behind a motor, for a board.
+#[derive(Debug)]
+pub struct DrivenDevice {
+    /// The device.
+    pub device: MeasuredDevice,
+    /// Torque in N m of the motor at the largest code.
+    pub full_scale: f64,
+}
+
+impl PlantIo for DrivenDevice {
+    fn count(&mut self) -> Option<i32> {
+        Some(self.device.count())
+    }
+
+    fn hold(&mut self, code: u16) {
+        self.device.hold(torque_of(code, self.full_scale));
+    }
+}
+
+/// Torque in N m of a motor at a code.
+pub fn torque_of(code: u16, full_scale: f64) -> f64 {
+    let offset = f64::from(code) - f64::from(DacCode::MID_SCALE.get());
+    offset * (full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE))
 }
 
 /// Normally distributed with deviation 1, to the accuracy of a sum of twelve uniform numbers.

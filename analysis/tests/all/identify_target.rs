@@ -65,6 +65,53 @@ fn the_board_measures_damping_within_two_percent_and_plays_the_hosts_codes() {
     }
 }
 
+/// From slow turns on the emulated board over the file of the device to a scene that opposes the cogging there.
+#[test]
+#[ignore = "builds for minutes"]
+fn the_board_turns_a_motor_and_then_opposes_its_cogging() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (device, scene) = (path("knob.toml"), path("scene.toml"));
+    let text = "[device]\ninertia = 3e-5\ndamping = 0.001\nfriction = 0.003\n\
+                cogging = { torque = 0.005, count = 84 }\nactuator_lag = 8e-5\n\
+                [encoder]\ncounts_per_turn = 16384.0\nage = [0.0, 1e-5]\nnoise = 2.0\n\
+                [limits]\ntorque = 0.15\nfull_scale = 0.2\n";
+    std::fs::write(&device, text).unwrap();
+    let found = answer(&["identify", &device, "--target", "qemu", "--turns", "-o", &device]);
+    assert_eq!(found["measured"]["codes_equal"], 160_000, "{}", found["measured"]);
+    for (quantity, truth) in [
+        ("/friction", 0.003),
+        ("/damping", 0.001),
+        ("/inertia", 3e-5),
+        ("/cogging/harmonics/0/amplitude", 0.005),
+    ] {
+        let [lo, hi] = ["lo", "hi"].map(|end| number(&found, &format!("{quantity}/{end}")));
+        assert!(lo <= truth && truth <= hi, "{quantity}: {truth} is not in {lo} to {hi}");
+    }
+    assert_eq!(found["cogging"]["harmonics"][0]["count"], 84);
+    let text = "name = \"knob\"\ndevice = \"knob.toml\"\n[servo]\nrate = 1000.0\n[environment]\n\
+                type = \"delayed-spring\"\nstiffness = 0.1\ndelay = 1\n";
+    std::fs::write(&scene, text).unwrap();
+    let certified = answer(&["certify", &scene]);
+    let assumed = certified["assumptions"].to_string();
+    assert!(assumed.contains("opposes 100 % of the learnt cogging"), "{certified}");
+    let ran = answer(&["run", &scene, "--target", "qemu", "--ticks", "3000"]);
+    assert_eq!((&ran["codes_equal"], &ran["difference"]), (&3000.into(), &Value::Null), "{ran}");
+    // What is left of the cogging is what a device without it and without a map feels.
+    let swing = |text: &str| {
+        let other = path("other.toml");
+        std::fs::write(&other, text).unwrap();
+        let moved = answer(&["simulate", &other]);
+        let angles = moved["position"].as_array().unwrap().iter().map(|it| it.as_f64().unwrap());
+        angles.fold(0.0, |most: f64, angle| most.max(angle.abs()))
+    };
+    let pushed = text.to_owned()
+        + "[simulation]\nsamples = 4000\ntorque_sine = { amplitude = 0.007, omega = 6.0 }\n";
+    let opposed = swing(&pushed);
+    let left = swing(&pushed.replace("[servo]", "[anticogging]\nshare = 0.0\n[servo]"));
+    assert!(opposed > 2.0 * left, "{opposed} {left}");
+}
+
 /// A shaft that turns at two speeds both ways, read by an encoder that is 80 us late, and whose error has a slope of
 /// 0.01, and by one without errors.
 #[test]

@@ -61,7 +61,8 @@ pub fn the_handle_of_the_page_runs_the_servo_of_the_program() {
     page.assert_silent();
 }
 
-/// The buttons change the counts that the servo reads; the fields of the cogging say so.
+/// The buttons change the counts that the servo reads; the fields of the cogging and of the share of it that is opposed
+/// say so.
 pub fn the_encoder_of_the_handle_is_exchanged() {
     let (_folder, mut page) =
         opened(1280, include_str!("../../explore/src/presets/gimbal_knob.toml"));
@@ -72,9 +73,12 @@ pub fn the_encoder_of_the_handle_is_exchanged() {
     page.wait_for(&format!("{counts} === 10000"));
     page.click("#handle-own-encoder");
     page.wait_for(&format!("{counts} === 16384"));
-    for (field, words) in [("torque", "cogging torque"), ("count", "cogging count")] {
-        let label =
-            format!("document.querySelector('[for=field-device-cogging-{field}]').textContent");
+    for (field, words) in [
+        ("device-cogging-torque", "cogging torque"),
+        ("device-cogging-count", "cogging count"),
+        ("anticogging-share", "share"),
+    ] {
+        let label = format!("document.querySelector('[for=field-{field}]').textContent");
         assert_eq!(page.value(&label), words);
     }
     page.assert_silent();

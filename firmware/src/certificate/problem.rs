@@ -114,7 +114,8 @@ impl PassivityProblem {
         {
             let EncoderReading { linearity, friction, .. } = *scene.latency.encoder;
             let anticogs = scene.environment.parts().anticogging.is_some();
-            return Err(Rejection::MotorByInl { linearity, mean, friction, anticogs });
+            let remedies = Remedies::NONE;
+            return Err(Rejection::MotorByInl { linearity, mean, friction, anticogs, remedies });
         }
         // Its bound in a sum with a profile does not detect this.
         if let Parts { wall: Some(Wall { stiffness, .. }), profile: Some(_), .. } =

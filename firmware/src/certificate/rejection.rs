@@ -25,7 +25,7 @@ pub enum Rejection {
     Motor { mean: f64 },
     /// A nonlinear encoder makes an endless torque profile a motor, or what opposes the cogging has a mean (`anticogs`),
     /// and the stated friction does not hold the bound on this mean torque.
-    MotorByInl { linearity: f64, mean: Interval, friction: f64, anticogs: bool },
+    MotorByInl { linearity: f64, mean: Interval, friction: f64, anticogs: bool, remedies: Remedies },
     /// What opposes the cogging needs all of the passivity; `None` if no bound is known for these times.
     Anticogging { needed: Option<f64>, delta: f64, remedies: Remedies },
     /// A torque limit would make the torque profile a motor.
@@ -123,6 +123,7 @@ impl Rejection {
             | Self::Shortage { remedies, .. }
             | Self::Missed { remedies, .. }
             | Self::Anticogging { remedies, .. }
+            | Self::MotorByInl { remedies, .. }
             | Self::Coupling { remedies, .. }
             | Self::Undecided { remedies, .. } => *remedies,
             _ => Remedies::NONE,

@@ -27,6 +27,12 @@ pub(super) const fn with_remedies(
         | Rejection::Anticogging { remedies, .. }
         | Rejection::Coupling { remedies, .. }
         | Rejection::Undecided { remedies, .. } => *remedies = search(scene, format),
+        Rejection::MotorByInl { anticogs: true, remedies, .. } => {
+            let varied = Varied { scene, format, parameter: Parameter::Anticogging };
+            if let Some(share) = varied.smaller_share() {
+                remedies.put(CANDIDATES - 1, Some(Remedy::exactly(varied.parameter, share)));
+            }
+        }
         Rejection::UnstablePole { of_coupling: true, remedies, behind_standard, .. } => {
             *remedies = search(scene, format);
             *behind_standard = softer_behind_standard(scene, format);
@@ -70,6 +76,7 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
             Parameter::Count => varied.fewer_repetitions(),
             Parameter::CouplingStiffness => standard_coupling(&varied),
             Parameter::Passivity => more_damping(scene, format),
+            Parameter::Anticogging => less_anticogging(&varied),
             _ => varied.remedy(own),
         };
         found.put(i, remedy);
@@ -167,6 +174,13 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
         Some(value) => Some(Remedy::exactly(parameter, value)),
         None => None,
     }
+}
+
+/// A smaller share of the anticogging.
+const fn less_anticogging(varied: &Varied) -> Option<Remedy> {
+    let parameter = varied.parameter;
+    let highest = some!(varied.smaller_share());
+    Some(Remedy { parameter, lowest: varied.other_end(highest), highest: Some(highest) })
 }
 
 /// Not inlined, like the function that it calls.

@@ -18,6 +18,9 @@ const FIRST_STEP: f64 = 1.25;
 const LEAST_STEP: f64 = 1.01;
 /// More repetitions than any turn has.
 const MOST_REPETITIONS: f64 = 1e6;
+/// Smallest share of the anticogging that is looked at, and halvings between two shares: three digits.
+const LEAST_SHARE: f64 = 1e-3;
+const HALVINGS: u32 = 12;
 /// Number of values to certify at the end: the value found, and then with its last digit changed by one each
 /// time, because close to a limit only the certificate decides.
 const CANDIDATES: u32 = 3;
@@ -50,7 +53,7 @@ impl Varied<'_> {
 
     /// The other end of the range that is proved to pass, from the nearest value on; `None` if the range has
     /// no other end, and the same value if nothing else is proved.
-    const fn other_end(&self, nearest: f64) -> Option<f64> {
+    pub const fn other_end(&self, nearest: f64) -> Option<f64> {
         let last = match (between(self.scene, self.format, self.parameter, nearest), self.parameter)
         {
             (Between::Unknown, _) => return Some(nearest),
@@ -112,6 +115,24 @@ impl Varied<'_> {
             return None;
         }
         Some(Remedy { parameter: self.parameter, lowest: None, highest: Some(passes as f64) })
+    }
+
+    /// The largest passing share of the anticogging, bisected by verdicts: behind a coupling the shortage does not tell
+    /// how near a share is. With less of it more passivity is left for the scene, and less of a mean torque.
+    pub const fn smaller_share(&self) -> Option<f64> {
+        let mut fails = some!(self.scene.get(self.parameter));
+        let mut passes = 0.5 * fails;
+        while !self.is_certified(passes) {
+            if passes < LEAST_SHARE {
+                return None;
+            }
+            (fails, passes) = (passes, 0.5 * passes);
+        }
+        each!(_i in 0..HALVINGS => {
+            let middle = 0.5 * (fails + passes);
+            if self.is_certified(middle) { passes = middle } else { fails = middle }
+        });
+        self.certified(Digits::of(passes, Side::Below), Side::Below)
     }
 
     /// The passing value in a bracket that is nearest to the failing values, to three digits and certified.

@@ -3,6 +3,7 @@
 use haptic_model::device::{Energy, Motion};
 use haptic_model::disturbance::Disturbance;
 use haptic_model::hand::HandTrajectory;
+use haptic_model::missed::Missed;
 use haptic_model::simulation::SimulationError;
 use haptic_model::simulation::device_in_hand::DeviceInHand;
 use haptic_servo::scene::{Latency, Scene, Timing};
@@ -12,6 +13,10 @@ use haptic_servo::servo::Transducers;
 pub trait PlantIo {
     /// The counter's content now; `None` at the end of a recording.
     fn count(&mut self) -> Option<i32>;
+    /// Whether the servo leaves the tick of this count out, because its reading fails.
+    fn is_left_out(&self) -> bool {
+        false
+    }
     /// Outputs the code of this tick, which is held until that of the next tick.
     fn hold(&mut self, code: u16);
 }
@@ -39,6 +44,11 @@ impl SimulatedDevice {
     /// The same with friction and cogging of its motor.
     pub fn with_disturbance(self, disturbance: Disturbance) -> Self {
         Self { device: self.device.with_disturbance(disturbance), ..self }
+    }
+
+    /// The same with readings of the encoder that fail.
+    pub fn failing(self, dropped: Missed) -> Self {
+        Self { device: self.device.failing(dropped), ..self }
     }
 
     /// The same on the shaft of a motor whose torque comes from elsewhere, in steps of this length in s.
@@ -82,6 +92,10 @@ impl SimulatedDevice {
 impl PlantIo for SimulatedDevice {
     fn count(&mut self) -> Option<i32> {
         Some(self.device.count())
+    }
+
+    fn is_left_out(&self) -> bool {
+        self.device.is_left_out()
     }
 
     fn hold(&mut self, code: u16) {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use haptic_model::controller::Controller;
+use haptic_model::controller::{Controller, Tick};
 use haptic_model::device::{Energy, HandSetpoint};
 use haptic_model::file::SceneFile;
 use haptic_model::simulation::device_in_hand::DeviceInHand;
@@ -44,6 +44,10 @@ pub struct Simulated {
     /// The hand's set-point in rad; the device's angle without a hand.
     setpoint: f64,
     push: Option<Push>,
+    /// The servo's last tick, which stays where one is left out.
+    last: Option<Tick>,
+    /// The fault that has switched the servo off.
+    fault: Option<String>,
     /// Counts and codes of the servo, beside its host, from its first tick on; later ones are dropped when it is
     /// full.
     record: Vec<(i32, u16)>,
@@ -123,6 +127,8 @@ pub struct Moved {
     pub oscillation: Option<Oscillation>,
     /// What the hand takes from a host.
     pub host: Option<HostMoved>,
+    /// The fault that has switched the servo off.
+    pub fault: Option<String>,
 }
 
 impl Simulated {
@@ -147,6 +153,11 @@ impl Simulated {
         let mut device = DeviceInHand::new(&moved, hand, &transducers)
             .map_err(|error| error.to_string())?
             .with_disturbance(file.disturbance());
+        if let Some(simulation) =
+            file.simulation.as_ref().filter(|_| settings.counts_per_turn.is_none())
+        {
+            device = device.failing(simulation.dropped);
+        }
         if let Some(before) = before {
             let (old, new) = (&before.scene, &file.scene);
             let is_same = old.timing.period == new.timing.period && old.latency == new.latency;
@@ -165,6 +176,8 @@ impl Simulated {
             transducers,
             device,
             push: None,
+            last: None,
+            fault: None,
             record: Vec::new(),
             watch: Watch::new(period, step, TAU / counts),
         };
@@ -272,16 +285,27 @@ impl Simulated {
             energy: self.device.energy(),
             oscillation: self.watch.oscillation(),
             host: self.hosted.as_ref().map(Hosted::moved),
+            fault: self.fault.clone(),
         }
     }
 
     fn tick(&mut self, setpoint: Option<HandSetpoint>, numbers: &mut Vec<f64>) {
         let raw = self.device.count();
-        let mut tick = match &mut self.hosted {
-            Some(hosted) => hosted.servo.tick(raw),
-            None => self.rendered.servo.tick(raw),
+        if let Some(fault) = self.device.fault().filter(|_| self.fault.is_none()) {
+            self.rendered.servo = Box::new(Unchecked::off(&self.transducers));
+            (self.hosted, self.fault) = (None, Some(fault));
+        }
+        let held = self.last.filter(|_| self.device.is_left_out() && self.fault.is_none());
+        let mut tick = match (held, &mut self.hosted) {
+            (Some(held), _) => Tick { is_left_out: true, ..held },
+            (None, Some(hosted)) => hosted.servo.tick(raw),
+            (None, None) => self.rendered.servo.tick(raw),
         };
-        self.keep(raw, tick.code);
+        self.last = Some(tick);
+        // The codes that a servo computes of these counts.
+        if !tick.is_left_out && self.fault.is_none() {
+            self.keep(raw, tick.code);
+        }
         let (torque, before) = (self.device.torque(tick.code), self.device.motion().position);
         self.device.push(torque, setpoint.unwrap_or_default(), setpoint.is_some());
         let position = self.device.motion().position;

@@ -73,6 +73,7 @@ impl Controller for Unchecked {
             torque,
             code: torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale),
             limit: if limit == LimitReason::Torque { self.limit } else { limit },
+            is_left_out: false,
         }
     }
 

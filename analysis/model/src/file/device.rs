@@ -6,7 +6,7 @@ use super::faults::{Read, all};
 use super::key::{self, Key};
 use super::section::Section;
 use crate::chain::{Chain, EncoderPlace, Link, MAX_MASSES, Mass};
-use crate::disturbance::Cogging;
+use crate::disturbance::{Cogging, Sine};
 
 /// The purpose of reading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +34,9 @@ pub struct DeviceTable {
 /// Reads `[device]`.
 pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     let friction = section.optional(&key::DEVICE_FRICTION);
-    let cogging = section.table(&key::COGGING).and_then(|table| table.map(cogging_of).transpose());
+    let cogging = section.tables_or_one(&key::COGGING).and_then(|tables| {
+        tables.map(|tables| all(tables.into_iter().map(sine)).map(Cogging::of)).transpose()
+    });
     let masses = section.tables(&key::MASS);
     let is_rigid = matches!(masses, Ok(None));
     let chain = match masses {
@@ -71,11 +73,11 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     Ok(DeviceTable { chain, device, friction, cogging, latency })
 }
 
-fn cogging_of(mut section: Section<'_>) -> Read<Cogging> {
-    let torque = section.number(&key::COGGING_TORQUE);
-    let count = section.number(&key::COGGING_COUNT);
+fn sine(mut section: Section<'_>) -> Read<Sine> {
+    let [torque, count, phase] = [&key::COGGING_TORQUE, &key::COGGING_COUNT, &key::COGGING_PHASE]
+        .map(|key| section.number(key));
     section.finish();
-    Ok(Cogging { torque: torque?, count: count? })
+    Ok(Sine { torque: torque?, count: count?, phase: phase? })
 }
 
 /// A step response of unknown shape cannot stand beside a lag: no bound is known for both.

@@ -44,6 +44,8 @@ pub enum Form {
     Table,
     /// A list of tables.
     Tables,
+    /// A list of tables, or one of them.
+    TablesOrOne,
     /// A time, or the two ends of the range in which it is known to lie.
     Time,
 }
@@ -220,13 +222,17 @@ keys! {
     /// Dry (Coulomb) friction at the motor.
     DEVICE_FRICTION = other("device.friction", "N m", NOT_NEGATIVE),
         Optional("not counted on: the verdict does not say whether the device comes to rest"), "0.003";
-    /// Cogging of the motor, for simulation: a torque of `-torque` times the sine of `count` times the angle. The
-    /// certificate needs no number of it, because it takes no energy in a turn.
-    COGGING = other("device.cogging", "", TABLE), Optional("no cogging"), "{ torque = 0.005, count = 84 }";
-    /// Amplitude of the cogging.
+    /// Cogging of the motor, for simulation: a torque of `-torque` times the sine of `count` times the angle and
+    /// `phase`, or a list of such harmonics. The certificate needs no number of it, because it takes no energy in
+    /// a turn.
+    COGGING = other("device.cogging", "", Bound::Other(Form::TablesOrOne, "a table, or a list of tables")),
+        Optional("no cogging"), "{ torque = 0.005, count = 84 }";
+    /// Amplitude of this harmonic.
     COGGING_TORQUE = other("device.cogging.torque", "N m", NOT_NEGATIVE), Needed, "0.005";
     /// Its periods in a turn, mostly the least common multiple of slots and poles: 84 of 12 and 14.
     COGGING_COUNT = other("device.cogging.count", "", whole(1, 4096)), Needed, "84";
+    /// Its phase at the angle 0.
+    COGGING_PHASE = other("device.cogging.phase", "rad", FINITE), Default(0.0), "0.0";
     /// Masses of a chain, in place of inertia and damping: the motor's first, the hand's last.
     MASS = other("device.mass", "", Bound::Other(Form::Tables, "a list of 1 to 10 tables")),
         Optional("one rigid body, of `device.inertia` and `device.damping`"), "";

@@ -144,6 +144,10 @@ fn property(key: &Key) -> Value {
                 json!({ "anyOf": [time, range] })
             }
             Form::Table => table(key.path),
+            Form::TablesOrOne => {
+                let one = table(key.path);
+                json!({ "anyOf": [one, { "type": "array", "minItems": 1, "items": one }] })
+            }
             Form::Tables => json!({ "type": "array", "minItems": 1, "items": table(key.path) }),
         },
     };

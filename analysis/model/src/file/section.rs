@@ -106,6 +106,15 @@ impl<'t> Section<'t> {
         self.table(key)?.ok_or_else(|| self.missing(key))
     }
 
+    /// The tables of that key in their order, or one in place of a list of one.
+    pub fn tables_or_one(&mut self, key: &Key) -> Read<Option<Vec<Self>>> {
+        let is_one = |entry: &Entry| matches!(entry.node.value, Value::Table(_));
+        match self.entries.iter().find(|entry| entry.name == key.name()).is_some_and(is_one) {
+            true => Ok(self.table(key)?.map(|table| vec![table])),
+            false => self.tables(key),
+        }
+    }
+
     /// The tables of that key in their order, if it is there.
     pub fn tables(&mut self, key: &Key) -> Read<Option<Vec<Self>>> {
         let Some(items) = self.items(key)? else { return Ok(None) };

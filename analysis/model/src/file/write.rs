@@ -19,7 +19,7 @@ use super::motor::FileMotor;
 use super::scene::SceneFile;
 use super::supply::FileSupply;
 use crate::chain::{Chain, EncoderPlace};
-use crate::disturbance::Cogging;
+use crate::disturbance::{Cogging, Sine};
 
 /// The text of a scene file in TOML: all keys of the file, and no others.
 pub fn toml(file: &SceneFile) -> String {
@@ -205,6 +205,17 @@ fn encoder(lines: &mut Vec<String>, reading: &EncoderReading, chip: Option<&Chip
     }
 }
 
+fn cogging_of(harmonics: &[Sine]) -> String {
+    let of = |&Sine { torque, count, phase }: &Sine| {
+        let phase = if phase == 0.0 { String::new() } else { format!(", phase = {phase:?}") };
+        format!("{{ torque = {torque:?}, count = {count}{phase} }}")
+    };
+    match harmonics {
+        [one] => of(one),
+        all => format!("[{}]", all.iter().map(of).collect::<Vec<_>>().join(", ")),
+    }
+}
+
 /// Writes the passivity only if it was declared and differs from the chain's own.
 fn device(
     lines: &mut Vec<String>,
@@ -221,9 +232,7 @@ fn device(
     }
     number(lines, "passivity", passivity);
     number(lines, "friction", friction);
-    lines.extend(cogging.map(|Cogging { torque, count }| {
-        format!("cogging = {{ torque = {torque:?}, count = {count} }}")
-    }));
+    lines.extend(cogging.map(|cogging| format!("cogging = {}", cogging_of(cogging.harmonics))));
     if chain.encoder() == EncoderPlace::Hand {
         lines.push(format!("encoder = {}", quoted(EncoderPlace::Hand.word())));
     }

@@ -16,9 +16,11 @@ pub mod words;
 use std::f64::consts::PI;
 
 use haptic_servo::certificate::{Assessment, LoopTransfers, PassivityProblem, Rule, assess};
+use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::passivity::lagged::{LagIntervals, SampledResponse};
 use haptic_servo::passivity::transfer::{Transfer, Unbuildable};
+use haptic_servo::rendering::context_beside_anticogging;
 use haptic_servo::scene::{Coupling, Latency, Scene};
 use nalgebra::Complex;
 use thiserror::Error;
@@ -312,7 +314,9 @@ impl NyquistScene {
 
 fn limit_name(scene: &Scene, assessment: &Assessment, limit: Option<f64>) -> &'static str {
     let near = |value: f64| limit.is_some_and(|limit| (limit / value - 1.0).abs() < 1e-9);
+    let anticogs = scene.environment.parts().anticogging.is_some();
     match scene.coupling {
+        _ if near(assessment.delta.midpoint()) && anticogs => "-delta, less that of [anticogging]",
         _ if near(assessment.delta.midpoint()) => "-delta",
         Coupling::Spring { stiffness } if near(0.5 * stiffness * scene.timing.period) => {
             "-K T/2 of the coupling"
@@ -354,7 +358,7 @@ impl PortCurve {
             path: Response::new(response.transfer(period)),
             response,
             period: scene.timing.period,
-            delta: scene.device.passivity(),
+            delta: context_beside_anticogging(scene, Format::F64).passivity,
         })
     }
 

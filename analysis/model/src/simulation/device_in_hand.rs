@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use haptic_servo::dac::DacCode;
-use haptic_servo::scene::Scene;
+use haptic_servo::scene::{Scene, Timing};
 use haptic_servo::servo::Transducers;
 
 use super::error::SimulationError;
@@ -12,6 +12,7 @@ use super::held_device::{DeviceState, HeldDevice};
 use super::reading::Reading;
 use crate::device::{Energy, Hand, HandSetpoint, Motion, SimulatedEncoder};
 use crate::disturbance::Disturbance;
+use crate::missed::Missed;
 
 /// A device that a hand holds or not. A code acts after the output delay of the scene, and amplifier and sensor
 /// have the lags of the scene: the middle of each range, without jitter.
@@ -23,6 +24,14 @@ pub struct DeviceInHand {
     state: DeviceState,
     reading: Reading,
     encoder: SimulatedEncoder,
+    /// The last reading that did not fail, in counts.
+    counted: i32,
+    /// Whether a tick whose reading fails is left out, and whether the last one was.
+    leaves_out: bool,
+    is_left_out: bool,
+    /// Readings in a row that have failed, and how many may.
+    failed: u32,
+    may_fail: u16,
     torque_per_code: f64,
     energy: Energy,
 }
@@ -38,6 +47,7 @@ impl DeviceInHand {
         transducers: &Transducers,
     ) -> Result<Self, SimulationError> {
         let full_scale = transducers.full_scale_torque;
+        let Timing { period, worst_period } = scene.timing;
         let held = HeldDevice::of(scene, hand)?;
         Ok(Self {
             state: held.at(Motion::default()),
@@ -46,6 +56,11 @@ impl DeviceInHand {
             disturbance: Disturbance::default(),
             reading: Reading::new(scene.latency.encoder, Some(TAU / transducers.counts_per_turn)),
             encoder: SimulatedEncoder::new(transducers.counts_per_turn),
+            counted: 0,
+            leaves_out: scene.latency.encoder.leaves_out(period, worst_period),
+            is_left_out: false,
+            failed: 0,
+            may_fail: scene.latency.encoder.dropped,
             torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
             energy: Energy::default(),
         })
@@ -56,6 +71,11 @@ impl DeviceInHand {
         let [held, free] =
             [self.held, self.free].map(|device| device.with_disturbance(disturbance));
         Self { held, free, disturbance, ..self }
+    }
+
+    /// The same with readings of the encoder that fail.
+    pub fn failing(self, dropped: Missed) -> Self {
+        Self { reading: self.reading.failing(dropped), ..self }
     }
 
     /// The same in the motion of another device, with its torques in transit if it has the same states.
@@ -76,9 +96,31 @@ impl DeviceInHand {
         Ok(())
     }
 
-    /// The counter's content, as the encoder reads it now.
+    /// The counter's content, as the encoder reads it now; that of the last tick if the reading fails.
     pub fn count(&mut self) -> i32 {
-        self.encoder.read(self.reading.angle(self.state.measured()))
+        let fails = self.reading.fails();
+        self.failed = if fails { self.failed + 1 } else { 0 };
+        if !fails {
+            self.counted = self.encoder.read(self.reading.angle(self.state.measured()));
+        }
+        self.is_left_out = fails && self.leaves_out;
+        self.counted
+    }
+
+    /// Whether the servo leaves the tick of this count out, because its reading fails.
+    pub fn is_left_out(&self) -> bool {
+        self.is_left_out
+    }
+
+    /// The fault of a servo after the last count, if more readings in a row have failed than its scene allows.
+    pub fn fault(&self) -> Option<String> {
+        let allowed = self.may_fail;
+        (self.failed > u32::from(allowed)).then(|| {
+            format!(
+                "the fault encoder-reading: more readings of the encoder in a row have failed than \
+                 `encoder.dropped` = {allowed}"
+            )
+        })
     }
 
     /// The present motion of the device.

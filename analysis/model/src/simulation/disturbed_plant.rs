@@ -210,7 +210,7 @@ impl DisturbedPlant {
     ) -> DVector<f64> {
         match state.mode {
             Mode::Stuck => &part.stuck[halving] * &state.states,
-            Mode::Slides(_) if self.disturbance.cogging.torque == 0.0 => {
+            Mode::Slides(_) if self.disturbance.cogging.is_none() => {
                 &part.slides[halving] * &state.states
             }
             Mode::Slides(_) => {
@@ -267,14 +267,14 @@ impl DisturbedPlant {
         let hands = inputs[hand] * (states[n + hand] + states[n + INPUTS]);
         let held = rates + inputs[motor] * states[n + motor] + hands;
         let push = self.plant.motor_inertia() * held;
-        if self.disturbance.cogging.torque == 0.0 { push } else { push + self.cogging(states) }
+        if self.disturbance.cogging.is_none() { push } else { push + self.cogging(states) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::disturbance::Cogging;
+    use crate::disturbance::sine;
     use haptic_servo::scene::Device;
 
     /// A mass of 0.5 kg m^2 without damping, in ticks of 0.25 s.
@@ -323,12 +323,12 @@ mod tests {
     /// A mass in its cogging is a pendulum, whose period the arithmetic-geometric mean has.
     #[test]
     fn a_mass_swings_in_its_cogging_as_a_pendulum_does() {
-        let cogging = Cogging { torque: 0.2, count: 7.0 };
+        let cogging = sine(0.2, 7.0);
         let disturbance = Disturbance { cogging, ..Disturbance::default() };
         // To 2 rad of the cogging's period, from the middle.
         let largest: f64 = 2.0;
         let rate = (cogging.slope() / 0.5).sqrt();
-        let velocity = 2.0 * rate * (0.5 * largest).sin() / cogging.count;
+        let velocity = 2.0 * rate * (0.5 * largest).sin() / cogging.highest();
         let (mut a, mut b) = (1.0, (0.5 * largest).cos());
         for _ in 0..8 {
             (a, b) = (0.5 * (a + b), f64::sqrt(a * b));
@@ -341,7 +341,7 @@ mod tests {
             if last[0] < 0.0 && next[0] >= 0.0 {
                 ends.push(0.25 * (f64::from(tick) - next[0] / (next[0] - last[0])));
             }
-            assert!(next[0].abs() < largest / cogging.count * 1.001, "{next:?}");
+            assert!(next[0].abs() < largest / cogging.highest() * 1.001, "{next:?}");
             last = next;
         }
         let (first, end) = (ends[0], ends[ends.len() - 1]);
@@ -353,7 +353,7 @@ mod tests {
     /// rest of its energy.
     #[test]
     fn a_mass_sticks_on_the_flank_of_its_cogging() {
-        let cogging = Cogging { torque: 0.2, count: 3.0 };
+        let cogging = sine(0.2, 3.0);
         let mut mass = Mass::new(Disturbance { friction: 0.15, cogging }, 0.5);
         let [position, velocity] = (0..40).map(|_| mass.after(0.0)).last().unwrap();
         let spent = 0.15 * position + cogging.energy(position);

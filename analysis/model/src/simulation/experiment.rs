@@ -152,15 +152,7 @@ impl Experiment {
 
     /// The first sample at which more readings in a row have failed than the scene allows.
     pub(super) fn fault(&self) -> Option<usize> {
-        let (allowed, mut failed) = (self.scene.latency.encoder.dropped, 0);
-        let mut readings = self.dropped.ticks().take(self.samples);
-        if self.dropped == Missed::None {
-            return None;
-        }
-        readings.position(|fails| {
-            failed = if fails { failed + 1 } else { 0 };
-            failed > allowed
-        })
+        self.dropped.fault(self.scene.latency.encoder.dropped, self.samples)
     }
 
     /// The machine with the scene's lags at its two ends.

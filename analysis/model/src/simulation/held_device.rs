@@ -260,7 +260,7 @@ fn integral(plant: &Plant, length: f64, states: [usize; 2]) -> DMatrix<f64> {
 mod tests {
     use super::*;
 
-    use crate::disturbance::Cogging;
+    use crate::disturbance::sine;
 
     const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
@@ -373,7 +373,7 @@ mod tests {
     #[test]
     fn friction_and_cogging_hold_a_device() {
         let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 5.0 };
-        let cogging = Cogging { torque: 1e-15, count: 84.0 };
+        let cogging = sine(1e-15, 84.0);
         let few = Disturbance { friction: 1e-15, cogging };
         let latency = Latency::delayed(1.25e-3).with_actuator_lag(2e-4);
         let plain = HeldDevice::lagging(DEVICE, &latency, hand, 1e-3).unwrap();
@@ -390,7 +390,7 @@ mod tests {
             // Of the second order in the steps, of which the lag is two.
             assert!((work - other).abs() < 0.1 * work.abs(), "{work} {other}");
         }
-        let cogging = Cogging { torque: 0.03, count: 84.0 };
+        let cogging = sine(0.03, 84.0);
         let held = plain.with_disturbance(Disturbance { friction: 0.02, cogging });
         let mut state = held.at(Motion { position: 0.25 * cogging.pitch(), velocity: 0.0 });
         // The cogging pushes back with its 0.03 N m, more than the friction: the device moves, and sticks.

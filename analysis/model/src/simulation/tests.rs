@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use super::method::Method;
 use super::*;
 use crate::device::{Hand, Motion};
-use crate::disturbance::Cogging;
+use crate::disturbance::{Cogging, Sine, sine};
 use crate::fixture::{STANDARD, on_paddle};
 use crate::missed::Missed;
 
@@ -492,7 +492,7 @@ fn gimbal(cogging: Cogging, damping: f64, encoder: &'static EncoderReading) -> S
     }
 }
 
-const GIMBAL: Cogging = Cogging { torque: 0.005, count: 84.0 };
+const GIMBAL: Cogging = Cogging { harmonics: &[Sine { torque: 0.005, count: 84.0, phase: 0.0 }] };
 const AGED: EncoderReading =
     EncoderReading { age: TimeRange::exactly(1e-5), ..EncoderReading::IDEAL };
 
@@ -521,16 +521,16 @@ fn a_slow_hand_feels_what_age_and_counts_leave_of_the_cogging() {
         experiment.plant = experiment.plant.with_hand(hand);
         let motion = simulate(&experiment, Integration::default()).unwrap();
         // Less the drift of its mean over a period of the cogging.
-        let period = (TAU / GIMBAL.count / speed / 1e-4) as usize;
+        let period = (TAU / GIMBAL.highest() / speed / 1e-4) as usize;
         let ripples = motion.velocity[1000..].windows(period).map(|window| {
             let least = window.iter().fold(f64::INFINITY, |a, b| a.min(*b));
             window.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b)) - least
         });
         // A sine of torque A at the rate N v is a ripple of 2 A / (J N v) of the velocity.
-        0.5 * ripples.fold(0.0, f64::max) * INERTIA * GIMBAL.count * speed
+        0.5 * ripples.fold(0.0, f64::max) * INERTIA * GIMBAL.highest() * speed
     };
     let felt = bump(0.0, None);
-    assert!((felt / GIMBAL.torque - 1.0).abs() < 0.02, "{felt}");
+    assert!((felt / GIMBAL.torque() - 1.0).abs() < 0.02, "{felt}");
     assert!((bump(0.5, None) / felt - 0.5).abs() < 0.02);
     let abar = 1e-4 + 1e-5 + 8e-5 + 0.5e-4;
     let left = GIMBAL.slope() * abar * speed;
@@ -546,11 +546,9 @@ fn a_slow_hand_feels_what_age_and_counts_leave_of_the_cogging() {
 /// it gains nothing on a device with what the certificate asks for, and it swings ever farther with less.
 #[test]
 fn no_hand_gains_energy_from_a_certified_map_and_one_does_from_less() {
-    for (cogging, encoder) in [
-        (GIMBAL, &AGED),
-        (Cogging { torque: 0.03, count: 168.0 }, &AGED),
-        (Cogging { torque: 0.015, count: 36.0 }, &EncoderReading::IDEAL),
-    ] {
+    for (cogging, encoder) in
+        [(GIMBAL, &AGED), (sine(0.03, 168.0), &AGED), (sine(0.015, 36.0), &EncoderReading::IDEAL)]
+    {
         let needed =
             passivity_for_anticogging(&gimbal(cogging, 1.0, encoder), Format::F64).unwrap();
         let grows = |part: f64, inertia: f64, cogs: bool, stiffness: f64| {

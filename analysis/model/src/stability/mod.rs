@@ -16,6 +16,7 @@ use std::fmt;
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
+use crate::nominal_latency::left_out_of_loop;
 use crate::simulation::closed_loop::ClosedLoop;
 use crate::simulation::{Experiment, Integration, SimulationError};
 
@@ -66,6 +67,9 @@ pub struct Stability {
     /// The ends in N m/rad of that range. The first is `None` where the loop is stable down to a stiffness of
     /// 0, and the second is the critical stiffness. `None` where there is no such range.
     pub stable_stiffness: Option<[Option<f64>; 2]>,
+    /// The part of the scene that is not in this loop.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<&'static str>,
 }
 
 /// Judges the loop of an experiment, taken through each tick by `integration`.
@@ -86,6 +90,7 @@ pub fn judge(
         verdict: verdict(enclosure, &closed.matrix, &eigenvalues),
         critical_stiffness: stable_stiffness.and_then(|[_, end]| end),
         stable_stiffness,
+        left_out: left_out_of_loop(&experiment.scene),
     })
 }
 

@@ -23,6 +23,7 @@ use serde::Serialize;
 
 use crate::chain::{Chain, Link};
 use crate::line_search::minimizing_angle;
+use crate::nominal_latency::left_out_of_loop;
 use crate::response::Response;
 use crate::simulation::{Experiment, Integration, SimulationError};
 use crate::stability::{Characteristic, closed_loop, eigenvalues};
@@ -66,6 +67,9 @@ pub struct SearchResult {
     pub lighter: Option<HandCase>,
     /// Number of hands that were tried.
     pub tried: usize,
+    /// The part of the scene that is not in the loop.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<&'static str>,
 }
 
 /// Looks for the passive hand in which the loop of a scene on a device grows the most.
@@ -94,7 +98,7 @@ pub fn search(scene: &Scene, device: &Chain) -> Result<SearchResult, SimulationE
         }
         lighter = Some(self::worst(scene, device, factor, &mut tried)?).filter(HandCase::grows);
     }
-    Ok(SearchResult { worst, oscillates, lighter, tried })
+    Ok(SearchResult { worst, oscillates, lighter, tried, left_out: left_out_of_loop(scene) })
 }
 
 impl HandCase {

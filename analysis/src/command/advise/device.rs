@@ -2,7 +2,7 @@
 //! bought.
 
 use std::f64::consts::TAU;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use haptic_servo::certificate::{QuantizationBound, passivity_for_anticogging};
@@ -17,7 +17,7 @@ use crate::command::status::{CommandError, CommandStatus};
 use crate::command::value_parsers::positive;
 use crate::design::stiffest::{Search, Wall as StiffestWall};
 use crate::design::{Choice, Judge, Terms};
-use crate::file::{self, SceneFile};
+use crate::file::{self, SceneFile, key};
 use crate::quantity::{rounded, significant};
 use crate::text_table::table_of;
 
@@ -69,6 +69,8 @@ struct Report {
     detent_torque: Option<f64>,
     /// Part of the cogging whose compensation certifies, at most 1; null without cogging.
     compensated: Option<f64>,
+    /// Keys without which the silent stiffness and the detents are not known.
+    missing: Vec<&'static str>,
     /// The largest factor first.
     levers: Vec<Lever>,
     points: Vec<Point>,
@@ -125,9 +127,12 @@ fn load(arguments: &Arguments) -> Result<SceneFile, CommandError> {
             Err(CommandError::Failed(error.into()))
         }
         (false, Some(rate)) => {
+            let of_file = || Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into());
+            let title = file::load_device(name)?.name.or_else(of_file).unwrap_or_default();
             let scene = format!(
-                "name = \"device\"\ndevice = {}\n[servo]\nrate = {rate:?}\n[environment]\n\
+                "name = {}\ndevice = {}\n[servo]\nrate = {rate:?}\n[environment]\n\
                  type = \"damper-wall\"\nstiffness = 1.0\ndamping = 0.0\ndelay = 1\n",
+                serde_json::Value::from(title.as_str()),
                 serde_json::Value::from(name.as_str())
             );
             Ok(warned(file::parse(name, file::Format::Toml, &scene)?))
@@ -177,17 +182,29 @@ fn report(file: &SceneFile, search: &Search) -> Report {
         detents,
         detent_torque,
         compensated: compensated(file),
+        missing: missing(file),
         levers: levers(silent.as_ref().unwrap_or(search), period),
         points: points.collect(),
     }
 }
 
+/// The keys that a bound on the torque at rest and the friction against it need.
+fn missing(file: &SceneFile) -> Vec<&'static str> {
+    let needed = [
+        (&key::DEVICE_FRICTION, file.friction.is_some()),
+        (&key::COUNTS_PER_TURN, file.encoder_step.is_some()),
+        (&key::FULL_SCALE, file.steps().full_scale.is_some()),
+    ];
+    needed.into_iter().filter(|(_, is_stated)| !is_stated).map(|(key, _)| key.path).collect()
+}
+
 /// The most detents in a turn with this steepest slope in N m/rad, and the peak torque of each in N m: at least
-/// twice that of friction and cogging, and from rest to peak at least the error of a reading. `None` where no
-/// friction is stated.
+/// twice that of friction and of the cogging that nothing opposes, and from rest to peak at least the error of a
+/// reading. `None` where no friction is stated.
 fn detents(file: &SceneFile, slope: f64) -> Option<(f64, f64)> {
     let disturbance = file.disturbance();
-    let holds = file.friction? + disturbance.cogging.torque;
+    let opposed = file.scene.environment.parts().anticogging.map_or(0.0, |learnt| learnt.share);
+    let holds = file.friction? + (1.0 - opposed) * disturbance.cogging.torque();
     let error = 0.5 * file.encoder_step? * file.scene.latency.encoder.steps();
     let count = (slope / (2.0 * holds)).min(TAU / (4.0 * error)).floor();
     (count >= 1.0).then(|| (count, slope / count))
@@ -199,7 +216,7 @@ fn compensated(file: &SceneFile) -> Option<f64> {
     let learnt = match (file.scene.environment.parts().anticogging, file.cogging) {
         (Some(learnt), _) => learnt,
         (None, Some(cogging)) => {
-            let angles = (16 * cogging.count as usize).next_power_of_two();
+            let angles = (16 * cogging.highest() as usize).next_power_of_two();
             cogging.learnt(angles.min(MOST_KNOTS as usize)).ok()?
         }
         (None, None) => return None,
@@ -246,13 +263,17 @@ fn levers(search: &Search, period: f64) -> Vec<Lever> {
 fn text(report: &Report) -> String {
     let number = |value: f64, unit: &str| format!("{} {unit}", significant(value, 3));
     let stiffness = |value| number(value, "N m/rad");
-    let unknown = || "not known: state `device.friction` and the counts of the encoder".to_owned();
+    let unknown = || match report.stiffness {
+        None => Some("no wall certifies".to_owned()),
+        Some(_) if report.missing.is_empty() => None,
+        Some(_) => Some(format!("not known: state `{}`", report.missing.join("`, `"))),
+    };
     let certified = report.stiffness.map_or_else(
         || "none".to_owned(),
         |felt| format!("{}, {}", stiffness(felt), report.structure.unwrap_or_default()),
     );
     let error = report.torque_error.map_or_else(
-        || "not known: state the counts of the encoder".to_owned(),
+        || unknown().unwrap_or_default(),
         |error| match report.friction {
             Some(friction) => {
                 let [error, friction] = [error, friction].map(|it| number(it, "N m"));
@@ -262,9 +283,13 @@ fn text(report: &Report) -> String {
         },
     );
     let detents = report.detents.zip(report.detent_torque).map_or_else(
-        || match report.friction {
-            Some(_) => "none: friction and cogging hold more than half of their torque".to_owned(),
-            None => unknown(),
+        || {
+            unknown().unwrap_or_else(|| match report.silent_stiffness {
+                Some(_) => {
+                    "none: friction and cogging hold more than half of their torque".to_owned()
+                }
+                None => "none: no wall is silent".to_owned(),
+            })
         },
         |(count, torque)| format!("{count} a turn, of {}", number(torque, "N m")),
     );
@@ -277,11 +302,10 @@ fn text(report: &Report) -> String {
         || "no single change earns more".to_owned(),
         |lever| format!("{}: {} x", lever.change, significant(lever.factor, 3)),
     );
-    let silent = match (report.silent_stiffness, report.friction) {
-        (Some(felt), _) => stiffness(felt),
-        (None, Some(_)) => "no wall is, with this friction".to_owned(),
-        (None, None) => unknown(),
-    };
+    let silent = report.silent_stiffness.map_or_else(
+        || unknown().unwrap_or_else(|| "no wall is, with this friction".to_owned()),
+        stiffness,
+    );
     let rows = [
         (format!("stiffest certified wall at {} Hz", significant(report.rate, 4)), Some(certified)),
         ("its torque error at rest".to_owned(), Some(error)),

@@ -19,6 +19,7 @@ use crate::lockstep::Difference;
 use crate::program::damper_wall;
 use crate::program::identify::PERIOD;
 use crate::progress;
+use crate::simulation::SimulationError;
 use crate::simulation::plant::Plant;
 use crate::toolchain::NumberFormat;
 
@@ -92,25 +93,17 @@ pub fn measure<const N: usize>(
     transducers: &Transducers,
 ) -> Result<(Measurement, Origin), CommandError> {
     let target = arguments.target.unwrap_or(Target::Host);
-    let plant = match file {
-        Some(file) => Plant::of(&file.chain),
-        None => Plant::rigid(damper_wall::SCENE.device),
-    };
-    let &Simulated { torque_noise, skew, output_delay, seed, .. } = arguments;
-    let torque_noise = torque_noise.unwrap_or(TORQUE_NOISE * transducers.full_scale_torque);
-    let ideal = Sensing::ideal(PERIOD, transducers.counts_per_turn);
-    let mut sensing = Sensing { torque_noise, skew, output_delay, seed, ..ideal };
-    if let Some(file) = file {
-        let &DeviceFile { disturbance, reading: encoder, sensor_lag, .. } = file;
-        sensing = Sensing { disturbance, encoder, sensor_lag, ..sensing };
-    }
+    let &Simulated { skew, output_delay, seed, .. } = arguments;
+    let sensing = sensing(file, transducers);
+    let torque_noise = arguments.torque_noise.unwrap_or(sensing.torque_noise);
+    let sensing = Sensing { torque_noise, skew, output_delay, seed, ..sensing };
     let elf = match target {
         Target::Host => None,
         // The program computes its codes in `f32` for every format of the scenes. They are parts of full scale, of
         // any motor.
         Target::Qemu => Some(emulated(program, NumberFormat::F32)?),
     };
-    let mut device = MeasuredDevice::new(&plant, &sensing)?;
+    let mut device = device(file, &sensing)?;
     let bar = progress::bar(sweep.ticks(), "identify");
     let stepper = progress::stepper(&bar);
     let measured = measurement::measure(sweep, &mut device, elf.as_deref(), stepper)?;
@@ -127,6 +120,28 @@ pub fn measure<const N: usize>(
         difference: measured.difference,
     };
     Ok((measured, origin))
+}
+
+/// How the device of a file is driven and measured, or the paddle.
+pub fn sensing(file: Option<&DeviceFile>, transducers: &Transducers) -> Sensing {
+    let torque_noise = TORQUE_NOISE * transducers.full_scale_torque;
+    let ideal = Sensing { torque_noise, ..Sensing::ideal(PERIOD, transducers.counts_per_turn) };
+    file.map_or(ideal, |file| {
+        let &DeviceFile { disturbance, reading: encoder, sensor_lag, .. } = file;
+        Sensing { disturbance, encoder, sensor_lag, ..ideal }
+    })
+}
+
+/// The device of a file that is measured in this way, or the paddle.
+pub fn device(
+    file: Option<&DeviceFile>,
+    sensing: &Sensing,
+) -> Result<MeasuredDevice, SimulationError> {
+    let plant = match file {
+        Some(file) => Plant::of(&file.chain),
+        None => Plant::rigid(damper_wall::SCENE.device),
+    };
+    MeasuredDevice::new(&plant, sensing)
 }
 
 fn output_delay(text: &str) -> Result<f64, String> {

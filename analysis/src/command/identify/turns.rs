@@ -7,7 +7,9 @@ use super::target::Origin;
 use super::{Arguments, Measured};
 use crate::command::shared_arguments::write;
 use crate::command::status::{CommandError, CommandStatus};
-use crate::identify::turns::Floor;
+use crate::disturbance::Sine;
+use crate::file;
+use crate::identify::turns::{Floor, Harmonic};
 use crate::identify::{self, CONFIDENCE, Estimate, SlowTurns};
 use crate::quantity::significant;
 
@@ -38,7 +40,7 @@ struct Cogging<'a> {
     torque: &'a [f64],
     /// Half of the interval of these torques in N m, as a root mean square.
     uncertainty: f64,
-    harmonics: &'a [identify::turns::Harmonic],
+    harmonics: &'a [Harmonic],
     /// Amplitudes in N m that would not have been found.
     not_resolved: &'a [Floor],
 }
@@ -48,7 +50,10 @@ pub fn run(arguments: &Arguments, measured: &Measured) -> Result<CommandStatus, 
     let Measured { record, origin, counts_per_turn, .. } = measured;
     let correction = arguments.reading.correction(*counts_per_turn, 0.0);
     let found = identify::slow_turns(record, &correction)?;
-    let numbers = numbers(&found);
+    let written =
+        arguments.output.as_deref().map(|path| file::load_device(&path.to_string_lossy()));
+    let linearity = written.transpose()?.map_or(0.0, |file| file.reading.linearity);
+    let numbers = numbers(&found, linearity);
     if let Some(path) = &arguments.output {
         write(path, &with_numbers(path, &numbers, *counts_per_turn)?)?;
     }
@@ -78,8 +83,8 @@ fn report<'a>(found: &'a SlowTurns, measured: Option<&'a Origin>) -> Report<'a> 
     }
 }
 
-/// The numbers of the device's file.
-fn numbers(found: &SlowTurns) -> Vec<Number> {
+/// The numbers of the device's file, whose encoder has this linearity.
+fn numbers(found: &SlowTurns, linearity: f64) -> Vec<Number> {
     let Estimate { lo, hi, .. } = found.least_friction;
     let [lo_text, hi_text] = [lo, hi].map(|torque| significant(torque, 3));
     let friction = (lo > 0.0).then(|| Number {
@@ -102,7 +107,23 @@ fn numbers(found: &SlowTurns) -> Vec<Number> {
         value: "1.0".into(),
         comment: String::new(),
     });
-    [friction, map, share].into_iter().flatten().collect()
+    let harmonics: Vec<String> = found.cogging(linearity).iter().map(harmonic).collect();
+    let cogging = has_map.then(|| Number {
+        table: "device",
+        key: "cogging",
+        value: format!("[{}]", harmonics.join(", ")),
+        comment: "of the map below, for simulation".into(),
+    });
+    [friction, cogging, map, share].into_iter().flatten().collect()
+}
+
+/// A harmonic as `device.cogging` has it.
+fn harmonic(Sine { torque, count, phase }: &Sine) -> String {
+    let [torque, phase] = [torque, phase].map(|number| {
+        let text = significant(*number, 4);
+        if text.contains(['.', 'e']) { text } else { text + ".0" }
+    });
+    format!("{{ torque = {torque}, count = {count}, phase = {phase} }}")
 }
 
 /// Largest number of harmonics that the text names.
@@ -137,7 +158,7 @@ fn text(found: &SlowTurns, origin: Option<&Origin>, numbers: &[Number]) -> Strin
     rows.extend(origin.map(Origin::row));
     let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();
     let in_file = numbers.iter().map(|Number { table, key, value, comment }| {
-        let value = if *key == "torque" { "[..]" } else { value };
+        let value = if value.starts_with('[') { "[..]" } else { value };
         let comment = if comment.is_empty() { String::new() } else { format!(" # {comment}") };
         format!("{table}.{key} = {value}{comment}\n")
     });

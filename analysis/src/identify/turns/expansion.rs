@@ -6,6 +6,7 @@
 //! turn, so the uncertainty is that of leaving out one turn at a time (the jackknife), without an assumption
 //! about the noise within a turn.
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use nalgebra::{Complex, DMatrix, DVector};
@@ -59,6 +60,20 @@ fn left(order: f64, reach: f64) -> f64 {
     if phase.abs() < 1e-6 { 1.0 } else { (phase.sin() / phase).powi(2) }
 }
 
+/// The means of cosine and sine of a harmonic over a row's window at a steady speed.
+fn steady(row: &Row) -> impl Fn(u32) -> [f64; 2] {
+    let &Row { angle, reach, .. } = row;
+    move |order| {
+        let order = f64::from(order);
+        let (sine, cosine) = (order * angle).sin_cos();
+        let part = left(order, reach);
+        [part * cosine, part * sine]
+    }
+}
+
+/// Means of cosine and sine of harmonics over the windows of all rows, for the motion in them.
+pub type Means = BTreeMap<u32, Vec<[f64; 2]>>;
+
 /// A series and the numbers beside it.
 #[derive(Clone, Debug)]
 pub struct Expansion {
@@ -68,6 +83,8 @@ pub struct Expansion {
     /// Harmonics of the part that changes its sign with the direction. Each is there again in proportion to the
     /// speed: damping over an angle that the encoder does not quite show.
     pub odd: Vec<u32>,
+    /// Harmonics in proportion to the square of the speed.
+    fast: Vec<u32>,
     /// Ranges of harmonics, by their highest.
     pub floors: Vec<Floor>,
     values: DVector<f64>,
@@ -92,6 +109,8 @@ pub struct Sought<'a> {
     pub bases: usize,
     /// Harmonics that are there in any case.
     pub certain: &'a [u32],
+    /// The same, in proportion to the square of the speed.
+    pub fast: &'a [u32],
     /// Highest harmonic.
     pub highest: u32,
     /// Highest harmonic of the part that changes its sign.
@@ -134,9 +153,19 @@ impl Expansion {
     /// The strongest harmonics are found first, because they leak into all others.
     pub fn of(rows_for: impl Fn(u32) -> Vec<Row>, sought: &Sought<'_>) -> Option<Self> {
         let &Sought { bases, certain, highest, .. } = sought;
+        let nothing = Self {
+            bases,
+            even: certain.to_vec(),
+            odd: vec![],
+            fast: sought.fast.to_vec(),
+            floors: vec![],
+            values: DVector::zeros(0),
+            without: vec![],
+            quantile: 0.0,
+        };
         let rows = rows_for(highest);
         let turns = rows.iter().map(|row| row.turn + 1).max()?;
-        let begin = Self::fitted(&rows, bases, certain.to_vec(), vec![], &vec![1.0; turns])?;
+        let begin = nothing.fitted(&rows, None, &vec![1.0; turns])?;
         let (mut found, _) = begin.with_more(&rows, 1, highest, 0)?;
         let tops = (FIRST.ilog2()..).map(|power| (1 << power).min(highest));
         let mut floors: Vec<Floor> = Vec::new();
@@ -177,40 +206,45 @@ impl Expansion {
             if more_even.is_empty() && more_odd.is_empty() || even.len() + odd.len() > MOST {
                 break;
             }
-            found = Self::fitted(rows, found.bases, even, odd, &shares)?;
+            found = Self { even, odd, ..found }.fitted(rows, None, &shares)?;
         }
         Some((found, floor))
     }
 
-    /// The same harmonics in other rows of the same turns.
-    pub fn again(&self, rows: &[Row]) -> Option<Self> {
-        let residuals: Vec<f64> = rows.iter().map(|row| row.value - self.at(row)).collect();
-        let shares = shares_of(rows, &residuals, self.without.len());
-        let (even, odd) = (self.even.clone(), self.odd.clone());
-        let found = Self::fitted(rows, self.bases, even, odd, &shares)?;
-        Some(Self { floors: self.floors.clone(), ..found })
+    /// All harmonics.
+    pub fn orders(&self) -> impl Iterator<Item = u32> {
+        self.even.iter().chain(&self.odd).chain(&self.fast).copied()
     }
 
-    fn fitted(
-        rows: &[Row],
-        bases: usize,
-        even: Vec<u32>,
-        odd: Vec<u32>,
-        shares: &[f64],
-    ) -> Option<Self> {
-        let unknowns = bases + 2 * (even.len() + 2 * odd.len());
+    /// The same harmonics in other rows of the same turns.
+    pub fn again(&self, rows: &[Row]) -> Option<Self> {
+        self.again_over(rows, None)
+    }
+
+    /// The same with the means of all harmonics over the windows of the rows, in place of those at a steady speed.
+    pub fn again_over(&self, rows: &[Row], means: Option<&Means>) -> Option<Self> {
+        let residuals: Vec<f64> = rows.iter().map(|row| row.value - self.at(row)).collect();
+        let shares = shares_of(rows, &residuals, self.without.len());
+        self.clone().fitted(rows, means, &shares)
+    }
+
+    /// The same harmonics, of these rows; turns count by their shares.
+    fn fitted(self, rows: &[Row], means: Option<&Means>, shares: &[f64]) -> Option<Self> {
+        let bases = self.bases;
+        let unknowns = bases + 2 * (self.even.len() + 2 * self.odd.len() + self.fast.len());
         let freedom = shares.len() as f64 - bases as f64;
         if freedom < 1.0 {
             return None;
         }
-        let nothing = (DVector::zeros(unknowns), Vec::new());
-        let (values, without) = nothing;
-        let quantile = student(freedom);
-        let mut found = Self { bases, even, odd, floors: vec![], values, without, quantile };
+        let (values, without) = (DVector::zeros(unknowns), Vec::new());
+        let mut found = Self { values, without, quantile: student(freedom), ..self };
         let mut turns = vec![Normal::zero(unknowns); shares.len()];
         let (mut factors, mut instruments) = (vec![0.0; unknowns], vec![0.0; unknowns]);
-        for row in rows {
-            found.factors(row, &mut factors);
+        for (number, row) in rows.iter().enumerate() {
+            match means {
+                None => found.factors(row, steady(row), &mut factors),
+                Some(means) => found.factors(row, |order| means[&order][number], &mut factors),
+            }
             instruments.copy_from_slice(&factors);
             instruments[..bases].copy_from_slice(&row.instruments[..bases]);
             let turn = &mut turns[row.turn];
@@ -245,25 +279,24 @@ impl Expansion {
         Some(found)
     }
 
-    /// Factors of all numbers, those of the series' cosines and sines included.
-    fn factors(&self, row: &Row, factors: &mut [f64]) {
+    /// Factors of all numbers, those of the series included, by the means of cosine and sine of a harmonic.
+    fn factors(&self, row: &Row, mean: impl Fn(u32) -> [f64; 2], factors: &mut [f64]) {
         factors[..self.bases].copy_from_slice(&row.bases[..self.bases]);
         let even = self.even.iter().map(|order| (*order, 1.0));
         let odd = self.odd.iter().map(|order| (*order, row.sign));
         let moving = self.odd.iter().map(|order| (*order, row.velocity));
-        let all = even.chain(odd).chain(moving);
+        let fast = self.fast.iter().map(|order| (*order, row.velocity * row.velocity));
+        let all = even.chain(odd).chain(moving).chain(fast);
         for (pair, (order, factor)) in factors[self.bases..].chunks_exact_mut(2).zip(all) {
-            let order = f64::from(order);
-            let (sine, cosine) = (order * row.angle).sin_cos();
-            let part = factor * left(order, row.reach);
-            (pair[0], pair[1]) = (part * cosine, part * sine);
+            let [cosine, sine] = mean(order);
+            (pair[0], pair[1]) = (factor * cosine, factor * sine);
         }
     }
 
     /// The fitted value of a row.
     pub fn at(&self, row: &Row) -> f64 {
         let mut factors = vec![0.0; self.values.len()];
-        self.factors(row, &mut factors);
+        self.factors(row, steady(row), &mut factors);
         factors.iter().zip(self.values.iter()).map(|(factor, value)| factor * value).sum()
     }
 
@@ -288,6 +321,12 @@ impl Expansion {
         let mut factors = vec![0.0; self.values.len()];
         (factors[at], factors[at + 1]) = (cosine / amplitude, sine / amplitude);
         [amplitude, self.combined(&factors)[1]]
+    }
+
+    /// Phase in rad of a harmonic of the even part, as a sine.
+    pub fn phase(&self, index: usize) -> f64 {
+        let at = self.bases + 2 * index;
+        self.values[at].atan2(self.values[at + 1])
     }
 
     /// A part of the series at an angle in rad, and half of its interval.

@@ -90,7 +90,7 @@ pub fn linearity(
     let rows: Vec<Row> = turns.iter().enumerate().flat_map(of_turn).collect();
     let coarser = count_angle.max(reference_angle);
     let highest = f64::from(HIGHEST).min(TAU / coarser / COUNTS).max(2.0) as u32;
-    let sought = Sought { bases, certain: &CERTAIN, highest, highest_odd: 0 };
+    let sought = Sought { bases, certain: &CERTAIN, fast: &[], highest, highest_odd: 0 };
     let found = Expansion::of(|_| rows.clone(), &sought)
         .ok_or(TurnsError::TooFew { turns: turns.len() })?;
     let hysteresis = estimate(found.number(HYSTERESIS));

@@ -19,12 +19,14 @@ pub use linearity::{Linearity, linearity};
 
 use std::f64::consts::TAU;
 
-use expansion::{BASES, Expansion, Part, Row, Sought};
+use expansion::{BASES, Expansion, Means, Part, Row, Sought};
+use nalgebra::Complex;
 use whole::{Motion, Turn};
 
 use super::estimate::Estimate;
 use super::record::Record;
 use super::response::Correction;
+use crate::disturbance::{Cogging, Sine};
 
 const INERTIA: usize = 0;
 const DAMPING: usize = 1;
@@ -32,6 +34,8 @@ const FRICTION: usize = 2;
 const MEAN: usize = 3;
 const LOUD: usize = 4;
 
+/// Harmonics of an encoder's nonlinearity that count: those of an axis beside the middle and of a tilted magnet.
+const BY_NONLINEARITY: [u32; 2] = [1, 2];
 /// Highest harmonic that is looked for.
 const HIGHEST: u32 = 512;
 /// Highest harmonic of the friction over the angle that is looked for.
@@ -45,9 +49,6 @@ const PHASE: f64 = 0.5;
 const SAMPLES: u32 = 16;
 /// Fewest samples of a map.
 const LEAST_SAMPLES: u32 = 32;
-/// Factor of the intervals of inertia and cogging: the part of a harmonic that a window leaves is that at a steady
-/// speed, and cogging makes the speed unsteady.
-const SYSTEMATIC: f64 = 2.0;
 /// Part of the largest torque above which an amplifier that clips would show.
 const IS_LOUD: f64 = 0.75;
 /// Part of an added torque that may be missing.
@@ -60,6 +61,8 @@ pub struct Harmonic {
     pub count: u32,
     /// In N m, or in rad where it is one of an angle.
     pub amplitude: Estimate,
+    /// In rad: that of `amplitude sin(count x + phase)` for the torque that opposes cogging, or for an angle.
+    pub phase: f64,
 }
 
 /// What slow turns show of a device.
@@ -109,7 +112,13 @@ pub fn slow_turns(record: &Record, correction: &Correction) -> Result<SlowTurns,
         [speeds.clone().fold(f64::INFINITY, f64::min), speeds.fold(0.0, f64::max)];
     let highest = highest(&motion, slowest);
     let too_few = TurnsError::TooFew { turns: turns.len() };
-    let sought = Sought { bases: LOUD, certain: &[], highest, highest_odd: HIGHEST_ODD };
+    let sought = Sought {
+        bases: LOUD,
+        certain: &[],
+        fast: &BY_NONLINEARITY,
+        highest,
+        highest_odd: HIGHEST_ODD,
+    };
     let found = Expansion::of(|highest| balance.rows(&turns, highest), &sought);
     let found = found.ok_or(too_few.clone())?;
     let [friction, _] = found.number(FRICTION);
@@ -119,14 +128,17 @@ pub fn slow_turns(record: &Record, correction: &Correction) -> Result<SlowTurns,
     // With windows as long as the harmonics that are there allow, in which there is less noise.
     let steepest = found.even.iter().chain(&found.odd).max().map_or(1, |order| *order);
     let mut rows = balance.rows(&turns, steepest);
-    let by_angle = found.again(&rows).ok_or(too_few.clone())?;
-    balance.check_clipping(&rows, &by_angle)?;
+    let found = found.again(&rows).ok_or(too_few.clone())?;
+    balance.check_clipping(&rows, &found)?;
+    // The speed in a window is not steady, because of the cogging that is sought.
+    let means = balance.means(&turns, steepest, &found);
+    let by_angle = found.again_over(&rows, Some(&means)).ok_or(too_few.clone())?;
     let count = |sign: f64| turns.iter().filter(|turn| turn.sign == sign).count();
     let (turned, speeds) = ([count(1.0), count(-1.0)], [slowest, fastest]);
     // Where each row counts by its angle, harmonics that were not found average out, but noise that moves the
     // device counts more where it moves it on; where each counts by its time, it is the other way round.
     rows.iter_mut().for_each(|row| row.weight = turns[row.turn].speed * record.period);
-    let by_time = found.again(&rows).ok_or(too_few)?;
+    let by_time = found.again_over(&rows, Some(&means)).ok_or(too_few)?;
     let [by_angle, by_time] =
         [by_angle, by_time].map(|found| SlowTurns::of(&found, turned, speeds));
     Ok(by_angle.covering(&by_time))
@@ -136,22 +148,56 @@ impl SlowTurns {
     fn of(found: &Expansion, turns: [usize; 2], speeds: [f64; 2]) -> Self {
         let (map, uncertainty) = map(found);
         Self {
-            inertia: wider(estimate(found.number(INERTIA))),
+            inertia: estimate(found.number(INERTIA)),
             damping: estimate(found.number(DAMPING)),
             friction: estimate(found.number(FRICTION)),
             least_friction: least_friction(found, map.len()),
             mean: estimate(opposed(found.number(MEAN))),
             map,
-            uncertainty: SYSTEMATIC * uncertainty,
-            harmonics: harmonics(found)
-                .into_iter()
-                .map(|harmonic| Harmonic { amplitude: wider(harmonic.amplitude), ..harmonic })
-                .collect(),
+            uncertainty,
+            harmonics: harmonics(found),
             friction_harmonics: found.odd.clone(),
             floors: found.floors.clone(),
             turns,
             speeds,
         }
+    }
+
+    /// The harmonics of the cogging over the angle of the device, where the encoder shows `x + linearity sin(x)` as
+    /// that of a simulation does: a servo that reads it then finds the map there.
+    pub fn cogging(&self, linearity: f64) -> Vec<Sine> {
+        /// Part of the largest amplitude from which on a harmonic counts.
+        const LEAST: f64 = 0.02;
+        let own = self.harmonics.iter().map(|harmonic| {
+            let (torque, count) = (harmonic.amplitude.value, f64::from(harmonic.count));
+            Sine { torque, count, phase: harmonic.phase }
+        });
+        let own: Vec<Sine> = own.collect();
+        if linearity == 0.0 || own.is_empty() {
+            return own;
+        }
+        let own = Cogging::of(own);
+        let angles = 8 * HIGHEST;
+        let torque = |sample: u32| {
+            let angle = TAU * f64::from(sample) / f64::from(angles);
+            (angle, -own.at(angle + linearity * angle.sin()))
+        };
+        let torques: Vec<(f64, f64)> = (0..angles).map(torque).collect();
+        let sine = |count: u32| {
+            let count = f64::from(count);
+            let turned = torques.iter().map(|&(angle, torque)| {
+                Complex::from_polar(2.0 / f64::from(angles) * torque, -count * angle)
+            });
+            let sum: Complex<f64> = turned.sum();
+            // `A sin(N x + p)` has `-j A e^(j p)` as its complex amplitude.
+            let phasor = sum * Complex::i();
+            Sine { torque: phasor.norm(), count, phase: phasor.arg() }
+        };
+        let mut all: Vec<Sine> = (1..=HIGHEST).map(sine).collect();
+        all.sort_by(|a, b| b.torque.total_cmp(&a.torque));
+        let most = all[0].torque;
+        all.retain(|sine| sine.torque >= LEAST * most);
+        all
     }
 
     /// The same with intervals that hold those of another fit of the same harmonics.
@@ -174,12 +220,6 @@ impl SlowTurns {
             ..self
         }
     }
-}
-
-/// The interval that inertia and cogging are given.
-fn wider(Estimate { value, lo, hi }: Estimate) -> Estimate {
-    let lo = value - SYSTEMATIC * (value - lo);
-    Estimate { value, lo, hi: value + SYSTEMATIC * (hi - value) }
 }
 
 /// An estimate whose interval holds that of another.
@@ -214,17 +254,63 @@ impl Balance<'_> {
     /// The rows of all turns, with windows in which a harmonic of this order is still seen.
     fn rows(&self, turns: &[Turn], order: u32) -> Vec<Row> {
         let most = self.record.torque.iter().fold(0.0, |most: f64, torque| most.max(torque.abs()));
+        let row = |(number, row, half)| self.row(number, &turns[number], row, half, IS_LOUD * most);
+        self.windows(turns, order).map(row).collect()
+    }
+
+    /// The turn, the row of the record, and half of the width in periods of each of these windows.
+    fn windows(&self, turns: &[Turn], order: u32) -> impl Iterator<Item = (usize, usize, usize)> {
         let look = self.motion.look();
-        let mut all = Vec::new();
-        for (number, turn) in turns.iter().enumerate() {
+        turns.iter().enumerate().flat_map(move |(number, turn)| {
             let advance = f64::from(order) * turn.speed * self.motion.period;
             let half = ((2.0 * PHASE / advance) as usize).clamp(1, look);
             // The roof and the torque before it are in the record, but at its very ends.
             let begin = turn.rows.start.max(3 * look + 2);
             let end = turn.rows.end.min(self.record.torque.len() - look);
-            all.extend((begin..end).map(|row| self.row(number, turn, row, half, IS_LOUD * most)));
-        }
-        all
+            (begin..end).map(move |row| (number, row, half))
+        })
+    }
+
+    /// The means of the harmonics that were found over the same windows, for an angle that is a straight line
+    /// between two counts.
+    fn means(&self, turns: &[Turn], order: u32, found: &Expansion) -> Means {
+        let of = |harmonic: u32| {
+            let ticks = self.over_ticks(f64::from(harmonic));
+            let mean = |(_, row, half): (usize, usize, usize)| {
+                let falls = |away: usize| {
+                    let [flat, rising] = ticks[row + away];
+                    flat * (half - away) as f64 - rising
+                };
+                let rises = |away: usize| {
+                    let [flat, rising] = ticks[row - 1 - away];
+                    flat * (half - away - 1) as f64 + rising
+                };
+                let sum: Complex<f64> = (0..half).map(|away| falls(away) + rises(away)).sum();
+                let mean = sum / (half * half) as f64;
+                [mean.re, mean.im]
+            };
+            (harmonic, self.windows(turns, order).map(mean).collect())
+        };
+        found.orders().map(of).collect()
+    }
+
+    /// Integrals of `e^(j n x)` over each period, without a weight and with one that rises from 0 to 1.
+    fn over_ticks(&self, harmonic: f64) -> Vec<[Complex<f64>; 2]> {
+        let of = |pair: &[f64]| {
+            let begin = Complex::from_polar(1.0, harmonic * pair[0]);
+            let turn = Complex::new(0.0, harmonic * (pair[1] - pair[0]));
+            // Beside it the exponential function cancels.
+            if turn.im.abs() < 1e-3 {
+                let (half, square) = (turn / 2.0, turn * turn);
+                return [
+                    begin * (half + square / 6.0 + 1.0),
+                    begin * (turn / 3.0 + square / 8.0 + 0.5),
+                ];
+            }
+            let end = turn.exp();
+            [begin * (end - 1.0) / turn, begin * (end / turn - (end - 1.0) / (turn * turn))]
+        };
+        self.motion.angles.windows(2).map(of).collect()
     }
 
     fn row(&self, number: usize, turn: &Turn, row: usize, half: usize, loud: f64) -> Row {
@@ -275,7 +361,7 @@ impl Balance<'_> {
         }
         let without = |row: &Row| Row { value: row.value - found.series_in(row), ..*row };
         let without: Vec<Row> = rows.iter().map(without).collect();
-        let sought = Sought { bases: BASES, certain: &[], highest: 0, highest_odd: 0 };
+        let sought = Sought { bases: BASES, certain: &[], fast: &[], highest: 0, highest_odd: 0 };
         let Some(loud) = Expansion::of(|_| without.clone(), &sought) else { return Ok(()) };
         let [part, reach] = loud.number(LOUD);
         if part - reach <= MISSING {
@@ -322,7 +408,7 @@ fn least_friction(found: &Expansion, samples: usize) -> Estimate {
 fn harmonics(found: &Expansion) -> Vec<Harmonic> {
     let of = |(index, count): (usize, &u32)| {
         let amplitude = estimate(found.amplitude(index));
-        Harmonic { count: *count, amplitude }
+        Harmonic { count: *count, amplitude, phase: found.phase(index) }
     };
     let mut harmonics: Vec<Harmonic> = found.even.iter().enumerate().map(of).collect();
     harmonics.sort_by(|a, b| b.amplitude.value.total_cmp(&a.amplitude.value));

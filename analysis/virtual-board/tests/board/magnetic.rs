@@ -1,12 +1,16 @@
 //! Magnetic encoders: the drivers against models of the chips, and a wall on a board that reads one.
 
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use analysis::file::{Format, SceneFile, parse, parse_device, program};
+use analysis::file::{DeviceFile, Format, SceneFile, parse, parse_device, program};
 use analysis::hand::HandTrajectory;
+use analysis::identify::rig::{DrivenDevice, MeasuredDevice, Sensing};
+use analysis::identify::{Correction, Estimate, record, slow_turns};
 use analysis::lockstep::SimulatedDevice;
 use analysis::missed::Missed;
+use analysis::simulation::plant::Plant;
 use analysis::toolchain::{
     BoardModel, NumberFormat, OtherDevice, Sources, Tools, TorqueOutput, prepare,
 };
@@ -292,18 +296,76 @@ fn a_failed_reading_of_a_damped_wall_is_a_missed_update() {
     assert_eq!(fault, Some(Fault::EncoderReading { error, allowed: 1 }));
 }
 
+/// The flashed program of a device, and the file.
+fn measuring(program: &str, text: &str) -> (PathBuf, DeviceFile) {
+    let file =
+        parse_device("knob.toml", Format::Toml, text).unwrap_or_else(|error| panic!("{error}"));
+    let transducers = file.transducers.of_board().unwrap();
+    let module = program::device_module(&file.device, &transducers, file.chip, "knob.toml");
+    let device = OtherDevice { module, chip: file.chip };
+    let text = Sources::find().unwrap().on_device(program, &device).unwrap();
+    (built(&format!("magnetic_{program}"), &text), file)
+}
+
+/// The program `turns` on a board that reads the chip of a gimbal motor: the host finds the motor's friction,
+/// damping, inertia and cogging in what the board sends.
+#[test]
+fn slow_turns_measure_a_gimbal_motor() {
+    const FULL_SCALE: f64 = 0.2;
+    let text = "[device]\ninertia = 3e-5\ndamping = 0.001\nfriction = 0.003\n\
+                cogging = { torque = 0.005, count = 84 }\n[encoder]\nchip = \"mt6701\"\nage = [0, 1e-5]\n\
+                noise = 2.0\n[limits]\nfull_scale = 0.2\n";
+    let (elf, file) = measuring("turns", text);
+    let sensing = Sensing {
+        disturbance: file.disturbance,
+        encoder: file.reading,
+        torque_noise: 5e-4,
+        ..Sensing::ideal(1e-3, 16_384.0)
+    };
+    let device = MeasuredDevice::new(&Plant::of(&file.chain), &sensing).unwrap();
+    let device = HandHeldDevice::with(DrivenDevice { device, full_scale: FULL_SCALE });
+    let mut bench = boot_file(&elf, device, 0);
+    bench.run(50);
+    bench.board_mut().send(&SweepRequest::BEGIN.frame());
+    let mut sent = String::new();
+    while !sent.contains("\nend,") {
+        bench.run(100);
+        let board = bench.board_mut();
+        sent += std::str::from_utf8(&board.serial.take_sent()).unwrap();
+        board.send(&SweepRequest::Listening.frame());
+        assert!(sent.len() < 10_000_000, "it does not end");
+    }
+    let (rows, end) = sent.trim_end().rsplit_once('\n').unwrap();
+    assert!(end.starts_with("end,done,"), "{end}");
+    let record = record::parse("turns", rows.as_bytes(), TAU / 16_384.0).unwrap();
+    assert_eq!(record.torque.len(), 160_000);
+    let found = slow_turns(&record, &Correction::of_encoder(16_384.0)).unwrap();
+    let holds = |name: &str, Estimate { value, lo, hi }: Estimate, truth: f64| {
+        println!("{name}: {truth} in {lo} to {hi}, {value}");
+        assert!(lo <= truth && truth <= hi, "{name}: {truth} is not in {lo} to {hi}");
+    };
+    holds("friction", found.friction, 0.003);
+    holds("damping", found.damping, 0.001);
+    holds("inertia", found.inertia, 3e-5);
+    let cogging = found.harmonics[0];
+    assert_eq!(cogging.count, 84);
+    holds("cogging", cogging.amplitude, 0.005);
+    for (sample, torque) in found.map.iter().enumerate() {
+        let truth = file.disturbance.cogging.at(TAU * sample as f64 / found.map.len() as f64);
+        // The interval is one of the root mean square.
+        let most = 1.5 * found.uncertainty;
+        assert!((torque - truth).abs() < most, "{sample}: {torque} {truth} {}", found.uncertainty);
+    }
+    assert!(found.uncertainty < 5e-4, "{}", found.uncertainty);
+}
+
 /// The program `identify` for a device with a chip plays its sweep, and ends it at a reading that fails.
 #[test]
 fn a_sweep_reads_the_chip() {
     let text = "[device]\ninertia = 2.2e-5\ndamping = 0.02\n[encoder]\nchip = \"mt6701\"\nage = [0, 1e-5]\n\
                 [limits]\nfull_scale = 1.0\n";
-    let device =
-        parse_device("knob.toml", Format::Toml, text).unwrap_or_else(|error| panic!("{error}"));
-    let transducers = device.transducers.of_board().unwrap();
-    let module = program::device_module(&device.device, &transducers, device.chip, "knob.toml");
-    let device = OtherDevice { module, chip: device.chip };
-    let text = Sources::find().unwrap().on_device("identify", &device).unwrap();
-    let mut bench = boot_file(&built("magnetic_identify", &text), FixedDevice, INTO);
+    let (elf, _) = measuring("identify", text);
+    let mut bench = boot_file(&elf, FixedDevice, INTO);
     bench.run(50);
     let sent = |bench: &mut Bench, request: SweepRequest, samples| {
         bench.board_mut().send(&request.frame());

@@ -203,3 +203,38 @@ fn a_mean_needs_friction() {
     assert!((mean.hi() / (0.005 * 0.04 / 0.96) - 1.0).abs() < 1e-6, "{mean:?}");
     assert!(with(3e-3, 0.04, motor(0.005, 84)).is_ok());
 }
+
+/// Behind any coupling, and where friction holds no more of a mean: the largest share to three digits.
+#[test]
+fn a_refusal_names_the_largest_share_that_certifies() {
+    let wall = |stiffness| Wall::spring(stiffness, 1).alone().beside(motor(0.03, 84));
+    let lagging = Latency::delayed(1e-5).with_actuator_lag(8e-5);
+    const EXACT: EncoderReading = EncoderReading { friction: 1e-4, ..EncoderReading::IDEAL };
+    const BENT: EncoderReading = EncoderReading { linearity: 0.04, ..EXACT };
+    let behind = |coupling, stiffness| Scene {
+        coupling,
+        environment: wall(stiffness),
+        ..knob(1e-3, 1e-3, lagging.read_by(&EXACT), motor(0.03, 84))
+    };
+    let motored = Scene {
+        environment: wall(0.5),
+        ..knob(1e-3, 1e-4, lagging.read_by(&BENT), motor(0.03, 84))
+    };
+    for (scene, least) in [
+        (behind(Coupling::Rigid, 0.1), 0.2),
+        (behind(Coupling::Matched, 0.1), 0.2),
+        (behind(Coupling::Matched, 0.5), 0.18),
+        (behind(Coupling::Spring { stiffness: 0.2 }, 0.1), 0.2),
+        (motored, 0.05),
+    ] {
+        let refused = certify(&scene).unwrap_err();
+        let remedies = refused.remedies();
+        let found = remedies.iter().find(|it| it.parameter == Parameter::Anticogging);
+        let most = found.unwrap_or_else(|| panic!("{refused}")).highest.unwrap();
+        let passes = |share| certify(&scene.with(Parameter::Anticogging, share).unwrap()).is_ok();
+        assert!(most >= least && passes(most) && !passes(1.01 * most), "{most}: {refused}");
+    }
+    // None passes.
+    let refused = certify(&behind(Coupling::Rigid, 50.0)).unwrap_err();
+    assert!(refused.remedies().iter().all(|it| it.parameter != Parameter::Anticogging));
+}
