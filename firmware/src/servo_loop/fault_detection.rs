@@ -124,7 +124,9 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         match event {
             OutputEvent::Fault(fault) => self.fail(fault, hardware, inbox),
             OutputEvent::Heat(step) if self.state == State::Running => {
-                self.rendering.servo_mut().step_by_heat(step);
+                if !self.rendering.host_mut().step_by_heat(step) {
+                    self.rendering.servo_mut().step_by_heat(step);
+                }
             }
             OutputEvent::Heat(_) => {}
         }

@@ -12,7 +12,7 @@ use core::fmt;
 
 use crate::build_error::BuildError;
 use crate::certificate::{Parameter, certify_scene, scene_data, timing_checked};
-use crate::current::{Push, ReturnedEnergy};
+use crate::current::{MAY_HAVE_BRIDGE, Push, ReturnedEnergy};
 use crate::environment::{EnvironmentModel, SupportsTiming};
 use crate::host::{BesideServo, HostResponse, HostTimes, ServoNumbers};
 use crate::number::Number;
@@ -197,10 +197,6 @@ where
     Ok(Prepared { scene, margin: margin.map(|margin| margin - share), rendering })
 }
 
-/// Whether the program may be for a board's own bridge. The programs of other boards have no code for the energy
-/// that it returns.
-const MAY_HAVE_BRIDGE: bool = cfg!(any(not(target_os = "none"), feature = "bridge"));
-
 /// Checks that the supply takes the energy of a push into the scene.
 #[inline(never)]
 fn check_returned<E: EnvironmentModel>(
@@ -240,7 +236,7 @@ where
         let times = (M::TIMING, N::FORMAT);
         let cogging = against_cogging::<E, N>(&changed);
         let servo = ServoNumbers::of(&changed, cogging, margin, transducers, options, times)?;
-        HostResponse::beside(&host, &servo, HostTimes::of(&changed.latency))?;
+        HostResponse::beside(&host, &servo, HostTimes::of(&changed.latency, changed.timing.period))?;
     }
     Ok(())
 }

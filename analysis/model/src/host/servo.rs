@@ -47,7 +47,8 @@ pub struct HostedServo<'a> {
 
 impl<'a> HostedServo<'a> {
     /// A full tank beside the servo of a scene in this format, with torques that are put out at the next count or
-    /// at their own, and whether a board's own bridge drives the motor.
+    /// at their own, and whether the supply of a board's own bridge takes no energy
+    /// back.
     ///
     /// # Errors
     /// If there is no proof for the host beside this servo, or its torque and the scene's are together above full
@@ -58,7 +59,7 @@ impl<'a> HostedServo<'a> {
         scene: &Scene,
         transducers: &Transducers,
         output: OutputTiming,
-        (format, has_bridge): (Format, bool),
+        (format, stores): (Format, bool),
     ) -> Result<Self, HostError> {
         // A scene that does not certify has no margin.
         let certified = scene.certify_in(format).ok();
@@ -75,7 +76,7 @@ impl<'a> HostedServo<'a> {
             output,
             radians_per_count: TAU / transducers.counts_per_turn,
             format,
-            has_bridge,
+            stores,
         };
         Self::beside(servo, host, &numbers)
     }

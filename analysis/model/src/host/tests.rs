@@ -41,7 +41,7 @@ fn most_taken(file: &SceneFile, law: HostLaw, output: OutputTiming, has_tank: bo
         output,
         radians_per_count: TAU / transducers.counts_per_turn,
         format: Format::F32,
-        has_bridge: false,
+        stores: false,
     };
     let hosted = HostedServo::beside(servo, &budget, &numbers).unwrap();
     let law = HostileHost::new(law, host.torque);
