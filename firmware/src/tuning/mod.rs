@@ -163,7 +163,10 @@ where
 {
     let scene = apply(scene, changes).map_err(|_| Step::Change)?;
     let timed = timing_checked(scene, N::FORMAT)?;
-    check_returned(&scene, transducers, options).map_err(|_| Step::Servo)?;
+    // A host is refused beside a supply for which the energy matters.
+    if !E::Host::IS_PRESENT {
+        check_returned(&scene, transducers, options).map_err(|_| Step::Servo)?;
+    }
     let rendering = PreparedServo::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
     let margin = timed.margin_with(options.injection.unwrap_or(0.0));
     let prepared = Prepared { scene, margin: Some(margin), rendering };
