@@ -29,6 +29,8 @@ pub struct BridgeBoard {
     current_loop: CurrentLoop,
     transducers: Transducers,
     sample: Option<Sample>,
+    /// The count of each period so far, and whether an alignment moved the handle in it.
+    past: Vec<(i32, bool)>,
 }
 
 impl BridgeBoard {
@@ -41,7 +43,7 @@ impl BridgeBoard {
         transducers: Transducers,
     ) -> Result<Self, VirtualBoardError> {
         let board = VirtualBoard::boot(program, board, elf, Some(current_loop.drive()))?;
-        Ok(Self { board, current_loop: *current_loop, transducers, sample: None })
+        Ok(Self { board, current_loop: *current_loop, transducers, sample: None, past: Vec::new() })
     }
 
     /// Runs to the beginning of the next period of the servo, with bytes to the serial port.
@@ -54,7 +56,14 @@ impl BridgeBoard {
             self.board.answer(self.board.count(), bytes)?;
         }
         let sample = self.board.sample_turning(shaft)?;
+        self.past.push((self.board.count(), sample.is_aligning));
         Ok(self.sample.insert(sample))
+    }
+
+    /// The counts at the beginning of all periods before this one, and whether an alignment moved the handle in
+    /// each.
+    pub fn past(&self) -> &[(i32, bool)] {
+        self.past.split_last().map_or(&[], |(_, past)| past)
     }
 
     /// The count at the beginning of the period.

@@ -144,7 +144,7 @@ impl BesideHost {
         }
     }
 
-    /// The same on a virtual board whose own bridge drives the motor of this shaft; it aligns and arms the board
+    /// The same on a virtual board whose own bridge drives the motor of this shaft. The board is aligned and armed
     /// before.
     ///
     /// # Errors
@@ -158,8 +158,9 @@ impl BesideHost {
         progress: impl FnMut(),
     ) -> Result<RunOutcome, RunError> {
         board.align_and_arm(&self.scene)?;
+        let before = board.past().to_vec();
         let mut held = HeldShaft { board, shaft };
-        let recorded = self.record(&mut held, ticks, progress)?;
+        let recorded = Recorded { before, ..self.record(&mut held, ticks, progress)? };
         let report = BoardMeasurement::Virtual(held.board.finish()?);
         self.replayed(recorded, controller, self.output(), report)
     }
@@ -204,7 +205,7 @@ impl BesideHost {
             let heard = held.stand(&std::mem::take(&mut bytes))?;
             states.extend(heard.into_iter().filter_map(|byte| reported(&mut decoder, byte)));
         }
-        Ok(Recorded { ran, torques, states, energy, final_speed })
+        Ok(Recorded { before: Vec::new(), ran, torques, states, energy, final_speed })
     }
 
     fn replayed(
@@ -217,7 +218,10 @@ impl BesideHost {
         let (begin, commands) = recorded.commands()?;
         let mut run = Run::from_rest(controller);
         let mut servo = self.servo(controller, output)?;
-        servo.rest(begin);
+        match recorded.before.len().checked_sub(begin as usize) {
+            Some(first) => servo.follow(&recorded.before[first..]),
+            None => servo.rest(begin),
+        }
         let (mut host, mut energy) = (self.host_run(), self.energy(output));
         for (exchanged, command) in recorded.ran.iter().zip(commands) {
             let &Exchanged { count, code, moved } = exchanged;
@@ -270,6 +274,8 @@ struct Exchanged {
 
 /// A run on a board.
 struct Recorded {
+    /// The count of each tick before the run, and whether an alignment moved the handle in it, where a motor did.
+    before: Vec<(i32, bool)>,
     ran: Vec<Exchanged>,
     /// The torques of the commands, in N m.
     torques: Vec<f32>,

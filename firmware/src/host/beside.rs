@@ -168,8 +168,8 @@ pub trait BesideServo: Clone + fmt::Debug {
     fn cut(&mut self, by_fault: bool);
     /// The amplifier was off, and a hand may have got all of the energy before.
     fn drain(&mut self);
-    /// Moves the largest torque by a step, because of the heat of the torque output; returns whether it fell. As long
-    /// as it does, the scene keeps its torque.
+    /// Moves the largest torque by a step, because of the heat of the torque output; returns whether it fell. As
+    /// long as it does, the scene keeps its torque.
     fn step_by_heat(&mut self, _: HeatStep) -> bool {
         false
     }
@@ -482,6 +482,9 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     fn take_over(&mut self, last: &Self) {
         self.tank.take_over(&last.tank);
         (self.taken, self.invalid) = (last.taken, last.invalid);
+        for (heat, last) in self.heat.iter_mut().zip(&last.heat) {
+            heat.now = (last.now / last.cold * heat.cold).min(heat.cold);
+        }
     }
 
     #[cold]
@@ -490,8 +493,6 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         self.stream.rest();
         self.given = 0.0;
         self.unknown = UNKNOWN;
-        // The scene's limit opens again as well; if the heat is still there, it lowers both again.
-        self.heat.iter_mut().for_each(|heat| heat.now = heat.cold);
         self.tank.give_back(false);
         self.tank.forget(FixedDelay::full_of(0.0), by_fault);
     }

@@ -124,6 +124,19 @@ impl<'a> HostedServo<'a> {
         self.number = ticks;
     }
 
+    /// Ticks without a command, as before a run, by their counts, and whether an alignment moved the handle in each.
+    pub fn follow(&mut self, ticks: &[(i32, bool)]) {
+        for &(count, is_aligning) in ticks {
+            let moved = count.wrapping_sub(std::mem::replace(&mut self.count, count));
+            let _: (f32, bool) = self.host.tick(moved);
+            self.host.wait(false);
+            if is_aligning {
+                self.host.cut(false);
+            }
+        }
+        self.number = ticks.len() as u32;
+    }
+
     /// Sends a command, which the next tick takes and the tick after that begins to give: a torque in N m, to
     /// which the servo moves over so many ticks.
     pub fn send(&self, torque: f32, ramp: u16) {

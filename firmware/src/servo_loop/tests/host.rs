@@ -291,7 +291,8 @@ fn a_hot_bridge_lowers_the_host_before_the_scene() {
     (0..=PRESSED).step_by(300).for_each(|count| run.bench.stand(count, 1));
     run.bench.requests.arm();
     run.bench.stand(PRESSED, 120);
-    let mut ticks = |event, ticks, count| {
+    let same = run.set(HOST);
+    let ticks = |run: &mut Run, event, ticks, count| {
         let mut frames = Vec::new();
         for _ in 0..ticks {
             run.send(-0.4, 0);
@@ -301,23 +302,26 @@ fn a_hot_bridge_lowers_the_host_before_the_scene() {
         (frames, run.report().unwrap())
     };
     let torque = |frame: &Frame| f64::from(frame.code.offset()) * STEP;
-    let (frames, _) = ticks(None, 5, PRESSED);
+    let (frames, _) = ticks(&mut run, None, 5, PRESSED);
     assert!((torque(&frames[4]) + 1.4).abs() < STEP, "{frames:?}");
     // From 0.5 N m by a hundredth of it a tick.
-    let (frames, taken) = ticks(Some(OutputEvent::Heat(HeatStep::Lower)), 100, PRESSED);
+    let (frames, taken) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Lower)), 100, PRESSED);
     for (tick, frame) in frames.iter().enumerate() {
         let left = 0.4_f64.min(0.5 - 0.005 * (tick + 1) as f64);
         assert!((torque(frame) + 1.0 + left).abs() < 1.1 * STEP, "{tick}: {frame:?}");
         assert_eq!(frame.limit, LimitReason::Torque);
     }
     assert!(taken.torque.abs() < 0.006 && taken.refused < -0.39, "{taken:?}");
-    let (frames, _) = ticks(Some(OutputEvent::Heat(HeatStep::Lower)), 20, PRESSED);
+    let (frames, _) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Lower)), 20, PRESSED);
     assert_eq!(frames[19].limit, LimitReason::Heat);
     assert!((torque(&frames[19]) + 0.8).abs() < 0.02, "{frames:?}");
     for count in (-300..PRESSED).rev().step_by(300) {
-        ticks(None, 1, count);
+        ticks(&mut run, None, 1, count);
     }
-    let (frames, taken) = ticks(Some(OutputEvent::Heat(HeatStep::Raise)), 110, -300);
+    // Another set does not cool it.
+    let _ = run.bench.requests.submit(same);
+    assert_eq!(ticks(&mut run, None, 60, -300).1.torque, 0.0);
+    let (frames, taken) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Raise)), 110, -300);
     assert!((torque(&frames[109]) + 0.4).abs() < STEP, "{frames:?}");
     assert_eq!(taken.refused, 0.0);
 }
