@@ -504,14 +504,14 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
 
     fn step_by_heat(&mut self, step: HeatStep) -> bool {
         let Some(heat) = self.heat.first_mut() else { return false };
-        // As many ticks from end to end as the scene's limit takes.
-        let (before, change) = (heat.now, 1.0 / self.fade);
+        // As many ticks from end to end as the scene's limit takes; down from the present torque, so that each acts.
+        let (most, change) = (heat.now.min(self.stream.largest()), 1.0 / self.fade);
         heat.now = match step {
-            HeatStep::Lower => (before - change).max(0.0),
-            HeatStep::Raise => (before + change).min(heat.cold),
+            HeatStep::Lower => (most - change).max(0.0),
+            HeatStep::Raise => (heat.now + change).min(heat.cold),
         };
         self.stream.limit(heat.now);
-        heat.now < before
+        heat.now < most
     }
 
     fn exchange(&mut self, channel: &HostWords, tick: TickState) {

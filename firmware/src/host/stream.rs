@@ -84,6 +84,11 @@ impl Stream {
         self.ramp(0.0, ticks.clamp(1, LONGEST_RAMP), Then::Rest);
     }
 
+    /// The larger of the present torque and of that to come, in N m without the sign.
+    pub const fn largest(&self) -> f32 {
+        self.wanted.abs().max(self.target.abs())
+    }
+
     /// Keeps to this torque in N m from now on.
     pub fn limit(&mut self, most: f32) {
         let limited = |torque: f32| torque.max(-most).min(most);

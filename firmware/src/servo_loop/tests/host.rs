@@ -304,17 +304,17 @@ fn a_hot_bridge_lowers_the_host_before_the_scene() {
     let torque = |frame: &Frame| f64::from(frame.code.offset()) * STEP;
     let (frames, _) = ticks(&mut run, None, 5, PRESSED);
     assert!((torque(&frames[4]) + 1.4).abs() < STEP, "{frames:?}");
-    // From 0.5 N m by a hundredth of it a tick.
-    let (frames, taken) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Lower)), 100, PRESSED);
+    // By a hundredth of 0.5 N m a tick.
+    let (frames, taken) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Lower)), 79, PRESSED);
     for (tick, frame) in frames.iter().enumerate() {
-        let left = 0.4_f64.min(0.5 - 0.005 * (tick + 1) as f64);
+        let left = 0.4 - 0.005 * (tick + 1) as f64;
         assert!((torque(frame) + 1.0 + left).abs() < 1.1 * STEP, "{tick}: {frame:?}");
         assert_eq!(frame.limit, LimitReason::Torque);
     }
-    assert!(taken.torque.abs() < 0.006 && taken.refused < -0.39, "{taken:?}");
-    let (frames, _) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Lower)), 20, PRESSED);
-    assert_eq!(frames[19].limit, LimitReason::Heat);
-    assert!((torque(&frames[19]) + 0.8).abs() < 0.02, "{frames:?}");
+    assert!(taken.torque.abs() < 0.012 && taken.refused < -0.38, "{taken:?}");
+    let (frames, _) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Lower)), 21, PRESSED);
+    assert_eq!(frames[20].limit, LimitReason::Heat);
+    assert!((torque(&frames[20]) + 0.8).abs() < 0.02, "{frames:?}");
     for count in (-300..PRESSED).rev().step_by(300) {
         ticks(&mut run, None, 1, count);
     }
