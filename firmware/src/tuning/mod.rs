@@ -239,7 +239,11 @@ where
         let times = (M::TIMING, N::FORMAT);
         let cogging = against_cogging::<E, N>(&changed);
         let servo = ServoNumbers::of(&changed, cogging, margin, transducers, options, times)?;
-        HostResponse::beside(&host, &servo, HostTimes::of(&changed.latency, changed.timing.period))?;
+        HostResponse::beside(
+            &host,
+            &servo,
+            HostTimes::of(&changed.latency, changed.timing.period),
+        )?;
     }
     Ok(())
 }

@@ -87,7 +87,10 @@ fn a_stream_at_1_khz_loses_no_tick_and_a_fault_of_the_bridge_empties_the_tank() 
     }
     bench.run(20);
     let fault = bench.fault();
-    assert!(matches!(fault, Some(Fault::Power(PowerFault::CurrentNotFollowing { .. }))), "{fault:?}");
+    assert!(
+        matches!(fault, Some(Fault::Power(PowerFault::CurrentNotFollowing { .. }))),
+        "{fault:?}"
+    );
     let states: Vec<_> = (1020..1030).flat_map(|number| sent(&mut bench, number, 0.1)).collect();
     assert!(states.iter().all(|state| state.energy < 0.03), "{states:?}");
 }
