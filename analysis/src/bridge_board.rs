@@ -31,6 +31,8 @@ pub struct BridgeBoard {
     /// Whether it reads a magnetic encoder.
     is_magnetic: bool,
     sample: Option<Sample>,
+    /// The count of each period so far, and whether an alignment moved the handle in it.
+    past: Vec<(i32, bool)>,
 }
 
 impl BridgeBoard {
@@ -44,7 +46,8 @@ impl BridgeBoard {
         is_magnetic: bool,
     ) -> Result<Self, VirtualBoardError> {
         let board = VirtualBoard::boot(program, board, elf, Some(current_loop.drive()))?;
-        Ok(Self { board, current_loop: *current_loop, transducers, is_magnetic, sample: None })
+        let current_loop = *current_loop;
+        Ok(Self { board, current_loop, transducers, is_magnetic, sample: None, past: Vec::new() })
     }
 
     /// Runs to the beginning of the next period of the servo, with bytes to the serial port.
@@ -57,7 +60,14 @@ impl BridgeBoard {
             self.board.answer(self.board.count(), bytes)?;
         }
         let sample = self.board.sample_turning(shaft)?;
+        self.past.push((self.board.count(), sample.is_aligning));
         Ok(self.sample.insert(sample))
+    }
+
+    /// The counts at the beginning of all periods before this one, and whether an alignment moved the handle in
+    /// each.
+    pub fn past(&self) -> &[(i32, bool)] {
+        self.past.split_last().map_or(&[], |(_, past)| past)
     }
 
     /// The count that the servo reads at the beginning of the period.

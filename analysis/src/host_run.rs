@@ -15,11 +15,14 @@ use haptic_servo::wire::host::{HostCommand, HostReport, HostRequest, HostState};
 use haptic_servo::wire::message::{LONGEST_TO_HOST, ToBoard};
 use haptic_servo::wire::{CHECKSUM, Decoder};
 
+use crate::bridge_board::BridgeBoard;
 use crate::compare_run::{Backend, BoardMeasurement, RunError, RunOutcome};
 use crate::controller::Controller;
+use crate::device::Energy;
 use crate::emulator::{Emulator, EmulatorError};
 use crate::link::Message;
 use crate::lockstep::{PlantIo, Run, SimulatedDevice};
+use crate::shaft::HandHeldShaft;
 use crate::virtual_board::VirtualBoard;
 
 /// Largest number of ticks after a run on a board in which the last report arrives.
@@ -39,8 +42,8 @@ pub struct BesideHost {
     pub has_tank: bool,
     /// The servo's number format.
     pub format: Format,
-    /// Whether a board's own bridge drives the motor.
-    pub has_bridge: bool,
+    /// Whether the supply of a board's own bridge takes no energy back.
+    pub stores: bool,
 }
 
 impl BesideHost {
@@ -55,7 +58,7 @@ impl BesideHost {
     ) -> Result<HostedServo<'c>, HostError> {
         let budget = if self.has_tank { self.budget } else { unlimited(&self.budget) };
         let Self { scene, transducers, .. } = self;
-        let kind = (self.format, self.has_bridge);
+        let kind = (self.format, self.stores);
         HostedServo::new(Box::new(controller), &budget, scene, transducers, output, kind)
     }
 
@@ -102,7 +105,7 @@ impl BesideHost {
             run.add(count, tick, tick.code);
             progress();
         }
-        Ok(outcome(run, &device, host, None))
+        Ok(outcome(run, end_of(&device), host, None))
     }
 
     /// Runs the scene's program on a board, whose host sends its commands over the serial port. Then the servo
@@ -124,26 +127,52 @@ impl BesideHost {
                 let port = emulator.arm_and_wait()?;
                 port.set_nonblocking(true).map_err(EmulatorError::Serial)?;
                 let output = OutputTiming::Simultaneous;
-                let mut board = EmulatorWithPort { emulator, port };
-                let recorded = self.record(&mut board, device, ticks, progress)?;
-                let report = BoardMeasurement::Emulated(Box::new(board.emulator.finish()?));
+                let board = EmulatorWithPort { emulator, port };
+                let mut held = Held { board, device, count: 0 };
+                let recorded = self.record(&mut held, ticks, progress)?;
+                let report = BoardMeasurement::Emulated(Box::new(held.board.emulator.finish()?));
                 self.replayed(recorded, controller, output, report)
             }
             Backend::VirtualBoard { program, board, elf, period } => {
                 let mut board = VirtualBoard::boot(program, board, elf, None)?;
                 board.arm_and_wait(period)?;
-                let delay = self.scene.latency.output_delay.middle();
-                let recorded = self.record(&mut board, device, ticks, progress)?;
-                let report = BoardMeasurement::Virtual(board.finish()?);
-                self.replayed(recorded, controller, OutputTiming::of_delay(delay), report)
+                let mut held = Held { board, device, count: 0 };
+                let recorded = self.record(&mut held, ticks, progress)?;
+                let report = BoardMeasurement::Virtual(held.board.finish()?);
+                self.replayed(recorded, controller, self.output(), report)
             }
         }
     }
 
+    /// The same on a virtual board whose own bridge drives the motor of this shaft. The board is aligned and armed
+    /// before.
+    ///
+    /// # Errors
+    /// If the board stops or does not report all commands.
+    pub fn run_on_bridge(
+        &self,
+        mut board: BridgeBoard,
+        controller: &mut dyn Controller,
+        shaft: HandHeldShaft,
+        ticks: usize,
+        progress: impl FnMut(),
+    ) -> Result<RunOutcome, RunError> {
+        board.align_and_arm(&self.scene)?;
+        let before = board.past().to_vec();
+        let mut held = HeldShaft { board, shaft };
+        let recorded = Recorded { before, ..self.record(&mut held, ticks, progress)? };
+        let report = BoardMeasurement::Virtual(held.board.finish()?);
+        self.replayed(recorded, controller, self.output(), report)
+    }
+
+    /// When the scene's program on a board puts out the torque of a count.
+    const fn output(&self) -> OutputTiming {
+        OutputTiming::of_delay(self.scene.latency.code_delay(self.scene.timing.period))
+    }
+
     fn record(
         &self,
-        board: &mut impl BoardWithHost,
-        mut device: SimulatedDevice,
+        held: &mut impl BoardInHand,
         ticks: usize,
         mut progress: impl FnMut(),
     ) -> Result<Recorded, RunError> {
@@ -151,16 +180,12 @@ impl BesideHost {
         let mut decoder = FromBoard::new();
         let (mut ran, mut torques, mut states) = (Vec::new(), Vec::new(), Vec::new());
         while ran.len() < ticks
-            && let Some(count) = device.count()
+            && let Some((exchanged, heard)) = held.tick(&std::mem::take(&mut bytes))?
         {
-            let (code, heard) = board.exchange(count, &std::mem::take(&mut bytes))?;
-            let before = device.motion().position;
-            device.hold(code);
-            let moved = device.motion().position - before;
             states.extend(heard.into_iter().filter_map(|byte| reported(&mut decoder, byte)));
             // As the client of a board, the host waits for the report of its command before it sends the next.
             let may_send = states.len() == torques.len();
-            if let Some(torque) = sender.after(count).filter(|_| may_send) {
+            if let Some(torque) = sender.after(exchanged.count).filter(|_| may_send) {
                 let number = torques.len() as u16;
                 torques.push(torque);
                 bytes = frame(&ToBoard::Host(HostRequest::Torque(HostCommand {
@@ -169,18 +194,18 @@ impl BesideHost {
                     ramp: 0,
                 })));
             }
-            ran.push(Exchanged { count, code, moved });
+            ran.push(exchanged);
             progress();
         }
-        let at_rest = ran.last().map_or(0, |ran| ran.count);
+        let (energy, final_speed) = held.end();
         for _ in 0..MOST_TICKS {
             if states.len() == torques.len() {
                 break;
             }
-            let (_, heard) = board.exchange(at_rest, &std::mem::take(&mut bytes))?;
+            let heard = held.stand(&std::mem::take(&mut bytes))?;
             states.extend(heard.into_iter().filter_map(|byte| reported(&mut decoder, byte)));
         }
-        Ok(Recorded { ran, torques, states, device })
+        Ok(Recorded { before: Vec::new(), ran, torques, states, energy, final_speed })
     }
 
     fn replayed(
@@ -193,7 +218,10 @@ impl BesideHost {
         let (begin, commands) = recorded.commands()?;
         let mut run = Run::from_rest(controller);
         let mut servo = self.servo(controller, output)?;
-        servo.rest(begin);
+        match recorded.before.len().checked_sub(begin as usize) {
+            Some(first) => servo.follow(&recorded.before[first..]),
+            None => servo.rest(begin),
+        }
         let (mut host, mut energy) = (self.host_run(), self.energy(output));
         for (exchanged, command) in recorded.ran.iter().zip(commands) {
             let &Exchanged { count, code, moved } = exchanged;
@@ -205,7 +233,8 @@ impl BesideHost {
             host.taken.push(energy.tick(servo.last().given, moved));
             run.add(count, tick, code);
         }
-        Ok(outcome(run, &recorded.device, host, Some(board)))
+        let Recorded { energy, final_speed, .. } = recorded;
+        Ok(outcome(run, (energy, final_speed), host, Some(board)))
     }
 }
 
@@ -222,17 +251,17 @@ fn reported(decoder: &mut FromBoard, byte: u8) -> Option<HostState> {
 
 fn outcome(
     run: Run,
-    device: &SimulatedDevice,
+    (energy, final_speed): (Energy, f64),
     host: HostRun,
     board: Option<BoardMeasurement>,
 ) -> RunOutcome {
-    RunOutcome {
-        run,
-        energy: Some(device.energy()),
-        final_speed: Some(device.motion().velocity.abs()),
-        board,
-        host: Some(host),
-    }
+    let (energy, final_speed) = (Some(energy), Some(final_speed));
+    RunOutcome { run, energy, final_speed, board, host: Some(host) }
+}
+
+/// Energy that passed between hand and device, and the speed of the device in rad/s.
+fn end_of(device: &SimulatedDevice) -> (Energy, f64) {
+    (device.energy(), device.motion().velocity.abs())
 }
 
 /// A tick of a board.
@@ -245,12 +274,15 @@ struct Exchanged {
 
 /// A run on a board.
 struct Recorded {
+    /// The count of each tick before the run, and whether an alignment moved the handle in it, where a motor did.
+    before: Vec<(i32, bool)>,
     ran: Vec<Exchanged>,
     /// The torques of the commands, in N m.
     torques: Vec<f32>,
     /// The ticks that took them.
     states: Vec<HostState>,
-    device: SimulatedDevice,
+    energy: Energy,
+    final_speed: f64,
 }
 
 impl Recorded {
@@ -282,6 +314,67 @@ impl Recorded {
         }
         // A board's first tick has the number 1.
         Ok((begin.saturating_sub(1), commands))
+    }
+}
+
+/// A board with its serial port, and the device that its motor moves, in a hand.
+trait BoardInHand {
+    /// A tick with bytes to the port, and the bytes from it; none if the motion has an end and is over.
+    fn tick(&mut self, bytes: &[u8]) -> Result<Option<(Exchanged, Vec<u8>)>, RunError>;
+    /// A tick after the run.
+    fn stand(&mut self, bytes: &[u8]) -> Result<Vec<u8>, RunError>;
+    /// Energy that passed between hand and device, and the speed of the device in rad/s.
+    fn end(&self) -> (Energy, f64);
+}
+
+/// A board in lockstep with a device, which gets the torques of its codes.
+struct Held<B> {
+    board: B,
+    device: SimulatedDevice,
+    count: i32,
+}
+
+impl<B: BoardWithHost> BoardInHand for Held<B> {
+    fn tick(&mut self, bytes: &[u8]) -> Result<Option<(Exchanged, Vec<u8>)>, RunError> {
+        let Some(count) = self.device.count() else { return Ok(None) };
+        self.count = count;
+        let (code, heard) = self.board.exchange(count, bytes)?;
+        let before = self.device.motion().position;
+        self.device.hold(code);
+        let moved = self.device.motion().position - before;
+        Ok(Some((Exchanged { count, code, moved }, heard)))
+    }
+
+    fn stand(&mut self, bytes: &[u8]) -> Result<Vec<u8>, RunError> {
+        Ok(self.board.exchange(self.count, bytes)?.1)
+    }
+
+    fn end(&self) -> (Energy, f64) {
+        end_of(&self.device)
+    }
+}
+
+/// A board whose bridge drives the motor of a shaft, which gets the torque of its currents.
+struct HeldShaft {
+    board: BridgeBoard,
+    shaft: HandHeldShaft,
+}
+
+impl BoardInHand for HeldShaft {
+    fn tick(&mut self, bytes: &[u8]) -> Result<Option<(Exchanged, Vec<u8>)>, RunError> {
+        let (count, code) = (self.board.count(), self.board.code());
+        let before = self.shaft.motion().angle;
+        let heard = self.board.period(&mut self.shaft, bytes)?.sent.clone();
+        let moved = self.shaft.motion().angle - before;
+        Ok(Some((Exchanged { count, code, moved }, heard)))
+    }
+
+    fn stand(&mut self, bytes: &[u8]) -> Result<Vec<u8>, RunError> {
+        Ok(self.board.period(&mut self.shaft, bytes)?.sent.clone())
+    }
+
+    fn end(&self) -> (Energy, f64) {
+        end_of(self.shaft.device())
     }
 }
 

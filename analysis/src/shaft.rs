@@ -160,6 +160,11 @@ impl HandHeldShaft {
         self.device.energy()
     }
 
+    /// The device in the hand.
+    pub const fn device(&self) -> &SimulatedDevice {
+        &self.device
+    }
+
     pub fn motion(&mut self) -> ShaftMotion {
         let motion = self.device.motion();
         // A device always has a count.

@@ -88,9 +88,10 @@ impl<E: Copy> Program<E> {
         let Some(host) = E::HOST else { return };
         let Self { scene, transducers, rendering, .. } = self;
         let (cogging, margin, times) = (E::AGAINST_COGGING, Some(margin), (output, N::FORMAT));
+        let times_of_host = HostTimes::of(&scene.latency, scene.timing.period);
         // Transducers that no board can have are another error.
         if let Ok(servo) = ServoNumbers::of(scene, cogging, margin, transducers, rendering, times) {
-            or_refuse!(HostResponse::beside(&host, &servo, HostTimes::of(&scene.latency)));
+            or_refuse!(HostResponse::beside(&host, &servo, times_of_host));
         }
     }
 }

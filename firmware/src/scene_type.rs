@@ -362,7 +362,8 @@ macro_rules! scene_type {
             const GIVEN: Certified<Scene> = $crate::reported_once!($certified);
             const OF: Structure = Structure::of(GIVEN.scene());
             const ENVIRONMENT: Environment = GIVEN.scene().environment;
-            const TIMES: HostTimes = HostTimes::of(&GIVEN.scene().latency);
+            const TIMES: HostTimes =
+                HostTimes::of(&GIVEN.scene().latency, GIVEN.scene().timing.period);
             #[allow(unused_mut, unused_assignments)]
             const OF_HOST: Option<HostTorque> = {
                 let mut host = None;

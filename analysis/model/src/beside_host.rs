@@ -12,6 +12,9 @@ pub fn check(
     margins: impl Iterator<Item = Option<f64>>,
 ) -> Result<(), HostError> {
     host.check()?;
+    if file.supply.is_some_and(|supply| supply.stores()) {
+        return Err(HostError::Stores);
+    }
     for margin in margins {
         host.check_share(margin)?;
     }

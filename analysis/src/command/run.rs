@@ -139,8 +139,8 @@ struct RunSetup {
     program: RunProgram,
     /// What a host may do.
     budget: Option<HostTorque>,
-    /// Whether a board's own bridge drives the motor.
-    has_bridge: bool,
+    /// Whether the supply of a board's own bridge takes no energy back.
+    stores: bool,
 }
 
 /// The program for a board.
@@ -328,9 +328,16 @@ fn ran_beside_host(
 ) -> Result<RunOutcome, CommandError> {
     let beside = setup.host(law, arguments.format)?;
     let RunSetup { scene, transducers, trajectory, disturbance, dropped, .. } = setup;
+    let controller = setup.controller.as_mut();
+    if let Built::Virtual(flashed) = built
+        && let Some((board, current_loop)) = flashed.boot_bridge()?
+    {
+        let shaft = HandHeldShaft::new(scene, trajectory.clone(), transducers, current_loop)?;
+        let shaft = shaft.with_disturbance(*disturbance);
+        return Ok(beside.run_on_bridge(board, controller, shaft, ticks, progress)?);
+    }
     let device = SimulatedDevice::new(scene, trajectory.clone(), transducers)?;
     let device = device.with_disturbance(*disturbance).failing(*dropped);
-    let controller = setup.controller.as_mut();
     Ok(match built.backend(beside.scene.timing.period) {
         None => beside.run(controller, device, ticks, progress).map_err(RunError::from)?,
         Some(backend) => beside.run_on(backend, controller, device, ticks, progress)?,
@@ -385,8 +392,8 @@ impl RunSetup {
             NumberFormat::F32 => Format::F32,
             NumberFormat::Fixed => <fixed::types::I8F24 as Number>::FORMAT,
         };
-        let &Self { scene, transducers, has_bridge, .. } = self;
-        Ok(BesideHost { scene, transducers, budget, law, has_tank, format, has_bridge })
+        let &Self { scene, transducers, stores, .. } = self;
+        Ok(BesideHost { scene, transducers, budget, law, has_tank, format, stores })
     }
 }
 
@@ -430,7 +437,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSet
         controller: program.controller(format, &transducers)?,
         program: RunProgram::Named(program),
         budget: program.host,
-        has_bridge: program.bridge.is_some(),
+        stores: program.bridge.as_ref().is_some_and(|bridge| bridge.bus().is_some()),
     })
 }
 
@@ -450,7 +457,8 @@ fn of_file(file: SceneFile, arguments: &Arguments) -> Result<RunSetup, CommandEr
     let (report, trajectory) = (judge_file(&file, Format::F64), hand_trajectory(&file));
     let disturbance = file.disturbance();
     let dropped = file.simulation.as_ref().map_or(Missed::None, |simulation| simulation.dropped);
-    let (scene, budget, has_bridge) = (file.scene, file.host, file.motor.is_some());
+    let stores = file.supply.is_some_and(|supply| supply.stores());
+    let (scene, budget) = (file.scene, file.host);
     let program = RunProgram::OfFile(program);
     Ok(RunSetup {
         name: file.name,
@@ -463,7 +471,7 @@ fn of_file(file: SceneFile, arguments: &Arguments) -> Result<RunSetup, CommandEr
         controller,
         program,
         budget,
-        has_bridge,
+        stores,
     })
 }
 

@@ -83,7 +83,7 @@ fn commands_of_the_guides_answer_what_the_guides_show() {
     play("docs/first-hour.md", &["knob.toml", "wall.toml"], &["verdict", "measured", "stiffest"]);
     play("docs/gimbal-knob.md", &["knob.toml"], &["turns"]);
     play("docs/power-stage.md", &[], &["motor"]);
-    play("docs/host-torque.md", &["wheel.toml"], &["host"]);
+    play("docs/host-torque.md", &["wheel.toml", "direct.toml"], &["host", "direct-host"]);
     let printed = block("docs/first-hour.md", "stiffest");
     for line in block("README.md", "stiffest").lines() {
         assert!(printed.contains(line), "{line}");
@@ -94,6 +94,7 @@ fn commands_of_the_guides_answer_what_the_guides_show() {
 #[ignore = "builds for minutes"]
 fn what_is_flashed_does_on_a_virtual_board_what_the_guide_shows() {
     play("docs/first-hour.md", &["knob.toml", "wall.toml"], &["stiffest", "board"]);
+    play("docs/host-torque.md", &["direct.toml"], &["direct-board"]);
 }
 
 /// The help of the command that the first of these words name.

@@ -114,13 +114,35 @@ fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
     assert_eq!(tuned(&board, &[]).1["parameters"]["stiffness"], 15.0);
 }
 
+/// A program with all that a scene file may have beside a wall fits the memory of every board.
+#[test]
+#[ignore = "builds for minutes"]
+fn a_host_fits_a_board_beside_what_opposes_cogging() {
+    let folder = TempDir::new().unwrap();
+    let cogging = "\n[anticogging]\ntorque = [0, 0.01, 0.02, 0.01, 0, -0.01, -0.02, -0.01]\n";
+    for board in ["nucleo-g474re", "b-g431b-esc1"] {
+        let name = if board == "b-g431b-esc1" { "direct" } else { "wheel" };
+        let scene = block("docs/host-torque.md", name).replace("torque = 0.6 ", "torque = 0.5 ");
+        let scene = scene + cogging;
+        let file = folder.path().join("cogging.toml");
+        std::fs::write(&file, scene).unwrap();
+        let file = file.to_str().unwrap();
+        let built = haptic(&["flash", "--build-only", "--board", board, file]);
+        assert_eq!(built.status.code(), Some(0), "{}", String::from_utf8_lossy(&built.stderr));
+    }
+}
+
 /// A host that wants energy sends its commands over the serial port. The servo on this machine gets each in the
 /// tick in which the board took it.
 #[test]
 #[ignore = "builds for minutes"]
 fn beside_a_host_a_board_has_the_codes_of_this_machine() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/pictures/host.toml");
+    let folder = TempDir::new().unwrap();
+    let direct = folder.path().join("direct.toml");
+    std::fs::write(&direct, block("docs/host-torque.md", "direct")).unwrap();
     for (scene, target) in [
+        (direct.to_str().unwrap(), "board:b-g431b-esc1"),
         ("hosted_wall", "qemu"),
         ("hosted_wall", "board:nucleo-g474re"),
         (file, "qemu"),

@@ -42,5 +42,9 @@ pub use regeneration::{Bus, Push, RegenerationError, ReturnedEnergy};
 pub use response::{CurrentResolution, TorqueResponse, TorqueSource};
 pub use supervision::{HeatStep, Heating, TripCodes, TripSearch};
 
+/// Whether the program may be for a board's own bridge. The programs of other boards have no code for its heat
+/// and for the energy that it returns.
+pub(crate) const MAY_HAVE_BRIDGE: bool = cfg!(any(not(target_os = "none"), feature = "bridge"));
+
 #[cfg(test)]
 mod tests;

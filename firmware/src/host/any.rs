@@ -2,6 +2,7 @@
 
 use super::{BesideServo, HostError, HostTimes, HostTorque, HostWords, Hosted, Reported};
 use super::{ServoNumbers, Taken, TickState};
+use crate::current::HeatStep;
 use crate::number::Number;
 use crate::output_timing::OutputTiming;
 
@@ -55,7 +56,7 @@ impl BesideServo for AnyHosted {
 
     fn beside(host: &HostTorque, servo: &ServoNumbers<'_>) -> Result<Self, HostError> {
         let is_latched = servo.output == OutputTiming::Latched;
-        Ok(match (is_latched, HostTimes::of(servo.latency).is_plain) {
+        Ok(match (is_latched, HostTimes::of(servo.latency, servo.timing.period).is_plain) {
             (false, true) => Self::Prompt(Hosted::beside(host, servo)?),
             (false, false) => Self::PromptLagging(Hosted::beside(host, servo)?),
             (true, true) => Self::Latched(Hosted::beside(host, servo)?),
@@ -114,6 +115,10 @@ impl BesideServo for AnyHosted {
 
     fn drain(&mut self) {
         each!(self, hosted => hosted.drain());
+    }
+
+    fn step_by_heat(&mut self, step: HeatStep) -> bool {
+        each!(self, hosted => hosted.step_by_heat(step))
     }
 
     fn exchange(&mut self, channel: &HostWords, tick: TickState) {

@@ -6,6 +6,7 @@ use super::channel::{HostChannel, HostWords};
 use super::stream::Stream;
 use super::{HostError, HostResponse, HostTorque, Tank};
 use crate::build_error::BuildError;
+use crate::current::{HeatStep, MAY_HAVE_BRIDGE};
 use crate::environment::FixedDelay;
 use crate::latency::Latency;
 use crate::number::{Format, Number};
@@ -85,8 +86,8 @@ pub struct ServoNumbers<'a> {
     pub radians_per_count: f64,
     /// The servo's number format.
     pub format: Format,
-    /// Whether a bridge drives the motor.
-    pub has_bridge: bool,
+    /// Whether a board's own bridge drives the motor, whose supply takes no energy back.
+    pub stores: bool,
 }
 
 impl<'a> ServoNumbers<'a> {
@@ -116,7 +117,7 @@ impl<'a> ServoNumbers<'a> {
             output,
             radians_per_count: ok!(transducers.radians_per_count()),
             format,
-            has_bridge: options.returned.is_some(),
+            stores: options.returned.is_some(),
         })
     }
 }
@@ -167,6 +168,11 @@ pub trait BesideServo: Clone + fmt::Debug {
     fn cut(&mut self, by_fault: bool);
     /// The amplifier was off, and a hand may have got all of the energy before.
     fn drain(&mut self);
+    /// Moves the largest torque by a step, because of the heat of the torque output; returns whether it fell. As
+    /// long as it does, the scene keeps its torque.
+    fn step_by_heat(&mut self, _: HeatStep) -> bool {
+        false
+    }
     /// Takes the last command, if it is new, and reports the tick.
     fn exchange(&mut self, channel: &Self::Channel, tick: TickState);
 
@@ -326,11 +332,12 @@ pub struct HostTimes {
 }
 
 impl HostTimes {
-    /// Of a scene with this latency.
-    pub const fn of(latency: &Latency) -> Self {
-        let is_whole = latency.output_delay.is_zero();
+    /// Of a scene with this latency and this period in s.
+    pub const fn of(latency: &Latency, period: f64) -> Self {
         // The emulated board puts a torque out at the instant of its count.
-        let is_latched = is_whole && !cfg!(all(target_os = "none", feature = "board-qemu"));
+        let is_latched = latency.code_delay(period) == 0.0
+            && !cfg!(all(target_os = "none", feature = "board-qemu"));
+        let is_whole = latency.output_delay.is_zero();
         Self { ticks: is_latched as usize, is_plain: is_whole && latency.actuator_lag.is_zero() }
     }
 }
@@ -352,6 +359,17 @@ pub struct Hosted<const TICKS: usize, const IS_PLAIN: bool> {
     invalid: u16,
     /// Ticks until motion gives energy back again.
     unknown: u32,
+    /// In programs for a bridge.
+    heat: [HeatLevel; MAY_HAVE_BRIDGE as usize],
+}
+
+/// The largest torque in N m beside a bridge.
+#[derive(Clone, Copy, Debug)]
+struct HeatLevel {
+    /// At its present heat.
+    now: f32,
+    /// While it is cold.
+    cold: f32,
 }
 
 impl<const TICKS: usize, const IS_PLAIN: bool> Hosted<TICKS, IS_PLAIN> {
@@ -396,6 +414,7 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
             taken: 0,
             invalid: 0,
             unknown: 0,
+            heat: [HeatLevel { now: 0.0, cold: 0.0 }; MAY_HAVE_BRIDGE as usize],
         }
     }
 
@@ -407,7 +426,10 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         let [joules, reserve] = tank.joules().map(|number| number as f32);
         let stream = Stream::new(host, period);
         let fade = (servo.fade / period / host.torque) as f32;
-        Ok(Self { tank, stream, joules, reserve, fade, ..Self::silent() })
+        // Rounded towards zero, so that it is never above the largest torque.
+        let cold = f32::bound_from_f64(host.torque).unwrap_or(0.0);
+        let heat = [HeatLevel { now: cold, cold }; MAY_HAVE_BRIDGE as usize];
+        Ok(Self { tank, stream, joules, reserve, fade, heat, ..Self::silent() })
     }
 
     fn host(budget: &HostTorque) -> Option<HostTorque> {
@@ -460,6 +482,9 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     fn take_over(&mut self, last: &Self) {
         self.tank.take_over(&last.tank);
         (self.taken, self.invalid) = (last.taken, last.invalid);
+        for (heat, last) in self.heat.iter_mut().zip(&last.heat) {
+            heat.now = (last.now / last.cold * heat.cold).min(heat.cold);
+        }
     }
 
     #[cold]
@@ -477,6 +502,18 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         self.tank.drain();
     }
 
+    fn step_by_heat(&mut self, step: HeatStep) -> bool {
+        let Some(heat) = self.heat.first_mut() else { return false };
+        // As many ticks from end to end as the scene's limit takes; down from the present torque, so that each acts.
+        let (most, change) = (heat.now.min(self.stream.largest()), 1.0 / self.fade);
+        heat.now = match step {
+            HeatStep::Lower => (most - change).max(0.0),
+            HeatStep::Raise => (heat.now + change).min(heat.cold),
+        };
+        self.stream.limit(heat.now);
+        heat.now < most
+    }
+
     fn exchange(&mut self, channel: &HostWords, tick: TickState) {
         let (sent, [torque, rest]) = channel.command();
         if sent == self.taken {
@@ -488,7 +525,9 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         if !wanted.is_finite() {
             self.invalid = self.invalid.saturating_add(1);
         }
-        let wanted = if tick.opening == Some(0) { self.stream.wanted } else { torque };
+        let is_hot = self.heat.iter().any(|heat| heat.now < heat.cold);
+        let is_open = tick.opening == Some(0) && !is_hot;
+        let wanted = if is_open { self.stream.wanted } else { torque };
         let refused = wanted - self.given;
         channel.publish(
             sent,
@@ -504,6 +543,8 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
             ],
         );
         if let Some(opening) = tick.opening {
+            let limited = |torque: f32, heat: &HeatLevel| torque.max(-heat.now).min(heat.now);
+            let torque = self.heat.iter().fold(torque, limited);
             self.stream.take(torque, (rest >> 16) as u16, opening);
         }
     }

@@ -13,7 +13,7 @@ sentences! {
         " N m s/rad, the damping that the scene leaves over: lower the share, or make the scene softer"),
     NoMargin { damping: f64 } => (
         "the host's share of damping is " {damping} " N m s/rad, and the scene has no known margin to take \
-         it from: where torques lag, a limited scene has none"),
+         it from: where torques lag, a limited scene behind a coupling has none, and one without a coupling has"),
     Range { torque: f64, limit: f64, full_scale: f64 } => (
         "the host's largest torque of " {torque} " N m and the " {limit} " N m of the scene, its torque limit \
          with what opposes cogging, are together above the full scale of " {full_scale} " N m: lower one of them"),
@@ -26,6 +26,9 @@ sentences! {
          encoder's counts can take at the host's largest torque: lower the torque, or take a finer encoder"),
     Timeout { timeout: f64, least: f64 } => (
         "the host's timeout is " {timeout} " s, and must be at least two periods, which are " {least} " s"),
+    Stores => (
+        "a hand that works against a host's torque returns energy to the supply of the bridge for as long as it \
+         does so, and this supply takes none back: take a supply that sinks, such as one with a brake resistor"),
     NotCovered { time: &'static str } => ("there is no proof for a host's torque beside " {time}),
     }
 }

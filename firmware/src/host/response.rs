@@ -177,9 +177,8 @@ impl HostResponse {
         if !matches!(servo.format, Format::F32 | Format::F64) {
             return Err(HostError::NotCovered { time: "a servo in a fixed-point format" });
         }
-        if servo.has_bridge || servo.latency.actuator_updates > 0 {
-            let time = "the heat and the supply of a board's own bridge";
-            return Err(HostError::NotCovered { time });
+        if servo.stores {
+            return Err(HostError::Stores);
         }
         let Timing { period, worst_period } = servo.timing;
         let (ticks, reading) = match servo.output {

@@ -6,6 +6,8 @@ use super::HostTorque;
 
 /// Longest ramp in ticks, whose rounding stays below what a step of it is short of.
 const LONGEST_RAMP: u32 = 10_000;
+/// The part of its way that a ramp goes before its last tick.
+const SHORT: f32 = 1.0 - 1.0 / 1024.0;
 
 /// What a ramp does at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +84,19 @@ impl Stream {
         self.ramp(0.0, ticks.clamp(1, LONGEST_RAMP), Then::Rest);
     }
 
+    /// The larger of the present torque and of that to come, in N m without the sign.
+    pub const fn largest(&self) -> f32 {
+        self.wanted.abs().max(self.target.abs())
+    }
+
+    /// Keeps to this torque in N m from now on.
+    pub fn limit(&mut self, most: f32) {
+        let limited = |torque: f32| torque.max(-most).min(most);
+        (self.wanted, self.target) = (limited(self.wanted), limited(self.target));
+        let ticks = self.left.max(1) as f32;
+        self.step = (self.target - self.wanted) / ticks * SHORT;
+    }
+
     /// Whether nothing is wanted until the next command.
     pub fn is_at_rest(&self) -> bool {
         self.then == Then::Rest && self.wanted == 0.0 && self.step == 0.0
@@ -90,7 +105,7 @@ impl Stream {
     /// A line that stays short of its target until its last tick, so that rounding never leads beyond it.
     fn ramp(&mut self, target: f32, ticks: u32, then: Then) {
         self.target = target;
-        self.step = (target - self.wanted) / ticks as f32 * (1.0 - 1.0 / 1024.0);
+        self.step = (target - self.wanted) / ticks as f32 * SHORT;
         (self.left, self.then) = (ticks, then);
     }
 

@@ -114,8 +114,8 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.fail(Fault::NotANumber, hardware, inbox);
     }
 
-    /// Stops the servo after the torque output reported a fault and has taken the torque away, or moves the torque
-    /// limit of a running servo. The clamp of the other states moves by itself.
+    /// Stops the servo after the torque output reported a fault and has taken the torque away, or moves a host's
+    /// largest torque, or the torque limit of a running servo. The clamp of the other states moves by itself.
     #[cold]
     #[inline(never)]
     pub(super) fn on_output_event(
@@ -126,10 +126,12 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     ) {
         match event {
             OutputEvent::Fault(fault) => self.fail(fault, hardware, inbox),
-            OutputEvent::Heat(step) if self.state == State::Running => {
-                self.rendering.servo_mut().step_by_heat(step);
+            OutputEvent::Heat(step) => {
+                let is_lower = self.rendering.host_mut().step_by_heat(step);
+                if self.state == State::Running && !is_lower {
+                    self.rendering.servo_mut().step_by_heat(step);
+                }
             }
-            OutputEvent::Heat(_) => {}
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::swap::{ARMING, SETTLING};
 use super::*;
-use crate::current::PowerFault;
+use crate::current::{MAY_HAVE_BRIDGE, PowerFault};
 use crate::fault::FaultRecord;
 use crate::host::TickState;
 
@@ -62,6 +62,11 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         let tick = TickState { tick, count, opening, state: self.state as u32 };
         let host = self.rendering.host_mut();
         host.wait(opening.is_some() || self.state == State::FadingOut);
+        // What an alignment moves gives nothing back, nor do the pulses of a bridge that starts up.
+        let is_starting = self.state == State::Settling && self.ramp == ARMING;
+        if MAY_HAVE_BRIDGE && (is_starting || self.state == State::Aligning) {
+            host.cut(false);
+        }
         host.exchange(inbox.host(), tick);
     }
 

@@ -12,7 +12,7 @@ use core::fmt;
 
 use crate::build_error::BuildError;
 use crate::certificate::{Parameter, certify_scene, scene_data, timing_checked};
-use crate::current::{Push, ReturnedEnergy};
+use crate::current::{MAY_HAVE_BRIDGE, Push, ReturnedEnergy};
 use crate::environment::{EnvironmentModel, SupportsTiming};
 use crate::host::{BesideServo, HostResponse, HostTimes, ServoNumbers};
 use crate::number::Number;
@@ -163,7 +163,10 @@ where
 {
     let scene = apply(scene, changes).map_err(|_| Step::Change)?;
     let timed = timing_checked(scene, N::FORMAT)?;
-    check_returned(&scene, transducers, options).map_err(|_| Step::Servo)?;
+    // A host is refused beside a supply for which the energy matters.
+    if !E::Host::IS_PRESENT {
+        check_returned(&scene, transducers, options).map_err(|_| Step::Servo)?;
+    }
     let rendering = PreparedServo::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
     let margin = timed.margin_with(options.injection.unwrap_or(0.0));
     let prepared = Prepared { scene, margin: Some(margin), rendering };
@@ -196,10 +199,6 @@ where
     let share = E::Host::host(&budget).map_or(0.0, |host| host.damping);
     Ok(Prepared { scene, margin: margin.map(|margin| margin - share), rendering })
 }
-
-/// Whether the program may be for a board's own bridge. The programs of other boards have no code for the energy
-/// that it returns.
-const MAY_HAVE_BRIDGE: bool = cfg!(any(not(target_os = "none"), feature = "bridge"));
 
 /// Checks that the supply takes the energy of a push into the scene.
 #[inline(never)]
@@ -240,7 +239,11 @@ where
         let times = (M::TIMING, N::FORMAT);
         let cogging = against_cogging::<E, N>(&changed);
         let servo = ServoNumbers::of(&changed, cogging, margin, transducers, options, times)?;
-        HostResponse::beside(&host, &servo, HostTimes::of(&changed.latency))?;
+        HostResponse::beside(
+            &host,
+            &servo,
+            HostTimes::of(&changed.latency, changed.timing.period),
+        )?;
     }
     Ok(())
 }

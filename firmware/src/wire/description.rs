@@ -96,7 +96,7 @@ impl Description {
         let cogging = scene.environment.parts().against_cogging();
         let times = (*timing, *format);
         let servo = ServoNumbers::of(scene, cogging, margin, transducers, rendering, times)?;
-        let is_plain = HostTimes::of(&scene.latency).is_plain;
+        let is_plain = HostTimes::of(&scene.latency, scene.timing.period).is_plain;
         let ticks = usize::from(*timing == OutputTiming::Latched);
         HostResponse::beside(host, &servo, HostTimes { ticks, is_plain })?;
         Ok(())

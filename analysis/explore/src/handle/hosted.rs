@@ -58,7 +58,7 @@ impl Hosted {
         let period = scene.timing.period;
         let host = HostileHost::new(law, budget.torque);
         let sender = HostSender::new(host, period, transducers, count);
-        let kind = (Format::F32, file.motor.is_some());
+        let kind = (Format::F32, file.supply.is_some_and(|supply| supply.stores()));
         let servo = HostedServo::new(servo, &given, scene, transducers, output, kind);
         let servo = servo.map_err(|error| error.to_string())?;
         Ok(Self {

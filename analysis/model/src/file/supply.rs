@@ -23,6 +23,13 @@ pub enum FileSupply {
     },
 }
 
+impl FileSupply {
+    /// Whether it takes no energy back.
+    pub const fn stores(&self) -> bool {
+        matches!(self, Self::Stores { .. })
+    }
+}
+
 /// Reads `[supply]`. A supply that does not sink needs a torque limit, which `torque` is if it is there.
 pub fn supply(mut section: Section<'_>, torque: Option<f64>) -> Read<FileSupply> {
     let sinks = section.boolean(&key::SINKS);

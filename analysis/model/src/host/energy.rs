@@ -5,6 +5,8 @@ use std::collections::VecDeque;
 use haptic_servo::host::HostTorque;
 use haptic_servo::scene::Latency;
 
+use crate::sampled_actuator::SampledActuator;
+
 /// The energy that a passive hand has taken from a host: at least the work of the host's torque at the motor, less
 /// what the host's share of the damping takes (theory, section 19).
 ///
@@ -17,8 +19,9 @@ pub struct HostEnergy {
     period: f64,
     /// Time in s from the begin of a period to the change of the torque.
     part: f64,
-    /// Time constant of the amplifier in s.
+    /// Time constant of the amplifier in s, and its updates if it has some.
     lag: f64,
+    updated: Option<SampledActuator>,
     /// Torques in N m that have not acted yet, the newest first.
     commands: VecDeque<f64>,
     /// The motor's torque in N m of the host.
@@ -36,6 +39,7 @@ impl HostEnergy {
             period,
             part: delay.fract() * period,
             lag: latency.actuator_lag.middle(),
+            updated: SampledActuator::of(latency, period),
             commands: VecDeque::from(vec![0.0; ticks + delay as usize + 1]),
             torque: 0.0,
             taken: 0.0,
@@ -50,18 +54,45 @@ impl HostEnergy {
         let after = self.commands.back().copied().unwrap_or(0.0);
         let (mut once, mut twice) = (0.0, 0.0);
         for (command, length) in [(before, self.part), (after, self.period - self.part)] {
-            let gap = self.torque - command;
-            let left = if self.lag > 0.0 { (-length / self.lag).exp() } else { 0.0 };
-            let first = gap * self.lag * (1.0 - left);
-            once += command * length + first;
-            twice += command * (command * length + 2.0 * first);
-            twice += 0.5 * gap * gap * self.lag * (1.0 - left * left);
-            self.torque = command + gap * left;
+            let [first, second] = match self.updated {
+                Some(amplifier) => self.in_straight_lines(&amplifier, command, length),
+                None => self.lagging(command, length),
+            };
+            once += first;
+            twice += second;
         }
         let mean = once / self.period;
         let ripple = (twice - mean * once).max(0.0);
         self.taken += mean * moved - self.damping * moved * moved / self.period;
         self.taken += 0.25 * ripple / self.damping;
         self.taken
+    }
+
+    /// The integrals of the torque and of its square over a time in s with this command, in N m.
+    fn lagging(&mut self, command: f64, length: f64) -> [f64; 2] {
+        let gap = self.torque - command;
+        let left = if self.lag > 0.0 { (-length / self.lag).exp() } else { 0.0 };
+        let first = gap * self.lag * (1.0 - left);
+        self.torque = command + gap * left;
+        let second = 0.5 * gap * gap * self.lag * (1.0 - left * left);
+        [command * length + first, command * (command * length + 2.0 * first) + second]
+    }
+
+    /// The same of an amplifier that is updated.
+    fn in_straight_lines(
+        &mut self,
+        amplifier: &SampledActuator,
+        command: f64,
+        length: f64,
+    ) -> [f64; 2] {
+        let (mut once, mut twice, step) = (0.0, 0.0, amplifier.between());
+        for _ in 0..amplifier.in_time(length) {
+            let from = self.torque;
+            let to = from + amplifier.slope() * step * (command - from);
+            once += 0.5 * (from + to) * step;
+            twice += (from * from + from * to + to * to) / 3.0 * step;
+            self.torque = to;
+        }
+        [once, twice]
     }
 }

@@ -47,7 +47,8 @@ pub struct HostedServo<'a> {
 
 impl<'a> HostedServo<'a> {
     /// A full tank beside the servo of a scene in this format, with torques that are put out at the next count or
-    /// at their own, and whether a board's own bridge drives the motor.
+    /// at their own, and whether the supply of a board's own bridge takes no energy
+    /// back.
     ///
     /// # Errors
     /// If there is no proof for the host beside this servo, or its torque and the scene's are together above full
@@ -58,7 +59,7 @@ impl<'a> HostedServo<'a> {
         scene: &Scene,
         transducers: &Transducers,
         output: OutputTiming,
-        (format, has_bridge): (Format, bool),
+        (format, stores): (Format, bool),
     ) -> Result<Self, HostError> {
         // A scene that does not certify has no margin.
         let certified = scene.certify_in(format).ok();
@@ -75,7 +76,7 @@ impl<'a> HostedServo<'a> {
             output,
             radians_per_count: TAU / transducers.counts_per_turn,
             format,
-            has_bridge,
+            stores,
         };
         Self::beside(servo, host, &numbers)
     }
@@ -121,6 +122,19 @@ impl<'a> HostedServo<'a> {
             let _: (f32, bool) = self.host.tick(0);
         }
         self.number = ticks;
+    }
+
+    /// Ticks without a command, as before a run, by their counts, and whether an alignment moved the handle in each.
+    pub fn follow(&mut self, ticks: &[(i32, bool)]) {
+        for &(count, is_aligning) in ticks {
+            let moved = count.wrapping_sub(std::mem::replace(&mut self.count, count));
+            let _: (f32, bool) = self.host.tick(moved);
+            self.host.wait(false);
+            if is_aligning {
+                self.host.cut(false);
+            }
+        }
+        self.number = ticks.len() as u32;
     }
 
     /// Sends a command, which the next tick takes and the tick after that begins to give: a torque in N m, to

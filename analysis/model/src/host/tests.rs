@@ -41,7 +41,7 @@ fn most_taken(file: &SceneFile, law: HostLaw, output: OutputTiming, has_tank: bo
         output,
         radians_per_count: TAU / transducers.counts_per_turn,
         format: Format::F32,
-        has_bridge: false,
+        stores: false,
     };
     let hosted = HostedServo::beside(servo, &budget, &numbers).unwrap();
     let law = HostileHost::new(law, host.torque);
@@ -83,17 +83,20 @@ fn a_hand_takes_no_more_than_the_budget_and_without_a_tank_it_does() {
 
 #[test]
 fn an_amplifier_that_lags_and_an_output_that_is_late_do_not_change_that() {
-    for (delay, lag, output) in [
-        (0.0, 4e-4, OutputTiming::Latched),
-        (0.0, 4e-4, OutputTiming::Simultaneous),
-        (3e-4, 0.0, OutputTiming::Simultaneous),
-        (3e-4, 2e-4, OutputTiming::Simultaneous),
+    let late = |delay, lag| Latency::delayed(delay).with_actuator_lag(lag);
+    for (latency, output) in [
+        (late(0.0, 4e-4), OutputTiming::Latched),
+        (late(0.0, 4e-4), OutputTiming::Simultaneous),
+        (late(3e-4, 0.0), OutputTiming::Simultaneous),
+        (late(3e-4, 2e-4), OutputTiming::Simultaneous),
+        // A board's own bridge.
+        (Latency::sampled(4, 2e-4, 1e-3), OutputTiming::Latched),
     ] {
         let mut file = file();
-        file.scene.latency = Latency::delayed(delay).with_actuator_lag(lag);
+        file.scene.latency = latency;
         let most = most_taken(&file, HostLaw::Pump, output, true);
-        println!("{delay} {lag}: {most}");
-        assert!((0.1..=1.0).contains(&most), "{delay} {lag}: {most}");
+        println!("{latency:?}: {most}");
+        assert!((0.1..=1.0).contains(&most), "{latency:?}: {most}");
     }
 }
 

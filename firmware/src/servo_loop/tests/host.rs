@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::certificate::Certified;
+use crate::current::HeatStep;
 use crate::dac::DacCode;
 use crate::host::{BesideServo, HostTorque, Reported, Taken};
 use crate::scene_type::Typed;
@@ -261,6 +262,68 @@ fn a_fault_empties_the_tank() {
     run.tick(FREE + 5000);
     let taken = run.report().unwrap();
     assert!(taken.refused > 0.39 && taken.energy < 0.01, "{taken:?}");
+}
+
+/// The work of an alignment is not the hand's: damping pays with it for no torque. A hand that moves the handle as
+/// far fills the tank.
+#[test]
+fn an_alignment_fills_no_tank() {
+    let level = |is_aligned: bool| {
+        let reset = ResetCause::IndependentWatchdog;
+        let mut run = Run::booted(Board { reset, alignment: Some(60), ..Board::new() });
+        if is_aligned {
+            run.bench.requests.align();
+        }
+        (0..=80).for_each(|tick| run.bench.stand(-300 * tick.min(50), 1));
+        run.send(0.0, 0);
+        run.tick(-300 * 50);
+        run.report().unwrap().energy
+    };
+    let (by_hand, aligned) = (level(false), level(true));
+    assert!(by_hand > 0.04 && aligned < 0.001, "{by_hand} {aligned}");
+}
+
+/// The scene keeps its torque until none of the host's is left; then it falls, too, and both come back.
+#[test]
+fn a_hot_bridge_lowers_the_host_before_the_scene() {
+    const PRESSED: i32 = 1_800;
+    let mut run = Run::booted(Board::new());
+    (0..=PRESSED).step_by(300).for_each(|count| run.bench.stand(count, 1));
+    run.bench.requests.arm();
+    run.bench.stand(PRESSED, 120);
+    let same = run.set(HOST);
+    let ticks = |run: &mut Run, event, ticks, count| {
+        let mut frames = Vec::new();
+        for _ in 0..ticks {
+            run.send(-0.4, 0);
+            run.bench.board.output_event = event;
+            frames.push(run.bench.tick(count));
+        }
+        (frames, run.report().unwrap())
+    };
+    let torque = |frame: &Frame| f64::from(frame.code.offset()) * STEP;
+    let (frames, _) = ticks(&mut run, None, 5, PRESSED);
+    assert!((torque(&frames[4]) + 1.4).abs() < STEP, "{frames:?}");
+    // By a hundredth of 0.5 N m a tick.
+    let (frames, taken) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Lower)), 79, PRESSED);
+    for (tick, frame) in frames.iter().enumerate() {
+        let left = 0.4 - 0.005 * (tick + 1) as f64;
+        assert!((torque(frame) + 1.0 + left).abs() < 1.1 * STEP, "{tick}: {frame:?}");
+        assert_eq!(frame.limit, LimitReason::Torque);
+    }
+    assert!(taken.torque.abs() < 0.012 && taken.refused < -0.38, "{taken:?}");
+    let (frames, _) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Lower)), 21, PRESSED);
+    assert_eq!(frames[20].limit, LimitReason::Heat);
+    assert!((torque(&frames[20]) + 0.8).abs() < 0.02, "{frames:?}");
+    for count in (-300..PRESSED).rev().step_by(300) {
+        ticks(&mut run, None, 1, count);
+    }
+    // Another set does not cool it.
+    let _ = run.bench.requests.submit(same);
+    assert_eq!(ticks(&mut run, None, 60, -300).1.torque, 0.0);
+    let (frames, taken) = ticks(&mut run, Some(OutputEvent::Heat(HeatStep::Raise)), 110, -300);
+    assert!((torque(&frames[109]) + 0.4).abs() < STEP, "{frames:?}");
+    assert_eq!(taken.refused, 0.0);
 }
 
 /// In both directions: a share that the scene does not leave over, and a scene that leaves less than the share.

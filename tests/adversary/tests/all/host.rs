@@ -1,13 +1,14 @@
 //! A host that wants to take more energy out than its budget, beside a certified spring, in passive hands.
 //!
 //! Device, hand and amplifier are linear and have no damping but the device's, so that each tick is exact; the
-//! energy in mass and spring of the hand is counted, and so is all that the spring of the scene could give. With
-//! a debit of the tank switched off the same search finds a run above the budget.
+//! energy in mass and spring of the hand is counted, and so is all that the spring of the scene could give. A
+//! part of the amplifiers is the current loop of a board's own bridge. With a debit of the tank switched off the
+//! same search finds a run above the budget.
 
 use haptic_model::host::{HostLaw, HostileHost, Reading};
-use haptic_servo::environment::VariableDelay;
+use haptic_servo::environment::{VariableDelay, Wall};
 use haptic_servo::host::{HostResponse, HostTorque, Sampling, Tank};
-use haptic_servo::scene::{Latency, Timing};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -21,22 +22,31 @@ enum Debit {
     Lag,
     Counts,
     Tail,
+    /// The current loop's straight lines in place of a lag without updates.
+    Updates,
+    /// The instant after which its torque begins.
+    Instant,
 }
 
-/// Position, speed, torque of the amplifier; then its command, and the torque of the scene.
+/// Position, speed, torque of the amplifier; then its command, or the slope of its torque between two updates, and
+/// the torque of the scene.
 type State = [f64; 5];
 
-/// The transition over a tick, by the series of the exponential over a small part of it, squared.
-fn transition(inertia: f64, stiffness: f64, lag: f64) -> [State; 5] {
+/// The transition over a tick, or for an amplifier with updates over the time between two of them, by the series
+/// of the exponential over a small part of it, squared.
+fn transition(case: &Case) -> [State; 5] {
+    let &Case { inertia, stiffness, lag, .. } = case;
     let mut rates = [[0.0; 5]; 5];
     rates[0][1] = 1.0;
     rates[1] = [-stiffness / inertia, -DELTA / inertia, 1.0 / inertia, 0.0, 1.0 / inertia];
-    if lag > 0.0 {
+    if case.updates.is_some() {
+        rates[2][3] = 1.0;
+    } else if lag > 0.0 {
         rates[2] = [0.0, 0.0, -1.0 / lag, 1.0 / lag, 0.0];
     } else {
         (rates[1][2], rates[1][3]) = (0.0, 1.0 / inertia);
     }
-    let part = PERIOD / f64::from(1 << 16);
+    let part = case.step() / f64::from(1 << 16);
     let mut sum = product(&[[0.0; 5]; 5], &rates);
     for (i, row) in sum.iter_mut().enumerate() {
         row[i] = 1.0;
@@ -59,9 +69,56 @@ fn product(a: &[State; 5], b: &[State; 5]) -> [State; 5] {
     std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }
 
+/// A current loop on a board: its updates in a period, the update at which a torque begins, and whether its code
+/// was put out at the next count.
+#[derive(Clone, Copy, Debug)]
+struct Updates {
+    count: u16,
+    begins: u16,
+    is_latched: bool,
+}
+
+impl Updates {
+    fn draw(random: &mut ChaCha8Rng, most: u16) -> Self {
+        let count = random.random_range(2..=most);
+        let is_latched: bool = random.random();
+        // At a phase it begins later than at the first update.
+        let begins = if is_latched { 1 } else { random.random_range(1..count) };
+        Self { count, begins, is_latched }
+    }
+
+    fn latency(&self, lag: f64) -> Latency {
+        let delay = f64::from(self.begins) * PERIOD / f64::from(self.count);
+        let output_delay = TimeRange::exactly(delay);
+        Latency { output_delay, ..Latency::sampled(self.count, lag, PERIOD) }
+    }
+}
+
+/// The stiffness of a spring, a sample late, that certifies at the port of a device with this damping.
+fn certified_spring(damping: f64, latency: Latency) -> f64 {
+    let certifies = |stiffness: f64| {
+        let scene = Scene {
+            device: Device { inertia: 2.2e-5, damping, passivity: None },
+            timing: Timing { period: PERIOD, worst_period: None },
+            coupling: Coupling::Rigid,
+            environment: Wall::spring(stiffness, 1).alone(),
+            latency,
+            torque_limit: None,
+        };
+        scene.certify().is_ok()
+    };
+    let (mut passes, mut fails) = (0.0, damping / PERIOD);
+    for _ in 0..12 {
+        let stiffness = 0.5 * (passes + fails);
+        *(if certifies(stiffness) { &mut passes } else { &mut fails }) = stiffness;
+    }
+    passes
+}
+
 /// A host beside a device in a hand.
 struct Case {
     host: HostTorque,
+    updates: Option<Updates>,
     /// Time constant of the amplifier in s, and width of a count in rad; 0: none.
     lag: f64,
     count: f64,
@@ -79,15 +136,25 @@ impl Case {
             None => random.random(),
             Some(debit) => debit != Debit::Counts,
         };
+        let of_bridge = matches!(without, Some(Debit::Updates | Debit::Instant));
+        // Straight lines show most where they are long and the lag is short.
+        let is_coarse = without == Some(Debit::Updates);
+        let updates = (lags && (of_bridge || without.is_none() && random.random()))
+            .then(|| Updates::draw(random, if is_coarse { 3 } else { 12 }));
         let counts = without.is_none() && random.random();
-        let lag = if lags { PERIOD * 10_f64.powf(random.random_range(-1.5..0.5)) } else { 0.0 };
+        let lag = 10_f64.powf(random.random_range(-1.5..if is_coarse { -1.0 } else { 0.5 }));
+        let lag = if lags { PERIOD * lag } else { 0.0 };
         let count = match without {
             Some(Debit::Counts) => 10_f64.powf(random.random_range(-4.0..-2.5)),
             _ if counts => 10_f64.powf(random.random_range(-6.0..-4.0)),
             _ => 0.0,
         };
-        // The torque of the spring does not lag, so beside a lag there is none.
-        let spring = if lags { 0.0 } else { 0.999 * (DELTA - share) / (1.5 * PERIOD) };
+        // The torque of the spring lags in the bridge alone.
+        let spring = match updates {
+            Some(updates) => certified_spring(DELTA - share, updates.latency(lag)),
+            None if lags => 0.0,
+            None => 0.999 * (DELTA - share) / (1.5 * PERIOD),
+        };
         let is_held: bool = random.random();
         let has_power: bool = random.random();
         Self {
@@ -98,6 +165,7 @@ impl Case {
                 torque: if count > 0.0 { 0.5 } else { 1e3 },
                 timeout: 0.1,
             },
+            updates,
             lag,
             count,
             spring,
@@ -111,8 +179,16 @@ impl Case {
         let lag = if without == Some(Debit::Lag) { 0.0 } else { self.lag };
         let count = if without == Some(Debit::Counts) { 0.0 } else { self.count };
         let timing = Timing { period: PERIOD, worst_period: None };
-        let latency = Latency::NONE.with_actuator_lag(lag);
-        let sampling = Sampling::simultaneous(&timing, count);
+        let latency = |updates: Updates| updates.latency(lag);
+        let mut latency =
+            self.updates.map_or_else(|| Latency::NONE.with_actuator_lag(lag), latency);
+        match without {
+            Some(Debit::Updates) => latency.actuator_updates = 0,
+            Some(Debit::Instant) => latency.output_delay = TimeRange::exactly(0.0),
+            _ => {}
+        }
+        let ticks = usize::from(self.updates.is_some_and(|updates| updates.is_latched));
+        let sampling = Sampling { ticks, ..Sampling::simultaneous(&timing, count) };
         let mut response = HostResponse::of(&self.host, &latency, &sampling).ok()?;
         if without == Some(Debit::Tail) {
             // Of the cost of a command only the part within its own period.
@@ -121,6 +197,11 @@ impl Case {
             response.pull[0] -= response.tail[0] * gone * left;
         }
         Tank::new(&self.host, &response, count, [1.0, 1.0]).ok()
+    }
+
+    /// Time in s of a step in which the amplifier does not change what it does.
+    fn step(&self) -> f64 {
+        self.updates.map_or(PERIOD, |updates| PERIOD / f64::from(updates.count))
     }
 
     fn counted(&self, x: f64) -> f64 {
@@ -171,14 +252,36 @@ impl Wish {
     }
 }
 
+/// The commands on their way to a bridge.
+#[derive(Default)]
+struct Bridge {
+    /// What the current follows.
+    command: f64,
+    /// The host's last command, and the last torque of the spring.
+    host: f64,
+    spring: f64,
+}
+
+impl Bridge {
+    /// The host's command that begins in this tick, which gives another.
+    fn due(&mut self, updates: &Updates, command: f64) -> f64 {
+        let last = std::mem::replace(&mut self.host, command);
+        if updates.is_latched { last } else { command }
+    }
+}
+
 /// The largest energy that a run gives, over its budget.
 fn run(random: &mut ChaCha8Rng, without: Option<Debit>) -> f64 {
     let case = Case::draw(random, without);
     let Some(mut tank) = case.tank(without) else { return 0.0 };
     let Case { inertia, stiffness, .. } = case;
-    let motion = transition(inertia, stiffness, case.lag);
+    let motion = transition(&case);
+    let moves = |state: State| -> State {
+        std::array::from_fn(|i| (0..5).map(|j| motion[i][j] * state[j]).sum())
+    };
     let mut wish = Wish::draw(random, (stiffness / inertia).sqrt() * PERIOD);
     let (mut state, mut before, mut most) = ([0.0; 5], 0.0, 0.0_f64);
+    let mut bridge = Bridge::default();
     for tick in 0..TICKS {
         let x = case.counted(state[0]);
         let moved = x - before;
@@ -187,9 +290,25 @@ fn run(random: &mut ChaCha8Rng, without: Option<Debit>) -> f64 {
         }
         let command = tank.allowed(tank.in_range(wish.torque(tick, x, moved)));
         tank.give(command);
-        (before, state[3]) = (x, command);
-        let next: State = std::array::from_fn(|i| (0..5).map(|j| motion[i][j] * state[j]).sum());
-        state = [next[0], next[1], next[2], 0.0, -case.spring * state[0]];
+        before = x;
+        let spring = -case.spring * state[0];
+        if let Some(updates) = &case.updates {
+            // The torque of the spring is that of the count before, and the host's may be, too.
+            let (sum, step) = (bridge.due(updates, command) + bridge.spring, case.step());
+            for update in 0..updates.count {
+                if update == updates.begins {
+                    bridge.command = sum;
+                }
+                let left = (-step / case.lag).exp();
+                state[3] = (bridge.command - state[2]) * (1.0 - left) / step;
+                state = moves(state);
+            }
+            bridge.spring = spring;
+        } else {
+            state[3] = command;
+            state = moves(state);
+            state[4] = spring;
+        }
         let stored = 0.5 * (inertia * state[1] * state[1] + stiffness * state[0] * state[0]);
         let budget = case.host.energy + case.host.power * PERIOD * (tick + 1) as f64;
         most = most.max(stored / budget);
@@ -212,7 +331,7 @@ fn no_host_gives_more_than_its_budget() {
 
 #[test]
 fn a_debit_that_is_switched_off_is_found() {
-    for debit in [Debit::Lag, Debit::Counts, Debit::Tail] {
+    for debit in [Debit::Lag, Debit::Counts, Debit::Tail, Debit::Updates, Debit::Instant] {
         let most = most(super::FEW, Some(debit));
         println!("without {debit:?}: {most}");
         assert!(most > 1.0, "without {debit:?}: {most}");

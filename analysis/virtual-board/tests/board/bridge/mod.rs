@@ -5,6 +5,7 @@ mod bench;
 mod brushless;
 mod faults;
 mod gates;
+mod hosted;
 mod identify;
 mod index;
 mod load;
