@@ -42,8 +42,7 @@ const fn remainder(bits: u32) -> u8 {
 /// Angles in a turn.
 const ANGLES: usize = 1 << 14;
 
-/// The checksum of each angle without a status, so that one comparison checks a transfer: 16 kB. Of the angle zero it
-/// is [`NO_CHECKSUM`], because its words may be those of a broken wire.
+/// The checksum of each angle without a status, so that one comparison checks a transfer: 16 kB.
 static CHECKSUMS: [u8; ANGLES] = {
     let mut table = [0; ANGLES];
     each!(angle in 1..ANGLES => {
@@ -51,7 +50,6 @@ static CHECKSUMS: [u8; ANGLES] = {
         let lowest = 1 << angle.trailing_zeros();
         table[angle] = table[angle ^ lowest] ^ remainder((lowest as u32) << 4);
     });
-    table[0] = NO_CHECKSUM;
     table
 };
 
@@ -67,7 +65,7 @@ const HALVES: [[u8; 128]; 2] = {
 
 /// [`CHECKSUMS`] where flash is short.
 const fn checksum_of_halves(angle: usize) -> u8 {
-    if angle == 0 { NO_CHECKSUM } else { HALVES[0][angle >> 7] ^ HALVES[1][angle & 0x7F] }
+    HALVES[0][angle >> 7] ^ HALVES[1][angle & 0x7F]
 }
 
 /// The checksum of an angle: the program of a bridge leaves no room for the table.
@@ -85,21 +83,15 @@ const OF_STATUS: [u8; 16] = {
     table
 };
 
-/// More than a checksum and a status have.
-const NO_CHECKSUM: u8 = 0xFF;
-
 #[inline(always)]
 fn decode(&[first, second, _]: &Frame) -> Result<u32, ReadingError> {
     let bits = u32::from(first) << 12 | u32::from(second);
-    let angle = (bits >> 10) as usize % ANGLES;
-    if u16::from(checksum_of(angle)) == second & 0x3FF {
-        Ok(angle as u32)
-    } else if bits == 0 {
-        // A handle may rest there.
-        Err(ReadingError::Zeros)
-    } else {
-        unusual(bits)
+    if bits == 0 {
+        // The checksum of zeros is zero.
+        return Err(ReadingError::Zeros);
     }
+    let angle = (bits >> 10) as usize % ANGLES;
+    if u16::from(checksum_of(angle)) == second & 0x3FF { Ok(angle as u32) } else { unusual(bits) }
 }
 
 /// The angle of a transfer with a status.
@@ -107,9 +99,9 @@ fn decode(&[first, second, _]: &Frame) -> Result<u32, ReadingError> {
 #[inline(never)]
 fn unusual(bits: u32) -> Result<u32, ReadingError> {
     let (angle, status) = (bits >> 10, bits >> 6 & 0xF);
-    let of_angle = if angle == 0 { 0 } else { checksum_of(angle as usize % ANGLES) };
+    let of_angle = checksum_of(angle as usize % ANGLES);
     match bits {
-        // Their checksum is none.
+        // The checksum of ones is none.
         0xFF_FFFF => Err(ReadingError::Ones),
         _ if u32::from(of_angle ^ OF_STATUS[status as usize]) != bits & 0x3F => {
             Err(ReadingError::Checksum)

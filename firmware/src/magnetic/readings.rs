@@ -1,5 +1,7 @@
 //! The readings of a chip, tick by tick: the angle, or for some failed transfers the angle before.
 
+use core::hint::cold_path;
+
 use super::{Chip, Frame, ReadingError};
 
 /// The last angle, and what has come since.
@@ -36,10 +38,13 @@ impl Readings {
     pub fn take(&mut self, chip: &Chip, frame: &Frame, allowed: u16) -> Result<bool, ReadingError> {
         let count = match (chip.decode)(frame) {
             Ok(count) => count,
-            Err(error) => match self.near_zero(chip, error) {
-                Some(count) => count,
-                None => return self.fail(error, allowed),
-            },
+            Err(error) => {
+                cold_path();
+                match self.near_zero(chip, error) {
+                    Some(count) => count,
+                    None => return self.fail(error, allowed),
+                }
+            }
         };
         if let Some(most) = chip.frozen_after {
             if count == self.count & !FAILED {
