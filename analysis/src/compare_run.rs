@@ -190,7 +190,7 @@ pub fn trace(title: String, period: f64, run: &Run, trajectory: &HandTrajectory)
         position: run.ticks.iter().map(|tick| tick.angle).collect(),
         hand: held.map(|time| trajectory.position(time)).collect(),
         torque: run.ticks.iter().map(|tick| tick.torque).collect(),
-        limit: run.ticks.iter().map(|tick| status(tick)).collect(),
+        limit: run.ticks.iter().map(status).collect(),
         release: Some(trajectory.release).filter(|&release| release < time(run.ticks.len())),
         ..Trace::default()
     }

@@ -31,7 +31,7 @@ pub fn left_out_of_loop(scene: &Scene) -> Option<&'static str> {
     scene.environment.parts().anticogging.map(|_| "without [anticogging]")
 }
 
-/// A title of such a loop that names what is left out of it.
+/// A title of such a loop, with the part that it leaves out.
 pub fn titled_loop(title: &str, scene: &Scene) -> String {
     let words = left_out_of_loop(scene).map_or_else(String::new, |words| format!(" ({words})"));
     titled(title, [&scene.latency]) + &words

@@ -97,18 +97,18 @@ fn the_board_turns_a_motor_and_then_opposes_its_cogging() {
     assert!(assumed.contains("opposes 100 % of the learnt cogging"), "{certified}");
     let ran = answer(&["run", &scene, "--target", "qemu", "--ticks", "3000"]);
     assert_eq!((&ran["codes_equal"], &ran["difference"]), (&3000.into(), &Value::Null), "{ran}");
-    // What is left of the cogging is what a device without it and without a map feels.
-    let swing = |text: &str| {
-        let other = path("other.toml");
-        std::fs::write(&other, text).unwrap();
+    // A torque that cogging and friction together hold moves the device where the cogging is opposed.
+    let without = std::fs::read_to_string(&device).unwrap().replace("share = 1.0", "share = 0.0");
+    std::fs::write(path("without.toml"), without).unwrap();
+    let swing = |device: &str| {
+        let (other, pushed) = (path("other.toml"), text.replace("knob.toml", device));
+        let torque = "samples = 4000\ntorque_sine = { amplitude = 0.006, omega = 6.0 }\n";
+        std::fs::write(&other, pushed + "[simulation]\n" + torque).unwrap();
         let moved = answer(&["simulate", &other]);
         let angles = moved["position"].as_array().unwrap().iter().map(|it| it.as_f64().unwrap());
         angles.fold(0.0, |most: f64, angle| most.max(angle.abs()))
     };
-    let pushed = text.to_owned()
-        + "[simulation]\nsamples = 4000\ntorque_sine = { amplitude = 0.007, omega = 6.0 }\n";
-    let opposed = swing(&pushed);
-    let left = swing(&pushed.replace("[servo]", "[anticogging]\nshare = 0.0\n[servo]"));
+    let (opposed, left) = (swing("knob.toml"), swing("without.toml"));
     assert!(opposed > 2.0 * left, "{opposed} {left}");
 }
 

@@ -146,7 +146,7 @@ fn property(key: &Key) -> Value {
             Form::Table => table(key.path),
             Form::TablesOrOne => {
                 let one = table(key.path);
-                json!({ "anyOf": [one, { "type": "array", "minItems": 1, "items": one }] })
+                json!({ "oneOf": [one, { "type": "array", "minItems": 1, "items": one }] })
             }
             Form::Tables => json!({ "type": "array", "minItems": 1, "items": table(key.path) }),
         },

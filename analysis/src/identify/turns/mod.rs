@@ -294,7 +294,7 @@ impl Balance<'_> {
         found.orders().map(of).collect()
     }
 
-    /// Integrals of `e^(j n x)` over each period, without a weight and with one that rises from 0 to 1.
+    /// Integrals of `e^(j n x)` over each period, without a weight, and with a weight that rises from 0 to 1.
     fn over_ticks(&self, harmonic: f64) -> Vec<[Complex<f64>; 2]> {
         let of = |pair: &[f64]| {
             let begin = Complex::from_polar(1.0, harmonic * pair[0]);
