@@ -201,7 +201,7 @@ fn device(
         format!("cogging = {{ torque = {torque:?}, count = {count} }}")
     }));
     if chain.encoder() == EncoderPlace::Hand {
-        lines.push(format!("encoder = {}", quoted(EncoderPlace::Hand.word())));
+        lines.push(format!("encoder = {}", quoted(EncoderPlace::Hand.as_str())));
     }
     time(lines, "actuator_lag", scene.latency.actuator_lag);
     time(lines, "sensor_lag", scene.latency.sensor_lag);
