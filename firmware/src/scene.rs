@@ -81,7 +81,8 @@ impl Device {
 }
 
 impl<E> Scene<E> {
-    /// An environment on a device at a period in s: coupled rigidly, without latency, missed updates and a limit.
+    /// An environment on a device at a period in s: coupled rigidly, without latency, missed updates and a
+    /// limit.
     pub const fn of(device: Device, period: f64, environment: E) -> Self {
         let timing = Timing { period, worst_period: None };
         let (coupling, latency) = (Coupling::Rigid, Latency::NONE);

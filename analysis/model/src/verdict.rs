@@ -134,7 +134,8 @@ pub struct VerdictReport {
     /// with the lower end of an enclosure of it.
     pub delta: f64,
     /// Damping in N m s/rad that the device may lose with everything else unchanged; negative: the damping
-    /// that it lacks. `None`, too, where none is known: where torques lag and a bound decides behind a coupling.
+    /// that it lacks. `None`, too, where none is known: where torques lag and a bound decides behind a
+    /// coupling.
     pub margin: Option<f64>,
     /// The answer with the limits and the reading time of a board; `None` if no board has the times of a
     /// certified scene.
@@ -144,8 +145,8 @@ pub struct VerdictReport {
     pub felt_stiffness: Option<f64>,
     /// Damping in N m s/rad that is felt outside of the wall: see [`felt::free_damping`].
     pub free_damping: Option<f64>,
-    /// The margin where the torque is limited as on a board, so that a bound decides for every scene; `None` where
-    /// none is known, or no board renders the scene.
+    /// The margin where the torque is limited as on a board, so that a bound decides for every scene; `None`
+    /// where none is known, or no board renders the scene.
     #[serde(skip)]
     pub margin_on_board: Option<f64>,
     /// Whether a board may render the scene, which then has a margin on a board, known or not.

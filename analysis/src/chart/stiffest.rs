@@ -1,5 +1,5 @@
-//! Stiffness at the handle over the rate, of the stiffest certified walls: a curve for each structure, or for each
-//! condition on the wall.
+//! Stiffness at the handle over the rate, of the stiffest certified walls: a curve for each structure, or for
+//! each condition on the wall.
 
 use super::*;
 use crate::quantity::significant;
@@ -9,8 +9,8 @@ const ROOM: f64 = 1.3;
 /// The line at the device's own rate.
 const OWN: Stroke = Stroke::dashed(&[3, 3], 1);
 
-/// Draws curves of rate in Hz and stiffness in N m/rad, each with its name; a cross marks the wall that was found,
-/// and a vertical line is at `own` Hz.
+/// Draws curves of rate in Hz and stiffness in N m/rad, each with its name; a cross marks the wall that was
+/// found, and a vertical line is at `own` Hz.
 pub fn stiffest(
     title: &str,
     curves: &[(&str, Vec<(f64, f64)>)],

@@ -19,8 +19,8 @@ impl Assessment {
     /// unchanged; at most `delta`.
     ///
     /// For a rejected linear scene, the damping that the device lacks, as a negative number. `None` for an
-    /// undecided scene and for a rejected one-sided or limited scene, which have no such number, and where it is
-    /// not known: see [`Limited::margin`].
+    /// undecided scene and for a rejected one-sided or limited scene, which have no such number, and where it
+    /// is not known: see [`Limited::margin`].
     ///
     /// `scene` is the assessed scene.
     pub const fn margin(&self, scene: &Scene) -> Option<f64> {
@@ -195,8 +195,8 @@ impl Limited {
     }
 
     /// The margin while a damper of `injected` N m s/rad may be switched on and off, one sample late, in
-    /// addition to the environment; not negative. `None` behind a coupling where torques lag: it is designed for
-    /// this passivity, and no loss is known to be allowed.
+    /// addition to the environment; not negative. `None` behind a coupling where torques lag: it is designed
+    /// for this passivity, and no loss is known to be allowed.
     ///
     /// Down to `k = K_vc T / 2` conditions 17 and 18 continue to hold. For a device that has only
     /// `delta' < k` the sum over the ticks that theory, section 4, step 5, has is, in the notation of

@@ -48,8 +48,8 @@ fn judged(scene: &Value) -> VerdictReport {
     judge("a case", &read(scene))
 }
 
-/// The verdict on a wall of 8 N m/rad with these lags of amplifier and sensor and this delay, and its index at the
-/// port.
+/// The verdict on a wall of 8 N m/rad with these lags of amplifier and sensor and this delay, and its index
+/// at the port.
 fn certified_wall(actuator: &Value, sensor: &Value, delay: &Value) -> (f64, f64) {
     let report = judged(&json!({
         "name": "wall",

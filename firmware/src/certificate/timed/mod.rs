@@ -51,8 +51,8 @@ impl<S, M> TimingChecked<S, M> {
     }
 
     /// Damping in N m s/rad that the device may lose while everything else runs unchanged on a board, which
-    /// limits the torque; [`Assessment::margin`] of a linear scene ignores the limit. `None` where none is known,
-    /// behind a coupling where torques lag.
+    /// limits the torque; [`Assessment::margin`] of a linear scene ignores the limit. `None` where none is
+    /// known, behind a coupling where torques lag.
     pub const fn margin(&self) -> Option<f64> {
         self.limited.margin(0.0)
     }
@@ -141,8 +141,8 @@ impl Piece<WhereLimited> {
 }
 
 impl Assessment {
-    /// [`TimingChecked::margin`] of the assessed and certified scene; `None` also if its numbers do not allow a
-    /// board to render it.
+    /// [`TimingChecked::margin`] of the assessed and certified scene; `None` also if its numbers do not allow
+    /// a board to render it.
     pub const fn margin_on_board(&self, scene: &Scene) -> Option<f64> {
         self.margin_injecting(scene, 0.0)
     }
