@@ -82,7 +82,11 @@ fn consistent(scene: &Scene, format: Format) {
         assert!(!is_prompt || below(assessment.deciding_index()), "{assessment:?}");
         let margin = assessment.margin(scene);
         let delta = assessment.delta.lo();
-        assert!(margin.is_some_and(|m| m >= 0.0 && m <= delta), "{margin:?} {assessment:?}");
+        // No margin is known behind a coupling where torques lag and a bound decides.
+        let is_known =
+            is_prompt || assessment.rule == Rule::Exact || scene.coupling == Coupling::Rigid;
+        let is_within = margin.map_or(!is_known, |m| m >= 0.0 && m <= delta);
+        assert!(is_within, "{margin:?} {assessment:?}");
     }
 }
 
