@@ -78,16 +78,16 @@ impl<E: Copy> Program<E> {
         }
     }
 
-    /// For constants: a compile error if the scene's host may not stand beside it, which leaves a margin in N m s/rad
-    /// over, with this output in the number format `N`.
+    /// For constants: a compile error if the scene's host may not stand beside it, which leaves a margin in
+    /// N m s/rad, if one is known, with this output in the number format `N`.
     #[track_caller]
-    pub const fn check_host<N: Number>(&self, margin: f64, output: OutputTiming)
+    pub const fn check_host<N: Number>(&self, margin: Option<f64>, output: OutputTiming)
     where
         E: Rendering<N>,
     {
         let Some(host) = E::HOST else { return };
         let Self { scene, transducers, rendering, .. } = self;
-        let (cogging, margin, times) = (E::AGAINST_COGGING, Some(margin), (output, N::FORMAT));
+        let (cogging, times) = (E::AGAINST_COGGING, (output, N::FORMAT));
         let times_of_host = HostTimes::of(&scene.latency, scene.timing.period);
         // Transducers that no board can have are another error.
         if let Ok(servo) = ServoNumbers::of(scene, cogging, margin, transducers, rendering, times) {

@@ -73,9 +73,22 @@ impl Device {
     pub const fn passivity(&self) -> f64 {
         or!(self.passivity, self.damping)
     }
+
+    /// A device whose passivity is its damping: inertia in kg m^2, damping in N m s/rad.
+    pub const fn damped(inertia: f64, damping: f64) -> Self {
+        Self { inertia, damping, passivity: None }
+    }
 }
 
 impl<E> Scene<E> {
+    /// An environment on a device at a period in s: coupled rigidly, without latency, missed updates and a
+    /// limit.
+    pub const fn of(device: Device, period: f64, environment: E) -> Self {
+        let timing = Timing { period, worst_period: None };
+        let (coupling, latency) = (Coupling::Rigid, Latency::NONE);
+        Self { device, timing, coupling, environment, latency, torque_limit: None }
+    }
+
     /// The rest of the scene, for the environment.
     pub const fn context(&self) -> LawContext {
         LawContext {

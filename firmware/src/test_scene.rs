@@ -2,29 +2,19 @@
 
 use crate::encoder::{CounterWidth, RawCount};
 use crate::number::Number;
-use crate::scene::{Coupling, Device, Latency, Scene, Timing};
+use crate::scene::{Coupling, Device, Scene};
 use crate::servo::Servo;
 use crate::transducers::Transducers;
 
 /// An environment on the paper's paddle at 1 kHz, behind the standard coupling.
 pub(crate) const fn scene<E>(environment: E) -> Scene<E> {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
+    let mut scene = Scene::of(Device::damped(2.2e-5, 0.022), 0.001, environment);
+    scene.coupling = Coupling::Spring { stiffness: 44.0 };
+    scene
 }
 
 /// An encoder whose counter does not overflow, and a small motor.
-pub(crate) const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits32,
-    full_scale_torque: 1.0,
-    largest_speed: 100.0,
-};
+pub(crate) const TRANSDUCERS: Transducers = Transducers::of(61_440.0, 1.0);
 
 /// The paddle's encoder and motor on a board.
 pub(crate) const PADDLE: Transducers =

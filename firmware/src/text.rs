@@ -90,6 +90,7 @@ macro_rules! or_refuse {
 pub(crate) use or_refuse;
 
 /// An enumeration as a table: a row for each value, with its text.
+#[macro_export]
 macro_rules! words {
     ($(#[$about:meta])* $name:ident {
         $($(#[$doc:meta])* $value:ident $(= $number:literal)? $word:literal,)+

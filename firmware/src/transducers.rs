@@ -31,6 +31,13 @@ impl Transducers {
     /// [`Transducers::largest_speed`] if nothing else is known about the device.
     pub const NO_HAND_IS_FASTER: f64 = 100.0;
 
+    /// An encoder with a counter of 32 bits, at a device that no hand moves faster than
+    /// [`Transducers::NO_HAND_IS_FASTER`], and a motor of this torque in N m at full scale.
+    pub const fn of(counts_per_turn: f64, full_scale_torque: f64) -> Self {
+        let (counter, largest_speed) = (CounterWidth::Bits32, Self::NO_HAND_IS_FASTER);
+        Self { counts_per_turn, counter, full_scale_torque, largest_speed }
+    }
+
     /// Checks that a servo can run with them, this timing and this torque limit.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! Random linear loops whose torque lags, in their own units: period and passivity are 1.
 
-use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::environment::{Environment, Rational, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange};
 use nalgebra::Complex;
 use rand::Rng;
 use rand::seq::IndexedRandom;
@@ -78,13 +78,10 @@ impl Loop {
     pub fn scene(&self) -> Scene {
         let exactly = TimeRange::exactly;
         Scene {
-            device: Device { inertia: 1.0, damping: 1.0, passivity: None },
-            timing: Timing { period: 1.0, worst_period: None },
             coupling: match self.coupling {
                 Some(stiffness) => Coupling::Spring { stiffness },
                 None => Coupling::Rigid,
             },
-            environment: self.environment(),
             latency: Latency {
                 output_delay: exactly(self.output_delay),
                 actuator_lag: exactly(self.actuator_lag),
@@ -92,7 +89,7 @@ impl Loop {
                 actuator_updates: self.updates,
                 ..Latency::NONE
             },
-            torque_limit: None,
+            ..Scene::of(Device::damped(1.0, 1.0), 1.0, self.environment())
         }
     }
 
@@ -102,13 +99,8 @@ impl Loop {
             return if self.filter > 0.0 { wall.filtered(self.filter) } else { wall }.alone();
         }
         let (numerator, denominator) = self.fraction();
-        let coefficients = |values: &[f64]| Coefficients::new(values).expect("a low degree");
-        Environment::Rational(Rational {
-            numerator: coefficients(&numerator),
-            denominator: coefficients(&denominator),
-            delay: self.delay,
-            unit_zeros: 0,
-        })
+        let rational = Rational::of(&numerator, &denominator).expect("a low degree");
+        Environment::Rational(Rational { delay: self.delay, ..rational })
     }
 
     /// The wall with its section, without its delay: numerator and denominator, descending.

@@ -6,10 +6,8 @@
 use crate::exact::{Q, of_f64};
 use crate::poly::Poly;
 use crate::rules::Exact;
-use haptic_servo::environment::{
-    Canceller, Coefficients, Damper, Drag, Environment, Parts, Rational, Wall,
-};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Canceller, Damper, Drag, Environment, Parts, Rational, Wall};
+use haptic_servo::scene::{Coupling, Device, Scene};
 use num_traits::{One, Zero};
 use rand::Rng;
 use std::f64::consts::PI;
@@ -86,12 +84,8 @@ impl Frame {
         let Self { delta, period, coupling } = *self;
         ExactScene {
             scene: Scene {
-                device: Device { inertia: 1e-4, damping: delta, passivity: None },
-                timing: Timing { period, worst_period: None },
                 coupling,
-                environment,
-                latency: Latency::NONE,
-                torque_limit: None,
+                ..Scene::of(Device::damped(1e-4, delta), period, environment)
             },
             exact: Exact {
                 numerator: fraction.0,
@@ -139,14 +133,9 @@ pub fn rational(rng: &mut impl Rng, poles: Poles) -> ExactScene {
 }
 
 fn data(frame: &Frame, numerator: &[f64], denominator: &[f64], delay: usize) -> ExactScene {
-    let coefficients = |c: &[f64]| Coefficients::new(c).expect("at most eight poles are drawn");
+    let rational = Rational::of(numerator, denominator).expect("at most eight poles are drawn");
     let exact = |c: &[f64]| Poly::descending(&c.iter().copied().map(q).collect::<Vec<Q>>());
-    let environment = Environment::Rational(Rational {
-        numerator: coefficients(numerator),
-        denominator: coefficients(denominator),
-        delay,
-        unit_zeros: 0,
-    });
+    let environment = Environment::Rational(Rational { delay, ..rational });
     frame.with(environment, (exact(numerator), exact(denominator).raised(delay)))
 }
 

@@ -3,8 +3,8 @@
 use crate::exact::{Q, of_decimal};
 use crate::poly::Poly;
 use crate::rules::Exact;
-use haptic_servo::environment::{Coefficients, Environment, Rational};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Environment, Rational};
+use haptic_servo::scene::{Coupling, Device, Scene};
 use serde_json::Value;
 
 /// A case: decimal text as it stands in the file.
@@ -37,21 +37,16 @@ impl Case {
     /// # Panics
     /// If the environment has more coefficients than a scene can hold.
     pub fn scene(&self) -> Scene {
-        let coefficients = |c: &[f64]| Coefficients::new(c).expect("degree 8 at most");
+        let rational = Rational::of(&self.numerator, &self.denominator).expect("degree 8 at most");
         Scene {
-            device: Device { inertia: 2.2e-5, damping: self.delta, passivity: Some(self.delta) },
-            timing: Timing { period: self.period, worst_period: None },
             coupling: self
                 .coupling
                 .map_or(Coupling::Rigid, |stiffness| Coupling::Spring { stiffness }),
-            environment: Environment::Rational(Rational {
-                numerator: coefficients(&self.numerator),
-                denominator: coefficients(&self.denominator),
-                delay: 0,
-                unit_zeros: 0,
-            }),
-            latency: Latency::NONE,
-            torque_limit: None,
+            ..Scene::of(
+                Device { inertia: 2.2e-5, damping: self.delta, passivity: Some(self.delta) },
+                self.period,
+                Environment::Rational(rational),
+            )
         }
     }
 

@@ -14,7 +14,7 @@ use haptic_servo::encoder::CounterWidth;
 use haptic_servo::environment::Wall;
 use haptic_servo::host::HostTorque;
 use haptic_servo::parameter::Parameter;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 use haptic_servo::scene_type::Typed;
 use haptic_servo::servo::{Latched, RenderingOptions, Transducers};
 use haptic_servo::servo_loop::{Options, State};
@@ -54,23 +54,20 @@ fn board_with(stiffness: f64, tables: &str) -> Result<SimulatedBoard, String> {
 /// A wall that leaves a share for a host, on a board.
 fn hosted() -> SimulatedBoard {
     const CERTIFIED: Certified<Scene> = Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: Wall::damped(10.0, 0.002, 1).behind(0.0).alone(),
-        latency: Latency::NONE,
         torque_limit: Some(1.0),
+        ..Scene::of(
+            Device::damped(2.2e-5, 0.022),
+            0.001,
+            Wall::damped(10.0, 0.002, 1).behind(0.0).alone(),
+        )
     }
     .certified();
     const HOST: HostTorque =
         HostTorque { energy: 0.05, power: 0.5, damping: 0.004, torque: 0.5, timeout: 0.05 };
     haptic_servo::scene_type!(WithHost: CERTIFIED, host: HOST);
-    let transducers = Transducers {
-        counts_per_turn: 61_440.0,
-        counter: CounterWidth::Bits16,
-        full_scale_torque: 2.0,
-        largest_speed: 100.0,
-    };
+    let transducers =
+        Transducers { counter: CounterWidth::Bits16, ..Transducers::of(61_440.0, 2.0) };
     let (rendering, options) = (RenderingOptions::DEFAULT, Options::DEFAULT);
     let scene = *Typed::<WithHost>::certified().scene();
     let program = Program { scene, transducers, rendering, options };

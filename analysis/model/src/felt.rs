@@ -93,7 +93,7 @@ fn steepest(profile: &Profile) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use haptic_servo::environment::{Canceller, Coefficients, Wall};
+    use haptic_servo::environment::{Canceller, Rational, Wall};
     use haptic_servo::scene::Latency;
 
     use super::*;
@@ -136,9 +136,8 @@ mod tests {
     #[test]
     fn a_filter_has_its_gain_at_rest_and_an_integrator_that_of_the_coupling() {
         let filter = |numerator: &[f64], denominator: &[f64], unit_zeros, coupling| {
-            let [numerator, denominator] =
-                [numerator, denominator].map(|it| Coefficients::new(it).unwrap());
-            let rational = Rational { numerator, denominator, delay: 1, unit_zeros };
+            let rational = Rational::of(numerator, denominator).unwrap();
+            let rational = Rational { delay: 1, unit_zeros, ..rational };
             on_paddle(Environment::Rational(rational), coupling)
         };
         near(stiffness(&filter(&[5.0, -2.0], &[1.0, -0.4], 0, Coupling::Rigid)), 5.0);

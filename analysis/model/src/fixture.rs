@@ -1,7 +1,7 @@
 //! The scenes of the tests.
 
 use haptic_servo::environment::Environment;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 
 use crate::file::{Format, SceneFile, parse};
 
@@ -13,14 +13,7 @@ pub const STANDARD: Coupling = Coupling::Spring { stiffness: 44.0 };
 
 /// An environment on the paddle at 1 kHz.
 pub fn on_paddle(environment: Environment, coupling: Coupling) -> Scene {
-    Scene {
-        device: PADDLE,
-        timing: Timing { period: 0.001, worst_period: None },
-        coupling,
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
+    Scene { coupling, ..Scene::of(PADDLE, 0.001, environment) }
 }
 
 /// A scene file of the paddle at 1 kHz with these other tables.

@@ -10,6 +10,7 @@ use haptic_servo::host::{HostError, HostTorque};
 use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::{Coupling, Scene};
+use haptic_servo::servo::OutputTiming;
 use serde::{Serialize, Serializer};
 
 use crate::beside_host;
@@ -133,7 +134,8 @@ pub struct VerdictReport {
     /// with the lower end of an enclosure of it.
     pub delta: f64,
     /// Damping in N m s/rad that the device may lose with everything else unchanged; negative: the damping
-    /// that it lacks.
+    /// that it lacks. `None`, too, where none is known: where torques lag and a bound decides behind a
+    /// coupling.
     pub margin: Option<f64>,
     /// The answer with the limits and the reading time of a board; `None` if no board has the times of a
     /// certified scene.
@@ -143,16 +145,13 @@ pub struct VerdictReport {
     pub felt_stiffness: Option<f64>,
     /// Damping in N m s/rad that is felt outside of the wall: see [`felt::free_damping`].
     pub free_damping: Option<f64>,
-    /// The margin where the torque is limited as on a board; `None` where no board renders the scene.
+    /// The margin where the torque is limited as on a board, so that a bound decides for every scene; `None`
+    /// where none is known, or no board renders the scene.
     #[serde(skip)]
     pub margin_on_board: Option<f64>,
-    /// Whether the margin is a result: no loss of damping is known to be allowed, and the margin is 0, where
-    /// torques lag and a bound decides.
+    /// Whether a board may render the scene, which then has a margin on a board, known or not.
     #[serde(skip)]
-    pub is_margin_known: bool,
-    /// The same of the margin on a board, where the bound decides for every scene.
-    #[serde(skip)]
-    pub is_margin_known_on_board: bool,
+    is_rendered: bool,
     /// Angle on the unit circle in rad where the deciding index is reached; 0 is rest, pi the
     /// Nyquist frequency.
     pub theta: Option<f64>,
@@ -245,12 +244,9 @@ fn reported(
     };
     let delta = assessment.delta.midpoint();
     let margin = assessment.margin(scene);
-    let lags = lags(scene);
-    // A coupling is made for one passivity: with lagging torques a bound behind it leaves 0.
-    let leaves_some = |margin: Option<f64>| margin.is_some_and(|margin| margin > 0.0);
-    let is_margin_known = !(lags && assessment.rule == Rule::Nonlinear) || leaves_some(margin);
     let margin_on_board = assessment.outcome.ok().and_then(|()| assessment.margin_on_board(scene));
-    let is_margin_known_on_board = !lags || leaves_some(margin_on_board);
+    let is_rendered = assessment.outcome.is_ok()
+        && assessment.renders_at(scene, OutputTiming::Simultaneous).is_ok();
     let assumptions = Assumptions::of(scene, assessment, steps);
     let failing = assumptions.iter().filter(|one| one.standing() == AssumptionStatus::Fails);
     let refusal =
@@ -289,7 +285,7 @@ fn reported(
             (summary.clone(), summary + &would_pass)
         }
         (None, _) => {
-            let message = passed(margin.filter(|_| is_margin_known), assumptions.rest());
+            let message = passed(margin, assumptions.rest());
             (CERTIFIED.to_owned(), format!("certified: {CERTIFIED}{message}"))
         }
         (Some(rejection), _) => {
@@ -316,8 +312,7 @@ fn reported(
         delta,
         margin,
         margin_on_board,
-        is_margin_known,
-        is_margin_known_on_board,
+        is_rendered,
         theta: minimum_angle(scene, assessment),
         format: (format != Format::F64).then(|| format.to_string()),
         rest: assumptions.rest().map(AtRest::of),
@@ -410,11 +405,8 @@ impl VerdictReport {
         if self.verdict != Verdict::Certified {
             return;
         }
-        let known = |margin: Option<f64>, is_known| margin.filter(|_| is_known);
-        let own = known(self.margin, self.is_margin_known);
-        let on_board = known(self.margin_on_board, self.is_margin_known_on_board);
-        let is_on_board = self.is_for_a_board && self.margin_on_board.is_some();
-        let margins = [own].into_iter().chain(is_on_board.then_some(on_board));
+        let is_on_board = self.is_for_a_board && self.is_rendered;
+        let margins = [self.margin].into_iter().chain(is_on_board.then_some(self.margin_on_board));
         if let Err(error) = beside_host::check(file, host, margins) {
             return self.reject_host(&error);
         }
@@ -467,17 +459,18 @@ impl VerdictReport {
 
     /// The margin in words; `None` if it does not exist.
     pub fn margin_in_words(&self) -> Option<String> {
-        Some(in_words(self.margin?, self.is_margin_known))
+        in_words(self.margin, self.verdict == Verdict::Certified)
     }
 
     /// The margin on a board in words; `None` where no board renders the scene.
     pub fn margin_on_board_in_words(&self) -> Option<String> {
-        Some(in_words(self.margin_on_board?, self.is_margin_known_on_board))
+        in_words(self.margin_on_board, self.is_rendered)
     }
 }
 
-fn in_words(margin: f64, is_known: bool) -> String {
-    if is_known { format!("{} N m s/rad", significant(margin, 6)) } else { NO_MARGIN.to_owned() }
+fn in_words(margin: Option<f64>, exists: bool) -> Option<String> {
+    let words = margin.map(|margin| format!("{} N m s/rad", significant(margin, 6)));
+    words.or_else(|| exists.then(|| NO_MARGIN.to_owned()))
 }
 
 /// In place of a margin.

@@ -103,8 +103,9 @@ def certify(scene: Scene, *, format: str = "f64") -> dict[str, Any]:
     """Certify a scene: is it safe in every passive hand, and by how much?
 
     Returns the object of ``haptic certify --json``; ``verdict`` is certified, rejected or undecided,
-    ``margin`` the damping in N m s/rad that the device may lose. ``format`` is the number format that rounds
-    the servo's coefficients: f64 (not rounded), f32, or 32-bit fixed point such as i8f24.
+    ``margin`` the damping in N m s/rad that the device may lose, None where it is not known. ``format`` is
+    the number format that rounds the servo's coefficients: f64 (not rounded), f32, or 32-bit fixed point such
+    as i8f24.
     """
     return _object(_native.certify(source(scene), format))
 

@@ -8,7 +8,6 @@ pub mod budget;
 pub mod cell_polygons;
 pub mod data;
 pub mod detents;
-pub mod device;
 mod error;
 pub mod failures;
 mod frame;

@@ -1,20 +1,25 @@
-//! The stiffest certified wall at the handle over the rate, a curve for each structure.
+//! Stiffness at the handle over the rate, of the stiffest certified walls: a curve for each structure, or for
+//! each condition on the wall.
 
 use super::*;
-use crate::design::stiffest::{Found, Structure, Wall};
 use crate::quantity::significant;
 
 /// Room above and below the curves, as a factor.
 const ROOM: f64 = 1.3;
+/// The line at the device's own rate.
+const OWN: Stroke = Stroke::dashed(&[3, 3], 1);
 
-fn place(wall: &Wall) -> (f64, f64) {
-    (wall.scene.timing.period.recip(), wall.felt)
-}
-
-/// Draws the curves of a search; a cross marks the wall that was found.
-pub fn stiffest(title: &str, found: &Found) -> Result<Picture, ChartError> {
-    let rates = span(found.walls.iter().map(|wall| place(wall).0));
-    let felt = span(found.walls.iter().chain([&found.best]).map(|wall| wall.felt));
+/// Draws curves of rate in Hz and stiffness in N m/rad, each with its name; a cross marks the wall that was
+/// found, and a vertical line is at `own` Hz.
+pub fn stiffest(
+    title: &str,
+    curves: &[(&str, Vec<(f64, f64)>)],
+    found: Option<(f64, f64)>,
+    own: Option<f64>,
+) -> Result<Picture, ChartError> {
+    let all = || curves.iter().flat_map(|(_, curve)| curve);
+    let rates = span(all().map(|point| point.0));
+    let felt = span(all().chain(&found).map(|point| point.1));
     if rates.start >= rates.end || felt.start <= 0.0 {
         return Err(ChartError::TooFewPoints);
     }
@@ -22,21 +27,20 @@ pub fn stiffest(title: &str, found: &Found) -> Result<Picture, ChartError> {
         (Axis::logarithmic(rates.start / ROOM..rates.end * ROOM), "rate (Hz)"),
         (Axis::logarithmic(felt.start / ROOM..felt.end * ROOM), "felt stiffness (N m/rad)"),
     );
-    let is_there =
-        |structure: &Structure| found.walls.iter().any(|wall| wall.structure == *structure);
-    let structures = || Structure::ALL.into_iter().filter(is_there).enumerate();
-    let curves = structures()
-        .map(|(row, structure)| (Sample::Line(Stroke::of(row, 2)), structure.name().to_owned()));
-    let (rate, stiffness) = place(&found.best);
-    let [rate_in_words, stiffness_in_words] = [rate, stiffness].map(|value| significant(value, 3));
-    let best = format!("found: {stiffness_in_words} N m/rad at {rate_in_words} Hz");
-    let legends = vec![Legend::new(2, curves.chain([Legend::scene(true, &best)]))];
+    let names = curves.iter().enumerate();
+    let names =
+        names.map(|(row, (name, _))| (Sample::Line(Stroke::of(row, 2)), (*name).to_owned()));
+    let best = found.map(|(rate, stiffness)| {
+        let [rate, stiffness] = [rate, stiffness].map(|value| significant(value, 3));
+        Legend::scene(true, &format!("found: {stiffness} N m/rad at {rate} Hz"))
+    });
+    let legends = vec![Legend::new(2, names.chain(best))];
     Page { title, width: WIDTH, heights: &[HEIGHT], legends }.draw(|areas| {
         let panel = Panel::new(&areas[0], axes)?;
-        for (row, structure) in structures() {
-            let walls = found.walls.iter().filter(|wall| wall.structure == structure);
-            panel.curve(Stroke::of(row, 2), walls.map(place))?;
+        for (row, (_, curve)) in curves.iter().enumerate() {
+            panel.curve(Stroke::of(row, 2), curve.iter().copied())?;
         }
-        panel.mark(Mark::SCENE, (rate, stiffness))
+        found.map_or(Ok(()), |found| panel.mark(Mark::SCENE, found))?;
+        own.map_or(Ok(()), |own| panel.upright(OWN, own))
     })
 }

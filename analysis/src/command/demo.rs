@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use haptic_servo::certificate::certify;
 use haptic_servo::environment::{Canceller, Environment, Wall};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 
 use super::building::{building, set_up};
 use super::outcome::section;
@@ -44,22 +44,14 @@ pub struct Arguments {
 
 /// Free mode as in the paper's figure 9: damping 1, residual 0.05, the standard coupling.
 const FIGURE_9: Scene = Scene {
-    device: Device { inertia: 1e-3, damping: 1.0, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 2000.0 },
-    environment: Canceller::to(0.05).alone(),
-    latency: Latency::NONE,
-    torque_limit: None,
+    ..Scene::of(Device::damped(1e-3, 1.0), 0.001, Canceller::to(0.05).alone())
 };
 
 /// The delayed wall as in the paper's last figure (equations 24 to 27).
 const DELAYED_WALL: Scene = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: Wall::damped(22.0, 0.01, 1).alone(),
-    latency: Latency::NONE,
-    torque_limit: None,
+    ..Scene::of(Device::damped(2.2e-5, 0.022), 0.001, Wall::damped(22.0, 0.01, 1).alone())
 };
 
 /// The same wall with one more sample of delay: beyond the critical line.

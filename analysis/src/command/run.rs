@@ -583,7 +583,7 @@ fn summary<'a>(
         verdict: setup.report.verdict,
         on_board: setup.report.on_board,
         target: arguments.target.to_string(),
-        format: arguments.format.name(),
+        format: arguments.format.as_str(),
         ticks: outcome.run.ticks.len(),
         replay_gaps: gaps,
         peak_torque: outcome.run.peak_torque(),

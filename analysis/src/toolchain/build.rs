@@ -7,6 +7,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use haptic_servo::words;
+
 use super::memory::Memory;
 use super::output::last_lines;
 use super::size::Sizes;
@@ -15,31 +17,20 @@ use super::{BoardModel, Target, TorqueOutput};
 
 const TARGET: &str = Target::BOARD.name;
 
-/// The number format of a scene's program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
-pub enum NumberFormat {
+words! {
+    /// The number format of a scene's program.
+    #[derive(Hash, clap::ValueEnum)]
+    NumberFormat {
     /// Single-precision floating point.
-    F32,
+    F32 "f32",
     /// The scene's fixed-point format; a scene file's is I8F24.
-    Fixed,
-}
-
-impl NumberFormat {
-    /// Both formats.
-    pub const ALL: [Self; 2] = [Self::F32, Self::Fixed];
-
-    /// Its name on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::Fixed => "fixed",
-        }
+    Fixed "fixed",
     }
 }
 
 impl fmt::Display for NumberFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
+        f.pad(self.as_str())
     }
 }
 

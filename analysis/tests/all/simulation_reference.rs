@@ -12,7 +12,7 @@ use analysis::simulation::torque_signal::TorqueSignal;
 use analysis::simulation::{Experiment, Integration, Trajectory, simulate};
 use analysis::stability::{closed_loop, eigenvalues};
 use haptic_servo::environment::{Canceller, Environment, Wall};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 
 const SAMPLES: usize = 1000;
 const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
@@ -70,14 +70,7 @@ fn run(
 
 fn experiment(environment: Environment, coupling: Option<f64>, start: Motion) -> Experiment {
     let coupling = coupling.map_or(Coupling::Rigid, |stiffness| Coupling::Spring { stiffness });
-    let scene = Scene {
-        device: DEVICE,
-        timing: Timing { period: PERIOD, worst_period: None },
-        coupling,
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    };
+    let scene = Scene { coupling, ..Scene::of(DEVICE, PERIOD, environment) };
     Experiment { start, samples: SAMPLES, ..Experiment::still(&scene) }
 }
 

@@ -5,7 +5,7 @@
 
 use haptic_servo::certificate::Parameter;
 use haptic_servo::environment::{Canceller, Environment, Parts, Side, Wall};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 use haptic_servo::tuning::{self, TUNABLE, TuningError};
 use haptic_servo::wire::message::{LONGEST_TO_BOARD, ToBoard};
 use haptic_servo::wire::{CHECKSUM, Decoder, encode, largest_frame};
@@ -39,12 +39,9 @@ pub fn run(data: &[u8]) {
 /// All of the changes or none, and nothing else.
 fn change(environment: Environment, changes: &[(Parameter, f64)]) {
     let scene = Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
         torque_limit: Some(1.0),
+        ..Scene::of(Device::damped(2.2e-5, 0.022), 0.001, environment)
     };
     let has = |parameter| tuning::get(&scene, parameter).is_some();
     let count = |parameter| changes.iter().filter(|(each, _)| *each == parameter).count();

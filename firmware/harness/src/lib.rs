@@ -15,30 +15,6 @@ pub mod tables;
 #[cfg(all(target_os = "none", feature = "emulated"))]
 pub mod server;
 
-/// An enumeration of the means of a computation, with the name of each for tables.
-macro_rules! means {
-    ($(#[$about:meta])* $means:ident { $($(#[$doc:meta])* $each:ident: $name:literal,)+ }) => {
-        $(#[$about])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-        pub enum $means {
-            $($(#[$doc])* $each,)+
-        }
-
-        impl $means {
-            /// All values.
-            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$each),+];
-
-            /// Its name, for tables.
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $(Self::$each => $name,)+
-                }
-            }
-        }
-    };
-}
-use means;
-
 /// The program of a server. On the host it tells which program of the host starts it.
 #[macro_export]
 macro_rules! server_program {

@@ -4,26 +4,27 @@ use core::f32::consts::TAU;
 
 use haptic_servo::current::sine_and_cosine;
 use haptic_servo::excitation::sine::{QUINTIC, sine};
+use haptic_servo::words;
 
-use crate::means;
 use crate::sines::{CUBIC, SEPTIC};
 
-means! {
+words! {
     /// A means of computing sine and cosine of an angle, which is a part of a turn in 32 bits.
+    #[derive(serde::Serialize, serde::Deserialize)]
     Rotation {
-        /// The crate `micromath`, in `f32`.
-        Micromath: "micromath",
-        /// The crate `libm`, for `f32`.
-        Libm: "libm sincosf",
-        /// A polynomial of the third degree, twice.
-        Cubic: "degree 3",
-        /// A polynomial of the fifth degree, twice.
-        Quintic: "degree 5",
-        /// A polynomial of the seventh degree, twice.
-        Septic: "degree 7",
-        /// Straight lines between the entries of a table of 256 for a turn, in whole numbers: what a current loop
-        /// has.
-        Table: "table of 256",
+    /// The crate `micromath`, in `f32`.
+    Micromath "micromath",
+    /// The crate `libm`, for `f32`.
+    Libm "libm sincosf",
+    /// A polynomial of the third degree, twice.
+    Cubic "degree 3",
+    /// A polynomial of the fifth degree, twice.
+    Quintic "degree 5",
+    /// A polynomial of the seventh degree, twice.
+    Septic "degree 7",
+    /// Straight lines between the entries of a table of 256 for a turn, in whole numbers: what a current loop
+    /// has.
+    Table "table of 256",
     }
 }
 

@@ -3,26 +3,26 @@
 use core::f32::consts::TAU;
 
 use haptic_servo::excitation::sine::{QUINTIC, sine};
+use haptic_servo::words;
 
-use crate::means;
-
-means! {
+words! {
     /// A means of computing the sine of a part of a turn.
+    #[derive(serde::Serialize, serde::Deserialize)]
     Sine {
-        /// The crate `micromath`, in `f32`.
-        Micromath: "micromath",
-        /// The crate `libm`, for `f32`; inside it computes in `f64`.
-        Libm: "libm sinf",
-        /// The same crate, for `f64`.
-        LibmDouble: "libm sin",
-        /// A polynomial of the third degree.
-        Cubic: "degree 3",
-        /// A polynomial of the fifth degree: what a sweep is played with.
-        Quintic: "degree 5",
-        /// A polynomial of the seventh degree.
-        Septic: "degree 7",
-        /// A polynomial of the ninth degree.
-        Nonic: "degree 9",
+    /// The crate `micromath`, in `f32`.
+    Micromath "micromath",
+    /// The crate `libm`, for `f32`; inside it computes in `f64`.
+    Libm "libm sinf",
+    /// The same crate, for `f64`.
+    LibmDouble "libm sin",
+    /// A polynomial of the third degree.
+    Cubic "degree 3",
+    /// A polynomial of the fifth degree: what a sweep is played with.
+    Quintic "degree 5",
+    /// A polynomial of the seventh degree.
+    Septic "degree 7",
+    /// A polynomial of the ninth degree.
+    Nonic "degree 9",
     }
 }
 

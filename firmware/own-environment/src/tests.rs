@@ -1,8 +1,8 @@
 use haptic_servo::certificate::{Certified, Rejection, certify_scene, timing_checked};
-use haptic_servo::encoder::{CounterWidth, RawCount};
+use haptic_servo::encoder::RawCount;
 use haptic_servo::environment::{Environment, Wall};
 use haptic_servo::number::Format;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 use haptic_servo::servo::{Latched, PreparedServo, RenderingOptions, Servo, Step, Transducers};
 use haptic_servo::tuning;
 use proptest::prelude::*;
@@ -12,22 +12,18 @@ use super::*;
 type Pedal = Scene<ProgressiveSpring<1>>;
 
 const PEDAL: Pedal = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: ProgressiveSpring { soft: 4.0, stiff: 24.0, knee: 0.1 },
-    latency: Latency::NONE,
     torque_limit: Some(1.0),
+    ..Scene::of(
+        Device::damped(2.2e-5, 0.022),
+        0.001,
+        ProgressiveSpring { soft: 4.0, stiff: 24.0, knee: 0.1 },
+    )
 };
 
 const CERTIFIED: Certified<Pedal> = PEDAL.certified_as(PEDAL.environment.stated_at(0.001));
 
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits32,
-    full_scale_torque: 2.0,
-    largest_speed: 100.0,
-};
+const TRANSDUCERS: Transducers = Transducers::of(61_440.0, 2.0);
 
 const fn pedal(stiff: f64) -> Pedal {
     Scene { environment: ProgressiveSpring { stiff, ..PEDAL.environment }, ..PEDAL }

@@ -5,7 +5,6 @@ use core::fmt;
 use crate::certificate::{
     Assessment, AssumptionStatus, Assumptions, Certified, Resolution, Rule, RuleAnswer,
 };
-use crate::coupling::Coupling;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 
@@ -16,7 +15,6 @@ pub struct Report {
     margin: Option<f64>,
     injection: Option<f64>,
     assumptions: Assumptions,
-    lags: bool,
 }
 
 impl Report {
@@ -29,8 +27,7 @@ impl Report {
         let (data, assessment) = (certified.as_data(), *certified.assessment());
         let margin = assessment.margin_injecting(data, injection.unwrap_or(0.0));
         let assumptions = Assumptions::of(data, &assessment, steps);
-        let lags = !data.latency.is_none() || matches!(data.coupling, Coupling::Matched);
-        Self { assessment, margin, injection, assumptions, lags }
+        Self { assessment, margin, injection, assumptions }
     }
 }
 
@@ -56,9 +53,8 @@ impl fmt::Display for Report {
         }
         match self.margin {
             // The coupling was designed for this passivity.
-            Some(_) if self.lags => writeln!(f, "margin         none is known where torques lag")?,
+            None => writeln!(f, "margin         none is known where torques lag")?,
             Some(margin) => writeln!(f, "margin         {margin:.9} N m s/rad")?,
-            None => {}
         }
         if let Some(rest) = self.assumptions.rest() {
             writeln!(f, "at rest        {rest}")?;

@@ -473,7 +473,7 @@ fn passes_limited(scene: &Scene, assessment: &Assessment) -> Option<(Interval, f
             Limited::of(scene, &numbers, bound)?
         }
     };
-    Some((limited.bound, limited.margin(0.0)))
+    Some((limited.bound, limited.margin(0.0).unwrap_or(0.0)))
 }
 
 fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Assumption {

@@ -19,7 +19,8 @@ impl Assessment {
     /// unchanged; at most `delta`.
     ///
     /// For a rejected linear scene, the damping that the device lacks, as a negative number. `None` for an
-    /// undecided scene and for a rejected one-sided or limited scene, which have no such number.
+    /// undecided scene and for a rejected one-sided or limited scene, which have no such number, and where it
+    /// is not known: see [`Limited::margin`].
     ///
     /// `scene` is the assessed scene.
     pub const fn margin(&self, scene: &Scene) -> Option<f64> {
@@ -30,10 +31,10 @@ impl Assessment {
                     true => Limited::at_port::<Environment>(scene, n, 0.0),
                     false => Limited::of(scene, n, bound),
                 };
-                Some(match limited {
+                match limited {
                     Some(limited) => limited.margin(0.0),
-                    None => 0.0,
-                })
+                    None => Some(0.0),
+                }
             }
             (Rule::Exact, Ok(()), _) => Some(match self.linear(scene) {
                 Some(margin) => margin.max(0.0).min(self.delta.lo()),
@@ -194,27 +195,29 @@ impl Limited {
     }
 
     /// The margin while a damper of `injected` N m s/rad may be switched on and off, one sample late, in
-    /// addition to the environment; not negative.
+    /// addition to the environment; not negative. `None` behind a coupling where torques lag: it is designed
+    /// for this passivity, and no loss is known to be allowed.
     ///
     /// Down to `k = K_vc T / 2` conditions 17 and 18 continue to hold. For a device that has only
     /// `delta' < k` the sum over the ticks that theory, section 4, step 5, has is, in the notation of
     /// [`Missed::limit`] and for `delta = k`, `(k - alpha) sum e^2 / T` less `(k - delta') sum d^2 / T`. With
     /// `d = e + V w` and a torque that changes by no more than `norm(w) <= g norm(e)`, that stays positive
     /// while `k - delta' < (k - alpha) / (1 + V g)^2` (equation 37).
-    pub const fn margin(&self, injected: f64) -> f64 {
+    pub const fn margin(&self, injected: f64) -> Option<f64> {
         let injected = Interval::exact(injected);
         if self.is_at_port {
             let left = self.limit.sub(self.bound).sub(injected.mul(self.gain));
-            return left.lo().max(0.0);
+            return Some(left.lo().max(0.0));
+        }
+        if self.lags {
+            return None;
         }
         let bound = self.bound.add(injected);
-        // With lagging torques no loss is known to be allowed, because the coupling is designed for this
-        // passivity.
-        if !bound.is_below(self.limit) || self.lags {
-            return 0.0;
+        if !bound.is_below(self.limit) {
+            return Some(0.0);
         }
         if self.snaps {
-            return self.margin_between_branches();
+            return Some(self.margin_between_branches());
         }
         let (k, gain) = (self.coupling, self.gain.add(injected.double()));
         // V g, for V = T / (2 k).
@@ -226,7 +229,7 @@ impl Limited {
             Some(missed) => where_latched(missed, k, bound, amplification).min(above + below),
         };
         // Each end was rounded, and then their sum.
-        (margin * (1.0 - f64::EPSILON)).max(0.0).min(self.delta.lo())
+        Some((margin * (1.0 - f64::EPSILON)).max(0.0).min(self.delta.lo()))
     }
 
     /// The margin if torques jump and no `g` bounds them: only down to `k`.

@@ -194,7 +194,7 @@ const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::certificate::certify;
-    use crate::environment::{Profile, Shape, Wall};
+    use crate::environment::{Profile, Rational, Shape, Wall};
     use crate::scene::Latency;
     use crate::test_scene;
 
@@ -251,12 +251,7 @@ mod tests {
         }
         // Nothing is said of a coupling where the environment swings alone.
         let mut alone = scene(20.0, Coupling::Rigid);
-        alone.environment = Environment::Rational(crate::environment::Rational {
-            numerator: crate::environment::Coefficients::new(&[1.0]).unwrap(),
-            denominator: crate::environment::Coefficients::new(&[1.0, -1.5]).unwrap(),
-            delay: 0,
-            unit_zeros: 0,
-        });
+        alone.environment = Environment::Rational(Rational::of(&[1.0], &[1.0, -1.5]).unwrap());
         let rejection = certify(&alone).unwrap_err();
         assert_eq!((rejection.reason(), rejection.remedies()), ("unstable_pole", Remedies::NONE));
         assert!(!rejection.to_string().contains("coupling"), "{rejection}");

@@ -211,6 +211,14 @@ impl<N: Number> Discretize<N> for Rational {
 }
 
 impl Rational {
+    /// The quotient of polynomials with these descending coefficients, without a delay; `None` if one has no
+    /// coefficients or too many: see [`Coefficients::new`].
+    pub const fn of(numerator: &[f64], denominator: &[f64]) -> Option<Self> {
+        let (numerator, denominator) =
+            (some!(Coefficients::new(numerator)), some!(Coefficients::new(denominator)));
+        Some(Self { numerator, denominator, delay: 0, unit_zeros: 0 })
+    }
+
     /// The same transfer function without common factors `z - 1` and `z + 1` of numerator and denominator,
     /// and with its delay separate: this form is certified and runs.
     ///
@@ -296,9 +304,7 @@ mod tests {
     use crate::test_scene;
 
     fn rational(numerator: &[f64], denominator: &[f64], unit_zeros: usize) -> Rational {
-        let coefficients = |c| Coefficients::new(c).unwrap();
-        let (numerator, denominator) = (coefficients(numerator), coefficients(denominator));
-        Rational { numerator, denominator, delay: 1, unit_zeros }
+        Rational { delay: 1, unit_zeros, ..Rational::of(numerator, denominator).unwrap() }
     }
 
     fn scene(rational: Rational) -> Scene {

@@ -169,7 +169,7 @@ where
     }
     let rendering = PreparedServo::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
     let margin = timed.margin_with(options.injection.unwrap_or(0.0));
-    let prepared = Prepared { scene, margin: Some(margin), rendering };
+    let prepared = Prepared { scene, margin, rendering };
     if E::Host::IS_PRESENT { beside_host(prepared, transducers, options) } else { Ok(prepared) }
 }
 
@@ -235,7 +235,7 @@ where
     check_returned(&changed, transducers, options)?;
     PreparedServo::<E, N, M>::build(&timed, transducers, options)?;
     if let Some(host) = E::Host::host(&changed.environment.budget()) {
-        let margin = Some(timed.margin_with(options.injection.unwrap_or(0.0)));
+        let margin = timed.margin_with(options.injection.unwrap_or(0.0));
         let times = (M::TIMING, N::FORMAT);
         let cogging = against_cogging::<E, N>(&changed);
         let servo = ServoNumbers::of(&changed, cogging, margin, transducers, options, times)?;

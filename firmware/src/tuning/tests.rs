@@ -1,6 +1,5 @@
 use super::*;
 use crate::certificate::Certified;
-use crate::encoder::CounterWidth;
 use crate::environment::{
     Anticogging, Canceller, CoggingMap, Environment, KNOB_MODES, Knots, Parts, Profile, Shape, Wall,
 };
@@ -8,12 +7,7 @@ use crate::scene::Coupling;
 use crate::scene_type::Typed;
 use crate::servo::Latched;
 
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 4096.0,
-    counter: CounterWidth::Bits32,
-    full_scale_torque: 2.0,
-    largest_speed: 100.0,
-};
+const TRANSDUCERS: Transducers = Transducers::of(4096.0, 2.0);
 
 const fn scene(environment: Environment) -> Scene {
     Scene { torque_limit: Some(1.0), ..crate::test_scene::scene(environment) }

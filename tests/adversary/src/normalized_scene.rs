@@ -86,7 +86,8 @@ pub struct NormalizedScene {
 /// the mode that is run is not asked here.
 pub fn margin(assessment: &Assessment, scene: &Scene, injected: Option<f64>) -> f64 {
     let timed = scene.certify_in(assessment.format).ok().map(|scene| scene.time::<Simultaneous>());
-    timed.and_then(Result::ok).map_or(0.0, |timed| timed.margin_with(injected.unwrap_or(0.0)))
+    let timed = timed.and_then(Result::ok);
+    timed.and_then(|timed| timed.margin_with(injected.unwrap_or(0.0))).unwrap_or(0.0)
 }
 
 /// The passivity that a scene declares.

@@ -6,19 +6,15 @@ use haptic_servo::certificate::Certified;
 use haptic_servo::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
 use haptic_servo::encoder::CounterWidth;
 use haptic_servo::environment::Wall;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene};
 use haptic_servo::servo::Transducers;
 use haptic_servo::servo_loop::READ_WITHIN;
 
 /// An environment behind the paper's device and the standard coupling, and no torque limit.
 pub const fn scene<E: Copy>(environment: E) -> Scene<E> {
     Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
+        ..Scene::of(Device::damped(2.2e-5, 0.022), 0.001, environment)
     }
 }
 
@@ -35,12 +31,8 @@ pub const SCENE: Scene = Scene { torque_limit: Some(1.0), ..scene(Wall::spring(1
 pub const CERTIFIED: Certified<Scene> = SCENE.certified();
 
 /// Sensor and motor.
-pub const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 2.0,
-    largest_speed: 100.0,
-};
+pub const TRANSDUCERS: Transducers =
+    Transducers { counter: CounterWidth::Bits16, ..Transducers::of(61_440.0, 2.0) };
 
 /// Sensor and motor of a board with a bridge.
 pub const MOTORISED: Transducers =

@@ -119,12 +119,8 @@ fn no_mixture_of_delays_needs_more_than_what_is_certified() {
 
 fn spring(stiffness: f64, latency: Latency) -> Scene {
     Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 1e-3, worst_period: None },
-        coupling: Coupling::Rigid,
-        environment: Wall::spring(stiffness, 0).alone(),
         latency,
-        torque_limit: None,
+        ..Scene::of(Device::damped(2.2e-5, 0.022), 1e-3, Wall::spring(stiffness, 0).alone())
     }
 }
 

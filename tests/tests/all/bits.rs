@@ -9,29 +9,24 @@
 use std::hint::black_box;
 
 use haptic_servo::certificate::{Assessment, assess};
-use haptic_servo::environment::{Canceller, Coefficients, Environment, Rational, Wall};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::environment::{Canceller, Environment, Rational, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene};
 
 const PROMPT: Scene = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 40.0 },
-    environment: Wall::damped(9.0, 0.004, 1).filtered(0.3).alone(),
-    latency: Latency::NONE,
-    torque_limit: None,
+    ..Scene::of(
+        Device::damped(2.2e-5, 0.022),
+        0.001,
+        Wall::damped(9.0, 0.004, 1).filtered(0.3).alone(),
+    )
 };
 
 /// A pair of poles inside of the circle, and one at 1 that a zero cancels.
 const FILTER: Environment = Environment::Rational(Rational {
-    numerator: coefficients(&[3.0, -1.7, 0.6]),
-    denominator: coefficients(&[1.0, -1.1, 0.37]),
     delay: 2,
     unit_zeros: 1,
+    ..Rational::of(&[3.0, -1.7, 0.6], &[1.0, -1.1, 0.37]).expect("few coefficients")
 });
-
-const fn coefficients(descending: &[f64]) -> Coefficients {
-    Coefficients::new(descending).expect("few coefficients")
-}
 
 /// Scenes with the compiler's judgement.
 macro_rules! judged {

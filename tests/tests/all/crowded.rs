@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use haptic_servo::certificate::{Rejection, assess};
-use haptic_servo::environment::{Coefficients, Environment, Rational};
+use haptic_servo::environment::{Environment, Rational};
 use haptic_servo::passivity::poles::strictly_schur;
 use haptic_servo::passivity::polynomial::Polynomial;
 use haptic_servo::scene::Coupling;
@@ -47,17 +47,11 @@ fn butterworth(order: usize, cutoff: f64) -> Vec<Complex<f64>> {
 }
 
 fn scene(frame: &Frame, numerator: &[f64], denominator: &[f64]) -> ExactScene {
-    let coefficients = |c: &[f64]| Coefficients::new(c).expect("at most eight poles are drawn");
     let exact = |c: &[f64]| {
         Poly::descending(&c.iter().map(|&c| of_f64(c).expect("finite")).collect::<Vec<Q>>())
     };
-    let environment = Environment::Rational(Rational {
-        numerator: coefficients(numerator),
-        denominator: coefficients(denominator),
-        delay: 0,
-        unit_zeros: 0,
-    });
-    frame.with(environment, (exact(numerator), exact(denominator)))
+    let rational = Rational::of(numerator, denominator).expect("at most eight poles are drawn");
+    frame.with(Environment::Rational(rational), (exact(numerator), exact(denominator)))
 }
 
 #[test]

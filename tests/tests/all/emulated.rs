@@ -181,7 +181,7 @@ fn every_format_computes_as_the_host_does() {
         let outputs = board.compute(&BenchRequest::Sine(sine), &turns).unwrap();
         for (turn, output) in turns.iter().zip(outputs) {
             let here = f64::from(sine.of_turn(f32::from_bits(*turn)));
-            assert_eq!(output.value.to_bits(), here.to_bits(), "{} {turn:x}", sine.name());
+            assert_eq!(output.value.to_bits(), here.to_bits(), "{} {turn:x}", sine.as_str());
         }
     }
     // A type of scene that the program has not is refused, and the next question is answered.

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use haptic_servo::certificate::assess;
 use haptic_servo::environment::Wall;
-use haptic_servo::scene::{Coupling, Device, EncoderReading, Latency, Scene, TimeRange, Timing};
+use haptic_servo::scene::{Device, EncoderReading, Latency, Scene, TimeRange};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -30,12 +30,13 @@ fn draw(rng: &mut ChaCha8Rng) -> Scene {
     let spring = Wall::spring(stiffness, rng.random_range(1..3));
     let is_one_sided = rng.random();
     Scene {
-        device: Device { inertia: 1.0, damping: 1.0, passivity: None },
-        timing: Timing { period: 1.0, worst_period: None },
-        coupling: Coupling::Rigid,
-        environment: if is_one_sided { spring.behind(0.0) } else { spring }.alone(),
         latency: Latency::NONE.read_by(Box::leak(Box::new(encoder))),
         torque_limit: rng.random::<bool>().then_some(0.02 * stiffness),
+        ..Scene::of(
+            Device::damped(1.0, 1.0),
+            1.0,
+            if is_one_sided { spring.behind(0.0) } else { spring }.alone(),
+        )
     }
 }
 

@@ -9,7 +9,7 @@ use haptic_servo::certificate::{
 use haptic_servo::environment::{Coefficients, Environment, Rational, Side};
 use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::{floats, scenes};
@@ -82,7 +82,11 @@ fn consistent(scene: &Scene, format: Format) {
         assert!(!is_prompt || below(assessment.deciding_index()), "{assessment:?}");
         let margin = assessment.margin(scene);
         let delta = assessment.delta.lo();
-        assert!(margin.is_some_and(|m| m >= 0.0 && m <= delta), "{margin:?} {assessment:?}");
+        // No margin is known behind a coupling where torques lag and a bound decides.
+        let is_known =
+            is_prompt || assessment.rule == Rule::Exact || scene.coupling == Coupling::Rigid;
+        let is_within = margin.map_or(!is_known, |m| m >= 0.0 && m <= delta);
+        assert!(is_within, "{margin:?} {assessment:?}");
     }
 }
 
@@ -131,21 +135,12 @@ fn every_scene_gets_a_consistent_answer() {
 #[test]
 fn a_delay_of_any_size_gets_an_answer() {
     for samples in [9, 1 << 31, usize::MAX] {
-        let coefficients = Coefficients::new(&[1.0]).expect("one coefficient");
-        let (numerator, denominator) = (coefficients, coefficients);
-        let environment = Environment::Rational(Rational {
-            numerator,
-            denominator,
-            delay: samples,
-            unit_zeros: samples,
-        });
+        let one = Rational::of(&[1.0], &[1.0]).expect("one coefficient");
+        let environment =
+            Environment::Rational(Rational { delay: samples, unit_zeros: samples, ..one });
         let scene = Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
-            environment,
-            latency: Latency::NONE,
-            torque_limit: None,
+            ..Scene::of(Device::damped(2.2e-5, 0.022), 0.001, environment)
         };
         let steps = Resolution {
             encoder: Some(1e-4),

@@ -2,7 +2,6 @@
 
 use std::process::Command;
 
-use haptic_servo::encoder::CounterWidth;
 use haptic_servo::servo::{Servo, Transducers};
 
 // Its own simulation is its own.
@@ -36,12 +35,7 @@ fn each_prints_what_the_guide_shows() {
 /// What the foreign loop computes by itself is the law that was certified.
 #[test]
 fn somebody_elses_loop_computes_the_certified_law() {
-    let transducers = Transducers {
-        counts_per_turn: 61_440.0,
-        counter: CounterWidth::Bits32,
-        full_scale_torque: 1.0,
-        largest_speed: 100.0,
-    };
+    let transducers = Transducers::of(61_440.0, 1.0);
     let mut servo: Servo<_, f64> = Servo::new(&verify_only::CERTIFIED, &transducers).unwrap();
     let mut foreign = verify_only::ControlLoop::default();
     let mut largest = 0.0_f64;

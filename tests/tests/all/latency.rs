@@ -33,26 +33,40 @@ fn published() -> Value {
     serde_json::from_str(include_str!("../../data/lag.json")).expect("JSON")
 }
 
+fn read(scene: &Value) -> Scene {
+    let read = file::parse("lag.json", Format::Json, &scene.to_string());
+    read.unwrap_or_else(|error| panic!("{error}")).scene
+}
+
 /// All of them as scenes.
 pub fn scenes() -> Vec<Scene> {
-    let read = |case: &Value| {
-        let text = scene_file(case).to_string();
-        let read = file::parse("lag.json", Format::Json, &text);
-        read.unwrap_or_else(|error| panic!("{error}")).scene
-    };
+    let read = |case: &Value| read(&scene_file(case));
     published()["cases"].as_array().expect("a list").iter().map(read).collect()
 }
 
-fn judged(case: &Value) -> VerdictReport {
-    let text = scene_file(case).to_string();
-    let read = file::parse("lag.json", Format::Json, &text);
-    let read = read.unwrap_or_else(|error| panic!("{error}"));
-    judge(&read.name, &read.scene)
+fn judged(scene: &Value) -> VerdictReport {
+    judge("a case", &read(scene))
+}
+
+/// The verdict on a wall of 8 N m/rad with these lags of amplifier and sensor and this delay, and its index
+/// at the port.
+fn certified_wall(actuator: &Value, sensor: &Value, delay: &Value) -> (f64, f64) {
+    let report = judged(&json!({
+        "name": "wall",
+        "device": {
+            "inertia": 2.2e-5, "damping": 0.022, "actuator_lag": actuator, "sensor_lag": sensor,
+        },
+        "servo": { "period": 0.001, "output_delay": delay },
+        "environment": { "type": "damper-wall", "stiffness": 8, "damping": 0.002, "delay": 1 },
+    }));
+    assert_eq!(report.verdict, Verdict::Certified, "{}", report.message);
+    let port = report.alpha_port.expect("it lags");
+    (port.lo.expect("an index"), port.hi.expect("an index"))
 }
 
 /// The fault in the answer to a case; empty if there is none.
 fn complaints(case: &Value) -> Vec<String> {
-    let found = judged(case);
+    let found = judged(&scene_file(case));
     let mut wrong = Vec::new();
     let wanted = if case["accept"] == true { Verdict::Certified } else { Verdict::Rejected };
     if found.verdict != wanted {
@@ -80,26 +94,12 @@ fn complaints(case: &Value) -> Vec<String> {
 /// A range of lags that begins with none has an index above those of all lags in it.
 #[test]
 fn a_range_that_begins_at_zero_holds_all_of_its_lags() {
-    let with = |lag: Value, delay: Value| {
-        let scene = json!({
-            "name": "wall",
-            "device": { "inertia": 2.2e-5, "damping": 0.022, "actuator_lag": lag },
-            "servo": { "period": 0.001, "output_delay": delay },
-            "environment": { "type": "damper-wall", "stiffness": 8, "damping": 0.002, "delay": 1 },
-        });
-        let read = file::parse("wall.json", Format::Json, &scene.to_string());
-        judge("wall", &read.unwrap_or_else(|error| panic!("{error}")).scene)
-    };
-    let index = |report: &VerdictReport| {
-        let port = report.alpha_port.expect("it lags");
-        (port.lo.expect("an index"), port.hi.expect("an index"))
-    };
     for delay in [0.0, 2.5e-4] {
-        let range = with(json!([0, 1.2e-4]), json!([delay, 3e-4]));
-        assert_eq!(range.verdict, Verdict::Certified, "{}", range.message);
+        let none = json!(0);
+        let range = certified_wall(&json!([0, 1.2e-4]), &none, &json!([delay, 3e-4]));
         for lag in [1e-9, 1e-6, 1e-5, 6e-5, 1.2e-4] {
-            let one = with(json!(lag), json!(3e-4));
-            assert!(index(&one).0 <= index(&range).1, "{lag}");
+            let one = certified_wall(&json!(lag), &none, &json!(3e-4));
+            assert!(one.0 <= range.1, "{lag}");
         }
     }
 }
@@ -107,24 +107,10 @@ fn a_range_that_begins_at_zero_holds_all_of_its_lags() {
 /// Amplifier and sensor of the same time constant.
 #[test]
 fn equal_lags_are_decided_like_those_beside_them() {
-    let with = |actuator: Value, sensor: Value| {
-        let scene = json!({
-            "name": "wall",
-            "device": {
-                "inertia": 2.2e-5, "damping": 0.022, "actuator_lag": actuator, "sensor_lag": sensor,
-            },
-            "servo": { "period": 0.001, "output_delay": 1e-4 },
-            "environment": { "type": "damper-wall", "stiffness": 8, "damping": 0.002, "delay": 1 },
-        });
-        let read = file::parse("wall.json", Format::Json, &scene.to_string());
-        let judged = judge("wall", &read.unwrap_or_else(|error| panic!("{error}")).scene);
-        assert_eq!(judged.verdict, Verdict::Certified, "{}", judged.message);
-        let port = judged.alpha_port.expect("it lags");
-        (port.lo.expect("an index"), port.hi.expect("an index"))
-    };
-    let equal = with(json!(2e-4), json!(2e-4));
+    let with = |sensor: f64| certified_wall(&json!(2e-4), &json!(sensor), &json!(1e-4));
+    let equal = with(2e-4);
     assert!(equal.1 - equal.0 <= TOLERANCE * equal.1, "{equal:?}");
-    let [below, above] = [1.998e-4, 2.002e-4].map(|lag| with(json!(2e-4), json!(lag)));
+    let [below, above] = [1.998e-4, 2.002e-4].map(with);
     assert!(below.1 < equal.0 && equal.1 < above.0, "{below:?} {equal:?} {above:?}");
 }
 
@@ -132,7 +118,7 @@ fn equal_lags_are_decided_like_those_beside_them() {
 #[test]
 fn a_matched_coupling_without_latency_has_the_verdict_of_the_standard_one() {
     let wall = |coupling: Value, stiffness: f64| {
-        let scene = json!({
+        judged(&json!({
             "name": "wall",
             "device": { "inertia": 2.2e-5, "damping": 0.022 },
             "servo": { "period": 0.001 },
@@ -140,9 +126,7 @@ fn a_matched_coupling_without_latency_has_the_verdict_of_the_standard_one() {
             "environment": {
                 "type": "damper-wall", "stiffness": stiffness, "damping": 0.01, "delay": 1,
             },
-        });
-        let read = file::parse("wall.json", Format::Json, &scene.to_string());
-        judge("wall", &read.unwrap_or_else(|error| panic!("{error}")).scene)
+        }))
     };
     for (stiffness, verdict) in [(23.99, Verdict::Certified), (24.01, Verdict::Rejected)] {
         let matched = wall(json!({ "type": "matched" }), stiffness);

@@ -14,7 +14,6 @@ mod documents;
 mod emulated;
 mod encoder;
 mod every_float;
-mod exact;
 mod examples;
 mod failures;
 mod foreign;

@@ -3,7 +3,7 @@
 
 use haptic_servo::certificate::{Rule, assess};
 use haptic_servo::environment::Wall;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tests::exact::of_f64;
@@ -47,12 +47,13 @@ fn a_linear_scene_passes_up_to_its_margin_and_not_beyond() {
 
 fn wall(stiffness: f64, damping: f64, delay: usize, limit: Option<f64>) -> Scene {
     Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: Wall::damped(stiffness, damping, delay).alone(),
-        latency: Latency::NONE,
         torque_limit: limit,
+        ..Scene::of(
+            Device::damped(2.2e-5, 0.022),
+            0.001,
+            Wall::damped(stiffness, damping, delay).alone(),
+        )
     }
 }
 

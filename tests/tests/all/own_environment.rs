@@ -9,7 +9,7 @@ use haptic_servo::certificate::{Certified, Parameter};
 use haptic_servo::dac::DacCode;
 use haptic_servo::encoder::{CounterWidth, RawCount};
 use haptic_servo::number::Number;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Scene};
 use haptic_servo::servo::{Servo, Transducers};
 use own_environment::ProgressiveSpring;
 use rand::{Rng, SeedableRng};
@@ -19,23 +19,20 @@ use crate::toolchain::TOOLCHAIN;
 
 /// That of the program `pedal`: a difference would show in the certificate and in the codes.
 const PEDAL: Scene<ProgressiveSpring<1>> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: ProgressiveSpring { soft: 4.0, stiff: 24.0, knee: 0.1 },
-    latency: Latency::NONE,
     torque_limit: Some(1.0),
+    ..Scene::of(
+        Device::damped(2.2e-5, 0.022),
+        0.001,
+        ProgressiveSpring { soft: 4.0, stiff: 24.0, knee: 0.1 },
+    )
 };
 
 const CERTIFIED: Certified<Scene<ProgressiveSpring<1>>> =
     PEDAL.certified_as(PEDAL.environment.stated_at(PEDAL.timing.period));
 
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 2.0,
-    largest_speed: 100.0,
-};
+const TRANSDUCERS: Transducers =
+    Transducers { counter: CounterWidth::Bits16, ..Transducers::of(61_440.0, 2.0) };
 
 /// A hand that goes far enough for the torque to be limited.
 fn counts() -> impl Iterator<Item = i32> {

@@ -169,12 +169,8 @@ const PERIOD: f64 = 1e-4;
 
 fn spring(stiffness: f64, delay: usize, latency: Latency) -> Scene {
     Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: PERIOD, worst_period: None },
-        coupling: Coupling::Rigid,
-        environment: Wall::spring(stiffness, delay).alone(),
         latency,
-        torque_limit: None,
+        ..Scene::of(Device::damped(2.2e-5, 0.022), PERIOD, Wall::spring(stiffness, delay).alone())
     }
 }
 

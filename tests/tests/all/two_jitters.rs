@@ -153,12 +153,9 @@ fn a_count_jitter_alone_is_an_output_jitter() {
 fn what_is_not_proved_is_refused() {
     let refused = |latency: Latency| {
         let scene = Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 1e-3, worst_period: None },
             coupling: Coupling::Matched,
-            environment: Wall::spring(1.0, 1).alone(),
             latency,
-            torque_limit: None,
+            ..Scene::of(Device::damped(2.2e-5, 0.022), 1e-3, Wall::spring(1.0, 1).alone())
         };
         scene.certify().err().map(|error| error.to_string())
     };

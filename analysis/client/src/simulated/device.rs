@@ -125,12 +125,8 @@ mod tests {
             latency: Latency::delayed(phase),
             torque_limit: None,
         };
-        let transducers = Transducers {
-            counts_per_turn: 61_440.0,
-            counter: CounterWidth::Bits16,
-            full_scale_torque: 2.0,
-            largest_speed: 100.0,
-        };
+        let transducers =
+            Transducers { counter: CounterWidth::Bits16, ..Transducers::of(61_440.0, 2.0) };
         let trajectory = HandTrajectory { release: 0.0, ..HandTrajectory::push_and_let_go() };
         let mut device = SimulatedDevice::new(&scene, trajectory, &transducers).unwrap();
         let rate = damping / inertia;

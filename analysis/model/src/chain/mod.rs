@@ -16,6 +16,7 @@ mod passivity;
 pub mod two_port;
 
 use haptic_servo::scene::Device;
+use haptic_servo::words;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -43,14 +44,16 @@ pub struct Link {
     pub damping: f64,
 }
 
-/// Which mass the encoder is on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum EncoderPlace {
+words! {
+    /// Which mass the encoder is on, in a file's word.
+    #[derive(Default)]
+    EncoderPlace {
     /// On the motor's, the first: collocated.
     #[default]
-    Motor,
+    Motor "motor",
     /// On the hand's, the last.
-    Hand,
+    Hand "hand",
+    }
 }
 
 /// A chain of masses, checked when it was made.

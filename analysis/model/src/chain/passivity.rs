@@ -6,11 +6,11 @@ use num_rational::BigRational;
 use num_traits::{One, Pow, ToPrimitive, Zero};
 use thiserror::Error;
 
+use super::Chain;
 use super::disk::{Disk, places};
 use super::exact::Decimal;
 use super::infimum::infimum;
 use super::two_port::TwoPort;
-use super::{Chain, EncoderPlace};
 use crate::quantity::significant;
 
 /// Bits to which the infimum is enclosed: three more than a double has.
@@ -178,16 +178,6 @@ impl Chain {
             .map(|step| start * 1.2f64.powi(step))
             .filter(|&omega| phase(omega) < -0.1)
             .min_by(|a, b| a.total_cmp(b))
-    }
-}
-
-impl EncoderPlace {
-    /// The word for it in a file.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Motor => "motor",
-            Self::Hand => "hand",
-        }
     }
 }
 

@@ -152,8 +152,7 @@ fn chain(section: &Section<'_>, key: &Key, masses: Vec<Mass>, links: Vec<Link>) 
 
 fn placed(section: &Section<'_>, chain: Chain, encoder: Option<&str>) -> Read<Chain> {
     let Some(encoder) = encoder else { return Ok(chain) };
-    let mut places = [EncoderPlace::Motor, EncoderPlace::Hand].into_iter();
-    match places.find(|at| at.word() == encoder) {
+    match EncoderPlace::ALL.into_iter().find(|at| at.as_str() == encoder) {
         Some(place) => Ok(chain.with_encoder(place)),
         None => Err(section.out_of_bounds(&key::ENCODER)),
     }

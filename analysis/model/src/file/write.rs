@@ -5,7 +5,6 @@ mod shaped;
 
 use std::fmt::Write;
 
-use haptic_servo::current::Bus;
 use haptic_servo::current::IndexOffset;
 use haptic_servo::environment::{Coefficients, Environment, Wall};
 use haptic_servo::host::HostTorque;
@@ -80,81 +79,62 @@ pub fn toml(file: &SceneFile) -> String {
         moving::hand(&mut lines, hand);
     }
     let limits = [
-        ("torque", scene.torque_limit),
-        ("encoder_step", *encoder_step),
-        ("full_scale", *full_scale),
+        (&key::TORQUE_LIMIT, scene.torque_limit),
+        (&key::ENCODER_STEP, *encoder_step),
+        (&key::FULL_SCALE, *full_scale),
     ];
-    if limits.iter().any(|(_, value)| value.is_some()) {
-        lines.push("[limits]".to_owned());
+    table(&mut lines, &key::LIMITS, limits);
+    if let Some(HostTorque { energy, power, damping, torque, timeout }) = *host {
+        let numbers = [
+            (&key::HOST_ENERGY, energy),
+            (&key::HOST_POWER, power),
+            (&key::HOST_DAMPING, damping),
+            (&key::HOST_TORQUE, torque),
+            (&key::HOST_TIMEOUT, timeout),
+        ];
+        table(&mut lines, &key::HOST, numbers.map(|(key, value)| (key, Some(value))));
     }
-    for (key, value) in limits {
-        number(&mut lines, key, value);
+    match *supply {
+        None => {}
+        Some(FileSupply::Sinks { largest_speed }) => {
+            lines.push("[supply]\nsinks = true".to_owned());
+            number(&mut lines, key::LARGEST_SPEED.name(), Some(largest_speed));
+        }
+        Some(FileSupply::Stores { bus, largest_speed }) => {
+            let numbers = [
+                (&key::SUPPLY_VOLTAGE, bus.voltage),
+                (&key::FAULT_VOLTAGE, bus.fault_level),
+                (&key::CAPACITANCE, bus.capacitance),
+                (&key::LARGEST_SPEED, largest_speed),
+            ];
+            table(&mut lines, &key::SUPPLY, numbers.map(|(key, value)| (key, Some(value))));
+        }
     }
-    if let Some(host) = host {
-        lines.push("[host]".to_owned());
-        budget(&mut lines, host);
-    }
-    if let Some(supply) = supply {
-        lines.push("[supply]".to_owned());
-        supplied(&mut lines, supply);
-    }
-    if let Some(motor) = motor {
-        lines.push("[motor]".to_owned());
-        driven(&mut lines, motor);
+    if let Some(FileMotor { motor, lowest_supply, highest_supply, index_offset }) = *motor {
+        let numbers = [
+            (&key::RESISTANCE, motor.resistance),
+            (&key::INDUCTANCE, motor.inductance),
+            (&key::TORQUE_CONSTANT, motor.torque_constant),
+            (&key::LOWEST_SUPPLY, lowest_supply),
+            (&key::HIGHEST_SUPPLY, highest_supply),
+        ];
+        table(&mut lines, &key::MOTOR, numbers.map(|(key, value)| (key, Some(value))));
+        if motor.winding.is_brushless() {
+            lines.push(format!("pole_pairs = {}", motor.winding.pole_pairs()));
+        }
+        lines.extend(index_offset.map(|IndexOffset { counts, is_reversed }| {
+            format!("index_offset = {{ counts = {counts}, is_reversed = {is_reversed} }}")
+        }));
     }
     lines.join("\n") + "\n"
 }
 
-fn budget(lines: &mut Vec<String>, host: &HostTorque) {
-    let HostTorque { energy, power, damping, torque, timeout } = *host;
-    for (key, value) in [
-        ("energy", energy),
-        ("power", power),
-        ("damping", damping),
-        ("torque", torque),
-        ("timeout", timeout),
-    ] {
-        number(lines, key, Some(value));
+/// A table of optional keys, if one of them is there.
+fn table<const N: usize>(lines: &mut Vec<String>, key: &Key, numbers: [(&Key, Option<f64>); N]) {
+    if numbers.iter().any(|(_, value)| value.is_some()) {
+        lines.push(format!("[{}]", key.path));
+        numbers.iter().for_each(|(key, value)| number(lines, key.name(), *value));
     }
-}
-
-fn supplied(lines: &mut Vec<String>, supply: &FileSupply) {
-    match supply {
-        FileSupply::Sinks { largest_speed } => {
-            lines.push("sinks = true".to_owned());
-            number(lines, "largest_speed", Some(*largest_speed));
-        }
-        FileSupply::Stores { bus, largest_speed } => {
-            let Bus { voltage, capacitance, fault_level } = bus;
-            for (key, value) in [
-                ("voltage", voltage),
-                ("fault_voltage", fault_level),
-                ("capacitance", capacitance),
-                ("largest_speed", largest_speed),
-            ] {
-                number(lines, key, Some(*value));
-            }
-        }
-    }
-}
-
-fn driven(lines: &mut Vec<String>, motor: &FileMotor) {
-    let FileMotor { motor, lowest_supply, highest_supply, index_offset } = motor;
-    for (key, value) in [
-        ("resistance", motor.resistance),
-        ("inductance", motor.inductance),
-        ("torque_constant", motor.torque_constant),
-        ("lowest_supply", *lowest_supply),
-        ("highest_supply", *highest_supply),
-    ] {
-        number(lines, key, Some(value));
-    }
-    if motor.winding.is_brushless() {
-        lines.push(format!("pole_pairs = {}", motor.winding.pole_pairs()));
-    }
-    lines.extend(index_offset.map(|IndexOffset { counts, is_reversed }| {
-        format!("index_offset = {{ counts = {counts}, is_reversed = {is_reversed} }}")
-    }));
 }
 
 /// An optional key.
@@ -234,7 +214,7 @@ fn device(
     number(lines, "friction", friction);
     lines.extend(cogging.map(|cogging| format!("cogging = {}", cogging_of(cogging.harmonics))));
     if chain.encoder() == EncoderPlace::Hand {
-        lines.push(format!("encoder = {}", quoted(EncoderPlace::Hand.word())));
+        lines.push(format!("encoder = {}", quoted(EncoderPlace::Hand.as_str())));
     }
     time(lines, "actuator_lag", scene.latency.actuator_lag);
     time(lines, "sensor_lag", scene.latency.sensor_lag);

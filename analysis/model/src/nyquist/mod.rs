@@ -22,6 +22,7 @@ use haptic_servo::passivity::lagged::{LagIntervals, SampledResponse};
 use haptic_servo::passivity::transfer::{Transfer, Unbuildable};
 use haptic_servo::rendering::context_beside_anticogging;
 use haptic_servo::scene::{Coupling, Latency, Scene};
+use haptic_servo::words;
 use nalgebra::Complex;
 use thiserror::Error;
 
@@ -60,36 +61,26 @@ fn reason(why: Unbuildable) -> &'static str {
     }
 }
 
-/// The role of a curve in the verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+words! {
+    /// The role of a curve in the verdict.
+    Role {
     /// It is compared with the critical line.
-    Judged,
+    Judged "judged",
     /// It is compared with the critical line, too: torques are latched, and updates may be missed.
-    JudgedLatched,
+    JudgedLatched "judged-latched",
     /// It is compared with the critical line, and has delay, amplifier and sensor in it.
-    JudgedAtPort,
+    JudgedAtPort "judged-at-port",
     /// Its poles are judged, and a bound in place of its real part.
-    Linear,
+    Linear "linear",
     /// The environment without its coupling, which is not judged.
-    Alone,
+    Alone "alone",
+    }
 }
 
 impl Role {
     /// Whether the curve itself must keep clear of the critical line.
     pub fn is_judged(self) -> bool {
         matches!(self, Self::Judged | Self::JudgedLatched | Self::JudgedAtPort)
-    }
-
-    /// In one word, for tables.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Judged => "judged",
-            Self::JudgedLatched => "judged-latched",
-            Self::JudgedAtPort => "judged-at-port",
-            Self::Linear => "linear",
-            Self::Alone => "alone",
-        }
     }
 }
 

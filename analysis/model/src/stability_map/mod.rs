@@ -12,6 +12,7 @@ use haptic_servo::environment::{Damper, Wall};
 use haptic_servo::parameter::Parameter;
 use haptic_servo::passivity::lagged::SampledResponse;
 use haptic_servo::scene::{Coupling, Latency, Scene};
+use haptic_servo::words;
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -21,41 +22,27 @@ use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Integration, SimulationError};
 use plant::SampledPlant;
 
-/// Verdicts on a scene, from the worst to the best.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Region {
+words! {
+    /// Verdicts on a scene, from the worst to the best.
+    #[derive(PartialOrd, Ord, Hash)]
+    Region {
     /// Certified, and yet without a hand it does not come to rest: its torque is later than the certificate
     /// assumes.
-    Wrong,
+    Wrong "wrong",
     /// Even without a hand it does not come to rest.
-    Unstable,
+    Unstable "unstable",
     /// Rejected: without a hand it comes to rest; some hand may make it oscillate.
-    Rejected,
+    Rejected "rejected",
     /// Neither certified nor rejected; without a hand it comes to rest.
-    Undecided,
+    Undecided "undecided",
     /// The exact rule certifies it, the paper's does not.
-    Exact,
+    Exact "certified-exact",
     /// The paper's rule certifies it.
-    Paper,
+    Paper "certified-paper",
+    }
 }
 
 impl Region {
-    /// All, from the worst to the best.
-    pub const ALL: [Self; 6] =
-        [Self::Wrong, Self::Unstable, Self::Rejected, Self::Undecided, Self::Exact, Self::Paper];
-
-    /// In one word, for tables.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Wrong => "wrong",
-            Self::Unstable => "unstable",
-            Self::Rejected => "rejected",
-            Self::Undecided => "undecided",
-            Self::Exact => "certified-exact",
-            Self::Paper => "certified-paper",
-        }
-    }
-
     /// In words, for a legend.
     pub const fn words(self) -> &'static str {
         match self {

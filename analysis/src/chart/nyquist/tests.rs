@@ -1,25 +1,17 @@
 use std::collections::BTreeMap;
 
 use haptic_servo::certificate::assess;
-use haptic_servo::environment::{Canceller, Coefficients, Environment, Parts, Rational, Wall};
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+use haptic_servo::environment::{Canceller, Environment, Parts, Rational, Wall};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene, TimeRange};
 
 use super::*;
 
 fn scene(environment: Environment, coupling: Coupling) -> Scene {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
-        coupling,
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
+    Scene { coupling, ..Scene::of(Device::damped(2.2e-5, 0.022), 0.001, environment) }
 }
 
 fn rational(numerator: &[f64], denominator: &[f64], delay: usize) -> Rational {
-    let [numerator, denominator] = [numerator, denominator].map(|p| Coefficients::new(p).unwrap());
-    Rational { numerator, denominator, delay, unit_zeros: 0 }
+    Rational { delay, ..Rational::of(numerator, denominator).unwrap() }
 }
 
 fn judged(scene: &Scene) -> NyquistScene {

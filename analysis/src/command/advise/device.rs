@@ -95,7 +95,8 @@ pub fn run(arguments: &Arguments, answer: &JsonOption) -> Result<CommandStatus, 
             Data::new(&["wall", "rate (Hz)", "felt stiffness (N m/rad)"], rows.collect::<Vec<_>>());
         match has_extension(output, "csv") {
             true => data.write(output)?,
-            false => chart::device::device(&title, report.rate, &curves)?.write(output)?,
+            false => chart::stiffest::stiffest(&title, &curves, None, Some(report.rate))?
+                .write(output)?,
         }
     }
     answer.print(&report, text)?;

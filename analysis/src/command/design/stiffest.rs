@@ -5,11 +5,11 @@ use serde::Serialize;
 use std::path::Path;
 
 use super::answer::object;
-use crate::chart::{self, Chart, Data, Picture, has_extension};
+use crate::chart::{self, Chart, Data, has_extension};
 use crate::command::shared_arguments::write;
 use crate::command::status::{CommandError, CommandStatus};
 use crate::design::Judge;
-use crate::design::stiffest::{Found, Search, Wall};
+use crate::design::stiffest::{Found, Search, Structure, Wall};
 use crate::felt;
 use crate::file::{self, SceneFile};
 use crate::progress;
@@ -256,7 +256,14 @@ fn save(output: &Path, from: &str, file: &SceneFile, found: &Found) -> Result<()
 
 fn chart(file: &SceneFile, found: &Found) -> Result<Chart, CommandError> {
     let title = format!("{}: stiffest certified wall at the handle", shortened(&file.name, 32));
-    let picture: Picture = chart::stiffest::stiffest(&title, found)?;
+    let place = |wall: &Wall| (wall.scene.timing.period.recip(), wall.felt);
+    let curve = |structure: Structure| {
+        let walls = found.walls.iter().filter(|wall| wall.structure == structure);
+        (structure.name(), walls.map(place).collect::<Vec<_>>())
+    };
+    let curves = Structure::ALL.into_iter().map(curve).filter(|(_, curve)| !curve.is_empty());
+    let curves: Vec<_> = curves.collect();
+    let picture = chart::stiffest::stiffest(&title, &curves, Some(place(&found.best)), None)?;
     let row =
         |point: Point| vec![point.structure.into(), point.rate.into(), point.felt_stiffness.into()];
     let rows: Vec<_> = found.walls.iter().map(point).map(row).collect();

@@ -4,6 +4,7 @@ use haptic_servo::certificate::{QuantizationBound, Rejection, Resolution, assess
 use haptic_servo::number::Format;
 use haptic_servo::passivity::interval::Interval;
 use haptic_servo::scene::Scene;
+use haptic_servo::words;
 use serde::Serialize;
 
 use super::motion::{Motion, Outcome};
@@ -11,28 +12,21 @@ use crate::quantity::significant;
 use crate::simulation::{Experiment, Integration, SimulationError};
 use crate::stability::{closed_loop, eigenvalues, radius};
 
-/// Whether a loop comes to rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum MethodVerdict {
+words! {
+    /// Whether a loop comes to rest.
+    #[derive(Serialize)]
+    #[serde(rename_all = "lowercase")]
+    MethodVerdict {
     /// Yes.
-    Safe,
+    Safe "safe",
     /// No.
-    Unsafe,
+    Unsafe "unsafe",
     /// Neither; never counts as safe.
-    Undecided,
+    Undecided "undecided",
+    }
 }
 
 impl MethodVerdict {
-    /// In one word.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Safe => "safe",
-            Self::Unsafe => "unsafe",
-            Self::Undecided => "undecided",
-        }
-    }
-
     /// Safe or not.
     pub const fn of(is_safe: bool) -> Self {
         if is_safe { Self::Safe } else { Self::Unsafe }

@@ -2,32 +2,24 @@
 
 use std::fmt;
 
+use haptic_servo::words;
 use serde::Serialize;
 
 use crate::quantity::significant;
 
-/// The outcome of a motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Outcome {
+words! {
+    /// The outcome of a motion.
+    #[derive(Serialize)]
+    Outcome {
     /// It comes to rest.
     #[serde(rename = "rests")]
-    Converges,
+    Converges "rests",
     /// It persists, but is smaller.
     #[serde(rename = "hums")]
-    LimitCycles,
+    LimitCycles "hums",
     /// It becomes larger than it was.
     #[serde(rename = "grows")]
-    Diverges,
-}
-
-impl Outcome {
-    /// In one word.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Converges => "rests",
-            Self::LimitCycles => "hums",
-            Self::Diverges => "grows",
-        }
+    Diverges "grows",
     }
 }
 

@@ -3,10 +3,9 @@
 use std::f64::consts::TAU;
 
 use haptic_servo::dac::DacCode;
-use haptic_servo::encoder::CounterWidth;
-use haptic_servo::environment::{Coefficients, Environment, Rational, Wall};
+use haptic_servo::environment::{Environment, Rational, Wall};
 pub use haptic_servo::scene::Scene;
-use haptic_servo::scene::{Coupling, Device, Latency, Timing};
+use haptic_servo::scene::{Coupling, Device};
 use haptic_servo::servo::Transducers;
 
 pub use super::loop_run::LoopRun;
@@ -28,21 +27,11 @@ pub const KNOB: Device = Device { inertia: 0.05, damping: 0.5, passivity: None }
 pub const PADDLE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
 /// Encoder and motor of the knob.
-pub const KNOBS: Transducers = Transducers {
-    counts_per_turn: 65_536.0,
-    counter: CounterWidth::Bits32,
-    full_scale_torque: 40.0,
-    largest_speed: Transducers::NO_HAND_IS_FASTER,
-};
+pub const KNOBS: Transducers = Transducers::of(65_536.0, 40.0);
 
 /// Encoder and motor of the paddle, its amplifier scaled to these walls: with smaller steps, walls nearer to
 /// the limit can be distinguished.
-pub const PADDLES: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits32,
-    full_scale_torque: 0.5,
-    largest_speed: Transducers::NO_HAND_IS_FASTER,
-};
+pub const PADDLES: Transducers = Transducers::of(61_440.0, 0.5);
 
 /// A wall that acts on both sides: stiffness in N m/rad, damping in N m s/rad, delay in samples.
 pub fn wall_of(stiffness: f64, damping: f64, delay: usize) -> Environment {
@@ -54,9 +43,7 @@ pub fn wall_of(stiffness: f64, damping: f64, delay: usize) -> Environment {
 /// # Panics
 /// If there are too many.
 pub fn rational(numerator: &[f64], denominator: &[f64]) -> Rational {
-    let [numerator, denominator] =
-        [numerator, denominator].map(|values| Coefficients::new(values).expect("few coefficients"));
-    Rational { numerator, denominator, delay: 0, unit_zeros: 0 }
+    Rational::of(numerator, denominator).expect("few coefficients")
 }
 
 /// The largest certified stiffness of a wall in N m/rad.
@@ -69,15 +56,7 @@ pub fn limit_of(scene: &Scene) -> Result<f64, StudyError> {
 
 /// A scene without a coupling.
 pub fn rigid(device: Device, environment: Environment) -> Scene {
-    let timing = Timing { period: PERIOD, worst_period: None };
-    Scene {
-        device,
-        timing,
-        coupling: Coupling::Rigid,
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
-    }
+    Scene::of(device, PERIOD, environment)
 }
 
 /// A scene behind the standard coupling `2 delta / T`.

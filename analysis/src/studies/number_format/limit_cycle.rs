@@ -151,12 +151,8 @@ mod tests {
         let damping = 1e-4;
         let stiffness = 2.0 * (damping - margin) / 1e-3;
         let environment = Wall::spring(stiffness, 1).alone();
-        let transducers = Transducers {
-            counts_per_turn: 4096.0,
-            counter: CounterWidth::Bits16,
-            full_scale_torque: 0.2,
-            largest_speed: 100.0,
-        };
+        let transducers =
+            Transducers { counter: CounterWidth::Bits16, ..Transducers::of(4096.0, 0.2) };
         let coupling = Coupling::Spring { stiffness: 0.2 };
         let device = Device { inertia, damping, passivity: None };
         let scene = Scene { coupling, ..rigid(device, environment) };

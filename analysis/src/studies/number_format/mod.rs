@@ -101,14 +101,11 @@ impl InEach for Build {
 
 #[cfg(test)]
 mod tests {
-    use haptic_servo::encoder::CounterWidth;
-    use haptic_servo::environment::{
-        Canceller, Coefficients, Environment, Parts, Rational, Side, Wall,
-    };
+    use haptic_servo::environment::{Canceller, Environment, Parts, Rational, Side, Wall};
     use haptic_servo::scene::{Coupling, Device};
 
     use super::*;
-    use crate::studies::failures::setting::{PADDLE, rigid};
+    use crate::studies::failures::setting::{PADDLE, rational, rigid};
 
     /// Units are powers of two: the same bits come out, whatever a servo counts in.
     #[test]
@@ -117,13 +114,8 @@ mod tests {
         let spring = Wall { side: Side::Displaced(0.01), ..Wall::spring(22.0, 1) }.alone();
         let undamped = Wall::damped(22.0, 0.0, 1).behind(0.01);
         let canceller = Some(Canceller::to(0.02));
-        let numbers = |numbers: &[f64]| Coefficients::new(numbers).unwrap();
-        let rational = Rational {
-            numerator: numbers(&[13.0, -3.0]),
-            denominator: numbers(&[1.0, -0.3]),
-            delay: 1,
-            unit_zeros: 0,
-        };
+        let rational = rational(&[13.0, -3.0], &[1.0, -0.3]);
+        let rational = Rational { delay: 1, ..rational };
         for environment in [
             spring,
             wall.alone(),
@@ -138,12 +130,7 @@ mod tests {
                 torque_limit: (environment == spring).then_some(0.3),
                 ..rigid(PADDLE, environment)
             };
-            let transducers = Transducers {
-                counts_per_turn: 61_440.0,
-                counter: CounterWidth::Bits32,
-                full_scale_torque: 0.7,
-                largest_speed: 100.0,
-            };
+            let transducers = Transducers::of(61_440.0, 0.7);
             let units = Units { angle: 4.0, torque: 0.25 };
             let build = |scene, transducers| Build { scene, transducers }.with::<f64>().unwrap();
             let mut plain = build(scene, transducers);

@@ -54,7 +54,7 @@ pub fn measure() -> Result<Tradeoff, StudyError> {
             _ => POLYNOMIALS,
         };
         let error = error(outputs.iter().map(|output| output.value));
-        methods.push(row("sine", family, sine.name(), &outputs, error));
+        methods.push(row("sine", family, sine.as_str(), &outputs, error));
     }
     for rotation in Rotation::ALL {
         let outputs = board.compute(&BenchRequest::Rotation(rotation), &angles())?;
@@ -65,7 +65,7 @@ pub fn measure() -> Result<Tradeoff, StudyError> {
             Rotation::Cubic | Rotation::Quintic | Rotation::Septic => POLYNOMIALS,
         };
         let error = largest_torque_error(outputs.iter().map(|output| unpacked(output.value)));
-        methods.push(row(PHASE, family, rotation.name(), &outputs, error));
+        methods.push(row(PHASE, family, rotation.as_str(), &outputs, error));
     }
     board.finish()?;
     Ok(Tradeoff { comparison: &COMPARISON, methods })
@@ -111,11 +111,11 @@ mod tests {
     fn the_kept_errors_are_those_of_the_host() {
         let sines = Sine::ALL.map(|sine| {
             let error = error(turns().into_iter().map(|turn| f64::from(sine.of_turn(turn))));
-            ("sine", sine.name(), error)
+            ("sine", sine.as_str(), error)
         });
         let rotations = Rotation::ALL.map(|rotation| {
             let pairs = angles().into_iter().map(|angle| rotation.of_angle(angle));
-            (PHASE, rotation.name(), largest_torque_error(pairs))
+            (PHASE, rotation.as_str(), largest_torque_error(pairs))
         });
         let here: Vec<_> = sines.into_iter().chain(rotations).collect();
         let kept = Tradeoff::kept(&COMPARISON).unwrap().methods;
@@ -133,7 +133,7 @@ mod tests {
     fn the_cheapest_sine_that_no_code_shows_is_used() {
         let kept = Tradeoff::kept(&COMPARISON).unwrap();
         let code = 0.5 / f64::from(haptic_servo::dac::DacCode::CODES_TO_FULL_SCALE);
-        for (case, used) in [("sine", Sine::Quintic.name()), (PHASE, Rotation::Table.name())] {
+        for (case, used) in [("sine", Sine::Quintic.as_str()), (PHASE, Rotation::Table.as_str())] {
             let front = kept.front(case, 0);
             let enough = front.iter().find(|method| method.error(0).unwrap() < code).unwrap();
             assert_eq!(enough.name, used);

@@ -6,8 +6,7 @@
 //! depends on the numbers, which are those of one scene in one hand.
 
 use haptic_servo::environment::{
-    Canceller, Coefficients, Damper, Environment, MAX_DEGREE, MAX_DELAY, Parts, Profile, Rational,
-    Side, Wall,
+    Canceller, Damper, Environment, MAX_DEGREE, MAX_DELAY, Parts, Profile, Rational, Side, Wall,
 };
 use haptic_servo::number::Arithmetic;
 
@@ -157,13 +156,13 @@ fn between_ends(delay: usize) -> Option<Environment> {
 
 /// A spring of about 1 N m/rad with the largest number of nonzero coefficients.
 fn of_degree(degree: usize, delay: usize) -> Rational {
-    let coefficients = |rest: f64| {
+    let [numerator, denominator] = [0.04, 0.05].map(|rest| {
         let mut values = [rest; MAX_DEGREE + 1];
         values[0] = 1.0;
-        Coefficients::new(&values[..=degree]).expect("no degree is above the largest")
-    };
-    let (numerator, denominator) = (coefficients(0.04), coefficients(0.05));
-    Rational { numerator, denominator, delay, unit_zeros: 0 }
+        values
+    });
+    let rational = Rational::of(&numerator[..=degree], &denominator[..=degree]);
+    Rational { delay, ..rational.expect("no degree is above the largest") }
 }
 
 #[cfg(test)]

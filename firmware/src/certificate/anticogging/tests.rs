@@ -20,12 +20,9 @@ fn free(delay: usize) -> Environment {
 /// At this period and latency, with nothing else to feel.
 fn knob(damping: f64, period: f64, latency: Latency, anticogging: Anticogging) -> Scene {
     Scene {
-        device: Device { inertia: 3e-5, damping, passivity: None },
-        timing: Timing { period, worst_period: None },
-        coupling: Coupling::Rigid,
-        environment: free(1).beside(anticogging),
         latency,
         torque_limit: Some(0.1),
+        ..Scene::of(Device::damped(3e-5, damping), period, free(1).beside(anticogging))
     }
 }
 

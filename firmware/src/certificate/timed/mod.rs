@@ -51,14 +51,15 @@ impl<S, M> TimingChecked<S, M> {
     }
 
     /// Damping in N m s/rad that the device may lose while everything else runs unchanged on a board, which
-    /// limits the torque; [`Assessment::margin`] of a linear scene ignores the limit.
-    pub const fn margin(&self) -> f64 {
+    /// limits the torque; [`Assessment::margin`] of a linear scene ignores the limit. `None` where none is
+    /// known, behind a coupling where torques lag.
+    pub const fn margin(&self) -> Option<f64> {
         self.limited.margin(0.0)
     }
 
     /// The same while a damper of `injected` N m s/rad is switched on and off: below
     /// [`TimingChecked::injectable_damping`].
-    pub const fn margin_with(&self, injected: f64) -> f64 {
+    pub const fn margin_with(&self, injected: f64) -> Option<f64> {
         self.limited.margin(injected)
     }
 
@@ -140,8 +141,8 @@ impl Piece<WhereLimited> {
 }
 
 impl Assessment {
-    /// [`TimingChecked::margin`] of the assessed and certified scene; `None` if its numbers do not allow a
-    /// board to render it.
+    /// [`TimingChecked::margin`] of the assessed and certified scene; `None` also if its numbers do not allow
+    /// a board to render it.
     pub const fn margin_on_board(&self, scene: &Scene) -> Option<f64> {
         self.margin_injecting(scene, 0.0)
     }
@@ -151,7 +152,7 @@ impl Assessment {
         let Ok(limited) = agree(OutputTiming::Simultaneous, scene, self.format) else {
             return None;
         };
-        Some(limited.margin(injected))
+        limited.margin(injected)
     }
 
     /// Checks that a board with the output mode `M` can render the assessed and certified scene, by its

@@ -57,15 +57,8 @@ fn a_scene_that_must_not_be_limited_is_for_simulations_alone() {
 
 #[test]
 fn no_board_renders_a_rational_environment() {
-    use crate::environment::Coefficients;
-    let of = |delay| {
-        Environment::Rational(Rational {
-            numerator: Coefficients::new(&[8.0, -2.0]).unwrap(),
-            denominator: Coefficients::new(&[1.0, -0.5]).unwrap(),
-            delay,
-            unit_zeros: 0,
-        })
-    };
+    let prompt = Rational::of(&[8.0, -2.0], &[1.0, -0.5]).unwrap();
+    let of = |delay| Environment::Rational(Rational { delay, ..prompt });
     let late = |delay| scene(of(delay), 44.0).certify().unwrap().time::<Latched>();
     assert_eq!(late(0).unwrap_err(), TimingError::NotLate);
     let error = late(1).unwrap_err();

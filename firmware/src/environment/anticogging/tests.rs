@@ -6,7 +6,7 @@ use crate::encoder::RawCount;
 use crate::environment::{Environment, Wall};
 use crate::number::Format;
 use crate::number::fixed::types::I8F24 as Fixed;
-use crate::scene::{Coupling, Device, EncoderReading, Latency, Scene, Timing};
+use crate::scene::{Device, EncoderReading, Latency, Scene};
 use crate::scene_type::Typed;
 use crate::servo::Servo;
 use crate::test_scene::{Random, TRANSDUCERS};
@@ -25,12 +25,13 @@ static RUBS: EncoderReading = EncoderReading { friction: 2e-3, ..EncoderReading:
 const KNOB: Transducers = Transducers { counts_per_turn: 4096.0, ..TRANSDUCERS };
 
 const WALL: Scene = Scene {
-    device: Device { inertia: 3e-5, damping: 2e-3, passivity: None },
-    timing: Timing { period: 1e-4, worst_period: None },
-    coupling: Coupling::Rigid,
-    environment: Wall::spring(2.0, 1).behind(0.5).alone().beside(Anticogging::of(&COGGING, 0.8)),
     latency: Latency::NONE.read_by(&RUBS),
     torque_limit: Some(0.5),
+    ..Scene::of(
+        Device::damped(3e-5, 2e-3),
+        1e-4,
+        Wall::spring(2.0, 1).behind(0.5).alone().beside(Anticogging::of(&COGGING, 0.8)),
+    )
 };
 const CERTIFIED: Certified<Scene> = WALL.certified();
 crate::scene_type!(WallScene: CERTIFIED);

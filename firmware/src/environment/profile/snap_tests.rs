@@ -132,7 +132,7 @@ fn what_no_proof_covers_is_refused_with_a_sentence() {
     assert!(Scene { coupling: spring, latency, ..scene(once) }.certify().is_ok());
     // A board renders profiles that are late by a sample, and gives no damping away.
     let late = scene(Profile::of(&KNOB, 1).alone()).certified();
-    assert_eq!(late.time::<Latched>().unwrap().margin(), 0.0);
+    assert_eq!(late.time::<Latched>().unwrap().margin(), Some(0.0));
     assert!(scene(Profile::of(&ENDLESS, 1).alone()).certified().time::<Latched>().is_ok());
 
     let shapes = [

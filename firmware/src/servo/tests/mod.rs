@@ -14,14 +14,9 @@ use reference::{Reference, impulse_response};
 use super::*;
 use crate::encoder::CounterWidth;
 use crate::environment::*;
-use crate::scene::{Coupling, Device, Latency, Timing};
+use crate::scene::{Coupling, Device, Latency};
 
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits32,
-    full_scale_torque: 1.0,
-    largest_speed: 100.0,
-};
+const TRANSDUCERS: Transducers = Transducers::of(61_440.0, 1.0);
 const TICKS: usize = 150;
 
 /// The paper's device behind the standard coupling.

@@ -164,14 +164,8 @@ proptest! {
             Some(stiffness) => Coupling::Spring { stiffness },
             None => Coupling::Rigid,
         };
-        let scene = Scene {
-            device: Device { inertia: 1e-5, damping, passivity: None },
-            timing: Timing { period, worst_period: None },
-            coupling,
-            environment,
-            latency: Latency::NONE,
-            torque_limit,
-        };
+        let scene = Scene::of(Device::damped(1e-5, damping), period, environment);
+        let scene = Scene { coupling, torque_limit, ..scene };
         let counter = if narrow { CounterWidth::Bits16 } else { CounterWidth::Bits32 };
         let transducers = Transducers { counts_per_turn, counter, full_scale_torque, ..TRANSDUCERS };
         endures::<f32>(&scene, &transducers, &raw);

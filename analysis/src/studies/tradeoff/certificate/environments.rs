@@ -8,6 +8,7 @@
 use std::ops::Range;
 
 use fastrand::Rng;
+use haptic_servo::words;
 
 /// Period in s of all environments: a power of two, so that divisions are exact.
 pub const PERIOD: f64 = 1.0 / 1024.0;
@@ -20,31 +21,17 @@ const ODD: usize = 32;
 /// Binary places of the coefficients.
 const PLACES: i32 = 44;
 
-/// The kinds of environments.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+words! {
+    /// The kinds of environments.
+    Kind {
     /// Springs and walls, one to three samples late, with an index by formula.
-    Walls,
+    Walls "walls that have a formula",
     /// One to six poles at least a hundredth inside of the circle.
-    Inside,
+    Inside "poles well inside of the circle",
     /// A pair of poles a millionth to a thousandth from the circle, so that the minimum is narrow.
-    Narrow,
+    Narrow "poles 1e-3 to 1e-6 from the circle",
     /// As `Inside`, on a device whose passivity differs from the index by a fraction of `1e-3` to `1e-12`.
-    Border,
-}
-
-impl Kind {
-    /// All kinds, in the order of the indices.
-    pub const ALL: [Self; 4] = [Self::Walls, Self::Inside, Self::Narrow, Self::Border];
-
-    /// Its name in tables and pictures.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Walls => "walls that have a formula",
-            Self::Inside => "poles well inside of the circle",
-            Self::Narrow => "poles 1e-3 to 1e-6 from the circle",
-            Self::Border => "devices 1e-3 to 1e-12 beside the border",
-        }
+    Border "devices 1e-3 to 1e-12 beside the border",
     }
 }
 

@@ -168,7 +168,10 @@ impl MethodErrors {
             self.quantile(0.5),
             self.quantile(1.0),
         ];
-        Method { values, ..Method::new(kind.name(), candidate.family, candidate.name.clone(), &[]) }
+        Method {
+            values,
+            ..Method::new(kind.as_str(), candidate.family, candidate.name.clone(), &[])
+        }
     }
 }
 

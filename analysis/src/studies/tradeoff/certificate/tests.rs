@@ -14,7 +14,7 @@ fn the_kept_errors_and_verdicts_are_those_that_are_found() {
     let mut compared = 0;
     for kind in Kind::ALL {
         for candidate in candidates().iter().filter(|candidate| is_quick(&candidate.method)) {
-            let is_it = |row: &&Method| row.case == kind.name() && row.name == candidate.name;
+            let is_it = |row: &&Method| row.case == kind.as_str() && row.name == candidate.name;
             let Some(was) = kept.methods.iter().find(is_it) else {
                 assert!(
                     evaluated(&candidate.method, kind, 0).is_none(),
@@ -53,7 +53,7 @@ fn a_proof_is_never_wrong_and_grids_and_roots_are() {
     let count = |row: &Method, column: usize| row.values[column].unwrap();
     for row in &Tradeoff::kept(&COMPARISON).unwrap().methods {
         let [wrong_yes, wrong_no, open] = [2, 3, 4].map(|column| count(row, column));
-        let is_far = row.case != Kind::Border.name();
+        let is_far = row.case != Kind::Border.as_str();
         match (&*row.family, &*row.name) {
             ("closed form", _) => assert_eq!(wrong_yes + wrong_no + open, 0.0, "{row:?}"),
             ("enclosure", name) => {
@@ -65,7 +65,7 @@ fn a_proof_is_never_wrong_and_grids_and_roots_are() {
                 assert_eq!(wrong_yes + open, 0.0, "{row:?}");
                 assert!(!is_far || wrong_no < 0.005 * EACH as f64, "{row:?}");
             }
-            _ if row.case == Kind::Narrow.name() => assert!(wrong_yes > 0.0, "{row:?}"),
+            _ if row.case == Kind::Narrow.as_str() => assert!(wrong_yes > 0.0, "{row:?}"),
             _ => {}
         }
     }

@@ -3,7 +3,7 @@
 
 use haptic_servo::environment::{Canceller, Environment, MAX_DELAY, Parts, Profile, Side, Wall};
 use haptic_servo::number::Number;
-use haptic_servo::scene::{Coupling, Device, Latency, Scene, Timing};
+use haptic_servo::scene::{Coupling, Device, Latency, Scene};
 
 use super::{BenchJob, HostClosed, SceneSet};
 use crate::tables::{DETENTS, STOPPED};
@@ -35,12 +35,8 @@ macro_rules! scene_types {
 /// The scene of an environment on the paddle of the programs, with its torque not limited.
 const fn unlimited(environment: Environment) -> Scene {
     Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: None,
+        ..Scene::of(Device::damped(2.2e-5, 0.022), 0.001, environment)
     }
 }
 
