@@ -8,7 +8,7 @@ use super::{HostError, HostResponse, HostTorque, Tank};
 use crate::build_error::BuildError;
 use crate::environment::FixedDelay;
 use crate::latency::Latency;
-use crate::number::{Format, Number};
+use crate::number::Format;
 use crate::output_timing::OutputTiming;
 use crate::scene::{Scene, Timing};
 use crate::servo::RenderingOptions;
@@ -147,9 +147,13 @@ pub trait BesideServo: Clone + fmt::Debug {
     fn host(budget: &Self::Budget) -> Option<HostTorque>;
     /// A budget from data.
     fn budget(host: HostTorque) -> Self::Budget;
-    /// Ends a tick in which the position moved by so many counts; returns the host's torque in N m, and
-    /// whether it is less than wanted.
-    fn tick<N: Number>(&mut self, moved: i32) -> (N, bool);
+    /// Begins a tick.
+    fn begin(&mut self);
+    /// The torque in codes of the DAC that the host wants in this tick.
+    fn wanted(&self) -> i32;
+    /// Ends the tick before, in which the position moved by so many counts; returns the codes that the host wants
+    /// and does not get.
+    fn refused(&mut self, moved: i32) -> i32;
     /// A tick that is not a usual one; unless the host may give a torque in it, it wants none until the next
     /// command.
     fn wait(&mut self, may_give: bool);
@@ -243,8 +247,16 @@ impl BesideServo for NoHost {
     fn budget(_: HostTorque) {}
 
     #[inline(always)]
-    fn tick<N: Number>(&mut self, _: i32) -> (N, bool) {
-        (N::ZERO, false)
+    fn begin(&mut self) {}
+
+    #[inline(always)]
+    fn wanted(&self) -> i32 {
+        0
+    }
+
+    #[inline(always)]
+    fn refused(&mut self, _: i32) -> i32 {
+        0
     }
 
     #[inline(always)]
@@ -335,17 +347,13 @@ impl HostTimes {
     }
 }
 
-/// A host with a tank in `f32`. A command acts `TICKS` whole ticks after its count; if `IS_PLAIN`, it acts
-/// in one tick only.
+/// A host with its tank. A command acts `TICKS` whole ticks after its count, and in
+/// one tick only unless there are `LAGS`.
 #[derive(Clone, Debug)]
-pub struct Hosted<const TICKS: usize, const IS_PLAIN: bool> {
-    tank: Tank<f32, FixedDelay<f32, TICKS>, IS_PLAIN>,
+pub struct Hosted<const TICKS: usize, const LAGS: usize> {
+    tank: Tank<FixedDelay<i64, TICKS>, LAGS>,
     stream: Stream,
-    given: f32,
-    /// J for a level of 1.
-    joules: f32,
-    reserve: f32,
-    /// Ticks per N m in which the torque fades out at one step of the scene's limit in a tick.
+    /// Ticks per code in which the torque fades out at one step of the scene's limit in a tick.
     fade: f32,
     /// The number of the last command.
     taken: u32,
@@ -354,28 +362,24 @@ pub struct Hosted<const TICKS: usize, const IS_PLAIN: bool> {
     unknown: u32,
 }
 
-impl<const TICKS: usize, const IS_PLAIN: bool> Hosted<TICKS, IS_PLAIN> {
-    /// Torque in N m that the host wants in the present tick.
-    pub(super) const fn wanted(&self) -> f32 {
-        self.stream.wanted
-    }
-
+impl<const TICKS: usize, const LAGS: usize> Hosted<TICKS, LAGS> {
     /// Level of the tank in J.
     pub(super) fn energy(&self) -> f64 {
         self.tank.energy()
     }
 
-    /// Gives what the level pays of a torque.
+    /// Gives what the level pays of the wanted torque; returns the rest.
     #[cold]
     #[inline(never)]
-    fn refuse(&mut self, wanted: f32) -> f32 {
-        self.given = self.tank.allowed(wanted);
-        self.tank.give(self.given);
-        self.given
+    fn refuse(&mut self) -> i32 {
+        let wanted = self.wanted();
+        let given = self.tank.allowed(wanted);
+        self.tank.give(given);
+        wanted - given
     }
 }
 
-impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_PLAIN> {
+impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> {
     #[cfg(feature = "wire")]
     type IfPresent<T: serde::Serialize + serde::de::DeserializeOwned> = T;
     type Channel = HostWords;
@@ -387,11 +391,8 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         let nothing =
             HostTorque { energy: 0.0, power: 0.0, damping: 0.0, torque: 0.0, timeout: 0.0 };
         Self {
-            tank: Tank::empty(FixedDelay::full_of(0.0), FixedDelay::full_of(0.0)),
+            tank: Tank::empty(FixedDelay::full_of(0)),
             stream: Stream::new(&nothing, 1.0),
-            given: 0.0,
-            joules: 0.0,
-            reserve: 0.0,
             fade: 0.0,
             taken: 0,
             invalid: 0,
@@ -400,14 +401,12 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     }
 
     fn beside(host: &HostTorque, servo: &ServoNumbers<'_>) -> Result<Self, HostError> {
-        let times = HostTimes { ticks: TICKS, is_plain: IS_PLAIN };
+        let times = HostTimes { ticks: TICKS, is_plain: LAGS == 0 };
         let response = HostResponse::beside(host, servo, times)?;
-        let (count, period) = (servo.radians_per_count, servo.timing.period);
-        let tank = Tank::new(host, &response, count, [count, 1.0])?;
-        let [joules, reserve] = tank.joules().map(|number| number as f32);
-        let stream = Stream::new(host, period);
-        let fade = (servo.fade / period / host.torque) as f32;
-        Ok(Self { tank, stream, joules, reserve, fade, ..Self::silent() })
+        let period = response.period;
+        let fade = (servo.fade / period * response.code / host.torque) as f32;
+        let tank = Tank::new(host, &response)?;
+        Ok(Self { tank, stream: Stream::new(host, period), fade, ..Self::silent() })
     }
 
     fn host(budget: &HostTorque) -> Option<HostTorque> {
@@ -419,16 +418,25 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     }
 
     #[inline(always)]
-    fn tick<N: Number>(&mut self, moved: i32) -> (N, bool) {
-        self.tank.book(moved as f32);
-        let wanted = self.stream.next();
+    fn begin(&mut self) {
+        self.stream.advance();
+    }
+
+    #[inline(always)]
+    fn wanted(&self) -> i32 {
+        self.stream.wanted()
+    }
+
+    #[inline(always)]
+    fn refused(&mut self, moved: i32) -> i32 {
+        self.tank.book(moved);
+        let wanted = self.wanted();
         let cost = self.tank.cost(wanted);
         if !self.tank.pays(cost) {
-            return (N::of_single(self.refuse(wanted)), true);
+            return self.refuse();
         }
         self.tank.give_at(wanted, cost);
-        self.given = wanted;
-        (N::of_single(wanted), false)
+        0
     }
 
     fn wait(&mut self, may_give: bool) {
@@ -442,13 +450,13 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     }
 
     fn fade_out(&mut self, steps: u32) {
-        let ticks = self.stream.wanted.abs() * self.fade / steps as f32;
+        let ticks = self.stream.wanted().abs() as f32 * self.fade / steps as f32;
         // The cast saturates.
         self.stream.fade((ticks as u32).saturating_add(1));
     }
 
     fn is_at_rest(&self) -> bool {
-        self.stream.is_at_rest() && self.given == 0.0
+        self.stream.is_at_rest() && self.tank.given() == 0
     }
 
     fn may_pass_to(&self, next: &Self) -> bool {
@@ -466,10 +474,9 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
     #[inline(never)]
     fn cut(&mut self, by_fault: bool) {
         self.stream.rest();
-        self.given = 0.0;
         self.unknown = UNKNOWN;
         self.tank.give_back(false);
-        self.tank.forget(FixedDelay::full_of(0.0), by_fault);
+        self.tank.forget(FixedDelay::full_of(0), by_fault);
     }
 
     fn drain(&mut self) {
@@ -488,16 +495,17 @@ impl<const TICKS: usize, const IS_PLAIN: bool> BesideServo for Hosted<TICKS, IS_
         if !wanted.is_finite() {
             self.invalid = self.invalid.saturating_add(1);
         }
-        let wanted = if tick.opening == Some(0) { self.stream.wanted } else { torque };
-        let refused = wanted - self.given;
+        let wanted = if tick.opening == Some(0) { self.stream.wanted() } else { torque };
+        let given = self.tank.given();
+        let [refused, given] = [wanted - given, given].map(|codes| codes as f32 * self.tank.code());
         channel.publish(
             sent,
             [
                 rest & 0xffff,
                 tick.tick,
                 tick.count.cast_unsigned(),
-                (self.tank.level() * self.joules + self.reserve).to_bits(),
-                self.given.to_bits(),
+                self.tank.rounded_energy().to_bits(),
+                given.to_bits(),
                 refused.to_bits(),
                 tick.state,
                 u32::from(self.invalid),

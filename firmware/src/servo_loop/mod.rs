@@ -165,10 +165,17 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             tick = self.check_tick_timing(passed, raw, hardware, inbox);
         }
         // Control: from the count to the code of this tick.
+        self.rendering.host_mut().begin();
         let before = self.rendering.servo().low_count();
         let output = self.rendering.tick(raw, &self.energy);
         let count = self.rendering.servo().low_count();
         let step = count.wrapping_sub(before);
+        let (mut code, mut limit) = (output.code, output.limit);
+        if E::Host::IS_PRESENT {
+            // Beside the torque with which the coupling is solved: that of the scene follows from the positions
+            // alone.
+            code = code.beside(self.rendering.host().wanted());
+        }
         if self.rendering.timing_limits().is_too_far(step) {
             self.check_jump(passed, step, hardware, inbox);
         }
@@ -179,11 +186,10 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.stop_on_nan(hardware, inbox);
         }
         let mut pending = inbox.pending();
-        let (mut code, mut limit) = (output.code, output.limit);
         if E::Host::IS_PRESENT {
-            let (torque, is_refused) = self.rendering.host_mut().tick(step);
-            code = self.rendering.servo().code_beside(torque);
-            if is_refused {
+            let refused = self.rendering.host_mut().refused(step);
+            if refused != 0 {
+                code = code.beside(-refused);
                 limit = LimitReason::Energy;
             }
         }
