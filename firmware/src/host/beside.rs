@@ -1,6 +1,7 @@
 //! The host beside a servo: its tank in the tick, and its commands and reports below the tick.
 
 use core::fmt;
+use core::hint::cold_path;
 
 use super::channel::{HostChannel, HostWords};
 use super::stream::Stream;
@@ -433,6 +434,7 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
         let wanted = self.wanted();
         let cost = self.tank.cost(wanted);
         if !self.tank.pays(cost) {
+            cold_path();
             return self.refuse();
         }
         self.tank.give_at(wanted, cost);

@@ -173,8 +173,16 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         let (mut code, mut limit) = (output.code, output.limit);
         if E::Host::IS_PRESENT {
             // Beside the torque with which the coupling is solved: that of the scene follows from the positions
-            // alone.
+            // alone. Before the faults, because fewer values are kept then: a step that is too far books what it
+            // should not, and empties the tank.
             code = code.beside(self.rendering.host().wanted());
+            let refused = self.rendering.host_mut().refused(step);
+            if refused != 0 {
+                code = code.beside(-refused);
+                if limit != LimitReason::NotANumber {
+                    limit = LimitReason::Energy;
+                }
+            }
         }
         if self.rendering.timing_limits().is_too_far(step) {
             self.check_jump(passed, step, hardware, inbox);
@@ -182,17 +190,10 @@ impl<E: Rendering<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if let Some(event) = hardware.output_event() {
             self.on_output_event(event, hardware, inbox);
         }
-        if output.limit == LimitReason::NotANumber {
+        if limit == LimitReason::NotANumber {
             self.stop_on_nan(hardware, inbox);
         }
         let mut pending = inbox.pending();
-        if E::Host::IS_PRESENT {
-            let refused = self.rendering.host_mut().refused(step);
-            if refused != 0 {
-                code = code.beside(-refused);
-                limit = LimitReason::Energy;
-            }
-        }
         if self.state != State::Running {
             code = self.unless_disarmed(code);
             pending = u32::MAX;
