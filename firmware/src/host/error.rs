@@ -23,7 +23,7 @@ sentences! {
     /// The bound is the error that the encoder's counts can cause.
     Energy { energy: f64, least: f64 } => (
         "the host's energy is " {energy} " J, and must be above " {least} " J, which the error of the \
-         encoder's counts can take at the host's largest torque: lower the torque, or take a finer encoder"),
+         encoder's counts can take at this motor's torque: raise the energy, or take a finer encoder"),
     MostEnergy { energy: f64, most: f64 } => (
         "the host's energy is " {energy} " J, and must be at most " {most} " J, the most that the tank counts in \
          steps of this motor's torque: lower the energy"),
