@@ -162,10 +162,9 @@ pub trait BesideServo: Clone + fmt::Debug {
     fn fade_out(&mut self, steps: u32);
     /// Whether the host wants no torque and gives none.
     fn is_at_rest(&self) -> bool;
-    /// Whether this host may be replaced by another: the energy that is left pays for the torques under way
-    /// at the other's price, too.
+    /// Whether this host may be replaced by another: no torque is under way.
     fn may_pass_to(&self, next: &Self) -> bool;
-    /// Takes the level and the torques under way of the host before, which may pass to this one.
+    /// Takes the level of the host before, which may pass to this one.
     fn take_over(&mut self, last: &Self);
     /// The amplifier was switched off; because of a fault, whose end of the torque no model knows, the tank
     /// is empty.
@@ -461,9 +460,9 @@ impl<const TICKS: usize, const LAGS: usize> BesideServo for Hosted<TICKS, LAGS> 
         self.stream.is_at_rest() && self.tank.given() == 0
     }
 
-    fn may_pass_to(&self, next: &Self) -> bool {
+    fn may_pass_to(&self, _: &Self) -> bool {
         // Of an amplifier that was just switched off no tail is known.
-        self.unknown == 0 && next.tank.pays_for(&self.tank)
+        self.unknown == 0 && self.tank.is_over()
     }
 
     #[inline(never)]

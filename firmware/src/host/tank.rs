@@ -368,32 +368,23 @@ impl<D: DelayLine<i64>, const LAGS: usize> Tank<D, LAGS> {
         self.means.push(mean.into());
     }
 
-    /// Whether the energy left in another tank of the same response pays for its torques under way here, too.
-    pub(super) fn pays_for(&self, last: &Self) -> bool {
-        last.to_come() == 0 || self.level_of(last) >= 0
+    /// Whether the motor makes no torque, and no command is under way.
+    pub(super) fn is_over(&self) -> bool {
+        self.mean == 0 && self.to_come() == 0
     }
 
-    /// Takes the energy and the torques under way of another tank, which differs in its budget alone: torques
-    /// have the same unit in both, and levels another. The energy is at most that of this tank.
+    /// Takes the energy of another tank that [is over](Self::is_over), at most that of this one. A torque under
+    /// way was paid at the price of the other's share.
     pub(super) fn take_over(&mut self, last: &Self) {
-        let missing = (self.cap() - self.level_of(last)).max(last.to_come());
-        let TankNumbers { speed, power, owed, .. } = self.numbers;
-        self.missing = missing.min(self.cap() + 2 * owed);
-        (self.speed, self.power, self.before) = (speed, power, 0);
-        (self.mean, self.means, self.lagging) =
-            (last.mean, last.means.clone(), last.lagging.clone());
-    }
-
-    /// The level at which this tank has no more energy than another, with the torques under way at its price.
-    fn level_of(&self, last: &Self) -> i64 {
-        let to_come = last.to_come();
         // The last step of the position is known to the width of a count.
         let unknown = product(magnitude(last.before), last.speed);
         let energy = last.level() + last.numbers.owed - unknown;
         let scaled = energy as f64 * (last.numbers.joules / self.numbers.joules);
         // Above the rounding of these and of the reserves.
-        let rounded = (scaled.abs() + to_come as f64) * (1.0 - LESS) + 4.0;
-        (scaled - rounded) as i64 - self.numbers.owed - to_come
+        let level = (scaled - scaled.abs() * (1.0 - LESS) - 4.0) as i64 - self.numbers.owed;
+        self.missing = (self.cap() - level).clamp(0, self.cap() + 2 * self.numbers.owed);
+        self.before = 0;
+        self.give_back(true);
     }
 
     /// Whether the level may rise from now on.

@@ -126,7 +126,7 @@ impl Attack<'_> {
             {
                 let mut other = self::tank(&host, &self.latency, &self.sampling);
                 // The servo fades the host's torque out before it swaps a set in.
-                if tick > at + 1 && other.pays_for(&tank) {
+                if tick > at + 1 && tank.is_over() {
                     other.take_over(&tank);
                     tank = other;
                     HostTorque { energy, power, damping, .. } = host;
